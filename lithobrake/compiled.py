@@ -1,0 +1,40 @@
+"""Compilation of numerical kernels, with a disk cache that is never stale.
+
+Numba's own cache looks only at the file a function stands in, so an edited function in another file would go unnoticed.
+Here the cache folder is named by a hash of every source file of the package and of the compiler's version.
+"""
+
+import hashlib
+import os
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import Any, TypeVar
+
+import numba
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+
+@cache
+def cache_folder() -> Path:
+    """Folder that holds the compiled kernels of exactly these sources and this compiler."""
+    package = Path(__file__).parent
+    digest = hashlib.sha256(numba.__version__.encode())
+    for source in sorted(package.rglob("*.py")):
+        text = source.read_bytes()
+        if b"compiled" in text:
+            digest.update(str(source.relative_to(package)).encode() + b"\0" + text)
+    root = os.environ.get("LITHOBRAKE_CACHE") or os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache")
+    return Path(root) / "lithobrake" / f"kernels-{digest.hexdigest()[:16]}"
+
+
+def compiled(function: Function) -> Function:
+    """Compile a scalar kernel on its first call (IEEE arithmetic, no reassociation) and keep it on disk."""
+    outside = numba.config.CACHE_DIR
+    numba.config.CACHE_DIR = str(cache_folder())
+    try:
+        kernel: Function = numba.njit(function, cache=True, error_model="numpy", nogil=True)
+        return kernel
+    finally:
+        numba.config.CACHE_DIR = outside
