@@ -1,7 +1,7 @@
 """Compilation of numerical kernels, with a disk cache that is never stale.
 
 Numba's own cache looks only at the file a function stands in, so an edited function in another file would go unnoticed.
-Here the cache folder is named by a hash of every source file of the package and of the compiler's version.
+Here the cache folder is named by a hash of all sources of the part that the kernel belongs to, and the compiler's version.
 """
 
 import hashlib
@@ -17,22 +17,23 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 @cache
-def cache_folder() -> Path:
-    """Folder that holds the compiled kernels of exactly these sources and this compiler."""
+def cache_folder(part: str) -> Path:
+    """Folder of the compiled kernels of one part (say "dem") for exactly its sources and this compiler.
+
+    A kernel calls only kernels of its own part, so the sources of that part, and this file, are all that matters.
+    """
     package = Path(__file__).parent
     digest = hashlib.sha256(numba.__version__.encode())
-    for source in sorted(package.rglob("*.py")):
-        text = source.read_bytes()
-        if b"compiled" in text:
-            digest.update(str(source.relative_to(package)).encode() + b"\0" + text)
+    for source in [Path(__file__), *sorted((package / part).rglob("*.py"))]:
+        digest.update(str(source.relative_to(package)).encode() + b"\0" + source.read_bytes())
     root = os.environ.get("LITHOBRAKE_CACHE") or os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache")
-    return Path(root) / "lithobrake" / f"kernels-{digest.hexdigest()[:16]}"
+    return Path(root) / "lithobrake" / f"{part}-{digest.hexdigest()[:16]}"
 
 
 def compiled(function: Function) -> Function:
     """Compile a scalar kernel on its first call (IEEE arithmetic, no reassociation) and keep it on disk."""
     outside = numba.config.CACHE_DIR
-    numba.config.CACHE_DIR = str(cache_folder())
+    numba.config.CACHE_DIR = str(cache_folder(function.__module__.split(".")[1]))
     try:
         kernel: Function = numba.njit(function, cache=True, error_model="numpy", nogil=True)
         return kernel
