@@ -1,0 +1,98 @@
+"""Figure 3: what a design costs, as the number of inputs and the level grow."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import matplotlib
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from lithobrake.report.look import INK, QUIET, SITE
+
+Counts = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Design:
+    """A design of this study, to be marked in the figure."""
+
+    name: str
+    input_count: int
+    level: int
+    node_count: int
+
+
+def count_figure(
+    input_counts: Sequence[int], levels: Sequence[int], tensor: Counts, smolyak: Counts, designs: Sequence[Design]
+) -> Figure:
+    """Draw node counts, shape [input count, level], against the number of inputs (left) and the level (right)."""
+    figure = Figure(figsize=(9.2, 3.7))
+    left, right = figure.subplots(1, 2, sharey=True)
+    figure.subplots_adjust(left=0.08, right=0.985, top=0.88, bottom=0.14, wspace=0.06)
+    shades = matplotlib.colormaps["viridis"](np.linspace(0.05, 0.85, len(levels)))
+    for index, level in enumerate(levels):
+        left.plot(input_counts, tensor[:, index], "--", color=shades[index], linewidth=1.0)
+        left.plot(input_counts, smolyak[:, index], "-", color=shades[index], linewidth=1.7, label=f"level {level}")
+        _end_label(left, input_counts[-1], smolyak[-1, index], f"level {level}", shades[index])
+    shades = matplotlib.colormaps["viridis"](np.linspace(0.05, 0.85, len(input_counts)))
+    for index, input_count in enumerate(input_counts):
+        right.plot(levels, tensor[index], "--", color=shades[index], linewidth=1.0)
+        right.plot(levels, smolyak[index], "-", color=shades[index], linewidth=1.7)
+        words = f"{input_count} inputs" if input_count > 1 else "1 input"
+        _end_label(right, levels[-1], smolyak[index, -1], words, shades[index])
+    for axes, label, ticks in ((left, "number of uncertain inputs", input_counts), (right, "level (degree)", levels)):
+        axes.set_yscale("log")
+        axes.set_xlabel(label)
+        axes.set_xticks(list(ticks))
+        axes.grid(visible=True, axis="y")
+        span = ticks[-1] - ticks[0]
+        axes.set_xlim(ticks[0] - 0.04 * span, ticks[-1] + 0.17 * span)
+    left.set_ylim(0.8, 3.0 * float(np.max(smolyak)) * 10)
+    left.set_ylabel("runs")
+    _mark(left, right, designs)
+    _legend(left)
+    return figure
+
+
+def _end_label(axes: Axes, x: float, y: float, words: str, colour: NDArray[np.float64]) -> None:
+    """Name a curve at its right end."""
+    axes.annotate(words, (x, y), xytext=(5, 0), textcoords="offset points", va="center", fontsize=7.5, color=colour)
+
+
+def _mark(left: Axes, right: Axes, designs: Sequence[Design]) -> None:
+    """Ring the designs of this study in both panels and say their cost."""
+    for design in designs:
+        for axes, x in ((left, design.input_count), (right, design.level)):
+            axes.plot(
+                x,
+                design.node_count,
+                "o",
+                markersize=9,
+                markerfacecolor="none",
+                markeredgecolor=SITE,
+                markeredgewidth=1.6,
+                zorder=5,
+            )
+            axes.annotate(
+                f"{design.name}: {design.node_count} runs",
+                (x, design.node_count),
+                xytext=(-8, 11),
+                textcoords="offset points",
+                ha="right",
+                fontsize=8,
+                color=SITE,
+                fontweight="bold",
+                bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 1},
+                zorder=6,
+            )
+
+
+def _legend(axes: Axes) -> None:
+    """Say what the two kinds of line are."""
+    lines = [
+        matplotlib.lines.Line2D([], [], color=QUIET, linestyle="--", linewidth=1.0, label="full tensor grid"),
+        matplotlib.lines.Line2D([], [], color=INK, linewidth=1.7, label="Smolyak sparse grid"),
+    ]
+    axes.legend(handles=lines, loc="upper left")

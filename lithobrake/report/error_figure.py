@@ -1,0 +1,116 @@
+"""Figure 5: how far the expansion is from the soft-surface model, on runs it has seen and on runs it has not."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from lithobrake.report.look import INK, PAPER_OUTPUTS, QUIET, TEST, TEST_ALL, TRAINING, output
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Score:
+    """Errors of one output on one set of runs: APE and MAPE [%], Q2, RMSE and spread (std) in SI."""
+
+    ape: Array
+    mape: float
+    q2: float
+    rmse: float
+    std: float
+
+
+def error_figure(training: dict[str, Score], test_kept: dict[str, Score], test_all: dict[str, Score]) -> Figure:
+    """Draw histograms of the absolute percentage error; dashed lines stand at the means.
+
+    Above: the kept inputs vary, training and test. Below: all inputs vary, which is what the real landing will see.
+    """
+    names = [name for name in PAPER_OUTPUTS if name in training]
+    figure = Figure(figsize=(9.2, 5.9))
+    grid = figure.subplots(2, len(names), squeeze=False)
+    figure.subplots_adjust(left=0.065, right=0.99, top=0.93, bottom=0.085, wspace=0.2, hspace=0.5)
+    rows = (
+        ((("training", training, TRAINING), ("test, kept inputs vary", test_kept, TEST))),
+        ((("test, all inputs vary", test_all, TEST_ALL),)),
+    )
+    for row, sets in enumerate(rows):
+        for column, name in enumerate(names):
+            series = [(words, scores[name], colour) for words, scores, colour in sets]
+            _panel(grid[row, column], name, series)
+            if column == 0:
+                grid[row, column].set_ylabel("share of runs per bin")
+    return figure
+
+
+def _panel(axes: Axes, name: str, series: Sequence[tuple[str, Score, str]]) -> None:
+    """One output: shares of runs over the error in per cent, and the figures that keep a MAPE honest."""
+    shown = output(name)
+    limit, beyond = _limit([score.ape for _, score, _ in series])
+    bins = np.linspace(0.0, limit, 17)
+    for words, score, colour in series:
+        weights = np.full(len(score.ape), 1.0 / max(len(score.ape), 1))
+        axes.hist(
+            np.minimum(score.ape, limit),
+            bins=bins,
+            weights=weights,
+            color=colour,
+            alpha=0.62,
+            label=words,
+            edgecolor="white",
+            linewidth=0.4,
+        )
+        axes.axvline(
+            min(score.mape, limit), color=colour if colour != TEST else "#b9770e", linestyle="--", linewidth=1.5
+        )
+    axes.set_title(f"{shown.words} {shown.symbol}".strip(), pad=5)
+    axes.set_xlim(0, limit)
+    axes.set_ylim(0, 1.32 * axes.get_ylim()[1])
+    axes.set_xlabel("absolute percentage error [%]" + (f"   (last bin: {beyond} beyond)" if beyond else ""))
+    axes.xaxis.labelpad = 2
+    y = 0.97
+    for words, score, colour in series:
+        axes.text(
+            0.985,
+            y,
+            words,
+            transform=axes.transAxes,
+            ha="right",
+            va="top",
+            fontsize=7.5,
+            fontweight="bold",
+            color=colour if colour != TEST else "#a8690a",
+        )
+        lines = (
+            f"{len(score.ape)} runs: MAPE {_percent(score.mape)}, $Q^2$ {score.q2:.2f}\n"
+            f"RMSE {score.rmse * shown.factor:.2g} of spread {score.std * shown.factor:.2g} {shown.unit}"
+        )
+        axes.text(
+            0.985,
+            y - 0.068,
+            lines,
+            transform=axes.transAxes,
+            ha="right",
+            va="top",
+            fontsize=7.2,
+            color=INK,
+            linespacing=1.35,
+        )
+        y -= 0.235
+    axes.tick_params(axis="y", colors=QUIET)
+
+
+def _limit(errors: Sequence[Array]) -> tuple[float, int]:
+    """End of the axis [%] and how many runs lie beyond it: a few wild ones must not squeeze the rest into one bin."""
+    together = np.concatenate(list(errors))
+    largest, usual = float(together.max()), float(np.quantile(together, 0.95))
+    limit = largest if largest <= 2.0 * usual else 1.25 * usual
+    limit = max(limit, 1e-12)
+    return limit, int(np.sum(together > limit * (1 + 1e-12)))
+
+
+def _percent(value: float) -> str:
+    return f"{value:.3g} %"

@@ -1,0 +1,194 @@
+"""Pictures of rigid convex bodies, painted from far to near into one flat collection of shaded triangles.
+
+Faces that look away are dropped, large ones are cut up so that painting by distance is right where a lander stands among
+grains, and each face is lit by a sun from the side, a soft shadow of the bodies in front of it, and less sky the deeper it lies.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from lithobrake.report.look import shade
+
+Array = NDArray[np.float64]
+Triangles = NDArray[np.int64]
+
+SUN = np.array([-0.45, -0.35, 0.82])
+# A weak light from the other side keeps the form of what the sun does not reach.
+FILL = np.array([0.8, -0.5, 0.2])
+AMBIENT = 0.50
+
+
+@dataclass(frozen=True)
+class Body:
+    """A convex body in its own frame: vertices [m], shape [vertex, 3], centroid at the origin; faces [face, 3]; a colour."""
+
+    vertices: Array
+    faces: Triangles
+    colour: str
+
+
+@dataclass(frozen=True)
+class Camera:
+    """A perspective camera: where it looks [m], from which azimuth and elevation [deg], from how far [m]."""
+
+    target: tuple[float, float, float]
+    azimuth_deg: float
+    elevation_deg: float
+    distance: float
+
+    def axes(self) -> Array:
+        """Rows: right, up and towards the viewer, unit vectors, shape [3, 3]."""
+        azimuth, elevation = np.radians([self.azimuth_deg, self.elevation_deg])
+        toward = np.array([np.cos(elevation) * np.cos(azimuth), np.cos(elevation) * np.sin(azimuth), np.sin(elevation)])
+        right = np.array([-np.sin(azimuth), np.cos(azimuth), 0.0])
+        return np.stack([right, np.cross(toward, right), toward])
+
+    def project(self, points: Array) -> tuple[Array, Array]:
+        """Picture plane coordinates [m at the target], shape [..., 2], and nearness [m], shape [...]."""
+        seen = (points - np.array(self.target)) @ self.axes().T
+        scale = self.distance / (self.distance - seen[..., 2])
+        return seen[..., :2] * scale[..., None], seen[..., 2]
+
+
+def rotation(quaternions: Array) -> Array:
+    """Rotation matrices, shape [count, 3, 3], of unit quaternions (w, x, y, z), shape [count, 4]."""
+    w, x, y, z = quaternions.T / np.linalg.norm(quaternions, axis=1)
+    return np.stack(
+        [
+            np.stack([1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)], axis=-1),
+            np.stack([2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)], axis=-1),
+            np.stack([2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)], axis=-1),
+        ],
+        axis=1,
+    )
+
+
+def subdivide(triangles: Array, longest: float) -> Array:
+    """Cut triangles, shape [count, 3, 3], in four until no edge is longer than `longest` [m]."""
+    edges = np.linalg.norm(triangles - np.roll(triangles, 1, axis=1), axis=2).max(axis=1)
+    large = edges > longest
+    if not large.any():
+        return triangles
+    a, b, c = np.moveaxis(triangles[large], 1, 0)
+    ab, bc, ca = (a + b) / 2, (b + c) / 2, (c + a) / 2
+    pieces = [np.stack(corners, axis=1) for corners in ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))]
+    return np.concatenate([triangles[~large], subdivide(np.concatenate(pieces), longest)])
+
+
+def world_triangles(bodies: Sequence[Body], position: Array, orientation: Array) -> tuple[Array, NDArray[np.int64]]:
+    """Faces of all bodies in the world, shape [face, 3, 3] [m], wound outwards, and the body each belongs to."""
+    turns = rotation(orientation)
+    sizes = np.array([np.linalg.norm(body.vertices, axis=1).max() for body in bodies])
+    longest = 1.3 * float(np.median(sizes))
+    pieces, owners = [], []
+    for index, body in enumerate(bodies):
+        corners = body.vertices[body.faces]
+        normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        # The centroid is inside, so a normal that points to it marks a face wound the other way.
+        inward = np.einsum("fk,fk->f", normals, corners.mean(axis=1)) < 0
+        corners = np.where(inward[:, None, None], corners[:, ::-1], corners)
+        if sizes[index] > 1.5 * np.median(sizes):
+            corners = subdivide(corners, longest)
+        pieces.append(corners @ turns[index].T + position[index])
+        owners.append(np.full(len(corners), index))
+    return np.concatenate(pieces), np.concatenate(owners)
+
+
+def sunlight(centres: Array, owners: NDArray[np.int64], position: Array, radius: Array) -> Array:
+    """Share of the sun that each face sees, shape [face], with each other body taken as a ball of its radius [m]."""
+    sun = SUN / np.linalg.norm(SUN)
+    across = np.linalg.svd(sun[None, :])[2][1:]
+    flat_faces, flat_bodies = centres @ across.T, position @ across.T
+    height_faces, height_bodies = centres @ sun, position @ sun
+    light = np.ones(len(centres))
+    tree = cKDTree(flat_faces)
+    for body, near in enumerate(tree.query_ball_point(flat_bodies, 1.15 * radius)):
+        faces = np.array(near, dtype=int)
+        faces = faces[(owners[faces] != body) & (height_faces[faces] < height_bodies[body])]
+        reach = np.linalg.norm(flat_faces[faces] - flat_bodies[body], axis=1) / radius[body]
+        # A soft rim from .65 to 1.15 radii stands for what the ball leaves out of the true outline.
+        cover = np.clip((1.15 - reach) / 0.5, 0.0, 1.0)
+        np.minimum.at(light, faces, 1.0 - cover)
+    return light
+
+
+def paint(
+    axes: Axes,
+    bodies: Sequence[Body],
+    position: Array,
+    orientation: Array,
+    camera: Camera,
+    surface_height: float | None = None,
+) -> None:
+    """Paint the bodies at position [m], shape [body, 3], orientation (w, x, y, z), shape [body, 4], onto flat axes.
+
+    `surface_height` [m]: what lies below it sees less sky; absent, all bodies see the same.
+    """
+    triangles, owners = world_triangles(bodies, position, orientation)
+    normals = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
+    normals /= np.linalg.norm(normals, axis=1)[:, None]
+    centres = triangles.mean(axis=1)
+    eye = np.array(camera.target) + camera.distance * camera.axes()[2]
+    seen = np.einsum("fk,fk->f", normals, eye - centres) > 0
+    triangles, owners, normals, centres = triangles[seen], owners[seen], normals[seen], centres[seen]
+
+    radius = np.array([0.85 * np.linalg.norm(body.vertices, axis=1).mean() for body in bodies])
+    sun = np.clip(normals @ (SUN / np.linalg.norm(SUN)), 0.0, None) * sunlight(centres, owners, position, radius)
+    sky = 0.75 + 0.25 * normals[:, 2]
+    if surface_height is not None:
+        depth = (surface_height - centres[:, 2]) / max(surface_height, 1e-30)
+        sky = sky * np.where(depth > 0, 1.0 - 0.35 * np.clip(depth, 0.0, 1.0), 1.0)
+    # A few per cent of tint, fixed by the body's number, keeps neighbours of one colour apart.
+    tint = 1.0 + 0.09 * np.sin(2.399963 * np.arange(len(bodies)))[owners]
+    fill = np.clip(normals @ (FILL / np.linalg.norm(FILL)), 0.0, None)
+    light = (AMBIENT * sky + 0.16 * fill + 0.62 * sun) * tint
+
+    colours = np.empty((len(triangles), 3))
+    palette = np.array([body.colour for body in bodies])[owners]
+    for colour in np.unique(palette):
+        chosen = palette == colour
+        colours[chosen] = shade(str(colour), light[chosen])
+    flat, _ = camera.project(triangles)
+    nearness = centres @ camera.axes()[2]
+    order = np.argsort(nearness, kind="stable")
+    # An edge in the face's own colour closes the hairline that antialiasing leaves between two faces.
+    axes.add_collection(
+        PolyCollection(flat[order], facecolors=colours[order], edgecolors=colours[order], linewidths=0.25)
+    )
+
+
+def frame_axes(axes: Axes, x_range: tuple[float, float], y_range: tuple[float, float]) -> None:
+    """Set the part of the picture plane [m] that is shown, to scale, without axes."""
+    axes.set_xlim(*x_range)
+    axes.set_ylim(*y_range)
+    axes.set_aspect("equal")
+    axes.set_axis_off()
+
+
+def draw_box(axes: Axes, width: tuple[float, float], height: float, camera: Camera, front: bool) -> None:
+    """Draw the edges of the open box (inner walls at +-width/2, floor at z = 0); front: those nearer than its middle."""
+    x, y = width[0] / 2, width[1] / 2
+    corners = np.array([(sx * x, sy * y, z) for z in (0.0, height) for sx, sy in ((-1, -1), (1, -1), (1, 1), (-1, 1))])
+    edges = (
+        [(k, (k + 1) % 4) for k in range(4)]
+        + [(4 + k, 4 + (k + 1) % 4) for k in range(4)]
+        + [(k, k + 4) for k in range(4)]
+    )
+    nearness = corners @ camera.axes()[2] * 0 + corners[:, :2] @ camera.axes()[2][:2]
+    flat, _ = camera.project(corners)
+    for a, b in edges:
+        if (nearness[a] + nearness[b] > 1e-9 * x) == front:
+            axes.plot(
+                *flat[[a, b]].T,
+                color="#55606b",
+                linewidth=0.8,
+                alpha=0.9,
+                solid_capstyle="round",
+                zorder=3 if front else 0,
+            )
