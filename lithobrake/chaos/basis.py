@@ -1,0 +1,91 @@
+"""The multivariate orthonormal basis: products of the polynomials of each input, at given points."""
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from lithobrake.chaos.germ import Distribution
+from lithobrake.chaos.polynomials import Array, Recurrence
+from lithobrake.chaos.terms import Indices
+
+# Limits computed by a user in another order of operations may differ from ours in the last digits.
+ROUNDING = 1e-12
+
+
+def points_of(inputs: Mapping[str, Distribution], x: ArrayLike) -> Array:
+    """Bring points to shape [count, input_count]; one-dimensional x is many points of a single input."""
+    points = np.asarray(x, dtype=float)
+    if points.ndim == 1 and len(inputs) == 1:
+        points = points[:, None]
+    if points.ndim != 2 or points.shape[1] != len(inputs):
+        raise ValueError(
+            f"x has shape {points.shape}, but must be [count, {len(inputs)}]: one column for each of "
+            f"{', '.join(inputs)}"
+        )
+    return points
+
+
+def outside_count(inputs: Mapping[str, Distribution], points: Array) -> tuple[int, str]:
+    """Number of points outside the support, and a sentence about the worst input (empty when none is outside)."""
+    outside = np.zeros(len(points), dtype=bool)
+    sentence = ""
+    for k, (name, entry) in enumerate(inputs.items()):
+        lower, upper = entry.support
+        slack = ROUNDING * (upper - lower if entry.bounded else abs(lower) if np.isfinite(lower) else 0.0)
+        column = points[:, k]
+        wrong = ~((column >= lower - slack) & (column <= upper + slack))
+        if entry.kind == "log_normal":
+            wrong |= column <= 0.0
+        if wrong.any():
+            outside |= wrong
+            value = column[wrong][0]
+            sentence = sentence or f"{name} is {value:g}, but its support is [{lower:g}, {upper:g}]"
+    return int(outside.sum()), sentence
+
+
+def germs_of(inputs: Mapping[str, Distribution], points: Array) -> Array:
+    """Germs of points in physical units [count, input_count]; result [input_count, count]."""
+    return np.stack([entry.germ(points[:, k]) for k, entry in enumerate(inputs.values())])
+
+
+def recurrences_of(inputs: Mapping[str, Distribution], indices: Indices) -> list[Recurrence]:
+    """Recurrence of each input up to the highest degree that the index set uses."""
+    highest = indices.max(axis=0) if len(indices) else np.zeros(len(inputs), dtype=int)
+    recurrences = []
+    for (name, entry), degree in zip(inputs.items(), highest, strict=True):
+        try:
+            recurrences.append(entry.recurrence(int(degree)))
+        except ValueError as error:
+            raise ValueError(f"input {name!r}: {error}") from None
+    return recurrences
+
+
+def basis_matrix(inputs: Mapping[str, Distribution], indices: Indices, points: Array) -> Array:
+    """All terms at points in physical units; result [count, term_count] (H of the paper, Eq 17), column-major."""
+    germs = germs_of(inputs, points)
+    matrix = np.ones((len(indices), len(points)))
+    for column, (recurrence, germ) in enumerate(zip(recurrences_of(inputs, indices), germs, strict=True)):
+        if recurrence.degree == 0:
+            continue
+        table = recurrence.values(germ)
+        used = np.nonzero(indices[:, column])[0]
+        matrix[used] *= table[indices[used, column]]
+    return matrix.T
+
+
+def condition_number(
+    inputs: Mapping[str, Distribution], x: ArrayLike, indices: Indices, *, weights: ArrayLike | None = None
+) -> float:
+    """Ratio of the largest to the smallest singular value of the basis at a design; infinite if rank deficient.
+
+    weights: least-squares weights of the points [count] or None.
+    """
+    matrix = basis_matrix(inputs, indices, points_of(inputs, x))
+    if weights is not None:
+        matrix = matrix * np.sqrt(np.asarray(weights, dtype=float))[:, None]
+    if matrix.shape[0] < matrix.shape[1]:
+        return float("inf")
+    values = np.linalg.svd(matrix, compute_uv=False)
+    limit = values[0] * max(matrix.shape) * np.finfo(float).eps
+    return float(values[0] / values[-1]) if values[-1] > limit else float("inf")

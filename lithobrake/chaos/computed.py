@@ -1,0 +1,140 @@
+"""Inputs whose orthonormal polynomials have no name and are computed: truncated normal, and samples as they are."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy import special
+
+from lithobrake.chaos.germ import Distribution, Support
+from lithobrake.chaos.polynomials import Array, Recurrence, discretised
+
+# Densities below exp(-350) of the largest cannot be felt by polynomials of the degrees in use.
+NEGLIGIBLE_LOG_DENSITY = 350.0
+QUADRATURE_NODES = 600
+
+
+@dataclass(frozen=True)
+class TruncatedNormal(Distribution):
+    """Normal(mean, std) restricted to lower <= x <= upper [unit of the input]; either limit may be infinite.
+
+    mean and std are those before truncation. Polynomials by discretisation of the density on Gauss-Legendre nodes.
+    """
+
+    mean: float
+    std: float
+    lower: float
+    upper: float
+    kind = "truncated_normal"
+
+    def __post_init__(self) -> None:
+        self._number("mean")
+        self._number("std", above=0.0)
+        self._ordered(self._number("lower", finite=False), self._number("upper", finite=False))
+
+    @property
+    def support(self) -> Support:
+        return self.lower, self.upper
+
+    @cached_property
+    def _limits(self) -> tuple[float, float]:
+        """Standardised limits beyond which the density is zero or negligible."""
+        low, high = (self.lower - self.mean) / self.std, (self.upper - self.mean) / self.std
+        mode = min(max(0.0, low), high)
+        reach = float(np.sqrt(mode * mode + 2.0 * NEGLIGIBLE_LOG_DENSITY))
+        return max(low, -reach), min(high, reach)
+
+    @cached_property
+    def _frame(self) -> tuple[float, float]:
+        """Middle and half-width of the interval that becomes [-1, 1]."""
+        low, high = self._limits
+        lower = self.lower if np.isfinite(self.lower) else self.mean + self.std * low
+        upper = self.upper if np.isfinite(self.upper) else self.mean + self.std * high
+        return 0.5 * (lower + upper), 0.5 * (upper - lower)
+
+    def germ(self, x: Array) -> Array:
+        middle, half = self._frame
+        return (x - middle) / half
+
+    def physical(self, germ: Array) -> Array:
+        middle, half = self._frame
+        return self._clip(middle + half * germ)
+
+    def ppf(self, u: ArrayLike) -> Array:
+        share = np.asarray(u, dtype=float)
+        low, high = (self.lower - self.mean) / self.std, (self.upper - self.mean) / self.std
+        # In the right tail the mirrored problem keeps all digits; logarithms keep the far tail from underflow.
+        sign = -1.0 if low + high > 0.0 else 1.0
+        if sign < 0.0:
+            low, high, share = -high, -low, 1.0 - share
+        with np.errstate(divide="ignore"):
+            logarithm = np.logaddexp(
+                special.log_ndtr(low) + np.log1p(-share),
+                special.log_ndtr(high) + np.log(share),
+            )
+        return self._clip(self.mean + self.std * sign * special.ndtri_exp(logarithm))
+
+    def slope(self, x: Array) -> Array:
+        return np.full_like(x, 1.0 / self._frame[1])
+
+    def recurrence(self, degree: int) -> Recurrence:
+        low, high = self._limits
+        nodes, weights = np.polynomial.legendre.leggauss(max(QUADRATURE_NODES, 4 * degree))
+        z = 0.5 * (low + high) + 0.5 * (high - low) * nodes
+        mode = min(max(0.0, low), high)
+        density = weights * np.exp(-0.5 * (z - mode) * (z + mode))
+        return discretised(degree, self.germ(self.mean + self.std * z), density / density.sum())
+
+
+@dataclass(frozen=True)
+class Empirical(Distribution):
+    """The samples themselves [unit of the input], equally probable; polynomials orthonormal over exactly these values.
+
+    Quantiles are sample values (no interpolation), so that a Monte Carlo has the moments that the expansion states.
+    Raises ValueError for fewer than two distinct or for non-finite samples.
+    """
+
+    samples: Sequence[float]
+    kind = "empirical"
+
+    def __post_init__(self) -> None:
+        values = np.sort(np.asarray(self.samples, dtype=float).ravel())
+        if not np.all(np.isfinite(values)) or len(np.unique(values)) < 2:
+            raise ValueError(
+                f"Empirical.samples holds {values.size} values, but needs finite ones, at least two of them distinct"
+            )
+        object.__setattr__(self, "samples", tuple(values.tolist()))
+
+    @cached_property
+    def _sorted(self) -> Array:
+        return np.asarray(self.samples, dtype=float)
+
+    @property
+    def support(self) -> Support:
+        return self.samples[0], self.samples[-1]
+
+    def germ(self, x: Array) -> Array:
+        lower, upper = self.support
+        return ((x - lower) - (upper - x)) / (upper - lower)
+
+    def physical(self, germ: Array) -> Array:
+        lower, upper = self.support
+        return self._clip(0.5 * ((1.0 - germ) * lower + (1.0 + germ) * upper))
+
+    def ppf(self, u: ArrayLike) -> Array:
+        count = len(self.samples)
+        place = np.ceil(np.asarray(u, dtype=float) * count).astype(int) - 1
+        return self._sorted[np.clip(place, 0, count - 1)]
+
+    def slope(self, x: Array) -> Array:
+        return np.full_like(x, 2.0 / (self.samples[-1] - self.samples[0]))
+
+    def rule(self, count: int) -> tuple[Array, Array]:
+        # The samples are the measure; equal values share one node, so that ties do not cost orthogonality.
+        nodes, repeats = np.unique(self._sorted, return_counts=True)
+        return self.germ(nodes), repeats / len(self.samples)
+
+    def recurrence(self, degree: int) -> Recurrence:
+        return discretised(degree, *self.rule(degree))

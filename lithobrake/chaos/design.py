@@ -1,0 +1,73 @@
+"""Designs by count or by grid: full tensor of Gauss nodes, scrambled Sobol sequence, Latin hypercube."""
+
+import warnings
+from collections.abc import Mapping, Sequence
+from itertools import product
+
+import numpy as np
+
+from lithobrake.chaos.germ import Distribution, checked_inputs
+from lithobrake.chaos.polynomials import Array
+
+
+def checked_count(count: int) -> int:
+    """Check a number of points."""
+    if int(count) != count or count < 1:
+        raise ValueError(f"count is {count}, but must be a whole number of at least 1")
+    return int(count)
+
+
+def tensor_count(input_count: int, level: int) -> int:
+    """Number of nodes of the full tensor grid, (level + 1)**input_count. Source: the paper, Fig 3."""
+    return (int(level) + 1) ** input_count
+
+
+def tensor_grid(inputs: Mapping[str, Distribution], level: int | Sequence[int]) -> Array:
+    """Full tensor of the Gauss nodes of each input, level + 1 in each, physical units, [node_count, input_count].
+
+    level: one number, or one for each input. The grid determines all polynomials of degree level in each input.
+    Raises ValueError for a level below 0 or more than ten million nodes.
+    """
+    distributions = checked_inputs(inputs)
+    levels = [level] * len(distributions) if isinstance(level, int | np.integer) else list(level)
+    if len(levels) != len(distributions) or any(int(one) != one or one < 0 for one in levels):
+        raise ValueError(f"level is {level}, but must be a whole number of at least 0, or one for each input")
+    if np.prod([one + 1.0 for one in levels]) > 1e7:
+        raise ValueError(f"a tensor grid of level {level} in {len(levels)} inputs has over 1e7 nodes: use smolyak")
+    nodes = []
+    for entry, one in zip(distributions.values(), levels, strict=True):
+        nodes.append(entry.physical(entry.recurrence(int(one) + 1).gauss_rule()[0]))
+    return np.array(list(product(*nodes)), dtype=float)
+
+
+def sobol_sequence(inputs: Mapping[str, Distribution], count: int, *, seed: int = 0, skip: int = 0) -> Array:
+    """First `count` points of a scrambled Sobol sequence after `skip`, physical units, [count, input_count].
+
+    With the same seed a longer sequence starts with the shorter one, so a design can be extended.
+    Source: Owen, 1998, "Scrambling Sobol' and Niederreiter-Xing points", as in scipy.stats.qmc.
+    """
+    from scipy.stats import qmc
+
+    distributions = checked_inputs(inputs)
+    engine = qmc.Sobol(len(distributions), scramble=True, rng=np.random.default_rng(seed))
+    if skip > 0:
+        engine.fast_forward(skip)
+    # Powers of two are advised for quadrature; a regression design needs no balance, so no warning either.
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", message="The balance properties of Sobol")
+        uniforms = engine.random(checked_count(count))
+    return _physical(distributions, uniforms)
+
+
+def latin_hypercube(inputs: Mapping[str, Distribution], count: int, *, seed: int = 0) -> Array:
+    """Latin hypercube in probability, physical units, shape [count, input_count]. Source: McKay and others, 1979."""
+    distributions = checked_inputs(inputs)
+    generator, size = np.random.default_rng(seed), checked_count(count)
+    columns = [(generator.permutation(size) + generator.random(size)) / size for _ in distributions]
+    return _physical(distributions, np.column_stack(columns))
+
+
+def _physical(distributions: Mapping[str, Distribution], uniforms: Array) -> Array:
+    # A probability of exactly 0 or 1 would be infinite for an unbounded input.
+    inner = np.clip(uniforms, 2.0**-54, 1.0 - 2.0**-53)
+    return np.column_stack([entry.ppf(inner[:, k]) for k, entry in enumerate(distributions.values())])

@@ -1,0 +1,67 @@
+"""Least squares by orthogonal factorisation, refusing what does not determine every term."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from lithobrake.chaos.polynomials import Array
+from lithobrake.chaos.terms import Indices
+
+# Singular values below this share of the largest are rank loss: far below any usable condition number,
+# far above the rounding of an exactly deficient system.
+RANK_TOLERANCE = 1e-10
+
+
+@dataclass(frozen=True)
+class LeastSquares:
+    """coefficients [term_count, output_count]; leverage [count]; residuals [count, output_count]; condition number."""
+
+    coefficients: Array
+    leverage: Array
+    residuals: Array
+    condition: float
+
+    @property
+    def leave_one_out(self) -> Array:
+        """Error at each point of the fit without that point, [count, output_count]. Source: Allen, 1974 (PRESS)."""
+        return self.residuals / np.maximum(1.0 - self.leverage, np.finfo(float).eps)[:, None]
+
+
+def term_name(index: Sequence[int], names: Sequence[str]) -> str:
+    """A term in words, for instance "friction^2 speed"."""
+    parts = [f"{name}^{power}" if power > 1 else name for name, power in zip(names, index, strict=True) if power]
+    return " ".join(parts) or "constant"
+
+
+def least_squares(
+    matrix: Array, y: Array, *, indices: Indices, names: Sequence[str], weights: Array | None = None
+) -> LeastSquares:
+    """Solve min sum w_k (y_k - H_k c)**2 by pivoted QR; matrix H [count, term_count], y [count, output_count].
+
+    Raises ValueError for fewer points than terms, and for rank deficiency (naming terms that cannot be told apart).
+    Source: the paper, Eqs 15 and 16; Golub and Van Loan, 2013, section 5.5.
+    """
+    from scipy.linalg import qr, solve_triangular
+
+    count, term_count = matrix.shape
+    if count < term_count:
+        raise ValueError(
+            f"{count} points cannot determine {term_count} terms: give at least {term_count} points or lower the degree"
+        )
+    root = np.ones(count) if weights is None else np.sqrt(weights)
+    orthogonal, triangle, order = qr(matrix * root[:, None], mode="economic", pivoting=True, check_finite=False)
+    values = np.linalg.svd(triangle, compute_uv=False)
+    if values[-1] <= RANK_TOLERANCE * values[0]:
+        diagonal = np.abs(np.diag(triangle))
+        rank = int(np.sum(diagonal > RANK_TOLERANCE * diagonal[0]))
+        lost = ", ".join(term_name(indices[k], names) for k in order[min(rank, term_count - 1) :][:5])
+        raise ValueError(
+            f"the {count} points determine only about {rank} of {term_count} terms (lost among others: {lost}): "
+            "lower the degree, raise the level of the design or add points"
+        )
+    coefficients = np.empty((term_count, y.shape[1]))
+    coefficients[order] = solve_triangular(triangle, orthogonal.T @ (y * root[:, None]), check_finite=False)
+    residuals = y - matrix @ coefficients
+    leverage = np.einsum("ij,ij->i", orthogonal, orthogonal)
+    return LeastSquares(coefficients, leverage, residuals, float(values[0] / values[-1]))

@@ -1,0 +1,162 @@
+"""The fitted expansion: evaluate it, read its moments and indices, score it, keep it in a file."""
+
+import os
+import warnings
+from collections.abc import Mapping, Sequence
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from lithobrake.chaos import scores, sensitivity
+from lithobrake.chaos.basis import outside_count, points_of
+from lithobrake.chaos.evaluation import Plan, evaluate, make_plan
+from lithobrake.chaos.germ import Distribution, checked_inputs
+from lithobrake.chaos.polynomials import Array
+from lithobrake.chaos.terms import Indices
+
+
+class Surrogate:
+    """A polynomial chaos expansion of one or several outputs; made by `fit` or `load`.
+
+    inputs: name -> distribution, in column order; multi_indices [term_count, input_count]; coefficients of the
+    orthonormal terms [term_count, output_count] ([term_count] for a one-dimensional y); report: how it was fitted,
+    plain JSON values; residuals of the training points [count, output_count], kept jointly over outputs.
+    Source: the paper, Eq 13; Xiu and Karniadakis, 2002.
+    """
+
+    def __init__(
+        self,
+        inputs: Mapping[str, Distribution],
+        multi_indices: Indices,
+        coefficients: Array,
+        *,
+        output_names: Sequence[str],
+        one_dimensional: bool,
+        residuals: Array | None = None,
+        report: dict[str, Any] | None = None,
+    ) -> None:
+        self.inputs = checked_inputs(inputs)
+        self.multi_indices = multi_indices
+        self.output_names = list(output_names)
+        self.one_dimensional = one_dimensional
+        self.residuals = np.zeros((0, len(self.output_names))) if residuals is None else residuals
+        self.report = report or {}
+        self._coefficients = coefficients
+
+    @property
+    def input_names(self) -> list[str]:
+        """Names of the inputs in column order."""
+        return list(self.inputs)
+
+    @property
+    def coefficients(self) -> Array:
+        """Coefficients of the orthonormal terms [term_count, output_count], or [term_count]."""
+        return self._coefficients[:, 0] if self.one_dimensional else self._coefficients
+
+    @property
+    def degree(self) -> int:
+        """Highest total degree among the terms."""
+        return int(self.multi_indices.sum(axis=1).max())
+
+    @property
+    def term_count(self) -> int:
+        """Number of terms, the constant among them."""
+        return len(self.multi_indices)
+
+    @property
+    def dropped_count(self) -> int:
+        """Number of training rows that were all NaN (missing runs) and were left out."""
+        return int(self.report.get("dropped_count", 0))
+
+    @cached_property
+    def _plan(self) -> Plan:
+        return make_plan(self.inputs, self.multi_indices, self._coefficients)
+
+    def __call__(self, x: ArrayLike, *, outside: str = "raise") -> Array:
+        """Evaluate at points x in physical units [count, input_count]; result [count, output_count] or [count].
+
+        outside: "raise" refuses points outside the support of an input (ValueError); "warn" counts them in a
+        warning and extrapolates. Values that are not finite are always refused.
+        """
+        points = self.checked_points(x, outside)
+        return self.shaped(evaluate(self.inputs, self._plan, points))
+
+    def checked_points(self, x: ArrayLike, outside: str = "raise") -> Array:
+        """Points [count, input_count] after the checks that `__call__` describes."""
+        if outside not in ("raise", "warn"):
+            raise ValueError(f"outside is {outside!r}, but must be 'raise' or 'warn'")
+        points = points_of(self.inputs, x)
+        if not np.all(np.isfinite(points)):
+            raise ValueError(f"{int((~np.isfinite(points)).any(axis=1).sum())} points of x are not finite: remove them")
+        count, sentence = outside_count(self.inputs, points)
+        if count:
+            text = f"{count} of {len(points)} points are outside the support of the inputs (first: {sentence})"
+            undefined = any(
+                entry.kind in ("log_uniform", "log_normal") and bool((points[:, k] <= 0.0).any())
+                for k, entry in enumerate(self.inputs.values())
+            )
+            if outside == "raise" or undefined:
+                raise ValueError(f"{text}: an expansion does not extrapolate; leave them out, or pass outside='warn'")
+            warnings.warn(f"{text}: values there are extrapolated", stacklevel=3)
+        return points
+
+    def shaped(self, values: Array) -> Any:
+        """Drop the last axis (outputs) if y was one-dimensional."""
+        return values[..., 0] if self.one_dimensional else values
+
+    @property
+    def mean(self) -> Any:
+        """Mean of each output [output_count], or a number. Source: the paper, Eq 18."""
+        return self.shaped(sensitivity.mean_of(self.multi_indices, self._coefficients))
+
+    @property
+    def variance(self) -> Any:
+        """Variance of each output [output_count], or a number. Source: the paper, Eq 21."""
+        return self.shaped(sensitivity.variance_of(self.multi_indices, self._coefficients))
+
+    @property
+    def sobol_first(self) -> Array:
+        """First-order Sobol indices [input_count, output_count] or [input_count]; 0 where nothing varies."""
+        return self.shaped(sensitivity.first_order(self.multi_indices, self._coefficients))
+
+    @property
+    def sobol_total(self) -> Array:
+        """Total Sobol indices [input_count, output_count] or [input_count]; 0 where nothing varies."""
+        return self.shaped(sensitivity.total_order(self.multi_indices, self._coefficients))
+
+    def sobol_group(self, names: Sequence[str]) -> Array:
+        """Share of the variance in all terms of these inputs only, [output_count] or a number."""
+        return self.shaped(sensitivity.group_share(self.multi_indices, self._coefficients, self._columns(names)))
+
+    def sobol_interaction(self, names: Sequence[str]) -> Array:
+        """Sobol index of exactly this set of inputs (any order), [output_count] or a number."""
+        return self.shaped(sensitivity.interaction(self.multi_indices, self._coefficients, self._columns(names)))
+
+    def _columns(self, names: Sequence[str]) -> list[int]:
+        wanted = [names] if isinstance(names, str) else list(names)
+        unknown = [name for name in wanted if name not in self.inputs]
+        if unknown:
+            raise ValueError(f"no input is named {', '.join(map(repr, unknown))}: there are {', '.join(self.inputs)}")
+        return [self.input_names.index(name) for name in wanted]
+
+    def score(self, x: ArrayLike, y: ArrayLike) -> dict[str, scores.Score]:
+        """Scores at points x with known outputs y, by output name: mape, ape [%], q2, rrmse, rmse, std.
+
+        Raises ValueError for NaN in y. Source: the paper, Eq 24; `score_of` has the definitions.
+        """
+        truth = np.asarray(y, dtype=float).reshape(len(points_of(self.inputs, x)), -1)
+        if truth.shape[1] != len(self.output_names):
+            raise ValueError(f"y has {truth.shape[1]} outputs, but must have {len(self.output_names)}")
+        if not np.all(np.isfinite(truth)):
+            raise ValueError("y holds values that are not finite: leave out the runs without outputs before scoring")
+        predicted = np.asarray(self(x)).reshape(truth.shape)
+        columns = enumerate(self.output_names)
+        return {name: scores.score_of(predicted[:, k], truth[:, k]) for k, name in columns}
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write everything into one readable JSON file."""
+        from lithobrake.chaos.storage import save
+
+        save(self, path)

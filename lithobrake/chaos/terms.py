@@ -1,0 +1,44 @@
+"""Which products of polynomials an expansion holds: sets of multi-indices."""
+
+from collections.abc import Sequence
+from math import comb
+
+import numpy as np
+from numpy.typing import NDArray
+
+Indices = NDArray[np.int64]
+
+
+def term_count(input_count: int, degree: int) -> int:
+    """Number of terms of total degree up to `degree`, C(n + d, d). Source: the paper, below Eq 14."""
+    return comb(input_count + degree, degree)
+
+
+def multi_index_set(
+    input_count: int, degree: int, *, q_norm: float = 1.0, max_degrees: Sequence[int] | None = None
+) -> Indices:
+    """Multi-indices with (sum i_r**q)**(1/q) <= degree, shape [term_count, input_count], ordered by total degree.
+
+    q_norm: 1 is the total degree; smaller drops interactions. max_degrees: highest degree of each input, [input_count].
+    Raises ValueError for a negative degree or q_norm outside (0, 1].
+    Source: the paper, Eq 13; Blatman and Sudret, 2011, Eq 22 (hyperbolic sets).
+    """
+    if input_count < 1 or degree < 0 or int(degree) != degree:
+        raise ValueError(f"degree is {degree} for {input_count} inputs, but must be a whole number of at least 0")
+    if not 0.0 < q_norm <= 1.0:
+        raise ValueError(f"q_norm is {q_norm}, but must be above 0 and at most 1")
+    highest = [int(degree)] * input_count if max_degrees is None else [min(int(m), int(degree)) for m in max_degrees]
+    if len(highest) != input_count:
+        raise ValueError(f"max_degrees has {len(highest)} entries, but must have one for each of {input_count} inputs")
+    budget = float(degree) ** q_norm * (1.0 + 1e-12)
+    rows = np.zeros((1, 0), dtype=np.int64)
+    used = np.zeros(1)
+    # Inputs are added one at a time and hopeless rows dropped at once, so the full tensor is never formed.
+    for limit in highest:
+        powers = np.arange(limit + 1)
+        spent = used[:, None] + powers[None, :].astype(float) ** q_norm
+        row, power = np.nonzero(spent <= budget)
+        rows = np.column_stack([rows[row], powers[power]])
+        used = spent[row, power]
+    keys = [-rows[:, column] for column in reversed(range(input_count))]
+    return np.ascontiguousarray(rows[np.lexsort([*keys, rows.sum(axis=1)])])

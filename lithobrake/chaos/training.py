@@ -1,0 +1,94 @@
+"""The data of a fit, checked once: points inside the support, outputs finite, missing runs dropped and counted."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lithobrake.chaos.basis import outside_count, points_of
+from lithobrake.chaos.germ import Distribution, checked_inputs
+from lithobrake.chaos.polynomials import Array
+
+
+@dataclass(frozen=True)
+class Training:
+    """inputs by name; x [count, input_count] in physical units; y [count, output_count]; weights [count] or None.
+
+    dropped_count: rows left out because all their outputs were NaN. one_dimensional: y was given as [count].
+    """
+
+    inputs: dict[str, Distribution]
+    x: Array
+    y: Array
+    weights: Array | None
+    output_names: list[str]
+    one_dimensional: bool
+    dropped_count: int
+
+    @property
+    def count(self) -> int:
+        """Number of points in use."""
+        return len(self.x)
+
+
+def checked_training(
+    inputs: Mapping[str, Distribution],
+    x: ArrayLike,
+    y: ArrayLike,
+    *,
+    output_names: Sequence[str] | None = None,
+    weights: ArrayLike | None = None,
+) -> Training:
+    """Check the data of a fit. A row of y that is all NaN is a missing run: dropped and counted.
+
+    Raises ValueError for wrong shapes, points outside the support, any other non-finite value, wrong weights.
+    """
+    distributions = checked_inputs(inputs)
+    points, outputs = points_of(distributions, x), np.asarray(y, dtype=float)
+    one_dimensional = outputs.ndim == 1
+    table = outputs[:, None] if one_dimensional else outputs
+    if table.ndim != 2 or len(table) != len(points) or table.shape[1] == 0:
+        raise ValueError(f"y has shape {outputs.shape}, but must be [{len(points)}] or [{len(points)}, output_count]")
+    missing = np.isnan(table).all(axis=1)
+    kept, rows = table[~missing], points[~missing]
+    if not np.all(np.isfinite(kept)):
+        wrong = int((~np.isfinite(kept)).any(axis=1).sum())
+        raise ValueError(
+            f"{wrong} rows of y hold NaN or infinity in some outputs: a missing run must be NaN in all outputs, "
+            "so set the whole row to NaN or leave it out"
+        )
+    if not len(kept):
+        raise ValueError(f"none of the {len(points)} rows of y holds outputs: at least one run is needed")
+    if not np.all(np.isfinite(rows)):
+        raise ValueError("x holds values that are not finite: remove these points")
+    outside, sentence = outside_count(distributions, rows)
+    if outside:
+        raise ValueError(f"{outside} of {len(rows)} points of x are outside the support of the inputs ({sentence})")
+    return Training(
+        distributions,
+        rows,
+        kept,
+        _checked_weights(weights, missing),
+        _names(output_names, kept.shape[1], one_dimensional),
+        one_dimensional,
+        int(missing.sum()),
+    )
+
+
+def _checked_weights(weights: ArrayLike | None, missing: NDArray[np.bool_]) -> Array | None:
+    if weights is None:
+        return None
+    values = np.asarray(weights, dtype=float)
+    if values.shape != missing.shape or not np.all(np.isfinite(values)) or not np.all(values > 0.0):
+        raise ValueError(f"weights must be {len(missing)} finite numbers above 0, one for each point")
+    return values[~missing] / values[~missing].mean()
+
+
+def _names(output_names: Sequence[str] | None, count: int, one_dimensional: bool) -> list[str]:
+    if output_names is None:
+        return ["y"] if one_dimensional else [f"y{k}" for k in range(count)]
+    names = [output_names] if isinstance(output_names, str) else [str(name) for name in output_names]
+    if len(names) != count or len(set(names)) != count:
+        raise ValueError(f"output_names is {names}, but must be {count} different names")
+    return names
