@@ -1,0 +1,306 @@
+"""The study file: what a user writes. Every key has its unit, range and default here, and nowhere else.
+
+A key whose range below is `MaybeUncertain` takes a number, or a table with a distribution in place of the number.
+`lithobrake new` writes a commented file from these very lines; `study_file.read` checks one.
+"""
+
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from lithobrake.quantity import MaybeUncertain, Number, Numbers, Scalar, Uncertain, Whole
+
+Metres = Annotated[float, Number("m", above=0)]
+Interval = Annotated[tuple[float, float], Numbers("m", count=2, ascending=True)]
+Place = Annotated[Scalar, MaybeUncertain("m")]
+Density = Annotated[Scalar, MaybeUncertain("kg/m3", above=0)]
+YoungModulus = Annotated[Scalar, MaybeUncertain("Pa", above=0)]
+PoissonRatio = Annotated[Scalar, MaybeUncertain("", at_least=0, below=0.5)]
+Restitution = Annotated[Scalar, MaybeUncertain("", above=0, at_most=1)]
+Friction = Annotated[Scalar, MaybeUncertain("", at_least=0)]
+Angle = Annotated[Scalar, MaybeUncertain("deg", at_least=-360, at_most=360)]
+Spin = Annotated[Scalar, MaybeUncertain("rad/s")]
+
+OUTPUTS = ("speed_out", "elevation_out", "spin_out", "velocity_out_x", "velocity_out_y", "velocity_out_z")
+OutputName = Literal["speed_out", "elevation_out", "spin_out", "velocity_out_x", "velocity_out_y", "velocity_out_z"]
+
+
+class Section(BaseModel):
+    """One table of the study file; a key that it does not know is refused."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, use_attribute_docstrings=True)
+
+
+class Constant(Section):
+    """All grains have one size."""
+
+    distribution: Literal["constant"]
+    value: Metres
+
+
+class Between(Section):
+    """Grain sizes spread evenly between two limits."""
+
+    distribution: Literal["uniform"]
+    lower: Metres
+    upper: Metres
+
+
+class Bell(Section):
+    """Grain sizes with a normal distribution, cut at two limits."""
+
+    distribution: Literal["normal"]
+    mean: Metres
+    std: Metres
+    lower: Metres
+    upper: Metres
+
+
+class PowerLaw(Section):
+    """Number of grains falling with size as diameter**-exponent, between two limits."""
+
+    distribution: Literal["power_law"]
+    exponent: Annotated[float, Number("")]
+    lower: Metres
+    upper: Metres
+
+
+class BedSection(Section):
+    """The surface: grains are convex hulls of random clouds of points, poured into an open box and settled."""
+
+    grain_count: Annotated[int, Whole("grains", at_least=10, at_most=1_000_000)] = Field(examples=["150"])
+    """How many grains."""
+    width: Annotated[tuple[float, float], Numbers("m", count=2, above=0)] = Field(examples=["[0.8, 0.8]"])
+    """Inner width of the box along x and y; at least twice the lander's largest diameter."""
+    diameter: Annotated[Constant | Between | Bell | PowerLaw, Field(discriminator="distribution")] = Field(
+        examples=['{ distribution = "constant", value = 0.1 }']
+    )
+    """Diameter of the sphere of equal volume: constant (value), uniform (lower, upper), normal (mean, std, lower,
+    upper) or power_law (exponent, lower, upper)."""
+    bed_count: Annotated[int, Whole("beds", at_least=1, at_most=1000)] = 1
+    """How many beds; with more than one, each run draws its bed."""
+    cloud_point_count: Annotated[int, Whole("points", at_least=4, at_most=100)] = 14
+    """Points in the random cloud whose hull is a grain."""
+    pour_gravity: Annotated[float, Number("m/s2", above=0)] = 9.81
+    """Acceleration under which the grains fall; it is then lowered slowly to the one they settle under."""
+    settle_gravity: Annotated[float, Number("m/s2", above=0)] | None = None
+    """Acceleration under which the bed comes to rest; absent: surface.gravity, which must then point inward."""
+
+
+class GrainSection(Section):
+    """The rock of the grains."""
+
+    density: Density = Field(examples=["2500.0"])
+    """Density of the rock."""
+    young_modulus: YoungModulus = Field(examples=['{ distribution = "log_uniform", lower = 1e6, upper = 1e8 }'])
+    """Young's modulus; expand it over decades with log_uniform."""
+    poisson_ratio: PoissonRatio = Field(examples=['{ distribution = "uniform", lower = 0.15, upper = 0.35 }'])
+    """Poisson's ratio."""
+    restitution: Restitution = Field(examples=['{ distribution = "uniform", lower = 0.3, upper = 0.8 }'])
+    """Coefficient of restitution between grains."""
+    friction: Friction = Field(examples=['{ distribution = "uniform", lower = 0.3, upper = 0.9 }'])
+    """Coefficient of friction."""
+
+
+class LanderSection(Section):
+    """The lander: a rigid convex body."""
+
+    shape: Literal["box", "sphere", "hull"] = Field(examples=['"box"'])
+    """Shape: "box" takes edges, "sphere" takes diameter, "hull" takes file."""
+    mass: Annotated[Scalar, MaybeUncertain("kg", above=0)] = Field(examples=["12.0"])
+    """Mass."""
+    edges: Annotated[tuple[float, float, float], Numbers("m", count=3, above=0)] | None = Field(
+        default=None, examples=["[0.37, 0.23, 0.1]"]
+    )
+    """Edge lengths of a box."""
+    diameter: Annotated[Scalar, MaybeUncertain("m", above=0)] | None = None
+    """Diameter of a sphere."""
+    file: str | None = None
+    """Closed mesh (OBJ or STL, metres) whose convex hull is the lander; the path counts from the study file."""
+    inertia: Annotated[tuple[float, float, float], Numbers("kg m2", count=3, above=0)] | None = None
+    """Moments of inertia about the axes of the shape; absent: those of the homogeneous body."""
+    young_modulus: YoungModulus | None = None
+    """Young's modulus of the lander; absent: that of the grains."""
+    poisson_ratio: PoissonRatio | None = None
+    """Poisson's ratio of the lander; absent: that of the grains."""
+    restitution: Restitution | None = Field(
+        default=None, examples=['{ distribution = "uniform", lower = 0.4, upper = 0.9 }']
+    )
+    """Restitution of the lander's hull; absent: that of the grains."""
+    friction: Friction | None = None
+    """Friction of the lander's hull; absent: that of the grains."""
+
+
+class PlaceSection(Section):
+    """One place, counted from the middle of the bed."""
+
+    x: Place = 0.0
+    """Along the first width."""
+    y: Place = 0.0
+    """Along the second width."""
+
+
+class RegionSection(Section):
+    """A rectangle, counted from the middle of the bed, in which each run draws its place."""
+
+    x: Interval
+    """Smallest and largest x."""
+    y: Interval
+    """Smallest and largest y."""
+
+
+class ImpactSection(Section):
+    """How the lander arrives."""
+
+    speed: Annotated[Scalar, MaybeUncertain("m/s", above=0)] = Field(examples=["0.2"])
+    """Speed."""
+    incidence_deg: Annotated[Scalar, MaybeUncertain("deg", at_least=0, below=90)] = Field(examples=["30.0"])
+    """Angle between the velocity and the mean surface normal; 0 is straight down."""
+    azimuth_deg: Annotated[Scalar | str, MaybeUncertain("deg", at_least=-360, at_most=360, word="random")] = 0.0
+    """Direction of the horizontal velocity in the bed, from +x; "random" draws it anew for each run."""
+    place: PlaceSection | None = None
+    """The place of impact, the same for all runs; absent: the middle of the bed."""
+    region: RegionSection | None = None
+    """In place of `place`: each run draws its place in this rectangle."""
+    orientation: Annotated[tuple[float, ...] | str, Numbers("", count=4, word="random")] = (1.0, 0.0, 0.0, 0.0)
+    """Attitude as a quaternion w, x, y, z; "random" draws it anew for each run, uniform over rotations."""
+    spin_x: Spin = 0.0
+    """Angular velocity about the bed's x axis."""
+    spin_y: Spin = 0.0
+    """Angular velocity about the bed's y axis."""
+    spin_z: Spin = 0.0
+    """Angular velocity about the bed's z axis."""
+
+
+class SurfaceSection(Section):
+    """The constant acceleration during the touchdown."""
+
+    gravity: Annotated[Scalar, MaybeUncertain("m/s2")] = Field(examples=["5e-5"])
+    """Acceleration toward the surface; negative points outward, as it may near the equator of a fast rotator."""
+    slope_deg: Annotated[Scalar, MaybeUncertain("deg", at_least=0, below=90)] = 0.0
+    """Angle by which the surface is tilted against the acceleration."""
+    slope_azimuth_deg: Angle = 0.0
+    """Downhill direction in the bed, from +x."""
+
+
+class ContactSection(Section):
+    """Readings of the contact law."""
+
+    shear_modulus_rule: Literal["mindlin", "paper"] = "mindlin"
+    """Effective shear modulus: Mindlin's, or Eq. (8) as the paper prints it."""
+    damping_mass: Literal["contact", "paper"] = "contact"
+    """Mass in the damping terms: that which the contact point feels, or that of the two whole bodies."""
+    pair_rule: Literal["smaller", "mean", "geometric"] = "smaller"
+    """Restitution and friction of a pair of materials."""
+    steps_per_contact: Annotated[float, Number("steps", at_least=10, at_most=1000)] = 50.0
+    """Time steps in the shortest contact."""
+
+
+class LandingSection(Section):
+    """When a touchdown is given up."""
+
+    time_limit: Annotated[float, Number("s", above=0)] = 60.0
+    """Longest simulated time of one touchdown."""
+
+
+class DesignSection(Section):
+    """Which runs are made, and what is fitted to them: all inputs first, then those that matter at higher order."""
+
+    screening_level: Annotated[int, Whole("level", at_least=1, at_most=8)] = Field(3, examples=["2"])
+    """Level of the Smolyak grid over all uncertain inputs."""
+    screening_degree: Annotated[int, Whole("degree", at_least=1, at_most=15)] = Field(3, examples=["2"])
+    """Total degree of the expansion in all uncertain inputs."""
+    refined_level: Annotated[int, Whole("level", at_least=1, at_most=8)] = Field(5, examples=["3"])
+    """Level of the Smolyak grid over the kept inputs; the others stay at their median."""
+    refined_degree: Annotated[int, Whole("degree", at_least=1, at_most=15)] = Field(5, examples=["3"])
+    """Total degree of the expansion in the kept inputs."""
+    kept_share: Annotated[float, Number("", above=0, at_most=1)] = 0.9
+    """Share of the explained variance of every output of kept_outputs that the kept inputs must reach together."""
+    kept_outputs: Annotated[tuple[OutputName, ...], Field(min_length=1)] = OUTPUTS
+    """Outputs that decide which inputs are kept."""
+    test_count: Annotated[int, Whole("runs", at_least=2, at_most=100_000)] = Field(40, examples=["10"])
+    """Fresh random runs in each of the two test sets (kept inputs vary; all inputs vary)."""
+
+
+class MonteCarloSection(Section):
+    """Samples of the refined expansion."""
+
+    sample_count: Annotated[int, Whole("samples", at_least=100, at_most=100_000_000)] = 100_000
+    """How many samples."""
+
+
+class SiteSection(Section):
+    """Where on which body the lander touches down. Uncertain values here vary in the Monte Carlo only."""
+
+    body: str = "didymos"
+    """"didymos" (built in) or a closed mesh (OBJ, metres); the path counts from the study file."""
+    mass: Annotated[Scalar, MaybeUncertain("kg", above=0)] | None = None
+    """Mass of the body; absent: that of the built-in body."""
+    spin_period: Annotated[Scalar, MaybeUncertain("s", above=0)] | None = None
+    """Spin period of the body; absent: that of the built-in body."""
+    latitude_deg: Annotated[Scalar, MaybeUncertain("deg", at_least=-90, at_most=90)] = 0.0
+    """Latitude, planetocentric."""
+    longitude_deg: Angle = 0.0
+    """Longitude, east."""
+    heading_deg: Angle = 90.0
+    """Direction of the incoming horizontal velocity, from north toward east."""
+
+
+class FlightSection(Section):
+    """The flight from the bounce to the next impact."""
+
+    duration: Annotated[float, Number("s", above=0)] = 43_200.0
+    """Longest flight."""
+    flight_count: Annotated[int, Whole("flights", at_least=1)] | None = Field(None, examples=["1000"])
+    """How many samples fly (the first ones that leave the surface); absent: all."""
+    gravity: Literal["exact", "table"] = "exact"
+    """Gravity of the polyhedron in closed form, or read from a table."""
+
+
+class Study(Section):
+    """A landing study."""
+
+    title: str = ""
+    """One line about the study."""
+    seed: Annotated[int, Whole("seed", at_least=0, at_most=2**53)] = 1
+    """Everything random follows from this number."""
+    bed: BedSection
+    grain: GrainSection
+    lander: LanderSection
+    impact: ImpactSection
+    surface: SurfaceSection
+    contact: ContactSection = ContactSection()
+    landing: LandingSection = LandingSection()
+    design: DesignSection = DesignSection()
+    monte_carlo: MonteCarloSection = MonteCarloSection()
+    site: SiteSection = SiteSection()
+    flight: FlightSection = FlightSection()
+
+    def touchdown_values(self) -> dict[str, Scalar]:
+        """Every scalar that the touchdown reads, by dotted key, in the units of the file; absent ones are left out."""
+        values: dict[str, Scalar] = {}
+        for section in ("grain", "lander", "impact", "surface"):
+            values |= _scalars(section, getattr(self, section))
+        if self.impact.region is None and self.impact.place is None:
+            values |= {"impact.place.x": 0.0, "impact.place.y": 0.0}
+        return values
+
+    def site_values(self) -> dict[str, Scalar]:
+        """Every scalar that only the flight reads, by dotted key."""
+        return _scalars("site", self.site)
+
+
+def _scalars(path: str, section: BaseModel) -> dict[str, Scalar]:
+    values: dict[str, Scalar] = {}
+    for name in type(section).model_fields:
+        value = getattr(section, name)
+        if isinstance(value, float | Uncertain):
+            values[f"{path}.{name}"] = value
+        elif isinstance(value, PlaceSection):
+            values |= _scalars(f"{path}.{name}", value)
+    return values
+
+
+def uncertain(values: dict[str, Scalar]) -> dict[str, Uncertain]:
+    """Those of the values that have a distribution, in the order of the file's sections."""
+    return {name: value for name, value in values.items() if isinstance(value, Uncertain)}

@@ -1,0 +1,184 @@
+"""Reading a study file: all that is wrong with it is said at once, before anything runs."""
+
+import math
+import tomllib
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any, get_args
+
+from pydantic import BaseModel, ValidationError
+
+from lithobrake.quantity import Scalar, Uncertain
+from lithobrake.study import Study, uncertain
+from lithobrake.wording import sentences
+
+# A bed narrower than this many lander diameters would hold the lander between its walls.
+BED_WIDTH_PER_LANDER = 2.0
+
+
+class StudyError(ValueError):
+    """A study file that is refused; `problems` has one sentence for each thing wrong."""
+
+    def __init__(self, problems: list[str]) -> None:
+        """Join the sentences to one message."""
+        super().__init__("\n".join(problems))
+        self.problems = problems
+
+
+def read(path: Path) -> Study:
+    """Read and check a study file; paths of meshes in it become absolute.
+
+    Raises StudyError with one sentence for each problem.
+    """
+    return check(load(path), folder=path.resolve().parent, name=path.name)
+
+
+def load(path: Path) -> dict[str, Any]:
+    """Read the tables of a TOML file as they stand. Raises StudyError when it is not there or is not TOML."""
+    try:
+        return tomllib.loads(path.read_text(encoding="utf-8"))
+    except tomllib.TOMLDecodeError as error:
+        raise StudyError([f"{path.name}: this is not TOML: {error}; mend that line"]) from error
+    except (OSError, UnicodeDecodeError) as error:
+        raise StudyError([f"{path}: the study file cannot be read ({error}); name an existing TOML file"]) from error
+
+
+def check(tables: Mapping[str, Any], folder: Path, name: str = "study.toml") -> Study:
+    """Make a study of the tables; `folder` is where relative paths in it count from.
+
+    Raises StudyError with one sentence for each problem.
+    """
+    try:
+        study = Study.model_validate(_absolute(tables, folder))
+    except ValidationError as error:
+        raise StudyError([f"{name}: {text}" for text in sentences(error.errors(), known_keys())]) from error
+    problems = [f"{name}: {text}" for text in _problems(study)]
+    if problems:
+        raise StudyError(problems)
+    return study
+
+
+def known_keys() -> dict[str, tuple[str, ...]]:
+    """The keys of each table, by the table's dotted name ("" for the top)."""
+    return dict(_tables("", Study))
+
+
+def _tables(path: str, model: type[BaseModel]) -> Iterator[tuple[str, tuple[str, ...]]]:
+    yield path, tuple(model.model_fields)
+    for name, field in model.model_fields.items():
+        for kind in (field.annotation, *get_args(field.annotation)):
+            if isinstance(kind, type) and issubclass(kind, BaseModel):
+                yield from _tables(f"{path}.{name}".lstrip("."), kind)
+
+
+def _absolute(tables: Mapping[str, Any], folder: Path) -> dict[str, Any]:
+    """The tables with each mesh path counted from the folder of the study file."""
+    result = {key: dict(value) if isinstance(value, Mapping) else value for key, value in tables.items()}
+    for section, key in (("lander", "file"), ("site", "body")):
+        table = result.get(section)
+        if isinstance(table, dict) and isinstance(table.get(key), str) and table[key] != "didymos":
+            table[key] = str(folder / table[key])
+    return result
+
+
+def _problems(study: Study) -> Iterator[str]:
+    """What is wrong between keys that are each right in themselves."""
+    yield from _shape_problems(study)
+    yield from _place_problems(study)
+    yield from _design_problems(study)
+    if study.bed.settle_gravity is None and _reach(study.surface.gravity)[0] <= 0:
+        yield (
+            "surface.gravity reaches zero or points outward, and no bed settles under that; "
+            "give bed.settle_gravity an inward value, say 2e-5 m/s2 (the touchdown keeps surface.gravity)"
+        )
+    if study.site.body != "didymos":
+        if not Path(study.site.body).is_file():
+            yield f'site.body is "{study.site.body}"; allowed: "didymos" or the path of a mesh; no such file'
+        for key in ("mass", "spin_period"):
+            if getattr(study.site, key) is None:
+                yield f"site.{key} is missing; a body read from a mesh needs its {key.replace('_', ' ')}"
+
+
+def _shape_problems(study: Study) -> Iterator[str]:
+    lander, takes = study.lander, {"box": "edges", "sphere": "diameter", "hull": "file"}
+    needed = takes[lander.shape]
+    for key in takes.values():
+        if (getattr(lander, key) is None) == (key == needed):
+            verb = "is missing" if key == needed else "does not go with this shape"
+            yield f'lander.{key} {verb}; allowed: shape = "{lander.shape}" takes {needed} and no other of these'
+    if lander.shape == "hull" and lander.file is not None and not Path(lander.file).is_file():
+        yield f'lander.file is "{lander.file}"; no such file; give the path of an OBJ or STL mesh'
+        return
+    if getattr(lander, needed) is None:
+        return
+    try:
+        radius = lander_radius(study)
+    except ValueError as error:
+        yield f"lander.file: {error}"
+        return
+    width = min(study.bed.width)
+    if width < BED_WIDTH_PER_LANDER * 2 * radius:
+        yield (
+            f"bed.width is {width:g} m at its narrowest; allowed: at least {BED_WIDTH_PER_LANDER * 2 * radius:.3g} m, "
+            f"twice the largest diameter of the lander ({2 * radius:.3g} m); widen the bed and add grains"
+        )
+
+
+def lander_radius(study: Study) -> float:
+    """Largest distance of a point of the lander from its centre [m]. Raises ValueError for a mesh that is refused."""
+    lander = study.lander
+    if lander.edges is not None:
+        return math.hypot(*lander.edges) / 2
+    if lander.diameter is not None:
+        return _reach(lander.diameter)[1] / 2
+    from lithobrake.touchdown import read_hull
+
+    hull = read_hull(Path(str(lander.file)))
+    return float(((hull.vertices - hull.centroid) ** 2).sum(axis=1).max() ** 0.5)
+
+
+def _place_problems(study: Study) -> Iterator[str]:
+    impact, half = study.impact, [width / 2 for width in study.bed.width]
+    if impact.place is not None and impact.region is not None:
+        yield "impact.place and impact.region are both given; keep one: a place for all runs, or a region to draw from"
+    if isinstance(impact.orientation, tuple) and not any(impact.orientation):
+        yield "impact.orientation is [0, 0, 0, 0], which is no rotation; write [1, 0, 0, 0] for none"
+    for key, spot in (("place", impact.place), ("region", impact.region)):
+        if spot is None:
+            continue
+        for axis, limit in zip("xy", half, strict=True):
+            value = getattr(spot, axis)
+            lower, upper = value if isinstance(value, tuple) else _reach(value)
+            if lower < -limit or upper > limit:
+                yield (
+                    f"impact.{key}.{axis} reaches from {lower:g} to {upper:g} m; allowed: -{limit:g} to {limit:g} m, "
+                    "counted from the middle of the bed; move it inside or widen the bed"
+                )
+
+
+def _design_problems(study: Study) -> Iterator[str]:
+    from lithobrake.chaos import smolyak_count, term_count
+
+    input_count = len(uncertain(study.touchdown_values()))
+    if input_count == 0:
+        yield (
+            "nothing in grain, lander, impact or surface is uncertain; give at least one key a distribution, "
+            'such as young_modulus = { distribution = "log_uniform", lower = 1e6, upper = 1e8 }'
+        )
+        return
+    design = study.design
+    for stage, counts in (("screening", [input_count]), ("refined", range(1, input_count + 1))):
+        level, degree = getattr(design, f"{stage}_level"), getattr(design, f"{stage}_degree")
+        for count in counts:
+            node_count, terms = smolyak_count(count, level), term_count(count, degree)
+            if node_count < terms:
+                yield (
+                    f"design.{stage}_degree is {degree}; with {count} inputs it has {terms} terms, more than the "
+                    f"{node_count} nodes of level {level}; lower the degree or raise design.{stage}_level"
+                )
+                break
+
+
+def _reach(value: Scalar) -> tuple[float, float]:
+    """Smallest and largest possible value."""
+    return value.support() if isinstance(value, Uncertain) else (value, value)

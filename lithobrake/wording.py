@@ -1,0 +1,57 @@
+"""Sentences about a study file that is refused: the key, what stands there, what is allowed, what to write instead."""
+
+import difflib
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+
+def closest(word: object, known: Iterable[str]) -> str:
+    """Ask back with the nearest known word, or say nothing when none is near."""
+    near = difflib.get_close_matches(str(word), list(known), n=1, cutoff=0.5)
+    return f"; did you mean {near[0]}?" if near else ""
+
+
+def show(value: object) -> str:
+    """A value as the study file would show it."""
+    if isinstance(value, Mapping):
+        return "{ " + ", ".join(f"{key} = {show(entry)}" for key, entry in value.items()) + " }"
+    if isinstance(value, str):
+        return f'"{value}"'
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, list | tuple):
+        return "[" + ", ".join(show(entry) for entry in value) + "]"
+    return f"{value:g}" if isinstance(value, float) else str(value)
+
+
+def sentences(errors: Sequence[Mapping[str, Any]], known_keys: Mapping[str, tuple[str, ...]]) -> list[str]:
+    """One sentence for each error of the schema.
+
+    errors: as pydantic lists them. known_keys: names allowed in each table, by the dotted name of the table ("" = top).
+    """
+    return [_sentence(error, known_keys) for error in errors]
+
+
+def _sentence(error: Mapping[str, Any], known_keys: Mapping[str, tuple[str, ...]]) -> str:
+    # The schema puts the kind of a size distribution into the path; the file has no such level.
+    place = [str(part) for part in error["loc"]]
+    if place[:2] == ["bed", "diameter"]:
+        place = place[:2] + place[3:]
+    key, table = ".".join(place), ".".join(place[:-1])
+    kind, found, context = error["type"], error.get("input"), error.get("ctx", {})
+    known = known_keys.get(table, ())
+    if kind == "quantity":
+        return f"{key} {error['msg']}"
+    if kind == "extra_forbidden":
+        return f"{key} is not a known key{closest(place[-1], known)}" + (
+            f"; allowed: {', '.join(known)}" if known else ""
+        )
+    if kind == "missing":
+        return f"{key} is missing; add {'the table' if key in known_keys else 'the key'} (`lithobrake new` shows all)"
+    if kind in {"literal_error", "union_tag_invalid"}:
+        allowed = str(context.get("expected", context.get("expected_tags"))).replace("'", "")
+        near = closest(context.get("tag", found), allowed.replace(" or ", ", ").split(", "))
+        return f"{key} is {show(found)}; allowed: {allowed}{near}"
+    if kind in {"model_type", "model_attributes_type", "dict_type"}:
+        return f"{key} is {show(found)}; allowed: a table; write [{key}] with its keys below"
+    return f"{key} is {show(found)}; {error['msg'].replace('Input should be', 'it must be')}"
