@@ -2,16 +2,21 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 from lithobrake.report.look import INK, QUIET, SITE
 
 Counts = NDArray[np.float64]
+
+MARKERS = ("o", "D")
+RING: dict[str, Any] = {"markersize": 8.5, "markerfacecolor": "none", "markeredgecolor": SITE, "markeredgewidth": 1.7}
 
 
 @dataclass(frozen=True)
@@ -30,7 +35,7 @@ def count_figure(
     """Draw node counts, shape [input count, level], against the number of inputs (left) and the level (right)."""
     figure = Figure(figsize=(9.2, 3.7))
     left, right = figure.subplots(1, 2, sharey=True)
-    figure.subplots_adjust(left=0.08, right=0.985, top=0.88, bottom=0.14, wspace=0.06)
+    figure.subplots_adjust(left=0.08, right=0.985, top=0.97, bottom=0.225, wspace=0.06)
     shades = matplotlib.colormaps["viridis"](np.linspace(0.05, 0.85, len(levels)))
     for index, level in enumerate(levels):
         left.plot(input_counts, tensor[:, index], "--", color=shades[index], linewidth=1.0)
@@ -52,7 +57,7 @@ def count_figure(
     left.set_ylim(0.8, 3.0 * float(np.max(smolyak)) * 10)
     left.set_ylabel("runs")
     _mark(left, right, designs)
-    _legend(left)
+    _legend(figure, designs)
     return figure
 
 
@@ -62,37 +67,20 @@ def _end_label(axes: Axes, x: float, y: float, words: str, colour: NDArray[np.fl
 
 
 def _mark(left: Axes, right: Axes, designs: Sequence[Design]) -> None:
-    """Ring the designs of this study in both panels and say their cost."""
-    for design in designs:
+    """Ring the designs of this study in both panels."""
+    for design, marker in zip(designs, MARKERS, strict=False):
         for axes, x in ((left, design.input_count), (right, design.level)):
-            axes.plot(
-                x,
-                design.node_count,
-                "o",
-                markersize=9,
-                markerfacecolor="none",
-                markeredgecolor=SITE,
-                markeredgewidth=1.6,
-                zorder=5,
-            )
-            axes.annotate(
-                f"{design.name}: {design.node_count} runs",
-                (x, design.node_count),
-                xytext=(-8, 11),
-                textcoords="offset points",
-                ha="right",
-                fontsize=8,
-                color=SITE,
-                fontweight="bold",
-                bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 1},
-                zorder=6,
-            )
+            axes.plot(x, design.node_count, marker, zorder=5, **RING)
 
 
-def _legend(axes: Axes) -> None:
-    """Say what the two kinds of line are."""
-    lines = [
-        matplotlib.lines.Line2D([], [], color=QUIET, linestyle="--", linewidth=1.0, label="full tensor grid"),
-        matplotlib.lines.Line2D([], [], color=INK, linewidth=1.7, label="Smolyak sparse grid"),
+def _legend(figure: Figure, designs: Sequence[Design]) -> None:
+    """Say what the lines are and what the designs of this study cost, under both panels."""
+    handles = [
+        Line2D([], [], color=QUIET, linestyle="--", linewidth=1.0, label="full tensor grid"),
+        Line2D([], [], color=INK, linewidth=1.7, label="Smolyak sparse grid"),
     ]
-    axes.legend(handles=lines, loc="upper left")
+    for design, marker in zip(designs, MARKERS, strict=False):
+        plural = "s" if design.input_count > 1 else ""
+        words = f"{design.name}: {design.input_count} input{plural}, level {design.level}, {design.node_count} runs"
+        handles.append(Line2D([], [], marker=marker, linestyle="none", label=words, **RING))
+    figure.legend(handles=handles, loc="lower center", ncols=4, columnspacing=1.6)

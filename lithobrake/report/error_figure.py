@@ -12,6 +12,9 @@ from lithobrake.report.look import INK, PAPER_OUTPUTS, QUIET, TEST, TEST_ALL, TR
 
 Array = NDArray[np.float64]
 
+# Words and lines need more contrast with white than bars do.
+TEXT = {TRAINING: TRAINING, TEST: "#a8690a", TEST_ALL: "#5f656d"}
+
 
 @dataclass(frozen=True)
 class Score:
@@ -30,9 +33,9 @@ def error_figure(training: dict[str, Score], test_kept: dict[str, Score], test_a
     Above: the kept inputs vary, training and test. Below: all inputs vary, which is what the real landing will see.
     """
     names = [name for name in PAPER_OUTPUTS if name in training]
-    figure = Figure(figsize=(9.2, 5.9))
+    figure = Figure(figsize=(9.2, 6.6))
     grid = figure.subplots(2, len(names), squeeze=False)
-    figure.subplots_adjust(left=0.065, right=0.99, top=0.93, bottom=0.085, wspace=0.2, hspace=0.5)
+    figure.subplots_adjust(left=0.065, right=0.99, top=0.80, bottom=0.07, wspace=0.2, hspace=0.85)
     rows = (
         ((("training", training, TRAINING), ("test, kept inputs vary", test_kept, TEST))),
         ((("test, all inputs vary", test_all, TEST_ALL),)),
@@ -63,44 +66,42 @@ def _panel(axes: Axes, name: str, series: Sequence[tuple[str, Score, str]]) -> N
             edgecolor="white",
             linewidth=0.4,
         )
-        axes.axvline(
-            min(score.mape, limit), color=colour if colour != TEST else "#b9770e", linestyle="--", linewidth=1.5
-        )
-    axes.set_title(f"{shown.words} {shown.symbol}".strip(), pad=5)
+        axes.axvline(min(score.mape, limit), color=TEXT[colour], linestyle="--", linewidth=1.5)
     axes.set_xlim(0, limit)
-    axes.set_ylim(0, 1.32 * axes.get_ylim()[1])
-    axes.set_xlabel("absolute percentage error [%]" + (f"   (last bin: {beyond} beyond)" if beyond else ""))
-    axes.xaxis.labelpad = 2
-    y = 0.97
-    for words, score, colour in series:
+    axes.set_xlabel("absolute percentage error [%]", labelpad=2)
+    axes.tick_params(axis="y", colors=QUIET)
+    if beyond:
+        axes.annotate(
+            f"{beyond} beyond", (1.0, 1.0), xycoords="axes fraction", ha="right", va="top", fontsize=7, color=QUIET
+        )
+    # The figures stand above the panel, where no bar can run into them; the last series is the lowest.
+    y = 1.03
+    for words, score, colour in reversed(series):
+        lines = (
+            f"{len(score.ape)} runs: MAPE {score.mape:.3g} %, $Q^2$ {score.q2:.2f}\n"
+            f"RMSE {score.rmse * shown.factor:.2g} at a spread of {score.std * shown.factor:.2g} {shown.unit}"
+        )
+        axes.text(0, y, lines, transform=axes.transAxes, va="bottom", fontsize=7.4, color=INK, linespacing=1.3)
         axes.text(
-            0.985,
-            y,
+            0,
+            y + 0.165,
             words,
             transform=axes.transAxes,
-            ha="right",
-            va="top",
-            fontsize=7.5,
+            va="bottom",
+            fontsize=7.8,
             fontweight="bold",
-            color=colour if colour != TEST else "#a8690a",
+            color=TEXT[colour],
         )
-        lines = (
-            f"{len(score.ape)} runs: MAPE {_percent(score.mape)}, $Q^2$ {score.q2:.2f}\n"
-            f"RMSE {score.rmse * shown.factor:.2g} of spread {score.std * shown.factor:.2g} {shown.unit}"
-        )
-        axes.text(
-            0.985,
-            y - 0.068,
-            lines,
-            transform=axes.transAxes,
-            ha="right",
-            va="top",
-            fontsize=7.2,
-            color=INK,
-            linespacing=1.35,
-        )
-        y -= 0.235
-    axes.tick_params(axis="y", colors=QUIET)
+        y += 0.285
+    axes.text(
+        0,
+        y + 0.01,
+        f"{shown.words} {shown.symbol}",
+        transform=axes.transAxes,
+        va="bottom",
+        fontsize=9.5,
+        fontweight="bold",
+    )
 
 
 def _limit(errors: Sequence[Array]) -> tuple[float, int]:
@@ -110,7 +111,3 @@ def _limit(errors: Sequence[Array]) -> tuple[float, int]:
     limit = largest if largest <= 2.0 * usual else 1.25 * usual
     limit = max(limit, 1e-12)
     return limit, int(np.sum(together > limit * (1 + 1e-12)))
-
-
-def _percent(value: float) -> str:
-    return f"{value:.3g} %"

@@ -1,7 +1,7 @@
 """Pictures of rigid convex bodies, painted from far to near into one flat collection of shaded triangles.
 
-Faces that look away are dropped, large ones are cut up so that painting by distance is right where a lander stands among
-grains, and each face is lit by a sun from the side, a soft shadow of the bodies in front of it, and less sky the deeper it lies.
+Faces that look away are dropped, large ones are cut up so that painting by distance is right where a lander stands
+among grains, and each face is lit by a sun from the side, less in the soft shadow of other bodies and deep in the bed.
 """
 
 from collections.abc import Sequence
@@ -21,12 +21,12 @@ Triangles = NDArray[np.int64]
 SUN = np.array([-0.45, -0.35, 0.82])
 # A weak light from the other side keeps the form of what the sun does not reach.
 FILL = np.array([0.8, -0.5, 0.2])
-AMBIENT = 0.50
+AMBIENT = 0.56
 
 
 @dataclass(frozen=True)
 class Body:
-    """A convex body in its own frame: vertices [m], shape [vertex, 3], centroid at the origin; faces [face, 3]; a colour."""
+    """A convex body: vertices [m], shape [vertex, 3], centroid at the origin; faces, shape [face, 3]; its colour."""
 
     vertices: Array
     faces: Triangles
@@ -140,14 +140,14 @@ def paint(
 
     radius = np.array([0.85 * np.linalg.norm(body.vertices, axis=1).mean() for body in bodies])
     sun = np.clip(normals @ (SUN / np.linalg.norm(SUN)), 0.0, None) * sunlight(centres, owners, position, radius)
-    sky = 0.75 + 0.25 * normals[:, 2]
+    sky = 0.80 + 0.20 * normals[:, 2]
     if surface_height is not None:
         depth = (surface_height - centres[:, 2]) / max(surface_height, 1e-30)
         sky = sky * np.where(depth > 0, 1.0 - 0.35 * np.clip(depth, 0.0, 1.0), 1.0)
     # A few per cent of tint, fixed by the body's number, keeps neighbours of one colour apart.
     tint = 1.0 + 0.09 * np.sin(2.399963 * np.arange(len(bodies)))[owners]
     fill = np.clip(normals @ (FILL / np.linalg.norm(FILL)), 0.0, None)
-    light = (AMBIENT * sky + 0.16 * fill + 0.62 * sun) * tint
+    light = (AMBIENT * sky + 0.16 * fill + 0.60 * sun) * tint
 
     colours = np.empty((len(triangles), 3))
     palette = np.array([body.colour for body in bodies])[owners]
@@ -172,7 +172,7 @@ def frame_axes(axes: Axes, x_range: tuple[float, float], y_range: tuple[float, f
 
 
 def draw_box(axes: Axes, width: tuple[float, float], height: float, camera: Camera, front: bool) -> None:
-    """Draw the edges of the open box (inner walls at +-width/2, floor at z = 0); front: those nearer than its middle."""
+    """Draw the edges of the open box (walls at +-width/2, floor at z = 0); front: those nearer than its middle."""
     x, y = width[0] / 2, width[1] / 2
     corners = np.array([(sx * x, sy * y, z) for z in (0.0, height) for sx, sy in ((-1, -1), (1, -1), (1, 1), (-1, 1))])
     edges = (

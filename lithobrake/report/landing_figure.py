@@ -21,9 +21,9 @@ def instants(lander_height: Array, count: int = 6) -> list[int]:
         return list(range(last + 1))
     before = np.linspace(0, deepest, count // 2)
     after = np.linspace(deepest, last, count - count // 2 + 1)[1:]
-    chosen = sorted({int(round(frame)) for frame in np.concatenate([before, after])})
+    chosen = sorted(set(np.rint(np.concatenate([before, after])).astype(int).tolist()))
     # A landing that never goes down, or ends at its deepest, is shown evenly instead.
-    return chosen if len(chosen) == count else sorted({int(round(f)) for f in np.linspace(0, last, count)})
+    return chosen if len(chosen) == count else sorted(set(np.rint(np.linspace(0, last, count)).astype(int).tolist()))
 
 
 def landing_figure(

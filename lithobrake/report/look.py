@@ -1,4 +1,4 @@
-"""How every figure looks: colours that colour-blind readers tell apart, one type size, thin lines, names and units of outputs."""
+"""How every figure looks: colours that colour-blind readers tell apart, one type size, names and units of outputs."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -12,7 +12,7 @@ INK = "#1c2733"
 QUIET = "#66717d"
 RULE = "#c9ced4"
 GRAIN = "#c9b699"
-LANDER = "#2f6fb0"
+LANDER = "#3f83c8"
 TRAINING = "#2f6fb0"
 TEST = "#e2a13b"
 TEST_ALL = "#8b8f96"
@@ -92,25 +92,29 @@ OUTPUTS = {
 # The three outputs of the paper, in its order.
 PAPER_OUTPUTS = ("speed_out", "elevation_out", "spin_out")
 
-INPUT_SYMBOLS = {
-    "grain.young_modulus": "$E$ grains",
-    "grain.poisson_ratio": r"$\nu$ grains",
-    "grain.restitution": "$e$ grains",
-    "grain.friction": r"$\mu$ grains",
-    "grain.density": r"$\rho$ grains",
-    "lander.young_modulus": "$E$ lander",
-    "lander.poisson_ratio": r"$\nu$ lander",
-    "lander.restitution": "$e$ lander",
-    "lander.friction": r"$\mu$ lander",
-    "lander.mass": "mass of lander",
-    "impact.speed": "impact speed",
-    "impact.incidence_deg": "incidence",
-    "impact.azimuth_deg": "azimuth",
-    "impact.spin_x": "spin about x",
-    "impact.spin_y": "spin about y",
-    "impact.spin_z": "spin about z",
-    "surface.gravity": "gravity",
-    "surface.slope_deg": "slope",
+INPUT_LABELS = {
+    "grain.young_modulus": "Young's modulus $E$, grains [Pa]",
+    "grain.poisson_ratio": r"Poisson's ratio $\nu$, grains",
+    "grain.restitution": "restitution $e$, grains",
+    "grain.friction": r"friction $\mu$, grains",
+    "grain.density": r"density $\rho$, grains [kg/m$^3$]",
+    "lander.young_modulus": "Young's modulus $E$, lander [Pa]",
+    "lander.poisson_ratio": r"Poisson's ratio $\nu$, lander",
+    "lander.restitution": "restitution $e$, lander",
+    "lander.friction": r"friction $\mu$, lander",
+    "lander.mass": "mass of the lander [kg]",
+    "lander.diameter": "diameter of the lander [m]",
+    "impact.speed": "impact speed [m/s]",
+    "impact.incidence_deg": "incidence [deg]",
+    "impact.azimuth_deg": "azimuth [deg]",
+    "impact.place.x": "place x [m]",
+    "impact.place.y": "place y [m]",
+    "impact.spin_x": "spin about x [rad/s]",
+    "impact.spin_y": "spin about y [rad/s]",
+    "impact.spin_z": "spin about z [rad/s]",
+    "surface.gravity": "gravity [m/s$^2$]",
+    "surface.slope_deg": "slope [deg]",
+    "surface.slope_azimuth_deg": "azimuth of the slope [deg]",
 }
 
 
@@ -119,9 +123,10 @@ def output(name: str) -> Output:
     return OUTPUTS.get(name, Output(name, "", "SI", 1.0))
 
 
-def input_label(name: str) -> str:
-    """How a design input is shown; one that has no symbol keeps its dotted key in words."""
-    return INPUT_SYMBOLS.get(name, name.replace("_", " ").replace(".", ": "))
+def input_label(name: str, with_unit: bool = True) -> str:
+    """How a design input is shown; one that has no entry keeps its dotted key in words."""
+    label = INPUT_LABELS.get(name, name.replace("_", " ").replace(".", ": "))
+    return label if with_unit else label.split(" [")[0]
 
 
 def input_colours(names: tuple[str, ...]) -> dict[str, str]:

@@ -37,8 +37,8 @@ def map_figure(
     latitude, longitude: of the impacts [deg], shape [impact]; site: latitude and longitude [deg];
     vertices: of the body [m], shape [vertex, 3], for the relief under the map; absent: a plain map.
     """
-    figure = Figure(figsize=(9.2, 5.6))
-    axes = figure.add_axes((0.06, 0.32, 0.84, 0.65))
+    figure = Figure(figsize=(9.2, 5.9))
+    axes = figure.add_axes((0.06, 0.335, 0.84, 0.645))
     if vertices is not None:
         _relief(axes, vertices)
     _density(figure, axes, latitude, longitude)
@@ -63,7 +63,7 @@ def map_figure(
     axes.set_yticks(range(-90, 91, 30))
     axes.set_xlabel("longitude, east [deg]")
     axes.set_ylabel("latitude [deg]")
-    _shares(figure.add_axes((0.2, 0.055, 0.7, 0.155)), shares)
+    _shares(figure.add_axes((0.2, 0.095, 0.7, 0.15)), shares)
     return figure
 
 

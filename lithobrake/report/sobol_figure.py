@@ -18,13 +18,19 @@ def sobol_figure(input_names: tuple[str, ...], sobol_first: dict[str, Array], sp
     """
     names = [name for name in PAPER_OUTPUTS if name in sobol_first]
     colours = input_colours(input_names)
-    figure = Figure(figsize=(9.2, 3.75))
+    figure = Figure(figsize=(9.2, 4.0))
     for column, name in enumerate(names):
-        axes = figure.add_axes((0.01 + column / len(names), 0.16, 0.98 / len(names), 0.74))
+        axes = figure.add_axes((0.01 + column / len(names), 0.17, 0.98 / len(names), 0.75))
         _ring(axes, name, sobol_first[name], [colours[key] for key in input_names], spread[name])
-    handles = [Patch(color=colours[key], label=input_label(key)) for key in input_names]
+    handles = [Patch(color=colours[key], label=input_label(key, with_unit=False)) for key in input_names]
     handles.append(Patch(color=INTERACTIONS, label="interactions"))
-    figure.legend(handles=handles, loc="lower center", ncols=min(len(handles), 6), handlelength=1.0, handleheight=1.0)
+    figure.legend(
+        handles=handles,
+        loc="lower center",
+        ncols=3 if len(handles) > 4 else len(handles),
+        handlelength=1.0,
+        handleheight=1.0,
+    )
     return figure
 
 
