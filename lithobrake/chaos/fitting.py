@@ -57,12 +57,15 @@ def _ols(training: Training, indices: Indices) -> Surrogate:
 
 def _relative(error: Array, y: Array) -> list[float | None]:
     """Root-mean-square error over the spread of each output; None where an output does not vary."""
-    rmse, std = np.sqrt(np.mean(error**2, axis=0)), np.std(y, axis=0)
+    rmse, std = np.sqrt(np.mean(error**2, axis=0)), np.where(np.ptp(y, axis=0) > 0.0, np.std(y, axis=0), 0.0)
     return [float(e / s) if s > 0.0 else None for e, s in zip(rmse, std, strict=True)]
 
 
 def assemble(training: Training, indices: Indices, coefficients: Array, report: dict[str, Any]) -> Surrogate:
     """Join coefficients and data facts into the result."""
+    # Rounding would give a constant output a variance of 1e-32, and with it meaningless shares.
+    constant = np.ptp(training.y, axis=0) == 0.0
+    coefficients[:, constant] = np.where(indices.sum(axis=1) == 0, 1.0, 0.0)[:, None] * training.y[0, constant]
     plan = make_plan(training.inputs, indices, coefficients)
     facts = {
         "degree": int(indices.sum(axis=1).max()),

@@ -27,7 +27,7 @@ def score_of(predicted: Array, y: Array) -> Score:
     """
     error = predicted - y
     ape = absolute_percentage_error(predicted, y)
-    rmse, std = float(np.sqrt(np.mean(error**2))), float(np.std(y))
+    rmse, std = float(np.sqrt(np.mean(error**2))), float(np.std(y)) if np.ptp(y) > 0.0 else 0.0
     rrmse = rmse / std if std > 0.0 else (0.0 if rmse == 0.0 else float("inf"))
     return {
         "mape": float(np.mean(ape)),

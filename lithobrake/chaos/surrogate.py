@@ -104,7 +104,9 @@ class Surrogate:
 
     def shaped(self, values: Array) -> Any:
         """Drop the last axis (outputs) if y was one-dimensional."""
-        return values[..., 0] if self.one_dimensional else values
+        if not self.one_dimensional:
+            return values
+        return float(values[0]) if values.ndim == 1 else values[..., 0]
 
     @property
     def mean(self) -> Any:

@@ -1,0 +1,178 @@
+"""Fits against exact moments, published functions, and the refusals."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from lithobrake.chaos import (
+    Beta,
+    Empirical,
+    Exponential,
+    Gamma,
+    LogNormal,
+    LogUniform,
+    Normal,
+    TruncatedNormal,
+    Uniform,
+    fekete,
+    fit,
+    latin_hypercube,
+    smolyak,
+    sobol_sequence,
+    tensor_grid,
+)
+
+ISHIGAMI = {name: Uniform(-np.pi, np.pi) for name in ("a", "b", "c")}
+ISHIGAMI_VARIANCE = 49.0 / 8.0 + 0.1 * np.pi**4 / 5.0 + 0.01 * np.pi**8 / 18.0 + 0.5
+ISHIGAMI_FIRST = np.array([0.5 * (1.0 + 0.1 * np.pi**4 / 5.0) ** 2, 49.0 / 8.0, 0.0]) / ISHIGAMI_VARIANCE
+
+
+def ishigami(x):
+    """Source: Ishigami and Homma, 1990, a = 7, b = 0.1."""
+    return np.sin(x[:, 0]) + 7.0 * np.sin(x[:, 1]) ** 2 + 0.1 * x[:, 2] ** 4 * np.sin(x[:, 0])
+
+
+def moments(entry, power):
+    """Raw moment by a quadrature in probability or, for samples, by their mean."""
+    if isinstance(entry, Empirical):
+        return np.mean(np.array(entry.samples) ** power)
+    from scipy import integrate
+
+    if isinstance(entry, TruncatedNormal):
+        mass = integrate.quad(lambda x: np.exp(-0.5 * x * x), entry.lower, entry.upper)[0]
+        return integrate.quad(lambda x: x**power * np.exp(-0.5 * x * x), entry.lower, entry.upper)[0] / mass
+    from scipy import stats
+
+    oracle = {
+        "uniform": lambda: stats.uniform(entry.lower, entry.upper - entry.lower),
+        "normal": lambda: stats.norm(entry.mean, entry.std),
+        "gamma": lambda: stats.gamma(entry.shape, scale=entry.scale),
+        "exponential": lambda: stats.expon(scale=1.0 / entry.rate),
+        "beta": lambda: stats.beta(entry.alpha, entry.beta, entry.lower, entry.upper - entry.lower),
+    }[entry.kind]()
+    return oracle.moment(power)
+
+
+def test_polynomial_in_mixed_families_has_exact_moments():
+    inputs = {
+        "u": Uniform(-1.0, 3.0),
+        "n": Normal(0.5, 2.0),
+        "g": Gamma(2.0, 0.5),
+        "e": Exponential(2.0),
+        "b": Beta(2.0, 3.0, 0.0, 2.0),
+        "t": TruncatedNormal(0.0, 1.0, -1.0, 2.0),
+        "m": Empirical(np.random.default_rng(0).normal(size=60)),
+    }
+    entries = list(inputs.values())
+    x = latin_hypercube(inputs, 300, seed=1)
+    y = 1.0 + np.prod(x[:, [0, 1]], axis=1) + x[:, 2] * x[:, 3] + x[:, 4] ** 2 - x[:, 5] ** 2 + x[:, 6] * x[:, 0]
+    surrogate = fit(inputs, x, y, degree=2, method="ols")
+    m = [[moments(entry, power) for power in range(5)] for entry in entries]
+    mean = 1 + m[0][1] * m[1][1] + m[2][1] * m[3][1] + m[4][2] - m[5][2] + m[6][1] * m[0][1]
+    variance = (
+        m[2][2] * m[3][2]
+        - (m[2][1] * m[3][1]) ** 2
+        + m[4][4]
+        - m[4][2] ** 2
+        + m[5][4]
+        - m[5][2] ** 2
+        # u (n + m): both products share u.
+        + m[0][2] * (m[1][2] + m[6][2] + 2 * m[1][1] * m[6][1])
+        - (m[0][1] * (m[1][1] + m[6][1])) ** 2
+    )
+    assert surrogate.mean == pytest.approx(mean, rel=1e-10)
+    assert surrogate.variance == pytest.approx(variance, rel=1e-10)
+
+
+def test_logarithmic_germs():
+    inputs = {"a": LogUniform(1.0, np.e**2), "b": LogNormal(0.0, 0.5)}
+    x = fekete(inputs, degree=2)
+    surrogate = fit(inputs, x, np.log(x[:, 0]) * np.log(x[:, 1]) + np.log(x[:, 0]), degree=2)
+    assert surrogate.mean == pytest.approx(1.0, rel=1e-12)
+    assert surrogate.variance == pytest.approx((4.0 / 3.0) * 0.25 + 1.0 / 3.0, rel=1e-12)
+
+
+def test_ishigami_converges_with_degree():
+    x = tensor_grid(ISHIGAMI, 13)
+    y = ishigami(x)
+    test = sobol_sequence(ISHIGAMI, 500, seed=9)
+    errors = []
+    for degree in (4, 6, 8, 10, 12):
+        surrogate = fit(ISHIGAMI, x, y, degree=degree, method="ols")
+        errors.append(surrogate.score(test, ishigami(test))["y"]["rrmse"])
+    assert all(later < 0.5 * earlier for earlier, later in pairwise(errors))
+    assert surrogate.mean == pytest.approx(3.5, abs=1e-4)
+    assert surrogate.variance == pytest.approx(ISHIGAMI_VARIANCE, rel=1e-3)
+    assert np.allclose(surrogate.sobol_first, ISHIGAMI_FIRST, atol=1e-3)
+    assert surrogate.sobol_total[2] == pytest.approx(1.0 - ISHIGAMI_FIRST[:2].sum(), abs=1e-3)
+
+
+def test_sobol_g_indices_converge():
+    a = np.array([0.0, 1.0, 4.5])
+    inputs = {f"x{k}": Uniform(0.0, 1.0) for k in range(3)}
+    x = tensor_grid(inputs, 19)
+    y = np.prod((np.abs(4.0 * x - 2.0) + a) / (1.0 + a), axis=1)
+    partial = 1.0 / (3.0 * (1.0 + a) ** 2)
+    exact = partial / (np.prod(1.0 + partial) - 1.0)
+    errors = [np.abs(fit(inputs, x, y, degree=d).sobol_first - exact).max() for d in (4, 8, 16)]
+    assert errors[2] < errors[1] < errors[0]
+    assert errors[2] < 0.02
+
+
+def test_several_outputs_equal_single_ones():
+    x = smolyak(ISHIGAMI, 3)
+    y = ishigami(x)
+    both = fit(ISHIGAMI, x, np.column_stack([y, -2.0 * y]), degree=3, output_names=["up", "down"])
+    one = fit(ISHIGAMI, x, y, degree=3)
+    assert both.output_names == ["up", "down"]
+    assert both.mean.shape == both.variance.shape == (2,)
+    assert both.sobol_first.shape == both.sobol_total.shape == (3, 2)
+    assert one.sobol_first.shape == one.sobol_total.shape == (3,)
+    assert np.allclose(both.coefficients[:, 0], one.coefficients, atol=1e-12)
+    assert np.allclose(both(x)[:, 1], -2.0 * one(x), atol=1e-10)
+    assert one.sobol_group(["a", "b", "c"]) == pytest.approx(1.0)
+    assert both.sobol_group(["a"]) == pytest.approx(both.sobol_first[0])
+
+
+def test_missing_runs_are_dropped_and_counted_other_nan_refused():
+    x = smolyak(ISHIGAMI, 3)
+    y = np.column_stack([ishigami(x), x[:, 0]])
+    holes = y.copy()
+    holes[[3, 10]] = np.nan
+    surrogate = fit(ISHIGAMI, x, holes, degree=3)
+    assert surrogate.dropped_count == 2
+    assert surrogate.report["train_count"] == len(x) - 2
+    holes[20, 0] = np.nan
+    with pytest.raises(ValueError, match="NaN"):
+        fit(ISHIGAMI, x, holes, degree=3)
+    with pytest.raises(ValueError, match="none of"):
+        fit(ISHIGAMI, x, np.full(len(x), np.nan), degree=1)
+
+
+@pytest.mark.parametrize(
+    ("keywords", "match"),
+    [
+        ({"degree": 5}, "points cannot determine"),
+        ({"degree": 4}, "terms"),
+        ({"degree": -1}, "degree"),
+        ({"degree": 2, "method": "magic"}, "method"),
+        ({"degree": 2, "q_norm": 0.0}, "q_norm"),
+        ({"degree": 2, "weights": [1.0]}, "weights"),
+        ({"degree": 2, "output_names": ["a", "b"]}, "output_names"),
+    ],
+)
+def test_refusals(keywords, match):
+    x = smolyak({f"x{k}": Uniform(-1.0, 1.0) for k in range(5)}, 3)
+    with pytest.raises(ValueError, match=match):
+        fit({f"x{k}": Uniform(-1.0, 1.0) for k in range(5)}, x, x[:, 0], **keywords)
+
+
+def test_shapes_and_supports_are_refused():
+    inputs = {"a": Uniform(0.0, 1.0), "b": Uniform(0.0, 1.0)}
+    x = sobol_sequence(inputs, 20)
+    for wrong_x, wrong_y in ((x[:, :1], x[:, 0]), (x, x[:5, 0]), (x + 1.0, x[:, 0]), (x * np.nan, x[:, 0])):
+        with pytest.raises(ValueError, match=r"x|y"):
+            fit(inputs, wrong_x, wrong_y, degree=1)
+    with pytest.raises(ValueError, match="discrete"):
+        fit({"a": [1, 2, 3], "b": Uniform(0.0, 1.0)}, x, x[:, 0], degree=1)

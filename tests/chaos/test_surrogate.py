@@ -1,0 +1,106 @@
+"""Evaluation, scores, and keeping in a file."""
+
+import json
+
+import numpy as np
+import pytest
+
+from lithobrake.chaos import Empirical, LogUniform, Normal, TruncatedNormal, Uniform, fit, load, sobol_sequence
+
+INPUTS = {"speed": Uniform(0.1, 0.9), "modulus": LogUniform(1e6, 1e8)}
+
+
+@pytest.fixture(scope="module")
+def surrogate():
+    x = sobol_sequence(INPUTS, 60)
+    return fit(INPUTS, x, np.column_stack([x[:, 0] ** 2, np.log(x[:, 1])]), degree=2, output_names=["v", "w"])
+
+
+def test_evaluation_equals_the_polynomial(surrogate):
+    x = sobol_sequence(INPUTS, 5000, seed=5)
+    assert np.allclose(surrogate(x), np.column_stack([x[:, 0] ** 2, np.log(x[:, 1])]), rtol=1e-12)
+    assert np.array_equal(surrogate(x)[:7], surrogate(x[:7])) or np.allclose(surrogate(x)[:7], surrogate(x[:7]), 1e-14)
+
+
+def test_points_outside_are_refused_or_warned(surrogate):
+    x = np.array([[0.5, 1e7], [0.95, 1e7], [0.5, 1e5]])
+    with pytest.raises(ValueError, match="2 of 3 points are outside"):
+        surrogate(x)
+    with pytest.warns(UserWarning, match="2 of 3 points are outside"):
+        values = surrogate(x, outside="warn")
+    assert np.all(np.isfinite(values))
+    with pytest.raises(ValueError, match="outside"), np.errstate(all="raise"):
+        surrogate([[0.5, -1.0]], outside="warn")
+    with pytest.raises(ValueError, match="finite"):
+        surrogate([[np.nan, 1e7]])
+    with pytest.raises(ValueError, match="shape"):
+        surrogate([[0.5]])
+
+
+def test_scores_follow_their_definitions(surrogate):
+    x = sobol_sequence(INPUTS, 50, seed=8)
+    truth = surrogate(x)
+    y = truth.copy()
+    y[:, 0] *= -1.25
+    score = surrogate.score(x, y)
+    assert score["v"]["mape"] == pytest.approx(180.0)
+    assert len(score["v"]["ape"]) == 50
+    error = truth[:, 0] - y[:, 0]
+    assert score["v"]["rmse"] == pytest.approx(np.sqrt(np.mean(error**2)))
+    assert score["v"]["std"] == pytest.approx(np.std(y[:, 0]))
+    assert score["v"]["rrmse"] == pytest.approx(score["v"]["rmse"] / score["v"]["std"])
+    assert score["v"]["q2"] == pytest.approx(1.0 - score["v"]["rrmse"] ** 2)
+    assert score["w"]["rmse"] < 1e-10
+    with pytest.raises(ValueError, match="finite"):
+        surrogate.score(x, y * np.nan)
+
+
+def test_file_gives_back_the_same_bits(surrogate, tmp_path):
+    path = tmp_path / "model.json"
+    surrogate.save(path)
+    again = load(path)
+    x = sobol_sequence(INPUTS, 100, seed=2)
+    assert np.array_equal(again(x), surrogate(x))
+    assert np.array_equal(again.multi_indices, surrogate.multi_indices)
+    assert again.inputs == surrogate.inputs
+    assert again.output_names == surrogate.output_names
+    assert again.report == surrogate.report
+    assert np.array_equal(again.residuals, surrogate.residuals)
+    content = json.loads(path.read_text())
+    assert content["format_version"] == 1
+    assert content["inputs"][1] == {"name": "modulus", "kind": "log_uniform", "lower": 1e6, "upper": 1e8}
+
+
+def test_file_is_strict_json_for_every_input(tmp_path):
+    inputs = {"a": TruncatedNormal(0.0, 1.0, 0.0, np.inf), "b": Empirical([1.0, 2.0, 4.0]), "c": Normal(0.0, 1.0)}
+    x = sobol_sequence(inputs, 30)
+    fit(inputs, x, x[:, 0], degree=1).save(tmp_path / "model.json")
+
+    def refuse(text):
+        raise AssertionError(text)
+
+    json.loads((tmp_path / "model.json").read_text(), parse_constant=refuse)
+    assert load(tmp_path / "model.json").inputs == inputs
+
+
+def test_wrong_files_are_refused(surrogate, tmp_path):
+    path = tmp_path / "model.json"
+    for text in ("not json", "[]", "{}", '{"format": "lithobrake expansion", "format_version": 99}'):
+        path.write_text(text)
+        with pytest.raises(ValueError, match=r"model\.json"):
+            load(path)
+    surrogate.save(path)
+    content = json.loads(path.read_text())
+    for key in ("inputs", "coefficients", "multi_indices"):
+        path.write_text(json.dumps({k: v for k, v in content.items() if k != key}))
+        with pytest.raises(ValueError, match="damaged"):
+            load(path)
+
+
+def test_constant_output_has_no_variance_and_zero_indices():
+    x = sobol_sequence(INPUTS, 30)
+    surrogate = fit(INPUTS, x, np.full(30, 0.1), degree=2)
+    assert surrogate.mean == 0.1
+    assert surrogate.variance == 0.0
+    assert surrogate.sobol_first.tolist() == [0.0, 0.0]
+    assert surrogate.score(x, np.full(30, 0.1))["y"]["q2"] == 1.0
