@@ -2,28 +2,36 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lithobrake.chaos.basis import germs_of, recurrences_of
 from lithobrake.chaos.germ import Distribution
+from lithobrake.chaos.kernel import Loop, compiled_loop
 from lithobrake.chaos.polynomials import Array, Recurrence
 from lithobrake.chaos.terms import Indices
 
 # Points worked on at once: the tables of one block stay in the processor's cache.
 BLOCK = 4096
+# Below this number of points loading the compiler costs more than it saves.
+COMPILED_FROM = 20_000
 
 
 @dataclass(frozen=True)
 class Plan:
     """The order of multiplications for an index set.
 
-    parent: earlier term [row_count]; factor: row of the stacked univariate tables [row_count]; the first row is the
+    offset: first row of each input in the stacked univariate tables [input_count + 1]; center, spread: recurrence from
+    each row to the next, padded at the last row of an input. parent: earlier term [row_count]; factor: row of the stacked univariate tables [row_count]; the first row is the
     constant. coefficients [row_count, output_count], zero for rows that serve as parents only.
     """
 
     recurrences: list[Recurrence]
+    offset: NDArray[np.int64]
+    center: Array
+    spread: Array
     parent: NDArray[np.int64]
     factor: NDArray[np.int64]
     coefficients: Array
@@ -51,19 +59,32 @@ def make_plan(inputs: Mapping[str, Distribution], indices: Indices, coefficients
     rows = [add(tuple(int(power) for power in index)) for index in indices]
     table = np.zeros((len(parent), coefficients.shape[1]))
     np.add.at(table, rows, coefficients)
-    return Plan(recurrences, np.array(parent), np.array(factor), table)
+    center = np.concatenate([np.append(one.center, 0.0) for one in recurrences])
+    spread = np.concatenate([np.append(one.spread, 1.0) for one in recurrences])
+    return Plan(recurrences, offset, center, spread, np.array(parent), np.array(factor), table)
 
 
 def evaluate(inputs: Mapping[str, Distribution], plan: Plan, points: Array) -> Array:
-    """Values of the expansion at points in physical units [count, input_count]; result [count, output_count]."""
+    """Values of the expansion at points in physical units [count, input_count]; result [count, output_count].
+
+    Many points go through the compiled loop where Numba is present, few through NumPy (equal up to rounding).
+    """
     result = np.empty((len(points), plan.coefficients.shape[1]))
-    work = np.ones((len(plan.parent), min(BLOCK, max(len(points), 1))))
-    weights = np.ascontiguousarray(plan.coefficients.T)
+    loop = compiled_loop() if len(points) >= COMPILED_FROM else None
+    fill = partial(_fill_compiled, loop) if loop is not None else _fill
     for start in range(0, len(points), BLOCK):
         germs = germs_of(inputs, points[start : start + BLOCK])
-        table = np.concatenate([one.values(germ) for one, germ in zip(plan.recurrences, germs, strict=True)])
-        rows = work[:, : germs.shape[1]]
-        for row in range(1, len(plan.parent)):
-            np.multiply(rows[plan.parent[row]], table[plan.factor[row]], out=rows[row])
-        result[start : start + BLOCK] = (weights @ rows).T
+        fill(plan, germs, result[start : start + BLOCK])
     return result
+
+
+def _fill(plan: Plan, germs: Array, result: Array) -> None:
+    table = np.concatenate([one.values(germ) for one, germ in zip(plan.recurrences, germs, strict=True)])
+    rows = np.ones((len(plan.parent), germs.shape[1]))
+    for row in range(1, len(plan.parent)):
+        np.multiply(rows[plan.parent[row]], table[plan.factor[row]], out=rows[row])
+    np.matmul(rows.T, plan.coefficients, out=result)
+
+
+def _fill_compiled(loop: Loop, plan: Plan, germs: Array, result: Array) -> None:
+    loop(germs, plan.offset, plan.center, plan.spread, plan.parent, plan.factor, plan.coefficients, result)
