@@ -18,11 +18,14 @@ TEXT = {TRAINING: TRAINING, TEST: "#a8690a", TEST_ALL: "#5f656d"}
 
 @dataclass(frozen=True)
 class Score:
-    """Errors of one output on one set of runs: APE and MAPE [%], Q2, RMSE and spread (std) in SI."""
+    """Errors of one output on one set of runs: APE and MAPE [%], Q2, RMSE and spread (std) in SI.
+
+    MAPE and Q2 do not exist (None) where a true value is zero, or all are the same.
+    """
 
     ape: Array
-    mape: float
-    q2: float
+    mape: float | None
+    q2: float | None
     rmse: float
     std: float
 
@@ -53,7 +56,7 @@ def _panel(axes: Axes, name: str, series: Sequence[tuple[str, Score, str]]) -> N
     """One output: shares of runs over the error in per cent, and the figures that keep a MAPE honest."""
     shown = output(name)
     limit, beyond = _limit([score.ape for _, score, _ in series])
-    bins = np.linspace(0.0, limit, 17)
+    bins = np.linspace(0.0, limit, 17).tolist()
     for words, score, colour in series:
         weights = np.full(len(score.ape), 1.0 / max(len(score.ape), 1))
         axes.hist(
@@ -66,7 +69,8 @@ def _panel(axes: Axes, name: str, series: Sequence[tuple[str, Score, str]]) -> N
             edgecolor="white",
             linewidth=0.4,
         )
-        axes.axvline(min(score.mape, limit), color=TEXT[colour], linestyle="--", linewidth=1.5)
+        if score.mape is not None:
+            axes.axvline(min(score.mape, limit), color=TEXT[colour], linestyle="--", linewidth=1.5)
     axes.set_xlim(0, limit)
     axes.set_xlabel("absolute percentage error [%]", labelpad=2)
     axes.tick_params(axis="y", colors=QUIET)
@@ -77,8 +81,9 @@ def _panel(axes: Axes, name: str, series: Sequence[tuple[str, Score, str]]) -> N
     # The figures stand above the panel, where no bar can run into them; the last series is the lowest.
     y = 1.03
     for words, score, colour in reversed(series):
+        mape, q2 = words_of(score.mape, ".3g", " %"), words_of(score.q2, ".2f")
         lines = (
-            f"{len(score.ape)} runs: MAPE {score.mape:.3g} %, $Q^2$ {score.q2:.2f}\n"
+            f"{len(score.ape)} runs: MAPE {mape}, $Q^2$ {q2}\n"
             f"RMSE {score.rmse * shown.factor:.2g} at a spread of {score.std * shown.factor:.2g} {shown.unit}"
         )
         axes.text(0, y, lines, transform=axes.transAxes, va="bottom", fontsize=7.4, color=INK, linespacing=1.3)
@@ -111,3 +116,8 @@ def _limit(errors: Sequence[Array]) -> tuple[float, int]:
     limit = largest if largest <= 2.0 * usual else 1.25 * usual
     limit = max(limit, 1e-12)
     return limit, int(np.sum(together > limit * (1 + 1e-12)))
+
+
+def words_of(value: float | None, form: str, unit: str = "") -> str:
+    """A score in words; one that does not exist is called undefined."""
+    return "undefined" if value is None else f"{value:{form}}{unit}"

@@ -6,6 +6,7 @@ among grains, and each face is lit by a sun from the side, less in the soft shad
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -157,10 +158,10 @@ def paint(
     flat, _ = camera.project(triangles)
     nearness = centres @ camera.axes()[2]
     order = np.argsort(nearness, kind="stable")
+    # One array of triangles is drawn much faster than a list of polygons, and not all versions declare it.
+    stack: Any = flat[order]
     # An edge in the face's own colour closes the hairline that antialiasing leaves between two faces.
-    axes.add_collection(
-        PolyCollection(flat[order], facecolors=colours[order], edgecolors=colours[order], linewidths=0.25)
-    )
+    axes.add_collection(PolyCollection(stack, facecolors=colours[order], edgecolors=colours[order], linewidths=0.25))
 
 
 def frame_axes(axes: Axes, x_range: tuple[float, float], y_range: tuple[float, float]) -> None:

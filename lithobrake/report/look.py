@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from typing import Any
 
 import matplotlib
 import numpy as np
@@ -32,7 +33,8 @@ INPUT_COLOURS = (
 )
 INTERACTIONS = "#d5d8dc"
 
-STYLE = {
+# Any: the names of the settings are a type of their own in some versions of matplotlib and plain words in others.
+STYLE: Any = {
     "font.family": "DejaVu Sans",
     "font.size": 9.0,
     "axes.titlesize": 9.5,

@@ -1,0 +1,173 @@
+"""Each figure is made from plain arrays and shows what it is given."""
+
+import io
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+
+from lithobrake.report.bed_figure import bed_figure, three_moments
+from lithobrake.report.count_figure import Design, count_figure
+from lithobrake.report.error_figure import Score, error_figure
+from lithobrake.report.hulls import Body
+from lithobrake.report.landing_figure import instants, landing_figure
+from lithobrake.report.look import PAPER_OUTPUTS, figure_style, input_label
+from lithobrake.report.map_figure import Share, map_figure
+from lithobrake.report.scatter_figure import scatter_figure
+from lithobrake.report.sobol_figure import sobol_figure
+
+TETRAHEDRON = np.array([(1.0, 1.0, 1.0), (1.0, -1.0, -1.0), (-1.0, 1.0, -1.0), (-1.0, -1.0, 1.0)])
+FACES = np.array([(0, 1, 2), (0, 3, 1), (0, 2, 3), (1, 3, 2)])
+
+
+def picture(figure: Figure) -> bytes:
+    memory = io.BytesIO()
+    figure.savefig(memory, format="png", dpi=40)
+    return memory.getvalue()
+
+
+def texts(figure: Figure) -> str:
+    """All words of a figure."""
+    found = [text.get_text() for axes in figure.axes for text in [*axes.texts, axes.title, axes.xaxis.label]]
+    legends = [text.get_text() for legend in figure.legends for text in legend.get_texts()]
+    return "\n".join([*found, *legends])
+
+
+def falling(frame_count: int) -> tuple[list[Body], np.ndarray, np.ndarray, np.ndarray]:
+    """Five tetrahedra that sink: bodies, time, position and orientation."""
+    bodies = [Body(0.03 * TETRAHEDRON, FACES, "#aa9977")] * 5
+    start = np.column_stack([np.linspace(-0.2, 0.2, 5), np.zeros(5), np.linspace(0.3, 1.0, 5)])
+    drop = np.linspace(0.0, 0.25, frame_count)[:, None]
+    position = np.repeat(start[None], frame_count, axis=0)
+    position[:, :, 2] -= drop
+    orientation = np.zeros((frame_count, 5, 4))
+    orientation[:, :, 0] = 1.0
+    return bodies, np.linspace(0.0, 1.0, frame_count), position, orientation
+
+
+def test_bed_figure_shows_three_moments_with_their_times() -> None:
+    bodies, time, position, orientation = falling(11)
+    record = np.linspace(0.0, 4.0, 9)
+    history = {"time": record, "kinetic_ratio": np.exp(-record), "unbalanced_force": np.exp(-record)}
+    history["gravity"] = np.full(9, 1.0)
+    with figure_style():
+        figure = bed_figure(bodies, time, position, orientation, (0.6, 0.6), 0.1, history)
+    words = texts(figure)
+    assert "random cloud" in words
+    assert "falling\n$t$ = 0.5 s" in words
+    assert "settled" in words
+    assert picture(figure)
+
+
+def test_three_moments_of_a_bed_with_one_frame() -> None:
+    assert three_moments(np.zeros((1, 4, 3))) == [0]
+
+
+@pytest.mark.parametrize(
+    ("height", "expected"),
+    [
+        (np.abs(np.arange(11.0) - 4.0), [0, 2, 4, 6, 8, 10]),
+        (np.arange(3.0), [0, 1, 2]),
+        (np.arange(11.0, 0.0, -1.0), [0, 2, 4, 6, 8, 10]),
+    ],
+    ids=["bounces", "few frames", "never comes up"],
+)
+def test_instants_hold_start_deepest_and_end(height: np.ndarray, expected: list[int]) -> None:
+    assert instants(height) == expected
+
+
+def test_landing_figure_has_one_picture_an_instant() -> None:
+    bodies, time, position, orientation = falling(12)
+    with figure_style():
+        figure = landing_figure(bodies, time, position, orientation, (0.6, 0.6))
+    assert len(figure.axes) == 6
+    assert picture(figure)
+
+
+def test_count_figure_names_the_designs_with_their_runs() -> None:
+    smolyak = np.array([[3.0, 5.0], [5.0, 13.0], [7.0, 25.0]])
+    with figure_style():
+        figure = count_figure([1, 2, 3], [1, 2], smolyak**2, smolyak, [Design("screening", 3, 2, 25)])
+    assert "screening: 3 inputs, level 2, 25 runs" in texts(figure)
+    assert picture(figure)
+
+
+def test_sobol_figure_gives_the_rest_to_interactions() -> None:
+    names = ("grain.friction", "grain.restitution")
+    first = {name: np.array([0.5, 0.2]) for name in PAPER_OUTPUTS}
+    with figure_style():
+        figure = sobol_figure(names, first, dict.fromkeys(PAPER_OUTPUTS, 0.1))
+    words = texts(figure)
+    assert words.count("50 %") == 3
+    assert words.count("30 %") == 3
+    assert "interactions" in words
+    assert picture(figure)
+
+
+def test_error_figure_puts_q2_rmse_and_spread_beside_every_mape() -> None:
+    score = Score(ape=np.array([1.0, 2.0, 3.0]), mape=2.0, q2=0.75, rmse=0.01, std=0.02)
+    scores = dict.fromkeys(PAPER_OUTPUTS, score)
+    with figure_style():
+        figure = error_figure(scores, scores, scores)
+    words = texts(figure)
+    assert words.count("MAPE") == words.count("$Q^2$ 0.75") == words.count("at a spread of") == 9
+    assert "RMSE 0.57 at a spread of 1.1 deg" in words
+    assert picture(figure)
+
+
+def test_error_figure_says_how_many_errors_lie_beyond_the_axis() -> None:
+    wild = Score(ape=np.append(np.linspace(1.0, 2.0, 39), 500.0), mape=14.0, q2=0.5, rmse=0.1, std=0.2)
+    scores = dict.fromkeys(PAPER_OUTPUTS, wild)
+    with figure_style():
+        assert "1 beyond" in texts(error_figure(scores, scores, scores))
+
+
+def test_error_figure_shows_a_q2_that_does_not_exist_as_such() -> None:
+    score = Score(ape=np.array([1.0]), mape=1.0, q2=None, rmse=0.01, std=0.0)
+    scores = dict.fromkeys(PAPER_OUTPUTS, score)
+    with figure_style():
+        assert "$Q^2$ undefined" in texts(error_figure(scores, scores, scores))
+
+
+def test_scatter_figure_leaves_out_samples_that_stay() -> None:
+    outputs = {name: np.linspace(0.0, 1.0, 20) for name in PAPER_OUTPUTS}
+    stays = np.arange(20) < 5
+    with figure_style():
+        figure = scatter_figure(outputs, "grain.restitution", np.linspace(0.3, 0.8, 20), stays)
+    assert [len(axes.collections[0].get_offsets()) for axes in figure.axes[:3]] == [15, 15, 15]
+    assert picture(figure)
+
+
+@pytest.mark.parametrize("with_relief", [False, True])
+def test_map_figure_shows_shares_with_intervals(with_relief: bool) -> None:
+    generator = np.random.default_rng(3)
+    latitude, longitude = generator.uniform(-40, 40, 300), generator.uniform(-180, 180, 300)
+    vertices = generator.normal(size=(200, 3))
+    vertices /= np.linalg.norm(vertices, axis=1)[:, None]
+    shares = [Share("re-impact", 0.6, 0.55, 0.65), Share("escaped", 0.4, 0.35, 0.45)]
+    with figure_style():
+        figure = map_figure(latitude, longitude, (0.0, 10.0), shares, vertices if with_relief else None)
+    words = texts(figure)
+    assert "60.00 %   [55.00, 65.00]" in words
+    assert "landing site" in words
+    assert picture(figure)
+
+
+def test_map_figure_without_any_impact_is_still_a_map() -> None:
+    with figure_style():
+        figure = map_figure(np.zeros(0), np.zeros(0), (0.0, 0.0), [Share("escaped", 1.0, 0.9, 1.0)])
+    assert picture(figure)
+
+
+def test_the_look_leaves_the_settings_of_others_alone() -> None:
+    import matplotlib
+
+    before = dict(matplotlib.rcParams)
+    with figure_style():
+        pass
+    assert dict(matplotlib.rcParams) == before
+
+
+def test_an_input_without_a_label_keeps_its_key_in_words() -> None:
+    assert input_label("lander.solar_panel_area") == "lander: solar panel area"
+    assert input_label("grain.friction", with_unit=False) == r"friction $\mu$, grains"
