@@ -1,0 +1,92 @@
+"""The time loop."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from lithobrake.compiled import compiled
+from lithobrake.dem.arrays import Bodies, Cores, Floats, Laws, Pairs, Planes
+from lithobrake.dem.distance import Search
+from lithobrake.dem.force import DAMPING, FREQUENCY_SQUARED, Step, act
+from lithobrake.dem.motion import drift, kick
+from lithobrake.dem.vectors import dot, plus, row, scaled
+
+DONE, LIST_USED_UP, STEP_TOO_LARGE, DIVERGED = 0, 1, 2, 3
+
+
+class Limits(NamedTuple):
+    """Where the time loop must stop and ask."""
+
+    half_skin: float  # m, motion that a neighbour list allows
+    frequency: float  # -, largest contact frequency times step; 2 is the limit of stability
+
+
+@compiled
+def apply_forces(
+    bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, laws: Laws, step: Step, search: Search, totals: Floats
+) -> None:
+    """Compute all forces at the present positions and predicted velocities; sums run in the order of the pairs."""
+    bodies.force[:] = 0.0
+    bodies.torque[:] = 0.0
+    for pair in range(len(pairs.first)):
+        act(pair, bodies, cores, planes, pairs, laws, step, search, totals)
+    if step.drag > 0.0:
+        apply_drag(bodies, step, totals)
+
+
+@compiled
+def apply_drag(bodies: Bodies, step: Step, totals: Floats) -> None:
+    """Add a force against every velocity and a torque against every spin, for settling."""
+    for body in range(len(bodies.mass)):
+        velocity, spin = row(bodies.velocity_predicted, body), row(bodies.spin_predicted, body)
+        momentum = plus(row(bodies.angular_momentum, body), scaled(0.5 * step.time_step, row(bodies.torque, body)))
+        for axis in range(3):
+            bodies.force[body, axis] -= step.drag * bodies.mass[body] * velocity[axis]
+            bodies.torque[body, axis] -= step.drag * momentum[axis]
+        energy = bodies.mass[body] * dot(velocity, velocity) + dot(spin, momentum)
+        totals[DAMPING] += step.drag * energy * step.time_step
+
+
+@compiled
+def advance(
+    step_count: int, drifted: bool, bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, laws: Laws, step: Step,
+    limits: Limits, search: Search, totals: Floats, probe: int, probed: Floats,
+) -> tuple[int, int, bool]:  # fmt: skip
+    """Take up to `step_count` steps.
+
+    Returns the steps taken, why it stopped, and whether the step in hand has drifted but not yet felt its forces (it
+    goes on from there once the neighbour list is renewed). Body `probe` (none: -1) is watched, see `note`.
+    """
+    for taken in range(step_count):
+        if not drifted:
+            kick(bodies, step)
+            farthest = drift(bodies, step)
+            if not np.isfinite(farthest):
+                return taken, DIVERGED, False
+            if farthest > limits.half_skin * limits.half_skin:
+                return taken, LIST_USED_UP, True
+        drifted = False
+        totals[FREQUENCY_SQUARED] = 0.0
+        apply_forces(bodies, cores, planes, pairs, laws, step, search, totals)
+        kick(bodies, step)
+        if probe >= 0:
+            note(probe, bodies, probed)
+        if totals[FREQUENCY_SQUARED] * step.time_step**2 > limits.frequency**2:
+            return taken + 1, STEP_TOO_LARGE, False
+    return step_count, DONE, False
+
+
+STEPS, PEAK_FORCE, FIRST_CONTACT, LAST_CONTACT = 0, 1, 2, 3
+
+
+@compiled
+def note(probe: int, bodies: Bodies, probed: Floats) -> None:
+    """Count the step, and note the largest force on a body and the first and last step on which it was touched."""
+    probed[STEPS] += 1.0
+    force = row(bodies.force, probe)
+    size = dot(force, force) ** 0.5
+    if size > 0.0:
+        probed[PEAK_FORCE] = max(probed[PEAK_FORCE], size)
+        if probed[FIRST_CONTACT] == 0.0:
+            probed[FIRST_CONTACT] = probed[STEPS]
+        probed[LAST_CONTACT] = probed[STEPS]

@@ -1,0 +1,79 @@
+"""The arrays that kernels work on. Every length is in metres, every frame is the world's unless it says body."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
+
+
+class Cores(NamedTuple):
+    """Constant: the convex cores of all shapes, one after the other. `start[s]:start[s + 1]` belongs to shape s."""
+
+    vertex: Floats  # [vertex_total, 3], about the centroid
+    vertex_start: Integers  # [shape_count + 1]
+    normal: Floats  # [face_total, 3]
+    offset: Floats  # [face_total]
+    face_start: Integers  # [shape_count + 1]
+    edge: Integers  # [edge_total, 4]: from, to, left face, right face, counted within the shape
+    edge_start: Integers  # [shape_count + 1]
+    rounding: Floats  # [shape_count]
+
+
+class Bodies(NamedTuple):
+    """Per body; constants first, then what a step changes."""
+
+    shape: Integers  # [body_count]
+    material: Integers  # [body_count]
+    mass: Floats  # [body_count], kg
+    inverse_inertia_body: Floats  # [body_count, 3, 3], body frame, 1/(kg m2)
+    contact_radius: Floats  # [body_count], radius of the volume-equivalent sphere
+    bounding_radius: Floats  # [body_count]
+    position: Floats  # [body_count, 3], centroid
+    velocity: Floats  # [body_count, 3], m/s
+    quaternion: Floats  # [body_count, 4], w x y z, body to world
+    angular_momentum: Floats  # [body_count, 3], kg m2/s
+    rotation: Floats  # [body_count, 3, 3], body to world
+    inverse_inertia: Floats  # [body_count, 3, 3], world frame
+    force: Floats  # [body_count, 3], N, without gravity
+    torque: Floats  # [body_count, 3], N m
+    half_spin: Floats  # [body_count, 3], rad/s, that made the last rotation
+    velocity_predicted: Floats  # [body_count, 3], m/s, at the instant of the positions
+    spin_predicted: Floats  # [body_count, 3], rad/s, at the instant of the positions
+    position_listed: Floats  # [body_count, 3], where the neighbour list was made
+
+
+class Planes(NamedTuple):
+    """Constant: half-spaces of matter below `offset` along the outward normal."""
+
+    normal: Floats  # [plane_count, 3]
+    offset: Floats  # [plane_count], m
+    material: Integers  # [plane_count]
+    meets: NDArray[np.bool_]  # [plane_count, body_count]
+
+
+class Pairs(NamedTuple):
+    """Per pair of neighbours, ordered by (first, second); plane k is second = -1 - k."""
+
+    first: Integers  # [pair_count]
+    second: Integers  # [pair_count]
+    overlap: Floats  # [pair_count], m; 0 where apart
+    normal: Floats  # [pair_count, 3], unit, from first to second
+    point: Floats  # [pair_count, 3]
+    normal_force: Floats  # [pair_count], N
+    elastic_force: Floats  # [pair_count], N, the elastic part of it
+    spring: Floats  # [pair_count, 3], N, tangential spring force on second
+    tangential_force: Floats  # [pair_count, 3], N, spring and dashpot on second
+    tangential_stiffness: Floats  # [pair_count], N/m
+    simplex: Integers  # [pair_count, 7]: vertex count, vertices on first, vertices on second (closest features)
+
+
+class Laws(NamedTuple):
+    """Constant: per pair of materials [material_count, material_count]."""
+
+    young_modulus: Floats  # effective, Pa
+    shear_modulus: Floats  # effective, Pa
+    damping_ratio: Floats
+    friction: Floats

@@ -1,0 +1,103 @@
+"""From what a person adds to a world to the arrays that kernels work on."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from lithobrake.dem.arrays import Bodies, Cores, Floats, Laws, Planes
+from lithobrake.dem.material import Material, pair_law
+from lithobrake.dem.motion import write_inverse_inertia, write_rotation
+from lithobrake.dem.shape import ConvexHull, Shape, equivalent_radius
+
+
+@dataclass(frozen=True, eq=False)
+class Body:
+    """A body as it was added: what never changes of it."""
+
+    shape: Shape
+    material: Material
+    mass: float  # kg
+    inertia: Floats  # kg m2, [3, 3], about the centroid, in the frame the shape was given in
+
+
+@dataclass(frozen=True, eq=False)
+class Plane:
+    """A half-space of matter: everything on the far side of the normal. It meets the bodies listed, or all (None)."""
+
+    point: Floats  # m, [3]
+    normal: Floats  # [3], unit, out of the matter
+    material: Material
+    meets: frozenset[int] | None
+
+
+def unit(vector: object, name: str) -> Floats:
+    """Return a vector of unit length. Raises ValueError where it has none."""
+    array = np.array(vector, dtype=np.float64)
+    length = float(np.sqrt((array * array).sum()))
+    if not 0.0 < length < np.inf:
+        raise ValueError(f"{name} is {vector!r}; allowed is any finite vector other than zero: change it")
+    return array / length
+
+
+def cores_of(shapes: list[Shape]) -> Cores:
+    """Lay the convex cores of shapes one after the other."""
+    vertex, normal, offset, edge = [], [], [], []
+    for shape in shapes:
+        vertex.append(shape.core)
+        if isinstance(shape, ConvexHull):
+            core = shape.core_polyhedron
+            normal.append(core.face_normals)
+            offset.append(core.face_offsets)
+            edge.append(core.edges)
+        else:
+            normal.append(np.zeros((0, 3)))
+            offset.append(np.zeros(0))
+            edge.append(np.zeros((0, 4), dtype=np.int64))
+
+    def starts(parts: list) -> np.ndarray:
+        return np.concatenate([[0], np.cumsum([len(part) for part in parts])]).astype(np.int64)
+
+    rounding = np.array([shape.rounding for shape in shapes])
+    return Cores(
+        np.concatenate(vertex), starts(vertex), np.concatenate(normal), np.concatenate(offset), starts(normal),
+        np.concatenate(edge), starts(edge), rounding,
+    )  # fmt: skip
+
+
+def laws_of(materials: list[Material], shear_modulus_rule: str, pair_rule: str) -> Laws:
+    """Return the laws of all pairs of materials."""
+    table = np.array([[pair_law(a, b, shear_modulus_rule, pair_rule) for b in materials] for a in materials])
+    return Laws(*(np.ascontiguousarray(table[:, :, k]) for k in range(4)))
+
+
+def planes_of(planes: list[Plane], materials: list[Material], body_count: int) -> Planes:
+    """Return planes as arrays."""
+    meets = np.ones((len(planes), body_count), dtype=np.bool_)
+    for k, plane in enumerate(planes):
+        if plane.meets is not None:
+            meets[k] = np.isin(np.arange(body_count), list(plane.meets))
+    normal = np.array([plane.normal for plane in planes]).reshape(-1, 3)
+    offset = np.array([plane.normal @ plane.point for plane in planes])
+    return Planes(normal, offset, np.array([materials.index(p.material) for p in planes], dtype=np.int64), meets)
+
+
+def bodies_of(bodies: list[Body], shapes: list[Shape], materials: list[Material], state: dict[str, Floats]) -> Bodies:
+    """Return bodies as arrays, in a state of position, velocity, quaternion and angular_momentum."""
+    n = len(bodies)
+    shape_of = {id(shape): k for k, shape in enumerate(shapes)}
+    arrays = Bodies(
+        shape=np.array([shape_of[id(body.shape)] for body in bodies], dtype=np.int64),
+        material=np.array([materials.index(body.material) for body in bodies], dtype=np.int64),
+        mass=np.array([body.mass for body in bodies]),
+        inverse_inertia_body=np.array([np.linalg.inv(body.inertia) for body in bodies]),
+        contact_radius=np.array([equivalent_radius(body.shape) for body in bodies]),
+        bounding_radius=np.array([body.shape.bounding_radius for body in bodies]),
+        position=state["position"], velocity=state["velocity"], quaternion=state["quaternion"],
+        angular_momentum=state["angular_momentum"], rotation=np.zeros((n, 3, 3)), inverse_inertia=np.zeros((n, 3, 3)),
+        force=np.zeros((n, 3)), torque=np.zeros((n, 3)), half_spin=np.zeros((n, 3)),
+        velocity_predicted=np.zeros((n, 3)), spin_predicted=np.zeros((n, 3)), position_listed=np.zeros((n, 3)),
+    )  # fmt: skip
+    for k in range(n):
+        write_rotation(tuple(arrays.quaternion[k]), arrays.rotation[k])
+        write_inverse_inertia(k, arrays)
+    return arrays

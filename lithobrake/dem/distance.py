@@ -1,0 +1,143 @@
+"""Distance of two convex cores, and the points where they come closest.
+
+Source: Gilbert, Johnson and Keerthi (1988). Positions are relative to the first body's centroid, so that precision does
+not depend on where in the world the pair stands. All tolerances are relative to the sizes met on the way.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from lithobrake.compiled import compiled
+from lithobrake.dem.arrays import Cores, Floats, Integers
+from lithobrake.dem.simplex import simplex_weights
+from lithobrake.dem.vectors import Vector, dot, minus, plus, put, row, scaled, times, transposed_times
+
+# Squared distance still to be gained, over the squared distance, at which the search ends.
+CONVERGED = 1e-14
+# Distance over the size of the pair below which cores are taken as touching.
+TOUCHING = 1e-13
+ITERATIONS = 100
+
+APART, CLOSE, CROSSING = 0, 1, 2
+
+
+class Search(NamedTuple):
+    """Scratch of one thread: the simplex while it is being sought, and the second core in the first body's frame."""
+
+    on_first: Floats  # [4, 3]
+    on_second: Floats  # [4, 3]
+    difference: Floats  # [4, 3]
+    names: Integers  # [4, 2]
+    weight: Floats  # [4]
+    turned: Floats  # [edge_count_max + vertex_count_max, 12]
+    relative: Floats  # [1, 3, 3]
+
+
+def search_for(vertex_count_max: int, edge_count_max: int) -> Search:
+    """Return scratch large enough for cores of these sizes."""
+    return Search(
+        np.zeros((4, 3)), np.zeros((4, 3)), np.zeros((4, 3)), np.zeros((4, 2), dtype=np.int64), np.zeros(4),
+        np.zeros((edge_count_max + vertex_count_max, 12)), np.zeros((1, 3, 3)),
+    )  # fmt: skip
+
+
+@compiled
+def support(cores: Cores, shape: int, direction: Vector) -> int:
+    """Return the core vertex of a shape that lies farthest along a direction of the body frame."""
+    start, end = cores.vertex_start[shape], cores.vertex_start[shape + 1]
+    best, farthest = start, dot(row(cores.vertex, start), direction)
+    for k in range(start + 1, end):
+        height = dot(row(cores.vertex, k), direction)
+        if height > farthest:
+            best, farthest = k, height
+    return best - start
+
+
+@compiled
+def place(
+    search: Search, k: int, cores: Cores, shapes: tuple[int, int], rotation: Floats, bodies: tuple[int, int], apart: Vector
+) -> None:
+    """Compute corner k of the simplex from the two vertex names."""
+    first = times(rotation, bodies[0], row(cores.vertex, cores.vertex_start[shapes[0]] + search.names[k, 0]))
+    second = times(rotation, bodies[1], row(cores.vertex, cores.vertex_start[shapes[1]] + search.names[k, 1]))
+    second = plus(second, apart)
+    put(search.on_first, k, first)
+    put(search.on_second, k, second)
+    put(search.difference, k, minus(first, second))
+
+
+@compiled
+def weighted(array: Floats, weight: Floats, count: int) -> Vector:
+    """Return the weighted sum of the first `count` rows."""
+    total = scaled(weight[0], row(array, 0))
+    for k in range(1, count):
+        total = plus(total, scaled(weight[k], row(array, k)))
+    return total
+
+
+@compiled
+def reduce_simplex(search: Search, count: int, closest_before: float) -> tuple[int, bool]:
+    """Drop the corners that do not carry the closest point; refuse a step that comes no closer (second value False)."""
+    d = search.difference
+    a, b, c, e = row(d, 0), row(d, 1), row(d, 2), row(d, 3)
+    weights = simplex_weights(count, a, b, c, e)
+    point = plus(plus(scaled(weights[0], a), scaled(weights[1], b)), plus(scaled(weights[2], c), scaled(weights[3], e)))
+    if closest_before >= 0.0 and dot(point, point) >= closest_before:
+        return count - 1, False
+    kept = 0
+    for k in range(count):
+        if weights[k] > 0.0:
+            search.weight[kept] = weights[k]
+            search.names[kept, 0], search.names[kept, 1] = search.names[k, 0], search.names[k, 1]
+            put(search.on_first, kept, row(search.on_first, k))
+            put(search.on_second, kept, row(search.on_second, k))
+            put(d, kept, row(d, k))
+            kept += 1
+    return kept, True
+
+
+@compiled
+def approach(
+    search: Search,
+    count: int,
+    cores: Cores,
+    shapes: tuple[int, int],
+    rotation: Floats,
+    bodies: tuple[int, int],
+    apart: Vector,
+    margin: float,
+) -> tuple[int, int]:
+    """Improve the simplex of `count` named corners until it carries the closest points of the cores.
+
+    Returns what was found (APART: farther than the margin; CLOSE: within it, points in `search`; CROSSING) and the
+    number of corners.
+    """
+    for k in range(count):
+        place(search, k, cores, shapes, rotation, bodies, apart)
+    count, _ = reduce_simplex(search, count, -1.0)
+    for _ in range(ITERATIONS):
+        closest = weighted(search.difference, search.weight, count)
+        square = dot(closest, closest)
+        size = 0.0
+        for k in range(count):
+            size = max(size, dot(row(search.difference, k), row(search.difference, k)))
+        if count == 4 or square <= TOUCHING * TOUCHING * size:
+            return CROSSING, count
+        backward = scaled(-1.0, closest)
+        name_first = support(cores, shapes[0], transposed_times(rotation, bodies[0], backward))
+        name_second = support(cores, shapes[1], transposed_times(rotation, bodies[1], closest))
+        for k in range(count):
+            if search.names[k, 0] == name_first and search.names[k, 1] == name_second:
+                return CLOSE, count
+        search.names[count, 0], search.names[count, 1] = name_first, name_second
+        place(search, count, cores, shapes, rotation, bodies, apart)
+        bound = dot(closest, row(search.difference, count))
+        if bound > 0.0 and bound * bound > margin * margin * square:
+            return APART, count
+        if square - bound <= CONVERGED * square:
+            return CLOSE, count
+        count, closer = reduce_simplex(search, count + 1, square)
+        if not closer:
+            return CLOSE, count
+    return CLOSE, count

@@ -1,0 +1,62 @@
+"""How long the shortest contact lasts: what a time step is measured by."""
+
+import math
+
+import numpy as np
+
+from lithobrake.dem.arrays import Floats
+from lithobrake.dem.material import Material, pair_law
+from lithobrake.dem.shape import ConvexHull, Shape
+
+# Steps in the shortest contact when a world chooses its own step.
+STEPS_PER_CONTACT = 50.0
+# Largest contact frequency times step that is allowed; 2 is the limit of stability, t_c / 50 of a collision gives 0.08.
+FREQUENCY_LIMIT = 0.5
+
+
+def contact_duration(mass: float, radius: float, young_modulus: float, speed: float) -> float:
+    """Return the duration [s] of an elastic Hertz collision from effective mass, radius and modulus (SI).
+
+    Source: Hertz (1882); Johnson, Contact Mechanics (1985), Eq. (11.24), for F = 4/3 E* sqrt(R*) overlap^(3/2).
+    """
+    return 2.868 * (mass * mass / (radius * young_modulus**2 * speed)) ** 0.2
+
+
+def smallest_mass_at_contact(shape: Shape, mass: float, inverse_inertia: Floats) -> float:
+    """Return the smallest mass [kg] that a contact force meets on a body: 1/(n . W . n) over the corners of its faces.
+
+    A cube's corner pushed along the normal of one of its faces weighs a quarter of the cube.
+    """
+    if not isinstance(shape, ConvexHull):
+        return mass
+    surface = shape.polyhedron
+    normals = np.repeat(surface.face_normals[surface.triangle_face], 3, axis=0)
+    arms = surface.vertices[surface.triangles.ravel()] - shape.centroid
+    turns = np.cross(arms, normals)
+    return float(1.0 / (1.0 / mass + np.einsum("ij,jk,ik->i", turns, inverse_inertia, turns)).max())
+
+
+def shortest_contact_duration(
+    bodies: list[tuple[Material, float, float]],
+    planes: list[Material],
+    speed: float,
+    shear_modulus_rule: str,
+    pair_rule: str,
+) -> float:
+    """Return the duration [s] of the shortest collision that can happen at a speed [m/s] between bodies, or with planes.
+
+    bodies holds material, smallest mass at contact [kg] and contact radius [m] of each body. Infinite where none can meet.
+    """
+    smallest: dict[Material, tuple[float, float, int]] = {}
+    for material, mass, radius in bodies:
+        known_mass, known_radius, count = smallest.get(material, (math.inf, math.inf, 0))
+        smallest[material] = (min(mass, known_mass), min(radius, known_radius), count + 1)
+    shortest = math.inf
+    for material, (mass, radius, count) in smallest.items():
+        partners = [(other, m, r) for other, (m, r, _) in smallest.items() if other != material or count > 1]
+        partners += [(plane, math.inf, math.inf) for plane in planes]
+        for other, other_mass, other_radius in partners:
+            law = pair_law(material, other, shear_modulus_rule, pair_rule)
+            pair_mass, pair_radius = 1.0 / (1.0 / mass + 1.0 / other_mass), 1.0 / (1.0 / radius + 1.0 / other_radius)
+            shortest = min(shortest, contact_duration(pair_mass, pair_radius, law.young_modulus, speed))
+    return shortest

@@ -1,0 +1,377 @@
+"""The world: bodies and planes under a constant acceleration, and their motion in time."""
+
+import math
+import os
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lithobrake.dem import energy, timestep
+from lithobrake.dem.advance import (
+    DIVERGED,
+    DONE,
+    FIRST_CONTACT,
+    LAST_CONTACT,
+    LIST_USED_UP,
+    PEAK_FORCE,
+    STEP_TOO_LARGE,
+    Limits,
+    advance,
+    apply_forces,
+)
+from lithobrake.dem.arrays import Bodies, Cores, Floats, Laws, Pairs, Planes
+from lithobrake.dem.body import Body, Plane, bodies_of, cores_of, laws_of, planes_of, unit
+from lithobrake.dem.distance import Search, search_for
+from lithobrake.dem.force import FREQUENCY_SQUARED, Step
+from lithobrake.dem.material import PAIR_RULES, SHEAR_MODULUS_RULES, Material
+from lithobrake.dem.neighbours import neighbours, pairs_of, renewed
+from lithobrake.dem.shape import Shape, equivalent_radius
+
+DAMPING_MASSES = ("contact", "paper")
+# Skin of the neighbour list over the smallest bounding radius: costs or saves time, changes no result.
+SKIN = 0.2
+CONTACT = np.dtype(
+    [
+        ("body_a", np.int64), ("body_b", np.int64), ("point", np.float64, 3), ("normal", np.float64, 3),
+        ("overlap", np.float64), ("normal_force", np.float64), ("tangential_force", np.float64, 3),
+    ]
+)  # fmt: skip
+
+
+class World:
+    """Rigid bodies and planes in contact under a constant acceleration.
+
+    gravity [m/s2], shape [3]. time_step [s]; None: a fiftieth of the shortest contact that the speeds at hand can
+    make. shear_modulus_rule "mindlin" or "paper" (its Eq. 8 as printed); damping_mass "contact" (the mass seen at
+    the contact point) or "paper" (the reduced mass); pair_rule "smaller", "mean" or "geometric" for restitution and
+    friction of two materials.
+    """
+
+    def __init__(
+        self,
+        gravity: Sequence[float] = (0.0, 0.0, 0.0),
+        time_step: float | None = None,
+        *,
+        shear_modulus_rule: str = "mindlin",
+        damping_mass: str = "contact",
+        pair_rule: str = "smaller",
+    ) -> None:
+        for name, value, allowed in (
+            ("shear_modulus_rule", shear_modulus_rule, SHEAR_MODULUS_RULES),
+            ("damping_mass", damping_mass, DAMPING_MASSES),
+            ("pair_rule", pair_rule, PAIR_RULES),
+        ):
+            if value not in allowed:
+                raise ValueError(f"World {name} is {value!r}; allowed are {', '.join(allowed)}: choose one")
+        if time_step is not None and not 0.0 < time_step < math.inf:
+            raise ValueError(f"World time_step is {time_step!r} s; allowed is a finite value above 0, or None: change it")
+        self.gravity = np.array(_vector(gravity, "World gravity"))
+        self.drag = 0.0  # 1/s, viscous damping of all motion, for settling only
+        self.time = 0.0  # s
+        self.options = {
+            "shear_modulus_rule": shear_modulus_rule, "damping_mass": damping_mass, "pair_rule": pair_rule
+        }  # fmt: skip
+        self.bodies: list[Body] = []
+        self.planes: list[Plane] = []
+        self._given_time_step = time_step
+        self._time_step = time_step
+        self._state: dict[str, Floats] = {
+            "position": np.zeros((0, 3)), "velocity": np.zeros((0, 3)), "quaternion": np.zeros((0, 4)),
+            "angular_momentum": np.zeros((0, 3)),
+        }  # fmt: skip
+        self._pairs: Pairs = pairs_of(np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64))
+        self._totals = np.zeros(3)
+        self._watched = -1
+        self._probed = np.zeros(4)
+        self._assembled = False
+
+    # --- what is in it -------------------------------------------------------------------------------------------
+
+    def add_body(
+        self,
+        shape: Shape,
+        material: Material,
+        position: Sequence[float],
+        velocity: Sequence[float] = (0.0, 0.0, 0.0),
+        orientation: Sequence[float] = (1.0, 0.0, 0.0, 0.0),
+        spin: Sequence[float] = (0.0, 0.0, 0.0),
+        *,
+        mass: float | None = None,
+        inertia: ArrayLike | None = None,
+    ) -> int:
+        """Add a body and return its number.
+
+        position of the centroid [m], velocity [m/s], orientation (w, x, y, z) that turns the shape's vertices, as
+        given, about their centroid, spin [rad/s] in the world frame. mass [kg] and inertia [kg m2, 3 x 3, about the
+        centroid, frame of the shape] follow from the material's density unless given. Raises ValueError for values
+        that are not finite, a mass that is not positive or an inertia that is not positive definite.
+        """
+        if mass is not None and not 0.0 < mass < math.inf:
+            raise ValueError(f"add_body mass is {mass!r} kg; allowed is a finite value above 0: change it")
+        mass = material.density * shape.volume if mass is None else float(mass)
+        tensor = shape.inertia_per_density * (mass / shape.volume) if inertia is None else np.array(inertia, dtype=float)
+        if tensor.shape != (3, 3) or not np.isfinite(tensor).all() or np.linalg.eigvalsh(tensor).min() <= 0.0:
+            raise ValueError(f"add_body inertia is {tensor!r} kg m2; allowed is a positive definite 3 x 3 tensor: change it")
+        quaternion = unit(orientation, "add_body orientation")
+        body = Body(shape, material, mass, tensor)
+        rotation = _rotation_matrix(quaternion)
+        spinning = np.array(_vector(spin, "add_body spin"))
+        row = {
+            "position": np.array(_vector(position, "add_body position")),
+            "velocity": np.array(_vector(velocity, "add_body velocity")),
+            "quaternion": quaternion,
+            "angular_momentum": rotation @ (tensor @ (rotation.T @ spinning)),
+        }
+        self._disassemble()
+        self._state = {name: np.vstack([array, row[name]]) for name, array in self._state.items()}
+        self.bodies.append(body)
+        return len(self.bodies) - 1
+
+    def add_plane(
+        self,
+        point: Sequence[float],
+        normal: Sequence[float],
+        material: Material,
+        *,
+        bodies: Iterable[int] | None = None,
+    ) -> int:
+        """Add a half-space of matter behind a plane; `normal` points out of it. It meets the bodies listed, or all."""
+        place = np.array(_vector(point, "add_plane point"))
+        meets = None if bodies is None else frozenset(bodies)
+        self._disassemble()
+        self.planes.append(Plane(place, unit(normal, "add_plane normal"), material, meets))
+        return len(self.planes) - 1
+
+    def watch(self, body: int) -> None:
+        """Note from now on the contact forces on one body, see `watched`."""
+        self._watched = range(len(self.bodies))[body]
+        self._probed[:] = 0.0
+
+    @property
+    def watched(self) -> dict[str, float]:
+        """Largest contact force [N] on the watched body, and steps since `watch` to its first and last contact (0: none)."""
+        return {
+            "peak_force": float(self._probed[PEAK_FORCE]),
+            "first_contact": float(self._probed[FIRST_CONTACT]),
+            "last_contact": float(self._probed[LAST_CONTACT]),
+        }
+
+    # --- motion --------------------------------------------------------------------------------------------------
+
+    @property
+    def time_step(self) -> float:
+        """Time step [s]."""
+        if self._time_step is None:
+            self._time_step = self.shortest_contact(self._top_speed()) / timestep.STEPS_PER_CONTACT
+        return self._time_step
+
+    def shortest_contact(self, speed: float) -> float:
+        """Return the duration [s] of the shortest collision that can happen at a relative speed [m/s].
+
+        Raises ValueError for a speed of zero, and where no two things can meet.
+        """
+        if not speed > 0.0:
+            raise ValueError("World time_step cannot be chosen while nothing moves or falls: give a time_step [s]")
+        parts = [
+            (b.material, timestep.smallest_mass_at_contact(b.shape, b.mass, np.linalg.inv(b.inertia)),
+             equivalent_radius(b.shape)) for b in self.bodies
+        ]  # fmt: skip
+        planes = [plane.material for plane in self.planes]
+        rules = self.options["shear_modulus_rule"], self.options["pair_rule"]
+        duration = timestep.shortest_contact_duration(parts, planes, speed, *rules)
+        if duration == math.inf:
+            raise ValueError("World time_step cannot be chosen while nothing can collide: give a time_step [s]")
+        return duration
+
+    def run(self, duration: float | None = None, *, steps: int | None = None) -> None:
+        """Advance by a duration [s], rounded to whole steps, or by a number of steps.
+
+        Raises ValueError where the time step is too large for a contact (it names the largest safe one), and
+        FloatingPointError where the motion diverged.
+        """
+        if (duration is None) == (steps is None):
+            raise ValueError("World.run takes either duration [s] or steps: give one of them")
+        if not self.bodies:
+            raise ValueError("World.run has no body to move: add one first")
+        if steps is None:
+            assert duration is not None
+            if not 0.0 <= duration < math.inf:
+                raise ValueError(f"World.run duration is {duration!r} s; allowed is a finite value of at least 0: change it")
+            if self._time_step is None and duration > 0.0:
+                self._time_step = duration / math.ceil(duration / self.time_step)
+            steps = round(duration / self.time_step)
+        self._assemble()
+        step, limits = self._step(self.time_step), Limits(0.5 * self._skin, timestep.FREQUENCY_LIMIT)
+        left, drifted = steps, False
+        while left > 0:
+            taken, reason, drifted = advance(
+                left, drifted, self._arrays, self._cores, self._plane_arrays, self._pairs, self._laws, step, limits,
+                self._search, self._totals, self._watched, self._probed,
+            )  # fmt: skip
+            left -= taken
+            self.time += taken * self.time_step
+            if reason == LIST_USED_UP:
+                self._list_neighbours()
+            elif reason != DONE:
+                self._refuse(reason)
+
+    def _refuse(self, reason: int) -> None:
+        """Say why the time loop could not go on."""
+        if reason == STEP_TOO_LARGE:
+            largest = timestep.FREQUENCY_LIMIT / math.sqrt(self._totals[FREQUENCY_SQUARED])
+            raise ValueError(
+                f"World time_step is {self.time_step:.6g} s; allowed for the stiffest contact met at t = {self.time:.6g} s "
+                f"is at most {largest:.6g} s: make it smaller"
+            )
+        assert reason == DIVERGED
+        raise FloatingPointError(f"the motion diverged at t = {self.time:.6g} s: positions are no longer finite numbers")
+
+    def _top_speed(self) -> float:
+        """Return a bound on the speeds [m/s] of the bodies: now, and after falling through all that there is."""
+        reach = np.array([body.shape.bounding_radius for body in self.bodies])
+        speed = np.linalg.norm(self.velocity, axis=1) + np.linalg.norm(self.spin, axis=1) * reach
+        ends = [self.position + sign * reach[:, None] * unit_gravity for sign in (-1.0, 1.0)
+                for unit_gravity in [self.gravity / max(float(np.linalg.norm(self.gravity)), np.finfo(float).tiny)]]
+        points = np.vstack([*ends, *[plane.point[None] for plane in self.planes]])
+        fall = float(np.ptp(points @ self.gravity))
+        relative = 2.0 * float(speed.max()) if len(self.bodies) > 1 else float(speed.max())
+        return max(relative, math.sqrt(2.0 * fall))
+
+    def _step(self, time_step: float) -> Step:
+        return Step(time_step, float(self.drag), tuple(self.gravity), self.options["damping_mass"] == "paper")
+
+    # --- between a person's bodies and the kernels' arrays ---------------------------------------------------------
+
+    def _assemble(self) -> None:
+        """Build the arrays and compute the forces of the state at hand."""
+        if self._assembled:
+            return
+        shapes = list({id(body.shape): body.shape for body in self.bodies}.values())
+        materials = list(dict.fromkeys([thing.material for thing in [*self.bodies, *self.planes]]))
+        self._cores: Cores = cores_of(shapes)
+        self._laws: Laws = laws_of(materials, self.options["shear_modulus_rule"], self.options["pair_rule"])
+        self._plane_arrays: Planes = planes_of(self.planes, materials, len(self.bodies))
+        self._arrays: Bodies = bodies_of(self.bodies, shapes, materials, self._state)
+        self._state = {name: getattr(self._arrays, name) for name in self._state}
+        vertex_max = int(np.diff(self._cores.vertex_start).max())
+        self._search: Search = search_for(vertex_max, int(np.diff(self._cores.edge_start).max()))
+        self._skin = SKIN * float(self._arrays.bounding_radius.min())
+        self._list_neighbours()
+        self._arrays.velocity_predicted[:] = self._arrays.velocity
+        self._arrays.spin_predicted[:] = self.spin
+        self._arrays.half_spin[:] = self.spin
+        apply_forces(
+            self._arrays, self._cores, self._plane_arrays, self._pairs, self._laws, self._step(0.0), self._search,
+            self._totals,
+        )  # fmt: skip
+        self._assembled = True
+
+    def _disassemble(self) -> None:
+        """Make ready for a change of what is in the world."""
+        self._state = {name: array.copy() for name, array in self._state.items()}
+        self._time_step = self._given_time_step
+        self._assembled = False
+
+    def _list_neighbours(self) -> None:
+        first, second = neighbours(self._arrays, self._plane_arrays, self._skin)
+        self._pairs = renewed(self._pairs, first, second)
+        self._arrays.position_listed[:] = self._arrays.position
+
+    # --- what came of it ------------------------------------------------------------------------------------------
+
+    @property
+    def position(self) -> Floats:
+        """Centroids [m], shape [body_count, 3]."""
+        return self._state["position"].copy()
+
+    @property
+    def velocity(self) -> Floats:
+        """Velocities of the centroids [m/s], shape [body_count, 3]."""
+        return self._state["velocity"].copy()
+
+    @property
+    def orientation(self) -> Floats:
+        """Orientations, unit quaternions w, x, y, z, body to world, shape [body_count, 4]."""
+        return self._state["quaternion"].copy()
+
+    @property
+    def angular_momentum(self) -> Floats:
+        """Angular momenta about the centroids [kg m2/s], shape [body_count, 3], world frame."""
+        return self._state["angular_momentum"].copy()
+
+    @property
+    def spin(self) -> Floats:
+        """Angular velocities [rad/s], shape [body_count, 3], world frame."""
+        spins = np.zeros((len(self.bodies), 3))
+        for k, body in enumerate(self.bodies):
+            rotation = _rotation_matrix(self._state["quaternion"][k])
+            spins[k] = rotation @ np.linalg.solve(body.inertia, rotation.T @ self._state["angular_momentum"][k])
+        return spins
+
+    @property
+    def mass(self) -> Floats:
+        """Masses [kg], shape [body_count]."""
+        return np.array([body.mass for body in self.bodies])
+
+    @property
+    def inertia(self) -> Floats:
+        """Principal moments of inertia [kg m2], ascending, shape [body_count, 3]."""
+        return np.array([np.linalg.eigvalsh(body.inertia) for body in self.bodies]).reshape(-1, 3)
+
+    @property
+    def contact_force(self) -> Floats:
+        """Sum of the contact forces on each body [N], shape [body_count, 3]."""
+        self._assemble()
+        return self._arrays.force.copy()
+
+    def contacts(self) -> NDArray[Any]:
+        """Return the contacts (overlap > 0): structured array, see DESIGN of the fields below.
+
+        body_a, body_b (plane k is -1 - k), point [m], normal from a to b, overlap [m], normal_force [N],
+        tangential_force on b [N, 3].
+        """
+        self._assemble()
+        touching = np.flatnonzero(self._pairs.overlap > 0.0)
+        result = np.zeros(len(touching), dtype=CONTACT)
+        result["body_a"], result["body_b"] = self._pairs.first[touching], self._pairs.second[touching]
+        for name in ("point", "normal", "overlap", "normal_force", "tangential_force"):
+            result[name] = getattr(self._pairs, name)[touching]
+        return result
+
+    def energy(self) -> dict[str, float]:
+        """Return the energy ledger [J]: kinetic, potential, elastic, damping and friction (both lost), total of all."""
+        self._assemble()
+        return energy.ledger(self.mass, self.position, self.velocity, self.spin, self.angular_momentum, self.gravity,
+                             self._pairs, self._totals)  # fmt: skip
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write everything to an HDF5 file, whole or not at all; `World.load` continues from it bit for bit."""
+        from lithobrake.dem import checkpoint
+
+        checkpoint.save(self, path)
+
+    @staticmethod
+    def load(path: str | os.PathLike[str]) -> "World":
+        """Read a world that `save` wrote. Raises ValueError where the file is not one."""
+        from lithobrake.dem import checkpoint
+
+        return checkpoint.load(path)
+
+
+def _vector(value: Sequence[float], name: str) -> tuple[float, float, float]:
+    """Return three finite floats."""
+    array = np.asarray(value, dtype=np.float64)
+    if array.shape != (3,) or not np.isfinite(array).all():
+        raise ValueError(f"{name} is {value!r}; allowed are three finite numbers: change it")
+    return (float(array[0]), float(array[1]), float(array[2]))
+
+
+def _rotation_matrix(q: Floats) -> Floats:
+    """Return the rotation matrix of a unit quaternion."""
+    from lithobrake.dem.motion import write_rotation
+
+    rotation = np.zeros((3, 3))
+    write_rotation((q[0], q[1], q[2], q[3]), rotation)
+    return rotation
