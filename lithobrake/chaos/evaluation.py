@@ -24,8 +24,9 @@ class Plan:
     """The order of multiplications for an index set.
 
     offset: first row of each input in the stacked univariate tables [input_count + 1]; center, spread: recurrence from
-    each row to the next, padded at the last row of an input. parent: earlier term [row_count]; factor: row of the stacked univariate tables [row_count]; the first row is the
-    constant. coefficients [row_count, output_count], zero for rows that serve as parents only.
+    each row to the next, padded at the last row of an input. parent: earlier term [row_count]; factor: row of the
+    tables [row_count]; the first row is the constant. coefficients [row_count, output_count], zero for rows that
+    serve as parents only.
     """
 
     recurrences: list[Recurrence]
