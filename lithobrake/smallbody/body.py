@@ -1,0 +1,111 @@
+"""A small body: a shape with a mass that turns about its z axis."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lithobrake.smallbody.shape import Shape
+
+GRAVITATIONAL_CONSTANT = 6.67430e-11  # m3/(kg s2), CODATA 2018
+
+
+@dataclass(frozen=True)
+class Body:
+    """A shape of constant density, turning about +z through the origin of its frame.
+
+    mass          [kg]
+    spin_period   sidereal, counter-clockwise seen from +z [s]; infinite for a body that does not turn
+    """
+
+    shape: Shape
+    mass: float
+    spin_period: float
+    name: str = "body"
+
+    def __post_init__(self) -> None:
+        if not (math.isfinite(self.mass) and self.mass > 0.0):
+            raise ValueError(f"{self.name}: mass is {self.mass} kg; it must be finite and above 0.")
+        if not self.spin_period > 0.0:
+            raise ValueError(
+                f"{self.name}: spin_period is {self.spin_period} s; it must be above 0 (infinite: no spin)."
+            )
+
+    @property
+    def density(self) -> float:
+        """Mass over volume [kg/m3]."""
+        return self.mass / self.shape.volume
+
+    @property
+    def gravitational_parameter(self) -> float:
+        """G mass [m3/s2]."""
+        return GRAVITATIONAL_CONSTANT * self.mass
+
+    @property
+    def spin_rate(self) -> float:
+        """Angular velocity about +z [rad/s]."""
+        return 2.0 * math.pi / self.spin_period
+
+    def _field(self, points: ArrayLike) -> NDArray[np.float64]:
+        p = np.asarray(points, dtype=np.float64)
+        if p.shape[-1:] != (3,):
+            raise ValueError(f"{self.name}: points have shape {p.shape}; the last axis must hold x, y, z.")
+        field = self.shape.polyhedron.field(p.reshape(-1, 3)) * (GRAVITATIONAL_CONSTANT * self.density)
+        return field.reshape(*p.shape[:-1], 5)
+
+    def acceleration(self, points: ArrayLike) -> NDArray[np.float64]:
+        """Gravity [m/s2] at body-fixed points [m], both of shape [..., 3], anywhere: outside, on and in the body."""
+        return self._field(points)[..., :3]
+
+    def potential(self, points: ArrayLike) -> NDArray[np.float64]:
+        """Potential of gravity [m2/s2], positive, its gradient is the acceleration; points [m], shape [..., 3]."""
+        potential: NDArray[np.float64] = self._field(points)[..., 3]
+        return potential
+
+    def laplacian(self, points: ArrayLike) -> NDArray[np.float64]:
+        """Laplacian of the potential [1/s2]: -4 pi G density inside, half of it on a facet, 0 outside."""
+        laplacian: NDArray[np.float64] = -self._field(points)[..., 4]
+        return laplacian
+
+    def effective_acceleration(self, points: ArrayLike) -> NDArray[np.float64]:
+        """Gravity and centrifugal acceleration [m/s2] of a point at rest in the body-fixed frame, shape [..., 3]."""
+        p = np.asarray(points, dtype=np.float64)
+        return self.acceleration(p) + self.spin_rate**2 * p * np.array([1.0, 1.0, 0.0])
+
+    def jacobi(self, position: ArrayLike, velocity: ArrayLike) -> NDArray[np.float64]:
+        """Jacobi constant [m2/s2] of body-fixed states: half the squared speeds' difference minus the potential.
+
+        It is v**2 / 2 - (spin_rate**2 (x**2 + y**2)) / 2 - potential, kept in a flight.
+        """
+        p, v = np.asarray(position, dtype=np.float64), np.asarray(velocity, dtype=np.float64)
+        turning = self.spin_rate**2 * (p[..., 0] ** 2 + p[..., 1] ** 2)
+        constant: NDArray[np.float64] = 0.5 * ((v * v).sum(axis=-1) - turning) - self.potential(p)
+        return constant
+
+    def local_frame(
+        self, latitude_deg: float, longitude_deg: float, heading_deg: float = 0.0
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Origin on the surface [m], shape [3], and axes in its rows, shape [3, 3], all body-fixed.
+
+        z is the outward normal of the facet, x lies in the facet at heading_deg from north, clockwise seen from outside
+        as on a compass (90 is east), and y = z cross x. North is the direction of growing latitude laid into the facet,
+        at a pole along the meridian of longitude_deg.
+        """
+        points, facets = self.shape.locate(latitude_deg, longitude_deg)
+        up = self.shape.normals[int(facets)]
+        latitude, longitude = math.radians(latitude_deg), math.radians(longitude_deg)
+        meridian = np.array(
+            [-math.sin(latitude) * math.cos(longitude), -math.sin(latitude) * math.sin(longitude), math.cos(latitude)]
+        )
+        north = meridian - (meridian @ up) * up
+        length = float(np.linalg.norm(north))
+        if length < 1e-9:
+            raise ValueError(
+                f"{self.name}: the facet at latitude_deg {latitude_deg}, longitude_deg {longitude_deg} faces along the "
+                "meridian, so north has no direction on it; choose a site beside it."
+            )
+        north /= length
+        heading = math.radians(heading_deg)
+        ahead = math.cos(heading) * north + math.sin(heading) * np.cross(north, up)
+        return points, np.stack([ahead, np.cross(up, ahead), up])

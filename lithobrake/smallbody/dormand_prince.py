@@ -1,0 +1,95 @@
+"""The embedded Runge-Kutta pair 5(4) with seven stages, and its polynomial between the ends of a step.
+
+Sources: Dormand and Prince (1980), A family of embedded Runge-Kutta formulae, J. Comput. Appl. Math. 6, 19-26; Hairer,
+Norsett and Wanner (1993), Solving Ordinary Differential Equations I, sections II.4 (step size) and II.6 (dense output).
+
+A state is x, y, z [m] and their rates [m/s]; a slope is its derivative. Lanes stand last: state [6, lane], slope
+[7, 6, lane].
+"""
+
+from typing import Any
+
+import numpy as np
+
+from lithobrake.compiled import compiled
+
+STAGES = 7
+WEIGHTS = np.array(
+    [
+        [0, 0, 0, 0, 0, 0],
+        [1 / 5, 0, 0, 0, 0, 0],
+        [3 / 40, 9 / 40, 0, 0, 0, 0],
+        [44 / 45, -56 / 15, 32 / 9, 0, 0, 0],
+        [19372 / 6561, -25360 / 2187, 64448 / 6561, -212 / 729, 0, 0],
+        [9017 / 3168, -355 / 33, 46732 / 5247, 49 / 176, -5103 / 18656, 0],
+        [35 / 384, 0, 500 / 1113, 125 / 192, -2187 / 6784, 11 / 84],
+    ]
+)
+ERROR = np.array([71 / 57600, 0, -71 / 16695, 71 / 1920, -17253 / 339200, 22 / 525, -1 / 40])
+DENSE = np.array(
+    [
+        -12715105075 / 11282082432,
+        0,
+        87487479700 / 32700410799,
+        -10690763975 / 1880347072,
+        701980252875 / 199316789632,
+        -1453857185 / 822651844,
+        69997945 / 29380423,
+    ]
+)
+
+
+@compiled
+def stage_state(state: Any, slope: Any, step: Any, stage: int, count: int, result: Any) -> None:
+    """Write into result [6, lane] the state at which a stage takes its slope; stage 6 gives the end of the step."""
+    for i in range(6):
+        for j in range(count):
+            total = 0.0
+            for m in range(stage):
+                total += WEIGHTS[stage, m] * slope[m, i, j]
+            result[i, j] = state[i, j] + step[j] * total
+
+
+@compiled
+def step_error(slope: Any, step: float, j: int, length: float, speed: float) -> float:
+    """Largest error of lane j over its step, position in units of `length` [m], velocity of `speed` [m/s]."""
+    worst = 0.0
+    for i in range(6):
+        total = 0.0
+        for m in range(STAGES):
+            total += ERROR[m] * slope[m, i, j]
+        worst = max(worst, abs(step * total) / (length if i < 3 else speed))
+    return worst
+
+
+@compiled
+def next_step(step: float, error: float) -> float:
+    """Step size whose error is expected to be just below 1."""
+    if not error > 0.0:
+        return step * 5.0 if error == 0.0 else step * 0.2
+    return step * min(5.0, max(0.2, 0.9 * error**-0.2))
+
+
+@compiled
+def interpolate(state: Any, end: Any, slope: Any, step: float, j: int, curve: Any) -> None:
+    """Write the coefficients curve [5, 6] of the polynomial of lane j between state and end [6, lane]."""
+    for i in range(6):
+        change = end[i, j] - state[i, j]
+        bend = step * slope[0, i, j] - change
+        total = 0.0
+        for m in range(STAGES):
+            total += DENSE[m] * slope[m, i, j]
+        curve[0, i] = state[i, j]
+        curve[1, i] = change
+        curve[2, i] = bend
+        curve[3, i] = change - step * slope[6, i, j] - bend
+        curve[4, i] = step * total
+
+
+@compiled
+def along(curve: Any, share: float, i: int) -> float:
+    """Component i of the state at a share of the step."""
+    rest = 1.0 - share
+    inner = curve[3, i] + rest * curve[4, i]
+    value: float = curve[0, i] + share * (curve[1, i] + rest * (curve[2, i] + share * inner))
+    return value

@@ -1,0 +1,92 @@
+"""Reading triangles from OBJ and STL files."""
+
+import os
+import struct
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+UNITS = {"m": 1.0, "km": 1e3, "cm": 1e-2, "mm": 1e-3}
+
+Mesh = tuple[NDArray[np.float64], NDArray[np.int64]]
+
+
+def read_mesh(path: str | os.PathLike[str], unit: str = "m") -> Mesh:
+    """Vertices [m], shape [vertex_count, 3], and faces, shape [facet_count, 3], from .obj or .stl in the given unit.
+
+    Raises ValueError for an unknown unit or ending and for a line or length that is not of the format.
+    """
+    path = Path(path)
+    if unit not in UNITS:
+        raise ValueError(f"unit is {unit!r}; allowed are {', '.join(UNITS)}.")
+    if path.suffix.lower() not in READERS:
+        raise ValueError(f"{path}: the ending {path.suffix!r} is not read; convert to one of {', '.join(READERS)}.")
+    if not path.is_file():
+        raise ValueError(f"{path}: no such file.")
+    vertices, faces = READERS[path.suffix.lower()](path)
+    return vertices * UNITS[unit], faces
+
+
+def _read_obj(path: Path) -> Mesh:
+    """Wavefront OBJ: `v` and `f` lines; a polygon is cut into a fan of triangles from its first corner."""
+    vertices: list[list[float]] = []
+    faces: list[list[int]] = []
+    for number, line in enumerate(path.read_text(encoding="utf-8", errors="replace").splitlines(), 1):
+        words = line.split()
+        if not words or words[0] not in ("v", "f"):
+            continue
+        try:
+            if words[0] == "v":
+                vertices.append([float(word) for word in words[1:4]])
+                continue
+            given = [int(word.split("/")[0]) for word in words[1:]]
+        except ValueError as error:
+            raise ValueError(f"{path}: line {number}, {line.strip()!r} is not a vertex or a facet.") from error
+        # Negative numbers count back from the newest vertex; zero names none and is refused with the others later.
+        corners = [len(vertices) + corner if corner < 0 else corner - 1 for corner in given]
+        if len(corners) < 3:
+            raise ValueError(f"{path}: line {number}, {line.strip()!r} has fewer than three corners.")
+        faces += [[corners[0], corners[i], corners[i + 1]] for i in range(1, len(corners) - 1)]
+    if any(len(vertex) != 3 for vertex in vertices):
+        raise ValueError(f"{path}: a vertex has fewer than three coordinates.")
+    return np.array(vertices, dtype=np.float64).reshape(-1, 3), np.array(faces, dtype=np.int64).reshape(-1, 3)
+
+
+def _read_stl(path: Path) -> Mesh:
+    """STL, binary or text. Corners with the same coordinates become one vertex."""
+    data = path.read_bytes()
+    corners = _stl_binary(data)
+    if corners is None:
+        corners = _stl_text(path, data)
+    if not len(corners):
+        raise ValueError(f"{path}: holds no facets.")
+    vertices, index = np.unique(corners.reshape(-1, 3) + 0.0, axis=0, return_inverse=True)
+    return vertices, index.reshape(-1, 3).astype(np.int64)
+
+
+def _stl_binary(data: bytes) -> NDArray[np.float64] | None:
+    """Corners, shape [facet_count, 3, 3], or None where the length does not fit the count in the header."""
+    if len(data) < 84:
+        return None
+    (count,) = struct.unpack_from("<I", data, 80)
+    if len(data) != 84 + 50 * count:
+        return None
+    record = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+    facets = np.frombuffer(data, dtype=record, offset=84)
+    return np.asarray(facets["corners"], dtype=np.float64)
+
+
+def _stl_text(path: Path, data: bytes) -> NDArray[np.float64]:
+    words = data.decode("ascii", errors="replace").split()
+    if not words or words[0] != "solid":
+        raise ValueError(f"{path}: neither a text STL (starts with 'solid') nor a binary one of the length it states.")
+    places = [i for i, word in enumerate(words) if word == "vertex"]
+    try:
+        values = [[float(word) for word in words[i + 1 : i + 4]] for i in places]
+        return np.array(values, dtype=np.float64).reshape(-1, 3, 3)
+    except ValueError as error:
+        raise ValueError(f"{path}: its 'vertex' lines do not come in threes of three numbers.") from error
+
+
+READERS = {".obj": _read_obj, ".stl": _read_stl}

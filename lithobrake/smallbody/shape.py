@@ -1,0 +1,132 @@
+"""The surface of a small body."""
+
+import os
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lithobrake.smallbody.crossing import outermost
+from lithobrake.smallbody.grid import Grid
+from lithobrake.smallbody.mesh import closed_faces, mass_properties
+from lithobrake.smallbody.mesh_files import read_mesh
+from lithobrake.smallbody.nearest import heights, pseudonormals
+from lithobrake.smallbody.polyhedron import Polyhedron
+
+
+class Shape:
+    """A closed surface of triangles in the body-fixed frame, kept as given: nothing is moved or turned.
+
+    vertices     [m], shape [vertex_count, 3]
+    faces        vertex indices, counter-clockwise from outside, shape [facet_count, 3]
+    volume       [m3]
+    centroid     of the volume [m], shape [3]
+    inertia_per_density   about the centroid [m5], shape [3, 3]
+
+    Raises ValueError for a mesh that is open, non-manifold, degenerate or in pieces; warns where it turns facets
+    outward. Facets that cut through each other are not looked for.
+    """
+
+    def __init__(self, vertices: ArrayLike, faces: ArrayLike, *, name: str = "shape") -> None:
+        self.name = name
+        self.vertices = np.ascontiguousarray(vertices, dtype=np.float64)
+        given = np.asarray(faces)
+        if not np.issubdtype(given.dtype, np.integer):
+            raise ValueError(f"{name}: faces have the type {given.dtype}; give vertex indices as integers.")
+        self.faces = np.ascontiguousarray(closed_faces(self.vertices, given.astype(np.int64), name))
+        self.volume, self.centroid, self.inertia_per_density = mass_properties(self.vertices, self.faces)
+        self.vertices.flags.writeable = self.faces.flags.writeable = False
+
+    @classmethod
+    def read(cls, path: str | os.PathLike[str], unit: str = "m") -> "Shape":
+        """Read an .obj or .stl file whose lengths are in `unit` (m, km, cm, mm)."""
+        vertices, faces = read_mesh(path, unit)
+        return cls(vertices, faces, name=os.fspath(path))
+
+    @cached_property
+    def polyhedron(self) -> Polyhedron:
+        """The arrays of the gravity kernels."""
+        return Polyhedron.of(self.vertices, self.faces)
+
+    @cached_property
+    def corners(self) -> NDArray[np.float64]:
+        """Vertices of each facet [m], shape [facet_count, 3, 3]."""
+        return np.ascontiguousarray(self.vertices[self.faces])
+
+    @property
+    def normals(self) -> NDArray[np.float64]:
+        """Outward unit normals of the facets, shape [facet_count, 3]."""
+        return self.polyhedron.facet_terms[:, :3]
+
+    @cached_property
+    def pseudonormals(self) -> NDArray[np.float64]:
+        """Outward directions of the facets' edges and corners, shape [facet_count, 7, 3]."""
+        return pseudonormals(self.vertices, self.faces, self.normals)
+
+    @cached_property
+    def grid(self) -> Grid:
+        """The facets sorted into cells."""
+        return Grid.of(self.vertices, self.faces)
+
+    @property
+    def radius(self) -> float:
+        """Distance of the farthest vertex from the origin [m]."""
+        return float(np.linalg.norm(self.vertices, axis=1).max())
+
+    def latitude_longitude(self, points: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Planetocentric latitude and east longitude in (-180, 180] [deg] of body-fixed points [m], shape [..., 3]."""
+        p = np.asarray(points, dtype=np.float64)
+        latitude = np.degrees(np.arctan2(p[..., 2], np.hypot(p[..., 0], p[..., 1])))
+        longitude = np.degrees(np.arctan2(p[..., 1], p[..., 0]))
+        return latitude, np.where(longitude == -180.0, 180.0, longitude)
+
+    def surface_point(self, latitude_deg: ArrayLike, longitude_deg: ArrayLike) -> NDArray[np.float64]:
+        """Outermost point of the surface in a direction from the origin, body-fixed [m], shape [..., 3].
+
+        Raises ValueError where the direction does not meet the surface (the origin lies outside the body).
+        """
+        return self.locate(latitude_deg, longitude_deg)[0]
+
+    def locate(
+        self, latitude_deg: ArrayLike, longitude_deg: ArrayLike
+    ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+        """As surface_point, with the index of the facet, shape [...], that the point lies on."""
+        latitude, longitude = np.broadcast_arrays(np.radians(latitude_deg), np.radians(longitude_deg))
+        if not (np.isfinite(longitude).all() and (np.abs(latitude) <= 0.5 * np.pi).all()):
+            raise ValueError(
+                f"latitude_deg {latitude_deg!r} and longitude_deg {longitude_deg!r}: latitude must lie in -90 to 90, "
+                "longitude must be finite."
+            )
+        across = np.cos(latitude)
+        direction = np.stack([across * np.cos(longitude), across * np.sin(longitude), np.sin(latitude)], axis=-1)
+        rays = np.ascontiguousarray(direction.reshape(-1, 3))
+        distance, facet = np.empty(len(rays)), np.empty(len(rays), dtype=np.int64)
+        outermost(self.corners, rays, distance, facet)
+        if (facet < 0).any():
+            raise ValueError(
+                f"{self.name}: no surface at latitude_deg {latitude_deg!r}, longitude_deg {longitude_deg!r}; "
+                "the frame's origin lies outside the body, move the vertices."
+            )
+        return (rays * distance[:, None]).reshape(direction.shape), facet.reshape(latitude.shape)
+
+    def surface_normal(self, latitude_deg: ArrayLike, longitude_deg: ArrayLike) -> NDArray[np.float64]:
+        """Outward unit normal of the facet at surface_point, shape [..., 3]."""
+        normal: NDArray[np.float64] = self.normals[self.locate(latitude_deg, longitude_deg)[1]]
+        return normal
+
+    def height(self, points: ArrayLike) -> NDArray[np.float64]:
+        """Distance to the surface [m], negative inside, of body-fixed points [m], shape [..., 3]."""
+        return self.nearest(points)[0]
+
+    def nearest(self, points: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+        """Signed distance to the surface [m] and nearest facet of body-fixed points [m], shape [..., 3]."""
+        p = np.ascontiguousarray(points, dtype=np.float64)
+        height, facet = np.empty(p.size // 3), np.empty(p.size // 3, dtype=np.int64)
+        heights(self.corners, self.pseudonormals, p.reshape(-1, 3), height, facet)
+        return height.reshape(p.shape[:-1]), facet.reshape(p.shape[:-1])
+
+    def contains(self, points: ArrayLike) -> NDArray[np.bool_]:
+        """Whether body-fixed points [m], shape [..., 3], lie inside, by the solid angle that the surface fills."""
+        p = np.asarray(points, dtype=np.float64)
+        inside: NDArray[np.bool_] = self.polyhedron.field(p.reshape(-1, 3))[:, 4] > 2.0 * np.pi
+        return inside.reshape(p.shape[:-1])
