@@ -1,6 +1,7 @@
 """Figure 7: where the lander comes down after the first bounce, and in how many cases it does."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import matplotlib
 import numpy as np
@@ -9,10 +10,14 @@ from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from scipy.interpolate import LinearNDInterpolator
+from scipy.spatial import cKDTree
 
 from lithobrake.report.look import INK, INPUT_COLOURS, QUIET, SITE, TEST
 
 Array = NDArray[np.float64]
+
+# Below this, cells of 3 deg would be mostly empty.
+MANY_IMPACTS = 10_000
 
 
 @dataclass(frozen=True)
@@ -68,26 +73,38 @@ def map_figure(
 
 
 def _density(figure: Figure, axes: Axes, latitude: Array, longitude: Array) -> None:
-    """Impacts per cell of 3 deg, as share of all impacts; the cells without any stay clear."""
-    counts, x_edges, y_edges = np.histogram2d(
-        longitude, latitude, bins=(np.arange(-180, 181, 3), np.arange(-90, 91, 3))
-    )
-    if not counts.any():
+    """Many impacts: how many fall in each cell. Fewer: a dot each, coloured by how many lie around it."""
+    if not len(latitude):
         return
-    mesh = axes.pcolormesh(
-        x_edges,
-        y_edges,
-        np.ma.masked_equal(counts.T, 0),
-        norm=LogNorm(1, max(counts.max(), 2)),
-        cmap="viridis",
-        alpha=0.9,
-        zorder=2,
-        linewidth=0,
-        rasterized=True,
-    )
-    bar = figure.colorbar(mesh, cax=figure.add_axes((0.915, 0.36, 0.014, 0.57)))
-    bar.set_label("impacts per cell of 3 x 3 deg")
-    bar.outline.set_visible(False)
+    drawn: Any
+    if len(latitude) >= MANY_IMPACTS:
+        cells = (np.arange(-180, 181, 3), np.arange(-90, 91, 3))
+        counts, x_edges, y_edges = np.histogram2d(longitude, latitude, bins=cells)
+        shown = np.ma.masked_equal(counts.T, 0)
+        norm = LogNorm(1, max(counts.max(), 10))
+        drawn = axes.pcolormesh(x_edges, y_edges, shown, norm=norm, cmap="viridis", zorder=2, rasterized=True)
+        words = "impacts per cell of 3 x 3 deg"
+    else:
+        around = _neighbour_count(latitude, longitude, 5.0)
+        order = np.argsort(around, kind="stable")
+        norm = LogNorm(1, max(around.max(), 10))
+        drawn = axes.scatter(
+            longitude[order], latitude[order], c=around[order], norm=norm, cmap="viridis", s=11, linewidths=0, zorder=2
+        )
+        words = "impacts within 5 deg"
+    bar = figure.colorbar(drawn, cax=figure.add_axes((0.915, 0.36, 0.014, 0.57)), format="%g")
+    bar.set_label(words)
+    outline: Any = bar.outline
+    outline.set_visible(False)
+
+
+def _neighbour_count(latitude: Array, longitude: Array, distance_deg: float) -> Array:
+    """How many impacts, itself among them, lie within a distance on the sphere of each impact, shape [impact]."""
+    lat, lon = np.radians(latitude), np.radians(longitude)
+    points = np.column_stack([np.cos(lat) * np.cos(lon), np.cos(lat) * np.sin(lon), np.sin(lat)])
+    chord = 2.0 * np.sin(np.radians(distance_deg) / 2.0)
+    count: Array = cKDTree(points).query_ball_point(points, chord, return_length=True).astype(float)
+    return count
 
 
 def _relief(axes: Axes, vertices: Array) -> None:
