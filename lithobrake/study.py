@@ -68,18 +68,18 @@ class PowerLaw(Section):
 class BedSection(Section):
     """The surface: grains are convex hulls of random clouds of points, poured into an open box and settled."""
 
-    grain_count: Annotated[int, Whole("grains", at_least=10, at_most=1_000_000)] = Field(examples=["150"])
+    grain_count: Annotated[int, Whole("", at_least=10, at_most=1_000_000)] = Field(examples=["150"])
     """How many grains."""
-    width: Annotated[tuple[float, float], Numbers("m", count=2, above=0)] = Field(examples=["[0.8, 0.8]"])
+    width: Annotated[tuple[float, float], Numbers("m", count=2, above=0)] = Field(examples=["[0.55, 0.55]"])
     """Inner width of the box along x and y; at least twice the lander's largest diameter."""
     diameter: Annotated[Constant | Between | Bell | PowerLaw, Field(discriminator="distribution")] = Field(
-        examples=['{ distribution = "constant", value = 0.1 }']
+        examples=['{ distribution = "constant", value = 0.08 }']
     )
     """Diameter of the sphere of equal volume: constant (value), uniform (lower, upper), normal (mean, std, lower,
     upper) or power_law (exponent, lower, upper)."""
-    bed_count: Annotated[int, Whole("beds", at_least=1, at_most=1000)] = 1
+    bed_count: Annotated[int, Whole("", at_least=1, at_most=1000)] = 1
     """How many beds; with more than one, each run draws its bed."""
-    cloud_point_count: Annotated[int, Whole("points", at_least=4, at_most=100)] = 14
+    cloud_point_count: Annotated[int, Whole("", at_least=4, at_most=100)] = 14
     """Points in the random cloud whose hull is a grain."""
     pour_gravity: Annotated[float, Number("m/s2", above=0)] = 9.81
     """Acceleration under which the grains fall; it is then lowered slowly to the one they settle under."""
@@ -107,10 +107,10 @@ class LanderSection(Section):
 
     shape: Literal["box", "sphere", "hull"] = Field(examples=['"box"'])
     """Shape: "box" takes edges, "sphere" takes diameter, "hull" takes file."""
-    mass: Annotated[Scalar, MaybeUncertain("kg", above=0)] = Field(examples=["12.0"])
+    mass: Annotated[Scalar, MaybeUncertain("kg", above=0)] = Field(examples=["2.6"])
     """Mass."""
     edges: Annotated[tuple[float, float, float], Numbers("m", count=3, above=0)] | None = Field(
-        default=None, examples=["[0.37, 0.23, 0.1]"]
+        default=None, examples=["[0.1, 0.1, 0.227]"]
     )
     """Edge lengths of a box."""
     diameter: Annotated[Scalar, MaybeUncertain("m", above=0)] | None = None
@@ -192,7 +192,7 @@ class ContactSection(Section):
     """Mass in the damping terms: that which the contact point feels, or that of the two whole bodies."""
     pair_rule: Literal["smaller", "mean", "geometric"] = "smaller"
     """Restitution and friction of a pair of materials."""
-    steps_per_contact: Annotated[float, Number("steps", at_least=10, at_most=1000)] = 50.0
+    steps_per_contact: Annotated[float, Number("", at_least=10, at_most=1000)] = 50.0
     """Time steps in the shortest contact."""
 
 
@@ -206,26 +206,26 @@ class LandingSection(Section):
 class DesignSection(Section):
     """Which runs are made, and what is fitted to them: all inputs first, then those that matter at higher order."""
 
-    screening_level: Annotated[int, Whole("level", at_least=1, at_most=8)] = Field(3, examples=["2"])
+    screening_level: Annotated[int, Whole("", at_least=1, at_most=8)] = Field(3, examples=["2"])
     """Level of the Smolyak grid over all uncertain inputs."""
-    screening_degree: Annotated[int, Whole("degree", at_least=1, at_most=15)] = Field(3, examples=["2"])
+    screening_degree: Annotated[int, Whole("", at_least=1, at_most=15)] = Field(3, examples=["2"])
     """Total degree of the expansion in all uncertain inputs."""
-    refined_level: Annotated[int, Whole("level", at_least=1, at_most=8)] = Field(5, examples=["3"])
+    refined_level: Annotated[int, Whole("", at_least=1, at_most=8)] = Field(5, examples=["3"])
     """Level of the Smolyak grid over the kept inputs; the others stay at their median."""
-    refined_degree: Annotated[int, Whole("degree", at_least=1, at_most=15)] = Field(5, examples=["3"])
+    refined_degree: Annotated[int, Whole("", at_least=1, at_most=15)] = Field(5, examples=["3"])
     """Total degree of the expansion in the kept inputs."""
     kept_share: Annotated[float, Number("", above=0, at_most=1)] = 0.9
     """Share of the explained variance of every output of kept_outputs that the kept inputs must reach together."""
     kept_outputs: Annotated[tuple[OutputName, ...], Field(min_length=1)] = OUTPUTS
     """Outputs that decide which inputs are kept."""
-    test_count: Annotated[int, Whole("runs", at_least=2, at_most=100_000)] = Field(40, examples=["10"])
+    test_count: Annotated[int, Whole("", at_least=2, at_most=100_000)] = Field(40, examples=["10"])
     """Fresh random runs in each of the two test sets (kept inputs vary; all inputs vary)."""
 
 
 class MonteCarloSection(Section):
     """Samples of the refined expansion."""
 
-    sample_count: Annotated[int, Whole("samples", at_least=100, at_most=100_000_000)] = 100_000
+    sample_count: Annotated[int, Whole("", at_least=100, at_most=100_000_000)] = 100_000
     """How many samples."""
 
 
@@ -251,10 +251,10 @@ class FlightSection(Section):
 
     duration: Annotated[float, Number("s", above=0)] = 43_200.0
     """Longest flight."""
-    flight_count: Annotated[int, Whole("flights", at_least=1)] | None = Field(None, examples=["1000"])
+    flight_count: Annotated[int, Whole("", at_least=1)] | None = Field(None, examples=["1000"])
     """How many samples fly (the first ones that leave the surface); absent: all."""
-    gravity: Literal["exact", "table"] = "exact"
-    """Gravity of the polyhedron in closed form, or read from a table."""
+    gravity: Literal["exact"] = "exact"
+    """Gravity of the polyhedron, in closed form."""
 
 
 class Study(Section):
@@ -262,7 +262,7 @@ class Study(Section):
 
     title: str = ""
     """One line about the study."""
-    seed: Annotated[int, Whole("seed", at_least=0, at_most=2**53)] = 1
+    seed: Annotated[int, Whole("", at_least=0, at_most=2**53)] = 1
     """Everything random follows from this number."""
     bed: BedSection
     grain: GrainSection

@@ -14,6 +14,8 @@ from lithobrake.wording import sentences
 
 # A bed narrower than this many lander diameters would hold the lander between its walls.
 BED_WIDTH_PER_LANDER = 2.0
+# Fewer grains across are no bed.
+BED_WIDTH_PER_GRAIN = 3.0
 
 
 class StudyError(ValueError):
@@ -60,7 +62,11 @@ def check(tables: Mapping[str, Any], folder: Path, name: str = "study.toml") -> 
 
 def known_keys() -> dict[str, tuple[str, ...]]:
     """The keys of each table, by the table's dotted name ("" for the top)."""
-    return dict(_tables("", Study))
+    keys: dict[str, tuple[str, ...]] = {}
+    for table, names in _tables("", Study):
+        # A table of several kinds takes the keys of all of them.
+        keys[table] = tuple(dict.fromkeys((*keys.get(table, ()), *names)))
+    return keys
 
 
 def _tables(path: str, model: type[BaseModel]) -> Iterator[tuple[str, tuple[str, ...]]]:
@@ -84,6 +90,7 @@ def _absolute(tables: Mapping[str, Any], folder: Path) -> dict[str, Any]:
 def _problems(study: Study) -> Iterator[str]:
     """What is wrong between keys that are each right in themselves."""
     yield from _shape_problems(study)
+    yield from _grain_problems(study)
     yield from _place_problems(study)
     yield from _design_problems(study)
     if study.bed.settle_gravity is None and _reach(study.surface.gravity)[0] <= 0:
@@ -97,6 +104,19 @@ def _problems(study: Study) -> Iterator[str]:
         for key in ("mass", "spin_period"):
             if getattr(study.site, key) is None:
                 yield f"site.{key} is missing; a body read from a mesh needs its {key.replace('_', ' ')}"
+
+
+def _grain_problems(study: Study) -> Iterator[str]:
+    sizes = study.bed.diameter.model_dump()
+    largest = sizes.get("upper", sizes.get("value"))
+    if sizes.get("lower", 0) >= largest:
+        yield f"bed.diameter reaches from {sizes['lower']:g} to {largest:g} m; allowed: lower below upper; swap them"
+    limit = min(study.bed.width) / BED_WIDTH_PER_GRAIN
+    if largest > limit:
+        yield (
+            f"bed.diameter reaches to {largest:g} m; allowed: at most {limit:.3g} m, a third of bed.width; "
+            "widen the bed or take smaller grains"
+        )
 
 
 def _shape_problems(study: Study) -> Iterator[str]:

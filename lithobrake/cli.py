@@ -1,0 +1,142 @@
+"""The command line. Everything heavy is imported inside the command that needs it, so that --help answers at once."""
+
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Annotated, NoReturn
+
+import typer
+
+app = typer.Typer(
+    help="Where does a lander end up on a small body whose soil nobody knows, and how sure are we?",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+)
+
+StudyPath = Annotated[Path, typer.Argument(metavar="STUDY.toml", help="The study file.", show_default=False)]
+OutPath = Annotated[
+    Path | None, typer.Option("--out", metavar="DIR", help="Folder of the study; absent: runs/<study name>.")
+]
+Workers = Annotated[int | None, typer.Option("--workers", min=1, metavar="N", help="Processes; absent: all cores.")]
+StudyDirectory = Annotated[Path, typer.Argument(metavar="DIR", help="The folder of a study.", show_default=False)]
+
+BAD_INPUT, INTERRUPTED = 2, 130
+
+
+@app.command()
+def new(name: Annotated[str, typer.Argument(metavar="NAME", help="Name of the study.", show_default=False)]) -> None:
+    """Write a commented study file, NAME.toml."""
+    with _one_sentence("lithobrake new NAME with another name"):
+        from lithobrake.study_template import template
+
+        path = Path(name if name.endswith(".toml") else f"{name}.toml")
+        try:
+            with path.open("x", encoding="utf-8") as file:
+                file.write(template())
+        except FileExistsError:
+            raise ValueError(f"{path} exists; choose another name or remove it") from None
+        except OSError as error:
+            raise ValueError(f"{path} cannot be written ({error}); choose a folder that exists") from error
+        print(f"Wrote {path}. Change what you like, then: lithobrake run {path}")
+
+
+@app.command()
+def run(study: StudyPath, out: OutPath = None, workers: Workers = None) -> None:
+    """Run a study from its file to its report; what its folder already has is kept."""
+    _make(study, out, workers, "report")
+    folder = out or _default_folder(study)
+    _print_results(folder)
+
+
+def _stage_command(name: str, what: str) -> None:
+    def command(study: StudyPath, out: OutPath = None, workers: Workers = None) -> None:
+        _make(study, out, workers, name)
+        print(f"Done: {out or _default_folder(study)}")
+
+    app.command(name, help=f"{what} What comes before is made too, where it is missing.")(command)
+
+
+_stage_command("bed", "Pour and settle the beds, and land once at the medians.")
+_stage_command("screen", "Run the screening design and fit all inputs.")
+_stage_command("refine", "Run the refined design and fit the inputs that matter.")
+_stage_command("test", "Make the test runs and score the expansions.")
+_stage_command("sample", "Sample the refined expansion.")
+_stage_command("fly", "Fly the samples that leave the surface.")
+
+
+@app.command()
+def report(folder: StudyDirectory) -> None:
+    """Write the report of a study again."""
+    with _one_sentence(f"lithobrake report {folder}"):
+        if not (folder / "summary.json").is_file():
+            raise ValueError(f"{folder} has no summary.json; make it with: lithobrake run STUDY.toml --out {folder}")
+        from lithobrake.report import write_report
+
+        write_report(folder)
+        _print_results(folder)
+
+
+@app.command()
+def view(folder: StudyDirectory) -> None:
+    """Open the report of a study in the browser."""
+    with _one_sentence(f"lithobrake view {folder}"):
+        page = (folder / "report" / "index.html").resolve()
+        if not page.is_file():
+            raise ValueError(f"{folder} has no report; make it with: lithobrake run STUDY.toml --out {folder}")
+        import webbrowser
+
+        if not webbrowser.open(page.as_uri()):
+            print(f"No browser answers here; open this file: {page}")
+
+
+def _default_folder(study: Path) -> Path:
+    return Path("runs") / study.stem
+
+
+def _make(study: Path, out: Path | None, workers: int | None, until: str) -> None:
+    """Make the files of a study up to a stage, with two lines of progress."""
+    with _one_sentence(" ".join(sys.argv[1:])):
+        from lithobrake.pipeline import run_study
+        from lithobrake.progress import StudyProgress
+
+        stage = "fly" if until == "fly" else until
+        with StudyProgress() as shown:
+            run_study(
+                study,
+                out or _default_folder(study),
+                worker_count=workers,
+                until=stage,
+                begin=shown.begin,
+                progress=shown.progress,
+            )
+
+
+def _print_results(folder: Path) -> None:
+    """Say where the report is, and the five most telling numbers."""
+    import json
+
+    summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    for sentence in summary["results"]["headline"]:
+        print(f"  {sentence}")
+    print(f"Report: {(folder / 'report' / 'index.html').resolve()}")
+
+
+@contextmanager
+def _one_sentence(command: str) -> Iterator[None]:
+    """Turn what a user can mend into its sentence and exit code 2, and Ctrl-C into exit code 130."""
+    try:
+        yield
+    except (ValueError, FloatingPointError, OSError) as error:
+        _leave(str(error), BAD_INPUT)
+    except KeyboardInterrupt:
+        _leave(
+            f"Stopped. Every finished run is kept; the same command goes on from there: lithobrake {command}",
+            INTERRUPTED,
+        )
+
+
+def _leave(sentence: str, code: int) -> NoReturn:
+    print(sentence, file=sys.stderr)
+    raise typer.Exit(code)

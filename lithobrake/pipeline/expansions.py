@@ -1,0 +1,175 @@
+"""Designs, their runs, and the expansions fitted to them: all inputs first, then those that matter."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import combinations
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from lithobrake.campaign import Ledger, Runs
+from lithobrake.campaign import run as run_campaign
+from lithobrake.pipeline.folder import json_hash
+from lithobrake.pipeline.job import Job
+from lithobrake.pipeline.landings import TouchdownModel, medians
+from lithobrake.pipeline.surface import bed_files, touchdown_reads
+from lithobrake.study import OUTPUTS, Study, uncertain
+
+if TYPE_CHECKING:
+    from lithobrake.chaos import Distribution, Surrogate
+
+DESIGNS = ("screening", "refined", "test_kept", "test_all")
+
+
+@dataclass(frozen=True)
+class DesignRuns:
+    """The runs of one design: x in the file's units, shape [run_count, input_count], all uncertain inputs in order."""
+
+    x: np.ndarray
+    runs: Runs
+
+    @property
+    def y(self) -> np.ndarray:
+        """Fitted outputs, shape [run_count, output_count]; a row of NaN where the lander did not leave."""
+        y = self.runs.outputs(OUTPUTS)
+        return np.where(np.isnan(y).any(axis=1, keepdims=True), np.nan, y)
+
+    @property
+    def has_outputs(self) -> np.ndarray:
+        """Which runs have outputs, shape [run_count]."""
+        return np.isfinite(self.y).all(axis=1)
+
+    def columns(self, names: Sequence[str]) -> np.ndarray:
+        """The columns of x of these inputs, shape [run_count, len(names)]."""
+        return self.x[:, [self.input_names.index(name) for name in names]]
+
+    def outcome_counts(self) -> dict[str, int]:
+        """How often each outcome came, by name in the order of the alphabet."""
+        return {name: self.runs.outcomes.count(name) for name in sorted(set(self.runs.outcomes))}
+
+
+def design_inputs(study: Study) -> "dict[str, Distribution]":
+    """The uncertain inputs of the touchdown with their distributions, in the order of the file's sections."""
+    return {name: value.to_chaos() for name, value in uncertain(study.touchdown_values()).items()}
+
+
+def design_reads(study: Study) -> dict[str, Any]:
+    """What the runs of any design depend on."""
+    values = study.touchdown_values()
+    fixed = {name: value for name, value in values.items() if name not in uncertain(values)}
+    inputs = {name: distribution.to_json() for name, distribution in design_inputs(study).items()}
+    return {"touchdown": touchdown_reads(study), "fixed": fixed, "inputs": inputs}
+
+
+def kept_inputs(study: Study, screening: "Surrogate") -> tuple[str, ...]:
+    """The smallest set of inputs that together explain the asked share of every deciding output.
+
+    Among sets of one size the one whose weakest output is explained best is taken; the first in order breaks a tie.
+    """
+    columns = [screening.output_names.index(name) for name in study.design.kept_outputs]
+    for size in range(1, len(screening.input_names) + 1):
+        groups = list(combinations(screening.input_names, size))
+        shares = [min(np.asarray(screening.sobol_group(group))[columns]) for group in groups]
+        best = int(np.argmax(shares))
+        # All inputs together explain everything, but for rounding.
+        if shares[best] >= study.design.kept_share or size == len(screening.input_names):
+            return groups[best]
+    raise AssertionError("a design has at least one input")
+
+
+def points(study: Study, design: str, kept: Sequence[str]) -> np.ndarray:
+    """The points of a design, shape [point_count, input_count]; inputs that do not vary are at their median."""
+    from lithobrake.analysis import sample_inputs
+    from lithobrake.chaos import smolyak
+
+    inputs = design_inputs(study)
+    varied = inputs if design in ("screening", "test_all") else {name: inputs[name] for name in kept}
+    if design.startswith("test"):
+        x = sample_inputs(varied, study.design.test_count, seed=int(json_hash([study.seed, design])[:12], 16))
+    else:
+        x = smolyak(varied, level=getattr(study.design, f"{design}_level"))
+    full = np.tile([distribution.median for distribution in inputs.values()], (len(x), 1))
+    full[:, [list(inputs).index(name) for name in varied]] = x
+    return full
+
+
+def design_runs(job: Job, design: str, kept: Sequence[str] = ()) -> DesignRuns:
+    """Make the runs of a design; those that the ledger has are read from it."""
+    study, x = job.study, points(job.study, design, kept)
+    inputs, values = design_inputs(study), medians(study)
+    model = TouchdownModel(study, tuple(job.folder / name for name in bed_files(study)))
+
+    def show(done: int, total: int) -> None:
+        job.progress(done, total, f"{design.replace('_', ' ')} runs")
+
+    with Ledger(job.folder / "runs.sqlite") as ledger:
+        runs = run_campaign(
+            model,
+            x,
+            names=list(inputs),
+            fixed={name: value for name, value in values.items() if name not in inputs},
+            context=touchdown_reads(study),
+            ledger=ledger,
+            seed=study.seed,
+            executor=job.executor,
+            progress=show,
+        )
+    return DesignRuns(tuple(inputs), x, runs)
+
+
+def fit_screening(job: Job) -> None:
+    """Run the screening design and fit all inputs at medium order."""
+    design = design_runs(job, "screening")
+    _fit(job.study, "screening", design, list(design_inputs(job.study))).save(job.folder / "screening.json")
+
+
+def fit_refined(job: Job) -> None:
+    """Choose the inputs that matter, run the refined design and fit them at higher order."""
+    from lithobrake.chaos import load
+
+    kept = kept_inputs(job.study, load(job.folder / "screening.json"))
+    _fit(job.study, "refined", design_runs(job, "refined", kept), kept).save(job.folder / "refined.json")
+
+
+def _fit(study: Study, design: str, runs: DesignRuns, names: Sequence[str]) -> "Surrogate":
+    """Least squares on the runs that have outputs. Raises ValueError, with the outcomes, when they are too few."""
+    from lithobrake.chaos import fit, term_count
+
+    degree, found = getattr(study.design, f"{design}_degree"), int(runs.has_outputs.sum())
+    terms = term_count(len(names), degree)
+    if found < terms:
+        counts = ", ".join(f"{count} {name}" for name, count in runs.outcome_counts().items())
+        raise ValueError(
+            f"of {len(runs.x)} {design} runs {found} have outputs ({counts}), fewer than the {terms} terms of degree "
+            f"{degree}; raise design.{design}_level, lower design.{design}_degree, or choose an impact that rebounds"
+        )
+    inputs = design_inputs(study)
+    chosen = {name: inputs[name] for name in names}
+    return fit(chosen, runs.columns(names), runs.y, degree=degree, method="ols", output_names=OUTPUTS)
+
+
+def score_all(job: Job) -> None:
+    """Make the test runs and score both expansions on what they have seen and on what they have not."""
+    from lithobrake.chaos import load
+
+    screening, refined = load(job.folder / "screening.json"), load(job.folder / "refined.json")
+    kept = refined.input_names
+    runs = {design: design_runs(job, design, kept) for design in DESIGNS}
+    scores = {design: _score(screening if design == "screening" else refined, runs[design]) for design in DESIGNS}
+    scores["test_screening"] = _score(screening, runs["test_all"])
+    job.folder.write_json("scores.json", scores)
+
+
+def _score(surrogate: "Surrogate", design: DesignRuns) -> dict[str, Any]:
+    """Scores by output on the runs that have outputs; null where not finite. Raises ValueError for no runs."""
+    known = design.has_outputs
+    if not known.any():
+        raise ValueError("no test run has outputs (see runs.sqlite); choose an impact that rebounds")
+    scores = surrogate.score(design.columns(surrogate.input_names)[known], design.y[known])
+    return {output: {key: _finite(value) for key, value in score.items()} for output, score in scores.items()}
+
+
+def _finite(value: Any) -> Any:
+    if isinstance(value, list):
+        return [_finite(entry) for entry in value]
+    return float(value) if np.isfinite(value) else None

@@ -1,0 +1,136 @@
+"""One touchdown as a model: from the numbers of the study file, by dotted key, to what came out."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from lithobrake.quantity import median
+from lithobrake.study import Study
+
+if TYPE_CHECKING:
+    from lithobrake.dem import Material
+    from lithobrake.touchdown import Bed, ContactModel, Lander, Landing
+
+Values = Mapping[str, float]
+
+
+def medians(study: Study) -> dict[str, float]:
+    """Every scalar that the touchdown reads, uncertain ones at their median, by dotted key, in the file's units."""
+    return {name: median(value) for name, value in study.touchdown_values().items()}
+
+
+@dataclass(frozen=True)
+class TouchdownModel:
+    """A touchdown of a study, for any process: called with all its numbers and a seed, it lands once."""
+
+    study: Study
+    bed_paths: tuple[Path, ...]
+
+    def __call__(self, values: dict[str, float], seed: int) -> dict[str, Any]:
+        """Land once and say the outcome, the outputs [SI] and what was drawn by chance."""
+        from lithobrake.touchdown import land
+
+        draws = draw(self.study, values, seed)
+        outcome = land(
+            stored_bed(self.bed_paths[draws["bed"]]), lander(self.study, values), landing(self.study, values, draws)
+        )
+        return {"outcome": outcome.status, "outputs": outcome.outputs, "draws": draws}
+
+
+def stored_bed(path: Path) -> "Bed":
+    """Read a bed, once for all runs of a process as long as the file stays the same."""
+    status = path.stat()
+    return _read_bed(path, status.st_mtime_ns, status.st_size)
+
+
+@lru_cache(maxsize=4)
+def _read_bed(path: Path, _changed: int, _size: int) -> "Bed":
+    from lithobrake.touchdown import Bed
+
+    return Bed.load(path)
+
+
+def draw(study: Study, values: Values, seed: int) -> dict[str, Any]:
+    """What a run draws by chance, or is given in its place: bed, place [m], azimuth [deg], orientation (w, x, y, z).
+
+    All are drawn, whether used or not, so that each has the same random numbers in every study.
+    """
+    generator = np.random.Generator(np.random.PCG64(seed))
+    bed = int(generator.integers(study.bed.bed_count))
+    shares, turn = generator.random(2), generator.random()
+    # Four normal numbers point evenly over the unit quaternions.
+    quaternion = generator.standard_normal(4)
+    impact = study.impact
+    if impact.region is None:
+        place = [values["impact.place.x"], values["impact.place.y"]]
+    else:
+        ends = (impact.region.x, impact.region.y)
+        place = [low + share * (high - low) for share, (low, high) in zip(shares.tolist(), ends, strict=True)]
+    azimuth = 360 * turn if impact.azimuth_deg == "random" else values["impact.azimuth_deg"]
+    if impact.orientation != "random":
+        quaternion = np.array(impact.orientation)
+    orientation = (quaternion / np.linalg.norm(quaternion)).tolist()
+    return {"bed": bed, "place": place, "azimuth_deg": azimuth, "orientation": orientation}
+
+
+def contact(study: Study) -> "ContactModel":
+    """The readings of the contact law."""
+    from lithobrake.touchdown import ContactModel
+
+    return ContactModel(**study.contact.model_dump())
+
+
+def grain(values: Values) -> "Material":
+    """The rock of the grains."""
+    from lithobrake.dem import Material
+
+    names = ("density", "young_modulus", "poisson_ratio", "restitution", "friction")
+    return Material(**{name: values[f"grain.{name}"] for name in names})
+
+
+def lander(study: Study, values: Values) -> "Lander":
+    """The lander; what is not said about its material is that of the grains."""
+    from lithobrake.dem import Box, Material, Sphere
+    from lithobrake.touchdown import Lander, read_hull
+
+    section = study.lander
+    if section.edges is not None:
+        shape = Box(section.edges)
+    else:
+        shape = Sphere(values["lander.diameter"] / 2) if section.file is None else read_hull(Path(section.file))
+    names = ("young_modulus", "poisson_ratio", "restitution", "friction")
+    properties = {name: values.get(f"lander.{name}", values[f"grain.{name}"]) for name in names}
+    # The density of the material plays no part: the mass is given.
+    material = Material(density=values["lander.mass"] / shape.volume, **properties)
+    inertia = None if section.inertia is None else np.diag(section.inertia)
+    return Lander(shape=shape, mass=values["lander.mass"], inertia=inertia, material=material)
+
+
+def landing(study: Study, values: Values, draws: Mapping[str, Any]) -> "Landing":
+    """How the lander arrives, on which soil, under which acceleration."""
+    from lithobrake.touchdown import Landing
+
+    return Landing(
+        grain=grain(values),
+        speed=values["impact.speed"],
+        incidence=math.radians(values["impact.incidence_deg"]),
+        azimuth=math.radians(draws["azimuth_deg"]),
+        place=tuple(draws["place"]),
+        orientation=tuple(draws["orientation"]),
+        spin=(values["impact.spin_x"], values["impact.spin_y"], values["impact.spin_z"]),
+        gravity=acceleration(values, values["surface.gravity"]),
+        time_limit=study.landing.time_limit,
+        contact=contact(study),
+    )
+
+
+def acceleration(values: Values, size: float) -> tuple[float, float, float]:
+    """Acceleration of this size [m/s2] in the bed's frame, tilted as the slope says."""
+    slope, downhill = math.radians(values["surface.slope_deg"]), math.radians(values["surface.slope_azimuth_deg"])
+    along = size * math.sin(slope)
+    return along * math.cos(downhill), along * math.sin(downhill), -size * math.cos(slope)

@@ -1,0 +1,106 @@
+"""Monte Carlo on the refined expansion: what leaves the surface, how fast and where to, and what stays."""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from lithobrake.atomic import atomic_path
+from lithobrake.pipeline.expansions import DESIGNS, DesignRuns, design_inputs, design_runs
+from lithobrake.pipeline.folder import StudyFolder, json_hash
+from lithobrake.pipeline.job import Job
+from lithobrake.study import Study
+
+if TYPE_CHECKING:
+    from lithobrake.chaos import Surrogate
+
+FORMAT_VERSION = 1
+# Points at which the expansion is evaluated at once; between two blocks progress is shown.
+_BLOCK = 1 << 20
+
+
+@dataclass(frozen=True)
+class Samples:
+    """Samples of the Monte Carlo.
+
+    inputs [sample_count, input_count], in the file's units; outputs [sample_count, output_count], SI, in the local
+    frame; captured [sample_count]: by the draw of the capture probability; stays [sample_count]: captured, or without
+    outward velocity.
+    """
+
+    input_names: list[str]
+    output_names: list[str]
+    inputs: np.ndarray
+    outputs: np.ndarray
+    capture_probability: np.ndarray
+    captured: np.ndarray
+    stays: np.ndarray
+
+    def output(self, name: str) -> np.ndarray:
+        """One output, shape [sample_count]."""
+        return self.outputs[:, self.output_names.index(name)]
+
+    def save(self, folder: StudyFolder) -> None:
+        """Write samples.h5."""
+        import h5py
+
+        with atomic_path(folder / "samples.h5") as draft, h5py.File(draft, "w") as file:
+            for name in ("inputs", "outputs", "capture_probability", "captured", "stays"):
+                file.create_dataset(name, data=getattr(self, name))
+            file.attrs["format_version"] = FORMAT_VERSION
+            file.attrs["input_names"], file.attrs["output_names"] = self.input_names, self.output_names
+
+    @classmethod
+    def load(cls, folder: StudyFolder) -> "Samples":
+        """Read samples.h5."""
+        import h5py
+
+        with h5py.File(folder / "samples.h5") as file:
+            arrays = {name: data[()] for name, data in file.items()}
+            return cls(list(file.attrs["input_names"]), list(file.attrs["output_names"]), **arrays)
+
+
+def sampling_seed(study: Study, purpose: str) -> int:
+    """Seed of the random numbers of one purpose."""
+    return int(json_hash([study.seed, purpose])[:12], 16)
+
+
+def draw_samples(job: Job) -> None:
+    """Sample all inputs, evaluate the expansion, and decide for each sample whether the lander stays."""
+    from lithobrake.analysis import CaptureModel, sample_inputs
+    from lithobrake.chaos import load
+
+    study, inputs = job.study, design_inputs(job.study)
+    refined = load(job.folder / "refined.json")
+    x = sample_inputs(inputs, study.monte_carlo.sample_count, sampling_seed(study, "samples"))
+    outputs = _evaluate(refined, x[:, [list(inputs).index(name) for name in refined.input_names]], job)
+    runs = [design_runs(job, design, refined.input_names) for design in DESIGNS]
+    seen, captured = capture_runs(runs)
+    probability = CaptureModel(inputs, seen, captured).probability(x)
+    draws = np.random.Generator(np.random.PCG64(sampling_seed(study, "capture"))).random(len(x))
+    is_captured = draws < probability
+    outward = outputs[:, refined.output_names.index("velocity_out_z")] > 0
+    Samples(list(inputs), refined.output_names, x, outputs, probability, is_captured, is_captured | ~outward).save(
+        job.folder
+    )
+
+
+def capture_runs(designs: list[DesignRuns]) -> tuple[np.ndarray, np.ndarray]:
+    """Points of all runs that ended clear or captured [run_count, input_count], and which were captured [run_count].
+
+    A run that failed, left sideways or ran out of time says nothing about capture. Raises ValueError when none says.
+    """
+    x = np.concatenate([design.x for design in designs])
+    outcomes = np.array([outcome for design in designs for outcome in design.runs.outcomes])
+    says = np.isin(outcomes, ("clear", "captured"))
+    if not says.any():
+        raise ValueError("no run ended clear or captured (see runs.sqlite); raise landing.time_limit or widen the bed")
+    return x[says], outcomes[says] == "captured"
+
+
+def _evaluate(surrogate: "Surrogate", x: np.ndarray, job: Job) -> np.ndarray:
+    outputs = np.empty((len(x), len(surrogate.output_names)))
+    for start in range(0, len(x), _BLOCK):
+        outputs[start : start + _BLOCK] = surrogate(x[start : start + _BLOCK])
+        job.progress(min(start + _BLOCK, len(x)), len(x), "samples")
+    return outputs

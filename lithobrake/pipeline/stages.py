@@ -1,0 +1,99 @@
+"""The stages of a study in order; each reads the files of those before it and writes its own."""
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from lithobrake.pipeline import expansions, flights, samples, summary, surface
+from lithobrake.pipeline.folder import json_hash, source_hash
+from lithobrake.pipeline.job import Job
+from lithobrake.study import Study
+
+
+@dataclass(frozen=True)
+class Stage:
+    """A step of a study.
+
+    files: what it writes. reads: what of the study it depends on, as JSON values. after: stages whose files it reads.
+    parts: parts of the package whose code decides what it writes.
+    """
+
+    name: str
+    title: str
+    files: Callable[[Study], list[str]]
+    reads: Callable[[Study], Any]
+    after: tuple[str, ...]
+    parts: tuple[str, ...]
+    make: Callable[[Job], None]
+
+
+def _design(*names: str) -> Callable[[Study], Any]:
+    return lambda study: [study.design.model_dump()[name] for name in names]
+
+
+def _one(name: str) -> Callable[[Study], list[str]]:
+    return lambda study: [name]
+
+
+def _screening(study: Study) -> Any:
+    return [expansions.design_reads(study), study.seed, *_design("screening_level", "screening_degree")(study)]
+
+
+def _sample(study: Study) -> Any:
+    return study.monte_carlo.sample_count
+
+
+def _nothing(study: Study) -> Any:
+    return None
+
+
+def _write_report(job: Job) -> None:
+    from lithobrake.report import write_report
+
+    write_report(job.folder.path)
+
+
+FIT, FLY = ("pipeline", "chaos", "analysis"), ("pipeline", "smallbody")
+_REFINED = _design("refined_level", "refined_degree", "kept_share", "kept_outputs")
+_TEST = _design("test_count")
+
+STAGES = (
+    Stage("bed", "bed", surface.bed_files, surface.bed_reads, (), (), surface.pour_beds),
+    Stage("landing", "median landing", _one("landing.h5"), surface.landing_reads, ("bed",), (), surface.land_once),
+    Stage("screen", "screening", _one("screening.json"), _screening, ("bed",), FIT, expansions.fit_screening),
+    Stage("refine", "refinement", _one("refined.json"), _REFINED, ("screen",), FIT, expansions.fit_refined),
+    Stage("test", "test runs", _one("scores.json"), _TEST, ("screen", "refine"), FIT, expansions.score_all),
+    Stage("sample", "samples", _one("samples.h5"), _sample, ("refine", "test"), FIT, samples.draw_samples),
+    Stage("fly", "flights", _one("flights.csv"), flights.flight_reads, ("sample",), FLY, flights.fly_samples),
+    Stage(
+        "summary", "summary", _one("summary.json"), summary.study_tables, ("landing", "fly"), FIT, summary.write_summary
+    ),
+    Stage("report", "report", _one("report/index.html"), _nothing, ("summary",), ("report",), _write_report),
+)
+
+
+def stage_keys(study: Study) -> dict[str, str]:
+    """The key of each stage: what it reads of the study, its code, and the keys of the stages before it."""
+    keys: dict[str, str] = {}
+    for stage in STAGES:
+        before = [keys[name] for name in stage.after]
+        keys[stage.name] = json_hash([stage.name, stage.reads(study), source_hash(*stage.parts), before])
+    return keys
+
+
+def make(job: Job, until: str, begin: Callable[[str, int, int], None]) -> None:
+    """Make every file up to and with a stage that is not there, or no longer what the study says.
+
+    begin: called with the title, the number and the count of the stages as each begins.
+    """
+    keys = stage_keys(job.study)
+    last = [stage.name for stage in STAGES].index(until)
+    for number, stage in enumerate(STAGES[: last + 1], start=1):
+        begin(stage.title, number, last + 1)
+        files = stage.files(job.study)
+        if job.folder.is_current(files, keys[stage.name]):
+            continue
+        started = time.perf_counter()
+        stage.make(job)
+        job.folder.note(stage.name, files, keys[stage.name], time.perf_counter() - started)

@@ -1,0 +1,243 @@
+"""summary.json: every number of the report, the study as it was understood, and where it all comes from."""
+
+import os
+import platform
+import sys
+from collections.abc import Sequence
+from importlib.metadata import version
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from lithobrake.pipeline.expansions import DESIGNS, DesignRuns, design_runs, kept_inputs
+from lithobrake.pipeline.flights import read_flights, site_body, site_medians
+from lithobrake.pipeline.job import Job
+from lithobrake.pipeline.samples import Samples
+from lithobrake.pipeline.surface import bed_files
+from lithobrake.study import Study
+
+if TYPE_CHECKING:
+    from lithobrake.chaos import Surrogate
+
+FORMAT_VERSION = 1
+UNITS = {
+    "speed_out": "m/s", "elevation_out": "rad", "spin_out": "rad/s",
+    "velocity_out_x": "m/s", "velocity_out_y": "m/s", "velocity_out_z": "m/s",
+}  # fmt: skip
+QUANTILES = (0.05, 0.5, 0.95)
+
+
+def write_summary(job: Job) -> None:
+    """Write summary.json: study, results, provenance. Times, host, folders and versions stand in provenance only."""
+    from lithobrake.chaos import load
+
+    screening, refined = load(job.folder / "screening.json"), load(job.folder / "refined.json")
+    runs = {design: design_runs(job, design, refined.input_names) for design in DESIGNS}
+    samples, scores = Samples.load(job.folder), job.folder.read_json("scores.json")
+    kept = kept_inputs(job.study, screening)
+    results = {
+        "units": UNITS,
+        "beds": [_bed(job, name) for name in bed_files(job.study)],
+        "designs": {design: _design(runs[design]) for design in DESIGNS},
+        "outputs_of_runs": _outputs_of_runs(runs),
+        "screening": _expansion(screening),
+        "refined": _expansion(refined),
+        "kept_inputs": list(kept),
+        "kept_share": _by_output(screening, np.asarray(screening.sobol_group(kept))),
+        "scores": {
+            stage: {
+                output: {name: value for name, value in score.items() if name != "ape"}
+                for output, score in table.items()
+            }
+            for stage, table in scores.items()
+        },
+        "monte_carlo": _monte_carlo(samples),
+        "site": _site(job.study),
+        "shares": _shares(samples, read_flights(job.folder)),
+    }
+    results["headline"] = headline(results)
+    job.folder.write_json(
+        "summary.json",
+        {
+            "format_version": FORMAT_VERSION,
+            "study": study_tables(job.study, job.tables),
+            "results": results,
+            "provenance": _provenance(job, runs),
+        },
+    )
+
+
+def study_tables(study: Study, tables: Any = None) -> dict[str, Any]:
+    """The study with its defaults, as the tables of its file; paths of meshes as they were written."""
+    dump: dict[str, Any] = _plain(study.model_dump())
+    for section, key in (("lander", "file"), ("site", "body")):
+        dump[section][key] = (tables or {}).get(section, {}).get(key, dump[section][key])
+    return dump
+
+
+def _plain(value: Any) -> Any:
+    """A dumped study as JSON values; a distribution in the form that a study file has."""
+    if isinstance(value, dict) and set(value) == {"distribution", "parameters"}:
+        return {"distribution": value["distribution"], **value["parameters"]}
+    if isinstance(value, dict):
+        return {key: _plain(entry) for key, entry in value.items()}
+    return [_plain(entry) for entry in value] if isinstance(value, list | tuple) else value
+
+
+def _bed(job: Job, name: str) -> dict[str, Any]:
+    from lithobrake.pipeline.landings import stored_bed
+
+    bed = stored_bed(job.folder / name)
+    return {
+        "solid_fraction": float(bed.solid_fraction),
+        "coordination_number": float(bed.coordination_number),
+        "surface_height_m": float(bed.surface_height),
+        "mean_diameter_m": float(bed.grain_diameter),
+    }
+
+
+def _design(design: DesignRuns) -> dict[str, Any]:
+    known = design.has_outputs
+    return {"run_count": len(design.x), "with_outputs": int(known.sum()), "outcomes": design.outcome_counts()}
+
+
+def _outputs_of_runs(runs: dict[str, DesignRuns]) -> dict[str, Any]:
+    """What else the touchdowns gave, over all distinct runs: median, smallest and largest."""
+    units = {"contact_duration": "s", "penetration": "m", "peak_acceleration": "m/s2", "energy_lost": "J"}
+    distinct = {record.key: record for design in runs.values() for record in design.runs.records}
+    table: dict[str, Any] = {}
+    for name, unit in units.items():
+        values = [record.outputs[name] for record in distinct.values() if name in record.outputs]
+        if values:
+            table[name] = {
+                "median": float(np.median(values)), "smallest": min(values), "largest": max(values), "unit": unit
+            }  # fmt: skip
+    return table
+
+
+def _expansion(surrogate: "Surrogate") -> dict[str, Any]:
+    inputs = surrogate.input_names
+    first, total = np.asarray(surrogate.sobol_first), np.asarray(surrogate.sobol_total)
+
+    def by_output(table: np.ndarray) -> dict[str, dict[str, float]]:
+        columns = zip(surrogate.output_names, table.T.tolist(), strict=True)
+        return {output: dict(zip(inputs, column, strict=True)) for output, column in columns}
+
+    return {
+        "inputs": inputs,
+        "term_count": len(surrogate.multi_indices),
+        "mean": _by_output(surrogate, np.asarray(surrogate.mean)),
+        "std": _by_output(surrogate, np.sqrt(np.asarray(surrogate.variance))),
+        "sobol_first": by_output(first),
+        "sobol_total": by_output(total),
+    }
+
+
+def _by_output(surrogate: "Surrogate", values: np.ndarray) -> dict[str, float]:
+    return dict(zip(surrogate.output_names, values.tolist(), strict=True))
+
+
+def _monte_carlo(samples: Samples) -> dict[str, Any]:
+    """Spread of each output over the samples that leave the surface."""
+    leaving = ~samples.stays
+    table: dict[str, Any] = {"sample_count": len(leaving), "leaving_count": int(leaving.sum()), "outputs": {}}
+    for index, name in enumerate(samples.output_names if leaving.any() else ()):
+        values = samples.outputs[leaving, index]
+        quantiles = {f"quantile_{level:g}": float(np.quantile(values, level)) for level in QUANTILES}
+        table["outputs"][name] = {"mean": float(values.mean()), "std": float(values.std()), **quantiles}
+    return table
+
+
+def _site(study: Study) -> dict[str, Any]:
+    """The body at the medians, and the acceleration of a point at rest on the ground at the site."""
+    body, site = site_body(study), site_medians(study)
+    origin, axes = body.local_frame(site["latitude_deg"], site["longitude_deg"], site["heading_deg"])
+    effective = axes @ body.effective_acceleration(origin[None, :])[0]
+    extents = np.ptp(body.shape.vertices, axis=0)
+    return {
+        "body": study.site.body if study.site.body == "didymos" else "mesh",
+        "mass_kg": body.mass,
+        "spin_period_s": body.spin_period,
+        "extents_m": extents.tolist(),
+        "facet_count": len(body.shape.faces),
+        **{key: site[key] for key in ("latitude_deg", "longitude_deg", "heading_deg")},
+        "effective_acceleration_outward": float(effective[2]),
+        "effective_acceleration_along_heading": float(effective[0]),
+    }
+
+
+def _shares(samples: Samples, flights: list[dict[str, str]]) -> dict[str, Any]:
+    """What became of the samples, as shares of all that were looked at, with their 95 % intervals.
+
+    When not all leaving samples flew, only the samples up to the last that flew are looked at: they are a random part
+    of all, so each share is a plain binomial one. `remains` = captured, no outward velocity, or down again in time.
+    """
+    from lithobrake.analysis import wilson_interval
+
+    total = len(samples.stays)
+    if len(flights) < int((~samples.stays).sum()):
+        total = int(flights[-1]["sample"]) + 1
+    captured, stays = samples.captured[:total], samples.stays[:total]
+    counts = {"captured": int(captured.sum()), "no_outward_velocity": int((stays & ~captured).sum())}
+    statuses = [row["status"] for row in flights]
+    counts |= {status: statuses.count(status) for status in ("impact", "flying", "escaped")}
+    counts["remains"] = counts["captured"] + counts["no_outward_velocity"] + counts["impact"]
+    table: dict[str, Any] = {"sample_count": total, "flight_count": len(flights)}
+    for name, count in counts.items():
+        lower, upper = wilson_interval(count, total)
+        table[name] = {"count": count, "share": count / total, "lower": lower, "upper": upper}
+    return table
+
+
+def headline(results: dict[str, Any]) -> list[str]:
+    """The five most telling numbers, each in a sentence."""
+    designs, shares = results["designs"], results["shares"]
+    run_count = sum(design["run_count"] for design in designs.values())
+    rebounds = sum(design["with_outputs"] for design in designs.values())
+    total = results["screening"]["sobol_total"]["speed_out"]
+    main = max(total, key=lambda name: total[name])
+    score = results["scores"]["test_all"]["speed_out"]
+    remains = shares["remains"]
+    sentences = [f"{rebounds} of {run_count} touchdowns left the surface."]
+    speed = results["monte_carlo"]["outputs"].get("speed_out")
+    if speed:
+        low, middle, high = (100 * speed[f"quantile_{level:g}"] for level in QUANTILES)
+        sentences.append(f"Outgoing speed {middle:.3g} cm/s (median; 5 to 95 %: {low:.3g} to {high:.3g} cm/s).")
+    sentences.append(f"{main} decides it most: total Sobol index {total[main]:.2f} of the outgoing speed.")
+    explained = "no share" if score["q2"] is None else f"{100 * score['q2']:.0f} %"
+    error = f"{100 * score['rmse']:.2g} of spread {100 * score['std']:.2g} cm/s, MAPE {_percent(score['mape'])}"
+    sentences.append(
+        f"On fresh runs with all inputs varying the expansion explains {explained} of the variance of the outgoing "
+        f"speed (error {error})."
+    )
+    sentences.append(
+        f"{100 * remains['share']:.1f} % remain on the surface or come down again in time "
+        f"(95 % interval {100 * remains['lower']:.1f} to {100 * remains['upper']:.1f} %)."
+    )
+    return sentences
+
+
+def _percent(value: float | None) -> str:
+    return "undefined" if value is None else f"{value:.2g} %"
+
+
+def _provenance(job: Job, runs: dict[str, DesignRuns]) -> dict[str, Any]:
+    distinct = {record.key: record for design in runs.values() for record in design.runs.records}
+    packages = ("lithobrake", "numpy", "scipy", "numba", "scikit-learn", "h5py")
+    asked: Sequence[int] = [len(design.x) for design in runs.values()]
+    return {
+        "folder": str(job.folder.path),
+        "host": platform.node(),
+        "system": platform.platform(),
+        "cores": os.cpu_count(),
+        "python": sys.version.split()[0],
+        "packages": {name: version(name) for name in packages},
+        "wall_s": job.folder.wall_times(),
+        "runs": {
+            "asked": sum(asked),
+            "distinct": len(distinct),
+            "wall_s": sum(record.wall_s or 0.0 for record in distinct.values()),
+            "cpu_s": sum(record.cpu_s or 0.0 for record in distinct.values()),
+            "longest_wall_s": max((record.wall_s or 0.0 for record in distinct.values()), default=0.0),
+        },
+    }

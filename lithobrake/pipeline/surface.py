@@ -1,0 +1,91 @@
+"""The beds, and one landing on the first of them to look at."""
+
+from pathlib import Path
+from typing import Any
+
+from lithobrake import __version__
+from lithobrake.pipeline.folder import content_hash, json_hash, source_hash
+from lithobrake.pipeline.job import Job
+from lithobrake.pipeline.landings import acceleration, contact, draw, grain, lander, landing, medians, stored_bed
+from lithobrake.study import Study
+
+SNAPSHOT_FRAMES = 120
+# The code that decides what a touchdown gives.
+ENGINE = ("dem", "touchdown", "pipeline/landings.py")
+
+
+def bed_files(study: Study) -> list[str]:
+    """Names of the bed files."""
+    return [f"beds/bed_{index}.h5" for index in range(study.bed.bed_count)]
+
+
+def bed_reads(study: Study) -> dict[str, Any]:
+    """What the beds depend on: uncertain quantities count with their medians."""
+    values = medians(study)
+    return {
+        "seed": study.seed,
+        "bed": study.bed.model_dump(exclude={"bed_count"}),
+        "values": {name: value for name, value in values.items() if name.startswith(("grain.", "surface."))},
+        "contact": study.contact.model_dump(),
+        "engine": source_hash(*ENGINE),
+    }
+
+
+def pour_beds(job: Job) -> None:
+    """Pour and settle every bed that is not there yet."""
+    from lithobrake.touchdown import BedRecipe, GrainSizes, pour_bed
+
+    study, values = job.study, medians(job.study)
+    sizes = study.bed.diameter.model_dump()
+    if sizes["distribution"] == "constant":
+        sizes = {"distribution": "constant", "lower": sizes["value"], "upper": sizes["value"]}
+    settle_gravity = study.bed.settle_gravity or values["surface.gravity"]
+    for index, name in enumerate(bed_files(study)):
+        recipe = BedRecipe(
+            grain_count=study.bed.grain_count,
+            sizes=GrainSizes(**sizes),
+            cloud_point_count=study.bed.cloud_point_count,
+            width=study.bed.width,
+            material=grain(values),
+            gravity=acceleration(values, settle_gravity),
+            pour_gravity=study.bed.pour_gravity,
+            seed=int(json_hash([study.seed, "bed", index])[:12], 16),
+            contact=contact(study),
+        )
+
+        def show(done: float, what: str, index: int = index) -> None:
+            job.progress(index + done, study.bed.bed_count, what)
+
+        pour_bed(recipe, progress=show).save(job.folder / name)
+
+
+def touchdown_reads(study: Study) -> dict[str, Any]:
+    """What a touchdown depends on beside its scalars: the options, the lander's mesh, the beds, the engine."""
+    return {
+        "bed": bed_reads(study),
+        "bed_count": study.bed.bed_count,
+        "lander": study.lander.model_dump(include={"shape", "edges", "inertia"}),
+        "mesh": None if study.lander.file is None else content_hash(Path(study.lander.file)),
+        "impact": {
+            "azimuth": "random" if study.impact.azimuth_deg == "random" else "fixed",
+            **study.impact.model_dump(include={"region", "orientation"}),
+        },
+        "time_limit": study.landing.time_limit,
+        "version": f"{__version__}+{source_hash(*ENGINE)}",
+    }
+
+
+def landing_reads(study: Study) -> dict[str, Any]:
+    """What the landing at the medians depends on."""
+    return {"touchdown": touchdown_reads(study), "values": medians(study), "seed": study.seed}
+
+
+def land_once(job: Job) -> None:
+    """Land at the medians of all inputs and keep the pictures; this compiles the kernels once for all workers."""
+    from lithobrake.touchdown import land
+
+    values = medians(job.study)
+    draws = draw(job.study, values, job.study.seed)
+    bed, body = stored_bed(job.folder / bed_files(job.study)[draws["bed"]]), lander(job.study, values)
+    outcome = land(bed, body, landing(job.study, values, draws), frame_count=SNAPSHOT_FRAMES)
+    outcome.save_frames(job.folder / "landing.h5", bed, body)
