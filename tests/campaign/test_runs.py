@@ -1,0 +1,127 @@
+"""Campaigns: computed once, kept, reproducible, undisturbed by runs that fail."""
+
+import sqlite3
+from collections.abc import Callable
+from concurrent.futures import Executor, Future
+from pathlib import Path
+from typing import Any
+
+import campaign_models as models
+import numpy as np
+import pytest
+
+from lithobrake.campaign import Ledger, LocalExecutor, Runs, run
+
+X = np.array([[1.0, 0.5], [2.0, 0.5], [3.0, 0.5], [1.0, 0.5]])
+
+
+class HereExecutor(Executor):
+    """Calls at once, in this process, and counts."""
+
+    def __init__(self) -> None:
+        self.call_count = 0
+
+    def submit(self, function: Callable[..., Any], /, *args: Any, **kwargs: Any) -> "Future[Any]":
+        self.call_count += 1
+        future: Future[Any] = Future()
+        future.set_result(function(*args, **kwargs))
+        return future
+
+
+def campaign(path: Path, model: Callable[..., Any], executor: Executor, x: np.ndarray = X, **options: Any) -> Runs:
+    with Ledger(path / "runs.sqlite") as ledger:
+        return run(model, x, names=("a", "b"), ledger=ledger, executor=executor, **options)
+
+
+def test_rows_come_back_in_order_and_a_repeated_row_is_one_run(tmp_path: Path) -> None:
+    here = HereExecutor()
+    runs = campaign(tmp_path, models.parabola, here)
+    assert runs.outputs(["height"])[:, 0].tolist() == [1.5, 4.5, 9.5, 1.5]
+    assert here.call_count == 3
+
+
+def test_what_was_computed_is_not_computed_again_by_any_design(tmp_path: Path) -> None:
+    campaign(tmp_path, models.parabola, HereExecutor())
+    here = HereExecutor()
+    runs = campaign(tmp_path, models.parabola, here, np.array([[3.0, 0.5], [4.0, 0.5]]))
+    assert here.call_count == 1
+    assert runs.reused_count == 1
+
+
+def test_a_fixed_input_that_becomes_uncertain_reuses_its_runs(tmp_path: Path) -> None:
+    with Ledger(tmp_path / "runs.sqlite") as ledger:
+        run(models.parabola, X[:, :1], names=("a",), fixed={"b": 0.5}, ledger=ledger, executor=HereExecutor())
+    here = HereExecutor()
+    campaign(tmp_path, models.parabola, here)
+    assert here.call_count == 0
+
+
+def test_another_seed_or_context_is_another_run(tmp_path: Path) -> None:
+    campaign(tmp_path, models.parabola, HereExecutor())
+    for options in ({"seed": 2}, {"context": {"version": "2"}}, {"replicate": 1}):
+        here = HereExecutor()
+        campaign(tmp_path, models.parabola, here, **options)
+        assert here.call_count == 3
+
+
+def test_a_run_that_raises_is_recorded_with_its_reason(tmp_path: Path) -> None:
+    runs = campaign(tmp_path, models.breaks_at_two, HereExecutor())
+    assert runs.outcomes == ["clear", "failed", "clear", "clear"]
+    assert np.isnan(runs.outputs(["height"])[:, 0]).tolist() == [False, True, False, False]
+    assert runs.records[1].reason == "FloatingPointError: the overlap grew without bound"
+
+
+def test_a_captured_lander_is_an_outcome_with_its_other_outputs(tmp_path: Path) -> None:
+    runs = campaign(tmp_path, models.captured_below_two, HereExecutor())
+    assert runs.outcomes == ["captured", "clear", "clear", "captured"]
+    assert runs.records[0].status == "done"
+    assert runs.outputs(["depth", "height"])[0].tolist() == pytest.approx([0.1, np.nan], nan_ok=True)
+
+
+def test_processes_give_the_same_bits_as_this_one_and_survive_a_dead_worker(tmp_path: Path) -> None:
+    (tmp_path / "one").mkdir()
+    here = campaign(tmp_path / "one", models.parabola, HereExecutor())
+    with LocalExecutor(2) as executor:
+        there = campaign(tmp_path, models.dies_at_two, executor)
+    assert there.outcomes == ["clear", "failed", "clear", "clear"]
+    assert there.records[1].reason == "its process died"
+    for row in (0, 2):
+        assert there.records[row].outputs == here.records[row].outputs
+        assert there.records[row].draws == here.records[row].draws
+
+
+def test_an_interrupt_keeps_what_is_finished(tmp_path: Path) -> None:
+    def interrupt(done: int, total: int) -> None:
+        if done == 2:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        campaign(tmp_path, models.parabola, HereExecutor(), progress=interrupt)
+    here = HereExecutor()
+    campaign(tmp_path, models.parabola, here)
+    assert here.call_count <= 1
+
+
+def test_x_must_fit_the_names_and_be_finite(tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match="one column for each of the names"):
+        campaign(tmp_path, models.parabola, HereExecutor(), np.ones((2, 3)))
+    with pytest.raises(ValueError, match="not finite"):
+        campaign(tmp_path, models.parabola, HereExecutor(), np.array([[1.0, np.nan]]))
+
+
+def test_the_ledger_reads_as_plain_sql(tmp_path: Path) -> None:
+    campaign(tmp_path, models.parabola, HereExecutor())
+    with sqlite3.connect(tmp_path / "runs.sqlite") as database:
+        rows = database.execute(
+            "SELECT status, json_extract(inputs, '$.a'), json_extract(outputs, '$.height'), wall_s >= 0, host <> '' "
+            "FROM runs ORDER BY 2"
+        ).fetchall()
+        assert rows == [("done", 1.0, 1.5, 1, 1), ("done", 2.0, 4.5, 1, 1), ("done", 3.0, 9.5, 1, 1)]
+        assert database.execute("PRAGMA journal_mode").fetchone() == ("wal",)
+    database.close()
+
+
+def test_a_file_that_is_no_ledger_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "runs.sqlite").write_text("this is not a database, and long enough to be seen as such" * 20)
+    with pytest.raises(ValueError, match="cannot be used as a ledger"):
+        Ledger(tmp_path / "runs.sqlite")
