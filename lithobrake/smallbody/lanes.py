@@ -6,7 +6,6 @@ their numerator and denominator still apart, so each costs one division. Fused m
 result is then the same on every machine, whatever the compiler would have liked to contract.
 """
 
-from collections.abc import Callable
 from typing import Any
 
 from llvmlite import ir  # type: ignore[import-untyped]
@@ -50,9 +49,9 @@ def _from_bits(_context: Any, value: Any) -> Any:
 
 
 # Inside kernels only: a * b + c rounded once; the 64 bits of a double as an integer; the double of an integer's bits.
-fma: Callable[[float, float, float], float] = intrinsic(_fma)
-to_bits: Callable[[float], int] = intrinsic(_to_bits)
-from_bits: Callable[[int], float] = intrinsic(_from_bits)
+fma: Any = intrinsic(_fma)
+to_bits: Any = intrinsic(_to_bits)
+from_bits: Any = intrinsic(_from_bits)
 
 
 @compiled

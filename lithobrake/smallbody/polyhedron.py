@@ -138,8 +138,9 @@ def _add_facets(lane: Any, count: int, distance: Any, vertices: Any, corners: An
             below = d1 * fma(x2, x3, fma(y2, y3, fma(z2, z3, d2 * d3)))
             below = fma(d2, fma(x3, x1, fma(y3, y1, z3 * z1)), below)
             below = fma(d3, fma(x1, x2, fma(y1, y2, z1 * z2)), below)
-            # r1.(r2 x r3) is the height over the facet's plane times twice the area.
-            solid = 2.0 * angle(height * area, below)
+            # r1.(r2 x r3) is the height over the facet's plane times twice the area. In that plane the angle jumps
+            # between two values; their mean, zero, makes the sum on a facet the mean of inside and outside.
+            solid = 2.0 * angle(height * area, below) if height != 0.0 else 0.0
             pull = solid * height
             lane[PULL_X * LANES + j] = fma(pull, nx, lane[PULL_X * LANES + j])
             lane[PULL_Y * LANES + j] = fma(pull, ny, lane[PULL_Y * LANES + j])

@@ -1,0 +1,180 @@
+"""Flights against Kepler's laws, conserved quantities and an independent integrator."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from lithobrake.smallbody import Body, Shape, didymos, fly
+
+from .meshes import sphere_mesh
+
+
+def cone(body: Body, latitude: float, longitude: float, count: int, seed: int) -> tuple[np.ndarray, np.ndarray]:
+    """Start states on the surface, 2 to 35 cm/s, within 70 deg of the local vertical."""
+    random = np.random.default_rng(seed)
+    origin, axes = body.local_frame(latitude, longitude, 90.0)
+    tilt, turn = np.radians(70.0) * np.sqrt(random.uniform(size=count)), random.uniform(0.0, 2.0 * np.pi, count)
+    local = np.stack([np.sin(tilt) * np.cos(turn), np.sin(tilt) * np.sin(turn), np.cos(tilt)], axis=1)
+    return np.tile(origin, (count, 1)), random.uniform(0.02, 0.35, count)[:, None] * local @ axes
+
+
+@pytest.fixture(scope="module")
+def top() -> Body:
+    return didymos()
+
+
+def test_kepler_orbit_around_a_sphere(ball):
+    """An inclined ellipse about a sphere, seen from the turning frame, against Kepler's equation."""
+    mu, spin = ball.gravitational_parameter, ball.spin_rate
+    semi_major, eccentricity, tilt = 400.0, 0.3, 0.7
+    periapsis = semi_major * (1.0 - eccentricity)
+    speed = math.sqrt(mu * (1.0 + eccentricity) / periapsis)
+    start = np.array([periapsis, 0.0, 0.0])
+    inertial = speed * np.array([0.0, math.cos(tilt), math.sin(tilt)])
+    turning = inertial - spin * np.array([-start[1], start[0], 0.0])
+    duration = 0.8 * 2.0 * math.pi * math.sqrt(semi_major**3 / mu)
+    end = fly(ball, start, turning, duration, tolerance=1e-10)
+    mean = 0.8 * 2.0 * math.pi
+    anomaly = mean
+    for _ in range(50):
+        anomaly -= (anomaly - eccentricity * math.sin(anomaly) - mean) / (1.0 - eccentricity * math.cos(anomaly))
+    along = semi_major * (math.cos(anomaly) - eccentricity)
+    across = semi_major * math.sqrt(1.0 - eccentricity**2) * math.sin(anomaly)
+    expected = np.array([along, across * math.cos(tilt), across * math.sin(tilt)])
+    c, s = math.cos(spin * duration), math.sin(spin * duration)
+    expected = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]]) @ expected
+    assert end.status[0] == "flying"
+    assert end.time[0] == duration
+    # A polyhedron of 1152 facets is a sphere to some 1e-5 at four radii.
+    assert np.linalg.norm(end.position[0] - expected) < 0.05
+
+
+def test_rotation_sign(ball):
+    """Released at rest in the turning frame, a body falls behind the rotation: it drifts westward as it rises."""
+    far = Body(ball.shape, ball.mass, spin_period=1800.0)
+    end = fly(far, [150.0, 0.0, 0.0], [0.0, 0.0, 0.0], 300.0)
+    assert end.position[0, 0] > 150.0
+    assert end.longitude[0] < 0.0
+    # In the inertial frame it starts eastwards with spin times radius: nearly a straight line so short a time.
+    slow = Body(ball.shape, 1.0, spin_period=1800.0)
+    end = fly(slow, [150.0, 0.0, 0.0], [0.0, 0.0, 0.0], 200.0)
+    turn = slow.spin_rate * 200.0
+    x, y = 150.0, 150.0 * turn
+    expected = [x * math.cos(turn) + y * math.sin(turn), y * math.cos(turn) - x * math.sin(turn), 0.0]
+    assert end.position[0] == pytest.approx(expected, abs=1e-4)
+
+
+def test_against_another_integrator(top):
+    """SciPy's DOP853 with the same gravity, the impact found by its own event on the signed height."""
+    position, velocity = cone(top, 20.0, 40.0, 6, seed=5)
+    duration = 4 * 3600.0
+    flights = fly(top, position, velocity, duration)
+    assert (flights.status == "impact").sum() >= 3
+    spin = top.spin_rate
+
+    def slope(_time, state):
+        push = top.effective_acceleration(state[:3])
+        return [*state[3:], push[0] + 2 * spin * state[4], push[1] - 2 * spin * state[3], push[2]]
+
+    def ground(time, state):
+        return float(top.shape.height(state[:3])) if time > 20.0 else 1.0
+
+    ground.terminal, ground.direction = True, -1
+    for i in range(len(flights)):
+        start = np.concatenate([position[i], velocity[i]])
+        limits = {"rtol": 1e-10, "atol": 1e-8, "max_step": 60.0}
+        result = solve_ivp(slope, (0.0, duration), start, method="DOP853", events=ground, **limits)
+        assert (result.status == 1) == (flights.status[i] == "impact")
+        if flights.status[i] == "escaped":
+            continue
+        assert flights.time[i] == pytest.approx(result.t[-1], abs=0.1)
+        assert np.linalg.norm(flights.position[i] - result.y[:3, -1]) < 0.02
+
+
+def test_impacts_lie_on_the_surface_and_energy_is_kept(top):
+    flights = fly(top, *cone(top, 0.0, 0.0, 120, seed=6), 12 * 3600.0)
+    hit = flights.status == "impact"
+    assert set(flights.status) >= {"impact", "escaped"}
+    assert np.abs(top.shape.height(flights.position[hit])).max() < 1e-9
+    assert (np.einsum("fi,fi->f", flights.velocity[hit], top.shape.normals[flights.facet[hit]]) < 0.0).all()
+    assert np.abs(flights.jacobi_drift).max() < 3e-6  # of about .09 m2/s2
+    assert (flights.time[flights.status == "flying"] == 12 * 3600.0).all()
+    assert np.isnan(flights.impact_speed[~hit]).all()
+    assert flights.impact_speed[hit] == pytest.approx(np.linalg.norm(flights.velocity[hit], axis=1))
+    latitude, longitude = top.shape.latitude_longitude(flights.position)
+    assert np.array_equal(flights.latitude, latitude)
+    assert np.array_equal(flights.longitude, longitude)
+
+
+def test_threads_and_company_do_not_change_a_bit(top):
+    position, velocity = cone(top, 10.0, 0.0, 40, seed=7)
+    one = fly(top, position, velocity, 3600.0, threads=1)
+    two = fly(top, position[::-1], velocity[::-1], 3600.0, threads=2)
+    assert np.array_equal(one.position, two.position[::-1])
+    assert np.array_equal(one.time, two.time[::-1])
+    alone = fly(top, position[3], velocity[3], 3600.0)
+    assert np.array_equal(alone.position[0], one.position[3])
+
+
+def test_starts_on_the_surface(top):
+    """Slightly under, on and slightly above a facet, outwards: none is an impact before it has left the ground."""
+    origin, axes = top.local_frame(60.0, 20.0, 0.0)
+    shifts = np.array([-1e-5, -1e-12, 0.0, 1e-12, 1e-5])
+    position = origin + shifts[:, None] * axes[2]
+    velocity = np.tile(0.05 * (axes[2] + 0.5 * axes[0]), (5, 1))
+    flights = fly(top, position, velocity, 6 * 3600.0)
+    assert (flights.status == "impact").all()
+    assert flights.time.min() > 60.0
+    assert np.ptp(flights.time) < 0.05
+    down = fly(top, position, -velocity, 6 * 3600.0)
+    assert (down.status == "impact").all()
+    assert down.time.max() < 0.01
+    with pytest.raises(ValueError, match="below the surface"):
+        fly(top, 0.9 * origin, velocity[0], 60.0)
+
+
+def test_a_hop_on_a_nearly_flat_face():
+    """A flight that leaves a facet by millimetres comes back to it after 2 v / g."""
+    directions, faces = sphere_mesh(4)
+    body = Body(Shape(100.0 * directions, faces), mass=1e10, spin_period=math.inf)
+    origin, axes = body.local_frame(30.0, 30.0, 0.0)
+    push = float(body.acceleration(origin) @ axes[2])
+    speed = 5e-4
+    flight = fly(body, origin, speed * axes[2], 600.0)
+    assert flight.status[0] == "impact"
+    assert flight.time[0] == pytest.approx(-2.0 * speed / push, rel=1e-2)
+    assert -flight.velocity[0] @ axes[2] == pytest.approx(speed, rel=1e-2)
+
+
+def test_impact_on_a_shape_with_hollows(shapes):
+    """On Itokawa, which no ray from the origin describes: no flight ends inside or passes through a part of it."""
+    body = Body(Shape.read(shapes / "itokawa_5430.obj"), mass=3.51e10, spin_period=12.132 * 3600)
+    random = np.random.default_rng(8)
+    directions = random.normal(size=(64, 3))
+    position = 400.0 * directions / np.linalg.norm(directions, axis=1)[:, None]
+    velocity = 0.3 * (random.uniform(-40.0, 40.0, size=(64, 3)) - position) / 400.0
+    flights = fly(body, position, velocity, 3600.0)
+    hit = flights.status == "impact"
+    assert hit.sum() > 20
+    assert np.abs(body.shape.height(flights.position[hit])).max() < 1e-9
+    # Fine pieces of the same flights, tried by the solid angle, are outside all the way.
+    for share in (0.5, 0.9, 0.99, 0.999):
+        before = fly(body, position[hit], velocity[hit], share * float(flights.time[hit].min()))
+        assert not body.shape.contains(before.position).any()
+
+
+def test_wrong_calls_are_refused(ball):
+    start, rate = [200.0, 0.0, 0.0], [0.0, 0.0, 0.0]
+    for change, said in [
+        ({"duration": 0.0}, "duration is 0"),
+        ({"gravity": "guess"}, "gravity is 'guess'"),
+        ({"tolerance": 1.0}, "tolerance is 1"),
+        ({"threads": 0}, "threads is 0"),
+        ({"position": [math.nan, 0.0, 0.0]}, "must be finite"),
+        ({"position": [1.0, 2.0]}, "must be"),
+    ]:
+        arguments = {"position": start, "velocity": rate, "duration": 10.0} | change
+        with pytest.raises(ValueError, match=said):
+            fly(ball, **arguments)

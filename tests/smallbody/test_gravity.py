@@ -1,0 +1,149 @@
+"""Gravity of polyhedra against closed forms and against its own derivatives."""
+
+import math
+
+import numpy as np
+import pytest
+
+from lithobrake.smallbody import Body, Shape
+from lithobrake.smallbody.body import GRAVITATIONAL_CONSTANT
+from lithobrake.smallbody.lanes import angle, log_ratio
+
+from .meshes import CUBE_FACES, cube_vertices, sphere_mesh
+
+
+@pytest.fixture(scope="module")
+def block(cube) -> Body:
+    """A cube of 1 m with density 1 / G, so that sums come out bare."""
+    return Body(cube, mass=1.0 / GRAVITATIONAL_CONSTANT, spin_period=math.inf)
+
+
+def cube_potential(point: np.ndarray) -> float:
+    """Potential of a unit cube with G density = 1.
+
+    Source: MacMillan (1930), The Theory of the Potential, section 43: the triple integral of 1/r in closed form.
+    """
+    total = 0.0
+    for i in (0, 1):
+        for j in (0, 1):
+            for k in (0, 1):
+                x, y, z = (e - 0.5 - p for e, p in zip((i, j, k), point, strict=True))
+                r = math.sqrt(x * x + y * y + z * z)
+                term = x * y * math.log(z + r) + y * z * math.log(x + r) + z * x * math.log(y + r)
+                for a, b, c in ((x, y, z), (y, z, x), (z, x, y)):
+                    term -= 0.5 * a * a * math.atan(b * c / (a * r))
+                total += (-1) ** (i + j + k + 1) * term
+    return total
+
+
+def test_logarithm_and_angle_have_all_digits():
+    random = np.random.default_rng(0)
+    parts = np.concatenate([random.uniform(0.0, 1.0, 2000) ** 0.2, 10.0 ** np.arange(-15.0, 0.0)])
+    for part in parts.tolist():
+        assert log_ratio(1.0, part) == pytest.approx(float(2 * np.arctanh(np.longdouble(part))), rel=1e-15)
+    for y, x in random.normal(size=(2000, 2)).tolist():
+        assert angle(y, x) == pytest.approx(math.atan2(y, x), rel=1e-15)
+    assert (angle(0.0, 0.0), angle(0.0, 1.0), angle(0.0, -1.0)) == (0.0, 0.0, math.pi)
+
+
+@pytest.mark.parametrize("point", [(0.7, 0.9, 1.3), (3.0, -2.0, 1.0), (0.1, 0.2, -0.3), (0.51, 0.1, 0.2)])
+def test_cube_against_the_triple_integral(block, point):
+    # The closed form loses digits in its logarithms, hence 1e-12.
+    assert block.potential(point) == pytest.approx(cube_potential(np.array(point)), rel=1e-12)
+
+
+def test_centre_of_a_cube(block):
+    # Known: 3 ln((sqrt 3 + 1) / (sqrt 3 - 1)) - pi / 2 for edge 1, times G density.
+    expected = 3.0 * math.log((math.sqrt(3.0) + 1.0) / (math.sqrt(3.0) - 1.0)) - 0.5 * math.pi
+    assert block.potential([0.0, 0.0, 0.0]) == pytest.approx(expected, rel=1e-14)
+    assert np.abs(block.acceleration([0.0, 0.0, 0.0])).max() < 1e-14
+
+
+def test_special_points_are_finite_and_continuous(block):
+    """On faces, edges, corners and diagonals: the value is the limit from any side."""
+    special = np.array(
+        [[0.5, 0.1, 0.2], [0.5, 0.5, 0.2], [0.5, 0.5, 0.5], [0.5, 0.0, 0.0], [0.5, 0.5, 3.0], [0.0, 0.5, 9.0]]
+    )
+    near = special + 1e-9 * np.random.default_rng(2).normal(size=special.shape)
+    assert np.allclose(block.acceleration(special), block.acceleration(near), rtol=0, atol=1e-7)
+    assert np.allclose(block.potential(special), block.potential(near), rtol=0, atol=1e-8)
+
+
+def test_laplacian_tells_inside_from_outside(block):
+    points = [[0.1, -0.2, 0.3], [0.49, 0.0, 0.0], [0.51, 0.0, 0.0], [3.0, 4.0, 5.0], [0.5, 0.1, 0.2]]
+    expected = np.array([-4.0, -4.0, 0.0, 0.0, -2.0]) * math.pi
+    assert block.laplacian(points) == pytest.approx(expected, abs=1e-12)
+
+
+def test_acceleration_is_the_gradient_of_the_potential(shapes):
+    body = Body(Shape.read(shapes / "didymos_radar2020_1996.obj"), mass=5.32e11, spin_period=8136.0)
+    points = np.random.default_rng(3).normal(size=(50, 3)) * 400.0
+    step = 0.5
+    shift = step * np.eye(3)
+    # Sixth order differences; points near an edge, where the second derivative is large, would need smaller steps.
+    gradient = np.stack(
+        [
+            sum(
+                w * (body.potential(points + k * shift[i]) - body.potential(points - k * shift[i]))
+                for k, w in ((1, 45), (2, -9), (3, 1))
+            )
+            / (60 * step)
+            for i in range(3)
+        ],
+        axis=1,
+    )
+    error = np.linalg.norm(gradient - body.acceleration(points), axis=1)
+    assert np.median(error) < 1e-11
+    assert np.sort(error)[-5] < 1e-8
+
+
+def test_far_field_is_a_point_mass(block):
+    point = np.array([30.0, 40.0, 50.0])
+    r = np.linalg.norm(point)
+    assert block.potential(point) == pytest.approx(1.0 / r, rel=1e-7)
+    assert block.acceleration(point) == pytest.approx(-point / r**3, rel=1e-6)
+
+
+def test_sphere_limit():
+    """Facets to infinity: G M / r outside, linear inside; the error falls with the square of the facet size."""
+    errors = []
+    for frequency in (8, 16):
+        directions, faces = sphere_mesh(frequency)
+        body = Body(Shape(directions, faces), mass=1.0 / GRAVITATIONAL_CONSTANT, spin_period=math.inf)
+        outside = body.acceleration([1.2, 0.9, -0.4])
+        inside = body.acceleration([0.3, 0.1, -0.2])
+        exact = -np.array([1.2, 0.9, -0.4]) / np.linalg.norm([1.2, 0.9, -0.4]) ** 3
+        errors.append((np.linalg.norm(outside - exact), np.linalg.norm(inside + np.array([0.3, 0.1, -0.2]))))
+    assert errors[1][0] < errors[0][0] < 5e-3
+    assert errors[1][1] < 0.3 * errors[0][1] < 1e-2
+
+
+def test_lanes_and_blocks_do_not_change_a_bit(block):
+    points = np.random.default_rng(4).normal(size=(77, 3)) * 2.0
+    together = block.acceleration(points)
+    alone = np.array([block.acceleration(point) for point in points])
+    assert np.array_equal(together, alone)
+
+
+def test_orientation_of_a_shape_does_not_matter(block):
+    with pytest.warns(UserWarning, match="faced inwards"):
+        turned = Body(Shape(cube_vertices(), CUBE_FACES[:, ::-1]), block.mass, math.inf)
+    assert turned.potential([1.0, 2.0, 3.0]) == pytest.approx(block.potential([1.0, 2.0, 3.0]), rel=1e-14)
+
+
+def test_effective_acceleration_by_latitude(shapes):
+    """Normal component on the radar shape of Didymos: the published site lies at the centrifugal limit."""
+    body = Body(Shape.read(shapes / "didymos_radar2020_1996.obj"), mass=5.32e11, spin_period=2.26 * 3600)
+    at_site = body.effective_acceleration(body.shape.surface_point(0.0, 0.0)) @ body.shape.surface_normal(0.0, 0.0)
+    assert at_site == pytest.approx(10e-6, abs=2e-6)
+    pole = body.effective_acceleration(body.shape.surface_point(85.0, 0.0)) @ body.shape.surface_normal(85.0, 0.0)
+    assert pole == pytest.approx(-223e-6, abs=15e-6)
+
+
+def test_bad_bodies_are_refused(cube):
+    with pytest.raises(ValueError, match="mass is -1"):
+        Body(cube, mass=-1.0, spin_period=1.0)
+    with pytest.raises(ValueError, match="spin_period is 0"):
+        Body(cube, mass=1.0, spin_period=0.0)
+    with pytest.raises(ValueError, match="last axis"):
+        Body(cube, mass=1.0, spin_period=1.0).acceleration([1.0, 2.0])

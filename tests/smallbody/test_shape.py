@@ -1,0 +1,166 @@
+"""Shapes: reading, refusals, mass properties, places on the surface."""
+
+import struct
+
+import numpy as np
+import pytest
+
+from lithobrake.smallbody import Shape, didymos, dimorphos
+
+from .meshes import CUBE_FACES, cube_vertices, sphere_mesh
+
+
+def write_obj(path, vertices, faces):
+    lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in vertices.tolist()]
+    lines += ["f " + " ".join(str(corner + 1) for corner in face) for face in faces.tolist()]
+    path.write_text("# a comment\n" + "\n".join(lines) + "\n")
+    return path
+
+
+def test_cube_mass_properties():
+    shape = Shape(cube_vertices(2.0) + np.array([5.0, -3.0, 1.0]), CUBE_FACES)
+    assert shape.volume == pytest.approx(8.0, rel=1e-14)
+    assert shape.centroid == pytest.approx([5.0, -3.0, 1.0], rel=1e-14)
+    # Of a cube: mass edge**2 / 6.
+    assert np.allclose(shape.inertia_per_density, np.eye(3) * 8.0 * 4.0 / 6.0, rtol=1e-13, atol=1e-12)
+
+
+def test_obj_with_units_polygons_and_negative_indices(tmp_path):
+    path = tmp_path / "box.obj"
+    corners = "\n".join(f"v {x} {y} {z}" for x, y, z in cube_vertices(2.0))
+    path.write_text(
+        f"o box\n{corners}\nvn 0 0 1\n"
+        "f 1//1 4//1 3//1 2//1\nf 5/1 6/2 7/3 8/4\nf -8 -7 -3 -4\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n"
+    )
+    shape = Shape.read(path, unit="km")
+    assert shape.volume == pytest.approx(8e9)
+    assert len(shape.faces) == 12
+
+
+@pytest.mark.parametrize("binary", [True, False])
+def test_stl_merges_corners(tmp_path, binary):
+    corners = cube_vertices(2.0)[CUBE_FACES]
+    path = tmp_path / "cube.stl"
+    if binary:
+        facets = b"".join(struct.pack("<12fH", *np.zeros(3), *c.reshape(-1), 0) for c in corners)
+        path.write_bytes(b"solid misleading".ljust(80) + struct.pack("<I", len(corners)) + facets)
+    else:
+        loops = ["facet normal 0 0 0 outer loop\n" + "\n".join(f"vertex {x} {y} {z}" for x, y, z in c) for c in corners]
+        path.write_text("solid cube\n" + "\nendloop endfacet\n".join(loops) + "\nendsolid\n")
+    shape = Shape.read(path)
+    assert len(shape.vertices) == 8
+    assert shape.volume == pytest.approx(8.0)
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (lambda v, f: (v, f[:-1]), "open"),
+        (lambda v, f: (v, np.concatenate([f, [[0, 1, 6]]])), "edges belong to"),
+        (lambda v, f: (v, np.concatenate([f, f[:1], f[:1, ::-1]])), "non-manifold"),
+        (lambda v, f: (v, np.concatenate([f, [[0, 0, 1]]])), "degenerate"),
+        (lambda v, f: (np.concatenate([v, v + 5.0]), np.concatenate([f, f + 8])), "separate"),
+        (lambda v, f: (v, f + 1), "names vertices"),
+        (lambda v, f: (np.where(v == v[6], np.nan, v), f), "finite"),
+        (lambda v, f: (v, f[:3]), "facets"),
+        (lambda v, f: (v, f.astype(float)), "integers"),
+    ],
+)
+def test_refusals_name_the_fault(change, said):
+    with pytest.raises(ValueError, match=said):
+        Shape(*change(cube_vertices(), CUBE_FACES))
+
+
+def test_a_pinched_vertex_is_refused():
+    # A sphere whose poles are one vertex: every edge has two facets, yet the surface touches itself.
+    directions, faces = sphere_mesh(3)
+    north, south = int(np.argmax(directions[:, 2])), int(np.argmin(directions[:, 2]))
+    merged = np.where(faces == south, north, faces)
+    with pytest.raises(ValueError, match="single vertex"):
+        Shape(directions * [1.0, 1.0, 0.5], merged)
+
+
+def test_inverted_orientation_is_mended_and_said():
+    with pytest.warns(UserWarning, match="all facets faced inwards"):
+        shape = Shape(cube_vertices(), CUBE_FACES[:, ::-1])
+    assert shape.volume == pytest.approx(1.0)
+    mixed = CUBE_FACES.copy()
+    mixed[[3, 7]] = mixed[[3, 7], ::-1]
+    with pytest.warns(UserWarning, match="2 of 12 facets faced inwards"):
+        assert Shape(cube_vertices(), mixed).volume == pytest.approx(1.0)
+
+
+def test_reading_refuses_what_it_cannot_read(tmp_path):
+    good = write_obj(tmp_path / "cube.obj", cube_vertices(), CUBE_FACES)
+    with pytest.raises(ValueError, match="unit is 'mile'"):
+        Shape.read(good, unit="mile")
+    with pytest.raises(ValueError, match="no such file"):
+        Shape.read(tmp_path / "absent.obj")
+    with pytest.raises(ValueError, match=r"\.ply"):
+        Shape.read(tmp_path / "shape.ply")
+    bad = tmp_path / "bad.obj"
+    bad.write_text("v 0 0 zero\n")
+    with pytest.raises(ValueError, match="line 1"):
+        Shape.read(bad)
+
+
+def test_latitude_and_longitude_both_ways():
+    shape = didymos().shape
+    latitude, longitude = np.meshgrid(np.linspace(-89.0, 89.0, 23), np.linspace(-179.0, 180.0, 31))
+    points = shape.surface_point(latitude, longitude)
+    back = shape.latitude_longitude(points)
+    assert np.allclose(back[0], latitude, atol=1e-12)
+    assert np.allclose(back[1], longitude, atol=1e-12)
+    assert np.abs(shape.height(points)).max() < 1e-11
+    assert shape.latitude_longitude([-1.0, -0.0, 0.0])[1] == 180.0
+    with pytest.raises(ValueError, match="latitude must lie"):
+        shape.surface_point(91.0, 0.0)
+
+
+def test_height_and_inside_agree(shapes):
+    shape = Shape.read(shapes / "itokawa_5430.obj")
+    points = np.random.default_rng(1).normal(size=(500, 3)) * [150.0, 80.0, 70.0]
+    inside = shape.contains(points)
+    assert 0.3 < inside.mean() < 0.8
+    assert np.array_equal(inside, shape.height(points) < 0.0)
+
+
+@pytest.mark.parametrize(
+    ("file", "facets", "volume"),
+    [
+        ("didymos_radar2020_1996.obj", 1996, 2.4855e8),
+        ("dimorphos_gama.obj", 4700, 1.8023e6),
+        ("itokawa_5430.obj", 5430, 1.7745e7),
+        ("eros_7624.obj", 7624, 2.4995e12),
+        ("bennu_2692.obj", 2692, 6.2266e7),
+    ],
+)
+def test_real_shapes(shapes, file, facets, volume):
+    shape = Shape.read(shapes / file)
+    assert len(shape.faces) == facets
+    assert shape.volume == pytest.approx(volume, rel=3e-5)
+
+
+def test_built_in_bodies_have_the_published_extents():
+    body = didymos()
+    assert np.ptp(body.shape.vertices, axis=0) == pytest.approx([851.0, 849.0, 620.0], rel=1e-12)
+    assert len(body.shape.faces) == 1920
+    assert np.linalg.norm(body.shape.centroid) < 1e-9
+    assert 2100.0 < body.density < 2700.0  # published: 2400 +- 300 kg/m3
+    assert body.shape.surface_normal(0.0, 0.0) == pytest.approx([1.0, 0.0, 0.0], abs=1e-12)
+    assert np.ptp(dimorphos().shape.vertices, axis=0) == pytest.approx([177.0, 174.0, 116.0], rel=1e-12)
+    assert np.array_equal(didymos().shape.vertices, body.shape.vertices)
+
+
+def test_local_frame_is_a_compass():
+    body = didymos()
+    origin, axes = body.local_frame(0.0, 0.0, 0.0)
+    assert origin == pytest.approx(body.shape.surface_point(0.0, 0.0))
+    assert axes == pytest.approx(np.array([[0, 0, 1], [0, -1, 0], [1, 0, 0]]), abs=1e-12)
+    _, east = body.local_frame(0.0, 0.0, 90.0)
+    assert east[0] == pytest.approx([0.0, 1.0, 0.0], abs=1e-12)
+    for heading in (0.0, 33.0, 270.0):
+        _, axes = body.local_frame(-42.0, 101.0, heading)
+        assert axes @ axes.T == pytest.approx(np.eye(3), abs=1e-14)
+        assert np.linalg.det(axes) == pytest.approx(1.0)
+        assert axes[2] == pytest.approx(body.shape.surface_normal(-42.0, 101.0))
