@@ -130,11 +130,11 @@ def show(value: object) -> str:
     return str(value)
 
 
-def number(value: float, digits: int = 3) -> str:
-    """A number to some digits, very large and very small ones with a power of ten."""
+def number(value: float, digits: int = 3, *, zeros: bool = False) -> str:
+    """A number to some digits, very large and very small ones with a power of ten; zeros: keep those at the end."""
     if value == 0 or 1e-3 <= abs(value) < 1e5:
-        text = f"{value:.{digits}g}"
-        return f"{value:.0f}" if "e" in text else text
+        text = f"{value:#.{digits}g}" if zeros else f"{value:.{digits}g}"
+        return f"{value:.0f}" if "e" in text else text.removesuffix(".")
     mantissa, exponent = f"{value:.{digits - 1}e}".split("e")
     raised = str(int(exponent)).translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))
     return f"{mantissa} × 10{raised}"

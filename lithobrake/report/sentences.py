@@ -1,0 +1,181 @@
+"""The sentences of the page, built from the numbers of the files. They are plain text."""
+
+import math
+
+from lithobrake.report.look import PAPER_OUTPUTS, input_label, output
+from lithobrake.report.page import number
+from lithobrake.report.results import Results
+
+PLAIN_SYMBOLS = {"speed_out": "V+", "elevation_out": "theta+", "spin_out": "omega+"}
+STATUS_WORDS = {
+    "clear": "leaves the surface",
+    "captured": "is captured",
+    "left_sideways": "leaves the bed sideways",
+    "time_limit": "is still in contact at the time limit",
+}
+
+
+def plain(label: str) -> str:
+    """A label of a figure without its mathematics."""
+    for mathematics, word in ((r"$\nu$", "nu"), (r"$\mu$", "mu"), (r"$\rho$", "rho"), ("$E$", "E"), ("$e$", "e")):
+        label = label.replace(mathematics, word)
+    return label.replace("$^3$", "3").replace("$^2$", "2")
+
+
+def input_words(name: str) -> str:
+    """An input in words, without unit."""
+    return plain(input_label(name, with_unit=False))
+
+
+def listing(words: list[str]) -> str:
+    """Words joined as a person would: a, b and c."""
+    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
+
+
+def percent(share: float, digits: int = 1) -> str:
+    """A share of one in per cent."""
+    return f"{100 * share:.{digits}f} %"
+
+
+def interval(share: dict[str, float], digits: int = 1) -> str:
+    """A share with its interval."""
+    low, high = 100 * share["lower"], 100 * share["upper"]
+    return f"{percent(share['share'], digits)} (95 % interval {low:.{digits}f} to {high:.{digits}f} %)"
+
+
+def hours(seconds: float) -> str:
+    """A length of time in hours."""
+    return f"{seconds / 3600:g} h"
+
+
+def answer(data: Results) -> str:
+    """The answer to the question of the study."""
+    shares, site = data.results["shares"], data.results["site"]
+    duration = hours(data.study["flight"]["duration"])
+    return (
+        f"Landing at latitude {site['latitude_deg']:g} deg, longitude {site['longitude_deg']:g} deg on "
+        f"{body_name(data)}: {interval(shares['remains'])} of the landers stay on the surface or come down again "
+        f"within {duration}; {percent(shares['escaped']['share'])} escape and "
+        f"{percent(shares['flying']['share'])} are still flying."
+    )
+
+
+def body_name(data: Results) -> str:
+    """The body in words."""
+    return "Didymos" if data.study["site"]["body"] == "didymos" else "the body"
+
+
+def bed(data: Results) -> str:
+    """Figure 1."""
+    study, first = data.study["bed"], data.results["beds"][0]
+    width = " x ".join(f"{length:g}" for length in study["width"])
+    return (
+        f"{study['grain_count']} grains, convex hulls with a mean diameter of {number(first['mean_diameter_m'])} m, "
+        f"fall as a random cloud and settle in an open box of {width} m into a bed "
+        f"{number(first['surface_height_m'])} m deep with a solid fraction of {first['solid_fraction']:.2f} and "
+        f"{first['coordination_number']:.1f} contacts a grain."
+    )
+
+
+def landing(data: Results) -> str:
+    """Figure 2."""
+    attributes, time = data.landing.attributes, data.landing.time
+    status = str(attributes.get("status", ""))
+    return (
+        "With every uncertain input at its median, the lander arrives at "
+        f"{number(_float(attributes['speed']))} m/s and "
+        f"{math.degrees(_float(attributes['incidence'])):.3g} deg from the normal and "
+        f"{STATUS_WORDS.get(status, status)} after {number(float(time[-1] - time[0]))} s of simulated time; "
+        "the line is the way of its centre."
+    )
+
+
+def counts(data: Results) -> str:
+    """Figure 3."""
+    table, design = data.results["node_counts"], data.study["design"]
+    level, inputs = design["screening_level"], len(data.results["screening"]["inputs"])
+    sparse = data.results["designs"]["screening"]["run_count"]
+    words = f"The screening of {inputs} inputs at level {level} takes {sparse} runs on the Smolyak grid"
+    if inputs in table["input_counts"] and level in table["levels"]:
+        full = table["tensor"][table["input_counts"].index(inputs)][table["levels"].index(level)]
+        words += f" in place of {full:,} on the full tensor grid".replace(",", " ")
+    kept, runs = len(data.results["kept_inputs"]), data.results["designs"]["refined"]["run_count"]
+    return f"{words}; the refined design in the {kept} kept inputs at level {design['refined_level']} takes {runs}."
+
+
+def sobol(data: Results) -> str:
+    """Figure 4."""
+    first = data.results["screening"]["sobol_first"]
+    leaders = []
+    for name in PAPER_OUTPUTS:
+        main = max(first[name], key=lambda key: first[name][key])
+        leaders.append(f"{PLAIN_SYMBOLS[name]} most with {input_words(main)} ({percent(first[name][main], 0)})")
+    kept = listing([input_words(name) for name in data.results["kept_inputs"]])
+    share = min(data.results["kept_share"][name] for name in data.study["design"]["kept_outputs"])
+    return (
+        f"Share of each output's variance that an input explains alone, from the expansion in all inputs: "
+        f"{listing(leaders)}. Kept for the second step: {kept}, which together explain at least "
+        f"{percent(share, 0)} of the variance of every output that decides."
+    )
+
+
+def errors(data: Results) -> str:
+    """Figure 5."""
+    kept, every = data.scores["test_kept"], data.scores["test_all"]
+    parts = []
+    for name in PAPER_OUTPUTS:
+        shown = output(name)
+        inner, outer = (_score_words(table[name].mape, table[name].q2) for table in (kept, every))
+        error = number(every[name].rmse * shown.factor, 2)
+        parts.append(f"{PLAIN_SYMBOLS[name]} {inner}, and {outer}, or {error} {shown.unit}, when all inputs vary")
+    return (
+        "On fresh runs in the kept inputs, mean error (MAPE) and explained variance (Q2) are for "
+        f"{'; for '.join(parts)}. "
+        "Dashed lines are the means; a small percentage beside a small Q2 means that the output hardly varies."
+    )
+
+
+def _score_words(mape: float | None, q2: float | None) -> str:
+    return f"{'undefined' if mape is None else f'{mape:.2g} %'} at Q2 {'undefined' if q2 is None else f'{q2:.2f}'}"
+
+
+def scatter(data: Results, colour_name: str) -> str:
+    """Figure 6."""
+    table = data.results["monte_carlo"]
+    total, leaving = table["sample_count"], table["leaving_count"]
+    if not leaving:
+        return f"None of the {_thousands(total)} samples leaves the surface, so there is nothing to draw."
+    speed, angle = table["outputs"]["speed_out"], table["outputs"]["elevation_out"]
+    degrees = output("elevation_out").factor
+    return (
+        f"Of {_thousands(total)} samples of the refined expansion {_thousands(leaving)} leave the surface, the middle "
+        f"nine tenths of them at {number(speed['quantile_0.05'])} to {number(speed['quantile_0.95'])} m/s and "
+        f"{degrees * angle['quantile_0.05']:.3g} to {degrees * angle['quantile_0.95']:.3g} deg above the surface; "
+        f"the colour is the {input_words(colour_name)}."
+    )
+
+
+def landing_map(data: Results) -> str:
+    """Figure 7."""
+    shares, site = data.results["shares"], data.results["site"]
+    extents = " x ".join(f"{length:.0f}" for length in site["extents_m"])
+    outward = site["effective_acceleration_outward"]
+    direction = "outward" if outward > 0 else "inward"
+    return (
+        f"Of {_thousands(shares['sample_count'])} samples, of which {_thousands(shares['flight_count'])} were flown, "
+        f"{interval(shares['impact'])} come down again within {hours(data.study['flight']['duration'])}, where the map "
+        f"shows. The body: {number(site['mass_kg'])} kg, {extents} m, one turn in "
+        f"{site['spin_period_s'] / 3600:.4g} h; at the site gravity and spin together pull "
+        f"{number(abs(outward), 2)} m/s2 {direction}."
+    )
+
+
+def _thousands(count: int) -> str:
+    return f"{count:,}".replace(",", " ")
+
+
+def _float(value: object) -> float:
+    """An attribute that has to be a number."""
+    if not isinstance(value, int | float):
+        raise ValueError(f"landing.h5 has {value!r} where a number is needed; make the landing again")
+    return float(value)

@@ -1,0 +1,132 @@
+"""The report of a study: seven figures, tables and provenance on one page, and the figures beside it as PNG files."""
+
+import io
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from lithobrake.atomic import atomic_path
+from lithobrake.report import sentences
+from lithobrake.report.bed_figure import bed_figure
+from lithobrake.report.count_figure import Design, count_figure
+from lithobrake.report.error_figure import error_figure
+from lithobrake.report.landing_figure import landing_figure
+from lithobrake.report.look import PAPER_OUTPUTS, figure_style
+from lithobrake.report.map_figure import Share, map_figure
+from lithobrake.report.page import Panel, page
+from lithobrake.report.results import Results, read_results
+from lithobrake.report.scatter_figure import scatter_figure
+from lithobrake.report.sobol_figure import sobol_figure
+from lithobrake.report.tables import FATE_WORDS, provenance, tables, tiles
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+def write_report(folder: Path) -> Path:
+    """Write report/index.html of a study's folder, and its figures as PNG files; returns the path of the page.
+
+    Raises ValueError when a file that the report reads is missing.
+    """
+    data = read_results(folder)
+    (folder / "report").mkdir(exist_ok=True)
+    panels = []
+    for number, (name, title, sentence, draw) in enumerate(_figures(data), start=1):
+        with figure_style():
+            figure = draw()
+            picture = None if figure is None else _png(figure)
+        if picture is not None:
+            with atomic_path(folder / "report" / f"figure_{number}_{name}.png") as draft:
+                draft.write_bytes(picture)
+        panels.append(Panel(title, sentence, picture))
+    title = data.study.get("title") or folder.name
+    text = page(title, sentences.answer(data), tiles(data), panels, tables(data), provenance(data), data.study_text)
+    path = folder / "report" / "index.html"
+    with atomic_path(path) as draft:
+        draft.write_text(text, encoding="utf-8")
+    return path
+
+
+def _figures(data: Results) -> list[tuple[str, str, str, Callable[[], "Figure | None"]]]:
+    """The figures of the method in its order: name of the file, title, sentence, and what draws it."""
+    colour = _colour_input(data)
+    return [
+        ("bed", "The surface", sentences.bed(data), lambda: _bed(data)),
+        ("landing", "A landing", sentences.landing(data), lambda: _landing(data)),
+        ("counts", "What the designs cost", sentences.counts(data), lambda: _counts(data)),
+        ("sobol", "What matters", sentences.sobol(data), lambda: _sobol(data)),
+        ("errors", "How good the expansion is", sentences.errors(data), lambda: _errors(data)),
+        ("outputs", "What may come out", sentences.scatter(data, colour), lambda: _outputs(data, colour)),
+        ("map", "Where the lander comes down", sentences.landing_map(data), lambda: _map(data)),
+    ]
+
+
+def _png(figure: "Figure") -> bytes:
+    memory = io.BytesIO()
+    # The picture's own metadata would differ between versions of matplotlib; the page has the provenance.
+    figure.savefig(memory, format="png", metadata={"Software": None})
+    return memory.getvalue()
+
+
+def _bed(data: Results) -> "Figure":
+    scene, first = data.bed, data.results["beds"][0]
+    width = tuple(data.study["bed"]["width"])
+    return bed_figure(
+        scene.bodies, scene.time, scene.position, scene.orientation, width, first["surface_height_m"], scene.history
+    )
+
+
+def _landing(data: Results) -> "Figure":
+    scene = data.landing
+    return landing_figure(
+        scene.bodies, scene.time, scene.position, scene.orientation, tuple(data.study["bed"]["width"])
+    )
+
+
+def _counts(data: Results) -> "Figure":
+    table, results, design = data.results["node_counts"], data.results, data.study["design"]
+    designs = [
+        Design(name, len(results[name]["inputs"]), design[f"{name}_level"], results["designs"][name]["run_count"])
+        for name in ("screening", "refined")
+    ]
+    tensor, smolyak = np.array(table["tensor"], dtype=float), np.array(table["smolyak"], dtype=float)
+    return count_figure(table["input_counts"], table["levels"], tensor, smolyak, designs)
+
+
+def _sobol(data: Results) -> "Figure":
+    screening = data.results["screening"]
+    names = tuple(screening["inputs"])
+    first = {output: np.array([screening["sobol_first"][output][name] for name in names]) for output in PAPER_OUTPUTS}
+    return sobol_figure(names, first, screening["std"])
+
+
+def _errors(data: Results) -> "Figure":
+    return error_figure(data.scores["refined"], data.scores["test_kept"], data.scores["test_all"])
+
+
+def _colour_input(data: Results) -> str:
+    """The restitution of the grains, as in the paper; where it is certain, the input that decides the speed most."""
+    if "grain.restitution" in data.samples.inputs:
+        return "grain.restitution"
+    total: dict[str, float] = data.results["screening"]["sobol_total"]["speed_out"]
+    return max(total, key=lambda name: total[name])
+
+
+def _outputs(data: Results, colour_name: str) -> "Figure | None":
+    samples = data.samples
+    if samples.stays.all():
+        return None
+    return scatter_figure(samples.outputs, colour_name, samples.inputs[colour_name], samples.stays)
+
+
+def _map(data: Results) -> "Figure":
+    table, site = data.results["shares"], data.results["site"]
+    shares = [
+        Share(words, table[key]["share"], table[key]["lower"], table[key]["upper"])
+        for key, words in FATE_WORDS.items()
+        if key != "remains"
+    ]
+    where = (site["latitude_deg"], site["longitude_deg"])
+    return map_figure(data.latitude, data.longitude, where, shares, data.body_vertices)

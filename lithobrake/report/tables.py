@@ -1,0 +1,213 @@
+"""The tables of the page, from the numbers of the files."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from lithobrake.report.look import PAPER_OUTPUTS, output
+from lithobrake.report.page import Table, Tile, flat, number, show
+from lithobrake.report.results import Results
+from lithobrake.report.sentences import hours, input_words, percent
+
+OUTPUT_WORDS = {
+    "speed_out": "outgoing speed V+",
+    "elevation_out": "elevation theta+",
+    "spin_out": "spin omega+",
+    "velocity_out_x": "velocity along x",
+    "velocity_out_y": "velocity across y",
+    "velocity_out_z": "velocity up z",
+}
+STAGE_WORDS = {
+    "screening": "screening: its own runs",
+    "test_screening": "screening: test, all inputs vary",
+    "refined": "refined: its own runs",
+    "test_kept": "refined: test, kept inputs vary",
+    "test_all": "refined: test, all inputs vary",
+}
+DESIGN_WORDS = {
+    "screening": "screening, all inputs",
+    "refined": "refined, kept inputs",
+    "test_kept": "test, kept inputs vary",
+    "test_all": "test, all inputs vary",
+}
+FATE_WORDS = {
+    "impact": "down again",
+    "flying": "still flying",
+    "escaped": "escaped",
+    "captured": "captured",
+    "no_outward_velocity": "no outward velocity",
+    "remains": "captured, no outward velocity, or down again",
+}
+
+
+def tiles(data: Results) -> list[Tile]:
+    """The five numbers that a reader takes away."""
+    results = data.results
+    designs, shares = results["designs"].values(), results["shares"]
+    total = results["screening"]["sobol_total"]["speed_out"]
+    main = max(total, key=lambda name: total[name])
+    score = results["scores"]["test_all"]["speed_out"]
+    remains = shares["remains"]
+    speed = results["monte_carlo"]["outputs"].get("speed_out")
+    low, high = 100 * remains["lower"], 100 * remains["upper"]
+    found = [
+        Tile(
+            f"{100 * remains['share']:.1f}",
+            "%",
+            f"stay or come down again within {hours(data.study['flight']['duration'])} ({low:.1f} to {high:.1f} %)",
+        ),
+        Tile(
+            str(sum(design["with_outputs"] for design in designs)),
+            f"of {sum(design['run_count'] for design in designs)}",
+            "simulated touchdowns left the surface",
+        ),
+        Tile(f"{total[main]:.2f}", "Sobol", f"{input_words(main)} decides the outgoing speed most (total index)"),
+        Tile(
+            "none" if score["q2"] is None else f"{score['q2']:.2f}",
+            "Q2",
+            f"outgoing speed, fresh runs, all inputs vary: error {number(score['rmse'], 2)} m/s at a spread of "
+            f"{number(score['std'], 2)} m/s",
+        ),
+    ]
+    if speed:
+        words = (
+            f"outgoing speed, median (5 to 95 %: {number(speed['quantile_0.05'])} to {number(speed['quantile_0.95'])})"
+        )
+        found.insert(1, Tile(number(speed["quantile_0.5"]), "m/s", words))
+    return found
+
+
+def tables(data: Results) -> list[Table]:
+    """All tables, in the order of the stages."""
+    return [
+        _inputs(data),
+        _runs(data),
+        _beds(data),
+        _scores(data),
+        _sobol(data),
+        _outputs(data),
+        _touchdowns(data),
+        _fates(data),
+        _site(data),
+    ]
+
+
+def provenance(data: Results) -> list[Table]:
+    """Where the numbers come from: seed, times, versions."""
+    rows = [("seed", show(data.study.get("seed"))), *flat(data.provenance)]
+    return [
+        Table(
+            "Execution",
+            ["name", "value"],
+            rows,
+            "wall_s and cpu_s in seconds; a stage read from the folder keeps its time.",
+        )
+    ]
+
+
+def _inputs(data: Results) -> Table:
+    kept = data.results["kept_inputs"]
+    rows = []
+    for name in data.results["screening"]["inputs"]:
+        value: Any = data.study
+        for key in name.split("."):
+            value = value[key]
+        parameters = ", ".join(f"{key} {show(entry)}" for key, entry in value.items() if key != "distribution")
+        law = value["distribution"].replace("_", "-")
+        rows.append([input_words(name), name, law, parameters, "yes" if name in kept else "no"])
+    return Table("Uncertain inputs", ["input", "key in the study file", "distribution", "parameters", "kept"], rows)
+
+
+def _runs(data: Results) -> Table:
+    rows = []
+    for name, design in data.results["designs"].items():
+        outcomes = ", ".join(f"{count} {outcome.replace('_', ' ')}" for outcome, count in design["outcomes"].items())
+        rows.append([DESIGN_WORDS.get(name, name), str(design["run_count"]), str(design["with_outputs"]), outcomes])
+    numbers = frozenset({"runs", "left the surface"})
+    return Table("Touchdowns", ["design", "runs", "left the surface", "outcomes"], rows, numbers=numbers)
+
+
+def _beds(data: Results) -> Table:
+    columns = ["bed", "solid fraction", "contacts a grain", "surface height [m]", "mean diameter [m]"]
+    keys = ("solid_fraction", "coordination_number", "surface_height_m", "mean_diameter_m")
+    rows = [[str(index), *(_cell(bed[key]) for key in keys)] for index, bed in enumerate(data.results["beds"])]
+    return Table("Beds", columns, rows, numbers=frozenset(columns[1:]))
+
+
+def _scores(data: Results) -> Table:
+    columns = ["expansion and runs", "output", "unit", "MAPE [%]", "Q2", "RMSE", "spread (std)", "RMSE/spread"]
+    rows = []
+    for stage, table in data.results["scores"].items():
+        for row, (name, score) in enumerate(table.items()):
+            shown = output(name)
+            rows.append(
+                [
+                    STAGE_WORDS.get(stage, stage) if row == 0 else "",
+                    OUTPUT_WORDS.get(name, name),
+                    shown.unit,
+                    _or_none(score["mape"]),
+                    _or_none(score["q2"]),
+                    _cell(score["rmse"] * shown.factor),
+                    _cell(score["std"] * shown.factor),
+                    _or_none(score["rrmse"]),
+                ]
+            )
+    note = "Q2: explained share of the variance. A MAPE is small wherever an output hardly varies, so read it with Q2."
+    return Table("Errors of the expansions", columns, rows, note, frozenset(columns[3:]))
+
+
+def _sobol(data: Results) -> Table:
+    table = data.results["screening"]
+    words = [OUTPUT_WORDS[name].split()[-1] for name in PAPER_OUTPUTS]
+    columns = ["input", *(f"{word} first" for word in words), *(f"{word} total" for word in words)]
+    rows = [
+        [
+            input_words(key),
+            *(f"{table[kind][name][key]:.3f}" for kind in ("sobol_first", "sobol_total") for name in PAPER_OUTPUTS),
+        ]
+        for key in table["inputs"]
+    ]
+    note = "From the screening expansion. First: alone. Total: with all interactions."
+    return Table("Sobol indices", columns, rows, note, frozenset(columns[1:]))
+
+
+def _outputs(data: Results) -> Table:
+    columns = ["output", "unit", "mean", "std", "5 %", "median", "95 %"]
+    keys = ("mean", "std", "quantile_0.05", "quantile_0.5", "quantile_0.95")
+    rows = []
+    for name, table in data.results["monte_carlo"]["outputs"].items():
+        shown = output(name)
+        rows.append([OUTPUT_WORDS.get(name, name), shown.unit, *(_cell(table[key] * shown.factor) for key in keys)])
+    return Table("Outputs of the samples that leave", columns, rows, numbers=frozenset(columns[2:]))
+
+
+def _touchdowns(data: Results) -> Table:
+    rows = [
+        [name.replace("_", " "), table["unit"], *(_cell(table[key]) for key in ("smallest", "median", "largest"))]
+        for name, table in data.results["outputs_of_runs"].items()
+    ]
+    columns = ["quantity", "unit", "smallest", "median", "largest"]
+    return Table("What else the touchdowns gave", columns, rows, "Over all distinct runs.", frozenset(columns[2:]))
+
+
+def _fates(data: Results) -> Table:
+    shares: Mapping[str, Any] = data.results["shares"]
+    columns = ["what became of the sample", "samples", "share", "95 % from", "to"]
+    rows: Sequence[Sequence[str]] = [
+        [words, str(shares[key]["count"]), *(percent(shares[key][end], 2) for end in ("share", "lower", "upper"))]
+        for key, words in FATE_WORDS.items()
+    ]
+    note = f"Shares of {shares['sample_count']} samples; {shares['flight_count']} of them were flown."
+    return Table("After the first bounce", columns, rows, note, frozenset(columns[1:]))
+
+
+def _site(data: Results) -> Table:
+    return Table("Site and body", ["name", "value"], flat(data.results["site"]), "m, kg, s, m/s2; degrees where named.")
+
+
+def _or_none(value: float | None) -> str:
+    return "undefined" if value is None else _cell(value)
+
+
+def _cell(value: float) -> str:
+    """A number in a column: three digits, zeros at the end kept."""
+    return number(value, zeros=True)

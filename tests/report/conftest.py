@@ -1,0 +1,153 @@
+"""A small study folder with made-up arrays in every file that the report reads."""
+
+import csv
+import json
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+
+INPUTS = ["grain.young_modulus", "grain.restitution", "grain.friction"]
+OUTPUTS = ["speed_out", "elevation_out", "spin_out", "velocity_out_x", "velocity_out_y", "velocity_out_z"]
+OCTAHEDRON = 0.05 * np.array([(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1)], dtype=float)
+OCTAHEDRON_FACES = np.array([(x, y, z) for x in (0, 1) for y in (2, 3) for z in (4, 5)])
+
+
+@pytest.fixture(scope="session")
+def study_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A finished study without its report."""
+    folder = tmp_path_factory.mktemp("study")
+    (folder / "beds").mkdir()
+    (folder / "study.toml").write_text('title = "A made-up study"\n', encoding="utf-8")
+    write_bodies(folder / "beds" / "bed_0.h5", 12, {"width": [0.6, 0.6], "surface_height": 0.2})
+    landing = {"status": "clear", "width": [0.6, 0.6], "speed": 0.2, "incidence": np.pi / 6}
+    write_bodies(folder / "landing.h5", 13, landing)
+    write_samples(folder / "samples.h5")
+    write_flights(folder / "flights.csv")
+    scores = made_up_scores()
+    (folder / "scores.json").write_text(json.dumps(scores), encoding="utf-8")
+    (folder / "summary.json").write_text(json.dumps(made_up_summary(scores)), encoding="utf-8")
+    return folder
+
+
+def write_bodies(path: Path, count: int, attributes: dict[str, object]) -> None:
+    """Octahedra that sink for eight frames."""
+    time = np.linspace(0.0, 0.7, 8)
+    grid = np.stack(np.meshgrid([-0.15, 0.0, 0.15], [-0.1, 0.1], [0.3, 0.5, 0.7], indexing="ij"), axis=-1)
+    position = np.repeat(grid.reshape(-1, 3)[None, :count], len(time), axis=0)
+    position[:, :, 2] -= 0.25 * time[:, None]
+    orientation = np.zeros((len(time), count, 4))
+    orientation[:, :, 0] = 1.0
+    with h5py.File(path, "w") as file:
+        file["vertices"] = np.tile(OCTAHEDRON, (count, 1))
+        file["vertex_start"] = len(OCTAHEDRON) * np.arange(count + 1)
+        file["faces"] = np.tile(OCTAHEDRON_FACES, (count, 1))
+        file["face_start"] = len(OCTAHEDRON_FACES) * np.arange(count + 1)
+        for name, data in (("time", time), ("position", position), ("orientation", orientation)):
+            file[f"frames/{name}"] = data
+        for name in ("time", "kinetic_ratio", "unbalanced_force", "gravity"):
+            file[f"history/{name}"] = time if name == "time" else np.exp(-10 * time)
+        file.attrs.update(attributes)
+
+
+def write_samples(path: Path) -> None:
+    generator = np.random.default_rng(5)
+    inputs = generator.uniform(0.3, 0.9, (400, len(INPUTS)))
+    outputs = 0.1 + 0.05 * inputs[:, :1] + 0.01 * generator.normal(size=(400, len(OUTPUTS)))
+    with h5py.File(path, "w") as file:
+        file["inputs"], file["outputs"], file["stays"] = inputs, outputs, np.arange(400) < 40
+        file.attrs["input_names"], file.attrs["output_names"] = INPUTS, OUTPUTS
+
+
+def write_flights(path: Path) -> None:
+    with path.open("w", newline="", encoding="utf-8") as file:
+        table = csv.writer(file)
+        table.writerow(["sample", "status", "time_s", "latitude_deg", "longitude_deg", "impact_speed"])
+        for index in range(100):
+            if index % 4:
+                table.writerow([index, "impact", 100.0 + index, 0.3 * index - 15, 2.0 * index - 100, 0.05])
+            else:
+                table.writerow([index, "escaped" if index % 8 else "flying", 43200.0, "", "", ""])
+
+
+def made_up_scores() -> dict[str, dict[str, dict[str, object]]]:
+    ape = [0.5, 1.0, 1.5, 3.0]
+    score = {"mape": 1.5, "q2": 0.8, "rrmse": 0.45, "rmse": 0.01, "std": 0.022, "ape": ape}
+    stages = ("screening", "refined", "test_kept", "test_all", "test_screening")
+    return {stage: {name: dict(score) for name in OUTPUTS} for stage in stages}
+
+
+def made_up_summary(scores: dict[str, dict[str, dict[str, object]]]) -> dict[str, object]:
+    sobol = {name: dict(zip(INPUTS, (0.1, 0.5, 0.3), strict=True)) for name in OUTPUTS}
+    spread = dict.fromkeys(OUTPUTS, 0.02)
+    quantiles = {"quantile_0.05": 0.08, "quantile_0.5": 0.1, "quantile_0.95": 0.12}
+    share = {"count": 200, "share": 0.5, "lower": 0.45, "upper": 0.55}
+    expansion = {"term_count": 10, "mean": spread, "std": spread, "sobol_first": sobol, "sobol_total": sobol}
+    levels = np.arange(1, 4)
+    uniform = {"distribution": "uniform", "lower": 0.3, "upper": 0.9}
+    return {
+        "format_version": 1,
+        "study": {
+            "title": "A made-up study",
+            "seed": 7,
+            "bed": {"grain_count": 12, "width": [0.6, 0.6]},
+            "grain": {
+                "young_modulus": {"distribution": "log_uniform", "lower": 1e6, "upper": 1e8},
+                "restitution": uniform,
+                "friction": uniform,
+            },
+            "design": {"screening_level": 2, "refined_level": 3, "kept_outputs": OUTPUTS},
+            "flight": {"duration": 43200.0},
+            "site": {"body": "didymos"},
+        },
+        "results": {
+            "beds": [
+                {
+                    "solid_fraction": 0.58,
+                    "coordination_number": 4.1,
+                    "surface_height_m": 0.2,
+                    "mean_diameter_m": 0.1,
+                }
+            ],
+            "designs": {
+                name: {"run_count": 25, "with_outputs": 24, "outcomes": {"captured": 1, "clear": 24}}
+                for name in ("screening", "refined", "test_kept", "test_all")
+            },
+            "outputs_of_runs": {"penetration": {"median": 0.01, "smallest": 0.0, "largest": 0.02, "unit": "m"}},
+            "node_counts": {
+                "input_counts": [1, 2, 3],
+                "levels": levels.tolist(),
+                "tensor": [((2**levels + 1) ** n).tolist() for n in (1, 2, 3)],
+                "smolyak": [[3, 5, 9], [5, 13, 29], [7, 25, 69]],
+            },
+            "screening": {"inputs": INPUTS, **expansion},
+            "refined": {"inputs": INPUTS[1:], **expansion},
+            "kept_inputs": INPUTS[1:],
+            "kept_share": dict.fromkeys(OUTPUTS, 0.93),
+            "scores": scores,
+            "monte_carlo": {
+                "sample_count": 400,
+                "leaving_count": 360,
+                "outputs": {name: {"mean": 0.1, "std": 0.02, **quantiles} for name in OUTPUTS},
+            },
+            "site": {
+                "body": "didymos",
+                "mass_kg": 5.3e11,
+                "spin_period_s": 8136.0,
+                "extents_m": [851.0, 849.0, 620.0],
+                "facet_count": 1996,
+                "latitude_deg": 0.0,
+                "longitude_deg": 0.0,
+                "heading_deg": 90.0,
+                "effective_acceleration_outward": 1.1e-5,
+                "effective_acceleration_along_heading": 0.0,
+            },
+            "shares": {
+                "sample_count": 400,
+                "flight_count": 100,
+                **dict.fromkeys(("captured", "no_outward_velocity", "impact", "flying", "escaped", "remains"), share),
+            },
+        },
+        "provenance": {"host": "somewhere", "packages": {"numpy": "2.0"}, "wall_s": {"bed": 12.5}},
+    }

@@ -1,0 +1,116 @@
+"""The report of a whole study folder: everything in it comes from the files, and a missing file is named."""
+
+import json
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+
+from lithobrake.report import write_report
+from lithobrake.report.scene import read_scene
+
+
+@pytest.fixture(scope="module")
+def report(study_folder: Path) -> str:
+    """Text of the page."""
+    path = write_report(study_folder)
+    assert path == study_folder / "report" / "index.html"
+    return path.read_text(encoding="utf-8")
+
+
+def test_page_has_the_seven_figures_inside_and_nothing_outside(report: str) -> None:
+    assert len(re.findall(r'<img alt="[^"]+" src="data:image/png;base64,', report)) == 7
+    assert not re.search(r"https?://", report)
+
+
+def test_figures_stand_beside_the_page_as_files(study_folder: Path, report: str) -> None:
+    pictures = sorted(path.name for path in (study_folder / "report").glob("*.png"))
+    assert [name.split("_")[1] for name in pictures] == ["1", "2", "3", "4", "5", "6", "7"]
+    assert not list((study_folder / "report").glob("*.part"))
+
+
+def test_sentences_carry_the_numbers_of_the_summary(report: str) -> None:
+    for words in (
+        "50.0 % (95 % interval 45.0 to 55.0 %)",
+        "12 grains",
+        "solid fraction of 0.58",
+        "0.2 m/s and 30 deg from the normal and leaves the surface",
+        "25 runs on the Smolyak grid in place of 125",
+        "V+ most with restitution e, grains (50 %)",
+        "1.5 % at Q2 0.80",
+        "400 samples",
+        "pull 1.1 × 10⁻⁵ m/s2 outward",
+    ):
+        assert words in report
+
+
+def test_every_mape_stands_beside_q2_rmse_and_spread(report: str) -> None:
+    table = report[report.index("Errors of the expansions") :]
+    head = table[: table.index("</tr>")]
+    for column in ("MAPE [%]", "Q2", "RMSE", "spread (std)"):
+        assert column in head
+
+
+def test_provenance_stands_at_the_end(report: str) -> None:
+    assert report.index("<h2>Figures") < report.index("<h2>Tables") < report.index("<h2>Provenance")
+    assert "packages.numpy" in report
+
+
+def test_same_files_give_the_same_page(study_folder: Path, report: str) -> None:
+    assert write_report(study_folder).read_text(encoding="utf-8") == report
+
+
+def test_missing_files_are_named_at_once(study_folder: Path, tmp_path: Path) -> None:
+    folder = tmp_path / "half"
+    shutil.copytree(study_folder, folder)
+    (folder / "scores.json").unlink()
+    (folder / "flights.csv").unlink()
+    with pytest.raises(ValueError, match=r"scores\.json, flights\.csv.*run the study to its end"):
+        write_report(folder)
+
+
+def test_study_in_which_nothing_leaves_has_a_page_that_says_so(study_folder: Path, tmp_path: Path) -> None:
+    folder = tmp_path / "captured"
+    shutil.copytree(study_folder, folder)
+    with h5py.File(folder / "samples.h5", "r+") as file:
+        file["stays"][:] = True
+    (folder / "flights.csv").write_text("sample,status,latitude_deg,longitude_deg\n", encoding="utf-8")
+    summary = json.loads((folder / "summary.json").read_text())
+    summary["results"]["monte_carlo"] |= {"leaving_count": 0, "outputs": {}}
+    (folder / "summary.json").write_text(json.dumps(summary))
+    text = write_report(folder).read_text(encoding="utf-8")
+    assert "None of the 400 samples leaves the surface" in text
+
+
+def test_a_body_is_drawn_about_its_centroid(tmp_path: Path) -> None:
+    """Vertices off the origin are moved so that the file's position is that of the centroid."""
+    tetrahedron = np.array([(0.0, 0.0, 0.0), (4.0, 0.0, 0.0), (0.0, 4.0, 0.0), (0.0, 0.0, 4.0)])
+    path = tmp_path / "bed.h5"
+    with h5py.File(path, "w") as file:
+        file["vertices"], file["faces"] = tetrahedron, np.array([(0, 1, 2), (0, 1, 3), (0, 2, 3), (1, 2, 3)])
+        file["vertex_start"], file["face_start"] = [0, 4], [0, 4]
+        file["frames/time"], file["frames/position"] = [0.0], np.zeros((1, 1, 3))
+        file["frames/orientation"] = [[[1.0, 0.0, 0.0, 0.0]]]
+    body = read_scene(path, has_lander=False).bodies[0]
+    np.testing.assert_allclose(body.vertices, tetrahedron - 1.0, atol=1e-12)
+
+
+def test_a_file_without_frames_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "landing.h5"
+    with h5py.File(path, "w") as file:
+        file["vertices"] = np.zeros((4, 3))
+    with pytest.raises(ValueError, match="no group 'frames'"):
+        read_scene(path, has_lander=True)
+
+
+def test_importing_the_part_loads_no_matplotlib_and_no_engine() -> None:
+    code = (
+        "import sys, lithobrake.report; print(sorted({m.split('.')[0] for m in sys.modules} & {'matplotlib', 'numba'}))"
+    )
+    found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert found.stdout.strip() == "[]"
