@@ -59,6 +59,11 @@ def median(value: Scalar) -> float:
     return float(value.to_chaos().median) if isinstance(value, Uncertain) else value
 
 
+def uncertain(values: dict[str, Scalar]) -> dict[str, Uncertain]:
+    """Those of the values that have a distribution, in their order."""
+    return {name: value for name, value in values.items() if isinstance(value, Uncertain)}
+
+
 def refuse(value: object, allowed: object, remedy: str) -> PydanticCustomError:
     """The refusal of one value: what it is, what is allowed, what to do."""
     return PydanticCustomError("quantity", "{text}", {"text": f"is {show(value)}; allowed: {allowed}; {remedy}"})

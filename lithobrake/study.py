@@ -4,7 +4,7 @@ A key whose range below is `MaybeUncertain` takes a number, or a table with a di
 `lithobrake new` writes a commented file from these very lines; `study_file.read` checks one.
 """
 
-from typing import Annotated, Literal
+from typing import Annotated, Literal, get_args
 
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -21,8 +21,8 @@ Friction = Annotated[Scalar, MaybeUncertain("", at_least=0)]
 Angle = Annotated[Scalar, MaybeUncertain("deg", at_least=-360, at_most=360)]
 Spin = Annotated[Scalar, MaybeUncertain("rad/s")]
 
-OUTPUTS = ("speed_out", "elevation_out", "spin_out", "velocity_out_x", "velocity_out_y", "velocity_out_z")
 OutputName = Literal["speed_out", "elevation_out", "spin_out", "velocity_out_x", "velocity_out_y", "velocity_out_z"]
+OUTPUTS: tuple[OutputName, ...] = get_args(OutputName)
 
 
 class Section(BaseModel):
@@ -206,19 +206,19 @@ class LandingSection(Section):
 class DesignSection(Section):
     """Which runs are made, and what is fitted to them: all inputs first, then those that matter at higher order."""
 
-    screening_level: Annotated[int, Whole("", at_least=1, at_most=8)] = Field(3, examples=["2"])
+    screening_level: Annotated[int, Whole("", at_least=1, at_most=8)] = Field(default=3, examples=["2"])
     """Level of the Smolyak grid over all uncertain inputs."""
-    screening_degree: Annotated[int, Whole("", at_least=1, at_most=15)] = Field(3, examples=["2"])
+    screening_degree: Annotated[int, Whole("", at_least=1, at_most=15)] = Field(default=3, examples=["2"])
     """Total degree of the expansion in all uncertain inputs."""
-    refined_level: Annotated[int, Whole("", at_least=1, at_most=8)] = Field(5, examples=["3"])
+    refined_level: Annotated[int, Whole("", at_least=1, at_most=8)] = Field(default=5, examples=["3"])
     """Level of the Smolyak grid over the kept inputs; the others stay at their median."""
-    refined_degree: Annotated[int, Whole("", at_least=1, at_most=15)] = Field(5, examples=["3"])
+    refined_degree: Annotated[int, Whole("", at_least=1, at_most=15)] = Field(default=5, examples=["3"])
     """Total degree of the expansion in the kept inputs."""
     kept_share: Annotated[float, Number("", above=0, at_most=1)] = 0.9
     """Share of the explained variance of every output of kept_outputs that the kept inputs must reach together."""
     kept_outputs: Annotated[tuple[OutputName, ...], Field(min_length=1)] = OUTPUTS
     """Outputs that decide which inputs are kept."""
-    test_count: Annotated[int, Whole("", at_least=2, at_most=100_000)] = Field(40, examples=["10"])
+    test_count: Annotated[int, Whole("", at_least=2, at_most=100_000)] = Field(default=40, examples=["10"])
     """Fresh random runs in each of the two test sets (kept inputs vary; all inputs vary)."""
 
 
@@ -251,7 +251,7 @@ class FlightSection(Section):
 
     duration: Annotated[float, Number("s", above=0)] = 43_200.0
     """Longest flight."""
-    flight_count: Annotated[int, Whole("", at_least=1)] | None = Field(None, examples=["1000"])
+    flight_count: Annotated[int, Whole("", at_least=1)] | None = Field(default=None, examples=["1000"])
     """How many samples fly (the first ones that leave the surface); absent: all."""
     gravity: Literal["exact"] = "exact"
     """Gravity of the polyhedron, in closed form."""
@@ -299,8 +299,3 @@ def _scalars(path: str, section: BaseModel) -> dict[str, Scalar]:
         elif isinstance(value, PlaceSection):
             values |= _scalars(f"{path}.{name}", value)
     return values
-
-
-def uncertain(values: dict[str, Scalar]) -> dict[str, Uncertain]:
-    """Those of the values that have a distribution, in the order of the file's sections."""
-    return {name: value for name, value in values.items() if isinstance(value, Uncertain)}

@@ -8,8 +8,8 @@ from typing import Any, get_args
 
 from pydantic import BaseModel, ValidationError
 
-from lithobrake.quantity import Scalar, Uncertain
-from lithobrake.study import Study, uncertain
+from lithobrake.quantity import Scalar, Uncertain, uncertain
+from lithobrake.study import Study
 from lithobrake.wording import sentences
 
 # A bed narrower than this many lander diameters would hold the lander between its walls.
@@ -108,7 +108,7 @@ def _problems(study: Study) -> Iterator[str]:
 
 def _grain_problems(study: Study) -> Iterator[str]:
     sizes = study.bed.diameter.model_dump()
-    largest = sizes.get("upper", sizes.get("value"))
+    largest = sizes["upper"] if "upper" in sizes else sizes["value"]
     if sizes.get("lower", 0) >= largest:
         yield f"bed.diameter reaches from {sizes['lower']:g} to {largest:g} m; allowed: lower below upper; swap them"
     limit = min(study.bed.width) / BED_WIDTH_PER_GRAIN

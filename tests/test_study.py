@@ -8,7 +8,8 @@ from typing import Any
 import pytest
 
 from lithobrake import study_file
-from lithobrake.study import Study, uncertain
+from lithobrake.quantity import uncertain
+from lithobrake.study import Study
 from lithobrake.study_template import template
 
 TABLES: dict[str, Any] = tomllib.loads(template())

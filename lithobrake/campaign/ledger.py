@@ -120,5 +120,5 @@ class Ledger:
 
 def _record(row: tuple[Any, ...]) -> Record:
     key, status, outcome, inputs, outputs, draws, reason, wall_s, cpu_s = row
-    decoded = [json.loads(text or "{}") for text in (inputs, outputs, draws)]
-    return Record(key, status, outcome, *decoded, reason, wall_s, cpu_s)
+    inputs, outputs, draws = (json.loads(text or "{}") for text in (inputs, outputs, draws))
+    return Record(key, status, outcome, inputs, outputs, draws, reason, wall_s, cpu_s)

@@ -13,7 +13,8 @@ from lithobrake.pipeline.folder import json_hash
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.landings import TouchdownModel, medians
 from lithobrake.pipeline.surface import bed_files, touchdown_reads
-from lithobrake.study import OUTPUTS, Study, uncertain
+from lithobrake.quantity import uncertain
+from lithobrake.study import OUTPUTS, Study
 
 if TYPE_CHECKING:
     from lithobrake.chaos import Distribution, Surrogate
@@ -25,6 +26,7 @@ DESIGNS = ("screening", "refined", "test_kept", "test_all")
 class DesignRuns:
     """The runs of one design: x in the file's units, shape [run_count, input_count], all uncertain inputs in order."""
 
+    input_names: tuple[str, ...]
     x: np.ndarray
     runs: Runs
 

@@ -14,7 +14,8 @@ from lithobrake.atomic import atomic_path
 from lithobrake.pipeline.folder import StudyFolder, content_hash
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.samples import Samples, sampling_seed
-from lithobrake.study import Study, uncertain
+from lithobrake.quantity import uncertain
+from lithobrake.study import Study
 
 if TYPE_CHECKING:
     from lithobrake.smallbody import Body
@@ -116,10 +117,19 @@ def fly_samples(job: Job) -> None:
         ends[futures[future]] = future.result()
         done += len(ends[futures[future]]["time_s"])
         job.progress(done, len(start.sample), "flights")
+    _write_shape(site_body(job.study), job.folder)
     with atomic_path(job.folder / "flights.csv") as draft, draft.open("w", newline="", encoding="utf-8") as file:
         table = csv.writer(file)
         table.writerow(COLUMNS)
         table.writerows(_rows(start, ends))
+
+
+def _write_shape(body: "Body", folder: StudyFolder) -> None:
+    """Write the body's shape beside the map, in metres, for whoever draws it."""
+    lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in body.shape.vertices.tolist()]
+    lines += [f"f {a} {b} {c}" for a, b, c in (body.shape.faces + 1).tolist()]
+    with atomic_path(folder / "body.obj") as draft:
+        draft.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
 def _blocks(study: Study, start: Starts) -> Iterator[tuple[Any, ...]]:

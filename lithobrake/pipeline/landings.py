@@ -95,10 +95,11 @@ def grain(values: Values) -> "Material":
 
 def lander(study: Study, values: Values) -> "Lander":
     """The lander; what is not said about its material is that of the grains."""
-    from lithobrake.dem import Box, Material, Sphere
+    from lithobrake.dem import Box, ConvexHull, Material, Sphere
     from lithobrake.touchdown import Lander, read_hull
 
     section = study.lander
+    shape: Box | Sphere | ConvexHull
     if section.edges is not None:
         shape = Box(section.edges)
     else:

@@ -32,8 +32,8 @@ def _design(*names: str) -> Callable[[Study], Any]:
     return lambda study: [study.design.model_dump()[name] for name in names]
 
 
-def _one(name: str) -> Callable[[Study], list[str]]:
-    return lambda study: [name]
+def _files(*names: str) -> Callable[[Study], list[str]]:
+    return lambda study: list(names)
 
 
 def _screening(study: Study) -> Any:
@@ -60,16 +60,24 @@ _TEST = _design("test_count")
 
 STAGES = (
     Stage("bed", "bed", surface.bed_files, surface.bed_reads, (), (), surface.pour_beds),
-    Stage("landing", "median landing", _one("landing.h5"), surface.landing_reads, ("bed",), (), surface.land_once),
-    Stage("screen", "screening", _one("screening.json"), _screening, ("bed",), FIT, expansions.fit_screening),
-    Stage("refine", "refinement", _one("refined.json"), _REFINED, ("screen",), FIT, expansions.fit_refined),
-    Stage("test", "test runs", _one("scores.json"), _TEST, ("screen", "refine"), FIT, expansions.score_all),
-    Stage("sample", "samples", _one("samples.h5"), _sample, ("refine", "test"), FIT, samples.draw_samples),
-    Stage("fly", "flights", _one("flights.csv"), flights.flight_reads, ("sample",), FLY, flights.fly_samples),
+    Stage("landing", "median landing", _files("landing.h5"), surface.landing_reads, ("bed",), (), surface.land_once),
+    Stage("screen", "screening", _files("screening.json"), _screening, ("bed",), FIT, expansions.fit_screening),
+    Stage("refine", "refinement", _files("refined.json"), _REFINED, ("screen",), FIT, expansions.fit_refined),
+    Stage("test", "test runs", _files("scores.json"), _TEST, ("screen", "refine"), FIT, expansions.score_all),
+    Stage("sample", "samples", _files("samples.h5"), _sample, ("refine", "test"), FIT, samples.draw_samples),
     Stage(
-        "summary", "summary", _one("summary.json"), summary.study_tables, ("landing", "fly"), FIT, summary.write_summary
+        "fly", "flights", _files("flights.csv", "body.obj"), flights.flight_reads, ("sample",), FLY, flights.fly_samples
     ),
-    Stage("report", "report", _one("report/index.html"), _nothing, ("summary",), ("report",), _write_report),
+    Stage(
+        "summary",
+        "summary",
+        _files("summary.json"),
+        summary.study_tables,
+        ("landing", "fly"),
+        FIT,
+        summary.write_summary,
+    ),
+    Stage("report", "report", _files("report/index.html"), _nothing, ("summary",), ("report",), _write_report),
 )
 
 

@@ -38,6 +38,7 @@ def write_summary(job: Job) -> None:
     results = {
         "units": UNITS,
         "beds": [_bed(job, name) for name in bed_files(job.study)],
+        "node_counts": _node_counts(job.study, len(screening.input_names)),
         "designs": {design: _design(runs[design]) for design in DESIGNS},
         "outputs_of_runs": _outputs_of_runs(runs),
         "screening": _expansion(screening),
@@ -94,6 +95,17 @@ def _bed(job: Job, name: str) -> dict[str, Any]:
         "surface_height_m": float(bed.surface_height),
         "mean_diameter_m": float(bed.grain_diameter),
     }
+
+
+def _node_counts(study: Study, input_count: int) -> dict[str, Any]:
+    """Nodes of the full tensor grid and of the Smolyak grid, by number of inputs and level: what the design saves."""
+    from lithobrake.chaos import smolyak_count, tensor_count
+
+    counts = list(range(1, max(7, input_count) + 1))
+    levels = list(range(1, max(5, study.design.screening_level, study.design.refined_level) + 1))
+    grids = {"tensor": tensor_count, "smolyak": smolyak_count}
+    table = {name: [[int(count(n, level)) for level in levels] for n in counts] for name, count in grids.items()}
+    return {"input_counts": counts, "levels": levels, **table}
 
 
 def _design(design: DesignRuns) -> dict[str, Any]:
