@@ -1,0 +1,69 @@
+"""The default way of fitting: every output takes the expansion that promises the smallest error at new points."""
+
+from typing import Any
+
+import numpy as np
+
+from lithobrake.chaos.gaussian_process import FAMILIES, Process, expansion_of, learn
+from lithobrake.chaos.regression import ols_by_degree
+from lithobrake.chaos.solution import Solution
+from lithobrake.chaos.sparse import is_structured, solve_sparse
+from lithobrake.chaos.training import Training
+
+# A process costs the cube of the number of points; with more of them least squares is accurate enough.
+PROCESS_LIMIT = 2000
+PROCESS_FROM = 5
+CHALLENGER = "gaussian process with nugget, radial Matern 5/2"
+
+
+def _as_solution(process: Process, training: Training) -> Solution:
+    indices, coefficients, cut = expansion_of(process, training.inputs)
+    # The error of cutting the projection adds to that of the process.
+    expected = float(np.sqrt(np.mean(process.leave_one_out**2) + cut**2))
+    facts = {"noise_std": process.scale * float(np.sqrt(process.noise)), "covariance": process.covariance.name}
+    return Solution("gaussian_process", indices, coefficients, expected, "leave-one-out", facts)
+
+
+def _constant(training: Training, output: int) -> bool:
+    return bool(np.ptp(training.y[:, output]) == 0.0)
+
+
+def process_solution(training: Training, output: int) -> Solution:
+    """Projection of the best of the Gaussian processes of one output."""
+    if training.count < PROCESS_FROM or training.count > PROCESS_LIMIT:
+        raise ValueError(
+            f"{training.count} points are given, but gaussian_process takes {PROCESS_FROM} to {PROCESS_LIMIT}: use ols"
+        )
+    if _constant(training, output):
+        return ols_by_degree(training)[0][output]
+    candidates = [_as_solution(learn(training, output, family), training) for family in FAMILIES]
+    return min(candidates, key=lambda one: one.expected_error)
+
+
+def best_solutions(training: Training) -> tuple[list[Solution], dict[str, Any]]:
+    """The best solution of each output, and for the report all candidates and the challenger, scored alike.
+
+    Candidates are least squares of every degree that the points determine and the projections of the processes, scored
+    by leave-one-out, which is honest for both (few parameters are learnt from many points), and orthogonal matching
+    pursuit, scored by folds over its whole path; on a grid, where folds extrapolate, the pursuit does not take part.
+    """
+    ladder = ols_by_degree(training)
+    grid = is_structured(training.x)
+    use_processes = PROCESS_FROM <= training.count <= PROCESS_LIMIT and training.weights is None
+    chosen: list[Solution] = []
+    table: dict[str, dict[str, float]] = {}
+    challenger: dict[str, float | None] = {}
+    for output, name in enumerate(training.output_names):
+        scores = {f"ols degree {degree}": row[output] for degree, row in enumerate(ladder)}
+        challenger[name] = None
+        if use_processes and not _constant(training, output):
+            for family in FAMILIES:
+                process = learn(training, output, family)
+                scores[f"gaussian_process {family.name}"] = _as_solution(process, training)
+                if family.name == "matern":
+                    challenger[name] = float(np.sqrt(np.mean(process.leave_one_out**2)))
+            if not grid:
+                scores["omp"] = solve_sparse(training, output, "omp", degree=None, q_norm=None)
+        chosen.append(min(scores.values(), key=lambda one: one.expected_error))
+        table[name] = {label: one.expected_error for label, one in scores.items()}
+    return chosen, {"candidates": table, "challenger": {"model": CHALLENGER, "rmse_estimate": challenger}}

@@ -1,0 +1,164 @@
+"""Gaussian process with a nugget: learnt by likelihood, judged by leave-one-out, turned into an expansion."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from lithobrake.chaos.basis import germs_of
+from lithobrake.chaos.covariance import AdditiveGaussian, Covariance, PolynomialPrior, RadialMatern
+from lithobrake.chaos.germ import Distribution
+from lithobrake.chaos.polynomials import Array
+from lithobrake.chaos.terms import Indices, multi_index_set, term_count
+from lithobrake.chaos.training import Training
+
+FAMILIES: tuple[type[Covariance], ...] = (PolynomialPrior, AdditiveGaussian, RadialMatern)
+# Parameters are learnt from at most so many points, since a step costs their number cubed.
+LEARN_FROM = 400
+ITERATIONS = 100
+# The nugget, as a share of the variance of the outputs: from rounding to everything.
+LOG_NOISE = (-23.0, 1.0)
+TERM_LIMIT = 12000
+KEPT_LIMIT = 3000
+# Terms are dropped while their sum of squares stays below this share of the expected squared error.
+DROPPED_SHARE = 0.002
+
+
+@dataclass(frozen=True)
+class Process:
+    """A learnt Gaussian process of one output, standardised as (y - shift) / scale.
+
+    theta: log parameters; noise: nugget variance, as a share of scale**2; weights [count]: K**-1 y;
+    leave_one_out [count]: error at each point predicted from the others, in the unit of the output.
+    """
+
+    covariance: Covariance
+    theta: Array
+    noise: float
+    weights: Array
+    germs: Array
+    leave_one_out: Array
+    shift: float
+    scale: float
+
+    def predict(self, germs: Array) -> Array:
+        """Mean at germs [input_count, count]; result [count]."""
+        return self.shift + self.scale * (self.covariance.between(self.theta, germs, self.germs) @ self.weights)
+
+    def coefficients(self, indices: Indices) -> Array:
+        """Exact projection of the mean on orthonormal terms, [term_count]."""
+        parts = self.scale * self.covariance.projection(self.theta, self.germs, indices, self.weights)
+        parts[indices.sum(axis=1) == 0] += self.shift
+        return parts
+
+
+def highest_degrees(inputs: Sequence[Distribution]) -> list[int]:
+    """Highest degree of each input that a projected process uses: more for fewer inputs, less for few samples."""
+    cap = {1: 40, 2: 30, 3: 20}.get(len(inputs), 14)
+    while cap > 1 and term_count(len(inputs), cap) > TERM_LIMIT:
+        cap -= 1
+    degrees = []
+    for entry in inputs:
+        samples = getattr(entry, "samples", None)
+        degrees.append(cap if samples is None else min(cap, len(set(samples)) - 1))
+    return degrees
+
+
+def learn(training: Training, output: int, family: type[Covariance]) -> Process:
+    """Learn one output by maximum likelihood.
+
+    Source: Rasmussen and Williams, 2006, Eqs 5.8, 5.9 (likelihood) and 5.12 (leave-one-out in closed form).
+    """
+    from scipy.linalg import cho_solve
+
+    entries = list(training.inputs.values())
+    covariance = family(entries, highest_degrees(entries))
+    germs, y = germs_of(training.inputs, training.x), training.y[:, output]
+    shift, scale = float(y.mean()), float(y.std())
+    z = (y - shift) / scale
+    theta, noise = _most_likely(covariance, *_learning_set(germs, z))
+    lower, noise = _factor(covariance.between(theta, germs, germs), noise)
+    weights = cho_solve((lower, True), z)
+    inverse = cho_solve((lower, True), np.eye(len(z)))
+    return Process(covariance, theta, noise, weights, germs, scale * weights / np.diag(inverse), shift, scale)
+
+
+def _factor(matrix: Array, noise: float) -> tuple[Array, float]:
+    """Cholesky factor of matrix plus nugget, with the smallest nugget from `noise` on that rounding allows."""
+    from scipy.linalg import LinAlgError, cholesky
+
+    while True:
+        try:
+            return cholesky(matrix + noise * np.eye(len(matrix)), lower=True), noise
+        except LinAlgError:
+            # A smooth covariance of near points is singular to rounding; tenfold steps end at the trace at the latest.
+            noise *= 10.0
+            if noise > np.trace(matrix):
+                raise
+
+
+def _learning_set(germs: Array, z: Array) -> tuple[Array, Array]:
+    if len(z) <= LEARN_FROM:
+        return germs, z
+    chosen = np.sort(np.random.default_rng(0).permutation(len(z))[:LEARN_FROM])
+    return germs[:, chosen], z[chosen]
+
+
+def _most_likely(covariance: Covariance, germs: Array, z: Array) -> tuple[Array, float]:
+    """Parameters and nugget of the highest likelihood, from one start (a second one hardly ever wins)."""
+    from scipy.optimize import minimize
+
+    first, bounds = covariance.start()
+
+    def target(vector: Array) -> tuple[float, Array]:
+        return _negative_likelihood(covariance, vector, germs, z)
+
+    found = minimize(
+        target,
+        np.append(first, -4.0),
+        jac=True,
+        method="L-BFGS-B",
+        bounds=[*bounds, LOG_NOISE],
+        options={"maxiter": ITERATIONS},
+    )
+    return found.x[:-1], float(np.exp(found.x[-1]))
+
+
+def _negative_likelihood(covariance: Covariance, vector: Array, germs: Array, z: Array) -> tuple[float, Array]:
+    from scipy.linalg import LinAlgError, cho_solve, cholesky
+
+    matrix, gradient = covariance.with_gradient(vector[:-1], germs)
+    noise = np.exp(vector[-1])
+    noisy = matrix.copy()
+    noisy[np.diag_indices_from(noisy)] += noise
+    try:
+        lower = cholesky(noisy, lower=True)
+    except LinAlgError:
+        # The search steps back from parameters for which rounding makes the matrix indefinite.
+        return 1e10, np.zeros_like(vector)
+    inverse = cho_solve((lower, True), np.eye(len(z)))
+    weights = inverse @ z
+    slope = 0.5 * (inverse - np.outer(weights, weights))
+    value = 0.5 * float(z @ weights) + float(np.log(np.diag(lower)).sum())
+    return value, np.append(gradient(slope), noise * np.trace(slope))
+
+
+def expansion_of(process: Process, inputs: dict[str, Distribution]) -> tuple[Indices, Array, float]:
+    """Terms [term_count, input_count], coefficients [term_count] and the root-mean-square error of cutting the rest.
+
+    The error is measured against the process itself at 500 Sobol points, in the unit of the output.
+    """
+    from lithobrake.chaos.basis import basis_matrix
+    from lithobrake.chaos.design import sobol_sequence
+
+    degrees = process.covariance.degrees
+    indices = multi_index_set(len(degrees), max(degrees), max_degrees=degrees)
+    coefficients = process.coefficients(indices)
+    order = np.argsort(-np.where(indices.sum(axis=1) == 0, np.inf, coefficients**2), kind="stable")
+    tail = np.cumsum(coefficients[order][::-1] ** 2)[::-1]
+    allowed = DROPPED_SHARE * float(np.mean(process.leave_one_out**2))
+    kept = np.sort(order[: max(1, min(KEPT_LIMIT, int(np.sum(tail > allowed))))])
+    points = sobol_sequence(inputs, 500, seed=1)
+    difference = basis_matrix(inputs, indices[kept], points) @ coefficients[kept]
+    difference -= process.predict(germs_of(inputs, points))
+    return indices[kept], coefficients[kept], float(np.sqrt(np.mean(difference**2)))

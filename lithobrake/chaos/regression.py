@@ -1,0 +1,49 @@
+"""Least squares on a given index set, and the choice of its degree by leave-one-out."""
+
+import numpy as np
+
+from lithobrake.chaos.basis import basis_matrix
+from lithobrake.chaos.least_squares import least_squares
+from lithobrake.chaos.solution import Solution
+from lithobrake.chaos.terms import Indices, multi_index_set
+from lithobrake.chaos.training import Training
+
+HIGHEST_DEGREE = 15
+
+
+def solve_ols(training: Training, indices: Indices) -> list[Solution]:
+    """Least squares for all outputs at once; the error is that of leave-one-out, exact for a fixed set of terms."""
+    matrix = basis_matrix(training.inputs, indices, training.x)
+    names = list(training.inputs)
+    solved = least_squares(matrix, training.y, indices=indices, names=names, weights=training.weights)
+    errors = np.sqrt(np.mean(solved.leave_one_out**2, axis=0))
+    facts = {"condition_number": solved.condition}
+    # As many terms as points leave no point to judge by: the spread of the output is then the honest guess.
+    if len(indices) == training.count:
+        errors = np.std(training.y, axis=0)
+    estimate = "leave-one-out" if len(indices) < training.count else "none (as many terms as points)"
+    columns = range(training.y.shape[1])
+    return [Solution("ols", indices, solved.coefficients[:, k], float(errors[k]), estimate, facts) for k in columns]
+
+
+def ols_by_degree(training: Training, q_norm: float = 1.0) -> list[list[Solution]]:
+    """Solutions of all degrees that the points determine with at least one to spare, [degree][output]."""
+    ladder: list[list[Solution]] = []
+    for degree in range(HIGHEST_DEGREE + 1):
+        indices = multi_index_set(len(training.inputs), degree, q_norm=q_norm)
+        if degree > 0 and len(indices) >= training.count:
+            break
+        try:
+            ladder.append(solve_ols(training, indices))
+        except ValueError:
+            # The design does not determine this degree, so no higher one either; degree 0 is always determined.
+            break
+    return ladder
+
+
+def best_degree(training: Training, q_norm: float = 1.0) -> int:
+    """Degree with the smallest leave-one-out error relative to the spread, averaged over outputs."""
+    spread = np.std(training.y, axis=0)
+    spread[spread == 0.0] = 1.0
+    ladder = ols_by_degree(training, q_norm)
+    return int(np.argmin([np.mean([s.expected_error for s in row] / spread) for row in ladder]))
