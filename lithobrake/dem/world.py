@@ -167,6 +167,18 @@ class World:
             self._time_step = self.shortest_contact(self._top_speed()) / timestep.STEPS_PER_CONTACT
         return self._time_step
 
+    @time_step.setter
+    def time_step(self, value: float) -> None:
+        if not 0.0 < value < math.inf:
+            raise ValueError(f"World time_step is {value!r} s; allowed is a finite value above 0: change it")
+        self._time_step = float(value)
+
+    @property
+    def contact_frequency(self) -> float:
+        """Largest angular frequency [rad/s] of a contact at its present overlap; 0 where nothing touches."""
+        self._assemble()
+        return math.sqrt(self._totals[FREQUENCY_SQUARED])
+
     def shortest_contact(self, speed: float) -> float:
         """Return the duration [s] of the shortest collision that can happen at a relative speed [m/s].
 

@@ -1,0 +1,133 @@
+"""A settled bed of grains in an open box, and its file."""
+
+import os
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lithobrake.atomic import atomic_path
+from lithobrake.dem import ConvexHull, Material, World
+
+Floats = NDArray[np.float64]
+FORMAT_VERSION = 1
+
+
+@dataclass(frozen=True, kw_only=True)
+class ContactModel:
+    """Options of the contact law, see `dem.World`, and the steps that resolve the shortest contact."""
+
+    shear_modulus_rule: str = "mindlin"
+    damping_mass: str = "contact"
+    pair_rule: str = "smaller"
+    steps_per_contact: float = 50.0
+
+    def world(self, gravity: tuple[float, float, float]) -> World:
+        """Return an empty world under these options."""
+        return World(
+            gravity, shear_modulus_rule=self.shear_modulus_rule, damping_mass=self.damping_mass, pair_rule=self.pair_rule
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class Bed:
+    """Grains at rest in a box that is open at the top: inner walls at +-width/2, floor at z = 0.
+
+    frames holds "time" [s, frame_count], "position" [m, frame_count, grain_count, 3] and "orientation"
+    [frame_count, grain_count, 4] of the pouring; history holds "time", "kinetic_ratio", "unbalanced_force", "gravity".
+    """
+
+    grains: list[ConvexHull]
+    position: Floats  # m, [grain_count, 3]
+    orientation: Floats  # [grain_count, 4]
+    diameter: Floats  # m, [grain_count], of the spheres of equal volume
+    width: tuple[float, float]  # m, along x and y
+    gravity: tuple[float, float, float]  # m/s2, that it settled under
+    density: float  # kg/m3
+    seed: int
+    surface_height: float  # m, mean over the box
+    surface_top: float  # m, highest point of a grain
+    solid_fraction: float
+    coordination_number: float
+    frames: dict[str, Floats] = field(default_factory=dict)
+    history: dict[str, Floats] = field(default_factory=dict)
+
+    @property
+    def grain_diameter(self) -> float:
+        """Mean diameter of the grains [m]."""
+        return float(self.diameter.mean())
+
+    def world(self, material: Material, gravity: tuple[float, float, float], contact: ContactModel) -> World:
+        """Return a world with these grains at rest, of a material, in their box of the same material."""
+        return boxed_world(self.grains, self.position, self.orientation, self.width, material, gravity, contact)
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the bed to an HDF5 file, whole or not at all."""
+        import h5py
+
+        with atomic_path(path) as draft, h5py.File(draft, "w") as file:
+            write_hulls(file, self.grains)
+            for name in ("position", "orientation", "diameter"):
+                file[name] = getattr(self, name)
+            for group in ("frames", "history"):
+                for name, values in getattr(self, group).items():
+                    file[f"{group}/{name}"] = values
+            file.attrs["format"], file.attrs["format_version"] = "lithobrake bed", FORMAT_VERSION
+            for name in SCALARS:
+                file.attrs[name] = getattr(self, name)
+
+    @staticmethod
+    def load(path: str | os.PathLike[str]) -> "Bed":
+        """Read a bed. Raises ValueError where the file is not one that this version reads."""
+        import h5py
+
+        with h5py.File(path, "r") as file:
+            if file.attrs.get("format") != "lithobrake bed" or file.attrs["format_version"] > FORMAT_VERSION:
+                raise ValueError(f"{path} is not a bed of format_version up to {FORMAT_VERSION}: pour it again")
+            scalars = {name: plain(file.attrs[name]) for name in SCALARS}
+            groups = {g: {name: file[g][name][()] for name in file.get(g, {})} for g in ("frames", "history")}
+            arrays = {name: file[name][()] for name in ("position", "orientation", "diameter")}
+            return Bed(grains=read_hulls(file), **arrays, **groups, **scalars)
+
+
+SCALARS = (
+    "width", "gravity", "density", "seed", "surface_height", "surface_top", "solid_fraction", "coordination_number",
+)  # fmt: skip
+
+
+def plain(value: Any) -> Any:
+    """Return an HDF5 attribute as plain Python: tuples of floats, ints, floats."""
+    return tuple(float(v) for v in value) if np.ndim(value) else value.item()
+
+
+def write_hulls(file: Any, hulls: list[ConvexHull]) -> None:
+    """Write vertices [m, about the centroid] and triangles of hulls, one after the other."""
+    file["vertices"] = np.concatenate([hull.vertices for hull in hulls])
+    file["vertex_start"] = np.cumsum([0, *(len(hull.vertices) for hull in hulls)])
+    file["faces"] = np.concatenate([hull.triangles for hull in hulls])
+    file["face_start"] = np.cumsum([0, *(len(hull.triangles) for hull in hulls)])
+
+
+def read_hulls(file: Any) -> list[ConvexHull]:
+    """Read what `write_hulls` wrote."""
+    vertices, start = file["vertices"][()], file["vertex_start"][()]
+    return [ConvexHull(vertices[a:b]) for a, b in zip(start[:-1], start[1:], strict=True)]
+
+
+def boxed_world(
+    grains: list[ConvexHull], position: Floats, orientation: Floats, width: tuple[float, float], material: Material,
+    gravity: tuple[float, float, float], contact: ContactModel,
+) -> World:  # fmt: skip
+    """Return a world of grains at rest in an open box. The floor stops everything, the walls only the grains."""
+    world = contact.world(gravity)
+    for grain, place, turn in zip(grains, position, orientation, strict=True):
+        world.add_body(grain, material, place, orientation=turn)
+    world.add_plane((0.0, 0.0, 0.0), (0.0, 0.0, 1.0), material)
+    numbers = range(len(grains))
+    for axis in (0, 1):
+        for sign in (-1.0, 1.0):
+            point, normal = np.zeros(3), np.zeros(3)
+            point[axis], normal[axis] = 0.5 * sign * width[axis], -sign
+            world.add_plane(tuple(point), tuple(normal), material, bodies=numbers)
+    return world

@@ -1,0 +1,75 @@
+"""Grains of regolith: convex envelopes of random clouds of points, in a size distribution."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lithobrake.dem import ConvexHull
+
+Floats = NDArray[np.float64]
+SIZE_DISTRIBUTIONS = ("constant", "uniform", "normal", "power_law")
+
+
+@dataclass(frozen=True, kw_only=True)
+class GrainSizes:
+    """Distribution of grain diameters [m] (of the sphere of equal volume), between lower and upper limits.
+
+    "constant" has lower = upper; "normal" takes mean and std and is cut at the limits; "power_law" has a number
+    density proportional to diameter to the power of minus `exponent`. Raises ValueError for other values.
+    """
+
+    distribution: str
+    lower: float
+    upper: float
+    mean: float | None = None
+    std: float | None = None
+    exponent: float | None = None
+
+    def __post_init__(self) -> None:
+        kind = self.distribution
+        if kind not in SIZE_DISTRIBUTIONS:
+            raise ValueError(f"grain size distribution is {kind!r}; allowed are {', '.join(SIZE_DISTRIBUTIONS)}")
+        if not 0.0 < self.lower <= self.upper < math.inf or (kind == "constant") != (self.lower == self.upper):
+            raise ValueError(
+                f"grain diameters run from {self.lower!r} to {self.upper!r} m; allowed is 0 < lower < upper "
+                "(lower = upper for a constant size): change them"
+            )
+        if kind == "normal" and not (self.mean is not None and self.std is not None and self.std > 0.0):
+            raise ValueError(f"normal grain sizes have mean {self.mean!r} and std {self.std!r} m; std must be above 0")
+        if kind == "power_law" and (self.exponent is None or not math.isfinite(self.exponent)):
+            raise ValueError(f"power-law grain sizes have exponent {self.exponent!r}; give a finite number")
+
+    def draw(self, uniforms: Floats) -> Floats:
+        """Return diameters [m] for uniform random numbers in [0, 1), by inversion of the distribution."""
+        lower, upper = self.lower, self.upper
+        if self.distribution == "power_law":
+            assert self.exponent is not None
+            power = 1.0 - self.exponent
+            if power == 0.0:
+                return lower * (upper / lower) ** uniforms
+            return (lower**power + uniforms * (upper**power - lower**power)) ** (1.0 / power)
+        if self.distribution == "normal":
+            from scipy.stats import truncnorm
+
+            mean, std = self.mean, self.std
+            assert mean is not None and std is not None
+            return truncnorm.ppf(uniforms, (lower - mean) / std, (upper - mean) / std, loc=mean, scale=std)
+        return lower + uniforms * (upper - lower)
+
+
+def make_grain(generator: np.random.Generator, point_count: int, diameter: float) -> ConvexHull:
+    """Return the envelope of points drawn evenly in a ball, scaled to the volume of a sphere of a diameter [m]."""
+    directions = generator.normal(size=(point_count, 3))
+    directions /= np.linalg.norm(directions, axis=1)[:, None]
+    cloud = directions * np.cbrt(generator.random(point_count))[:, None]
+    hull = ConvexHull(cloud)
+    scale = np.cbrt(math.pi / 6.0 * diameter**3 / hull.volume)
+    return ConvexHull((hull.vertices - hull.centroid) * scale)
+
+
+def random_orientation(generator: np.random.Generator) -> Floats:
+    """Return a unit quaternion (w, x, y, z) drawn evenly over all rotations."""
+    quaternion = generator.normal(size=4)
+    return quaternion / np.linalg.norm(quaternion)

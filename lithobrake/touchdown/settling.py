@@ -1,0 +1,75 @@
+"""When a bed is at rest, and how it gets there. Every criterion is relative to the weight and size of its grains."""
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+
+from lithobrake.dem import Material, World
+
+KINETIC_RATIO = 1e-5  # of the energy that lifts every grain by its own diameter
+UNBALANCED_FORCE = 1e-2  # of the mean contact force
+PERIODS_HELD = 10.0  # settled: both hold for so many periods of a grain's small oscillation at its rest overlap
+PERIODS_RELAXED = 5.0
+PERIODS_PATIENCE = 400.0  # after so many the bed is given up
+QUIET_PHASE = 0.1  # contact frequency times step while nothing collides: 63 steps a period
+CHECKS_PER_PERIOD = 20
+
+
+def rest_period(material: Material, diameter: float, gravity: float) -> float:
+    """Return the period [s] of a grain's small oscillation about its rest on another, under gravity [m/s2].
+
+    Linearised Hertz: omega^2 = 3/2 g / overlap, with the overlap that carries the weight of one grain.
+    """
+    modulus = material.young_modulus / (2.0 * (1.0 - material.poisson_ratio**2))
+    weight = material.density * math.pi / 6.0 * diameter**3 * gravity
+    overlap = (0.75 * weight / (modulus * math.sqrt(diameter / 4.0))) ** (2.0 / 3.0)
+    return 2.0 * math.pi * math.sqrt(overlap / (1.5 * gravity))
+
+
+def kinetic_ratio(world: World, diameter: float, gravity: float) -> float:
+    """Return the kinetic energy over that of lifting all bodies by a diameter [m] under gravity [m/s2]."""
+    return world.energy()["kinetic"] / (float(world.mass.sum()) * gravity * diameter)
+
+
+def unbalanced_force(world: World) -> float:
+    """Return the mean resultant force on a body over the mean contact force; infinite where nothing touches."""
+    contacts = world.contacts()
+    if len(contacts) == 0:
+        return math.inf
+    resultant = world.contact_force + world.mass[:, None] * world.gravity
+    normal, tangential = contacts["normal_force"], contacts["tangential_force"]
+    size = np.sqrt(normal**2 + (tangential**2).sum(axis=1))
+    return float(np.linalg.norm(resultant, axis=1).mean() / size.mean())
+
+
+def quiet_time_step(world: World, longest: float) -> float:
+    """Return a time step [s] that resolves the contacts at their present overlaps, at most `longest`."""
+    frequency = world.contact_frequency
+    return min(longest, QUIET_PHASE / frequency) if frequency > 0.0 else longest
+
+
+def hold_still(
+    world: World,
+    period: float,
+    periods_held: float,
+    at_rest: Callable[[], bool],
+    each_check: Callable[[], None] = lambda: None,
+) -> None:
+    """Run until the world has been at rest for so many periods [s].
+
+    Raises ValueError when it does not come to rest within PERIODS_PATIENCE periods.
+    """
+    chunk = period / CHECKS_PER_PERIOD
+    held = 0.0
+    for _ in range(int(PERIODS_PATIENCE * CHECKS_PER_PERIOD)):
+        world.time_step = chunk / math.ceil(chunk / quiet_time_step(world, chunk / 4.0))
+        world.run(chunk)
+        each_check()
+        held = held + 1.0 / CHECKS_PER_PERIOD if at_rest() else 0.0
+        if held >= periods_held:
+            return
+    raise ValueError(
+        f"the bed did not come to rest within {PERIODS_PATIENCE:.0f} periods of {period:.3g} s: its slope may be steeper "
+        "than it can bear, or friction too low; lower bed.slope_deg or raise grain.friction"
+    )
