@@ -5,9 +5,13 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from lithobrake.pipeline import expansions, flights, samples, summary, surface
+from lithobrake.pipeline.expansions import design_reads, fit_refined, fit_screening, score_all
+from lithobrake.pipeline.flights import flight_reads, fly_samples
 from lithobrake.pipeline.folder import json_hash, source_hash
 from lithobrake.pipeline.job import Job
+from lithobrake.pipeline.samples import draw_samples
+from lithobrake.pipeline.summary import study_tables, write_summary
+from lithobrake.pipeline.surface import bed_files, bed_reads, land_once, landing_reads, pour_beds
 from lithobrake.study import Study
 
 
@@ -37,7 +41,7 @@ def _files(*names: str) -> Callable[[Study], list[str]]:
 
 
 def _screening(study: Study) -> Any:
-    return [expansions.design_reads(study), study.seed, *_design("screening_level", "screening_degree")(study)]
+    return [design_reads(study), study.seed, *_design("screening_level", "screening_degree")(study)]
 
 
 def _sample(study: Study) -> Any:
@@ -59,24 +63,14 @@ _REFINED = _design("refined_level", "refined_degree", "kept_share", "kept_output
 _TEST = _design("test_count")
 
 STAGES = (
-    Stage("bed", "bed", surface.bed_files, surface.bed_reads, (), (), surface.pour_beds),
-    Stage("landing", "median landing", _files("landing.h5"), surface.landing_reads, ("bed",), (), surface.land_once),
-    Stage("screen", "screening", _files("screening.json"), _screening, ("bed",), FIT, expansions.fit_screening),
-    Stage("refine", "refinement", _files("refined.json"), _REFINED, ("screen",), FIT, expansions.fit_refined),
-    Stage("test", "test runs", _files("scores.json"), _TEST, ("screen", "refine"), FIT, expansions.score_all),
-    Stage("sample", "samples", _files("samples.h5"), _sample, ("refine", "test"), FIT, samples.draw_samples),
-    Stage(
-        "fly", "flights", _files("flights.csv", "body.obj"), flights.flight_reads, ("sample",), FLY, flights.fly_samples
-    ),
-    Stage(
-        "summary",
-        "summary",
-        _files("summary.json"),
-        summary.study_tables,
-        ("landing", "fly"),
-        FIT,
-        summary.write_summary,
-    ),
+    Stage("bed", "bed", bed_files, bed_reads, (), (), pour_beds),
+    Stage("landing", "median landing", _files("landing.h5"), landing_reads, ("bed",), (), land_once),
+    Stage("screen", "screening", _files("screening.json"), _screening, ("bed",), FIT, fit_screening),
+    Stage("refine", "refinement", _files("refined.json"), _REFINED, ("screen",), FIT, fit_refined),
+    Stage("test", "test runs", _files("scores.json"), _TEST, ("screen", "refine"), FIT, score_all),
+    Stage("sample", "samples", _files("samples.h5"), _sample, ("refine", "test"), FIT, draw_samples),
+    Stage("fly", "flights", _files("flights.csv", "body.obj"), flight_reads, ("sample",), FLY, fly_samples),
+    Stage("summary", "summary", _files("summary.json"), study_tables, ("landing", "fly"), FIT, write_summary),
     Stage("report", "report", _files("report/index.html"), _nothing, ("summary",), ("report",), _write_report),
 )
 
