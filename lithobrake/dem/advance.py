@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from lithobrake.compiled import compiled
+from lithobrake.compiled import kernel
 from lithobrake.dem.arrays import Bodies, Cores, Floats, Laws, Pairs, Planes
 from lithobrake.dem.distance import Search
 from lithobrake.dem.force import DAMPING, FREQUENCY_SQUARED, Step, act
@@ -21,7 +21,7 @@ class Limits(NamedTuple):
     frequency: float  # -, largest contact frequency times step; 2 is the limit of stability
 
 
-@compiled
+@kernel
 def apply_forces(
     bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, laws: Laws, step: Step, search: Search, totals: Floats
 ) -> None:
@@ -34,7 +34,7 @@ def apply_forces(
         apply_drag(bodies, step, totals)
 
 
-@compiled
+@kernel
 def apply_drag(bodies: Bodies, step: Step, totals: Floats) -> None:
     """Add a force against every velocity and a torque against every spin, for settling."""
     for body in range(len(bodies.mass)):
@@ -47,7 +47,7 @@ def apply_drag(bodies: Bodies, step: Step, totals: Floats) -> None:
         totals[DAMPING] += step.drag * energy * step.time_step
 
 
-@compiled
+@kernel
 def advance(
     step_count: int, drifted: bool, bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, laws: Laws, step: Step,
     limits: Limits, search: Search, totals: Floats, probe: int, probed: Floats,
@@ -79,7 +79,7 @@ def advance(
 STEPS, PEAK_FORCE, FIRST_CONTACT, LAST_CONTACT = 0, 1, 2, 3
 
 
-@compiled
+@kernel
 def note(probe: int, bodies: Bodies, probed: Floats) -> None:
     """Count the step, and note the largest force on a body and the first and last step on which it was touched."""
     probed[STEPS] += 1.0

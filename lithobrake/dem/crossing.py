@@ -4,7 +4,7 @@ The way out of a convex difference set leads through one of its faces, and these
 edge pairs whose arcs on the sphere of normals intersect. Source: Gregorius, "The separating axis test" (2013).
 """
 
-from lithobrake.compiled import compiled
+from lithobrake.compiled import kernel
 from lithobrake.dem.arrays import Cores, Floats
 from lithobrake.dem.distance import Search
 from lithobrake.dem.vectors import Vector, cross, dot, minus, plus, put, row, scaled, times, transposed_times
@@ -13,7 +13,7 @@ from lithobrake.dem.vectors import Vector, cross, dot, minus, plus, put, row, sc
 Witness = tuple[float, Vector, Vector, Vector]
 
 
-@compiled
+@kernel
 def way_out(
     search: Search, cores: Cores, shapes: tuple[int, int], rotation: Floats, bodies: tuple[int, int], apart: Vector
 ) -> Witness:
@@ -36,7 +36,7 @@ def way_out(
     return (best[0], times(rotation, body, best[1]), times(rotation, body, best[2]), times(rotation, body, best[3]))
 
 
-@compiled
+@kernel
 def through_first(
     search: Search, cores: Cores, shapes: tuple[int, int], there: Vector, best: Witness, found: bool
 ) -> tuple[Witness, bool]:
@@ -58,7 +58,7 @@ def through_first(
     return best, found
 
 
-@compiled
+@kernel
 def through_second(
     search: Search, cores: Cores, shapes: tuple[int, int], there: Vector, best: Witness, found: bool
 ) -> tuple[Witness, bool]:
@@ -80,7 +80,7 @@ def through_second(
     return best, found
 
 
-@compiled
+@kernel
 def through_edges(search: Search, cores: Cores, shapes: tuple[int, int], there: Vector, best: Witness) -> Witness:
     """Try the pairs of edges that make a face of the difference set."""
     turn_edges(search, cores, shapes[1], there)
@@ -112,7 +112,7 @@ def through_edges(search: Search, cores: Cores, shapes: tuple[int, int], there: 
     return best
 
 
-@compiled
+@kernel
 def turn_edges(search: Search, cores: Cores, shape: int, there: Vector) -> None:
     """Write begin, along, left and right normal of the second core's edges, in the first body's frame."""
     first = cores.edge_start[shape]
@@ -128,7 +128,7 @@ def turn_edges(search: Search, cores: Cores, shape: int, there: Vector) -> None:
         put(search.turned[:, 9:12], k, times(search.relative, 0, right))
 
 
-@compiled
+@kernel
 def closest_on_lines(begin: Vector, along: Vector, other_begin: Vector, other: Vector) -> tuple[Vector, Vector]:
     """Return the closest points of two lines that are not parallel."""
     between = minus(other_begin, begin)

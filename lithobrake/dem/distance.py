@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from lithobrake.compiled import compiled
+from lithobrake.compiled import kernel
 from lithobrake.dem.arrays import Cores, Floats, Integers
 from lithobrake.dem.simplex import simplex_weights
 from lithobrake.dem.vectors import Vector, dot, minus, plus, put, row, scaled, times, transposed_times
@@ -42,7 +42,7 @@ def search_for(vertex_count_max: int, edge_count_max: int) -> Search:
     )  # fmt: skip
 
 
-@compiled
+@kernel
 def support(cores: Cores, shape: int, direction: Vector) -> int:
     """Return the core vertex of a shape that lies farthest along a direction of the body frame."""
     start, end = cores.vertex_start[shape], cores.vertex_start[shape + 1]
@@ -54,7 +54,7 @@ def support(cores: Cores, shape: int, direction: Vector) -> int:
     return best - start
 
 
-@compiled
+@kernel
 def place(
     search: Search, k: int, cores: Cores, shapes: tuple[int, int], rotation: Floats, bodies: tuple[int, int], apart: Vector
 ) -> None:
@@ -67,7 +67,7 @@ def place(
     put(search.difference, k, minus(first, second))
 
 
-@compiled
+@kernel
 def weighted(array: Floats, weight: Floats, count: int) -> Vector:
     """Return the weighted sum of the first `count` rows."""
     total = scaled(weight[0], row(array, 0))
@@ -76,7 +76,7 @@ def weighted(array: Floats, weight: Floats, count: int) -> Vector:
     return total
 
 
-@compiled
+@kernel
 def reduce_simplex(search: Search, count: int, closest_before: float) -> tuple[int, bool]:
     """Drop the corners that do not carry the closest point; refuse a step that comes no closer (second value False)."""
     d = search.difference
@@ -97,7 +97,7 @@ def reduce_simplex(search: Search, count: int, closest_before: float) -> tuple[i
     return kept, True
 
 
-@compiled
+@kernel
 def approach(
     search: Search,
     count: int,

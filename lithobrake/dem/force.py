@@ -6,7 +6,7 @@ contact and the damping that makes up for it, see material.restitution_of.
 
 from typing import NamedTuple
 
-from lithobrake.compiled import compiled
+from lithobrake.compiled import kernel
 from lithobrake.dem.arrays import Bodies, Cores, Floats, Laws, Pairs, Planes
 from lithobrake.dem.distance import Search
 from lithobrake.dem.geometry import touch_bodies, touch_plane
@@ -24,13 +24,13 @@ class Step(NamedTuple):
     paper_mass: bool  # damping with the reduced mass of the bodies, not the mass seen at the contact point
 
 
-@compiled
+@kernel
 def point_velocity(linear: Floats, spin: Floats, body: int, arm: Vector) -> Vector:
     """Return the velocity of the body's material at an arm from its centroid."""
     return plus(row(linear, body), cross(row(spin, body), arm))
 
 
-@compiled
+@kernel
 def inverse_mass_at(bodies: Bodies, body: int, arm: Vector, normal: Vector, paper_mass: bool) -> float:
     """Return one over the mass that a force along the normal meets at the contact point, n . W . n."""
     if paper_mass:
@@ -39,7 +39,7 @@ def inverse_mass_at(bodies: Bodies, body: int, arm: Vector, normal: Vector, pape
     return 1.0 / bodies.mass[body] + dot(turn, times(bodies.inverse_inertia, body, turn))
 
 
-@compiled
+@kernel
 def turned_spring(pairs: Pairs, pair: int, normal: Vector, twist: float) -> Vector:
     """Return the spring force carried along with the contact frame: turned with the normal and the mean spin about it."""
     spring = row(pairs.spring, pair)
@@ -53,7 +53,7 @@ def turned_spring(pairs: Pairs, pair: int, normal: Vector, twist: float) -> Vect
     return scaled((square / left) ** 0.5, spring) if left > 0.0 else (0.0, 0.0, 0.0)
 
 
-@compiled
+@kernel
 def rescaled_spring(spring: Vector, stiffness_before: float, stiffness: float, totals: Floats) -> Vector:
     """Shrink the spring force with its stiffness on unloading, so that no cycle gains energy; book what is lost."""
     if stiffness_before == 0.0:
@@ -67,7 +67,7 @@ def rescaled_spring(spring: Vector, stiffness_before: float, stiffness: float, t
     return spring
 
 
-@compiled
+@kernel
 def part(pairs: Pairs, pair: int, totals: Floats) -> None:
     """End a contact: the spring lets go."""
     if pairs.tangential_stiffness[pair] > 0.0:
@@ -81,7 +81,7 @@ def part(pairs: Pairs, pair: int, totals: Floats) -> None:
     pairs.elastic_force[pair] = 0.0
 
 
-@compiled
+@kernel
 def act(
     pair: int, bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, laws: Laws, step: Step, search: Search,
     totals: Floats,

@@ -1,6 +1,6 @@
 """Where and how deep the two members of a pair touch."""
 
-from lithobrake.compiled import compiled
+from lithobrake.compiled import kernel
 from lithobrake.dem.arrays import Bodies, Cores, Pairs, Planes
 from lithobrake.dem.crossing import way_out
 from lithobrake.dem.distance import APART, CROSSING, Search, approach, weighted
@@ -10,7 +10,7 @@ from lithobrake.dem.vectors import Vector, dot, minus, plus, row, scaled, times,
 Touch = tuple[float, Vector, Vector]
 
 
-@compiled
+@kernel
 def touch_plane(bodies: Bodies, cores: Cores, planes: Planes, body: int, plane: int) -> Touch:
     """Return how the deepest core vertex of a body meets a plane; the normal points into the plane."""
     outward = row(planes.normal, plane)
@@ -29,7 +29,7 @@ def touch_plane(bodies: Bodies, cores: Cores, planes: Planes, body: int, plane: 
     return overlap, scaled(-1.0, outward), point
 
 
-@compiled
+@kernel
 def touch_spheres(bodies: Bodies, first: int, second: int, apart: Vector, reach: float) -> Touch:
     """Return how two bodies whose cores are points meet."""
     distance = dot(apart, apart) ** 0.5
@@ -38,7 +38,7 @@ def touch_spheres(bodies: Bodies, first: int, second: int, apart: Vector, reach:
     return reach - distance, normal, plus(row(bodies.position, first), scaled(middle, normal))
 
 
-@compiled
+@kernel
 def touch_bodies(bodies: Bodies, cores: Cores, pairs: Pairs, pair: int, search: Search) -> Touch:
     """Return how two bodies meet; the names of their closest features are kept in the pair for the next step."""
     first, second = pairs.first[pair], pairs.second[pair]

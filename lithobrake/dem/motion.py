@@ -1,6 +1,6 @@
 """Motion of rigid bodies: half kick, drift, half kick, with the angular momentum in the world frame as state."""
 
-from lithobrake.compiled import compiled
+from lithobrake.compiled import kernel
 from lithobrake.dem.arrays import Bodies, Floats
 from lithobrake.dem.force import Step
 from lithobrake.dem.vectors import Vector, add, dot, plus, put, row, scaled, times
@@ -10,7 +10,7 @@ Quaternion = tuple[float, float, float, float]
 MIDPOINT_ITERATIONS = 3
 
 
-@compiled
+@kernel
 def turned(q: Quaternion, spin: Vector, time: float) -> Quaternion:
     """Return the unit quaternion after turning at a spin of the world frame (angle right to the seventh order)."""
     square = dot(spin, spin) * time * time
@@ -25,7 +25,7 @@ def turned(q: Quaternion, spin: Vector, time: float) -> Quaternion:
     return (w1 * norm, x1 * norm, y1 * norm, z1 * norm)
 
 
-@compiled
+@kernel
 def write_rotation(q: Quaternion, rotation: Floats) -> None:
     """Write the rotation matrix [3, 3], body to world, of a unit quaternion."""
     w, x, y, z = q
@@ -34,7 +34,7 @@ def write_rotation(q: Quaternion, rotation: Floats) -> None:
     rotation[2, 0], rotation[2, 1], rotation[2, 2] = 2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)
 
 
-@compiled
+@kernel
 def write_inverse_inertia(body: int, bodies: Bodies) -> None:
     """Turn the inverse inertia of a body into the world frame."""
     r, inner, outer = bodies.rotation[body], bodies.inverse_inertia_body[body], bodies.inverse_inertia[body]
@@ -46,7 +46,7 @@ def write_inverse_inertia(body: int, bodies: Bodies) -> None:
             outer[i, j] = u * r[j, 0] + v * r[j, 1] + w * r[j, 2]
 
 
-@compiled
+@kernel
 def rotate(body: int, bodies: Bodies, time_step: float) -> None:
     """Turn a body over one step by the spin at mid-step, which follows from the angular momentum held fixed.
 
@@ -68,7 +68,7 @@ def rotate(body: int, bodies: Bodies, time_step: float) -> None:
     put(bodies.half_spin, body, spin)
 
 
-@compiled
+@kernel
 def kick(bodies: Bodies, step: Step) -> None:
     """Advance the velocities by half a step under the forces at hand."""
     half = 0.5 * step.time_step
@@ -78,7 +78,7 @@ def kick(bodies: Bodies, step: Step) -> None:
         add(bodies.angular_momentum, body, half, row(bodies.torque, body))
 
 
-@compiled
+@kernel
 def drift(bodies: Bodies, step: Step) -> float:
     """Advance positions by a step at the half-step velocities and predict the velocities at their instant.
 

@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from lithobrake.compiled import compiled
+from lithobrake.compiled import kernel
 from lithobrake.dem.arrays import Bodies, Floats, Integers, Pairs, Planes
 
 
-@compiled
+@kernel
 def sweep(order: Integers, low: Floats, position: Floats, reach: Floats, first: Integers, second: Integers) -> int:
     """Find pairs of bounding spheres that meet, sweeping along x; write as many as fit and return how many there are.
 

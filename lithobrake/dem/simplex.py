@@ -1,12 +1,12 @@
 """The point of a simplex closest to the origin, as weights of its corners that add up to one."""
 
-from lithobrake.compiled import compiled
+from lithobrake.compiled import kernel
 from lithobrake.dem.vectors import Vector, cross, dot, minus, plus, scaled
 
 Weights = tuple[float, float, float, float]
 
 
-@compiled
+@kernel
 def segment_weights(a: Vector, b: Vector) -> tuple[float, float]:
     """Return the weights of the ends of a segment."""
     along = minus(b, a)
@@ -17,7 +17,7 @@ def segment_weights(a: Vector, b: Vector) -> tuple[float, float]:
     return (1.0 - share, share)
 
 
-@compiled
+@kernel
 def triangle_weights(a: Vector, b: Vector, c: Vector) -> tuple[float, float, float]:
     """Return the weights of the corners of a triangle, which may be degenerate."""
     ab, ac = minus(b, a), minus(c, a)
@@ -43,7 +43,7 @@ def triangle_weights(a: Vector, b: Vector, c: Vector) -> tuple[float, float, flo
     return (ca_a, 0.0, ca_c)
 
 
-@compiled
+@kernel
 def tetrahedron_weights(a: Vector, b: Vector, c: Vector, d: Vector) -> Weights:
     """Return the weights of the corners of a tetrahedron; all are positive where it holds the origin."""
     ab, ac, ad = minus(b, a), minus(c, a), minus(d, a)
@@ -79,7 +79,7 @@ def tetrahedron_weights(a: Vector, b: Vector, c: Vector, d: Vector) -> Weights:
     return best
 
 
-@compiled
+@kernel
 def simplex_weights(count: int, a: Vector, b: Vector, c: Vector, d: Vector) -> Weights:
     """Return the weights for the first `count` corners; the others are not read and weigh nothing."""
     if count == 1:

@@ -2,54 +2,54 @@
 
 from typing import Any
 
-from lithobrake.compiled import compiled
+from lithobrake.compiled import kernel
 
 Vector = tuple[float, float, float]
 
 
-@compiled
+@kernel
 def dot(a: Vector, b: Vector) -> float:
     """Return a . b."""
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
-@compiled
+@kernel
 def cross(a: Vector, b: Vector) -> Vector:
     """Return a x b."""
     return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
 
 
-@compiled
+@kernel
 def plus(a: Vector, b: Vector) -> Vector:
     """Return a + b."""
     return (a[0] + b[0], a[1] + b[1], a[2] + b[2])
 
 
-@compiled
+@kernel
 def minus(a: Vector, b: Vector) -> Vector:
     """Return a - b."""
     return (a[0] - b[0], a[1] - b[1], a[2] - b[2])
 
 
-@compiled
+@kernel
 def scaled(factor: float, a: Vector) -> Vector:
     """Return factor * a."""
     return (factor * a[0], factor * a[1], factor * a[2])
 
 
-@compiled
+@kernel
 def row(array: Any, i: int) -> Vector:
     """Return row i of an array [count, 3]."""
     return (array[i, 0], array[i, 1], array[i, 2])
 
 
-@compiled
+@kernel
 def put(array: Any, i: int, a: Vector) -> None:
     """Write row i of an array [count, 3]."""
     array[i, 0], array[i, 1], array[i, 2] = a
 
 
-@compiled
+@kernel
 def add(array: Any, i: int, factor: float, a: Vector) -> None:
     """Add factor * a to row i of an array [count, 3]."""
     array[i, 0] += factor * a[0]
@@ -57,7 +57,7 @@ def add(array: Any, i: int, factor: float, a: Vector) -> None:
     array[i, 2] += factor * a[2]
 
 
-@compiled
+@kernel
 def times(matrices: Any, i: int, a: Vector) -> Vector:
     """Return M a with M = matrices[i], from an array [count, 3, 3]."""
     m = matrices[i]
@@ -68,7 +68,7 @@ def times(matrices: Any, i: int, a: Vector) -> Vector:
     )
 
 
-@compiled
+@kernel
 def transposed_times(matrices: Any, i: int, a: Vector) -> Vector:
     """Return M^T a with M = matrices[i], from an array [count, 3, 3]."""
     m = matrices[i]
