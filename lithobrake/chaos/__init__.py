@@ -4,10 +4,22 @@ from lithobrake.chaos.basis import condition_number
 from lithobrake.chaos.bounded import Beta, LogUniform, Uniform
 from lithobrake.chaos.computed import Empirical, TruncatedNormal
 from lithobrake.chaos.design import latin_hypercube, sobol_sequence, tensor_count, tensor_grid
+from lithobrake.chaos.exploration import (
+    density,
+    gradient,
+    main_effect,
+    marginal,
+    output_correlation,
+    quantiles,
+    sampled_outputs,
+    shape_moments,
+)
 from lithobrake.chaos.fitting import fit
 from lithobrake.chaos.germ import Distribution
 from lithobrake.chaos.kinds import distribution
-from lithobrake.chaos.optimal import fekete
+from lithobrake.chaos.noise import replicates
+from lithobrake.chaos.optimal import christoffel, christoffel_weights, fekete
+from lithobrake.chaos.resampling import score_intervals, sobol_intervals
 from lithobrake.chaos.scores import absolute_percentage_error
 from lithobrake.chaos.sparse_grid import smolyak, smolyak_count
 from lithobrake.chaos.storage import load
@@ -28,15 +40,28 @@ __all__ = [
     "TruncatedNormal",
     "Uniform",
     "absolute_percentage_error",
+    "christoffel",
+    "christoffel_weights",
     "condition_number",
+    "density",
     "distribution",
     "fekete",
     "fit",
+    "gradient",
     "latin_hypercube",
     "load",
+    "main_effect",
+    "marginal",
     "multi_index_set",
+    "output_correlation",
+    "quantiles",
+    "replicates",
+    "sampled_outputs",
+    "score_intervals",
+    "shape_moments",
     "smolyak",
     "smolyak_count",
+    "sobol_intervals",
     "sobol_sequence",
     "tensor_count",
     "tensor_grid",

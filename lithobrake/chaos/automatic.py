@@ -1,5 +1,6 @@
 """The default way of fitting: every output takes the expansion that promises the smallest error at new points."""
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -64,6 +65,12 @@ def best_solutions(training: Training) -> tuple[list[Solution], dict[str, Any]]:
                     challenger[name] = float(np.sqrt(np.mean(process.leave_one_out**2)))
             if not grid:
                 scores["omp"] = solve_sparse(training, output, "omp", degree=None, q_norm=None)
-        chosen.append(min(scores.values(), key=lambda one: one.expected_error))
+        best = min(scores.values(), key=lambda one: one.expected_error)
+        scatter = [one for one in scores.values() if "noise_std" in one.facts]
+        if scatter and "noise_std" not in best.facts:
+            # The nugget of the best process tells the scatter whichever expansion is taken.
+            likeliest = min(scatter, key=lambda one: one.expected_error)
+            best = replace(best, facts={**best.facts, "noise_std": likeliest.facts["noise_std"]})
+        chosen.append(best)
         table[name] = {label: one.expected_error for label, one in scores.items()}
     return chosen, {"candidates": table, "challenger": {"model": CHALLENGER, "rmse_estimate": challenger}}

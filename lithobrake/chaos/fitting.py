@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 from lithobrake.chaos.automatic import best_solutions, process_solution
 from lithobrake.chaos.evaluation import evaluate, make_plan
 from lithobrake.chaos.germ import Distribution
+from lithobrake.chaos.noise import with_noise
 from lithobrake.chaos.polynomials import Array
 from lithobrake.chaos.regression import best_degree, solve_ols
 from lithobrake.chaos.solution import joined, summary
@@ -78,6 +79,7 @@ def assemble(training: Training, indices: Indices, coefficients: Array, report: 
         "dropped_count": training.dropped_count,
         "data_hash": data_hash(training.x, training.y),
     }
+    report = with_noise(report, training.x, training.y)
     return Surrogate(
         training.inputs,
         indices,

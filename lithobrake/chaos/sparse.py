@@ -3,6 +3,7 @@
 Error estimates come from folds over the whole selection path: leave-one-out after a greedy choice is far too low.
 """
 
+import warnings
 from collections.abc import Sequence
 
 import numpy as np
@@ -100,8 +101,11 @@ def _order(matrix: Array, y: Array, method: str) -> Rows:
     if method == "lars":
         _, active, _ = lars_path(scaled, centred, method="lar", max_iter=limit)
         return (usable[np.asarray(active, dtype=np.int64)] + 1).astype(np.int64)
-    path = np.atleast_2d(orthogonal_mp(scaled, centred, n_nonzero_coefs=limit, return_path=True))
-    path = path.reshape(len(usable), -1)
+    with warnings.catch_warnings():
+        # The pursuit may reach the data exactly before the limit; the path up to there is all that is wanted.
+        warnings.filterwarnings("ignore", message="(?s).*Orthogonal matching pursuit ended prematurely")
+        path = orthogonal_mp(scaled, centred, n_nonzero_coefs=limit, return_path=True)
+    path = np.asarray(path).reshape(len(usable), -1)
     entered = np.where((path != 0.0).any(axis=1), (path != 0.0).argmax(axis=1), path.shape[1])
     order = np.argsort(entered, kind="stable")
     return (usable[order[entered[order] < path.shape[1]]] + 1).astype(np.int64)

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lithobrake.chaos import scores, sensitivity
+from lithobrake.chaos import noise, scores, sensitivity
 from lithobrake.chaos.basis import outside_count, points_of
 from lithobrake.chaos.evaluation import Plan, evaluate, make_plan
 from lithobrake.chaos.germ import Distribution, checked_inputs
@@ -130,13 +130,14 @@ class Surrogate:
 
     def sobol_group(self, names: Sequence[str]) -> Array:
         """Share of the variance in all terms of these inputs only, [output_count] or a number."""
-        return self.shaped(sensitivity.group_share(self.multi_indices, self._coefficients, self._columns(names)))
+        return self.shaped(sensitivity.group_share(self.multi_indices, self._coefficients, self.columns(names)))
 
     def sobol_interaction(self, names: Sequence[str]) -> Array:
         """Sobol index of exactly this set of inputs (any order), [output_count] or a number."""
-        return self.shaped(sensitivity.interaction(self.multi_indices, self._coefficients, self._columns(names)))
+        return self.shaped(sensitivity.interaction(self.multi_indices, self._coefficients, self.columns(names)))
 
-    def _columns(self, names: Sequence[str]) -> list[int]:
+    def columns(self, names: Sequence[str]) -> list[int]:
+        """Column of each named input. Raises ValueError for an unknown name."""
         wanted = [names] if isinstance(names, str) else list(names)
         unknown = [name for name in wanted if name not in self.inputs]
         if unknown:
@@ -156,6 +157,10 @@ class Surrogate:
         predicted = np.asarray(self(x)).reshape(truth.shape)
         columns = enumerate(self.output_names)
         return {name: scores.score_of(predicted[:, k], truth[:, k]) for k, name in columns}
+
+    def runs_needed(self, target: float) -> dict[str, dict[str, Any]]:
+        """How many more runs would bring the expected error to `target` (share of the spread), by output name."""
+        return noise.runs_needed(self.report, target)
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write everything into one readable JSON file."""

@@ -1,0 +1,98 @@
+"""Scatter between runs of equal inputs: how large it is, the floor it sets, and how many more runs would help."""
+
+from dataclasses import dataclass
+from math import ceil
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lithobrake.chaos.polynomials import Array
+
+
+@dataclass(frozen=True)
+class Replicates:
+    """Pooled scatter of runs with equal inputs: std [output_count], from `freedom` degrees of freedom.
+
+    means and variances [group_count, output_count] of the groups with at least two runs; points [group_count,
+    input_count]; sizes [group_count]; correlation of the scatter between outputs [output_count, output_count].
+    """
+
+    std: Array
+    freedom: int
+    points: Array
+    means: Array
+    variances: Array
+    sizes: NDArray[np.int64]
+    correlation: Array
+
+
+def replicates(x: Array, y: Array) -> Replicates | None:
+    """Find repeated rows of x [count, input_count] and pool the scatter of y [count, output_count]; None if no repeats.
+
+    Source: Montgomery, 2012, "Design and Analysis of Experiments", pure error.
+    """
+    points, group = np.unique(x, axis=0, return_inverse=True)
+    group = group.ravel()
+    sizes = np.bincount(group).astype(np.int64)
+    freedom = int((sizes - 1).sum())
+    if freedom == 0:
+        return None
+    means = np.stack([np.bincount(group, weights=column) / sizes for column in y.T], axis=1)
+    deviation = y - means[group]
+    squares = np.stack([np.bincount(group, weights=column**2) for column in deviation.T], axis=1)
+    several = sizes > 1
+    pooled = np.sqrt(squares.sum(axis=0) / freedom)
+    cross = deviation.T @ deviation / freedom
+    scale = np.where(pooled > 0.0, pooled, 1.0)
+    correlation = np.where(np.eye(len(scale)) > 0.0, 1.0, cross / np.outer(scale, scale))
+    variances = squares[several] / (sizes[several] - 1)[:, None]
+    return Replicates(pooled, freedom, points[several], means[several], variances, sizes[several], correlation)
+
+
+def with_noise(report: dict[str, Any], x: Array, y: Array) -> dict[str, Any]:
+    """Add to a report the scatter of each output (from repeated points where there are, else from a nugget)."""
+    pooled = replicates(x, y)
+    if pooled is None:
+        for entry in report["outputs"].values():
+            entry["noise_from"] = "nugget of a Gaussian process" if "noise_std" in entry else None
+        return report
+    for k, entry in enumerate(report["outputs"].values()):
+        entry["noise_std"] = float(pooled.std[k])
+        entry["noise_from"] = f"repeated points, {pooled.freedom} degrees of freedom"
+    return report
+
+
+def runs_needed(report: dict[str, Any], target: float) -> dict[str, dict[str, Any]]:
+    """How many more runs bring the error at a new run down to `target`, as a share of the spread; by output name.
+
+    floor: the share that is scatter, which no expansion removes; now: the expected error; more_runs: 0, a number, or
+    None where none would help; sentence. The squared error above the floor is taken to fall as one over the number of
+    runs: so it does where scatter is its cause; a smooth output needs fewer.
+    Raises ValueError unless target is above 0, and for a report without error estimates.
+    """
+    if not target > 0.0:
+        raise ValueError(f"target is {target}, but must be above 0: it is an error as a share of the spread")
+    answers = {}
+    for name, entry in report.get("outputs", {}).items():
+        now = entry["rrmse_estimate"]
+        if now is None:
+            answers[name] = {"floor": 0.0, "now": 0.0, "more_runs": 0, "sentence": f"{name} does not vary."}
+            continue
+        spread = entry["rmse_estimate"] / now if now > 0.0 else 1.0
+        floor = min(float(entry.get("noise_std") or 0.0) / spread, now)
+        answers[name] = {"floor": floor, "now": now, **_answer(name, now, floor, target, report["train_count"])}
+    if not answers:
+        raise ValueError("this expansion holds no error estimate, so runs_needed has nothing to go by: fit it anew")
+    return answers
+
+
+def _answer(name: str, now: float, floor: float, target: float, count: int) -> dict[str, Any]:
+    if now <= target:
+        return {"more_runs": 0, "sentence": f"{name} is at {now:.3g} and meets {target:.3g} already."}
+    if target <= floor:
+        text = f"{name} is at {now:.3g}, but its scatter alone is {floor:.3g}: no number of runs reaches {target:.3g}."
+        return {"more_runs": None, "sentence": text}
+    total = count * (now**2 - floor**2) / (target**2 - floor**2)
+    more = max(1, ceil(total) - count)
+    return {"more_runs": more, "sentence": f"{name} is at {now:.3g}: about {more} more runs would reach {target:.3g}."}
