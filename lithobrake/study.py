@@ -242,7 +242,7 @@ class SiteSection(Section):
     """Latitude, planetocentric."""
     longitude_deg: Angle = 0.0
     """Longitude, east."""
-    heading_deg: Angle = 90.0
+    heading_deg: Angle = 0.0
     """Direction of the incoming horizontal velocity, from north toward east."""
 
 

@@ -152,3 +152,10 @@ def test_what_only_the_flight_reads_may_be_uncertain() -> None:
     study = study_file.check({**TABLES, "site": {"mass": table("uniform", lower=5e11, upper=6e11)}}, Path())
     assert "site.mass" not in uncertain(study.touchdown_values())
     assert "site.mass" in uncertain(study.site_values())
+
+
+@pytest.mark.parametrize(
+    "path", sorted((Path(__file__).parents[1] / "scenarios").glob("*.toml")), ids=lambda path: path.stem
+)
+def test_the_scenarios_are_studies(path: Path) -> None:
+    assert len(uncertain(study_file.read(path).touchdown_values())) == 5

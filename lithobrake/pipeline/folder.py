@@ -7,7 +7,9 @@ study makes again what depends on the change, and nothing else.
 
 import hashlib
 import json
-from collections.abc import Iterable, Mapping
+import os
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -29,6 +31,24 @@ class StudyFolder:
             probe.unlink()
         except OSError as error:
             raise ValueError(f"{path} cannot be written ({error}); choose another folder with --out") from error
+
+    @contextmanager
+    def alone(self) -> Iterator[None]:
+        """Work in the folder while nobody else does. Raises ValueError when another process is at work in it."""
+        if os.name != "posix":
+            yield
+            return
+        import fcntl
+
+        # The lock goes with the process, however it ends.
+        with (self / ".lock").open("w") as lock:
+            try:
+                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except BlockingIOError:
+                raise ValueError(
+                    f"another lithobrake is at work in {self.path}; wait for it, or choose another folder with --out"
+                ) from None
+            yield
 
     def __truediv__(self, name: str) -> Path:
         """Path of a file in the folder."""

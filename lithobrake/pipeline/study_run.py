@@ -25,14 +25,13 @@ def run_study(
     begin(title, number, count) is called as each stage begins, progress(done, total, what) within it.
     Raises ValueError for a study file that is refused, a folder that cannot be written, too few runs with outputs.
     """
-    study = study_file.read(path)
+    study, tables = study_file.read(path), study_file.load(path)
     folder = StudyFolder(out)
-    text = path.read_text(encoding="utf-8")
-    with atomic_path(folder / "study.toml") as draft:
-        draft.write_text(text, encoding="utf-8")
-    with LocalExecutor(worker_count) as executor:
+    with folder.alone(), LocalExecutor(worker_count) as executor:
+        with atomic_path(folder / "study.toml") as draft:
+            draft.write_bytes(path.read_bytes())
         try:
-            make(Job(study, study_file.load(path), folder, executor, progress), until, begin)
+            make(Job(study, tables, folder, executor, progress), until, begin)
         except BaseException:
             # What is under way would be waited for otherwise; every finished run is in the ledger already.
             executor.shutdown(cancel_futures=True)

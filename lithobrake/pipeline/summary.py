@@ -54,7 +54,7 @@ def write_summary(job: Job) -> None:
         },
         "monte_carlo": _monte_carlo(samples),
         "site": _site(job.study),
-        "shares": _shares(samples, read_flights(job.folder)),
+        "shares": shares(samples, read_flights(job.folder)),
     }
     results["headline"] = headline(results)
     job.folder.write_json(
@@ -178,7 +178,7 @@ def _site(study: Study) -> dict[str, Any]:
     }
 
 
-def _shares(samples: Samples, flights: list[dict[str, str]]) -> dict[str, Any]:
+def shares(samples: Samples, flights: list[dict[str, str]]) -> dict[str, Any]:
     """What became of the samples, as shares of all that were looked at, with their 95 % intervals.
 
     When not all leaving samples flew, only the samples up to the last that flew are looked at: they are a random part
@@ -203,13 +203,12 @@ def _shares(samples: Samples, flights: list[dict[str, str]]) -> dict[str, Any]:
 
 def headline(results: dict[str, Any]) -> list[str]:
     """The five most telling numbers, each in a sentence."""
-    designs, shares = results["designs"], results["shares"]
+    designs, remains = results["designs"], results["shares"]["remains"]
     run_count = sum(design["run_count"] for design in designs.values())
     rebounds = sum(design["with_outputs"] for design in designs.values())
     total = results["screening"]["sobol_total"]["speed_out"]
     main = max(total, key=lambda name: total[name])
     score = results["scores"]["test_all"]["speed_out"]
-    remains = shares["remains"]
     sentences = [f"{rebounds} of {run_count} touchdowns left the surface."]
     speed = results["monte_carlo"]["outputs"].get("speed_out")
     if speed:

@@ -1,0 +1,184 @@
+"""The pipeline: what depends on what, how runs are drawn, which inputs are kept, and a whole tiny study."""
+
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from lithobrake import study_file
+from lithobrake.chaos import Uniform, fit, smolyak
+from lithobrake.pipeline import STAGES, StudyFolder, stage_keys
+from lithobrake.pipeline.expansions import design_inputs, kept_inputs, points
+from lithobrake.pipeline.flights import starts
+from lithobrake.pipeline.landings import acceleration, draw, medians
+from lithobrake.pipeline.samples import Samples
+from lithobrake.pipeline.summary import shares, study_tables
+from lithobrake.study import OUTPUTS, Study
+from lithobrake.study_template import template
+
+
+def changed(**sections: dict[str, Any]) -> Study:
+    """The template with some keys changed."""
+    tables = tomllib.loads(template())
+    for section, keys in sections.items():
+        tables.setdefault(section, {}).update(keys)
+    return study_file.check(tables, Path())
+
+
+UNIFORM = {"distribution": "uniform", "lower": 0.1, "upper": 0.3}
+
+REMADE = [
+    ({"bed": {"grain_count": 151}}, "bed"),
+    ({"surface": {"gravity": 4e-5}}, "bed"),
+    ({"impact": {"speed": 0.25}}, "landing"),
+    ({"contact": {"pair_rule": "mean"}}, "bed"),
+    ({"grain": {"friction": {"distribution": "uniform", "lower": 0.4, "upper": 0.8}}}, "screen"),
+    ({"design": {"screening_level": 3}}, "screen"),
+    ({"design": {"kept_share": 0.8}}, "refine"),
+    ({"design": {"test_count": 11}}, "test"),
+    ({"monte_carlo": {"sample_count": 200}}, "sample"),
+    ({"site": {"heading_deg": 10.0}}, "fly"),
+    ({"flight": {"flight_count": 7}}, "fly"),
+]
+
+
+@pytest.mark.parametrize(("change", "first"), REMADE, ids=[str(change) for change, _ in REMADE])
+def test_a_change_makes_again_what_depends_on_it_and_nothing_before(change: dict[str, Any], first: str) -> None:
+    before, after = stage_keys(changed()), stage_keys(changed(**change))
+    names = [stage.name for stage in STAGES]
+    different = [name for name in names if before[name] != after[name]]
+    assert different[0] == first
+    assert set(names[names.index("summary") :]) <= set(different)
+    # The landing at the medians hangs on no design, so it may be left out of an unbroken row.
+    assert [name for name in different if name != "landing"] == [
+        name for name in names[names.index(first) :] if name != "landing"
+    ]
+
+
+def test_the_title_alone_changes_only_the_summary_and_the_report() -> None:
+    before, after = stage_keys(changed()), stage_keys(changed().model_copy(update={"title": "another"}))
+    assert [name for name in before if before[name] != after[name]] == ["summary", "report"]
+
+
+def test_a_file_is_current_until_it_or_its_key_changes(tmp_path: Path) -> None:
+    folder = StudyFolder(tmp_path / "study")
+    folder.write_json("scores.json", {"a": 1})
+    folder.note("test", ["scores.json"], "key", 1.0)
+    assert folder.is_current(["scores.json"], "key")
+    assert not folder.is_current(["scores.json"], "other key")
+    assert not folder.is_current(["scores.json", "refined.json"], "key")
+    (folder / "scores.json").write_text('{"a": 2}')
+    assert not folder.is_current(["scores.json"], "key")
+    (folder / "scores.json").unlink()
+    assert not folder.is_current(["scores.json"], "key")
+
+
+def test_a_folder_has_one_coordinator(tmp_path: Path) -> None:
+    busy = pytest.raises(ValueError, match="another lithobrake is at work")
+    with StudyFolder(tmp_path).alone(), busy, StudyFolder(tmp_path).alone():
+        pass
+    with StudyFolder(tmp_path).alone():
+        pass
+
+
+def test_json_without_nan(tmp_path: Path) -> None:
+    folder = StudyFolder(tmp_path)
+    with pytest.raises(ValueError, match="JSON"):
+        folder.write_json("scores.json", {"a": float("nan")})
+    assert not (folder / "scores.json").exists()
+
+
+def test_draws_are_given_by_the_seed_and_what_is_fixed_is_not_drawn() -> None:
+    study = changed()
+    one = draw(study, medians(study), 5)
+    assert one == draw(study, medians(study), 5)
+    assert one == {"bed": 0, "place": [0.0, 0.0], "azimuth_deg": 0.0, "orientation": [1.0, 0.0, 0.0, 0.0]}
+
+
+def test_nuisances_are_drawn_in_their_ranges_and_evenly() -> None:
+    region = {"x": [-0.1, 0.1], "y": [0.0, 0.05]}
+    study = changed(bed={"bed_count": 3}, impact={"region": region, "azimuth_deg": "random", "orientation": "random"})
+    draws = [draw(study, medians(study), seed) for seed in range(3000)]
+    places = np.array([one["place"] for one in draws])
+    assert np.bincount([one["bed"] for one in draws]).tolist() == pytest.approx([1000] * 3, abs=100)
+    assert places.min(axis=0) == pytest.approx([-0.1, 0.0], abs=1e-3)
+    assert places.max(axis=0) == pytest.approx([0.1, 0.05], abs=1e-3)
+    assert np.mean([one["azimuth_deg"] for one in draws]) == pytest.approx(180, abs=8)
+    # For rotations drawn evenly, each squared component of the quaternion has the mean 1/4.
+    assert np.mean(np.array([one["orientation"] for one in draws]) ** 2, axis=0) == pytest.approx([0.25] * 4, abs=0.02)
+
+
+def test_a_slope_tilts_the_acceleration_downhill() -> None:
+    values = {"surface.slope_deg": 30.0, "surface.slope_azimuth_deg": 90.0}
+    assert acceleration(values, 2.0) == pytest.approx((0.0, 1.0, -np.sqrt(3.0)))
+
+
+def test_kept_is_the_smallest_set_that_explains_enough_of_every_deciding_output() -> None:
+    inputs = {name: Uniform(-1, 1) for name in "abc"}
+    x = smolyak(inputs, level=2)
+    first, second = x[:, 0] + 0.1 * x[:, 2], x[:, 1] + 0.3 * x[:, 2]
+    y = np.column_stack([first, second, x[:, 0], x[:, 0], x[:, 0], x[:, 2]])
+    surrogate = fit(inputs, x, y, degree=2, output_names=OUTPUTS)
+
+    def kept(share: float, outputs: list[str]) -> tuple[str, ...]:
+        return kept_inputs(changed(design={"kept_share": share, "kept_outputs": outputs}), surrogate)
+
+    assert kept(0.9, ["speed_out"]) == ("a",)
+    assert kept(0.9, ["speed_out", "elevation_out"]) == ("a", "b")
+    assert kept(0.95, ["speed_out", "elevation_out"]) == ("a", "b", "c")
+    assert kept(0.5, ["velocity_out_z", "speed_out"]) == ("a", "c")
+
+
+def test_inputs_that_are_not_kept_stand_at_their_median_and_nodes_are_shared() -> None:
+    study = changed()
+    inputs = design_inputs(study)
+    names, kept = list(inputs), ["grain.friction", "grain.restitution"]
+    refined, screening = points(study, "refined", kept), points(study, "screening", ())
+    for column, name in enumerate(names):
+        assert (np.unique(refined[:, column]) == inputs[name].median).all() == (name not in kept)
+    shared = {tuple(row) for row in refined.tolist()} & {tuple(row) for row in screening.tolist()}
+    # Level 2 in two inputs has 13 nodes; they are nested in level 3 and in the five inputs of the screening.
+    assert len(shared) == 13
+
+
+def made_samples(stays: list[bool], captured: list[bool]) -> Samples:
+    count = len(stays)
+    outputs = np.tile(np.arange(1.0, 7.0), (count, 1))
+    return Samples(
+        ["a"], list(OUTPUTS), np.zeros((count, 1)), outputs, np.zeros(count), np.array(captured), np.array(stays)
+    )
+
+
+def test_the_first_samples_that_leave_fly_each_from_its_own_site() -> None:
+    study = changed(flight={"flight_count": 2}, site={"latitude_deg": UNIFORM})
+    one = starts(study, made_samples([False, True, False, False], [False] * 4))
+    assert one.sample.tolist() == [0, 2]
+    assert one.velocity.tolist() == [[4.0, 5.0, 6.0]] * 2
+    assert ((one.site["latitude_deg"] > 0.1) & (one.site["latitude_deg"] < 0.3)).all()
+    more = starts(
+        changed(flight={"flight_count": 3}, site={"latitude_deg": UNIFORM}), made_samples([False] * 4, [False] * 4)
+    )
+    assert more.site["latitude_deg"][[0, 2]].tolist() == one.site["latitude_deg"].tolist()
+
+
+def test_shares_count_the_captured_and_look_at_no_sample_after_the_last_that_flew() -> None:
+    samples = made_samples([False, True, True, False, True, False], [False, True, False, False, True, False])
+    flown = [{"sample": "0", "status": "impact"}, {"sample": "3", "status": "escaped"}]
+    table = shares(samples, flown)
+    assert table["sample_count"] == 4
+    counts = {name: table[name]["count"] for name in ("captured", "no_outward_velocity", "impact", "flying", "escaped")}
+    assert counts == {"captured": 1, "no_outward_velocity": 1, "impact": 1, "flying": 0, "escaped": 1}
+    assert table["remains"]["share"] == 0.75
+
+
+def test_the_study_in_the_summary_reads_back_as_the_same_study() -> None:
+    study = changed(impact={"region": {"x": [-0.1, 0.1], "y": [-0.1, 0.1]}})
+    tables = study_tables(study)
+    assert tables["grain"]["friction"] == {"distribution": "uniform", "lower": 0.3, "upper": 0.9}
+    without_absent = {
+        key: {name: entry for name, entry in value.items() if entry is not None} if isinstance(value, dict) else value
+        for key, value in tables.items()
+    }
+    assert study_file.check(without_absent, Path()) == study
