@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from lithobrake.smallbody import attraction
 from lithobrake.smallbody.shape import Shape
 
 GRAVITATIONAL_CONSTANT = 6.67430e-11  # m3/(kg s2), CODATA 2018
@@ -51,7 +52,7 @@ class Body:
         p = np.asarray(points, dtype=np.float64)
         if p.shape[-1:] != (3,):
             raise ValueError(f"{self.name}: points have shape {p.shape}; the last axis must hold x, y, z.")
-        field = self.shape.polyhedron.field(p.reshape(-1, 3)) * (GRAVITATIONAL_CONSTANT * self.density)
+        field = attraction.field(p.reshape(-1, 3), self.shape.gravity) * (GRAVITATIONAL_CONSTANT * self.density)
         return field.reshape(*p.shape[:-1], 5)
 
     def acceleration(self, points: ArrayLike) -> NDArray[np.float64]:

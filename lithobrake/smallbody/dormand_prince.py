@@ -58,7 +58,10 @@ def step_error(slope: Any, step: float, j: int, length: float, speed: float) -> 
         total = 0.0
         for m in range(STAGES):
             total += ERROR[m] * slope[m, i, j]
-        worst = max(worst, abs(step * total) / (length if i < 3 else speed))
+        error = abs(step * total) / (length if i < 3 else speed)
+        if not error < np.inf:
+            return np.nan
+        worst = max(worst, error)
     return worst
 
 

@@ -116,7 +116,7 @@ def fly(
     slack = min(1e-6 * shape.radius, 1e-3)
     ground = (shape.grid.arrays, shape.corners, shape.pseudonormals, slack)
     phase = _phases(body, starts, slack)
-    forces = (shape.polyhedron.arrays, GRAVITATIONAL_CONSTANT * body.density, body.spin_rate)
+    forces = (shape.gravity, GRAVITATIONAL_CONSTANT * body.density, body.spin_rate)
     dynamical_time = math.sqrt(shape.radius**3 / body.gravitational_parameter)
     length = tolerance * shape.radius
     limits = (

@@ -75,7 +75,8 @@ def _sort(first: Any, last: Any, size: Any, start: Any, facets: Any) -> None:
                             start[cell + 1] += 1
         if write:
             # Each entry has moved on to the start of the next cell.
-            start[1:] = start[:-1].copy()
+            for cell in range(len(start) - 1, 0, -1):
+                start[cell] = start[cell - 1]
             start[0] = 0
         else:
             for cell in range(len(start) - 1):

@@ -117,5 +117,6 @@ def find_impact(curve: Any, slope: Any, step: float, j: int, phase: int, ground:
                 if facet >= 0:
                     return _onto_plane(curve, corner, outward, facet, time / step, until / step), facet, phase
         time = until
-        here[:] = there
+        for i in range(3):
+            here[i] = there[i]
     return 1.0, -1, phase

@@ -15,6 +15,7 @@ from numba.extending import intrinsic
 from lithobrake.compiled import compiled
 
 LANES = 32  # points that share one pass over the facets; 1000 vertex distances of 32 points fit the second-level cache
+WIDTH = 8  # doubles in the widest registers
 
 _HALF = 1 << 51  # half a unit of the exponent field of a double
 _EXPONENT = 0x7FF << 52

@@ -156,7 +156,9 @@ def field_block(lane: Any, count: int, distance: Any, polyhedron: Any) -> None:
     distance [vertex_count * LANES] is scratch. The pull is acceleration / (G density), DEPTH twice the potential.
     """
     vertices, ends, edge_terms, corners, facet_terms = polyhedron
-    lane[PULL_X * LANES :] = 0.0
+    for row in range(PULL_X, ROWS):
+        for j in range(count):
+            lane[row * LANES + j] = 0.0
     _distances(lane, count, distance, vertices)
     _add_edges(lane, count, distance, vertices, ends, edge_terms)
     _add_facets(lane, count, distance, vertices, corners, facet_terms)

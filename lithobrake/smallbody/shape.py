@@ -2,6 +2,7 @@
 
 import os
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -10,6 +11,7 @@ from lithobrake.smallbody.crossing import outermost
 from lithobrake.smallbody.grid import Grid
 from lithobrake.smallbody.mesh import closed_faces, mass_properties
 from lithobrake.smallbody.mesh_files import read_mesh
+from lithobrake.smallbody.multipole import Multipole
 from lithobrake.smallbody.nearest import heights, pseudonormals
 from lithobrake.smallbody.polyhedron import Polyhedron
 
@@ -47,6 +49,16 @@ class Shape:
     def polyhedron(self) -> Polyhedron:
         """The arrays of the gravity kernels."""
         return Polyhedron.of(self.vertices, self.faces)
+
+    @cached_property
+    def multipole(self) -> Multipole:
+        """The moments of the shape, and from where on they give its gravity."""
+        return Multipole.of(self.polyhedron, self.centroid)
+
+    @property
+    def gravity(self) -> tuple[Any, ...]:
+        """What the gravity kernels read."""
+        return self.polyhedron.arrays, self.multipole.arrays
 
     @cached_property
     def corners(self) -> NDArray[np.float64]:

@@ -9,32 +9,34 @@ from typing import Any
 import numpy as np
 
 from lithobrake.compiled import compiled
+from lithobrake.smallbody.attraction import attract, workspace
 from lithobrake.smallbody.dormand_prince import STAGES, interpolate, next_step, stage_state, step_error
 from lithobrake.smallbody.dormand_prince import along as along_curve
 from lithobrake.smallbody.impact import find_impact
 from lithobrake.smallbody.lanes import LANES
-from lithobrake.smallbody.polyhedron import PULL_X, ROWS, field_block
+from lithobrake.smallbody.polyhedron import PULL_X, ROWS
 
 FLYING, IMPACT, ESCAPED, FAILED = 0, 1, 2, 3
 
 
 @compiled
-def accelerate(state: Any, slope: Any, count: int, lane: Any, distance: Any, forces: Any) -> None:
-    """Write slope [6, lane] of state [6, lane] in the turning frame: gravity, centrifugal and Coriolis acceleration.
+def accelerate(state: Any, slope: Any, stage: int, count: int, lane: Any, scratch: Any, forces: Any) -> None:
+    """Write slope [stage, 6, lane] of state [6, lane] in the turning frame: gravity, centrifugal and Coriolis
+    acceleration.
 
-    forces: (polyhedron arrays, G density [1/s2], spin rate [rad/s]); lane and distance are scratch.
+    forces: (gravity arrays, G density [1/s2], spin rate [rad/s]); lane and scratch are overwritten.
     """
-    polyhedron, strength, spin = forces
+    gravity, strength, spin = forces
     for i in range(3):
         for j in range(count):
             lane[i * LANES + j] = state[i, j]
-    field_block(lane, count, distance, polyhedron)
+    attract(lane, count, scratch, gravity)
     for j in range(count):
         for i in range(3):
-            slope[i, j] = state[3 + i, j]
-            slope[3 + i, j] = strength * lane[(PULL_X + i) * LANES + j]
-        slope[3, j] += spin * (spin * state[0, j] + 2.0 * state[4, j])
-        slope[4, j] += spin * (spin * state[1, j] - 2.0 * state[3, j])
+            slope[stage, i, j] = state[3 + i, j]
+            slope[stage, 3 + i, j] = strength * lane[(PULL_X + i) * LANES + j]
+        slope[stage, 3, j] += spin * (spin * state[0, j] + 2.0 * state[4, j])
+        slope[stage, 4, j] += spin * (spin * state[1, j] - 2.0 * state[3, j])
 
 
 @compiled
@@ -57,10 +59,21 @@ def _move(state: Any, slope: Any, step: Any, clock: Any, flight: Any, source: in
 
 
 @compiled
-def _begin(starts: Any, f: int, state: Any, step: Any, clock: Any, flight: Any, j: int) -> None:
+def _begin(starts: Any, f: int, state: Any, slope: Any, step: Any, clock: Any, flight: Any, j: int) -> None:
     """Put flight f into lane j, at a step of zero: its first pass gives its first slope."""
     flight[j], clock[j], step[j] = f, 0.0, 0.0
-    state[:, j] = starts[f]
+    for i in range(6):
+        state[i, j] = starts[f, i]
+        # Zero times what another flight left here need not be zero.
+        for stage in range(STAGES):
+            slope[stage, i, j] = 0.0
+
+
+@compiled
+def _shift(slope: Any, j: int) -> None:
+    """The last slope of lane j's step is the first of its next."""
+    for i in range(6):
+        slope[0, i, j] = slope[6, i, j]
 
 
 @compiled
@@ -75,19 +88,19 @@ def fly_lanes(starts: Any, phase: Any, duration: float, forces: Any, ground: Any
     status, time, final, touched, steps = out
     state, end, slope = np.empty((6, LANES)), np.empty((6, LANES)), np.empty((STAGES, 6, LANES))
     step, clock, flight = np.empty(LANES), np.empty(LANES), np.empty(LANES, dtype=np.int64)
-    lane, distance, curve = np.zeros(ROWS * LANES), np.empty(len(forces[0][0]) * LANES), np.empty((5, 6))
+    lane, scratch, curve = np.zeros(ROWS * LANES), workspace(len(forces[0][0][0])), np.empty((5, 6))
     active = queued = 0
     for j in range(min(LANES, len(starts))):
-        _begin(starts, queued, state, step, clock, flight, j)
+        _begin(starts, queued, state, slope, step, clock, flight, j)
         active, queued = active + 1, queued + 1
     while active > 0:
         for stage in range(1, STAGES):
             stage_state(state, slope, step, stage, active, end)
-            accelerate(end, slope[stage], active, lane, distance, forces)
+            accelerate(end, slope, stage, active, lane, scratch, forces)
         for j in range(active - 1, -1, -1):
             f = flight[j]
             if step[j] == 0.0:
-                slope[0, :, j] = slope[6, :, j]
+                _shift(slope, j)
                 step[j] = min(first_step, duration)
                 continue
             steps[f] += 1
@@ -104,20 +117,21 @@ def fly_lanes(starts: Any, phase: Any, duration: float, forces: Any, ground: Any
                 status[f] = IMPACT if touched[f] >= 0 else FLYING
                 if status[f] == FLYING and has_escaped(end, j, parameter, forces[2], radius):
                     status[f] = ESCAPED
-                state[:, j], slope[0, :, j] = end[:, j], slope[6, :, j]
+                _shift(slope, j)
+                for i in range(6):
+                    state[i, j] = end[i, j]
                 clock[j] = duration if last else clock[j] + taken
                 step[j] = min(step[j], duration - clock[j])
                 if status[f] == FLYING and not last:
                     continue
             # The flight is over.
             time[f] = clock[j]
-            final[f] = state[:, j]
             if status[f] == IMPACT:
                 time[f] -= (1.0 - share) * taken
-                for i in range(6):
-                    final[f, i] = along_curve(curve, share, i)
+            for i in range(6):
+                final[f, i] = along_curve(curve, share, i) if status[f] == IMPACT else state[i, j]
             if queued < len(starts):
-                _begin(starts, queued, state, step, clock, flight, j)
+                _begin(starts, queued, state, slope, step, clock, flight, j)
                 queued += 1
             else:
                 active -= 1

@@ -104,6 +104,26 @@ def test_far_field_is_a_point_mass(block):
     assert block.acceleration(point) == pytest.approx(-point / r**3, rel=1e-6)
 
 
+@pytest.mark.parametrize("file", ["didymos_radar2020_1996.obj", "eros_7624.obj"])
+def test_series_takes_over_without_a_step_and_holds_far_out(shapes, file):
+    """Where the series begins it agrees with the facets to 1e-9; far out it keeps the digits that their sum loses."""
+    shape = Shape.read(shapes / file)
+    body = Body(shape, mass=1.0 / GRAVITATIONAL_CONSTANT, spin_period=math.inf)
+    series = shape.multipole
+    assert series.error < 1e-9
+    directions, _ = sphere_mesh(4)
+    inside = body.acceleration(shape.centroid + series.nearest * (1.0 - 1e-12) * directions)
+    outside = body.acceleration(shape.centroid + series.nearest * (1.0 + 1e-12) * directions)
+    assert np.linalg.norm(inside - outside, axis=1).max() < 1e-9 * np.linalg.norm(inside, axis=1).max()
+    for radii in (1e3, 1e6):
+        distance = radii * series.radius
+        potential = body.potential(shape.centroid + distance * directions)
+        assert np.abs(potential * distance - 1.0).max() < 1.0 / radii**2
+    # The moment of degree 0 is the volume, those of degree 1 vanish about the centroid.
+    assert series.real[0, 0] * series.radius**3 == pytest.approx(shape.volume, rel=1e-13)
+    assert np.abs(series.real[1]).max() < 1e-14
+
+
 def test_sphere_limit():
     """Facets to infinity: G M / r outside, linear inside; the error falls with the square of the facet size."""
     errors = []

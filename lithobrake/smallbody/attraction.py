@@ -1,0 +1,93 @@
+"""Gravity at points near and far in one call: the facets' sums near the body, the series beyond its radius."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lithobrake.compiled import compiled
+from lithobrake.smallbody.lanes import LANES, WIDTH
+from lithobrake.smallbody.multipole import SCRATCH, series_block
+from lithobrake.smallbody.polyhedron import ROWS, field_block
+
+
+@compiled
+def workspace(vertex_count: int) -> Any:
+    """Scratch of attract: the near points' block, the far points', their lanes, vertex distances, series."""
+    return (
+        np.zeros(ROWS * LANES),
+        np.zeros(ROWS * LANES),
+        np.empty(2 * LANES, dtype=np.int64),
+        np.empty(vertex_count * LANES),
+        np.zeros(SCRATCH),
+    )
+
+
+@compiled
+def _fill(block: Any, count: int) -> int:
+    """Repeat the first point up to a multiple of WIDTH points: points left over would be done one at a time."""
+    full = (count + WIDTH - 1) // WIDTH * WIDTH
+    for j in range(count, full):
+        for i in range(3):
+            block[i * LANES + j] = block[i * LANES]
+    return full
+
+
+@compiled
+def attract(lane: Any, count: int, scratch: Any, gravity: Any) -> None:
+    """Field of one block, as field_block: lane [ROWS * LANES], reads rows X, Y, Z of `count` points, writes the others.
+
+    gravity: (polyhedron arrays, multipole arrays); scratch: see workspace.
+    """
+    near, far, index, distance, series = scratch
+    polyhedron, multipole = gravity
+    centre, nearest = multipole[0], multipole[2]
+    near_count = far_count = 0
+    for j in range(count):
+        x, y, z = lane[j], lane[LANES + j], lane[2 * LANES + j]
+        square = (x - centre[0]) ** 2 + (y - centre[1]) ** 2 + (z - centre[2]) ** 2
+        if square < nearest * nearest:
+            near[near_count], near[LANES + near_count], near[2 * LANES + near_count] = x, y, z
+            index[near_count] = j
+            near_count += 1
+        else:
+            far[far_count], far[LANES + far_count], far[2 * LANES + far_count] = x, y, z
+            index[LANES + far_count] = j
+            far_count += 1
+    if near_count:
+        field_block(near, _fill(near, near_count), distance, polyhedron)
+        for k in range(near_count):
+            for row in range(3, ROWS):
+                lane[row * LANES + index[k]] = near[row * LANES + k]
+    if far_count:
+        series_block(far, _fill(far, far_count), series, multipole)
+        for k in range(far_count):
+            for row in range(3, ROWS):
+                lane[row * LANES + index[LANES + k]] = far[row * LANES + k]
+
+
+@compiled
+def _evaluate(points: Any, result: Any, gravity: Any) -> None:
+    """Field at many points, block by block."""
+    lane, scratch = np.zeros(ROWS * LANES), workspace(len(gravity[0][0]))
+    for start in range(0, len(points), LANES):
+        count = min(LANES, len(points) - start)
+        for j in range(count):
+            for i in range(3):
+                lane[i * LANES + j] = points[start + j, i]
+        attract(lane, count, scratch, gravity)
+        for j in range(count):
+            for i in range(5):
+                result[start + j, i] = lane[(3 + i) * LANES + j]
+            result[start + j, 3] *= 0.5
+
+
+def field(points: NDArray[np.float64], gravity: tuple[Any, ...]) -> NDArray[np.float64]:
+    """Field sums without the factor G density, at points [m], shape [count, 3].
+
+    Gives [count, 5]: acceleration x, y, z [m], potential (positive) [m2], and minus the Laplacian [1]: 4 pi inside,
+    0 outside, 2 pi on a facet.
+    """
+    result = np.empty((len(points), 5))
+    _evaluate(np.ascontiguousarray(points, dtype=np.float64), result, gravity)
+    return result

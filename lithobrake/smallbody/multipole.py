@@ -1,0 +1,218 @@
+"""Gravity far from a body as a series of solid harmonics, where the sums over facets lose their digits.
+
+Far away the facets' terms cancel to ever fewer digits, while a series needs ever fewer terms. Sources: Dehnen (2014), A
+fast multipole method for stellar dynamics, Computational Astrophysics and Cosmology 1, 1, appendix A (harmonics, their
+recursions and derivatives); Werner (1997), Spherical harmonic coefficients for the potential of a constant-density
+polyhedron, Computers and Geosciences 23, 1071-1077 (cones from the centre reduce the integrals to facets).
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lithobrake.compiled import compiled
+from lithobrake.smallbody.lanes import LANES
+from lithobrake.smallbody.polyhedron import DEPTH, PULL_X, PULL_Y, PULL_Z, Polyhedron
+
+DEGREE = 16
+LARGEST_ERROR = 1e-9  # of the acceleration, at the radius from which the series is used
+RADII = (1.15, 1.3, 1.5, 1.75, 2.0, 2.5, 3.0, 4.0, 6.0)  # tried as that radius, in radii of the body
+# Rows of scratch: position over the body's radius and 1/r**2, then harmonic of order m, the last two of rising degree.
+_X, _Y, _Z, _W, _DIAGONAL, _NEW, _OLD = 0, 1, 2, 3, 4, 6, 8
+SCRATCH = 10 * LANES
+
+
+@dataclass(frozen=True)
+class Multipole:
+    """Moments of a body of unit density about its centroid.
+
+    centre    centroid of the volume [m], [3]
+    radius    of the farthest vertex from it [m]
+    real, imaginary   moments over radius**3, [DEGREE + 2, DEGREE + 3], zero beyond order and degree
+    nearest   distance from the centre from which the series is used [m]
+    error     largest relative error of the acceleration found there
+    """
+
+    centre: NDArray[np.float64]
+    radius: float
+    real: NDArray[np.float64]
+    imaginary: NDArray[np.float64]
+    nearest: float
+    error: float
+
+    @classmethod
+    def of(cls, polyhedron: Polyhedron, centre: NDArray[np.float64]) -> "Multipole":
+        """Moments of a polyhedron, and the radius from which they are as good as the polyhedron itself."""
+        offset = polyhedron.vertices - centre
+        radius = float(np.linalg.norm(offset, axis=1).max())
+        corner = np.ascontiguousarray(offset[polyhedron.facet_corners] / radius)
+        node, weight = np.polynomial.legendre.leggauss(DEGREE // 2 + 2)
+        real, imaginary = np.zeros((DEGREE + 2, DEGREE + 3)), np.zeros((DEGREE + 2, DEGREE + 3))
+        _moments(corner, 0.5 * (node + 1.0), 0.5 * weight, real, imaginary)
+        for share in RADII:
+            trial = cls(centre, radius, real, imaginary, share * radius, 0.0)
+            error = trial._error(polyhedron)
+            if error < LARGEST_ERROR:
+                break
+        return cls(centre, radius, real, imaginary, share * radius, error)
+
+    @property
+    def arrays(self) -> tuple[Any, ...]:
+        """The numbers in the order in which kernels take them."""
+        return self.centre, self.radius, self.nearest, self.real, self.imaginary
+
+    def field(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+        """As Polyhedron.field (the Laplacian is zero), at points [m], shape [count, 3], outside the body's sphere."""
+        result = np.empty((len(points), 5))
+        _series(np.ascontiguousarray(points, dtype=np.float64), result, self.arrays)
+        return result
+
+    def _error(self, polyhedron: Polyhedron) -> float:
+        """Largest relative difference of the two accelerations over a sphere of the nearest radius."""
+        index = np.arange(400) + 0.5
+        height, turn = 1.0 - index / 200.0, np.pi * (1.0 + np.sqrt(5.0)) * index
+        across = np.sqrt(1.0 - height**2)
+        sphere = np.stack([across * np.cos(turn), across * np.sin(turn), height], axis=1)
+        points = self.centre + self.nearest * sphere
+        exact = polyhedron.field(points)[:, :3]
+        difference = np.linalg.norm(self.field(points)[:, :3] - exact, axis=1)
+        return float((difference / np.linalg.norm(exact, axis=1)).max())
+
+
+@compiled
+def _moments(corner: Any, node: Any, weight: Any, real: Any, imaginary: Any) -> None:
+    """Add to real and imaginary the moments: conjugate regular harmonics integrated over cones from the centre to
+    facets.
+
+    corner [facet_count, 3, 3] about the centre; node, weight: Gauss-Legendre on 0 to 1. A facet is a folded square;
+    along a cone a harmonic of degree n grows as the n-th power, which leaves the factor 1/(n + 3).
+    """
+    top = len(real) - 2
+    re, im = np.zeros((top + 1, top + 1)), np.zeros((top + 1, top + 1))
+    for f in range(len(corner)):
+        a, b, c = corner[f, 0], corner[f, 1], corner[f, 2]
+        six = (
+            a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0])
+        )
+        for p in range(len(node)):
+            for q in range(len(node)):
+                s, t = node[p], node[p] * node[q]
+                x = a[0] + s * (b[0] - a[0]) + t * (c[0] - b[0])
+                y = a[1] + s * (b[1] - a[1]) + t * (c[1] - b[1])
+                z = a[2] + s * (b[2] - a[2]) + t * (c[2] - b[2])
+                share = six * weight[p] * weight[q] * node[p]
+                _regular(x, y, z, re, im)
+                for n in range(top + 1):
+                    for m in range(n + 1):
+                        real[n, m] += share * re[n, m] / (n + 3.0)
+                        imaginary[n, m] -= share * im[n, m] / (n + 3.0)
+
+
+@compiled
+def _regular(x: float, y: float, z: float, re: Any, im: Any) -> None:
+    """Write the regular solid harmonics, real and imaginary [degree + 1, degree + 1]."""
+    square = x * x + y * y + z * z
+    for m in range(len(re)):
+        if m == 0:
+            re[0, 0], im[0, 0] = 1.0, 0.0
+        else:
+            re[m, m] = -(x * re[m - 1, m - 1] - y * im[m - 1, m - 1]) / (2.0 * m)
+            im[m, m] = -(x * im[m - 1, m - 1] + y * re[m - 1, m - 1]) / (2.0 * m)
+        for n in range(m + 1, len(re)):
+            below = (n - m) * (n + m)
+            re[n, m] = (2 * n - 1) * z * re[n - 1, m] / below
+            im[n, m] = (2 * n - 1) * z * im[n - 1, m] / below
+            if n > m + 1:
+                re[n, m] -= square * re[n - 2, m] / below
+                im[n, m] -= square * im[n - 2, m] / below
+
+
+@compiled
+def series_block(lane: Any, count: int, scratch: Any, multipole: Any) -> None:
+    """As field_block, by the series: reads the first three rows of lane, writes pull and depth. scratch [SCRATCH]."""
+    centre, radius, _, real, imaginary = multipole
+    for i in range(3):
+        for j in range(count):
+            scratch[(_X + i) * LANES + j] = (lane[i * LANES + j] - centre[i]) / radius
+    for j in range(count):
+        x, y, z = scratch[_X * LANES + j], scratch[_Y * LANES + j], scratch[_Z * LANES + j]
+        scratch[_W * LANES + j] = 1.0 / (x * x + y * y + z * z)
+        scratch[_DIAGONAL * LANES + j] = np.sqrt(scratch[_W * LANES + j])
+        scratch[(_DIAGONAL + 1) * LANES + j] = 0.0
+        lane[PULL_X * LANES + j] = lane[PULL_Y * LANES + j] = lane[PULL_Z * LANES + j] = lane[DEPTH * LANES + j] = 0.0
+    top = len(real) - 1
+    for m in range(top + 1):
+        if m > 0:
+            _raise_order(scratch, count, m)
+        for j in range(2 * LANES):
+            scratch[_NEW * LANES + j] = scratch[_DIAGONAL * LANES + j]
+            scratch[_OLD * LANES + j] = 0.0
+        for n in range(m, top + 1):
+            if n > m:
+                _raise_degree(scratch, count, n, m)
+            _add_harmonic(lane, count, scratch, n, m, real, imaginary)
+    for j in range(count):
+        for i in range(3):
+            lane[(PULL_X + i) * LANES + j] *= radius
+        # A block holds twice the potential.
+        lane[DEPTH * LANES + j] *= 2.0 * radius * radius
+
+
+@compiled
+def _raise_order(scratch: Any, count: int, m: int) -> None:
+    """Turn the harmonic of degree and order m - 1 into that of m."""
+    for j in range(count):
+        x, y, w = scratch[_X * LANES + j], scratch[_Y * LANES + j], scratch[_W * LANES + j]
+        re, im = scratch[_DIAGONAL * LANES + j], scratch[(_DIAGONAL + 1) * LANES + j]
+        scratch[_DIAGONAL * LANES + j] = -(2 * m - 1) * w * (x * re - y * im)
+        scratch[(_DIAGONAL + 1) * LANES + j] = -(2 * m - 1) * w * (x * im + y * re)
+
+
+@compiled
+def _raise_degree(scratch: Any, count: int, n: int, m: int) -> None:
+    """Turn the harmonics of degrees n - 1 (new) and n - 2 (old) into those of n and n - 1."""
+    ahead, back = 2.0 * n - 1.0, (n - 1.0) ** 2 - m * m
+    for j in range(count):
+        z, w = scratch[_Z * LANES + j], scratch[_W * LANES + j]
+        re, im = scratch[_NEW * LANES + j], scratch[(_NEW + 1) * LANES + j]
+        scratch[_NEW * LANES + j] = w * (ahead * z * re - back * scratch[_OLD * LANES + j])
+        scratch[(_NEW + 1) * LANES + j] = w * (ahead * z * im - back * scratch[(_OLD + 1) * LANES + j])
+        scratch[_OLD * LANES + j], scratch[(_OLD + 1) * LANES + j] = re, im
+
+
+@compiled
+def _add_harmonic(lane: Any, count: int, scratch: Any, n: int, m: int, real: Any, imaginary: Any) -> None:
+    """Add what the irregular harmonic (n, m) gives: potential of moment (n, m), pulls of moments of degree n - 1."""
+    weight = 1.0 if m == 0 else 2.0
+    a, b = weight * real[n, m], weight * imaginary[n, m]
+    c = d = e = f = g = h = 0.0
+    if n > 0:
+        c, d = weight * real[n - 1, m], weight * imaginary[n - 1, m]
+        g, h = real[n - 1, m + 1], imaginary[n - 1, m + 1]
+        if m > 0:
+            e, f = real[n - 1, m - 1], imaginary[n - 1, m - 1]
+    for j in range(count):
+        re, im = scratch[_NEW * LANES + j], scratch[(_NEW + 1) * LANES + j]
+        lane[DEPTH * LANES + j] += a * re - b * im
+        lane[PULL_Z * LANES + j] -= c * re - d * im
+        lane[PULL_X * LANES + j] += (e - g) * re - (f - h) * im
+        lane[PULL_Y * LANES + j] += (e + g) * im + (f + h) * re
+
+
+@compiled
+def _series(points: Any, result: Any, multipole: Any) -> None:
+    """Series at many points, block by block."""
+    lane, scratch = np.zeros(8 * LANES), np.zeros(SCRATCH)
+    for start in range(0, len(points), LANES):
+        count = min(LANES, len(points) - start)
+        for j in range(count):
+            for i in range(3):
+                lane[i * LANES + j] = points[start + j, i]
+        series_block(lane, count, scratch, multipole)
+        for j in range(count):
+            for i in range(3):
+                result[start + j, i] = lane[(PULL_X + i) * LANES + j]
+            result[start + j, 3] = 0.5 * lane[DEPTH * LANES + j]
+            result[start + j, 4] = 0.0
