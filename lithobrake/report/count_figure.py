@@ -63,7 +63,7 @@ def count_figure(
 
 def _end_label(axes: Axes, x: float, y: float, words: str, colour: NDArray[np.float64]) -> None:
     """Name a curve at its right end."""
-    axes.annotate(words, (x, y), xytext=(5, 0), textcoords="offset points", va="center", fontsize=7.5, color=colour)
+    axes.annotate(words, (x, y), xytext=(9, 0), textcoords="offset points", va="center", fontsize=7.5, color=colour)
 
 
 def _mark(left: Axes, right: Axes, designs: Sequence[Design]) -> None:

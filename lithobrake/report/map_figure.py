@@ -121,10 +121,11 @@ def _relief(axes: Axes, vertices: Array) -> None:
     lon, lat = np.meshgrid(np.arange(-180, 181, 1.5), np.arange(-90, 91, 1.5))
     grid = surface(lon, lat)
     light = matplotlib.colors.LightSource(azdeg=315, altdeg=40)
-    scale = np.ptp(grid) / 22.0 or 1.0
+    scale = np.ptp(grid) / 10.0 or 1.0
     shaded = light.hillshade(grid[::-1] / scale, dx=1.5, dy=1.5)[::-1]
     axes.imshow(
-        0.72 + 0.26 * shaded,
+        # Stretched between the darkest and the lightest slope, and kept pale so that the impacts stand out.
+        0.78 + 0.2 * (shaded - shaded.min()) / (np.ptp(shaded) or 1.0),
         extent=(-180, 180, -90, 90),
         origin="lower",
         cmap="gray",

@@ -2,11 +2,12 @@
 
 import math
 
-from lithobrake.report.look import PAPER_OUTPUTS, input_label, output
+from lithobrake.report.look import PAPER_OUTPUTS, output
 from lithobrake.report.page import number
 from lithobrake.report.results import Results
 
 PLAIN_SYMBOLS = {"speed_out": "V+", "elevation_out": "theta+", "spin_out": "omega+"}
+FIELD_WORDS = {"young_modulus": "Young's modulus", "poisson_ratio": "Poisson's ratio"}
 STATUS_WORDS = {
     "clear": "leaves the surface",
     "captured": "is captured",
@@ -15,16 +16,11 @@ STATUS_WORDS = {
 }
 
 
-def plain(label: str) -> str:
-    """A label of a figure without its mathematics."""
-    for mathematics, word in ((r"$\nu$", "nu"), (r"$\mu$", "mu"), (r"$\rho$", "rho"), ("$E$", "E"), ("$e$", "e")):
-        label = label.replace(mathematics, word)
-    return label.replace("$^3$", "3").replace("$^2$", "2")
-
-
 def input_words(name: str) -> str:
-    """An input in words, without unit."""
-    return plain(input_label(name, with_unit=False))
+    """An input in words, without unit: "restitution of the grains"."""
+    section, _, field = name.partition(".")
+    words = FIELD_WORDS.get(field, field.removesuffix("_deg").replace("_", " ").replace(".", " "))
+    return words + {"grain": " of the grains", "lander": " of the lander", "impact": " at impact"}.get(section, "")
 
 
 def listing(words: list[str]) -> str:

@@ -18,6 +18,7 @@ from lithobrake.report.map_figure import Share, map_figure
 from lithobrake.report.page import Panel, page
 from lithobrake.report.results import Results, read_results
 from lithobrake.report.scatter_figure import scatter_figure
+from lithobrake.report.sentences import hours
 from lithobrake.report.sobol_figure import sobol_figure
 from lithobrake.report.tables import FATE_WORDS, provenance, tables, tiles
 
@@ -122,9 +123,9 @@ def _outputs(data: Results, colour_name: str) -> "Figure | None":
 
 
 def _map(data: Results) -> "Figure":
-    table, site = data.results["shares"], data.results["site"]
+    table, site, limit = data.results["shares"], data.results["site"], hours(data.study["flight"]["duration"])
     shares = [
-        Share(words, table[key]["share"], table[key]["lower"], table[key]["upper"])
+        Share(words.format(hours=limit), table[key]["share"], table[key]["lower"], table[key]["upper"])
         for key, words in FATE_WORDS.items()
         if key != "remains"
     ]

@@ -30,12 +30,12 @@ DESIGN_WORDS = {
     "test_all": "test, all inputs vary",
 }
 FATE_WORDS = {
-    "impact": "down again",
-    "flying": "still flying",
+    "impact": "down again within {hours}",
+    "flying": "still flying after {hours}",
     "escaped": "escaped",
     "captured": "captured",
     "no_outward_velocity": "no outward velocity",
-    "remains": "captured, no outward velocity, or down again",
+    "remains": "captured, no outward velocity, or down again within {hours}",
 }
 
 
@@ -191,9 +191,14 @@ def _touchdowns(data: Results) -> Table:
 
 def _fates(data: Results) -> Table:
     shares: Mapping[str, Any] = data.results["shares"]
+    limit = hours(data.study["flight"]["duration"])
     columns = ["what became of the sample", "samples", "share", "95 % from", "to"]
     rows: Sequence[Sequence[str]] = [
-        [words, str(shares[key]["count"]), *(percent(shares[key][end], 2) for end in ("share", "lower", "upper"))]
+        [
+            words.format(hours=limit),
+            str(shares[key]["count"]),
+            *(percent(shares[key][end], 2) for end in ("share", "lower", "upper")),
+        ]
         for key, words in FATE_WORDS.items()
     ]
     note = f"Shares of {shares['sample_count']} samples; {shares['flight_count']} of them were flown."
