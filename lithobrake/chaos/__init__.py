@@ -3,6 +3,7 @@
 from lithobrake.chaos.basis import condition_number
 from lithobrake.chaos.bounded import Beta, LogUniform, Uniform
 from lithobrake.chaos.computed import Empirical, TruncatedNormal
+from lithobrake.chaos.dependence import DependentSurrogate, GaussianCopula, fit_dependent
 from lithobrake.chaos.design import latin_hypercube, sobol_sequence, tensor_count, tensor_grid
 from lithobrake.chaos.exploration import (
     density,
@@ -18,10 +19,11 @@ from lithobrake.chaos.fitting import fit
 from lithobrake.chaos.germ import Distribution
 from lithobrake.chaos.kinds import distribution
 from lithobrake.chaos.noise import replicates
-from lithobrake.chaos.optimal import christoffel, christoffel_weights, fekete
+from lithobrake.chaos.optimal import christoffel, christoffel_weights, d_optimal, fekete
 from lithobrake.chaos.resampling import score_intervals, sobol_intervals
 from lithobrake.chaos.scores import absolute_percentage_error
 from lithobrake.chaos.sparse_grid import smolyak, smolyak_count
+from lithobrake.chaos.stochastic import StochasticSurrogate, fit_stochastic
 from lithobrake.chaos.storage import load
 from lithobrake.chaos.surrogate import Surrogate
 from lithobrake.chaos.terms import multi_index_set, term_count
@@ -29,13 +31,16 @@ from lithobrake.chaos.unbounded import Exponential, Gamma, LogNormal, Normal
 
 __all__ = [
     "Beta",
+    "DependentSurrogate",
     "Distribution",
     "Empirical",
     "Exponential",
     "Gamma",
+    "GaussianCopula",
     "LogNormal",
     "LogUniform",
     "Normal",
+    "StochasticSurrogate",
     "Surrogate",
     "TruncatedNormal",
     "Uniform",
@@ -43,10 +48,13 @@ __all__ = [
     "christoffel",
     "christoffel_weights",
     "condition_number",
+    "d_optimal",
     "density",
     "distribution",
     "fekete",
     "fit",
+    "fit_dependent",
+    "fit_stochastic",
     "gradient",
     "latin_hypercube",
     "load",

@@ -35,6 +35,9 @@ class Uniform(Distribution):
     def ppf(self, u: ArrayLike) -> Array:
         return self._clip(self.lower + np.asarray(u, dtype=float) * (self.upper - self.lower))
 
+    def cdf(self, x: Array) -> Array:
+        return 0.5 * (1.0 + self.germ(x))
+
     def slope(self, x: Array) -> Array:
         return np.full_like(x, 2.0 / (self.upper - self.lower))
 
@@ -73,6 +76,9 @@ class LogUniform(Distribution):
     def ppf(self, u: ArrayLike) -> Array:
         return self.physical(2.0 * np.asarray(u, dtype=float) - 1.0)
 
+    def cdf(self, x: Array) -> Array:
+        return 0.5 * (1.0 + self.germ(x))
+
     def slope(self, x: Array) -> Array:
         low, high = self._logarithms
         return 2.0 / ((high - low) * x)
@@ -109,6 +115,9 @@ class Beta(Distribution):
     def ppf(self, u: ArrayLike) -> Array:
         share = special.betaincinv(self.alpha, self.beta, np.asarray(u, dtype=float))
         return self._clip(self.lower + share * (self.upper - self.lower))
+
+    def cdf(self, x: Array) -> Array:
+        return special.betainc(self.alpha, self.beta, 0.5 * (1.0 + self.germ(x)))
 
     def slope(self, x: Array) -> Array:
         return np.full_like(x, 2.0 / (self.upper - self.lower))

@@ -77,6 +77,17 @@ class TruncatedNormal(Distribution):
             )
         return self._clip(self.mean + self.std * sign * special.ndtri_exp(logarithm))
 
+    def cdf(self, x: Array) -> Array:
+        low, high = (self.lower - self.mean) / self.std, (self.upper - self.mean) / self.std
+        z, sign = (np.asarray(x) - self.mean) / self.std, 1.0
+        # Differences of tails keep their digits only on the left side of the normal.
+        if low + high > 0.0:
+            low, high, z, sign = -high, -low, -z, -1.0
+        start, end = special.log_ndtr(low), special.log_ndtr(high)
+        share = np.expm1(special.log_ndtr(z) - start) / np.expm1(end - start) if np.isfinite(start) else None
+        share = np.exp(special.log_ndtr(z) - end) if share is None else share
+        return share if sign > 0.0 else 1.0 - share
+
     def slope(self, x: Array) -> Array:
         return np.full_like(x, 1.0 / self._frame[1])
 
@@ -129,6 +140,12 @@ class Empirical(Distribution):
         count = len(self.samples)
         place = np.ceil(np.asarray(u, dtype=float) * count).astype(int) - 1
         return self._sorted[np.clip(place, 0, count - 1)]
+
+    def cdf(self, x: Array) -> Array:
+        # The middle of the step, so that no value has probability 0 or 1.
+        below, upto = (np.searchsorted(self._sorted, x, side=side) for side in ("left", "right"))
+        count = len(self.samples)
+        return np.clip(0.5 * (below + upto) / count, 0.5 / count, 1.0 - 0.5 / count)
 
     def slope(self, x: Array) -> Array:
         return np.full_like(x, 2.0 / (self.samples[-1] - self.samples[0]))

@@ -29,7 +29,8 @@ class Process:
     """A learnt Gaussian process of one output, standardised as (y - shift) / scale.
 
     theta: log parameters; noise: nugget variance, as a share of scale**2; weights [count]: K**-1 y;
-    leave_one_out [count]: error at each point predicted from the others, in the unit of the output.
+    leave_one_out [count]: error at each point predicted from the others (equal runs left out together), in the unit of
+    the output.
     """
 
     covariance: Covariance
@@ -80,7 +81,10 @@ def learn(training: Training, output: int, family: type[Covariance]) -> Process:
     lower, noise = _factor(covariance.between(theta, germs, germs), noise)
     weights = cho_solve((lower, True), z)
     inverse = cho_solve((lower, True), np.eye(len(z)))
-    return Process(covariance, theta, noise, weights, germs, scale * weights / np.diag(inverse), shift, scale)
+    errors = weights / np.diag(inverse)
+    for rows in training.groups:
+        errors[rows] = np.linalg.solve(inverse[np.ix_(rows, rows)], weights[rows])
+    return Process(covariance, theta, noise, weights, germs, scale * errors, shift, scale)
 
 
 def _factor(matrix: Array, noise: float) -> tuple[Array, float]:

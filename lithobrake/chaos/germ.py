@@ -38,6 +38,10 @@ class Distribution(ABC):
         """Quantiles at probabilities u [any shape], 0 <= u <= 1."""
 
     @abstractmethod
+    def cdf(self, x: Array) -> Array:
+        """Probabilities of not exceeding values x [any shape] inside the support."""
+
+    @abstractmethod
     def recurrence(self, degree: int) -> Recurrence:
         """Polynomials in the germ, orthonormal in this distribution, up to a degree."""
 

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from lithobrake.chaos.polynomials import Array
 from lithobrake.chaos.terms import Indices
@@ -15,17 +16,29 @@ RANK_TOLERANCE = 1e-10
 
 @dataclass(frozen=True)
 class LeastSquares:
-    """coefficients [term_count, output_count]; leverage [count]; residuals [count, output_count]; condition number."""
+    """coefficients [term_count, output_count]; orthogonal factor [count, term_count]; residuals; condition number."""
 
     coefficients: Array
-    leverage: Array
+    orthogonal: Array
     residuals: Array
     condition: float
 
-    @property
-    def leave_one_out(self) -> Array:
-        """Error at each point of the fit without that point, [count, output_count]. Source: Allen, 1974 (PRESS)."""
-        return self.residuals / np.maximum(1.0 - self.leverage, np.finfo(float).eps)[:, None]
+    def left_out(self, groups: Sequence[NDArray[np.int64]]) -> Array:
+        """Error at each point of the fit without it (or without its group of rows), [count, output_count].
+
+        Source: Allen, 1974 (PRESS); Cook and Weisberg, 1982, section 3.6 (groups).
+        """
+        if not groups:
+            leverage = np.einsum("ij,ij->i", self.orthogonal, self.orthogonal)
+            return self.residuals / np.maximum(1.0 - leverage, np.finfo(float).eps)[:, None]
+        errors = np.empty_like(self.residuals)
+        for rows in groups:
+            part = self.orthogonal[rows]
+            # A group that alone determines a direction leaves nothing to predict it by: the pseudo-inverse says 0
+            # there, as far as rounding lets it.
+            own = np.eye(len(rows)) - part @ part.T
+            errors[rows] = np.linalg.pinv(own, rcond=1e-12, hermitian=True) @ self.residuals[rows]
+        return errors
 
 
 def term_name(index: Sequence[int], names: Sequence[str]) -> str:
@@ -63,5 +76,4 @@ def least_squares(
     coefficients = np.empty((term_count, y.shape[1]))
     coefficients[order] = solve_triangular(triangle, orthogonal.T @ (y * root[:, None]), check_finite=False)
     residuals = y - matrix @ coefficients
-    leverage = np.einsum("ij,ij->i", orthogonal, orthogonal)
-    return LeastSquares(coefficients, leverage, residuals, float(values[0] / values[-1]))
+    return LeastSquares(coefficients, orthogonal, residuals, float(values[0] / values[-1]))

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from lithobrake.chaos.basis import basis_matrix, points_of
 from lithobrake.chaos.design import checked_count
@@ -100,3 +101,48 @@ def _pivoted_choice(matrix: Array, wanted: int) -> Array:
         chosen.extend(left[take].tolist())
         left = np.delete(left, take)
     return np.array(chosen)
+
+
+def d_optimal(
+    inputs: Mapping[str, Distribution],
+    count: int,
+    *,
+    degree: int,
+    existing: ArrayLike | None = None,
+    candidates: ArrayLike | None = None,
+    seed: int = 0,
+) -> Array:
+    """Choose `count` new points for the total-degree basis one by one, each where the fit knows least; physical units.
+
+    existing: points already run [any, input_count], which the new ones complete. candidates: points to choose from
+    (each at most once), None is Christoffel-weighted random ones. The determinant of the information matrix grows as
+    fast as one point at a time can make it. Result [count, input_count]. Raises ValueError for too few candidates.
+    Source: Fedorov, 1972, "Theory of Optimal Experiments" (greedy exchange of D-optimality).
+    """
+    distributions = checked_inputs(inputs)
+    indices = multi_index_set(len(distributions), degree)
+    wanted = checked_count(count)
+    if candidates is None:
+        pool = christoffel(
+            distributions, CANDIDATES_PER_TERM * max(len(indices), wanted), degree=max(degree, 1), seed=seed
+        )
+    else:
+        pool = points_of(distributions, candidates)
+    if len(pool) < wanted:
+        raise ValueError(f"{wanted} points are wanted, but there are only {len(pool)} candidates: give more")
+    rows = basis_matrix(distributions, indices, pool)
+    # A faint prior makes the first choices well defined before the basis is determined.
+    inverse = 1e8 * np.eye(len(indices))
+    if existing is not None:
+        old = basis_matrix(distributions, indices, points_of(distributions, existing))
+        inverse = np.asarray(np.linalg.inv(1e-8 * np.eye(len(indices)) + old.T @ old), dtype=np.float64)
+    gain = np.einsum("ij,jk,ik->i", rows, inverse, rows, optimize=True)
+    chosen: list[int] = []
+    for _ in range(wanted):
+        best = int(np.argmax(gain))
+        chosen.append(best)
+        step = inverse @ rows[best] / np.sqrt(1.0 + rows[best] @ inverse @ rows[best])
+        inverse -= np.outer(step, step)
+        gain = gain - (rows @ step) ** 2
+        gain[chosen] = -np.inf
+    return pool[chosen]

@@ -16,7 +16,7 @@ def solve_ols(training: Training, indices: Indices) -> list[Solution]:
     matrix = basis_matrix(training.inputs, indices, training.x)
     names = list(training.inputs)
     solved = least_squares(matrix, training.y, indices=indices, names=names, weights=training.weights)
-    errors = np.sqrt(np.mean(solved.leave_one_out**2, axis=0))
+    errors = np.sqrt(np.mean(solved.left_out(training.groups) ** 2, axis=0))
     facts = {"condition_number": solved.condition}
     # As many terms as points leave no point to judge by: the spread of the output is then the honest guess.
     if len(indices) == training.count:

@@ -30,7 +30,8 @@ def is_structured(x: Array) -> bool:
 
     Folds of a grid leave out whole faces, so their error is that of extrapolation.
     """
-    shares = [len(np.unique(column)) / len(column) for column in x.T]
+    distinct = np.unique(x, axis=0)
+    shares = [len(np.unique(column)) / len(column) for column in distinct.T]
     return len(x) > 4 and float(np.median(shares)) < 1.0 / 3.0
 
 
@@ -41,7 +42,7 @@ def solve_sparse(training: Training, output: int, method: str, *, degree: int | 
     """
     y = training.y[:, output]
     grid = is_structured(training.x)
-    folds = [] if grid else _folds(training.count)
+    folds = [] if grid else _folds(training)
     best: tuple[float, int, Indices] | None = None
     for ladder in _candidate_ladders(training, degree, q_norm):
         idle, lowest = 0, np.inf
@@ -80,10 +81,12 @@ def _candidate_ladders(training: Training, degree: int | None, q_norm: float | N
     return ladders
 
 
-def _folds(count: int) -> list[Rows]:
-    """Rows left out in each fold: the same for every candidate, random but fixed."""
-    order = np.random.default_rng(0).permutation(count)
-    return [np.sort(part) for part in np.array_split(order, min(FOLDS, count))]
+def _folds(training: Training) -> list[Rows]:
+    """Rows left out in each fold: the same for every candidate, random but fixed, equal runs together."""
+    groups = training.groups or [np.array([row]) for row in range(training.count)]
+    order = np.random.default_rng(0).permutation(len(groups))
+    parts = np.array_split(order, min(FOLDS, len(groups)))
+    return [np.sort(np.concatenate([groups[k] for k in part])) for part in parts]
 
 
 def _order(matrix: Array, y: Array, method: str) -> Rows:

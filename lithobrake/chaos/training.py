@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -25,6 +26,18 @@ class Training:
     output_names: list[str]
     one_dimensional: bool
     dropped_count: int
+
+    @cached_property
+    def groups(self) -> list[NDArray[np.int64]]:
+        """Rows of equal inputs, where any occur more than once: left out together when an error is estimated.
+
+        Leaving out one of several equal runs would only ask how well its twins predict it.
+        """
+        _, first, group = np.unique(self.x, axis=0, return_index=True, return_inverse=True)
+        if len(first) == len(self.x):
+            return []
+        order = np.argsort(group.ravel(), kind="stable")
+        return np.split(order, np.cumsum(np.bincount(group.ravel()))[:-1])
 
     @property
     def count(self) -> int:

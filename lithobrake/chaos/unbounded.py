@@ -35,6 +35,9 @@ class Normal(Distribution):
     def ppf(self, u: ArrayLike) -> Array:
         return self.physical(special.ndtri(np.asarray(u, dtype=float)))
 
+    def cdf(self, x: Array) -> Array:
+        return special.ndtr(self.germ(x))
+
     def slope(self, x: Array) -> Array:
         return np.full_like(x, 1.0 / self.std)
 
@@ -66,6 +69,9 @@ class LogNormal(Distribution):
 
     def ppf(self, u: ArrayLike) -> Array:
         return self.physical(special.ndtri(np.asarray(u, dtype=float)))
+
+    def cdf(self, x: Array) -> Array:
+        return special.ndtr(self.germ(x))
 
     def slope(self, x: Array) -> Array:
         return 1.0 / (self.std * x)
@@ -99,6 +105,9 @@ class Gamma(Distribution):
     def ppf(self, u: ArrayLike) -> Array:
         return self.scale * special.gammaincinv(self.shape, np.asarray(u, dtype=float))
 
+    def cdf(self, x: Array) -> Array:
+        return special.gammainc(self.shape, self.germ(x))
+
     def slope(self, x: Array) -> Array:
         return np.full_like(x, 1.0 / self.scale)
 
@@ -128,6 +137,9 @@ class Exponential(Distribution):
 
     def ppf(self, u: ArrayLike) -> Array:
         return -np.log1p(-np.asarray(u, dtype=float)) / self.rate
+
+    def cdf(self, x: Array) -> Array:
+        return -np.expm1(-self.germ(x))
 
     def slope(self, x: Array) -> Array:
         return np.full_like(x, self.rate)

@@ -1,0 +1,65 @@
+"""Outputs that scatter between equal runs: mean and logarithm of the variance, both as expansions of the inputs."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy import special
+
+from lithobrake.chaos.fitting import fit
+from lithobrake.chaos.germ import Distribution
+from lithobrake.chaos.noise import replicates
+from lithobrake.chaos.polynomials import Array
+from lithobrake.chaos.surrogate import Surrogate
+from lithobrake.chaos.training import checked_training
+
+
+@dataclass(frozen=True)
+class StochasticSurrogate:
+    """mean and log_variance (of the scatter) as expansions; correlation of the scatter [output_count, output_count]."""
+
+    mean: Surrogate
+    log_variance: Surrogate
+    correlation: Array
+
+    def scatter_std(self, x: ArrayLike) -> Array:
+        """Standard deviation between equal runs at points x, [count, output_count] or [count]."""
+        return np.exp(0.5 * self.log_variance(x))
+
+    def sample(self, x: ArrayLike, *, seed: int = 0) -> Array:
+        """One random run at each point x [count, input_count], outputs drawn jointly, [count, output_count] or [count].
+
+        The scatter is taken as normal around the mean.
+        """
+        mean, std = np.asarray(self.mean(x)), self.scatter_std(x)
+        values, vectors = np.linalg.eigh(self.correlation)
+        root = vectors * np.sqrt(np.maximum(values, 0.0))
+        draws = np.random.default_rng(seed).normal(size=(len(mean), len(root))) @ root.T
+        return mean + std * draws.reshape(mean.shape)
+
+
+def fit_stochastic(
+    inputs: Mapping[str, Distribution], x: ArrayLike, y: ArrayLike, *, output_names: Sequence[str] | None = None
+) -> StochasticSurrogate:
+    """Fit mean and scatter from runs of which groups have equal inputs (other seeds), arguments as in `fit`.
+
+    The logarithm of a sample variance is too low on average by a known amount, which is added; groups of at least
+    two runs enter. Raises ValueError without repeated points, or for an output that does not scatter.
+    Source: Bartlett and Kendall, 1946 (logarithm of a variance); Zhu and Sudret, 2020 (stochastic expansions).
+    """
+    training = checked_training(inputs, x, y, output_names=output_names)
+    pooled = replicates(training.x, training.y)
+    if pooled is None:
+        raise ValueError("no point occurs twice, so scatter cannot be told from shape: repeat some runs with new seeds")
+    usable = (pooled.variances > 0.0).all(axis=1)
+    if not usable.any():
+        raise ValueError("equal runs gave equal outputs, so there is no scatter to model: use fit")
+    freedom = (pooled.sizes[usable] - 1) / 2.0
+    bias = special.digamma(freedom) - np.log(freedom)
+    logarithm = np.log(pooled.variances[usable]) - bias[:, None]
+    names = training.output_names
+    mean = fit(inputs, training.x, training.y, output_names=names)
+    spread = fit(inputs, pooled.points[usable], logarithm, method="ols", output_names=names)
+    mean.one_dimensional = spread.one_dimensional = training.one_dimensional
+    return StochasticSurrogate(mean, spread, pooled.correlation)
