@@ -43,6 +43,7 @@ class Bodies(NamedTuple):
     velocity_predicted: Floats  # [body_count, 3], m/s, at the instant of the positions
     spin_predicted: Floats  # [body_count, 3], rad/s, at the instant of the positions
     position_listed: Floats  # [body_count, 3], where the neighbour list was made
+    travel: Floats  # [body_count], m, a bound on the way that any point of the body has gone so far
 
 
 class Planes(NamedTuple):
@@ -59,11 +60,12 @@ class Pairs(NamedTuple):
 
     first: Integers  # [pair_count]
     second: Integers  # [pair_count]
-    overlap: Floats  # [pair_count], m; 0 where apart
+    wake: Floats  # [pair_count], m: cannot touch before the travels of both add up to this
+    overlap: Floats  # [pair_count], m, effective; 0 where apart
     normal: Floats  # [pair_count, 3], unit, from first to second
-    point: Floats  # [pair_count, 3]
+    point: Floats  # [pair_count, 3], centre of pressure
     normal_force: Floats  # [pair_count], N
-    elastic_force: Floats  # [pair_count], N, the elastic part of it
+    elastic_force: Floats  # [pair_count], N, derivative of the elastic energy by the overlap
     spring: Floats  # [pair_count, 3], N, tangential spring force on second
     tangential_force: Floats  # [pair_count, 3], N, spring and dashpot on second
     tangential_stiffness: Floats  # [pair_count], N/m

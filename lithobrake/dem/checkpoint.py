@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from lithobrake.dem.world import World
 
 FORMAT_VERSION = 1
-MOVING = ("force", "torque", "half_spin", "position_listed")
+MOVING = ("force", "torque", "half_spin", "position_listed", "travel")
 
 
 def _shape_text(shape: Shape) -> str:

@@ -23,7 +23,7 @@ APART, CLOSE, CROSSING = 0, 1, 2
 
 
 class Search(NamedTuple):
-    """Scratch of one thread: the simplex while it is being sought, and the second core in the first body's frame."""
+    """Scratch of one thread: a simplex while it is sought, a core in another body's frame, the points of a contact."""
 
     on_first: Floats  # [4, 3]
     on_second: Floats  # [4, 3]
@@ -32,6 +32,9 @@ class Search(NamedTuple):
     weight: Floats  # [4]
     turned: Floats  # [edge_count_max + vertex_count_max, 12]
     relative: Floats  # [1, 3, 3]
+    point: Floats  # [vertex_count_max, 3]
+    depth: Floats  # [vertex_count_max], overlap at the point
+    share: Floats  # [vertex_count_max], of the elastic force
 
 
 def search_for(vertex_count_max: int, edge_count_max: int) -> Search:
@@ -39,6 +42,7 @@ def search_for(vertex_count_max: int, edge_count_max: int) -> Search:
     return Search(
         np.zeros((4, 3)), np.zeros((4, 3)), np.zeros((4, 3)), np.zeros((4, 2), dtype=np.int64), np.zeros(4),
         np.zeros((edge_count_max + vertex_count_max, 12)), np.zeros((1, 3, 3)),
+        np.zeros((vertex_count_max, 3)), np.zeros(vertex_count_max), np.zeros(vertex_count_max),
     )  # fmt: skip
 
 
@@ -107,11 +111,11 @@ def approach(
     bodies: tuple[int, int],
     apart: Vector,
     margin: float,
-) -> tuple[int, int]:
+) -> tuple[int, int, float]:
     """Improve the simplex of `count` named corners until it carries the closest points of the cores.
 
-    Returns what was found (APART: farther than the margin; CLOSE: within it, points in `search`; CROSSING) and the
-    number of corners.
+    Returns what was found (APART: farther than the margin; CLOSE: points in `search`; CROSSING), the number of corners,
+    and a lower bound of the distance where they are apart.
     """
     for k in range(count):
         place(search, k, cores, shapes, rotation, bodies, apart)
@@ -123,21 +127,21 @@ def approach(
         for k in range(count):
             size = max(size, dot(row(search.difference, k), row(search.difference, k)))
         if count == 4 or square <= TOUCHING * TOUCHING * size:
-            return CROSSING, count
+            return CROSSING, count, 0.0
         backward = scaled(-1.0, closest)
         name_first = support(cores, shapes[0], transposed_times(rotation, bodies[0], backward))
         name_second = support(cores, shapes[1], transposed_times(rotation, bodies[1], closest))
         for k in range(count):
             if search.names[k, 0] == name_first and search.names[k, 1] == name_second:
-                return CLOSE, count
+                return CLOSE, count, 0.0
         search.names[count, 0], search.names[count, 1] = name_first, name_second
         place(search, count, cores, shapes, rotation, bodies, apart)
         bound = dot(closest, row(search.difference, count))
         if bound > 0.0 and bound * bound > margin * margin * square:
-            return APART, count
+            return APART, count, bound / square**0.5
         if square - bound <= CONVERGED * square:
-            return CLOSE, count
+            return CLOSE, count, 0.0
         count, closer = reduce_simplex(search, count + 1, square)
         if not closer:
-            return CLOSE, count
-    return CLOSE, count
+            return CLOSE, count, 0.0
+    return CLOSE, count, 0.0

@@ -89,6 +89,9 @@ def drift(bodies: Bodies, step: Step) -> float:
     for body in range(len(bodies.mass)):
         add(bodies.position, body, step.time_step, row(bodies.velocity, body))
         rotate(body, bodies, step.time_step)
+        velocity, spin = row(bodies.velocity, body), row(bodies.half_spin, body)
+        way = dot(velocity, velocity) ** 0.5 + bodies.bounding_radius[body] * dot(spin, spin) ** 0.5
+        bodies.travel[body] += step.time_step * way
         gain = scaled(half / bodies.mass[body], row(bodies.force, body))
         predicted = plus(row(bodies.velocity, body), plus(gain, scaled(half, step.gravity)))
         put(bodies.velocity_predicted, body, predicted)

@@ -53,7 +53,7 @@ def pairs_of(first: Integers, second: Integers) -> Pairs:
     """Return pairs without any history."""
     n = len(first)
     return Pairs(
-        first=first, second=second, overlap=np.zeros(n), normal=np.zeros((n, 3)), point=np.zeros((n, 3)),
+        first=first, second=second, wake=np.zeros(n), overlap=np.zeros(n), normal=np.zeros((n, 3)), point=np.zeros((n, 3)),
         normal_force=np.zeros(n), elastic_force=np.zeros(n), spring=np.zeros((n, 3)), tangential_force=np.zeros((n, 3)),
         tangential_stiffness=np.zeros(n), simplex=np.zeros((n, 7), dtype=np.int64),
     )  # fmt: skip

@@ -271,6 +271,7 @@ class World:
         self._search: Search = search_for(vertex_max, int(np.diff(self._cores.edge_start).max()))
         self._skin = SKIN * float(self._arrays.bounding_radius.min())
         self._list_neighbours()
+        self._pairs.wake[:] = 0.0
         self._arrays.velocity_predicted[:] = self._arrays.velocity
         self._arrays.spin_predicted[:] = self.spin
         self._arrays.half_spin[:] = self.spin

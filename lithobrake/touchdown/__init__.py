@@ -2,6 +2,12 @@
 
 from lithobrake.touchdown.bed import Bed, ContactModel
 from lithobrake.touchdown.grains import GrainSizes
+from lithobrake.touchdown.lander import Lander, read_hull
+from lithobrake.touchdown.landing import Landing, land
+from lithobrake.touchdown.outcome import FATES, OUTPUTS, Outcome
 from lithobrake.touchdown.pouring import BedRecipe, pour_bed
 
-__all__ = ["Bed", "BedRecipe", "ContactModel", "GrainSizes", "pour_bed"]
+__all__ = [
+    "FATES", "OUTPUTS", "Bed", "BedRecipe", "ContactModel", "GrainSizes", "Lander", "Landing", "Outcome", "land",
+    "pour_bed", "read_hull",
+]  # fmt: skip

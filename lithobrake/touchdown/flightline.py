@@ -1,0 +1,114 @@
+"""Watching one landing: when it is over, and what is to be told of it."""
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lithobrake.dem import World
+from lithobrake.touchdown.bed import Bed
+from lithobrake.touchdown.lander import Lander
+from lithobrake.touchdown.outcome import Outcome, outgoing
+from lithobrake.touchdown.surface import rotation_matrix
+
+if TYPE_CHECKING:
+    from lithobrake.touchdown.landing import Landing
+
+Floats = NDArray[np.float64]
+CAPTURED_ENERGY = 1e-4  # of the energy of impact
+CAPTURED_APEX = 0.5  # of the lander's smallest edge
+# A lander that turns round passes through rest: only rest that lasts for so many of the shortest contacts is capture.
+CAPTURED_CONTACTS = 10.0
+
+
+class FlightLine:
+    """The lander's way, looked at every few steps."""
+
+    def __init__(
+        self, bed: Bed, lander: Lander, landing: "Landing", world: World, number: int, frame_count: int
+    ) -> None:
+        self.bed, self.lander, self.landing, self.world, self.number = bed, lander, landing, world, number
+        self.start_time = world.time
+        self.start_energy = self.energy()
+        self.clear_height = bed.surface_top + bed.grain_diameter
+        self.fate: str | None = None
+        self.height_at_contact: float | None = None
+        self.lowest = self.height()
+        self.still_since: float | None = None
+        self.frame_count, self.stride, self.looks = frame_count, 1, 0
+        self.frames: list[tuple[float, Floats, Floats]] = []
+        self.keep_frame()
+
+    def energy(self) -> float:
+        """Return the lander's kinetic energy [J]."""
+        velocity, k = self.world.velocity[self.number], self.number
+        turning = self.world.spin[k] @ self.world.angular_momentum[k]
+        return 0.5 * float(self.lander.mass * velocity @ velocity + turning)
+
+    def height(self) -> float:
+        """Return the height of the lander's lowest point [m]."""
+        rotation = rotation_matrix(self.world.orientation[self.number])
+        return self.lander.lowest(self.world.position[self.number], rotation)
+
+    def look(self) -> None:
+        """Take note of the lander, and settle its fate if it can be settled."""
+        height, touched = self.height(), self.world.watched
+        if touched["first_contact"] > 0.0 and self.height_at_contact is None:
+            self.height_at_contact = self.lowest
+        self.lowest = min(self.lowest, height)
+        self.looks += 1
+        self.keep_frame()
+        self.fate = self.judge(height, touched["first_contact"] > 0.0)
+
+    def judge(self, height: float, has_touched: bool) -> str | None:
+        """Return the fate of the lander, or None while it is open."""
+        world, k = self.world, self.number
+        position, velocity = world.position[k], world.velocity[k]
+        if abs(position[0]) > 0.5 * self.bed.width[0] or abs(position[1]) > 0.5 * self.bed.width[1]:
+            return "left_sideways"
+        free = not np.any(world.contact_force[k])
+        if has_touched and free and velocity[2] > 0.0:
+            if height > self.clear_height:
+                return "clear"
+            if velocity[2] ** 2 < -2.0 * world.gravity[2] * CAPTURED_APEX * self.lander.smallest_edge:
+                return "captured"
+        if has_touched and self.energy() < CAPTURED_ENERGY * self.start_energy:
+            self.still_since = world.time if self.still_since is None else self.still_since
+            patience = CAPTURED_CONTACTS * self.landing.contact.steps_per_contact * world.time_step
+            if world.time - self.still_since > patience:
+                return "captured"
+        else:
+            self.still_since = None
+        return "time_limit" if world.time - self.start_time >= self.landing.time_limit else None
+
+    def keep_frame(self) -> None:
+        """Keep a frame now and then: never more than twice those asked for, evenly spread over the whole landing."""
+        if self.frame_count == 0 or self.looks % self.stride:
+            return
+        self.frames.append((self.world.time - self.start_time, self.world.position, self.world.orientation))
+        if len(self.frames) == 2 * self.frame_count:
+            self.frames, self.stride = self.frames[::2], 2 * self.stride
+
+    def outcome(self) -> Outcome:
+        """Return what came of the landing."""
+        world, k, watched = self.world, self.number, self.world.watched
+        assert self.fate is not None
+        left = self.fate == "clear"
+        outputs = outgoing(world.velocity[k], world.spin[k], self.landing.azimuth, left)
+        touched = watched["first_contact"] > 0.0
+        steps = watched["last_contact"] - watched["first_contact"] + 1.0 if touched else 0.0
+        outputs["contact_duration"] = steps * world.time_step
+        outputs["penetration"] = 0.0 if self.height_at_contact is None else self.height_at_contact - self.lowest
+        outputs["peak_acceleration"] = watched["peak_force"] / self.lander.mass
+        outputs["energy_lost"] = self.start_energy - self.energy()
+        frames = None
+        if self.frame_count:
+            frames = {
+                "time": np.array([frame[0] for frame in self.frames]),
+                "position": np.array([frame[1] for frame in self.frames]),
+                "orientation": np.array([frame[2] for frame in self.frames]),
+            }
+        if not all(math.isfinite(value) for value in outputs.values()) and left:
+            raise FloatingPointError(f"the landing gave values that are not finite: {outputs}")
+        return Outcome(self.fate, outputs, world.time - self.start_time, frames)

@@ -1,0 +1,117 @@
+"""One landing: a lander meets a bed, and what becomes of it."""
+
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lithobrake.dem import Material, World
+from lithobrake.touchdown import settling
+from lithobrake.touchdown.bed import Bed, ContactModel
+from lithobrake.touchdown.flightline import FlightLine
+from lithobrake.touchdown.lander import Lander
+from lithobrake.touchdown.outcome import Outcome
+from lithobrake.touchdown.surface import rotation_matrix
+
+Floats = NDArray[np.float64]
+Vector = tuple[float, float, float]
+CHECKS_PER_CONTACT = 5  # looks at the lander in the time of the shortest contact
+
+
+@dataclass(frozen=True, kw_only=True)
+class Landing:
+    """What a landing follows from, beside the bed and the lander. The frame is the bed's, z out of the mean surface.
+
+    Raises ValueError for values outside their ranges.
+    """
+
+    grain: Material
+    speed: float  # m/s
+    incidence: float  # rad, of the velocity from the inward normal
+    azimuth: float  # rad, of the horizontal velocity, from +x toward +y
+    place: tuple[float, float]  # m, where the lander's centroid starts, along x and y
+    orientation: tuple[float, float, float, float]  # w, x, y, z
+    spin: Vector  # rad/s, along the world's axes
+    gravity: Vector  # m/s2
+    time_limit: float  # s, simulated, after the lander was released
+    contact: ContactModel = field(default_factory=ContactModel)
+
+    def __post_init__(self) -> None:
+        for name, fine, allowed in (
+            ("speed", 0.0 < self.speed < math.inf, "a finite value above 0 m/s"),
+            ("incidence", 0.0 <= self.incidence < 0.5 * math.pi, "0 <= value < pi/2 rad"),
+            ("azimuth", math.isfinite(self.azimuth), "a finite angle"),
+            ("time_limit", 0.0 < self.time_limit < math.inf, "a finite value above 0 s"),
+        ):
+            if not fine:
+                raise ValueError(f"Landing.{name} is {getattr(self, name)!r}; allowed is {allowed}: change it")
+
+    @property
+    def velocity(self) -> Floats:
+        """Velocity of the lander at the start [m/s]."""
+        horizontal = self.speed * math.sin(self.incidence)
+        return np.array(
+            [
+                horizontal * math.cos(self.azimuth),
+                horizontal * math.sin(self.azimuth),
+                -self.speed * math.cos(self.incidence),
+            ]
+        )
+
+
+def land(bed: Bed, lander: Lander, landing: Landing, frame_count: int = 0) -> Outcome:
+    """Let a lander meet a bed whose grains have taken on the landing's material, until its fate is clear.
+
+    Raises ValueError where bed and landing do not fit, FloatingPointError where the motion diverged.
+    """
+    if max(abs(landing.place[0]) / bed.width[0], abs(landing.place[1]) / bed.width[1]) >= 0.5:
+        raise ValueError(f"Landing.place is {landing.place!r} m; allowed is inside the box of {bed.width} m: move it")
+    world = bed.world(landing.grain, landing.gravity, landing.contact)
+    relax(world, bed, landing)
+    number = release(world, bed, lander, landing)
+    world.time_step = world.shortest_contact(landing.speed) / landing.contact.steps_per_contact
+    world.watch(number)
+    line = FlightLine(bed, lander, landing, world, number, frame_count)
+    chunk = max(1, int(landing.contact.steps_per_contact / CHECKS_PER_CONTACT))
+    while line.fate is None:
+        world.run(steps=chunk)
+        line.look()
+    return line.outcome()
+
+
+def relax(world: World, bed: Bed, landing: Landing) -> None:
+    """Let the stored bed find its rest under the landing's material and gravity, with extra damping.
+
+    Where the site's acceleration vanishes or points outward nothing settles: the bed rests under the gravity it was
+    made with, and the site's acts from the touchdown on.
+    """
+    gravity = np.array(landing.gravity)
+    if gravity[2] >= 0.0:
+        world.gravity = np.array(bed.gravity)
+    period = settling.rest_period(landing.grain, bed.grain_diameter, float(np.linalg.norm(world.gravity)))
+    world.drag = 2.0 * math.pi / period
+    settling.hold_still(
+        world, period, settling.PERIODS_RELAXED, lambda: settling.unbalanced_force(world) < settling.UNBALANCED_FORCE
+    )
+    world.drag = 0.0
+    world.gravity = gravity
+
+
+def release(world: World, bed: Bed, lander: Lander, landing: Landing) -> int:
+    """Put the lander just above everything that stands under its outline, and return its number."""
+    reach = lander.shape.bounding_radius
+    place = np.array([*landing.place, 0.0])
+    below = np.linalg.norm(world.position[:, :2] - place[:2], axis=1)
+    top = 0.0
+    for k, grain in enumerate(bed.grains):
+        if below[k] < reach + grain.bounding_radius:
+            turned = (grain.vertices - grain.centroid) @ rotation_matrix(world.orientation[k]).T + world.position[k]
+            under = np.linalg.norm(turned[:, :2] - place[:2], axis=1) < reach
+            top = max(top, float(turned[under, 2].max(initial=top)))
+    rotation = rotation_matrix(np.array(landing.orientation) / np.linalg.norm(landing.orientation))
+    place[2] = top - lander.lowest(np.zeros(3), rotation)
+    return world.add_body(
+        lander.shape, lander.material, tuple(place), tuple(landing.velocity), landing.orientation, landing.spin,
+        mass=lander.mass, inertia=lander.inertia,
+    )  # fmt: skip

@@ -1,0 +1,80 @@
+"""What a landing comes to."""
+
+import math
+import os
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lithobrake.atomic import atomic_path
+from lithobrake.dem import Box, ConvexHull, Sphere
+from lithobrake.touchdown.bed import Bed, write_hulls
+from lithobrake.touchdown.lander import Lander
+
+if TYPE_CHECKING:
+    from lithobrake.touchdown.landing import Landing
+
+Floats = NDArray[np.float64]
+FATES = ("clear", "captured", "left_sideways", "time_limit")
+OUTPUTS = (
+    "speed_out", "elevation_out", "azimuth_out", "spin_out", "velocity_out_x", "velocity_out_y", "velocity_out_z",
+    "contact_duration", "penetration", "peak_acceleration", "energy_lost",
+)  # fmt: skip
+SPHERE_PICTURE_POINTS = 200
+
+
+@dataclass(frozen=True, eq=False)
+class Outcome:
+    """status is one of FATES; outputs has the keys OUTPUTS (SI); the *_out values are NaN unless the lander is clear.
+
+    frames holds "time" [s, frame_count], "position" [m, frame_count, body_count, 3] and "orientation"; the lander is the
+    last body.
+    """
+
+    status: str
+    outputs: dict[str, float]
+    simulated_time: float  # s
+    frames: dict[str, Floats] | None = None
+
+    def save_frames(self, path: str | os.PathLike[str], bed: Bed, lander: Lander, landing: "Landing") -> None:
+        """Write a recorded landing to an HDF5 file: hulls, the lander last, and where they were."""
+        import h5py
+
+        if self.frames is None:
+            raise ValueError("Outcome.save_frames needs a landing that was recorded: give land() a frame_count above 0")
+        with atomic_path(path) as draft, h5py.File(draft, "w") as file:
+            write_hulls(file, [*bed.grains, picture(lander.shape)])
+            for name, values in self.frames.items():
+                file[f"frames/{name}"] = values
+            file["position"], file["orientation"] = self.frames["position"][-1], self.frames["orientation"][-1]
+            file["diameter"] = bed.diameter
+            file.attrs["format"], file.attrs["format_version"] = "lithobrake landing", 1
+            file.attrs["status"], file.attrs["width"] = self.status, bed.width
+            file.attrs["speed"], file.attrs["incidence"] = landing.speed, landing.incidence
+
+
+def outgoing(velocity: Floats, spin: Floats, azimuth: float, left: bool) -> dict[str, float]:
+    """Return the outgoing state in the local frame: x along the incoming horizontal velocity, z out of the surface."""
+    if not left:
+        return dict.fromkeys(OUTPUTS[:7], math.nan)
+    cosine, sine = math.cos(azimuth), math.sin(azimuth)
+    x, y = cosine * velocity[0] + sine * velocity[1], cosine * velocity[1] - sine * velocity[0]
+    z = float(velocity[2])
+    horizontal = math.hypot(x, y)
+    values = (
+        math.hypot(horizontal, z), math.atan2(z, horizontal), math.atan2(y, x), float(np.linalg.norm(spin)), x, y, z
+    )  # fmt: skip
+    return dict(zip(OUTPUTS[:7], (float(value) for value in values), strict=True))
+
+
+def picture(shape: Sphere | Box | ConvexHull) -> ConvexHull:
+    """Return a hull about the centroid that looks like the shape."""
+    if isinstance(shape, ConvexHull):
+        return ConvexHull(shape.vertices - shape.centroid)
+    # Points of a golden spiral: even on the sphere, the same each time.
+    k = np.arange(SPHERE_PICTURE_POINTS) + 0.5
+    polar, turn = np.arccos(1.0 - 2.0 * k / SPHERE_PICTURE_POINTS), math.pi * (1.0 + math.sqrt(5.0)) * k
+    points = np.stack([np.cos(turn) * np.sin(polar), np.sin(turn) * np.sin(polar), np.cos(polar)], axis=1)
+    return ConvexHull(shape.radius * points)
