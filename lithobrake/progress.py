@@ -11,7 +11,7 @@ class StudyProgress:
     """Progress of a study on standard error: stages on the first line, the work within the stage on the second."""
 
     def __init__(self) -> None:
-        """Prepare the lines; they appear when the context is entered."""
+        """Prepare the lines; they appear with the first stage."""
         self._progress = Progress(
             TextColumn("{task.description:<28}"),
             BarColumn(),
@@ -25,7 +25,8 @@ class StudyProgress:
         self._work: TaskID | None = None
 
     def begin(self, title: str, number: int, count: int) -> None:
-        """Start a stage."""
+        """Start a stage; the first one makes the lines appear, so a refusal before it stands alone."""
+        self._progress.start()
         if self._work is not None:
             self._progress.remove_task(self._work)
             self._work = None
@@ -46,8 +47,7 @@ class StudyProgress:
         self._progress.update(self._work, completed=done, total=total, count=count)
 
     def __enter__(self) -> Self:
-        """Show the lines."""
-        self._progress.start()
+        """Give the lines."""
         return self
 
     def __exit__(

@@ -27,6 +27,7 @@ ALLOWED: dict[str, set[str]] = {
         *("study", "study_file", "quantity"),
     },
     "progress": set(),
+    "__main__": {"cli"},
     "cli": {"pipeline", "progress", "study_template", "report"},
 }
 

@@ -87,5 +87,6 @@ def land_once(job: Job) -> None:
     values = medians(job.study)
     draws = draw(job.study, values, job.study.seed)
     bed, body = stored_bed(job.folder / bed_files(job.study)[draws["bed"]]), lander(job.study, values)
-    outcome = land(bed, body, landing(job.study, values, draws), frame_count=SNAPSHOT_FRAMES)
-    outcome.save_frames(job.folder / "landing.h5", bed, body)
+    arrival = landing(job.study, values, draws)
+    outcome = land(bed, body, arrival, frame_count=SNAPSHOT_FRAMES)
+    outcome.save_frames(job.folder / "landing.h5", bed, body, arrival)

@@ -1,0 +1,147 @@
+"""A whole study through the command line, on a bed of a few grains: every stage real, stopped and gone on with."""
+
+import json
+import os
+import signal
+import sqlite3
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+STUDY = """
+title = "A few grains"
+[bed]
+grain_count = 16
+width = [0.3, 0.3]
+diameter = { distribution = "constant", value = 0.1 }
+cloud_point_count = 10
+[grain]
+density = 2500.0
+young_modulus = 1e6
+poisson_ratio = 0.25
+restitution = { distribution = "uniform", lower = 0.4, upper = 0.8 }
+friction = { distribution = "uniform", lower = 0.3, upper = 0.9 }
+[lander]
+shape = "sphere"
+diameter = 0.1
+mass = 1.0
+[impact]
+speed = 0.3
+incidence_deg = 20.0
+[surface]
+gravity = 1e-3
+[design]
+screening_level = 1
+screening_degree = 1
+refined_level = 1
+refined_degree = 1
+kept_outputs = ["speed_out"]
+test_count = 3
+[monte_carlo]
+sample_count = 500
+[site]
+mass = { distribution = "uniform", lower = 5.0e11, upper = 5.6e11 }
+[flight]
+flight_count = 20
+duration = 20000.0
+"""
+FILES = (
+    "study.toml", "beds/bed_0.h5", "landing.h5", "runs.sqlite", "screening.json", "refined.json", "scores.json",
+    "samples.h5", "flights.csv", "summary.json", "report/index.html",
+)  # fmt: skip
+
+
+def command(study: Path, out: Path, workers: int) -> list[str]:
+    return [sys.executable, "-m", "lithobrake", "run", str(study), "--out", str(out), "--workers", str(workers)]
+
+
+def lithobrake(study: Path, out: Path, workers: int) -> "subprocess.CompletedProcess[str]":
+    return subprocess.run(command(study, out, workers), capture_output=True, text=True, check=False, timeout=600)
+
+
+def summary(out: Path) -> dict[str, Any]:
+    content: dict[str, Any] = json.loads((out / "summary.json").read_text())
+    return content
+
+
+def finished_runs(out: Path) -> int:
+    """How many runs the ledger has, seen from another process while it is written."""
+    if not (out / "runs.sqlite").is_file():
+        return 0
+    try:
+        with sqlite3.connect(f"file:{out / 'runs.sqlite'}?mode=ro", uri=True) as database:
+            return int(database.execute("SELECT count(*) FROM runs WHERE status = 'done'").fetchone()[0])
+    except sqlite3.OperationalError:
+        return 0
+
+
+@pytest.fixture(scope="module")
+def study(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("whole") / "few.toml"
+    path.write_text(STUDY)
+    return path
+
+
+@pytest.fixture(scope="module")
+def out(study: Path) -> Path:
+    folder = study.parent / "first"
+    ended = lithobrake(study, folder, workers=2)
+    assert ended.returncode == 0, ended.stderr
+    assert "Report: " in ended.stdout
+    assert len(ended.stdout.strip().splitlines()) == 6
+    return folder
+
+
+def test_every_file_is_there_and_the_summary_adds_up(out: Path) -> None:
+    assert [name for name in FILES if not (out / name).is_file()] == []
+    results = summary(out)["results"]
+    designs, shares = results["designs"], results["shares"]
+    assert sum(designs["screening"]["outcomes"].values()) == designs["screening"]["run_count"] == 5
+    assert designs["test_all"]["run_count"] == 3
+    ends = ("captured", "no_outward_velocity", "impact", "flying", "escaped")
+    assert sum(shares[name]["count"] for name in ends) == shares["sample_count"]
+    assert shares["flight_count"] == sum(shares[name]["count"] for name in ends[2:])
+    assert 0 < results["monte_carlo"]["outputs"]["speed_out"]["mean"] < 0.3
+    assert results["kept_share"]["speed_out"] >= 0.9
+
+
+def test_the_same_command_on_a_finished_study_computes_nothing(study: Path, out: Path) -> None:
+    before = {name: (out / name).stat().st_mtime_ns for name in FILES if name != "study.toml"}
+    assert lithobrake(study, out, workers=2).returncode == 0
+    assert {name: (out / name).stat().st_mtime_ns for name in before} == before
+
+
+def test_a_deleted_file_is_made_again_with_the_same_bytes_and_nothing_before_it(study: Path, out: Path) -> None:
+    before = {name: ((out / name).stat().st_mtime_ns, (out / name).read_bytes()) for name in FILES[1:]}
+    (out / "samples.h5").unlink()
+    (out / "flights.csv").unlink()
+    assert lithobrake(study, out, workers=2).returncode == 0
+    assert (out / "flights.csv").read_bytes() == before["flights.csv"][1]
+    for name in ("beds/bed_0.h5", "landing.h5", "screening.json", "refined.json", "scores.json"):
+        assert (out / name).stat().st_mtime_ns == before[name][0]
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals of this kind exist on POSIX only")
+def test_ctrl_c_keeps_the_runs_and_one_worker_ends_with_the_same_bits(study: Path, out: Path) -> None:
+    other = study.parent / "second"
+    process = subprocess.Popen(
+        command(study, other, workers=1), stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+    )
+    deadline = time.monotonic() + 300
+    while finished_runs(other) < 3 and process.poll() is None and time.monotonic() < deadline:
+        time.sleep(0.02)
+    process.send_signal(signal.SIGINT)
+    _, said = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert "the same command goes on from there" in said
+    assert "Traceback" not in said
+    kept = finished_runs(other)
+    assert 3 <= kept < finished_runs(out)
+    assert lithobrake(study, other, workers=1).returncode == 0
+    assert summary(other)["results"] == summary(out)["results"]
+    assert summary(other)["study"] == summary(out)["study"]
+    assert (other / "flights.csv").read_bytes() == (out / "flights.csv").read_bytes()
