@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy import special
 
+from lithobrake.chaos.automatic import PROCESS_FROM, PROCESS_LIMIT
 from lithobrake.chaos.fitting import fit
 from lithobrake.chaos.germ import Distribution
 from lithobrake.chaos.noise import replicates
@@ -60,6 +61,8 @@ def fit_stochastic(
     logarithm = np.log(pooled.variances[usable]) - bias[:, None]
     names = training.output_names
     mean = fit(inputs, training.x, training.y, output_names=names)
-    spread = fit(inputs, pooled.points[usable], logarithm, method="ols", output_names=names)
+    # Logarithms of variances from few runs are very noisy: a process shrinks what they do not support.
+    method = "gaussian_process" if PROCESS_FROM <= usable.sum() <= PROCESS_LIMIT else "ols"
+    spread = fit(inputs, pooled.points[usable], logarithm, method=method, output_names=names)
     mean.one_dimensional = spread.one_dimensional = training.one_dimensional
     return StochasticSurrogate(mean, spread, pooled.correlation)
