@@ -75,6 +75,7 @@ def map_figure(
 def _density(figure: Figure, axes: Axes, latitude: Array, longitude: Array) -> None:
     """Many impacts: how many fall in each cell. Fewer: a dot each, coloured by how many lie around it."""
     if not len(latitude):
+        axes.text(0, -50, "no impact among the flights", ha="center", fontsize=11, color=QUIET)
         return
     drawn: Any
     if len(latitude) >= MANY_IMPACTS:

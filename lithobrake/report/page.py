@@ -136,5 +136,7 @@ def number(value: float, digits: int = 3, *, zeros: bool = False) -> str:
         text = f"{value:#.{digits}g}" if zeros else f"{value:.{digits}g}"
         return f"{value:.0f}" if "e" in text else text.removesuffix(".")
     mantissa, exponent = f"{value:.{digits - 1}e}".split("e")
+    if not zeros and "." in mantissa:
+        mantissa = mantissa.rstrip("0").removesuffix(".")
     raised = str(int(exponent)).translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))
     return f"{mantissa} × 10{raised}"

@@ -2,6 +2,7 @@
 
 import math
 
+from lithobrake.report.error_figure import Score
 from lithobrake.report.look import PAPER_OUTPUTS, output
 from lithobrake.report.page import number
 from lithobrake.report.results import Results
@@ -102,37 +103,37 @@ def counts(data: Results) -> str:
 def sobol(data: Results) -> str:
     """Figure 4."""
     first = data.results["screening"]["sobol_first"]
-    leaders = []
-    for name in PAPER_OUTPUTS:
-        main = max(first[name], key=lambda key: first[name][key])
-        leaders.append(f"{PLAIN_SYMBOLS[name]} most with {input_words(main)} ({percent(first[name][main], 0)})")
+    mains = {name: max(first[name], key=lambda key: first[name][key]) for name in PAPER_OUTPUTS}
+    leaders = [
+        f"{PLAIN_SYMBOLS[name]} varies most with the {input_words(main)} "
+        f"({percent(first[name][main], 0)} of its variance)"
+        for name, main in mains.items()
+    ]
     kept = listing([input_words(name) for name in data.results["kept_inputs"]])
     share = min(data.results["kept_share"][name] for name in data.study["design"]["kept_outputs"])
     return (
-        f"Share of each output's variance that an input explains alone, from the expansion in all inputs: "
-        f"{listing(leaders)}. Kept for the second step: {kept}, which together explain at least "
-        f"{percent(share, 0)} of the variance of every output that decides."
+        f"{listing(leaders)}; the second step keeps {kept}, which together explain at least {percent(share, 0)} of "
+        "every output that decides."
     )
 
 
 def errors(data: Results) -> str:
     """Figure 5."""
-    kept, every = data.scores["test_kept"], data.scores["test_all"]
-    parts = []
-    for name in PAPER_OUTPUTS:
-        shown = output(name)
-        inner, outer = (_score_words(table[name].mape, table[name].q2) for table in (kept, every))
-        error = number(every[name].rmse * shown.factor, 2)
-        parts.append(f"{PLAIN_SYMBOLS[name]} {inner}, and {outer}, or {error} {shown.unit}, when all inputs vary")
+    kept, every = (_explained(data.scores[stage]) for stage in ("test_kept", "test_all"))
     return (
-        "On fresh runs in the kept inputs, mean error (MAPE) and explained variance (Q2) are for "
-        f"{'; for '.join(parts)}. "
-        "Dashed lines are the means; a small percentage beside a small Q2 means that the output hardly varies."
+        f"On fresh runs in which the kept inputs vary the expansion explains {kept}, and when all inputs vary {every}; "
+        "dashed lines are mean errors, and a small one beside a small Q2 only says that the output hardly varies."
     )
 
 
-def _score_words(mape: float | None, q2: float | None) -> str:
-    return f"{'undefined' if mape is None else f'{mape:.2g} %'} at Q2 {'undefined' if q2 is None else f'{q2:.2f}'}"
+def _explained(table: dict[str, Score]) -> str:
+    """Explained share of the variance and mean error of the paper's outputs on one set of runs."""
+    parts = []
+    for name in PAPER_OUTPUTS:
+        q2, mape = table[name].q2, table[name].mape
+        words = "an undefined share" if q2 is None else f"Q2 = {q2:.2f}"
+        parts.append(f"{words} of {PLAIN_SYMBOLS[name]} (MAPE {'undefined' if mape is None else f'{mape:.2g} %'})")
+    return listing(parts)
 
 
 def scatter(data: Results, colour_name: str) -> str:
@@ -160,9 +161,9 @@ def landing_map(data: Results) -> str:
     return (
         f"Of {_thousands(shares['sample_count'])} samples, of which {_thousands(shares['flight_count'])} were flown, "
         f"{interval(shares['impact'])} come down again within {hours(data.study['flight']['duration'])}, where the map "
-        f"shows. The body: {number(site['mass_kg'])} kg, {extents} m, one turn in "
+        f"shows (body: {number(site['mass_kg'])} kg, {extents} m, one turn in "
         f"{site['spin_period_s'] / 3600:.4g} h; at the site gravity and spin together pull "
-        f"{number(abs(outward), 2)} m/s2 {direction}."
+        f"{number(abs(outward), 2)} m/s2 {direction})."
     )
 
 

@@ -57,13 +57,17 @@ def test_words_are_escaped_and_figures_numbered() -> None:
         (0.0, "0"),
         (0.0123456, "0.0123"),
         (1234.5, "1234"),
-        (5e-5, "5.00 × 10⁻⁵"),
+        (5e-5, "5 × 10⁻⁵"),
         (-5.32e11, "-5.32 × 10¹¹"),
         (2.0, "2"),
     ],
 )
 def test_numbers_in_words(value: float, text: str) -> None:
     assert number(value) == text
+
+
+def test_numbers_of_a_column_keep_their_zeros() -> None:
+    assert [number(value, zeros=True) for value in (0.1, 5e-5, 100.0)] == ["0.100", "5.00 × 10⁻⁵", "100"]
 
 
 def test_flat_keeps_the_order_and_joins_the_names() -> None:
