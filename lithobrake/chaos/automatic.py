@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from lithobrake.chaos.gaussian_process import FAMILIES, Process, expansion_of, learn
+from lithobrake.chaos.gaussian_process import Process, expansion_of, families_for, learn
 from lithobrake.chaos.regression import ols_by_degree
 from lithobrake.chaos.solution import Solution
 from lithobrake.chaos.sparse import is_structured, solve_sparse
@@ -38,7 +38,10 @@ def process_solution(training: Training, output: int) -> Solution:
         )
     if _constant(training, output):
         return ols_by_degree(training)[0][output]
-    candidates = [_as_solution(learn(training, output, family), training) for family in FAMILIES]
+    candidates = [
+        _as_solution(learn(training, output, family), training)
+        for family in families_for(list(training.inputs.values()))
+    ]
     return min(candidates, key=lambda one: one.expected_error)
 
 
@@ -73,7 +76,7 @@ def best_solutions(training: Training) -> tuple[list[Solution], dict[str, Any]]:
         scores = {f"ols degree {degree}": row[output] for degree, row in enumerate(ladder)}
         challenger[name] = None
         if use_processes and not _constant(training, output):
-            for family in FAMILIES:
+            for family in families_for(list(training.inputs.values())):
                 process = learn(training, output, family)
                 scores[f"gaussian_process {family.name}"] = _as_solution(process, training)
                 if family.name == "matern":

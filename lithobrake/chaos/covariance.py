@@ -10,12 +10,12 @@ from typing import ClassVar
 
 import numpy as np
 
+from lithobrake.chaos.covariance_parts import GaussianPart, Part, PolynomialPart, gaussian_means
 from lithobrake.chaos.germ import Distribution
 from lithobrake.chaos.polynomials import Array
 from lithobrake.chaos.terms import Indices
 
 Gradient = Callable[[Array], Array]
-RULE_NODES = 160
 # The squared lengths of the Gaussians that make up a Matern covariance.
 MIXTURE_NODES = 16
 MIXTURE_LOG_RANGE = (-6.0, 2.0)
@@ -50,117 +50,79 @@ class Covariance(ABC):
         """Coefficients [term_count] of sum_m weights_m K(., germ_m) on the orthonormal polynomials."""
 
 
-def _product_gradient(scale: float, factors: list[Array], slopes: list[list[Array]], total: Array) -> Gradient:
-    """Gradient of scale * prod_k factor_k; slopes[parameter kind][input]; the last entry is that of log scale."""
-
-    def gradient(weight: Array) -> Array:
-        before = [np.full_like(total, scale)]
-        for factor in factors[:-1]:
-            before.append(before[-1] * factor)
-        result = np.empty((len(slopes), len(factors)))
-        after = weight.copy()
-        for k in range(len(factors) - 1, -1, -1):
-            rest = before[k] * after
-            for kind, family in enumerate(slopes):
-                result[kind, k] = np.vdot(rest, family[k])
-            after *= factors[k]
-        return np.append(result.ravel(), np.vdot(weight, total))
-
-    return gradient
-
-
-class AdditiveGaussian(Covariance):
-    """s prod_k (1 + a_k exp(-r_k**2 / (2 l_k**2))): each input may act alone or in products with others.
+class ProductCovariance(Covariance):
+    """s prod_k (1 + part_k): each input may act alone or in products with others.
 
     Source: Durrande, Ginsbourger and Roustant, 2012, "Additive covariance kernels" (ANOVA form).
     """
 
     name = "gaussian"
 
+    def __init__(self, entries: Sequence[Distribution], degrees: Sequence[int]) -> None:
+        super().__init__(entries, degrees)
+        pairs = zip(self.entries, self.degrees, strict=True)
+        self.parts: list[Part] = [self.part_of(entry, degree) for entry, degree in pairs]
+
+    def part_of(self, entry: Distribution, degree: int) -> Part:
+        """The factor of one input."""
+        return GaussianPart(entry, degree)
+
     def start(self) -> tuple[Array, list[tuple[float, float]]]:
-        count = len(self.entries)
-        bounds = [(-3.0, 5.0)] * count + [(-10.0, 8.0)] * count + [(-8.0, 12.0)]
-        return np.zeros(2 * count + 1), bounds
+        start = [part.start[which] for which in (0, 1) for part in self.parts]
+        bounds = [part.bounds[which] for which in (0, 1) for part in self.parts]
+        return np.array([*start, 0.0]), [*bounds, (-8.0, 12.0)]
+
+    def _split(self, theta: Array) -> list[tuple[Part, Array]]:
+        return list(zip(self.parts, theta[:-1].reshape(2, -1).T, strict=True))
 
     def with_gradient(self, theta: Array, germs: Array) -> tuple[Array, Gradient]:
-        count = len(germs)
-        factors, by_length, by_share = [], [], []
-        for k, germ in enumerate(germs):
-            squares = ((germ[:, None] - germ[None, :]) / np.exp(theta[k])) ** 2
-            part = np.exp(theta[count + k] - 0.5 * squares)
-            factors.append(1.0 + part)
-            by_length.append(part * squares)
-            by_share.append(part)
+        rows = [part.with_slopes(one, germ) for (part, one), germ in zip(self._split(theta), germs, strict=True)]
+        factors = [1.0 + row[0] for row in rows]
         scale = float(np.exp(theta[-1]))
         total = scale * np.prod(factors, axis=0)
-        return total, _product_gradient(scale, factors, [by_length, by_share], total)
+
+        def gradient(weight: Array) -> Array:
+            before = [np.full_like(total, scale)]
+            for factor in factors[:-1]:
+                before.append(before[-1] * factor)
+            result = np.empty((2, len(factors)))
+            after = weight.copy()
+            for k in range(len(factors) - 1, -1, -1):
+                rest = before[k] * after
+                result[:, k] = np.vdot(rest, rows[k][1]), np.vdot(rest, rows[k][2])
+                after *= factors[k]
+            return np.append(result.ravel(), np.vdot(weight, total))
+
+        return total, gradient
 
     def between(self, theta: Array, first: Array, second: Array) -> Array:
-        count = len(first)
         total = np.full((first.shape[1], second.shape[1]), np.exp(theta[-1]))
-        for k in range(count):
-            squares = ((first[k][:, None] - second[k][None, :]) / np.exp(theta[k])) ** 2
-            total *= 1.0 + np.exp(theta[count + k] - 0.5 * squares)
+        for k, (part, parameters) in enumerate(self._split(theta)):
+            total *= 1.0 + part.between(parameters, first[k], second[k])
         return total
 
     def projection(self, theta: Array, germs: Array, indices: Indices, weights: Array) -> Array:
-        count = len(germs)
         tables = []
-        for k, entry in enumerate(self.entries):
-            table = _gaussian_means(entry, self.degrees[k], germs[k], float(np.exp(theta[k])))
-            table *= np.exp(theta[count + k])
+        for (part, parameters), germ in zip(self._split(theta), germs, strict=True):
+            table = part.means(parameters, germ)
             table[0] += 1.0
             tables.append(table)
         return float(np.exp(theta[-1])) * contracted(tables, indices, weights)
 
 
-class PolynomialPrior(Covariance):
-    """s prod_k (1 + a_k sum_j exp(-d_k (j - 1)) p_j(t) p_j(t')): coefficients that fade geometrically with the degree.
+class PolynomialCovariance(ProductCovariance):
+    """The product with polynomials whose variances fade geometrically with the degree, as those of smooth functions do.
 
-    Source: Xiu, 2010, "Numerical Methods for Stochastic Computations", section 3.3 (decay of the coefficients of
-    smooth functions), used here as prior variances.
+    Without limits polynomials grow in the tails, and a process made of them returns to no mean far from the data, with
+    a leave-one-out error far too low; unbounded inputs keep the Gaussian part.
+    Source: Xiu, 2010, "Numerical Methods for Stochastic Computations", section 3.3 (decay of coefficients).
     """
 
     name = "polynomial"
 
-    def start(self) -> tuple[Array, list[tuple[float, float]]]:
-        count = len(self.entries)
-        start = np.concatenate([np.full(count, np.log(0.3)), np.zeros(count), [0.0]])
-        return start, [(-12.0, 5.0)] * count + [(-2.0, 3.0)] * count + [(-5.0, 8.0)]
-
-    def _variances(self, theta: Array, k: int) -> tuple[Array, Array]:
-        steps = np.arange(float(self.degrees[k]))
-        decay = np.exp(theta[len(self.entries) + k])
-        variances = np.exp(theta[k] - decay * steps)
-        return variances, -decay * steps * variances
-
-    def with_gradient(self, theta: Array, germs: Array) -> tuple[Array, Gradient]:
-        factors, by_share, by_decay = [], [], []
-        for k, table in enumerate(self._tables(germs)):
-            variances, slopes = self._variances(theta, k)
-            part = (table.T * variances) @ table
-            factors.append(1.0 + part)
-            by_share.append(part)
-            by_decay.append((table.T * slopes) @ table)
-        scale = float(np.exp(theta[-1]))
-        total = scale * np.prod(factors, axis=0)
-        return total, _product_gradient(scale, factors, [by_share, by_decay], total)
-
-    def _tables(self, germs: Array) -> list[Array]:
-        pairs = zip(self.entries, self.degrees, germs, strict=True)
-        return [entry.recurrence(degree).values(germ)[1:] for entry, degree, germ in pairs]
-
-    def between(self, theta: Array, first: Array, second: Array) -> Array:
-        total = np.full((first.shape[1], second.shape[1]), np.exp(theta[-1]))
-        for k, (left, right) in enumerate(zip(self._tables(first), self._tables(second), strict=True)):
-            total *= 1.0 + (left.T * self._variances(theta, k)[0]) @ right
-        return total
-
-    def projection(self, theta: Array, germs: Array, indices: Indices, weights: Array) -> Array:
-        tables = []
-        for k, table in enumerate(self._tables(germs)):
-            tables.append(np.vstack([np.ones(germs.shape[1]), self._variances(theta, k)[0][:, None] * table]))
-        return float(np.exp(theta[-1])) * contracted(tables, indices, weights)
+    def part_of(self, entry: Distribution, degree: int) -> Part:
+        """The factor of one input."""
+        return PolynomialPart(entry, degree) if entry.bounded else GaussianPart(entry, degree)
 
 
 class RadialMatern(Covariance):
@@ -207,16 +169,9 @@ class RadialMatern(Covariance):
         for v, share in self._mixture():
             lengths = np.exp(theta[:-1]) * np.sqrt(v)
             rows = zip(self.entries, self.degrees, germs, lengths, strict=True)
-            tables = [_gaussian_means(entry, degree, germ, float(length)) for entry, degree, germ, length in rows]
+            tables = [gaussian_means(entry, degree, germ, float(length)) for entry, degree, germ, length in rows]
             total += share * contracted(tables, indices, weights)
         return float(np.exp(theta[-1])) * total
-
-
-def _gaussian_means(entry: Distribution, degree: int, germ: Array, length: float) -> Array:
-    """Mean over the input of p_j(t) exp(-(t - germ)**2 / (2 length**2)), [degree + 1, count]."""
-    nodes, weights = entry.rule(RULE_NODES)
-    bumps = np.exp(-0.5 * ((nodes[:, None] - germ[None, :]) / length) ** 2)
-    return (entry.recurrence(degree).values(nodes) * weights) @ bumps
 
 
 def contracted(tables: list[Array], indices: Indices, weights: Array) -> Array:

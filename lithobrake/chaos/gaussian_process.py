@@ -6,13 +6,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from lithobrake.chaos.basis import germs_of
-from lithobrake.chaos.covariance import AdditiveGaussian, Covariance, PolynomialPrior, RadialMatern
+from lithobrake.chaos.covariance import Covariance, PolynomialCovariance, ProductCovariance, RadialMatern
 from lithobrake.chaos.germ import Distribution
 from lithobrake.chaos.polynomials import Array
 from lithobrake.chaos.terms import Indices, multi_index_set, term_count
 from lithobrake.chaos.training import Training
 
-FAMILIES: tuple[type[Covariance], ...] = (PolynomialPrior, AdditiveGaussian, RadialMatern)
+FAMILIES: tuple[type[Covariance], ...] = (PolynomialCovariance, ProductCovariance, RadialMatern)
 # Parameters are learnt from at most so many points, since a step costs their number cubed.
 LEARN_FROM = 400
 ITERATIONS = 100
@@ -51,6 +51,11 @@ class Process:
         parts = self.scale * self.covariance.projection(self.theta, self.germs, indices, self.weights)
         parts[indices.sum(axis=1) == 0] += self.shift
         return parts
+
+
+def families_for(inputs: Sequence[Distribution]) -> tuple[type[Covariance], ...]:
+    """Covariances to try: where no input is bounded, the polynomial one would be the Gaussian one again."""
+    return FAMILIES if any(entry.bounded for entry in inputs) else FAMILIES[1:]
 
 
 def highest_degrees(inputs: Sequence[Distribution]) -> list[int]:

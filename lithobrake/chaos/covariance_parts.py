@@ -1,0 +1,88 @@
+"""Covariances of one input, the factors of products over inputs: Gaussian bumps, or polynomials that fade."""
+
+from abc import ABC, abstractmethod
+from typing import ClassVar
+
+import numpy as np
+
+from lithobrake.chaos.germ import Distribution
+from lithobrake.chaos.polynomials import Array
+
+# Nodes of the quadrature that projects a bump on polynomials.
+RULE_NODES = 160
+
+
+class Part(ABC):
+    """Covariance of one input with two log parameters, in units of its germ; degree is the highest of its polynomials."""
+
+    start: ClassVar[tuple[float, float]]
+    bounds: ClassVar[tuple[tuple[float, float], tuple[float, float]]]
+
+    def __init__(self, entry: Distribution, degree: int) -> None:
+        self.entry, self.degree = entry, degree
+
+    @abstractmethod
+    def between(self, parameters: Array, first: Array, second: Array) -> Array:
+        """Covariance of germs [a] and [b]; result [a, b]."""
+
+    @abstractmethod
+    def with_slopes(self, parameters: Array, germ: Array) -> tuple[Array, Array, Array]:
+        """Covariance of germs [count] with themselves and its derivatives by both parameters, each [count, count]."""
+
+    @abstractmethod
+    def means(self, parameters: Array, germ: Array) -> Array:
+        """Mean over the input of p_j(t) times the covariance of t and a germ, [degree + 1, count]."""
+
+
+class GaussianPart(Part):
+    """exp(share) exp(-r**2 / (2 l**2)), parameters (ln l, share)."""
+
+    start = (0.0, 0.0)
+    bounds = ((-3.0, 5.0), (-10.0, 8.0))
+
+    def between(self, parameters: Array, first: Array, second: Array) -> Array:
+        squares = ((first[:, None] - second[None, :]) / np.exp(parameters[0])) ** 2
+        return np.exp(parameters[1] - 0.5 * squares)
+
+    def with_slopes(self, parameters: Array, germ: Array) -> tuple[Array, Array, Array]:
+        squares = ((germ[:, None] - germ[None, :]) / np.exp(parameters[0])) ** 2
+        part = np.exp(parameters[1] - 0.5 * squares)
+        return part, part * squares, part
+
+    def means(self, parameters: Array, germ: Array) -> Array:
+        return np.exp(parameters[1]) * gaussian_means(self.entry, self.degree, germ, float(np.exp(parameters[0])))
+
+
+class PolynomialPart(Part):
+    """sum_j v_j p_j(t) p_j(t'), v_j = exp(share - decay (j - 1)) from degree 1 on, parameters (ln decay, share)."""
+
+    start = (0.0, -1.2)
+    bounds = ((-2.0, 3.0), (-12.0, 5.0))
+
+    def _variances(self, parameters: Array) -> tuple[Array, Array]:
+        fade = -np.exp(parameters[0]) * np.arange(float(self.degree))
+        variances = np.exp(parameters[1] + fade)
+        return variances, fade * variances
+
+    def _table(self, germ: Array) -> Array:
+        return self.entry.recurrence(self.degree).values(germ)[1:]
+
+    def between(self, parameters: Array, first: Array, second: Array) -> Array:
+        return (self._table(first).T * self._variances(parameters)[0]) @ self._table(second)
+
+    def with_slopes(self, parameters: Array, germ: Array) -> tuple[Array, Array, Array]:
+        table = self._table(germ)
+        variances, slopes = self._variances(parameters)
+        part = (table.T * variances) @ table
+        return part, (table.T * slopes) @ table, part
+
+    def means(self, parameters: Array, germ: Array) -> Array:
+        rows = self._variances(parameters)[0][:, None] * self._table(germ)
+        return np.vstack([np.zeros(len(germ)), rows])
+
+
+def gaussian_means(entry: Distribution, degree: int, germ: Array, length: float) -> Array:
+    """Mean over the input of p_j(t) exp(-(t - germ)**2 / (2 length**2)), [degree + 1, count]."""
+    nodes, weights = entry.rule(RULE_NODES)
+    bumps = np.exp(-0.5 * ((nodes[:, None] - germ[None, :]) / length) ** 2)
+    return (entry.recurrence(degree).values(nodes) * weights) @ bumps
