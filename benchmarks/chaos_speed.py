@@ -30,7 +30,7 @@ def seconds(work: Callable[[], object], repeats: int) -> float:
 
 def model(x: np.ndarray) -> np.ndarray:
     """Three smooth outputs."""
-    return np.column_stack([np.exp(x[:, 0] * x[:, 1]), np.sin(x[:, 2] + x[:, 0]), 1.0 / (2.0 + x[:, 1] + x[:, 2])])
+    return np.column_stack([np.exp(x[:, 0] * x[:, 1]), np.sin(x[:, 2] + x[:, 0]), 1.0 / (3.0 + x[:, 1] + x[:, 2])])
 
 
 def reference_matrix(x: np.ndarray, indices: np.ndarray) -> np.ndarray:

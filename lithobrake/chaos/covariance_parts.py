@@ -13,7 +13,7 @@ RULE_NODES = 160
 
 
 class Part(ABC):
-    """Covariance of one input with two log parameters, in units of its germ; degree is the highest of its polynomials."""
+    """Covariance of one input with two log parameters, in units of its germ; degree: highest of polynomials."""
 
     start: ClassVar[tuple[float, float]]
     bounds: ClassVar[tuple[tuple[float, float], tuple[float, float]]]
