@@ -12,17 +12,15 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
+from lithobrake.report.light import light_on_faces
 from lithobrake.report.look import shade
 
 Array = NDArray[np.float64]
 Triangles = NDArray[np.int64]
 
-SUN = np.array([-0.45, -0.35, 0.82])
-# A weak light from the other side keeps the form of what the sun does not reach.
-FILL = np.array([0.8, -0.5, 0.2])
-AMBIENT = 0.56
+# A body this many times larger than the middle one is cut up before it is painted.
+LARGE = 1.5
 
 
 @dataclass(frozen=True)
@@ -85,8 +83,8 @@ def subdivide(triangles: Array, longest: float) -> Array:
 def world_triangles(bodies: Sequence[Body], position: Array, orientation: Array) -> tuple[Array, NDArray[np.int64]]:
     """Faces of all bodies in the world, shape [face, 3, 3] [m], wound outwards, and the body each belongs to."""
     turns = rotation(orientation)
-    sizes = np.array([np.linalg.norm(body.vertices, axis=1).max() for body in bodies])
-    longest = 1.3 * float(np.median(sizes))
+    large = _is_large(bodies)
+    longest = 1.3 * float(np.median([np.linalg.norm(body.vertices, axis=1).max() for body in bodies]))
     pieces, owners = [], []
     for index, body in enumerate(bodies):
         corners = body.vertices[body.faces]
@@ -94,29 +92,11 @@ def world_triangles(bodies: Sequence[Body], position: Array, orientation: Array)
         # The centroid is inside, so a normal that points to it marks a face wound the other way.
         inward = np.einsum("fk,fk->f", normals, corners.mean(axis=1)) < 0
         corners = np.where(inward[:, None, None], corners[:, ::-1], corners)
-        if sizes[index] > 1.5 * np.median(sizes):
+        if large[index]:
             corners = subdivide(corners, longest)
         pieces.append(corners @ turns[index].T + position[index])
         owners.append(np.full(len(corners), index))
     return np.concatenate(pieces), np.concatenate(owners)
-
-
-def sunlight(centres: Array, owners: NDArray[np.int64], position: Array, radius: Array) -> Array:
-    """Share of the sun that each face sees, shape [face], with each other body taken as a ball of its radius [m]."""
-    sun = SUN / np.linalg.norm(SUN)
-    across = np.linalg.svd(sun[None, :])[2][1:]
-    flat_faces, flat_bodies = centres @ across.T, position @ across.T
-    height_faces, height_bodies = centres @ sun, position @ sun
-    light = np.ones(len(centres))
-    tree = cKDTree(flat_faces)
-    for body, near in enumerate(tree.query_ball_point(flat_bodies, 1.15 * radius)):
-        faces = np.array(near, dtype=int)
-        faces = faces[(owners[faces] != body) & (height_faces[faces] < height_bodies[body])]
-        reach = np.linalg.norm(flat_faces[faces] - flat_bodies[body], axis=1) / radius[body]
-        # A soft rim from .65 to 1.15 radii stands for what the ball leaves out of the true outline.
-        cover = np.clip((1.15 - reach) / 0.5, 0.0, 1.0)
-        np.minimum.at(light, faces, 1.0 - cover)
-    return light
 
 
 def paint(
@@ -134,34 +114,30 @@ def paint(
     triangles, owners = world_triangles(bodies, position, orientation)
     normals = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
     normals /= np.linalg.norm(normals, axis=1)[:, None]
-    centres = triangles.mean(axis=1)
-    eye = np.array(camera.target) + camera.distance * camera.axes()[2]
-    seen = np.einsum("fk,fk->f", normals, eye - centres) > 0
-    triangles, owners, normals, centres = triangles[seen], owners[seen], normals[seen], centres[seen]
+    to_eye = np.array(camera.target) + camera.distance * camera.axes()[2] - triangles.mean(axis=1)
+    seen = np.flatnonzero(np.einsum("fk,fk->f", normals, to_eye) > 0)
+    order = seen[np.argsort(-np.linalg.norm(to_eye[seen], axis=1), kind="stable")]
+    triangles, owners, normals = triangles[order], owners[order], normals[order]
 
     radius = np.array([0.85 * np.linalg.norm(body.vertices, axis=1).mean() for body in bodies])
-    sun = np.clip(normals @ (SUN / np.linalg.norm(SUN)), 0.0, None) * sunlight(centres, owners, position, radius)
-    sky = 0.80 + 0.20 * normals[:, 2]
-    if surface_height is not None:
-        depth = (surface_height - centres[:, 2]) / max(surface_height, 1e-30)
-        sky = sky * np.where(depth > 0, 1.0 - 0.35 * np.clip(depth, 0.0, 1.0), 1.0)
-    # A few per cent of tint, fixed by the body's number, keeps neighbours of one colour apart.
-    tint = 1.0 + 0.09 * np.sin(2.399963 * np.arange(len(bodies)))[owners]
-    fill = np.clip(normals @ (FILL / np.linalg.norm(FILL)), 0.0, None)
-    light = (AMBIENT * sky + 0.16 * fill + 0.60 * sun) * tint
-
+    light = light_on_faces(triangles.mean(axis=1), normals, owners, position, radius, surface_height)
     colours = np.empty((len(triangles), 3))
     palette = np.array([body.colour for body in bodies])[owners]
     for colour in np.unique(palette):
-        chosen = palette == colour
-        colours[chosen] = shade(str(colour), light[chosen])
-    flat, _ = camera.project(triangles)
-    nearness = centres @ camera.axes()[2]
-    order = np.argsort(nearness, kind="stable")
+        colours[palette == colour] = shade(str(colour), light[palette == colour])
+    # The edge closes the hairline that antialiasing leaves between two faces; a little darker it sets grains apart, but
+    # on a face that was cut up it would show the cuts.
+    edges = colours * np.where(_is_large(bodies), 1.0, 0.84)[owners][:, None]
     # One array of triangles is drawn much faster than a list of polygons, and not all versions declare it.
-    stack: Any = flat[order]
-    # An edge in the face's own colour closes the hairline that antialiasing leaves between two faces.
-    axes.add_collection(PolyCollection(stack, facecolors=colours[order], edgecolors=colours[order], linewidths=0.25))
+    stack: Any = camera.project(triangles)[0]
+    axes.add_collection(PolyCollection(stack, facecolors=colours, edgecolors=edges, linewidths=0.3))
+
+
+def _is_large(bodies: Sequence[Body]) -> NDArray[np.bool_]:
+    """Which bodies are large beside the middle one, shape [body]."""
+    sizes = np.array([np.linalg.norm(body.vertices, axis=1).max() for body in bodies])
+    large: NDArray[np.bool_] = sizes > LARGE * np.median(sizes)
+    return large
 
 
 def frame_axes(axes: Axes, x_range: tuple[float, float], y_range: tuple[float, float]) -> None:
