@@ -9,17 +9,21 @@ from lithobrake.compiled import compiled
 from lithobrake.smallbody.lanes import LANES, WIDTH
 from lithobrake.smallbody.multipole import SCRATCH, series_block
 from lithobrake.smallbody.polyhedron import ROWS, field_block
+from lithobrake.smallbody.table import level_of, read_table
 
 
 @compiled
 def workspace(vertex_count: int) -> Any:
-    """Scratch of attract: the near points' block, the far points', their lanes, vertex distances, series."""
+    """Scratch of attract: the near points' block, the far points', their lanes, vertex distances, series,
+    spline weights and sums."""
     return (
         np.zeros(ROWS * LANES),
         np.zeros(ROWS * LANES),
         np.empty(2 * LANES, dtype=np.int64),
         np.empty(vertex_count * LANES),
         np.zeros(SCRATCH),
+        np.empty((3, 4)),
+        np.empty(12),
     )
 
 
@@ -37,14 +41,20 @@ def _fill(block: Any, count: int) -> int:
 def attract(lane: Any, count: int, scratch: Any, gravity: Any) -> None:
     """Field of one block, as field_block: lane [ROWS * LANES], reads rows X, Y, Z of `count` points, writes the others.
 
-    gravity: (polyhedron arrays, multipole arrays); scratch: see workspace.
+    gravity: (polyhedron arrays, multipole arrays, table arrays); scratch: see workspace. A point that the table serves
+    gets the pull only.
     """
-    near, far, index, distance, series = scratch
-    polyhedron, multipole = gravity
+    near, far, index, distance, series, weight, total = scratch
+    polyhedron, multipole, table = gravity
     centre, nearest = multipole[0], multipole[2]
     near_count = far_count = 0
     for j in range(count):
         x, y, z = lane[j], lane[LANES + j], lane[2 * LANES + j]
+        level = level_of(x, y, z, table)
+        if level >= 0:
+            pull = read_table(x, y, z, level, table, weight, total)
+            lane[3 * LANES + j], lane[4 * LANES + j], lane[5 * LANES + j] = pull
+            continue
         square = (x - centre[0]) ** 2 + (y - centre[1]) ** 2 + (z - centre[2]) ** 2
         if square < nearest * nearest:
             near[near_count], near[LANES + near_count], near[2 * LANES + near_count] = x, y, z

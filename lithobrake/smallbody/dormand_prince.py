@@ -43,11 +43,15 @@ DENSE = np.array(
 def stage_state(state: Any, slope: Any, step: Any, stage: int, count: int, result: Any) -> None:
     """Write into result [6, lane] the state at which a stage takes its slope; stage 6 gives the end of the step."""
     for i in range(6):
+        row = result[i]
         for j in range(count):
-            total = 0.0
-            for m in range(stage):
-                total += WEIGHTS[stage, m] * slope[m, i, j]
-            result[i, j] = state[i, j] + step[j] * total
+            row[j] = 0.0
+        for m in range(stage):
+            weight, rate = WEIGHTS[stage, m], slope[m, i]
+            for j in range(count):
+                row[j] += weight * rate[j]
+        for j in range(count):
+            row[j] = state[i, j] + step[j] * row[j]
 
 
 @compiled

@@ -95,7 +95,8 @@ def fly(
 
     position, velocity   body-fixed (turning) frame [m], [m/s], shape [count, 3] or [3]; a velocity of zero turns with
                          the body
-    gravity              "exact": the polyhedron's
+    gravity              "exact": the polyhedron's; "table": read from grids that are built once for a shape and kept
+                         on disk, with the error shape.table_error
     tolerance            error that one step may make: this share of the body's radius in position, and the same share
                          of radius over dynamical time in velocity
     threads              defaults to the number of cores; the result does not depend on it
@@ -110,13 +111,14 @@ def fly(
         raise ValueError(f"duration is {duration} s; it must be finite and above 0.")
     if not 1e-13 <= tolerance <= 1e-3:
         raise ValueError(f"tolerance is {tolerance}; it must lie in 1e-13 to 1e-3.")
-    if gravity != "exact":
-        raise ValueError(f"gravity is {gravity!r}; allowed is 'exact' (a table of gravity does not exist yet).")
+    if gravity not in ("exact", "table"):
+        raise ValueError(f"gravity is {gravity!r}; allowed are 'exact' and 'table'.")
     shape = body.shape
     slack = min(1e-6 * shape.radius, 1e-3)
     ground = (shape.grid.arrays, shape.corners, shape.pseudonormals, slack)
     phase = _phases(body, starts, slack)
-    forces = (shape.gravity, GRAVITATIONAL_CONSTANT * body.density, body.spin_rate)
+    source = shape.gravity if gravity == "exact" else shape.tabled_gravity
+    forces = (source, GRAVITATIONAL_CONSTANT * body.density, body.spin_rate)
     dynamical_time = math.sqrt(shape.radius**3 / body.gravitational_parameter)
     length = tolerance * shape.radius
     limits = (
@@ -169,7 +171,8 @@ def _phases(body: Body, starts: NDArray[np.float64], slack: float) -> NDArray[np
     """ON_SURFACE or ALOFT for each start; raises for those below the surface."""
     shape = body.shape
     height = np.empty(len(starts))
-    near_heights(shape.grid.arrays, shape.corners, shape.pseudonormals, starts, height)
+    position, facet = np.ascontiguousarray(starts[:, :3]), np.empty(len(starts), dtype=np.int64)
+    near_heights(shape.grid.arrays, shape.corners, shape.pseudonormals, position, height, facet)
     far = np.flatnonzero(np.isinf(height))
     height[far[shape.contains(starts[far, :3])]] = -np.inf
     if (height < -slack).any():

@@ -33,13 +33,14 @@ class Grid:
     gap: NDArray[np.int64]
 
     @classmethod
-    def of(cls, vertices: NDArray[np.float64], faces: NDArray[np.int64]) -> "Grid":
-        """Sort the facets of a mesh into cells somewhat smaller than the mean facet."""
+    def of(cls, vertices: NDArray[np.float64], faces: NDArray[np.int64], edge: float | None = None) -> "Grid":
+        """Sort the facets of a mesh into cells of an edge [m], by default somewhat smaller than the mean facet."""
         corner = vertices[faces]
         low, high = corner.min(axis=1), corner.max(axis=1)
         lower, upper = low.min(axis=0), high.max(axis=0)
         doubled = np.linalg.norm(np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]), axis=1)
-        edge = max(0.7 * float(np.sqrt(0.5 * doubled.mean())), float((upper - lower).max()) / LARGEST)
+        if edge is None:
+            edge = max(0.7 * float(np.sqrt(0.5 * doubled.mean())), float((upper - lower).max()) / LARGEST)
         lower = lower - 1.5 * edge
         size = np.ceil((upper - lower) / edge).astype(np.int64) + 2
         # A thousandth of a cell covers the rounding of a point that lies on a facet and on a cell's side.

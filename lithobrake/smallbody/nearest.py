@@ -118,7 +118,7 @@ def heights(corner: Any, outward: Any, points: Any, height: Any, nearest: Any) -
 
 
 @compiled
-def near_heights(grid: Any, corner: Any, outward: Any, points: Any, height: Any) -> None:
-    """Write height_near of points [count, 3 or more columns]: inf where the surface is farther than a cell's edge."""
+def near_heights(grid: Any, corner: Any, outward: Any, points: Any, height: Any, nearest: Any) -> None:
+    """Write height_near of points [count, 3]: inf and -1 where the surface is farther than a cell's edge."""
     for r in range(len(points)):
-        height[r] = height_near(grid, corner, outward, points[r, :3])[0]
+        height[r], nearest[r] = height_near(grid, corner, outward, points[r])

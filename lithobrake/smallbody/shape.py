@@ -14,6 +14,8 @@ from lithobrake.smallbody.mesh_files import read_mesh
 from lithobrake.smallbody.multipole import Multipole
 from lithobrake.smallbody.nearest import heights, pseudonormals
 from lithobrake.smallbody.polyhedron import Polyhedron
+from lithobrake.smallbody.table import GravityTable
+from lithobrake.smallbody.table_build import TableError, table_of
 
 
 class Shape:
@@ -58,7 +60,21 @@ class Shape:
     @property
     def gravity(self) -> tuple[Any, ...]:
         """What the gravity kernels read."""
-        return self.polyhedron.arrays, self.multipole.arrays
+        return self.polyhedron.arrays, self.multipole.arrays, GravityTable.empty().arrays
+
+    @property
+    def tabled_gravity(self) -> tuple[Any, ...]:
+        """The same with the table, which serves all points but the farthest."""
+        return self.polyhedron.arrays, self.multipole.arrays, self._table[0].arrays
+
+    @property
+    def table_error(self) -> TableError:
+        """How far the table is off the facets' sums."""
+        return self._table[1]
+
+    @cached_property
+    def _table(self) -> tuple[GravityTable, TableError]:
+        return table_of(self.polyhedron, self.multipole, self.volume)
 
     @cached_property
     def corners(self) -> NDArray[np.float64]:

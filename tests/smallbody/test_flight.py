@@ -108,6 +108,22 @@ def test_impacts_lie_on_the_surface_and_energy_is_kept(top):
     assert np.array_equal(flights.longitude, longitude)
 
 
+def test_table_against_exact(top, tmp_path_factory):
+    """The fast flights end like the exact ones; the table's measured error says how closely."""
+    position, velocity = cone(top, 0.0, 0.0, 300, seed=9)
+    exact = fly(top, position, velocity, 12 * 3600.0)
+    table = fly(top, position, velocity, 12 * 3600.0, gravity="table")
+    assert (exact.status != table.status).sum() == 0
+    hit = exact.status == "impact"
+    apart = np.linalg.norm(exact.position[hit] - table.position[hit], axis=1)
+    assert np.median(apart) < 0.2
+    assert np.quantile(apart, 0.95) < 3.0
+    error = top.shape.table_error
+    assert error.median < 1e-4
+    assert error.p95 < 2e-3
+    assert np.abs(table.jacobi_drift).max() < 2e-5
+
+
 def test_threads_and_company_do_not_change_a_bit(top):
     position, velocity = cone(top, 10.0, 0.0, 40, seed=7)
     one = fly(top, position, velocity, 3600.0, threads=1)

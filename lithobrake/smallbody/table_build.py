@@ -1,0 +1,169 @@
+"""Filling the gravity table of a shape, measuring its error, and keeping it on disk."""
+
+import hashlib
+import logging
+import math
+import os
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import fields
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lithobrake.atomic import atomic_path
+from lithobrake.compiled import cache_folder, compiled
+from lithobrake.smallbody import attraction
+from lithobrake.smallbody.grid import Grid
+from lithobrake.smallbody.multipole import Multipole
+from lithobrake.smallbody.nearest import near_heights, pseudonormals
+from lithobrake.smallbody.polyhedron import Polyhedron
+from lithobrake.smallbody.table import CORE, LEVELS, MARGIN, RIM, GravityTable, point_mass, spline_coefficients
+
+SKIN = 6  # cells below the surface over which the continued field goes over into the one inside
+PIECE = 8192  # points that a thread takes at a time
+
+log = logging.getLogger(__name__)
+
+
+class TableError(NamedTuple):
+    """Difference of table and facets, relative to the mean gravity on the surface, at points spread over its use."""
+
+    median: float
+    p95: float
+    largest: float
+    point_count: int
+
+
+def table_of(polyhedron: Polyhedron, multipole: Multipole, volume: float) -> tuple[GravityTable, TableError]:
+    """The table of a shape and its error, from disk where it was built before; the name there is a hash of the mesh."""
+    digest = hashlib.sha256(polyhedron.vertices.tobytes() + polyhedron.facet_corners.tobytes()).hexdigest()[:24]
+    path = cache_folder("smallbody") / f"gravity-{digest}.npz"
+    if path.is_file():
+        with np.load(path) as stored:
+            table = GravityTable(*(_plain(stored[field.name]) for field in fields(GravityTable)))
+            return table, TableError(*stored["error"].tolist())
+    table = _build(polyhedron, multipole, volume)
+    error = _measure(table, polyhedron, multipole)
+    _store(path, table, error)
+    log.info(
+        "gravity table of %d facets: error %.1e median, %.1e p95, %.1e largest of surface gravity at %d points; %s",
+        *(len(polyhedron.facet_corners), error.median, error.p95, error.largest, error.point_count, path),
+    )
+    return table, error
+
+
+def _plain(array: NDArray[Any]) -> Any:
+    return float(array) if array.ndim == 0 else array
+
+
+def _store(path: Path, table: GravityTable, error: TableError) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with atomic_path(path) as draft, open(draft, "wb") as file:
+        arrays = {field.name: getattr(table, field.name) for field in fields(GravityTable)}
+        np.savez(file, error=np.array(error, dtype=np.float64), **arrays)
+
+
+def _build(polyhedron: Polyhedron, multipole: Multipole, volume: float) -> GravityTable:
+    """Sample each grid with the facets' sums or the series, continue below the surface, turn into splines."""
+    gravity = (polyhedron.arrays, multipole.arrays, GravityTable.empty().arrays)
+    core = CORE * (3.0 * volume / (4.0 * math.pi)) ** (1.0 / 3.0)
+    lower, upper = polyhedron.vertices.min(axis=0), polyhedron.vertices.max(axis=0)
+    corners: list[NDArray[np.float64]] = []
+    edges: list[float] = []
+    sizes: list[NDArray[np.int64]] = []
+    values: list[NDArray[np.float64]] = []
+    served: tuple[NDArray[np.float64], NDArray[np.float64]] | None = None
+    for share, reach in LEVELS:
+        edge = share * multipole.radius
+        if served is None:
+            first, last = lower - MARGIN * edge, upper + MARGIN * edge
+        else:
+            first, last = multipole.centre - reach * multipole.radius, multipole.centre + reach * multipole.radius
+            first, last = np.minimum(first, served[0] - 2 * edge), np.maximum(last, served[1] + 2 * edge)
+        size = np.ceil((last - first) / edge).astype(np.int64) + 1
+        nodes = first + edge * np.indices(size).reshape(3, -1).T
+        needed = np.ones(len(nodes), dtype=bool)
+        if served is not None:
+            # Deep inside the finer grid this one is never read.
+            needed = ~((nodes > served[0] + 4 * edge) & (nodes < served[1] - 4 * edge)).all(axis=1)
+        sample = np.zeros((len(nodes), 3))
+        sample[needed] = _sample(nodes[needed], gravity, multipole.centre, volume, core)
+        if served is None:
+            sample -= 4.0 * math.pi * _continuation(nodes, polyhedron, SKIN * edge)
+        values.append(spline_coefficients(sample.reshape(*size, 3)).reshape(-1))
+        corners.append(first)
+        edges.append(edge)
+        sizes.append(size)
+        served = first + RIM * edge, first + (size - 1 - RIM) * edge
+    starts = np.cumsum([0, *(len(level) for level in values[:-1])])
+    return GravityTable(
+        *(multipole.centre, volume, core, np.array(corners), np.array(edges), np.array(sizes)),
+        *(starts, np.concatenate(values)),
+    )
+
+
+def _sample(points: NDArray[np.float64], gravity: Any, centre: Any, volume: float, core: float) -> NDArray[np.float64]:
+    """Field sums less the point mass at points [m], shape [count, 3], on all cores."""
+    result = np.empty((len(points), 3))
+
+    def part(first: int) -> None:
+        piece = slice(first, first + PIECE)
+        result[piece] = attraction.field(points[piece], gravity)[:, :3]
+        _subtract(points[piece], result[piece], centre, volume, core)
+
+    with ThreadPoolExecutor(os.cpu_count() or 1) as pool:
+        list(pool.map(part, range(0, len(points), PIECE)))
+    return result
+
+
+@compiled
+def _subtract(points: Any, sample: Any, centre: Any, volume: float, core: float) -> None:
+    """Take the point mass out of sample [count, 3]."""
+    for i in range(len(points)):
+        x, y, z = point_mass(points[i, 0], points[i, 1], points[i, 2], centre, volume, core)
+        sample[i, 0] -= x
+        sample[i, 1] -= y
+        sample[i, 2] -= z
+
+
+def _continuation(nodes: NDArray[np.float64], polyhedron: Polyhedron, skin: float) -> NDArray[np.float64]:
+    """What density adds below the surface, over 4 pi: the depth along the normal [m], faded out over `skin`, [count,
+    3].
+
+    Outside, the field does not know the density it is near; below a plane facet the density adds 4 pi G density times
+    the depth, along the normal. Without that the field goes on as if the facet were not there.
+    """
+    faces = polyhedron.facet_corners
+    normals = polyhedron.facet_terms[:, :3]
+    corner = np.ascontiguousarray(polyhedron.vertices[faces])
+    grid = Grid.of(polyhedron.vertices, faces, edge=skin)
+    height, facet = np.empty(len(nodes)), np.empty(len(nodes), dtype=np.int64)
+    near_heights(grid.arrays, corner, pseudonormals(polyhedron.vertices, faces, normals), nodes, height, facet)
+    result = np.zeros_like(nodes)
+    under = np.flatnonzero((height < 0.0) & (height > -skin))
+    normal = normals[facet[under]]
+    depth = np.einsum("ni,ni->n", corner[facet[under], 0] - nodes[under], normal)
+    share = np.clip(-height[under] / skin, 0.0, 1.0)
+    fade = np.where(share < 0.5, 1.0, 0.5 * (1.0 + np.cos(2.0 * np.pi * (share - 0.5))))
+    result[under] = (depth * fade)[:, None] * normal
+    return result
+
+
+def _measure(table: GravityTable, polyhedron: Polyhedron, multipole: Multipole) -> TableError:
+    """Compare on points from the surface out to the last grid, most of them near the surface."""
+    exact = (polyhedron.arrays, multipole.arrays, GravityTable.empty().arrays)
+    random = np.random.default_rng(0)
+    area = polyhedron.facet_terms[:, 3]
+    facet = random.choice(len(area), 6000, p=area / area.sum())
+    weight = random.dirichlet(np.ones(3), len(facet))
+    ground = np.einsum("nc,nci->ni", weight, polyhedron.vertices[polyhedron.facet_corners[facet]])
+    rise = multipole.radius * 10.0 ** random.uniform(-4.0, 0.8, len(facet))
+    points = ground + rise[:, None] * polyhedron.facet_terms[facet, :3]
+    outside = attraction.field(points, exact)
+    free = outside[:, 4] < 1e-3
+    difference = attraction.field(points, (polyhedron.arrays, multipole.arrays, table.arrays))[:, :3] - outside[:, :3]
+    scale = np.linalg.norm(attraction.field(ground, exact)[:, :3], axis=1).mean()
+    error = np.linalg.norm(difference[free], axis=1) / scale
+    return TableError(float(np.median(error)), float(np.quantile(error, 0.95)), float(error.max()), len(error))
