@@ -7,7 +7,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from lithobrake.chaos.automatic import best_solutions, process_solution
-from lithobrake.chaos.evaluation import evaluate, make_plan
 from lithobrake.chaos.germ import Distribution
 from lithobrake.chaos.noise import with_noise
 from lithobrake.chaos.polynomials import Array
@@ -72,20 +71,19 @@ def assemble(training: Training, indices: Indices, coefficients: Array, report: 
     # Rounding would give a constant output a variance of 1e-32, and with it meaningless shares.
     constant = np.ptp(training.y, axis=0) == 0.0
     coefficients[:, constant] = np.where(indices.sum(axis=1) == 0, 1.0, 0.0)[:, None] * training.y[0, constant]
-    plan = make_plan(training.inputs, indices, coefficients)
     facts = {
         "degree": int(indices.sum(axis=1).max()),
         "train_count": training.count,
         "dropped_count": training.dropped_count,
         "data_hash": data_hash(training.x, training.y),
     }
-    report = with_noise(report, training.x, training.y)
-    return Surrogate(
+    surrogate = Surrogate(
         training.inputs,
         indices,
         coefficients,
         output_names=training.output_names,
         one_dimensional=training.one_dimensional,
-        residuals=training.y - evaluate(training.inputs, plan, training.x),
-        report={**report, **facts},
+        report={**with_noise(report, training.x, training.y), **facts},
     )
+    surrogate.residuals = training.y - surrogate.evaluated(training.x)
+    return surrogate

@@ -27,13 +27,21 @@ class Replicates:
     correlation: Array
 
 
+def equal_rows(x: Array) -> NDArray[np.int64]:
+    """Group number of each row of x [count, input_count], [count]: equal rows have equal numbers."""
+    order = np.lexsort(x.T[::-1])
+    changes = (x[order[1:]] != x[order[:-1]]).any(axis=1)
+    group = np.zeros(len(x), dtype=np.int64)
+    group[order[1:]] = np.cumsum(changes)
+    return group
+
+
 def replicates(x: Array, y: Array) -> Replicates | None:
     """Find repeated rows of x [count, input_count] and pool the scatter of y [count, output_count]; None if no repeats.
 
     Source: Montgomery, 2012, "Design and Analysis of Experiments", pure error.
     """
-    points, group = np.unique(x, axis=0, return_inverse=True)
-    group = group.ravel()
+    group = equal_rows(x)
     sizes = np.bincount(group).astype(np.int64)
     freedom = int((sizes - 1).sum())
     if freedom == 0:
@@ -42,6 +50,8 @@ def replicates(x: Array, y: Array) -> Replicates | None:
     deviation = y - means[group]
     squares = np.stack([np.bincount(group, weights=column**2) for column in deviation.T], axis=1)
     several = sizes > 1
+    points = np.empty((len(sizes), x.shape[1]))
+    points[group] = x
     pooled = np.sqrt(squares.sum(axis=0) / freedom)
     cross = deviation.T @ deviation / freedom
     scale = np.where(pooled > 0.0, pooled, 1.0)

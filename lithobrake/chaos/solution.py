@@ -28,6 +28,8 @@ class Solution:
 
 def joined(solutions: Sequence[Solution]) -> tuple[Indices, Array]:
     """Terms that any output uses, ordered by total degree, and coefficients [term_count, output_count]."""
+    if all(one.indices is solutions[0].indices for one in solutions):
+        return solutions[0].indices, np.column_stack([one.coefficients for one in solutions])
     stacked = np.concatenate([one.indices for one in solutions])
     distinct = np.unique(stacked, axis=0)
     keys = [-distinct[:, column] for column in reversed(range(distinct.shape[1]))]

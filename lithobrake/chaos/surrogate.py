@@ -81,7 +81,11 @@ class Surrogate:
         warning and extrapolates. Values that are not finite are always refused.
         """
         points = self.checked_points(x, outside)
-        return self.shaped(evaluate(self.inputs, self._plan, points))
+        return self.shaped(self.evaluated(points))
+
+    def evaluated(self, points: Array) -> Array:
+        """Values [count, output_count] at points [count, input_count] that have been checked."""
+        return evaluate(self.inputs, self._plan, points)
 
     def checked_points(self, x: ArrayLike, outside: str = "raise") -> Array:
         """Points [count, input_count] after the checks that `__call__` describes."""

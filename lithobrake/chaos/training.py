@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from lithobrake.chaos.basis import outside_count, points_of
 from lithobrake.chaos.germ import Distribution, checked_inputs
+from lithobrake.chaos.noise import equal_rows
 from lithobrake.chaos.polynomials import Array
 
 
@@ -33,11 +34,10 @@ class Training:
 
         Leaving out one of several equal runs would only ask how well its twins predict it.
         """
-        _, first, group = np.unique(self.x, axis=0, return_index=True, return_inverse=True)
-        if len(first) == len(self.x):
+        group = equal_rows(self.x)
+        if group.max() == len(self.x) - 1:
             return []
-        order = np.argsort(group.ravel(), kind="stable")
-        return np.split(order, np.cumsum(np.bincount(group.ravel()))[:-1])
+        return np.split(np.argsort(group, kind="stable"), np.cumsum(np.bincount(group))[:-1])
 
     @property
     def count(self) -> int:
