@@ -8,10 +8,11 @@ from lithobrake.compiled import kernel
 from lithobrake.dem.arrays import Bodies, Cores, Floats, Laws, Pairs, Planes
 from lithobrake.dem.distance import Search
 from lithobrake.dem.force import DAMPING, FREQUENCY_SQUARED, Step, act
+from lithobrake.dem.listing import renew
 from lithobrake.dem.motion import drift, kick
 from lithobrake.dem.vectors import dot, plus, row, scaled
 
-DONE, LIST_USED_UP, STEP_TOO_LARGE, DIVERGED = 0, 1, 2, 3
+DONE, LIST_USED_UP, NAMES_OVERFLOW, STEP_TOO_LARGE, DIVERGED = 0, 1, 2, 3, 4
 
 
 class Limits(NamedTuple):
@@ -65,6 +66,8 @@ def advance(
                 return taken, DIVERGED, False
             if farthest > limits.half_skin * limits.half_skin:
                 return taken, LIST_USED_UP, True
+        if renew(bodies, cores, planes, pairs, search) > pairs.term.shape[1]:
+            return taken, NAMES_OVERFLOW, True
         drifted = False
         totals[FREQUENCY_SQUARED] = 0.0
         apply_forces(bodies, cores, planes, pairs, laws, step, search, totals)

@@ -69,7 +69,8 @@ class Pairs(NamedTuple):
     spring: Floats  # [pair_count, 3], N, tangential spring force on second
     tangential_force: Floats  # [pair_count, 3], N, spring and dashpot on second
     tangential_stiffness: Floats  # [pair_count], N/m
-    simplex: Integers  # [pair_count, 7]: vertex count, vertices on first, vertices on second (closest features)
+    term_count: Integers  # [pair_count], features near enough to touch before waking; -1: deepest point only
+    term: Integers  # [pair_count, term_max], their names
 
 
 class Laws(NamedTuple):

@@ -32,17 +32,19 @@ class Search(NamedTuple):
     weight: Floats  # [4]
     turned: Floats  # [edge_count_max + vertex_count_max, 12]
     relative: Floats  # [1, 3, 3]
-    point: Floats  # [vertex_count_max, 3]
-    depth: Floats  # [vertex_count_max], overlap at the point
-    share: Floats  # [vertex_count_max], of the elastic force
+    point: Floats  # [point_max, 3], of a patch
+    normal: Floats  # [point_max, 3], from first to second
+    depth: Floats  # [point_max], overlap at the point
+    weight_of_point: Floats  # [point_max]
+    share: Floats  # [point_max], derivative of the patch's overlap by that of the point
 
 
-def search_for(vertex_count_max: int, edge_count_max: int) -> Search:
-    """Return scratch large enough for cores of these sizes."""
+def search_for(vertex_count_max: int, edge_count_max: int, point_max: int) -> Search:
+    """Return scratch large enough for cores and patches of these sizes."""
     return Search(
         np.zeros((4, 3)), np.zeros((4, 3)), np.zeros((4, 3)), np.zeros((4, 2), dtype=np.int64), np.zeros(4),
         np.zeros((edge_count_max + vertex_count_max, 12)), np.zeros((1, 3, 3)),
-        np.zeros((vertex_count_max, 3)), np.zeros(vertex_count_max), np.zeros(vertex_count_max),
+        np.zeros((point_max, 3)), np.zeros((point_max, 3)), np.zeros(point_max), np.zeros(point_max), np.zeros(point_max),
     )  # fmt: skip
 
 
@@ -60,8 +62,9 @@ def support(cores: Cores, shape: int, direction: Vector) -> int:
 
 @kernel
 def place(
-    search: Search, k: int, cores: Cores, shapes: tuple[int, int], rotation: Floats, bodies: tuple[int, int], apart: Vector
-) -> None:
+    search: Search, k: int, cores: Cores, shapes: tuple[int, int], rotation: Floats, bodies: tuple[int, int],
+    apart: Vector,
+) -> None:  # fmt: skip
     """Compute corner k of the simplex from the two vertex names."""
     first = times(rotation, bodies[0], row(cores.vertex, cores.vertex_start[shapes[0]] + search.names[k, 0]))
     second = times(rotation, bodies[1], row(cores.vertex, cores.vertex_start[shapes[1]] + search.names[k, 1]))

@@ -1,20 +1,20 @@
 """Contact law: Hertz with damping that gives the entered restitution, and a Coulomb-limited tangential spring.
 
-Source: the paper, Eqs (1) to (9), with the readings argued for in docs/validation; Mindlin (1949); the no-tension end of
-contact and the damping that makes up for it, see material.restitution_of.
+Source: the paper, Eqs (1) to (9), with Mindlin's (1949) shear modulus; the no-tension end of contact and the damping
+that makes up for it, see material.restitution_of.
 """
 
 from typing import NamedTuple
 
+import numpy as np
+
 from lithobrake.compiled import kernel
 from lithobrake.dem.arrays import Bodies, Cores, Floats, Laws, Pairs, Planes
 from lithobrake.dem.distance import Search
-from lithobrake.dem.geometry import touch_bodies, touch_plane
+from lithobrake.dem.patch import spread, touch_bodies, touch_plane
 from lithobrake.dem.vectors import Vector, add, cross, dot, minus, plus, put, row, scaled, times
 
 DAMPING, FRICTION, FREQUENCY_SQUARED = 0, 1, 2
-# Share of a gap that is kept back when it is turned into a wake-up call: covers the round-off in summing travels.
-BOUND_SLACK = 1e-6
 
 
 class Step(NamedTuple):
@@ -43,7 +43,7 @@ def inverse_mass_at(bodies: Bodies, body: int, arm: Vector, normal: Vector, pape
 
 @kernel
 def turned_spring(pairs: Pairs, pair: int, normal: Vector, twist: float) -> Vector:
-    """Return the spring force carried along with the contact frame: turned with the normal and the mean spin about it."""
+    """Return the spring force turned with the contact frame: with the normal, and with the mean spin about it."""
     spring = row(pairs.spring, pair)
     square = dot(spring, spring)
     if square == 0.0:
@@ -84,42 +84,14 @@ def part(pairs: Pairs, pair: int, totals: Floats) -> None:
 
 
 @kernel
-def spread(search: Search, count: int) -> tuple[float, Vector]:
-    """Combine the overlaps of the points of one contact into one, and write the share of each in the force.
-
-    The elastic energy is 2/5 K D^(5/2) with D the 8-norm of the overlaps, so that the forces on the points are the
-    gradient of one potential, a single point is Hertz exactly, and four or eight equal points are 1.5 or 1.9 times as
-    stiff. Returns D and the centre of pressure.
-    """
-    if count == 1:
-        search.share[0] = 1.0
-        return search.depth[0], row(search.point, 0)
-    deepest = search.depth[0]
-    for k in range(1, count):
-        deepest = max(deepest, search.depth[k])
-    total, weight, centre = 0.0, 0.0, (0.0, 0.0, 0.0)
-    for k in range(count):
-        ratio = search.depth[k] / deepest
-        fourth = ratio * ratio * ratio * ratio
-        search.share[k] = fourth * ratio * ratio * ratio
-        total += fourth * fourth
-        weight += search.share[k]
-        centre = plus(centre, scaled(search.share[k], row(search.point, k)))
-    root = total**0.5**0.5**0.5
-    for k in range(count):
-        search.share[k] *= root / total
-    return deepest * root, scaled(1.0 / weight, centre)
-
-
-@kernel
 def press(
-    search: Search, count: int, bodies: Bodies, first: int, second: int, normal: Vector, elastic: float, dashpot: float,
-    step: Step, totals: Floats,
+    search: Search, count: int, bodies: Bodies, first: int, second: int, elastic: float, dashpot: float, step: Step,
+    totals: Floats,
 ) -> float:  # fmt: skip
-    """Apply the normal forces at the points of a contact, none of them pulling; return their sum."""
+    """Apply the normal forces at the points of a patch, none of them pulling; return their sum."""
     total = 0.0
     for k in range(count):
-        point = row(search.point, k)
+        point, normal = row(search.point, k), row(search.normal, k)
         arm = minus(point, row(bodies.position, first))
         now = scaled(-1.0, point_velocity(bodies.velocity_predicted, bodies.spin_predicted, first, arm))
         if second >= 0:
@@ -176,18 +148,18 @@ def act(
     """Compute the contact force of one pair and add it to its members."""
     first, second = pairs.first[pair], pairs.second[pair]
     is_body = second >= 0
-    travel = bodies.travel[first] + (bodies.travel[second] if is_body else 0.0)
-    if travel < pairs.wake[pair]:
-        return
-    if is_body:
-        count, normal, gap = touch_bodies(bodies, cores, pairs, pair, search)
-    else:
-        count, normal, gap = touch_plane(bodies, cores, planes, first, -1 - second, search)
-    if count == 0:
-        pairs.wake[pair] = travel + (1.0 - BOUND_SLACK) * gap
+    if pairs.term_count[pair] == 0:
         part(pairs, pair, totals)
         return
-    overlap, point = spread(search, count)
+    if is_body:
+        count = touch_bodies(pair, bodies, cores, pairs, search)
+        rounding = cores.rounding[bodies.shape[first]] + cores.rounding[bodies.shape[second]]
+    else:
+        count, rounding = touch_plane(pair, bodies, cores, planes, pairs, search), np.inf
+    if count == 0:
+        part(pairs, pair, totals)
+        return
+    overlap, point, normal = spread(search, count, rounding)
     arm = minus(point, row(bodies.position, first))
     inverse_mass = inverse_mass_at(bodies, first, arm, normal, step.paper_mass)
     curvature = 1.0 / bodies.contact_radius[first]
@@ -211,7 +183,7 @@ def act(
 
     dashpot = 2.0 * damping_ratio * (1.25 * stiffness / inverse_mass) ** 0.5
     elastic = stiffness * overlap
-    force = press(search, count, bodies, first, second, normal, elastic, dashpot, step, totals)
+    force = press(search, count, bodies, first, second, elastic, dashpot, step, totals)
     shear_dashpot = 2.0 * damping_ratio * (5.0 / 6.0 * shear_stiffness / inverse_mass) ** 0.5
     limit = laws.friction[here, there] * force
     tangential = rub(pair, pairs, normal, moved, now, twist, limit, shear_stiffness, shear_dashpot, step, totals)

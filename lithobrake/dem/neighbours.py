@@ -5,6 +5,9 @@ import numpy as np
 from lithobrake.compiled import kernel
 from lithobrake.dem.arrays import Bodies, Floats, Integers, Pairs, Planes
 
+# Room for names of features near each other that a pair starts with; doubled when some pair needs more.
+TERM_MAX = 16
+
 
 @kernel
 def sweep(order: Integers, low: Floats, position: Floats, reach: Floats, first: Integers, second: Integers) -> int:
@@ -49,13 +52,14 @@ def neighbours(bodies: Bodies, planes: Planes, skin: float) -> tuple[Integers, I
     return first[sorting], second[sorting]
 
 
-def pairs_of(first: Integers, second: Integers) -> Pairs:
-    """Return pairs without any history."""
+def pairs_of(first: Integers, second: Integers, term_max: int = TERM_MAX) -> Pairs:
+    """Return pairs without any history, with room for so many names of features each."""
     n = len(first)
     return Pairs(
-        first=first, second=second, wake=np.zeros(n), overlap=np.zeros(n), normal=np.zeros((n, 3)), point=np.zeros((n, 3)),
-        normal_force=np.zeros(n), elastic_force=np.zeros(n), spring=np.zeros((n, 3)), tangential_force=np.zeros((n, 3)),
-        tangential_stiffness=np.zeros(n), simplex=np.zeros((n, 7), dtype=np.int64),
+        first=first, second=second, wake=np.zeros(n), overlap=np.zeros(n), normal=np.zeros((n, 3)),
+        point=np.zeros((n, 3)), normal_force=np.zeros(n), elastic_force=np.zeros(n), spring=np.zeros((n, 3)),
+        tangential_force=np.zeros((n, 3)), tangential_stiffness=np.zeros(n),
+        term_count=np.zeros(n, dtype=np.int64), term=np.zeros((n, term_max), dtype=np.int64),
     )  # fmt: skip
 
 
@@ -64,7 +68,7 @@ def renewed(old: Pairs, first: Integers, second: Integers) -> Pairs:
 
     No contact is lost: what touches lies deep inside the reach of the list.
     """
-    new = pairs_of(first, second)
+    new = pairs_of(first, second, old.term.shape[1])
     span = 1 + max(int(first.max(initial=0)), int(old.first.max(initial=0)), int(np.abs(second).max(initial=0)),
                    int(np.abs(old.second).max(initial=0)))  # fmt: skip
     key_old, key_new = old.first * (2 * span) + old.second, first * (2 * span) + second
@@ -72,3 +76,9 @@ def renewed(old: Pairs, first: Integers, second: Integers) -> Pairs:
     for name in Pairs._fields[2:]:
         getattr(new, name)[here] = getattr(old, name)[there]
     return new
+
+
+def roomier(old: Pairs, term_max: int) -> Pairs:
+    """Return the same pairs with room for more names; they are all to be listed anew."""
+    term = np.zeros((len(old.first), term_max), dtype=np.int64)
+    return old._replace(term=term, wake=np.zeros_like(old.wake))

@@ -15,6 +15,7 @@ from lithobrake.dem.advance import (
     FIRST_CONTACT,
     LAST_CONTACT,
     LIST_USED_UP,
+    NAMES_OVERFLOW,
     PEAK_FORCE,
     STEP_TOO_LARGE,
     Limits,
@@ -25,8 +26,9 @@ from lithobrake.dem.arrays import Bodies, Cores, Floats, Laws, Pairs, Planes
 from lithobrake.dem.body import Body, Plane, bodies_of, cores_of, laws_of, planes_of, unit
 from lithobrake.dem.distance import Search, search_for
 from lithobrake.dem.force import FREQUENCY_SQUARED, Step
+from lithobrake.dem.listing import renew
 from lithobrake.dem.material import PAIR_RULES, SHEAR_MODULUS_RULES, Material
-from lithobrake.dem.neighbours import neighbours, pairs_of, renewed
+from lithobrake.dem.neighbours import neighbours, pairs_of, renewed, roomier
 from lithobrake.dem.shape import Shape, equivalent_radius
 
 DAMPING_MASSES = ("contact", "paper")
@@ -226,6 +228,8 @@ class World:
             self.time += taken * self.time_step
             if reason == LIST_USED_UP:
                 self._list_neighbours()
+            elif reason == NAMES_OVERFLOW:
+                self._make_room()
             elif reason != DONE:
                 self._refuse(reason)
 
@@ -267,11 +271,12 @@ class World:
         self._plane_arrays: Planes = planes_of(self.planes, materials, len(self.bodies))
         self._arrays: Bodies = bodies_of(self.bodies, shapes, materials, self._state)
         self._state = {name: getattr(self._arrays, name) for name in self._state}
-        vertex_max = int(np.diff(self._cores.vertex_start).max())
-        self._search: Search = search_for(vertex_max, int(np.diff(self._cores.edge_start).max()))
         self._skin = SKIN * float(self._arrays.bounding_radius.min())
+        self._search: Search = self._scratch()
         self._list_neighbours()
         self._pairs.wake[:] = 0.0
+        while renew(*self._geometry, self._search) > self._pairs.term.shape[1]:
+            self._make_room()
         self._arrays.velocity_predicted[:] = self._arrays.velocity
         self._arrays.spin_predicted[:] = self.spin
         self._arrays.half_spin[:] = self.spin
@@ -286,6 +291,19 @@ class World:
         self._state = {name: array.copy() for name, array in self._state.items()}
         self._time_step = self._given_time_step
         self._assembled = False
+
+    @property
+    def _geometry(self) -> tuple[Bodies, Cores, Planes, Pairs]:
+        return self._arrays, self._cores, self._plane_arrays, self._pairs
+
+    def _scratch(self) -> Search:
+        vertex_max, edge_max = (int(np.diff(s).max()) for s in (self._cores.vertex_start, self._cores.edge_start))
+        return search_for(vertex_max, edge_max, self._pairs.term.shape[1])
+
+    def _make_room(self) -> None:
+        """Double the room for names of near features."""
+        self._pairs = roomier(self._pairs, 2 * self._pairs.term.shape[1])
+        self._search = self._scratch()
 
     def _list_neighbours(self) -> None:
         first, second = neighbours(self._arrays, self._plane_arrays, self._skin)

@@ -8,7 +8,7 @@ import numpy as np
 from lithobrake.dem import Material, World
 
 KINETIC_RATIO = 1e-5  # of the energy that lifts every grain by its own diameter
-UNBALANCED_FORCE = 0.2  # of the mean contact force
+UNBALANCED_FORCE = 1e-2  # of the mean contact force
 PERIODS_HELD = 10.0  # settled: both hold for so many periods of a grain's small oscillation at its rest overlap
 PERIODS_RELAXED = 5.0
 PERIODS_PATIENCE = 400.0  # after so many the bed is given up

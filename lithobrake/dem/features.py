@@ -1,0 +1,110 @@
+"""Closed forms: how far a point is from a core, and two edges from each other."""
+
+from lithobrake.compiled import kernel
+from lithobrake.dem.arrays import Cores, Floats
+from lithobrake.dem.vectors import Vector, cross, dot, minus, plus, row, scaled
+
+# Two edges whose directions differ by less than this angle (squared) have no single closest point.
+PARALLEL = 1e-12
+
+
+@kernel
+def face_below(cores: Cores, shape: int, point: Vector, farthest: float) -> tuple[int, float]:
+    """Return the face that a point of the body frame stands highest above, and that height.
+
+    Stops with a face of -1 once the point is known to be farther from the core than `farthest`.
+    """
+    best, height = -1, 0.0
+    for face in range(cores.face_start[shape], cores.face_start[shape + 1]):
+        trial = dot(row(cores.normal, face), point) - cores.offset[face]
+        if trial > farthest:
+            return -1, trial
+        if best < 0 or trial > height:
+            best, height = face, trial
+    return best, height
+
+
+@kernel
+def point_to_core(cores: Cores, shape: int, point: Vector, farthest: float) -> tuple[float, Vector, bool]:
+    """Return the signed distance of a point of the body frame to a core with faces, the outward unit normal at the
+    closest point of its surface, and whether it is nearer than `farthest` (if not, the rest is void).
+    """
+    face, height = face_below(cores, shape, point, farthest)
+    if face < 0:
+        return height, point, False
+    normal = row(cores.normal, face)
+    if height <= 0.0 or on_core(cores, shape, minus(point, scaled(height, normal)), face):
+        return height, normal, True
+    nearest, square = point_to_edges(cores, shape, point)
+    distance = square**0.5
+    normal = scaled(1.0 / distance, minus(point, nearest))
+    for face in range(cores.face_start[shape], cores.face_start[shape + 1]):
+        other = row(cores.normal, face)
+        height = dot(other, point) - cores.offset[face]
+        if 0.0 < height < distance and on_core(cores, shape, minus(point, scaled(height, other)), face):
+            normal, distance = other, height
+    return distance, normal, distance < farthest
+
+
+@kernel
+def on_core(cores: Cores, shape: int, foot: Vector, own: int) -> bool:
+    """Whether a point in the plane of one face is behind all others, so that it lies on that face."""
+    for face in range(cores.face_start[shape], cores.face_start[shape + 1]):
+        if face != own and dot(row(cores.normal, face), foot) > cores.offset[face]:
+            return False
+    return True
+
+
+@kernel
+def point_to_edges(cores: Cores, shape: int, point: Vector) -> tuple[Vector, float]:
+    """Return the closest point of all edges of a core, and its squared distance."""
+    first = cores.vertex_start[shape]
+    nearest, square = point, -1.0
+    for edge in range(cores.edge_start[shape], cores.edge_start[shape + 1]):
+        begin = row(cores.vertex, first + cores.edge[edge, 0])
+        along = minus(row(cores.vertex, first + cores.edge[edge, 1]), begin)
+        share = min(max(dot(minus(point, begin), along) / dot(along, along), 0.0), 1.0)
+        trial = plus(begin, scaled(share, along))
+        away = minus(point, trial)
+        if square < 0.0 or dot(away, away) < square:
+            nearest, square = trial, dot(away, away)
+    return nearest, square
+
+
+@kernel
+def edge_to_edge(a: Vector, along_a: Vector, b: Vector, along_b: Vector) -> tuple[Vector, Vector]:
+    """Return the closest points of two edges that begin at a and b; parallel ones touch in the middle of their overlap."""
+    between = minus(b, a)
+    aa, bb, ab = dot(along_a, along_a), dot(along_b, along_b), dot(along_a, along_b)
+    ad, bd = dot(along_a, between), dot(along_b, between)
+    turn = cross(along_a, along_b)
+    determinant = dot(turn, turn)
+    if determinant > PARALLEL * aa * bb:
+        share = min(max((ad * bb - bd * ab) / determinant, 0.0), 1.0)
+    else:
+        near, far = ad / aa, (ad + ab) / aa
+        low, high = max(0.0, min(near, far)), min(1.0, max(near, far))
+        share = min(max(0.5 * (low + high), 0.0), 1.0)
+    other = min(max((share * ab - bd) / bb, 0.0), 1.0)
+    share = min(max((other * ab + ad) / aa, 0.0), 1.0)
+    return plus(a, scaled(share, along_a)), plus(b, scaled(other, along_b))
+
+
+@kernel
+def write_relative(rotation: Floats, first: int, second: int, relative: Floats) -> None:
+    """Write the rotation [1, 3, 3] from the second body's frame to the first's."""
+    for i in range(3):
+        for j in range(3):
+            relative[0, i, j] = (
+                rotation[first, 0, i] * rotation[second, 0, j]
+                + rotation[first, 1, i] * rotation[second, 1, j]
+                + rotation[first, 2, i] * rotation[second, 2, j]
+            )
+
+
+@kernel
+def edge_of(cores: Cores, shape: int, edge: int) -> tuple[Vector, Vector]:
+    """Return begin and direction (not of unit length) of an edge, in the body frame."""
+    k, first = cores.edge_start[shape] + edge, cores.vertex_start[shape]
+    begin = row(cores.vertex, first + cores.edge[k, 0])
+    return begin, minus(row(cores.vertex, first + cores.edge[k, 1]), begin)

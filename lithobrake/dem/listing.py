@@ -1,0 +1,187 @@
+"""Which features of a pair are near enough to touch before its motion has used up a margin.
+
+Only names are kept; their distances are computed anew in each step (patch.py), and features that do not touch add
+nothing. So it makes no difference to any bit when, or how often, the names are renewed.
+"""
+
+from lithobrake.compiled import kernel
+from lithobrake.dem.arrays import Bodies, Cores, Pairs, Planes
+from lithobrake.dem.crossing import way_out
+from lithobrake.dem.distance import APART, CROSSING, Search, approach, weighted
+from lithobrake.dem.features import edge_of, edge_to_edge, point_to_core, write_relative
+from lithobrake.dem.vectors import Vector, dot, minus, plus, row, scaled, times, transposed_times
+
+# Kinds of features: a corner of the first on the second, of the second on the first, two edges, two spheres.
+CORNER_OF_FIRST, CORNER_OF_SECOND, EDGES, SPHERES = 0, 1, 2, 3
+KIND, PLACE = 1 << 40, 1 << 20
+# In `term_count`: the cores cross or nearly so, and the deepest point alone carries.
+DEEP = -1
+# The margin is this part of the rounding radii, which themselves count for at most this part of the contact radii.
+MARGIN_OF_ROUNDING, ROUNDING_OF_RADIUS = 0.25, 0.04
+# Share of a margin that is kept back: covers the round-off in summing travels.
+BOUND_SLACK = 1e-6
+
+
+@kernel
+def travelled(bodies: Bodies, first: int, second: int) -> float:
+    """Return a bound on how far the members of a pair have moved against each other so far."""
+    return bodies.travel[first] + (bodies.travel[second] if second >= 0 else 0.0)
+
+
+@kernel
+def margin_of(bodies: Bodies, cores: Cores, first: int, second: int) -> float:
+    """Return the motion [m] for which the list of a pair shall serve."""
+    rounding, radius = cores.rounding[bodies.shape[first]], bodies.contact_radius[first]
+    if second >= 0:
+        rounding += cores.rounding[bodies.shape[second]]
+        radius += bodies.contact_radius[second]
+    return MARGIN_OF_ROUNDING * min(rounding, ROUNDING_OF_RADIUS * radius)
+
+
+@kernel
+def renew(bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, search: Search) -> int:
+    """Renew the lists of all pairs whose margin is used up; return the longest length that was asked for."""
+    longest = 0
+    for pair in range(len(pairs.first)):
+        first, second = pairs.first[pair], pairs.second[pair]
+        travel = travelled(bodies, first, second)
+        if travel < pairs.wake[pair]:
+            continue
+        margin = margin_of(bodies, cores, first, second)
+        if second < 0:
+            gap = list_plane(pair, bodies, cores, planes, pairs, margin)
+        else:
+            gap = list_bodies(pair, bodies, cores, pairs, margin, search)
+        longest = max(longest, pairs.term_count[pair])
+        pairs.wake[pair] = travel + (1.0 - BOUND_SLACK) * max(gap, margin)
+        if pairs.term_count[pair] == DEEP:
+            pairs.wake[pair] = 0.0
+    return longest
+
+
+@kernel
+def note_term(pairs: Pairs, pair: int, kind: int, i: int, j: int) -> None:
+    """Add a name to the list of a pair; the count goes on where the list is full."""
+    count = pairs.term_count[pair]
+    if count < pairs.term.shape[1]:
+        pairs.term[pair, count] = kind * KIND + i * PLACE + j
+    pairs.term_count[pair] = count + 1
+
+
+@kernel
+def list_plane(pair: int, bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, margin: float) -> float:
+    """List the corners near a plane; return the gap."""
+    body, plane = pairs.first[pair], -1 - pairs.second[pair]
+    shape = bodies.shape[body]
+    pairs.term_count[pair] = 0
+    outward = row(planes.normal, plane)
+    down = transposed_times(bodies.rotation, body, outward)
+    level = dot(outward, row(bodies.position, body)) - planes.offset[plane] - cores.rounding[shape]
+    start, end = cores.vertex_start[shape], cores.vertex_start[shape + 1]
+    gap = level + dot(row(cores.vertex, start), down)
+    for k in range(start, end):
+        height = level + dot(row(cores.vertex, k), down)
+        gap = min(gap, height)
+        if height < margin:
+            note_term(pairs, pair, CORNER_OF_FIRST, k - start, 0)
+    return gap
+
+
+@kernel
+def list_bodies(pair: int, bodies: Bodies, cores: Cores, pairs: Pairs, margin: float, search: Search) -> float:
+    """List the features of two bodies that are near each other; return a lower bound of the gap."""
+    first, second = pairs.first[pair], pairs.second[pair]
+    shapes, members = (bodies.shape[first], bodies.shape[second]), (first, second)
+    pairs.term_count[pair] = 0
+    apart = minus(row(bodies.position, second), row(bodies.position, first))
+    bound = dot(apart, apart) ** 0.5 - bodies.bounding_radius[first] - bodies.bounding_radius[second]
+    if bound >= margin:
+        return bound
+    reach = cores.rounding[shapes[0]] + cores.rounding[shapes[1]]
+    if is_point(cores, shapes[0]) and is_point(cores, shapes[1]):
+        note_term(pairs, pair, SPHERES, 0, 0)
+        return bound
+    search.names[0, 0], search.names[0, 1] = 0, 0
+    found, count, bound = approach(search, 1, cores, shapes, bodies.rotation, members, apart, reach + margin)
+    if found == APART:
+        return bound - reach
+    if found == CROSSING:
+        distance, normal, _, _ = way_out(search, cores, shapes, bodies.rotation, members, apart)
+    else:
+        between = minus(
+            weighted(search.on_second, search.weight, count), weighted(search.on_first, search.weight, count)
+        )
+        distance = dot(between, between) ** 0.5
+        normal = scaled(1.0 / distance, between)
+    if distance < margin and not (is_point(cores, shapes[0]) or is_point(cores, shapes[1])):
+        pairs.term_count[pair] = DEEP
+        return distance - reach
+    write_relative(bodies.rotation, first, second, search.relative)
+    there = transposed_times(bodies.rotation, first, apart)
+    normal = transposed_times(bodies.rotation, first, normal)
+    list_corners(pair, pairs, cores, shapes, search, there, reach + margin)
+    list_edges(pair, pairs, cores, shapes, search, there, normal, reach + margin, distance)
+    return distance - reach
+
+
+@kernel
+def is_point(cores: Cores, shape: int) -> bool:
+    """Whether a core is a point: the shape is a sphere."""
+    return cores.face_start[shape] == cores.face_start[shape + 1]
+
+
+@kernel
+def list_corners(
+    pair: int, pairs: Pairs, cores: Cores, shapes: tuple[int, int], search: Search, there: Vector, farthest: float
+) -> None:
+    """List the corners of either core that are nearer to the other than `farthest`."""
+    if not is_point(cores, shapes[1]):
+        start = cores.vertex_start[shapes[0]]
+        for k in range(start, cores.vertex_start[shapes[0] + 1]):
+            seen = transposed_times(search.relative, 0, minus(row(cores.vertex, k), there))
+            if point_to_core(cores, shapes[1], seen, farthest)[2]:
+                note_term(pairs, pair, CORNER_OF_FIRST, k - start, 0)
+    if not is_point(cores, shapes[0]):
+        start = cores.vertex_start[shapes[1]]
+        for k in range(start, cores.vertex_start[shapes[1] + 1]):
+            seen = plus(times(search.relative, 0, row(cores.vertex, k)), there)
+            if point_to_core(cores, shapes[0], seen, farthest)[2]:
+                note_term(pairs, pair, CORNER_OF_SECOND, k - start, 0)
+
+
+@kernel
+def list_edges(
+    pair: int, pairs: Pairs, cores: Cores, shapes: tuple[int, int], search: Search, there: Vector, normal: Vector,
+    farthest: float, distance: float,
+) -> None:  # fmt: skip
+    """List the pairs of edges that are nearer than `farthest`; far ones fall out by their depth behind the gap."""
+    band = farthest - distance
+    top, bottom = -depth_range(cores, shapes[0], scaled(-1.0, normal)), 0.0
+    turned = transposed_times(search.relative, 0, normal)
+    bottom = depth_range(cores, shapes[1], turned)
+    for i in range(cores.edge_start[shapes[0] + 1] - cores.edge_start[shapes[0]]):
+        begin, along = edge_of(cores, shapes[0], i)
+        height = dot(begin, normal)
+        depth = top - max(height, height + dot(along, normal))
+        if depth >= band:
+            continue
+        for j in range(cores.edge_start[shapes[1] + 1] - cores.edge_start[shapes[1]]):
+            other, other_along = edge_of(cores, shapes[1], j)
+            height = dot(other, turned)
+            if depth + min(height, height + dot(other_along, turned)) - bottom >= band:
+                continue
+            other = plus(times(search.relative, 0, other), there)
+            here, hither = edge_to_edge(begin, along, other, times(search.relative, 0, other_along))
+            between = minus(hither, here)
+            if dot(between, between) < farthest * farthest:
+                note_term(pairs, pair, EDGES, i, j)
+
+
+@kernel
+def depth_range(cores: Cores, shape: int, direction: Vector) -> float:
+    """Return the smallest height of a core's vertices along a direction of the body frame."""
+    start = cores.vertex_start[shape]
+    lowest = dot(row(cores.vertex, start), direction)
+    for k in range(start + 1, cores.vertex_start[shape + 1]):
+        lowest = min(lowest, dot(row(cores.vertex, k), direction))
+    return lowest
