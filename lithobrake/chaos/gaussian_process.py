@@ -13,8 +13,8 @@ from lithobrake.chaos.terms import Indices, multi_index_set, term_count
 from lithobrake.chaos.training import Training
 
 FAMILIES: tuple[type[Covariance], ...] = (PolynomialCovariance, ProductCovariance, RadialMatern)
-# Parameters are learnt from at most so many points, since a step costs their number cubed.
-LEARN_FROM = 400
+# Parameters are learnt from at most so many points: a step costs their number cubed, and they are few.
+LEARN_FROM = 256
 ITERATIONS = 100
 # The nugget, as a share of the variance of the outputs: from rounding to everything.
 LOG_NOISE = (-23.0, 1.0)
