@@ -29,6 +29,7 @@ def fit(
     method: str | None = None,
     *,
     q_norm: float | None = None,
+    max_degrees: Sequence[int] | None = None,
     weights: ArrayLike | None = None,
     output_names: Sequence[str] | None = None,
 ) -> Surrogate:
@@ -36,34 +37,38 @@ def fit(
 
     degree: total degree; None chooses it by cross-validation. method: "ols" least squares; "lars", "omp" sparse;
     "gaussian_process" the projection of a process on the basis; None with a degree is "ols", None without a degree
-    takes for each output whichever of least squares and the processes promises the smallest error at new points.
-    q_norm: hyperbolic index set, None is 1 (sparse methods without a degree choose). weights: of the points [count],
-    for "ols". Rows of y that are all NaN are dropped and counted.
+    takes for each output whichever of least squares, pursuit and processes promises the smallest error at new points.
+    q_norm: hyperbolic index set, None is 1 (sparse methods without a degree choose). max_degrees: highest degree of
+    each input, and weights: of the points [count], both for "ols". Rows of y that are all NaN are dropped and counted.
     Raises ValueError for fewer points than terms, rank deficiency and data that `checked_training` refuses.
     Source: the paper, Eqs 13 to 17.
     """
+    if method is None and any(one is not None for one in (degree, q_norm, max_degrees, weights)):
+        method = "ols"
+    _check_request(degree, method, max_degrees, weights)
+    training = checked_training(inputs, x, y, output_names=output_names, weights=weights)
+    outputs = range(training.y.shape[1])
+    extra: dict[str, Any] = {}
+    if method is None:
+        solutions, extra = best_solutions(training)
+    elif method == "ols":
+        norm = 1.0 if q_norm is None else q_norm
+        chosen = best_degree(training, norm, max_degrees) if degree is None else degree
+        solutions = solve_ols(training, multi_index_set(len(inputs), chosen, q_norm=norm, max_degrees=max_degrees))
+    elif method == "gaussian_process":
+        solutions = [process_solution(training, k) for k in outputs]
+    else:
+        solutions = [solve_sparse(training, k, method, degree=degree, q_norm=q_norm) for k in outputs]
+    return assemble(training, *joined(solutions), {**summary(solutions, training.output_names, training.y), **extra})
+
+
+def _check_request(degree: Any, method: str | None, max_degrees: Any, weights: Any) -> None:
     if method is not None and method not in METHODS:
         raise ValueError(f"method is {method!r}, but must be one of {', '.join(METHODS)}")
     if method == "gaussian_process" and degree is not None:
         raise ValueError(f"degree is {degree}, but the method gaussian_process chooses its terms: leave degree out")
-    if weights is not None and method not in (None, "ols"):
-        raise ValueError(f"weights are for the method ols, but the method is {method}: leave weights out")
-    training = checked_training(inputs, x, y, output_names=output_names, weights=weights)
-    if method == "ols" or (method is None and (degree is not None or weights is not None or q_norm is not None)):
-        norm = 1.0 if q_norm is None else q_norm
-        chosen = best_degree(training, norm) if degree is None else degree
-        solutions = solve_ols(training, multi_index_set(len(training.inputs), chosen, q_norm=norm))
-        return assemble(training, *joined(solutions), summary(solutions, training.output_names, training.y))
-    if method is None:
-        solutions, extra = best_solutions(training)
-        report = {**summary(solutions, training.output_names, training.y), **extra}
-        return assemble(training, *joined(solutions), report)
-    if method == "gaussian_process":
-        solutions = [process_solution(training, k) for k in range(training.y.shape[1])]
-    else:
-        outputs = range(training.y.shape[1])
-        solutions = [solve_sparse(training, k, method, degree=degree, q_norm=q_norm) for k in outputs]
-    return assemble(training, *joined(solutions), summary(solutions, training.output_names, training.y))
+    if method != "ols" and (weights is not None or max_degrees is not None):
+        raise ValueError(f"weights and max_degrees are for the method ols, but the method is {method}: leave them out")
 
 
 def assemble(training: Training, indices: Indices, coefficients: Array, report: dict[str, Any]) -> Surrogate:

@@ -123,9 +123,8 @@ def d_optimal(
     indices = multi_index_set(len(distributions), degree)
     wanted = checked_count(count)
     if candidates is None:
-        pool = christoffel(
-            distributions, CANDIDATES_PER_TERM * max(len(indices), wanted), degree=max(degree, 1), seed=seed
-        )
+        size = CANDIDATES_PER_TERM * max(len(indices), wanted)
+        pool = christoffel(distributions, size, degree=max(degree, 1), seed=seed)
     else:
         pool = points_of(distributions, candidates)
     if len(pool) < wanted:
@@ -136,13 +135,18 @@ def d_optimal(
     if existing is not None:
         old = basis_matrix(distributions, indices, points_of(distributions, existing))
         inverse = np.asarray(np.linalg.inv(1e-8 * np.eye(len(indices)) + old.T @ old), dtype=np.float64)
+    return pool[_greedy_choice(rows, inverse, wanted)]
+
+
+def _greedy_choice(rows: Array, inverse: Array, wanted: int) -> list[int]:
+    """Rows [candidate_count, term_count] of largest variance one after another; inverse of the information matrix."""
     gain = np.einsum("ij,jk,ik->i", rows, inverse, rows, optimize=True)
     chosen: list[int] = []
     for _ in range(wanted):
         best = int(np.argmax(gain))
         chosen.append(best)
         step = inverse @ rows[best] / np.sqrt(1.0 + rows[best] @ inverse @ rows[best])
-        inverse -= np.outer(step, step)
+        inverse = inverse - np.outer(step, step)
         gain = gain - (rows @ step) ** 2
         gain[chosen] = -np.inf
-    return pool[chosen]
+    return chosen

@@ -1,5 +1,7 @@
 """Least squares on a given index set, and the choice of its degree by leave-one-out."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from lithobrake.chaos.basis import basis_matrix
@@ -26,12 +28,14 @@ def solve_ols(training: Training, indices: Indices) -> list[Solution]:
     return [Solution("ols", indices, solved.coefficients[:, k], float(errors[k]), estimate, facts) for k in columns]
 
 
-def ols_by_degree(training: Training, q_norm: float = 1.0) -> list[list[Solution]]:
+def ols_by_degree(
+    training: Training, q_norm: float = 1.0, max_degrees: Sequence[int] | None = None
+) -> list[list[Solution]]:
     """Solutions of all degrees that the points determine with at least one to spare, [degree][output]."""
     ladder: list[list[Solution]] = []
     for degree in range(HIGHEST_DEGREE + 1):
-        indices = multi_index_set(len(training.inputs), degree, q_norm=q_norm)
-        if degree > 0 and len(indices) >= training.count:
+        indices = multi_index_set(len(training.inputs), degree, q_norm=q_norm, max_degrees=max_degrees)
+        if degree > 0 and (len(indices) >= training.count or (ladder and len(indices) == len(ladder[-1][0].indices))):
             break
         try:
             ladder.append(solve_ols(training, indices))
@@ -41,9 +45,9 @@ def ols_by_degree(training: Training, q_norm: float = 1.0) -> list[list[Solution
     return ladder
 
 
-def best_degree(training: Training, q_norm: float = 1.0) -> int:
+def best_degree(training: Training, q_norm: float = 1.0, max_degrees: Sequence[int] | None = None) -> int:
     """Degree with the smallest leave-one-out error relative to the spread, averaged over outputs."""
     spread = np.std(training.y, axis=0)
     spread[spread == 0.0] = 1.0
-    ladder = ols_by_degree(training, q_norm)
+    ladder = ols_by_degree(training, q_norm, max_degrees)
     return int(np.argmin([np.mean([s.expected_error for s in row] / spread) for row in ladder]))

@@ -73,11 +73,7 @@ def checked_training(
         )
     if not len(kept):
         raise ValueError(f"none of the {len(points)} rows of y holds outputs: at least one run is needed")
-    if not np.all(np.isfinite(rows)):
-        raise ValueError("x holds values that are not finite: remove these points")
-    outside, sentence = outside_count(distributions, rows)
-    if outside:
-        raise ValueError(f"{outside} of {len(rows)} points of x are outside the support of the inputs ({sentence})")
+    _check_points(distributions, rows)
     return Training(
         distributions,
         rows,
@@ -87,6 +83,14 @@ def checked_training(
         one_dimensional,
         int(missing.sum()),
     )
+
+
+def _check_points(distributions: dict[str, Distribution], rows: Array) -> None:
+    if not np.all(np.isfinite(rows)):
+        raise ValueError("x holds values that are not finite: remove these points")
+    outside, sentence = outside_count(distributions, rows)
+    if outside:
+        raise ValueError(f"{outside} of {len(rows)} points of x are outside the support of the inputs ({sentence})")
 
 
 def _checked_weights(weights: ArrayLike | None, missing: NDArray[np.bool_]) -> Array | None:

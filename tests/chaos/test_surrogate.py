@@ -1,6 +1,8 @@
 """Evaluation, scores, and keeping in a file."""
 
 import json
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -104,3 +106,38 @@ def test_constant_output_has_no_variance_and_zero_indices():
     assert surrogate.variance == 0.0
     assert surrogate.sobol_first.tolist() == [0.0, 0.0]
     assert surrogate.score(x, np.full(30, 0.1))["y"]["q2"] == 1.0
+
+
+def test_compiled_and_plain_evaluation_agree(surrogate, monkeypatch):
+    from lithobrake.chaos import evaluation
+
+    pytest.importorskip("numba", reason="numba is not installed")
+    x = sobol_sequence(INPUTS, evaluation.COMPILED_FROM + 77, seed=4)
+    compiled = surrogate(x)
+    monkeypatch.setattr(evaluation, "compiled_loop", lambda: None)
+    assert np.allclose(compiled, surrogate(x), rtol=1e-13, atol=1e-13)
+
+
+def test_part_works_without_numba(tmp_path):
+    code = (
+        "import sys; sys.modules['numba'] = None\n"
+        "from lithobrake.chaos import Uniform, fit, sobol_sequence\n"
+        "inputs = {'a': Uniform(0, 1)}\n"
+        "x = sobol_sequence(inputs, 30000)\n"
+        "print(fit(inputs, x[:50], x[:50, 0] ** 2, degree=2)(x).mean())\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert float(done.stdout) == pytest.approx(1.0 / 3.0, abs=1e-3)
+
+
+def test_index_sets_can_be_limited():
+    x = sobol_sequence(INPUTS, 60)
+    limited = fit(INPUTS, x, x[:, 0] ** 3, degree=4, max_degrees=[4, 1])
+    assert limited.multi_indices.max(axis=0).tolist() == [4, 1]
+    hyperbolic = fit(INPUTS, x, x[:, 0] ** 3, degree=4, q_norm=0.5)
+    assert hyperbolic.term_count == 9
+    assert fit(INPUTS, x, x[:, 0] ** 3, max_degrees=[5, 0]).multi_indices[:, 1].max() == 0
+    with pytest.raises(ValueError, match="max_degrees"):
+        fit(INPUTS, x, x[:, 0], degree=2, max_degrees=[1])
+    with pytest.raises(ValueError, match="max_degrees"):
+        fit(INPUTS, x, x[:, 0], method="omp", max_degrees=[1, 1])
