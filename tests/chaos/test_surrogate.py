@@ -135,7 +135,8 @@ def test_index_sets_can_be_limited():
     limited = fit(INPUTS, x, x[:, 0] ** 3, degree=4, max_degrees=[4, 1])
     assert limited.multi_indices.max(axis=0).tolist() == [4, 1]
     hyperbolic = fit(INPUTS, x, x[:, 0] ** 3, degree=4, q_norm=0.5)
-    assert hyperbolic.term_count == 9
+    # Nine powers of one input and the product, whose norm is (1 + 1)**2 = 4.
+    assert hyperbolic.term_count == 10
     assert fit(INPUTS, x, x[:, 0] ** 3, max_degrees=[5, 0]).multi_indices[:, 1].max() == 0
     with pytest.raises(ValueError, match="max_degrees"):
         fit(INPUTS, x, x[:, 0], degree=2, max_degrees=[1])
