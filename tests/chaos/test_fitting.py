@@ -111,13 +111,14 @@ def test_ishigami_converges_with_degree():
 def test_sobol_g_indices_converge():
     a = np.array([0.0, 1.0, 4.5])
     inputs = {f"x{k}": Uniform(0.0, 1.0) for k in range(3)}
-    x = tensor_grid(inputs, 14)
+    # An even number of nodes an input: none sits on the kink, where it would count too much.
+    x = tensor_grid(inputs, 15)
     y = np.prod((np.abs(4.0 * x - 2.0) + a) / (1.0 + a), axis=1)
     partial = 1.0 / (3.0 * (1.0 + a) ** 2)
     exact = partial / (np.prod(1.0 + partial) - 1.0)
     errors = [np.abs(fit(inputs, x, y, degree=d).sobol_first - exact).max() for d in (4, 8, 12)]
     assert errors[2] < errors[1] < errors[0]
-    assert errors[2] < 0.02
+    assert errors[2] < 0.002
 
 
 def test_several_outputs_equal_single_ones():
