@@ -15,6 +15,8 @@ from lithobrake.chaos.polynomials import Array, Recurrence, discretised
 NEGLIGIBLE_LOG_DENSITY = 350.0
 # Weights of one long Gauss rule lose digits near its ends; panels of a short rule do not.
 PANEL_NODES, PANELS = 40, 20
+# Samples that a fine rule keeps for each node asked for.
+SAMPLES_PER_NODE = 10
 
 
 @dataclass(frozen=True)
@@ -150,10 +152,19 @@ class Empirical(Distribution):
     def slope(self, x: Array) -> Array:
         return np.full_like(x, 2.0 / (self.samples[-1] - self.samples[0]))
 
-    def rule(self, count: int) -> tuple[Array, Array]:
-        # The samples are the measure; equal values share one node, so that ties do not cost orthogonality.
+    def _measure(self) -> tuple[Array, Array]:
+        # Equal values share one node, so that ties do not cost orthogonality.
         nodes, repeats = np.unique(self._sorted, return_counts=True)
         return self.germ(nodes), repeats / len(self.samples)
 
+    def rule(self, count: int) -> tuple[Array, Array]:
+        nodes, weights = self._measure()
+        if len(nodes) <= SAMPLES_PER_NODE * count:
+            return nodes, weights
+        # Of many samples neighbours are merged into their means: a fine rule, not the measure itself.
+        starts = np.linspace(0, len(nodes), SAMPLES_PER_NODE * count, endpoint=False).astype(int)
+        merged = np.add.reduceat(weights, starts)
+        return np.add.reduceat(weights * nodes, starts) / merged, merged
+
     def recurrence(self, degree: int) -> Recurrence:
-        return discretised(degree, *self.rule(degree))
+        return discretised(degree, *self._measure())

@@ -46,6 +46,10 @@ class Covariance(ABC):
         """Covariance of germs [input_count, a] and [input_count, b]; result [a, b]."""
 
     @abstractmethod
+    def variance(self, theta: Array, germs: Array) -> Array:
+        """Covariance of each of germs [input_count, count] with itself, [count]."""
+
+    @abstractmethod
     def projection(self, theta: Array, germs: Array, indices: Indices, weights: Array) -> Array:
         """Coefficients [term_count] of sum_m weights_m K(., germ_m) on the orthonormal polynomials."""
 
@@ -99,6 +103,12 @@ class ProductCovariance(Covariance):
         total = np.full((first.shape[1], second.shape[1]), np.exp(theta[-1]))
         for k, (part, parameters) in enumerate(self._split(theta)):
             total *= 1.0 + part.between(parameters, first[k], second[k])
+        return total
+
+    def variance(self, theta: Array, germs: Array) -> Array:
+        total = np.full(germs.shape[1], np.exp(theta[-1]))
+        for (part, parameters), germ in zip(self._split(theta), germs, strict=True):
+            total *= 1.0 + part.variance(parameters, germ)
         return total
 
     def projection(self, theta: Array, germs: Array, indices: Indices, weights: Array) -> Array:
@@ -163,6 +173,9 @@ class RadialMatern(Covariance):
             squares += ((first[k][:, None] - second[k][None, :]) / np.exp(theta[k])) ** 2
         parts = (weight * np.exp(-0.5 * squares / v) for v, weight in self._mixture())
         return np.exp(theta[-1]) * np.sum(list(parts), axis=0)
+
+    def variance(self, theta: Array, germs: Array) -> Array:
+        return np.full(germs.shape[1], np.exp(theta[-1]))
 
     def projection(self, theta: Array, germs: Array, indices: Indices, weights: Array) -> Array:
         total = np.zeros(len(indices))

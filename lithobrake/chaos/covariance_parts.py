@@ -1,6 +1,7 @@
 """Covariances of one input, the factors of products over inputs: Gaussian bumps, or polynomials that fade."""
 
 from abc import ABC, abstractmethod
+from functools import lru_cache
 from typing import ClassVar
 
 import numpy as np
@@ -20,6 +21,7 @@ class Part(ABC):
 
     def __init__(self, entry: Distribution, degree: int) -> None:
         self.entry, self.degree = entry, degree
+        self.recurrence = entry.recurrence(degree)
 
     @abstractmethod
     def between(self, parameters: Array, first: Array, second: Array) -> Array:
@@ -28,6 +30,10 @@ class Part(ABC):
     @abstractmethod
     def with_slopes(self, parameters: Array, germ: Array) -> tuple[Array, Array, Array]:
         """Covariance of germs [count] with themselves and its derivatives by both parameters, each [count, count]."""
+
+    @abstractmethod
+    def variance(self, parameters: Array, germ: Array) -> Array:
+        """Covariance of each germ with itself, [count]."""
 
     @abstractmethod
     def means(self, parameters: Array, germ: Array) -> Array:
@@ -49,6 +55,9 @@ class GaussianPart(Part):
         part = np.exp(parameters[1] - 0.5 * squares)
         return part, part * squares, part
 
+    def variance(self, parameters: Array, germ: Array) -> Array:
+        return np.full(len(germ), np.exp(parameters[1]))
+
     def means(self, parameters: Array, germ: Array) -> Array:
         return np.exp(parameters[1]) * gaussian_means(self.entry, self.degree, germ, float(np.exp(parameters[0])))
 
@@ -65,7 +74,7 @@ class PolynomialPart(Part):
         return variances, fade * variances
 
     def _table(self, germ: Array) -> Array:
-        return self.entry.recurrence(self.degree).values(germ)[1:]
+        return self.recurrence.values(germ)[1:]
 
     def between(self, parameters: Array, first: Array, second: Array) -> Array:
         return (self._table(first).T * self._variances(parameters)[0]) @ self._table(second)
@@ -76,6 +85,9 @@ class PolynomialPart(Part):
         part = (table.T * variances) @ table
         return part, (table.T * slopes) @ table, part
 
+    def variance(self, parameters: Array, germ: Array) -> Array:
+        return self._variances(parameters)[0] @ self._table(germ) ** 2
+
     def means(self, parameters: Array, germ: Array) -> Array:
         rows = self._variances(parameters)[0][:, None] * self._table(germ)
         return np.vstack([np.zeros(len(germ)), rows])
@@ -83,6 +95,15 @@ class PolynomialPart(Part):
 
 def gaussian_means(entry: Distribution, degree: int, germ: Array, length: float) -> Array:
     """Mean over the input of p_j(t) exp(-(t - germ)**2 / (2 length**2)), [degree + 1, count]."""
+    nodes, table = _weighted_table(entry, degree)
+    return table @ np.exp(-0.5 * ((nodes[:, None] - germ[None, :]) / length) ** 2)
+
+
+@lru_cache(maxsize=64)
+def _weighted_table(entry: Distribution, degree: int) -> tuple[Array, Array]:
+    """Nodes [node_count] of a fine rule and polynomials times weights on them [degree + 1, node_count].
+
+    Kept, because computed polynomials cost far more than their use.
+    """
     nodes, weights = entry.rule(RULE_NODES)
-    bumps = np.exp(-0.5 * ((nodes[:, None] - germ[None, :]) / length) ** 2)
-    return (entry.recurrence(degree).values(nodes) * weights) @ bumps
+    return nodes, entry.recurrence(degree).values(nodes) * weights

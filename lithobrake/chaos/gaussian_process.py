@@ -28,7 +28,8 @@ DROPPED_SHARE = 0.002
 class Process:
     """A learnt Gaussian process of one output, standardised as (y - shift) / scale.
 
-    theta: log parameters; noise: nugget variance, as a share of scale**2; weights [count]: K**-1 y;
+    theta: log parameters; noise: nugget variance, as a share of scale**2; weights [count]: K**-1 y; factor: lower
+    Cholesky factor of K [count, count]; germs of the points [input_count, count];
     leave_one_out [count]: error at each point predicted from the others (equal runs left out together), in the unit of
     the output.
     """
@@ -37,6 +38,7 @@ class Process:
     theta: Array
     noise: float
     weights: Array
+    factor: Array
     germs: Array
     leave_one_out: Array
     shift: float
@@ -45,6 +47,20 @@ class Process:
     def predict(self, germs: Array) -> Array:
         """Mean at germs [input_count, count]; result [count]."""
         return self.shift + self.scale * (self.covariance.between(self.theta, germs, self.germs) @ self.weights)
+
+    def expected_error(self, germs: Array) -> float:
+        """Root-mean-square error expected at a new run, [unit of the output], scatter included.
+
+        The larger of leave-one-out, which sees what the covariance does not, and the predicted variance averaged over
+        germs [input_count, count] of fresh inputs, which sees the tails where no run stands.
+        Source: Rasmussen and Williams, 2006, Eq 2.26.
+        """
+        from scipy.linalg import solve_triangular
+
+        cross = solve_triangular(self.factor, self.covariance.between(self.theta, self.germs, germs), lower=True)
+        variance = np.maximum(self.covariance.variance(self.theta, germs) - (cross**2).sum(axis=0), 0.0)
+        predicted = self.scale**2 * (float(variance.mean()) + self.noise)
+        return float(np.sqrt(max(predicted, float(np.mean(self.leave_one_out**2)))))
 
     def coefficients(self, indices: Indices) -> Array:
         """Exact projection of the mean on orthonormal terms, [term_count]."""
@@ -89,7 +105,7 @@ def learn(training: Training, output: int, family: type[Covariance]) -> Process:
     errors = weights / np.diag(inverse)
     for rows in training.groups:
         errors[rows] = np.linalg.solve(inverse[np.ix_(rows, rows)], weights[rows])
-    return Process(covariance, theta, noise, weights, germs, scale * errors, shift, scale)
+    return Process(covariance, theta, noise, weights, lower, germs, scale * errors, shift, scale)
 
 
 def _factor(matrix: Array, noise: float) -> tuple[Array, float]:
@@ -152,13 +168,20 @@ def _negative_likelihood(covariance: Covariance, vector: Array, germs: Array, z:
     return value, np.append(gradient(slope), noise * np.trace(slope))
 
 
+def fresh_germs(inputs: dict[str, Distribution]) -> tuple[Array, Array]:
+    """500 fixed Sobol points, in physical units [500, input_count] and as germs [input_count, 500]."""
+    from lithobrake.chaos.design import sobol_sequence
+
+    points = sobol_sequence(inputs, 500, seed=1)
+    return points, germs_of(inputs, points)
+
+
 def expansion_of(process: Process, inputs: dict[str, Distribution]) -> tuple[Indices, Array, float]:
     """Terms [term_count, input_count], coefficients [term_count] and the root-mean-square error of cutting the rest.
 
     The error is measured against the process itself at 500 Sobol points, in the unit of the output.
     """
     from lithobrake.chaos.basis import basis_matrix
-    from lithobrake.chaos.design import sobol_sequence
 
     degrees = process.covariance.degrees
     indices = multi_index_set(len(degrees), max(degrees), max_degrees=degrees)
@@ -167,7 +190,7 @@ def expansion_of(process: Process, inputs: dict[str, Distribution]) -> tuple[Ind
     tail = np.cumsum(coefficients[order][::-1] ** 2)[::-1]
     allowed = DROPPED_SHARE * float(np.mean(process.leave_one_out**2))
     kept = np.sort(order[: max(1, min(KEPT_LIMIT, int(np.sum(tail > allowed))))])
-    points = sobol_sequence(inputs, 500, seed=1)
+    points, germs = fresh_germs(inputs)
     difference = basis_matrix(inputs, indices[kept], points) @ coefficients[kept]
-    difference -= process.predict(germs_of(inputs, points))
+    difference -= process.predict(germs)
     return indices[kept], coefficients[kept], float(np.sqrt(np.mean(difference**2)))

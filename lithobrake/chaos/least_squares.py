@@ -16,12 +16,15 @@ RANK_TOLERANCE = 1e-10
 
 @dataclass(frozen=True)
 class LeastSquares:
-    """coefficients [term_count, output_count]; orthogonal factor [count, term_count]; residuals; condition number."""
+    """coefficients [term_count, output_count]; orthogonal factor [count, term_count]; residuals; condition number;
+    predicted_variance: of a prediction averaged over the inputs, for outputs that scatter with variance 1.
+    """
 
     coefficients: Array
     orthogonal: Array
     residuals: Array
     condition: float
+    predicted_variance: float
 
     def left_out(self, groups: Sequence[NDArray[np.int64]]) -> Array:
         """Error at each point of the fit without it (or without its group of rows), [count, output_count].
@@ -76,4 +79,6 @@ def least_squares(
     coefficients = np.empty((term_count, y.shape[1]))
     coefficients[order] = solve_triangular(triangle, orthogonal.T @ (y * root[:, None]), check_finite=False)
     residuals = y - matrix @ coefficients
-    return LeastSquares(coefficients, orthogonal, residuals, float(values[0] / values[-1]))
+    # In an orthonormal basis the mean of psi (H'H)**-1 psi over the inputs is the trace of the inverse.
+    spread = float(np.sum(values**-2.0)) if weights is None else 0.0
+    return LeastSquares(coefficients, orthogonal, residuals, float(values[0] / values[-1]), spread)

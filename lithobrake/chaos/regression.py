@@ -18,12 +18,17 @@ def solve_ols(training: Training, indices: Indices) -> list[Solution]:
     matrix = basis_matrix(training.inputs, indices, training.x)
     names = list(training.inputs)
     solved = least_squares(matrix, training.y, indices=indices, names=names, weights=training.weights)
-    errors = np.sqrt(np.mean(solved.left_out(training.groups) ** 2, axis=0))
+    squares = np.mean(solved.left_out(training.groups) ** 2, axis=0)
+    # Leave-one-out does not see the tails where no run stands; the residuals carried through the basis do.
+    residual = np.sum(solved.residuals**2, axis=0) / max(training.count - len(indices), 1)
+    errors = np.sqrt(np.maximum(squares, residual * (1.0 + solved.predicted_variance)))
     facts = {"condition_number": solved.condition}
     # As many terms as points leave no point to judge by: the spread of the output is then the honest guess.
     if len(indices) == training.count:
         errors = np.std(training.y, axis=0)
-    estimate = "leave-one-out" if len(indices) < training.count else "none (as many terms as points)"
+    estimate = (
+        "leave-one-out and predicted variance" if len(indices) < training.count else "none (as many terms as points)"
+    )
     columns = range(training.y.shape[1])
     return [Solution("ols", indices, solved.coefficients[:, k], float(errors[k]), estimate, facts) for k in columns]
 
