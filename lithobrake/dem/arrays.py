@@ -69,6 +69,8 @@ class Pairs(NamedTuple):
     spring: Floats  # [pair_count, 3], N, tangential spring force on second
     tangential_force: Floats  # [pair_count, 3], N, spring and dashpot on second
     tangential_stiffness: Floats  # [pair_count], N/m
+    twist: Floats  # [pair_count], N m, couple of the twisting spring about the normal on second
+    twist_stiffness: Floats  # [pair_count], N m
     term_count: Integers  # [pair_count], features near enough to touch before waking; -1: deepest point only
     term: Integers  # [pair_count, term_max], their names
 

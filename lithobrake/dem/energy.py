@@ -12,7 +12,7 @@ def ledger(
 ) -> dict[str, float]:  # fmt: skip
     """Return the energies [J] of a world: kinetic, potential, elastic, what damping and friction took, and the total.
 
-    A Hertz contact holds 2/5 force times overlap, a tangential spring half its force squared over its stiffness.
+    A Hertz contact holds 2/5 force times overlap, a spring half its force squared over its stiffness.
     """
     kinetic = 0.5 * float((mass * (velocity * velocity).sum(axis=1)).sum() + (spin * angular_momentum).sum())
     potential = -float((mass[:, None] * position * gravity).sum())
@@ -20,6 +20,8 @@ def ledger(
     spring_square = (pairs.spring[touching] ** 2).sum(axis=1)
     elastic = 0.4 * float((pairs.elastic_force * pairs.overlap).sum())
     elastic += 0.5 * float((spring_square / pairs.tangential_stiffness[touching]).sum())
+    twisting = pairs.twist_stiffness > 0.0
+    elastic += 0.5 * float((pairs.twist[twisting] ** 2 / pairs.twist_stiffness[twisting]).sum())
     parts = {
         "kinetic": kinetic, "potential": potential, "elastic": elastic,
         "damping": float(totals[DAMPING]), "friction": float(totals[FRICTION]),

@@ -11,7 +11,7 @@ import numpy as np
 from lithobrake.compiled import kernel
 from lithobrake.dem.arrays import Bodies, Cores, Floats, Laws, Pairs, Planes
 from lithobrake.dem.distance import Search
-from lithobrake.dem.patch import spread, touch_bodies, touch_plane
+from lithobrake.dem.patch import spin_radii, spread, touch_bodies, touch_plane
 from lithobrake.dem.vectors import Vector, add, cross, dot, minus, plus, put, row, scaled, times
 
 DAMPING, FRICTION, FREQUENCY_SQUARED = 0, 1, 2
@@ -77,6 +77,9 @@ def part(pairs: Pairs, pair: int, totals: Floats) -> None:
         totals[FRICTION] += 0.5 * dot(spring, spring) / pairs.tangential_stiffness[pair]
         put(pairs.spring, pair, (0.0, 0.0, 0.0))
         put(pairs.tangential_force, pair, (0.0, 0.0, 0.0))
+    if pairs.twist_stiffness[pair] > 0.0:
+        totals[FRICTION] += 0.5 * pairs.twist[pair] ** 2 / pairs.twist_stiffness[pair]
+    pairs.twist[pair], pairs.twist_stiffness[pair] = 0.0, 0.0
     pairs.tangential_stiffness[pair] = 0.0
     pairs.overlap[pair] = 0.0
     pairs.normal_force[pair] = 0.0
@@ -141,6 +144,32 @@ def rub(
 
 
 @kernel
+def wring(
+    pair: int, pairs: Pairs, spin: float, limit: float, stiffness: float, dashpot: float, step: Step, totals: Floats
+) -> float:
+    """Return the couple about the normal on the second body: a spring with history and a dashpot, within a limit.
+
+    A patch of more than one point resists twisting as its points would, each with its share of the tangential spring.
+    """
+    couple = pairs.twist[pair]
+    before = pairs.twist_stiffness[pair]
+    if before > 0.0:
+        share = min(1.0, stiffness / before)
+        left = share * share / stiffness if stiffness > 0.0 else 0.0
+        totals[FRICTION] += 0.5 * couple * couple * (1.0 / before - left)
+        couple *= share
+    couple -= stiffness * step.time_step * spin
+    size = abs(couple)
+    if size > limit:
+        totals[FRICTION] += limit * (size - limit) / stiffness
+        couple *= limit / size
+    pairs.twist[pair], pairs.twist_stiffness[pair] = couple, stiffness
+    total = min(max(couple - dashpot * spin, -limit), limit)
+    totals[DAMPING] += (couple - total) * spin * step.time_step
+    return total
+
+
+@kernel
 def act(
     pair: int, bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, laws: Laws, step: Step, search: Search,
     totals: Floats,
@@ -188,6 +217,17 @@ def act(
     limit = laws.friction[here, there] * force
     tangential = rub(pair, pairs, normal, moved, now, twist, limit, shear_stiffness, shear_dashpot, step, totals)
     push(bodies, first, second, point, tangential)
+    square, mean = spin_radii(search, count, point, normal)
+    if square > 0.0 or pairs.twist_stiffness[pair] > 0.0:
+        turn = -dot(row(bodies.half_spin, first), normal)
+        if is_body:
+            turn += dot(row(bodies.half_spin, second), normal)
+        couple = wring(
+            pair, pairs, turn, limit * mean, shear_stiffness * square, shear_dashpot * square, step, totals
+        )
+        add(bodies.torque, first, -couple, normal)
+        if is_body:
+            add(bodies.torque, second, couple, normal)
     pairs.overlap[pair], pairs.normal_force[pair], pairs.elastic_force[pair] = overlap, force, elastic
     put(pairs.normal, pair, normal)
     put(pairs.point, pair, point)

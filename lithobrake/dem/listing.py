@@ -17,7 +17,7 @@ KIND, PLACE = 1 << 40, 1 << 20
 # In `term_count`: the cores cross or nearly so, and the deepest point alone carries.
 DEEP = -1
 # The margin is this part of the rounding radii, which themselves count for at most this part of the contact radii.
-MARGIN_OF_ROUNDING, ROUNDING_OF_RADIUS = 0.25, 0.04
+MARGIN_OF_ROUNDING, ROUNDING_OF_RADIUS = 0.1, 0.04
 # Share of a margin that is kept back: covers the round-off in summing travels.
 BOUND_SLACK = 1e-6
 

@@ -17,7 +17,7 @@ from lithobrake.dem.vectors import Vector, dot, minus, plus, put, row, scaled, t
 # Weight of a pair of edges beside a corner: where an edge ends, all edges of that corner meet the same place.
 EDGE_WEIGHT = 0.25
 # Between these parts of the rounding the patch narrows to its deepest point; the cores themselves stay apart till 1.
-NARROW_FROM, NARROW_TO = 0.25, 0.75
+NARROW_FROM, NARROW_TO = 0.5, 0.9
 
 
 @kernel
@@ -150,7 +150,7 @@ def spread(search: Search, count: int, rounding: float) -> tuple[float, Vector, 
         fourth = ratio * ratio * ratio * ratio
         search.share[k] = search.weight_of_point[k] * fourth * ratio * ratio * ratio
         total += search.weight_of_point[k] * fourth * fourth
-    root = total**0.5**0.5**0.5
+    root = ((total**0.5) ** 0.5) ** 0.5
     overlap, narrowing, slope = narrowed(deepest, deepest * root, rounding)
     centre, force, weight = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), 0.0
     for k in range(count):
@@ -178,3 +178,19 @@ def narrowed(deepest: float, wide: float, rounding: float) -> tuple[float, float
     weight = progress * progress * (3.0 - 2.0 * progress)
     slope = 6.0 * progress * (1.0 - progress) / ((NARROW_TO - NARROW_FROM) * rounding)
     return wide + weight * (deepest - wide), weight, slope * (deepest - wide)
+
+
+@kernel
+def spin_radii(search: Search, count: int, centre: Vector, normal: Vector) -> tuple[float, float]:
+    """Return mean squared and mean distance of the force of a patch from the axis through its centre along the normal."""
+    square, mean, weight = 0.0, 0.0, 0.0
+    if count == 1:
+        return 0.0, 0.0
+    for k in range(count):
+        arm = minus(row(search.point, k), centre)
+        arm = minus(arm, scaled(dot(arm, normal), normal))
+        share = max(search.share[k], 0.0)
+        square += share * dot(arm, arm)
+        mean += share * dot(arm, arm) ** 0.5
+        weight += share
+    return square / weight, mean / weight

@@ -15,7 +15,7 @@ from lithobrake.touchdown.surface import height_map
 Progress = Callable[[float, str], None]
 RAMP_PERIODS = 2.0  # time constant of the ramp of gravity, in periods of a grain at rest under the local gravity
 RAMP_STEPS = 40  # changes of gravity a time constant
-POURED = 1e-3  # kinetic ratio at which the pouring ends and the ramp begins
+FALLEN = 1e-3  # kinetic ratio below which the grains lie, and only have to settle
 FRAME_COUNT = 12
 
 
@@ -84,8 +84,9 @@ def pour_bed(recipe: BedRecipe, progress: Progress | None = None) -> Bed:
     world = boxed_world(grains, position, orientation, recipe.width, recipe.material, down, recipe.contact)
     recorder = Recorder(float(diameter.mean()))
     fall(world, recorder, recipe, tell)
+    settle(world, recorder, recipe, lambda share: tell(0.4 + 0.2 * share, "settling under the pour gravity"))
     lower_gravity(world, recorder, recipe, tell)
-    settle(world, recorder, recipe, tell)
+    settle(world, recorder, recipe, lambda share: tell(0.8 + 0.2 * share, "settling under the local gravity"))
     return finished(world, recorder, recipe, grains, diameter)
 
 
@@ -117,8 +118,8 @@ def fall(world: World, recorder: Recorder, recipe: BedRecipe, tell: Progress) ->
         recorder.note(world)
         if check < 40 and check % 8 == 7:
             recorder.frame(world)
-        calm = calm + 1 if check >= 40 and recorder.rows[-1][1] < POURED else 0
-        tell(0.5 * (1.0 - math.exp(-check / 60.0)), "pouring grains")
+        calm = calm + 1 if check >= 40 and recorder.rows[-1][1] < FALLEN else 0
+        tell(0.4 * (1.0 - math.exp(-check / 60.0)), "pouring grains")
         if calm >= 4:
             return
     raise ValueError(
@@ -146,26 +147,25 @@ def lower_gravity(world: World, recorder: Recorder, recipe: BedRecipe, tell: Pro
         world.time_step = chunk / math.ceil(chunk / settling.quiet_time_step(world, chunk / 4.0))
         world.run(chunk)
         recorder.note(world)
-        tell(0.5 + 0.3 * k / chunks, "lowering gravity")
+        tell(0.6 + 0.2 * k / chunks, "lowering gravity")
     world.drag = 0.0
     recorder.frame(world)
 
 
-def settle(world: World, recorder: Recorder, recipe: BedRecipe, tell: Progress) -> None:
-    """Wait until the bed has been at rest for long enough."""
-    period = settling.rest_period(recipe.material, recorder.diameter, float(np.linalg.norm(recipe.gravity)))
+def settle(world: World, recorder: Recorder, recipe: BedRecipe, tell: Callable[[float], None]) -> None:
+    """Wait until the bed has been at rest for long enough under the gravity at hand."""
+    period = settling.rest_period(recipe.material, recorder.diameter, float(np.linalg.norm(world.gravity)))
     checks = 0
 
     def check() -> None:
         nonlocal checks
         checks += 1
         recorder.note(world)
-        done = 1.0 - math.exp(-checks / (settling.PERIODS_HELD * settling.CHECKS_PER_PERIOD))
-        tell(0.8 + 0.2 * done, "settling")
+        tell(1.0 - math.exp(-checks / (settling.PERIODS_HELD * settling.CHECKS_PER_PERIOD)))
 
     settling.hold_still(world, period, settling.PERIODS_HELD, lambda: recorder.at_rest, check)
     recorder.frame(world)
-    tell(1.0, "settled")
+    tell(1.0)
 
 
 def finished(

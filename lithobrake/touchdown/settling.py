@@ -33,14 +33,19 @@ def kinetic_ratio(world: World, diameter: float, gravity: float) -> float:
 
 
 def unbalanced_force(world: World) -> float:
-    """Return the mean resultant force on a body over the mean contact force; infinite where nothing touches."""
+    """Return the mean resultant force on a body over the mean contact force; infinite where nothing touches.
+
+    Drag does not count: what it alone holds up is not at rest.
+    """
     contacts = world.contacts()
     if len(contacts) == 0:
         return math.inf
-    resultant = world.contact_force + world.mass[:, None] * world.gravity
-    normal, tangential = contacts["normal_force"], contacts["tangential_force"]
-    size = np.sqrt(normal**2 + (tangential**2).sum(axis=1))
-    return float(np.linalg.norm(resultant, axis=1).mean() / size.mean())
+    force = contacts["normal_force"][:, None] * contacts["normal"] + contacts["tangential_force"]
+    resultant = world.mass[:, None] * world.gravity
+    np.subtract.at(resultant, contacts["body_a"], force)
+    on_body = contacts["body_b"] >= 0
+    np.add.at(resultant, contacts["body_b"][on_body], force[on_body])
+    return float(np.linalg.norm(resultant, axis=1).mean() / np.linalg.norm(force, axis=1).mean())
 
 
 def quiet_time_step(world: World, longest: float) -> float:
@@ -70,6 +75,7 @@ def hold_still(
         if held >= periods_held:
             return
     raise ValueError(
-        f"the bed did not come to rest within {PERIODS_PATIENCE:.0f} periods of {period:.3g} s: its slope may be steeper "
-        "than it can bear, or friction too low; lower bed.slope_deg or raise grain.friction"
+        f"the bed did not come to rest within {PERIODS_PATIENCE:.0f} periods of {period:.3g} s under "
+        f"{np.linalg.norm(world.gravity):.3g} m/s2: its slope may be steeper than it can bear, or its friction too low; "
+        "lower surface.slope_deg or raise grain.friction"
     )
