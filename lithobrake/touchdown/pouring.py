@@ -128,17 +128,12 @@ def fall(world: World, recorder: Recorder, recipe: BedRecipe, tell: Progress) ->
 
 
 def lower_gravity(world: World, recorder: Recorder, recipe: BedRecipe, tell: Progress) -> None:
-    """Lower the gravity exponentially from the pour's to the local one, slowly against the contacts.
-
-    What moves on would keep its speed while its weight falls ten thousandfold, so motion is damped meanwhile, at the
-    rate of a grain's small oscillation; the test of rest that follows is undamped.
-    """
+    """Lower the gravity exponentially from the pour's to the local one, slowly against the contacts."""
     local = np.array(recipe.gravity)
     strength = float(np.linalg.norm(local))
     start = world.gravity.copy()
     period = settling.rest_period(recipe.material, recorder.diameter, strength)
     time_constant = RAMP_PERIODS * period
-    world.drag = 2.0 * math.pi / period
     chunk = time_constant / RAMP_STEPS
     # The ramp ends where what is left of the pour gravity is a thousandth of the local one.
     chunks = math.ceil(RAMP_STEPS * math.log(1000.0 * recipe.pour_gravity / strength))
@@ -148,7 +143,6 @@ def lower_gravity(world: World, recorder: Recorder, recipe: BedRecipe, tell: Pro
         world.run(chunk)
         recorder.note(world)
         tell(0.6 + 0.2 * k / chunks, "lowering gravity")
-    world.drag = 0.0
     recorder.frame(world)
 
 
