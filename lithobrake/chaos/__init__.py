@@ -3,7 +3,7 @@
 from lithobrake.chaos.basis import condition_number
 from lithobrake.chaos.bounded import Beta, LogUniform, Uniform
 from lithobrake.chaos.computed import Empirical, TruncatedNormal
-from lithobrake.chaos.dependence import DependentSurrogate, GaussianCopula, fit_dependent
+from lithobrake.chaos.dependence import DependentSurrogate, GaussianCopula, fit_dependent, load_dependent
 from lithobrake.chaos.design import latin_hypercube, sobol_sequence, tensor_count, tensor_grid
 from lithobrake.chaos.exploration import (
     density,
@@ -23,7 +23,7 @@ from lithobrake.chaos.optimal import christoffel, christoffel_weights, d_optimal
 from lithobrake.chaos.resampling import score_intervals, sobol_intervals
 from lithobrake.chaos.scores import absolute_percentage_error
 from lithobrake.chaos.sparse_grid import smolyak, smolyak_count
-from lithobrake.chaos.stochastic import StochasticSurrogate, fit_stochastic
+from lithobrake.chaos.stochastic import StochasticSurrogate, fit_stochastic, load_stochastic
 from lithobrake.chaos.storage import load
 from lithobrake.chaos.surrogate import Surrogate
 from lithobrake.chaos.terms import multi_index_set, term_count
@@ -58,6 +58,8 @@ __all__ = [
     "gradient",
     "latin_hypercube",
     "load",
+    "load_dependent",
+    "load_stochastic",
     "main_effect",
     "marginal",
     "multi_index_set",

@@ -1,5 +1,6 @@
 """Dependent inputs: a Gaussian copula turns them into independent normal germs, in which the expansion lives."""
 
+import os
 from collections.abc import Mapping, Sequence
 from typing import Any, NoReturn
 
@@ -12,8 +13,11 @@ from lithobrake.chaos.design import sobol_sequence
 from lithobrake.chaos.fitting import fit
 from lithobrake.chaos.germ import Distribution, checked_inputs
 from lithobrake.chaos.polynomials import Array
+from lithobrake.chaos.storage import content_of, inputs_from_json, inputs_to_json, read, surrogate_of, write
 from lithobrake.chaos.surrogate import Surrogate
 from lithobrake.chaos.unbounded import Normal
+
+FORMAT = "lithobrake expansion of dependent inputs"
 
 
 class GaussianCopula:
@@ -88,6 +92,14 @@ class DependentSurrogate:
         """Variance of each output under the dependent inputs."""
         return self.independent.variance
 
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write everything into one readable JSON file."""
+        copula = {
+            "dependent_inputs": inputs_to_json(self.copula.inputs),
+            "rank_correlation": self.copula.rank_correlation.tolist(),
+        }
+        write(FORMAT, {**copula, "independent": content_of(self.independent)}, path)
+
     def _refuse(self) -> NoReturn:
         raise ValueError(
             "Sobol indices are not defined for dependent inputs: those of the independent germs, which mix the inputs, "
@@ -103,6 +115,16 @@ class DependentSurrogate:
     def sobol_total(self) -> NoReturn:
         """Refused with a ValueError: dependent inputs have no such shares."""
         self._refuse()
+
+
+def load_dependent(path: str | os.PathLike[str]) -> DependentSurrogate:
+    """Read what `DependentSurrogate.save` wrote. Raises ValueError if the file is another thing or damaged."""
+
+    def build(content: dict[str, Any]) -> DependentSurrogate:
+        copula = GaussianCopula(inputs_from_json(content["dependent_inputs"]), content["rank_correlation"])
+        return DependentSurrogate(copula, surrogate_of(content["independent"]))
+
+    return read(FORMAT, build, path)
 
 
 def fit_dependent(

@@ -1,7 +1,9 @@
 """Outputs that scatter between equal runs: mean and logarithm of the variance, both as expansions of the inputs."""
 
+import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -12,8 +14,11 @@ from lithobrake.chaos.fitting import fit
 from lithobrake.chaos.germ import Distribution
 from lithobrake.chaos.noise import replicates
 from lithobrake.chaos.polynomials import Array
+from lithobrake.chaos.storage import content_of, read, surrogate_of, write
 from lithobrake.chaos.surrogate import Surrogate
 from lithobrake.chaos.training import checked_training
+
+FORMAT = "lithobrake stochastic expansion"
 
 
 @dataclass(frozen=True)
@@ -28,6 +33,11 @@ class StochasticSurrogate:
         """Standard deviation between equal runs at points x, [count, output_count] or [count]."""
         return np.exp(0.5 * self.log_variance(x))
 
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write everything into one readable JSON file."""
+        parts = {"mean": content_of(self.mean), "log_variance": content_of(self.log_variance)}
+        write(FORMAT, {**parts, "correlation": self.correlation.tolist()}, path)
+
     def sample(self, x: ArrayLike, *, seed: int = 0) -> Array:
         """One random run at each point x [count, input_count], outputs drawn jointly, [count, output_count] or [count].
 
@@ -38,6 +48,16 @@ class StochasticSurrogate:
         root = vectors * np.sqrt(np.maximum(values, 0.0))
         draws = np.random.default_rng(seed).normal(size=(len(mean), len(root))) @ root.T
         return mean + std * draws.reshape(mean.shape)
+
+
+def load_stochastic(path: str | os.PathLike[str]) -> StochasticSurrogate:
+    """Read what `StochasticSurrogate.save` wrote. Raises ValueError if the file is another thing or damaged."""
+
+    def build(content: dict[str, Any]) -> StochasticSurrogate:
+        mean, spread = surrogate_of(content["mean"]), surrogate_of(content["log_variance"])
+        return StochasticSurrogate(mean, spread, np.array(content["correlation"], dtype=float))
+
+    return read(FORMAT, build, path)
 
 
 def fit_stochastic(

@@ -3,15 +3,19 @@
 import hashlib
 import json
 import os
+from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
 from lithobrake.atomic import atomic_path
+from lithobrake.chaos.germ import Distribution
 from lithobrake.chaos.kinds import distribution
 from lithobrake.chaos.polynomials import Array
 from lithobrake.chaos.surrogate import Surrogate
+
+Kept = TypeVar("Kept")
 
 FORMAT = "lithobrake expansion"
 FORMAT_VERSION = 1
@@ -27,13 +31,22 @@ def data_hash(x: Array, y: Array) -> str:
 
 def save(surrogate: Surrogate, path: str | os.PathLike[str]) -> None:
     """Write an expansion; the file is complete or absent, and numbers come back bit for bit."""
+    write(FORMAT, content_of(surrogate), path)
+
+
+def write(kind: str, content: dict[str, Any], path: str | os.PathLike[str]) -> None:
+    """Write content [JSON values] under a heading that says what it is and who wrote it."""
     from lithobrake import __version__
 
-    content = {
-        "format": FORMAT,
-        "format_version": FORMAT_VERSION,
-        "written_by": f"lithobrake {__version__}",
-        "inputs": [{"name": name, **entry.to_json()} for name, entry in surrogate.inputs.items()],
+    heading = {"format": kind, "format_version": FORMAT_VERSION, "written_by": f"lithobrake {__version__}"}
+    with atomic_path(path) as draft:
+        draft.write_text(_readable({**heading, **content}) + "\n", encoding="utf-8")
+
+
+def content_of(surrogate: Surrogate) -> dict[str, Any]:
+    """Everything that makes an expansion, as plain JSON values."""
+    return {
+        "inputs": inputs_to_json(surrogate.inputs),
         "output_names": surrogate.output_names,
         "one_dimensional": surrogate.one_dimensional,
         "multi_indices": surrogate.multi_indices.tolist(),
@@ -41,8 +54,20 @@ def save(surrogate: Surrogate, path: str | os.PathLike[str]) -> None:
         "report": surrogate.report,
         "residuals": surrogate.residuals.tolist(),
     }
-    with atomic_path(path) as draft:
-        draft.write_text(_readable(content) + "\n", encoding="utf-8")
+
+
+def inputs_to_json(inputs: Mapping[str, Distribution]) -> list[dict[str, Any]]:
+    """Inputs in their order, each with name, kind and parameters."""
+    return [{"name": name, **entry.to_json()} for name, entry in inputs.items()]
+
+
+def inputs_from_json(rows: list[dict[str, Any]]) -> dict[str, Distribution]:
+    """Inputs that `inputs_to_json` wrote."""
+    inputs = {}
+    for row in rows:
+        parameters = {key: value for key, value in row.items() if key not in ("name", "kind")}
+        inputs[str(row["name"])] = distribution(row["kind"], **parameters)
+    return inputs
 
 
 def _readable(content: dict[str, Any]) -> str:
@@ -59,27 +84,30 @@ def _readable(content: dict[str, Any]) -> str:
 
 def load(path: str | os.PathLike[str]) -> Surrogate:
     """Read an expansion that `Surrogate.save` wrote. Raises ValueError if the file is another thing or damaged."""
+    return read(FORMAT, surrogate_of, path)
+
+
+def read(kind: str, build: Callable[[dict[str, Any]], Kept], path: str | os.PathLike[str]) -> Kept:
+    """Read a file that `write` wrote under the same heading, and build what it holds."""
     name = Path(path)
     try:
         content = json.loads(name.read_text(encoding="utf-8"))
     except (json.JSONDecodeError, UnicodeDecodeError) as error:
-        raise ValueError(f"{name} is not JSON ({error}): give a file that Surrogate.save wrote") from None
-    if not isinstance(content, dict) or content.get("format") != FORMAT:
-        raise ValueError(f"{name} is not a {FORMAT}: give a file that Surrogate.save wrote")
+        raise ValueError(f"{name} is not JSON ({error}): give a file that save wrote") from None
+    if not isinstance(content, dict) or content.get("format") != kind:
+        raise ValueError(f"{name} is not a {kind}: give a file that save wrote")
     version = content.get("format_version")
     if not isinstance(version, int) or not 1 <= version <= FORMAT_VERSION:
         raise ValueError(f"{name} has format_version {version}, but 1 to {FORMAT_VERSION} can be read here")
     try:
-        return _surrogate_of(content)
+        return build(content)
     except (KeyError, TypeError, ValueError) as error:
-        raise ValueError(f"{name} is damaged ({error}): save the expansion again") from error
+        raise ValueError(f"{name} is damaged ({error}): save it again") from error
 
 
-def _surrogate_of(content: dict[str, Any]) -> Surrogate:
-    inputs = {}
-    for entry in content["inputs"]:
-        parameters = {key: value for key, value in entry.items() if key not in ("name", "kind")}
-        inputs[str(entry["name"])] = distribution(entry["kind"], **parameters)
+def surrogate_of(content: dict[str, Any]) -> Surrogate:
+    """The expansion that `content_of` wrote."""
+    inputs = inputs_from_json(content["inputs"])
     names = [str(name) for name in content["output_names"]]
     indices = np.array(content["multi_indices"], dtype=np.int64).reshape(-1, len(inputs))
     coefficients = np.array(content["coefficients"], dtype=float)

@@ -16,6 +16,8 @@ from lithobrake.chaos import (
     TruncatedNormal,
     Uniform,
     fit_dependent,
+    load,
+    load_dependent,
 )
 
 INPUTS = {"modulus": LogUniform(1e6, 1e8), "friction": Uniform(0.2, 0.9), "speed": Gamma(2.0, 0.1)}
@@ -35,7 +37,7 @@ def test_germs_and_back():
     assert np.allclose(copula.physical(copula.germs(x)), x, rtol=1e-9)
 
 
-def test_moments_of_correlated_normals():
+def test_moments_of_correlated_normals(tmp_path):
     inputs = {"a": Normal(1.0, 2.0), "b": Normal(0.0, 1.0)}
     rank = 6.0 / np.pi * np.arcsin(0.5 / 2.0)
     x = GaussianCopula(inputs, [[1.0, rank], [rank, 1.0]]).sobol_sequence(40)
@@ -47,6 +49,10 @@ def test_moments_of_correlated_normals():
     with pytest.raises(ValueError, match="dependent"):
         _ = surrogate.sobol_first
     assert surrogate.independent.sobol_total.shape == (2,)
+    surrogate.save(tmp_path / "model.json")
+    assert np.array_equal(load_dependent(tmp_path / "model.json")(x), surrogate(x))
+    with pytest.raises(ValueError, match="is not a"):
+        load(tmp_path / "model.json")
 
 
 @pytest.mark.parametrize(

@@ -12,6 +12,7 @@ from lithobrake.chaos import (
     d_optimal,
     fit,
     fit_stochastic,
+    load_stochastic,
     multi_index_set,
     sobol_sequence,
 )
@@ -19,7 +20,7 @@ from lithobrake.chaos import (
 INPUTS = {"a": Uniform(0.0, 1.0), "b": Uniform(0.0, 1.0)}
 
 
-def test_mean_scatter_and_joint_samples():
+def test_mean_scatter_and_joint_samples(tmp_path):
     x = np.repeat(sobol_sequence(INPUTS, 60), 8, axis=0)
     generator = np.random.default_rng(0)
     common = generator.normal(size=len(x))
@@ -40,6 +41,8 @@ def test_mean_scatter_and_joint_samples():
     drawn = model.sample(many, seed=3)
     assert np.allclose(drawn.std(axis=0), model.scatter_std(test[:1])[0], rtol=0.03)
     assert np.corrcoef(drawn.T)[0, 1] == pytest.approx(model.correlation[0, 1], abs=0.02)
+    model.save(tmp_path / "model.json")
+    assert np.array_equal(load_stochastic(tmp_path / "model.json").sample(test, seed=8), model.sample(test, seed=8))
 
 
 def test_without_repeats_or_scatter_it_is_refused():
