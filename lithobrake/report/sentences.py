@@ -6,6 +6,7 @@ from lithobrake.report.error_figure import Score
 from lithobrake.report.look import PAPER_OUTPUTS, output
 from lithobrake.report.page import number
 from lithobrake.report.results import Results
+from lithobrake.report.scatter_figure import DRAWN_COUNT
 
 PLAIN_SYMBOLS = {"speed_out": "V+", "elevation_out": "theta+", "spin_out": "omega+"}
 FIELD_WORDS = {"young_modulus": "Young's modulus", "poisson_ratio": "Poisson's ratio"}
@@ -144,11 +145,12 @@ def scatter(data: Results, colour_name: str) -> str:
         return f"None of the {_thousands(total)} samples leaves the surface, so there is nothing to draw."
     speed, angle = table["outputs"]["speed_out"], table["outputs"]["elevation_out"]
     degrees = output("elevation_out").factor
+    first = f" (the first {_thousands(DRAWN_COUNT)} are drawn)" if leaving > DRAWN_COUNT else ""
     return (
         f"Of {_thousands(total)} samples of the refined expansion {_thousands(leaving)} leave the surface, the middle "
         f"nine tenths of them at {number(speed['quantile_0.05'])} to {number(speed['quantile_0.95'])} m/s and "
         f"{degrees * angle['quantile_0.05']:.3g} to {degrees * angle['quantile_0.95']:.3g} deg above the surface; "
-        f"the colour is the {input_words(colour_name)}."
+        f"the colour is the {input_words(colour_name)}{first}."
     )
 
 
