@@ -16,6 +16,7 @@ from lithobrake.touchdown.surface import rotation_matrix
 
 Floats = NDArray[np.float64]
 Vector = tuple[float, float, float]
+RELAX_DAMPING = 0.1  # damping ratio of a grain's small oscillation while a bed takes on another material
 CHECKS_PER_CONTACT = 5  # looks at the lander in the time of the shortest contact
 
 
@@ -90,7 +91,7 @@ def relax(world: World, bed: Bed, landing: Landing) -> None:
     if gravity[2] >= 0.0:
         world.gravity = np.array(bed.gravity)
     period = settling.rest_period(landing.grain, bed.grain_diameter, float(np.linalg.norm(world.gravity)))
-    world.drag = 2.0 * math.pi / period
+    world.drag = 2.0 * RELAX_DAMPING * 2.0 * math.pi / period
     settling.hold_still(
         world, period, settling.PERIODS_RELAXED, lambda: settling.unbalanced_force(world) < settling.UNBALANCED_FORCE
     )
