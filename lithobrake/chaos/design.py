@@ -40,7 +40,7 @@ def tensor_grid(inputs: Mapping[str, Distribution], level: int | Sequence[int]) 
     return np.array(list(product(*nodes)), dtype=float)
 
 
-def sobol_sequence(inputs: Mapping[str, Distribution], count: int, *, seed: int = 0, skip: int = 0) -> Array:
+def sobol_sequence(inputs: Mapping[str, Distribution], count: int, seed: int = 0, *, skip: int = 0) -> Array:
     """First `count` points of a scrambled Sobol sequence after `skip`, physical units, [count, input_count].
 
     With the same seed a longer sequence starts with the shorter one, so a design can be extended.
@@ -59,7 +59,7 @@ def sobol_sequence(inputs: Mapping[str, Distribution], count: int, *, seed: int 
     return _physical(distributions, uniforms)
 
 
-def latin_hypercube(inputs: Mapping[str, Distribution], count: int, *, seed: int = 0) -> Array:
+def latin_hypercube(inputs: Mapping[str, Distribution], count: int, seed: int = 0) -> Array:
     """Latin hypercube in probability, physical units, shape [count, input_count]. Source: McKay and others, 1979."""
     distributions = checked_inputs(inputs)
     generator, size = np.random.default_rng(seed), checked_count(count)

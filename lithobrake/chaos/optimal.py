@@ -25,7 +25,7 @@ def christoffel_weights(inputs: Mapping[str, Distribution], x: Array, indices: I
     return len(indices) / np.einsum("ij,ij->i", matrix, matrix)
 
 
-def christoffel(inputs: Mapping[str, Distribution], count: int, *, degree: int, seed: int = 0) -> Array:
+def christoffel(inputs: Mapping[str, Distribution], count: int, seed: int = 0, *, degree: int) -> Array:
     """Random points with density (mean of Psi_i**2) times that of the inputs, physical units, [count, input_count].
 
     Few of them suffice for weighted least squares; take the weights from `christoffel_weights`.
@@ -59,7 +59,7 @@ def _squared_polynomial_samples(entry: Distribution, powers: Indices, uniforms: 
 
 
 def fekete(
-    inputs: Mapping[str, Distribution], count: int | None = None, *, degree: int | None = None, seed: int = 0
+    inputs: Mapping[str, Distribution], count: int | None = None, seed: int = 0, *, degree: int | None = None
 ) -> Array:
     """Approximate Fekete points of the total-degree basis, physical units, [count, input_count].
 
