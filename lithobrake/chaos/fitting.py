@@ -9,13 +9,12 @@ from numpy.typing import ArrayLike
 from lithobrake.chaos.automatic import best_solutions, process_solution
 from lithobrake.chaos.germ import Distribution
 from lithobrake.chaos.noise import with_noise
-from lithobrake.chaos.polynomials import Array
 from lithobrake.chaos.regression import best_degree, solve_ols
-from lithobrake.chaos.solution import joined, summary
+from lithobrake.chaos.solution import Solution, joined, summary
 from lithobrake.chaos.sparse import solve_sparse
 from lithobrake.chaos.storage import data_hash
 from lithobrake.chaos.surrogate import Surrogate
-from lithobrake.chaos.terms import Indices, multi_index_set
+from lithobrake.chaos.terms import multi_index_set
 from lithobrake.chaos.training import Training, checked_training
 
 METHODS = ("ols", "lars", "omp", "gaussian_process")
@@ -59,7 +58,7 @@ def fit(
         solutions = [process_solution(training, k) for k in outputs]
     else:
         solutions = [solve_sparse(training, k, method, degree=degree, q_norm=q_norm) for k in outputs]
-    return assemble(training, *joined(solutions), {**summary(solutions, training.output_names, training.y), **extra})
+    return _assembled(training, solutions, extra)
 
 
 def _check_request(degree: Any, method: str | None, max_degrees: Any, weights: Any) -> None:
@@ -71,8 +70,10 @@ def _check_request(degree: Any, method: str | None, max_degrees: Any, weights: A
         raise ValueError(f"weights and max_degrees are for the method ols, but the method is {method}: leave them out")
 
 
-def assemble(training: Training, indices: Indices, coefficients: Array, report: dict[str, Any]) -> Surrogate:
-    """Join coefficients and data facts into the result."""
+def _assembled(training: Training, solutions: list[Solution], extra: dict[str, Any]) -> Surrogate:
+    """Join the solutions of all outputs and the facts about the data into the result."""
+    indices, coefficients = joined(solutions)
+    report = {**summary(solutions, training.output_names, training.y), **extra}
     # Rounding would give a constant output a variance of 1e-32, and with it meaningless shares.
     constant = np.ptp(training.y, axis=0) == 0.0
     coefficients[:, constant] = np.where(indices.sum(axis=1) == 0, 1.0, 0.0)[:, None] * training.y[0, constant]
@@ -90,5 +91,9 @@ def assemble(training: Training, indices: Indices, coefficients: Array, report: 
         one_dimensional=training.one_dimensional,
         report={**with_noise(report, training.x, training.y), **facts},
     )
-    surrogate.residuals = training.y - surrogate.evaluated(training.x)
+    known = [one.residuals for one in solutions if one.residuals is not None]
+    if len(known) == len(solutions):
+        surrogate.residuals = np.column_stack(known)
+    else:
+        surrogate.residuals = training.y - surrogate.evaluated(training.x)
     return surrogate

@@ -50,15 +50,28 @@ def term_name(index: Sequence[int], names: Sequence[str]) -> str:
     return " ".join(parts) or "constant"
 
 
+def _lost_terms(triangle: Array, values: Array, indices: Indices, names: Sequence[str], count: int) -> str:
+    """The sentence that refuses a rank-deficient fit; pivoting finds terms that the others determine."""
+    from scipy.linalg import qr
+
+    _, _, order = qr(triangle, mode="economic", pivoting=True)
+    rank = int(np.sum(values > RANK_TOLERANCE * values[0]))
+    lost = ", ".join(term_name(indices[k], names) for k in order[rank:][:5])
+    return (
+        f"the {count} points determine only {rank} of {len(indices)} terms (lost among others: {lost}): "
+        "lower the degree, raise the level of the design or add points"
+    )
+
+
 def least_squares(
     matrix: Array, y: Array, *, indices: Indices, names: Sequence[str], weights: Array | None = None
 ) -> LeastSquares:
-    """Solve min sum w_k (y_k - H_k c)**2 by pivoted QR; matrix H [count, term_count], y [count, output_count].
+    """Solve min sum w_k (y_k - H_k c)**2 by QR; matrix H [count, term_count], y [count, output_count].
 
     Raises ValueError for fewer points than terms, and for rank deficiency (naming terms that cannot be told apart).
     Source: the paper, Eqs 15 and 16; Golub and Van Loan, 2013, section 5.5.
     """
-    from scipy.linalg import qr, solve_triangular
+    from scipy.linalg import solve_triangular
 
     count, term_count = matrix.shape
     if count < term_count:
@@ -66,18 +79,11 @@ def least_squares(
             f"{count} points cannot determine {term_count} terms: give at least {term_count} points or lower the degree"
         )
     root = np.ones(count) if weights is None else np.sqrt(weights)
-    orthogonal, triangle, order = qr(matrix * root[:, None], mode="economic", pivoting=True, check_finite=False)
+    orthogonal, triangle = np.linalg.qr(matrix * root[:, None])
     values = np.linalg.svd(triangle, compute_uv=False)
     if values[-1] <= RANK_TOLERANCE * values[0]:
-        diagonal = np.abs(np.diag(triangle))
-        rank = int(np.sum(diagonal > RANK_TOLERANCE * diagonal[0]))
-        lost = ", ".join(term_name(indices[k], names) for k in order[min(rank, term_count - 1) :][:5])
-        raise ValueError(
-            f"the {count} points determine only about {rank} of {term_count} terms (lost among others: {lost}): "
-            "lower the degree, raise the level of the design or add points"
-        )
-    coefficients = np.empty((term_count, y.shape[1]))
-    coefficients[order] = solve_triangular(triangle, orthogonal.T @ (y * root[:, None]), check_finite=False)
+        raise ValueError(_lost_terms(triangle, values, indices, names, count))
+    coefficients = solve_triangular(triangle, orthogonal.T @ (y * root[:, None]), check_finite=False)
     residuals = y - matrix @ coefficients
     # In an orthonormal basis the mean of psi (H'H)**-1 psi over the inputs is the trace of the inverse.
     spread = float(np.sum(values**-2.0)) if weights is None else 0.0

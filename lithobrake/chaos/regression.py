@@ -30,7 +30,10 @@ def solve_ols(training: Training, indices: Indices) -> list[Solution]:
         "leave-one-out and predicted variance" if len(indices) < training.count else "none (as many terms as points)"
     )
     columns = range(training.y.shape[1])
-    return [Solution("ols", indices, solved.coefficients[:, k], float(errors[k]), estimate, facts) for k in columns]
+    return [
+        Solution("ols", indices, solved.coefficients[:, k], float(errors[k]), estimate, facts, solved.residuals[:, k])
+        for k in columns
+    ]
 
 
 def ols_by_degree(

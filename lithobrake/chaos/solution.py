@@ -15,7 +15,7 @@ class Solution:
     """One output: terms [term_count, input_count], coefficients [term_count], and the error expected at new points.
 
     expected_error: root-mean-square [unit of the output], run-to-run scatter included; error_estimate: how it was
-    found; facts: further plain JSON values for the report.
+    found; facts: further plain JSON values for the report; residuals [count] if they are at hand.
     """
 
     method: str
@@ -24,6 +24,7 @@ class Solution:
     expected_error: float
     error_estimate: str
     facts: dict[str, Any] = field(default_factory=dict)
+    residuals: Array | None = None
 
 
 def joined(solutions: Sequence[Solution]) -> tuple[Indices, Array]:

@@ -33,7 +33,7 @@ def _levels_of(input_count: int, total: int) -> list[tuple[int, ...]]:
 
 
 def smolyak_count(input_count: int, level: int) -> int:
-    """Number of distinct nodes of the sparse grid. Source: UQ tables of Smolyak, 1963, counted by new nodes a level."""
+    """Number of distinct nodes of the sparse grid, counted by the nodes that each level adds. Source: Smolyak, 1963."""
     _check_level(level)
     # The number of nodes with k inputs away from the middle, summed over ways to share the levels among them.
     total = 0
