@@ -1,8 +1,24 @@
 """Small bodies: shape, gravity, rotation and flight."""
 
 from lithobrake.smallbody.body import Body
+from lithobrake.smallbody.bounce import Bounce, HardSurface, Impacts, Rebounds
 from lithobrake.smallbody.didymos import didymos, dimorphos
-from lithobrake.smallbody.flight import Flights, fly
+from lithobrake.smallbody.flight import fly
+from lithobrake.smallbody.flights import Flights
+from lithobrake.smallbody.journey import Journeys, hop
 from lithobrake.smallbody.shape import Shape
 
-__all__ = ["Body", "Flights", "Shape", "didymos", "dimorphos", "fly"]
+__all__ = [
+    "Body",
+    "Bounce",
+    "Flights",
+    "HardSurface",
+    "Impacts",
+    "Journeys",
+    "Rebounds",
+    "Shape",
+    "didymos",
+    "dimorphos",
+    "fly",
+    "hop",
+]

@@ -9,7 +9,8 @@ from scipy.ndimage import distance_transform_cdt
 
 from lithobrake.compiled import compiled
 
-LARGEST = 128  # cells along the longest side: 10 MB of indices, and a facet is rarely smaller than such a cell
+LARGEST = 160  # cells along the longest side: 20 MB of indices, and few facets in a cell
+PAD = 1e-3  # of a cell: covers the rounding of a point that lies on a facet and on a cell's side
 
 
 @dataclass(frozen=True)
@@ -28,30 +29,33 @@ class Grid:
     lower: NDArray[np.float64]
     edge: float
     size: NDArray[np.int64]
-    start: NDArray[np.int64]
-    facets: NDArray[np.int64]
-    gap: NDArray[np.int64]
+    start: NDArray[np.int32]
+    facets: NDArray[np.int32]
+    gap: NDArray[np.int32]
 
     @classmethod
     def of(cls, vertices: NDArray[np.float64], faces: NDArray[np.int64], edge: float | None = None) -> "Grid":
-        """Sort the facets of a mesh into cells of an edge [m], by default somewhat smaller than the mean facet."""
+        """Sort the facets of a mesh into cells of an edge [m], by default LARGEST to the longest side."""
         corner = vertices[faces]
         low, high = corner.min(axis=1), corner.max(axis=1)
         lower, upper = low.min(axis=0), high.max(axis=0)
-        doubled = np.linalg.norm(np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]), axis=1)
         if edge is None:
-            edge = max(0.7 * float(np.sqrt(0.5 * doubled.mean())), float((upper - lower).max()) / LARGEST)
+            edge = float((upper - lower).max()) / LARGEST
         lower = lower - 1.5 * edge
         size = np.ceil((upper - lower) / edge).astype(np.int64) + 2
-        # A thousandth of a cell covers the rounding of a point that lies on a facet and on a cell's side.
-        first = np.floor((low - lower) / edge - 1e-3).astype(np.int64)
-        last = np.floor((high - lower) / edge + 1e-3).astype(np.int64)
-        spans = last - first + 1
-        start = np.zeros(int(size.prod()) + 1, dtype=np.int64)
-        facets = np.empty(int(spans.prod(axis=1).sum()), dtype=np.int64)
-        _sort(first, last, size, start, facets)
-        occupied = (np.diff(start) > 0).reshape(size)
-        gap = np.maximum(distance_transform_cdt(~occupied, metric="chessboard").astype(np.int64) - 1, 0)
+        first = np.floor((low - lower) / edge - PAD).astype(np.int64)
+        last = np.floor((high - lower) / edge + PAD).astype(np.int64)
+        scaled = (corner - lower) / edge
+        normal = np.cross(scaled[:, 1] - scaled[:, 0], scaled[:, 2] - scaled[:, 0])
+        plane = np.column_stack([normal, np.einsum("fi,fi->f", normal, scaled[:, 0])])
+        start = np.zeros(int(size.prod()) + 1, dtype=np.int32)
+        _sort(first, last, plane, size, start, np.empty(0, dtype=np.int32))
+        occupied = (start[1:] > 0).reshape(size)
+        start = np.cumsum(start, dtype=np.int32)
+        facets = np.empty(start[-1], dtype=np.int32)
+        _sort(first, last, plane, size, start, facets)
+        start = np.concatenate([np.zeros(1, dtype=np.int32), start[:-1]])
+        gap = np.maximum(distance_transform_cdt(~occupied, metric="chessboard") - 1, 0).astype(np.int32)
         return cls(lower, edge, size, start, facets, gap.reshape(-1))
 
     @property
@@ -61,27 +65,26 @@ class Grid:
 
 
 @compiled
-def _sort(first: Any, last: Any, size: Any, start: Any, facets: Any) -> None:
-    """Write start and facets: count the facets of each cell, sum, then place them in rising order."""
-    for write in range(2):
-        for f in range(len(first)):
-            for i in range(first[f, 0], last[f, 0] + 1):
-                for j in range(first[f, 1], last[f, 1] + 1):
-                    for k in range(first[f, 2], last[f, 2] + 1):
-                        cell = (i * size[1] + j) * size[2] + k
-                        if write:
-                            facets[start[cell]] = f
-                            start[cell] += 1
-                        else:
-                            start[cell + 1] += 1
-        if write:
-            # Each entry has moved on to the start of the next cell.
-            for cell in range(len(start) - 1, 0, -1):
-                start[cell] = start[cell - 1]
-            start[0] = 0
-        else:
-            for cell in range(len(start) - 1):
-                start[cell + 1] += start[cell]
+def _sort(first: Any, last: Any, plane: Any, size: Any, start: Any, facets: Any) -> None:
+    """Count the facets of each cell c in start[c + 1]; or, given room in facets, place them and move start[c] on.
+
+    first, last: cells that a facet's box spans, [facet_count, 3]; plane: normal and offset in cells, [facet_count, 4].
+    """
+    for f in range(len(first)):
+        nx, ny, nz, offset = plane[f, 0], plane[f, 1], plane[f, 2], plane[f, 3]
+        reach = (0.5 + PAD) * (abs(nx) + abs(ny) + abs(nz))
+        for i in range(first[f, 0], last[f, 0] + 1):
+            for j in range(first[f, 1], last[f, 1] + 1):
+                for k in range(first[f, 2], last[f, 2] + 1):
+                    # Of the cells in the facet's box only those that its plane cuts.
+                    if abs(nx * (i + 0.5) + ny * (j + 0.5) + nz * (k + 0.5) - offset) > reach:
+                        continue
+                    cell = (i * size[1] + j) * size[2] + k
+                    if len(facets) > 0:
+                        facets[start[cell]] = f
+                        start[cell] += 1
+                    else:
+                        start[cell + 1] += 1
 
 
 @compiled

@@ -1,8 +1,8 @@
 """When and where a flight meets the ground within one step of its integration.
 
-The curve of a step is cut into chords that leave it by no more than `slack`. Far from the surface the chords are as
-long as the distance allows; near it each is tried against the facets around it, for entries from outside only. A flight
-that starts on the surface is watched by its height instead, until it has risen by more than `slack`.
+The curve of a step is cut into chords that leave it by no more than five times `slack`. Far from the surface the chords
+are as long as the distance allows; near it each is tried against the facets around it, for entries from outside only. A
+flight that starts on the surface is watched by its height instead, until it has risen by more than `slack`.
 """
 
 from typing import Any
@@ -17,6 +17,7 @@ from lithobrake.smallbody.nearest import height_near
 
 ON_SURFACE, ALOFT = 0, 1
 BISECTIONS = 48
+SAGITTA = 5.0  # slacks by which a chord may leave the curve: a graze not deeper than that may be passed over
 
 
 @compiled
@@ -84,7 +85,8 @@ def find_impact(curve: Any, slope: Any, step: float, j: int, phase: int, ground:
     fastest = pace + 0.5 * push * step
     # Half a cell keeps a chord among few cells; the sagitta of a chord of time t is at most push t**2 / 8.
     longest = min(
-        np.sqrt(8.0 * slack / push) if push > 0.0 else step, 0.5 * grid[1] / fastest if fastest > 0.0 else step
+        np.sqrt(8.0 * SAGITTA * slack / push) if push > 0.0 else step,
+        0.5 * grid[1] / fastest if fastest > 0.0 else step,
     )
     stride = min(longest, 4.0 * slack / pace) if pace > 0.0 else longest
     here, there, chord = np.empty(3), np.empty(3), np.empty(3)

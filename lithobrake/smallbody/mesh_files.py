@@ -1,4 +1,4 @@
-"""Reading triangles from OBJ and STL files."""
+"""Reading triangles from OBJ and STL files and from plate models of the Planetary Data System."""
 
 import os
 import struct
@@ -13,7 +13,7 @@ Mesh = tuple[NDArray[np.float64], NDArray[np.int64]]
 
 
 def read_mesh(path: str | os.PathLike[str], unit: str = "m") -> Mesh:
-    """Vertices [m], shape [vertex_count, 3], and faces, shape [facet_count, 3], from .obj or .stl in the given unit.
+    """Vertices [m], shape [vertex_count, 3], and faces, shape [facet_count, 3], of an .obj, .stl or .tab file.
 
     Raises ValueError for an unknown unit or ending and for a line or length that is not of the format.
     """
@@ -34,10 +34,10 @@ def _read_obj(path: Path) -> Mesh:
     faces: list[list[int]] = []
     for number, line in enumerate(path.read_text(encoding="utf-8", errors="replace").splitlines(), 1):
         words = line.split()
-        if not words or words[0] not in ("v", "f"):
+        if not words or words[0].lower() not in ("v", "f"):
             continue
         try:
-            if words[0] == "v":
+            if words[0].lower() == "v":
                 vertices.append([float(word) for word in words[1:4]])
                 continue
             given = [int(word.split("/")[0]) for word in words[1:]]
@@ -89,4 +89,32 @@ def _stl_text(path: Path, data: bytes) -> NDArray[np.float64]:
         raise ValueError(f"{path}: its 'vertex' lines do not come in threes of three numbers.") from error
 
 
-READERS = {".obj": _read_obj, ".stl": _read_stl}
+def _read_plates(path: Path) -> Mesh:
+    """Plate model (.tab) of the Planetary Data System, in either of its two layouts.
+
+    One has lines `v x y z` and `f i j k` as OBJ has. The other has the number of vertices (perhaps also of plates) on
+    its first line, then a line a vertex, the number of plates if it was not given, and a line a plate with vertices
+    counted from 1; each of these lines may begin with its own number.
+    """
+    rows = [line.replace(",", " ").split() for line in path.read_text(encoding="ascii", errors="replace").splitlines()]
+    rows = [row for row in rows if row]
+    if rows and rows[0][0].lower() == "v":
+        return _read_obj(path)
+    try:
+        counts = [int(word) for word in rows[0]]
+        vertices = np.array([row[-3:] for row in rows[1 : counts[0] + 1]], dtype=np.float64)
+        next_row = counts[0] + 1
+        if len(counts) == 1:
+            counts.append(int(rows[next_row][0]))
+            next_row += 1
+        plates = np.array([row[-3:] for row in rows[next_row : next_row + counts[1]]], dtype=np.int64) - 1
+    except (ValueError, IndexError) as error:
+        raise ValueError(
+            f"{path}: not a plate model, {error}; its first line must give the number of vertices."
+        ) from error
+    if (len(vertices), len(plates)) != tuple(counts[:2]) or len(rows) != next_row + counts[1]:
+        raise ValueError(f"{path}: {len(rows)} lines do not fit {counts[0]} vertices and {counts[1]} plates.")
+    return vertices.reshape(-1, 3), plates.reshape(-1, 3)
+
+
+READERS = {".obj": _read_obj, ".stl": _read_stl, ".tab": _read_plates}

@@ -43,7 +43,7 @@ class Shape:
 
     @classmethod
     def read(cls, path: str | os.PathLike[str], unit: str = "m") -> "Shape":
-        """Read an .obj or .stl file whose lengths are in `unit` (m, km, cm, mm)."""
+        """Read an .obj, .stl or .tab (plate model) file whose lengths are in `unit` (m, km, cm, mm)."""
         vertices, faces = read_mesh(path, unit)
         return cls(vertices, faces, name=os.fspath(path))
 

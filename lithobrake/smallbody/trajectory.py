@@ -77,9 +77,10 @@ def _shift(slope: Any, j: int) -> None:
 
 
 @compiled
-def fly_lanes(starts: Any, phase: Any, duration: float, forces: Any, ground: Any, limits: Any, out: Any) -> None:
+def fly_lanes(starts: Any, phase: Any, duration: Any, forces: Any, ground: Any, limits: Any, out: Any) -> None:
     """Fly all starts [count, 6] to their ends.
 
+    duration  [s], [count]
     phase     [count], read and written: whether the flight has left the surface (see impact)
     limits    (length error [m] and speed error [m/s] of a step, first step [s], escape radius [m], G mass [m3/s2])
     out       written: (status [count], time [s] [count], state [count, 6], facet [count], steps [count])
@@ -101,11 +102,11 @@ def fly_lanes(starts: Any, phase: Any, duration: float, forces: Any, ground: Any
             f = flight[j]
             if step[j] == 0.0:
                 _shift(slope, j)
-                step[j] = min(first_step, duration)
+                step[j] = min(first_step, duration[f])
                 continue
             steps[f] += 1
             error = step_error(slope, step[j], j, length, speed)
-            taken, last = step[j], step[j] >= duration - clock[j]
+            taken, last = step[j], step[j] >= duration[f] - clock[j]
             step[j] = next_step(taken, error)
             if not error <= 1.0:
                 if clock[j] + step[j] > clock[j] and steps[f] < 1_000_000:
@@ -120,8 +121,8 @@ def fly_lanes(starts: Any, phase: Any, duration: float, forces: Any, ground: Any
                 _shift(slope, j)
                 for i in range(6):
                     state[i, j] = end[i, j]
-                clock[j] = duration if last else clock[j] + taken
-                step[j] = min(step[j], duration - clock[j])
+                clock[j] = duration[f] if last else clock[j] + taken
+                step[j] = min(step[j], duration[f] - clock[j])
                 if status[f] == FLYING and not last:
                     continue
             # The flight is over.

@@ -52,6 +52,25 @@ def test_stl_merges_corners(tmp_path, binary):
     assert shape.volume == pytest.approx(8.0)
 
 
+@pytest.mark.parametrize("numbered", [True, False])
+@pytest.mark.parametrize("together", [True, False])
+def test_plate_models(tmp_path, numbered, together):
+    def table(rows):
+        return [(f"{i} " if numbered else "") + " ".join(map(str, row)) for i, row in enumerate(rows.tolist(), 1)]
+
+    vertices, plates = table(cube_vertices(2.0)), table(CUBE_FACES + 1)
+    lines = ["8 12", *vertices, *plates] if together else ["8", *vertices, "12", *plates]
+    path = tmp_path / "cube.tab"
+    path.write_text("\n".join(lines) + "\n")
+    assert Shape.read(path, unit="km").volume == pytest.approx(8e9)
+    path.write_text("\n".join(lines[:-1]) + "\n")
+    with pytest.raises(ValueError, match="lines do not fit"):
+        Shape.read(path)
+    path.write_text("name of a body\n")
+    with pytest.raises(ValueError, match="not a plate model"):
+        Shape.read(path)
+
+
 @pytest.mark.parametrize(
     ("change", "said"),
     [

@@ -1,0 +1,157 @@
+"""From bounce to bounce until a lander rests, escapes, or the time is over."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lithobrake.smallbody.body import Body
+from lithobrake.smallbody.bounce import Bounce, Impacts
+from lithobrake.smallbody.flight import fly
+from lithobrake.smallbody.flights import Flights
+
+
+@dataclass(frozen=True)
+class Journeys:
+    """Where each lander ended; every array has one entry or row a lander.
+
+    status         "settled": captured where the ground holds it; "lofted": captured where gravity and rotation together
+                   push outwards; "flying": the time was over; "escaped"; "outside": an impact that the bounce does not
+                   know; "bouncing": bounce_limit was reached
+    time           from the start to the end [s]; of a settled lander, to rest
+    position       at the end, body-fixed [m], [count, 3]
+    latitude       planetocentric [deg], longitude east in (-180, 180] [deg], of that position
+    spin           angular velocity at the end, body-fixed axes [rad/s], [count, 3]
+    bounce_count   impacts after which the lander went on
+    path_length    sum of the straight lines between starts and ends of the flights [m]
+    """
+
+    body: Body
+    status: NDArray[np.str_]
+    time: NDArray[np.float64]
+    position: NDArray[np.float64]
+    spin: NDArray[np.float64]
+    bounce_count: NDArray[np.int64]
+    path_length: NDArray[np.float64]
+
+    @cached_property
+    def latitude(self) -> NDArray[np.float64]:
+        """Planetocentric latitude at the end [deg]."""
+        return self.body.shape.latitude_longitude(self.position)[0]
+
+    @cached_property
+    def longitude(self) -> NDArray[np.float64]:
+        """East longitude at the end, in (-180, 180] [deg]."""
+        return self.body.shape.latitude_longitude(self.position)[1]
+
+
+def hop(
+    body: Body,
+    position: ArrayLike,
+    velocity: ArrayLike,
+    bounce: Bounce,
+    duration: float,
+    *,
+    spin: ArrayLike = (0.0, 0.0, 0.0),
+    gravity: str = "table",
+    bounce_limit: int = 1000,
+    seed: int = 0,
+    threads: int | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> Journeys:
+    """Fly, bounce and fly again from start states as of `fly`, for at most `duration` [s] in all.
+
+    bounce     called once a round with the impacts of all landers still under way and a generator of random numbers
+    spin       angular velocity at the start, body-fixed axes, relative to the stars [rad/s], [count, 3] or [3]
+    seed       of the generator: the same call gives the same result
+    progress   called with the share of landers that have ended
+    """
+    start = np.array(np.atleast_2d(np.asarray(position, dtype=np.float64)))
+    state = _State(body, start, np.array(np.atleast_2d(np.asarray(velocity, dtype=np.float64))))
+    state.spin[:] = np.asarray(spin, dtype=np.float64)
+    going = np.arange(len(start))
+    for number in range(bounce_limit + 1):
+        where, rate, left = state.position[going], state.velocity[going], duration - state.time[going]
+        flights = fly(body, where, rate, left, gravity=gravity, threads=threads)
+        state.advance(going, flights)
+        going = going[flights.status == "impact"]
+        facet = flights.facet[flights.status == "impact"]
+        if number < bounce_limit and len(going):
+            going = state.rebound(going, facet, bounce, np.random.default_rng([seed, number]))
+            going = going[state.time[going] < duration]
+        elif len(going):
+            state.status[going] = "bouncing"
+            going = going[:0]
+        if progress:
+            progress(1.0 - len(going) / len(start))
+        if not len(going):
+            break
+    return Journeys(body, state.status, state.time, state.position, state.spin, state.bounce_count, state.path_length)
+
+
+@dataclass
+class _State:
+    """Where all landers are now."""
+
+    body: Body
+    position: NDArray[np.float64]
+    velocity: NDArray[np.float64]
+    spin: NDArray[np.float64] = field(init=False)
+    time: NDArray[np.float64] = field(init=False)
+    status: NDArray[Any] = field(init=False)
+    bounce_count: NDArray[np.int64] = field(init=False)
+    path_length: NDArray[np.float64] = field(init=False)
+
+    def __post_init__(self) -> None:
+        count = len(self.position)
+        self.spin, self.time, self.path_length = np.zeros((count, 3)), np.zeros(count), np.zeros(count)
+        self.status, self.bounce_count = np.full(count, "flying", dtype="<U8"), np.zeros(count, dtype=np.int64)
+
+    def advance(self, going: NDArray[np.int64], flights: Flights) -> None:
+        """Take the ends of the flights of the landers `going`."""
+        self.path_length[going] += np.linalg.norm(flights.position - self.position[going], axis=1)
+        self.position[going], self.velocity[going] = flights.position, flights.velocity
+        self.time[going] += flights.time
+        self.status[going] = np.where(flights.status == "escaped", "escaped", "flying")
+        # The body turns on while a spin stays among the stars.
+        turn = self.body.spin_rate * flights.time
+        c, s = np.cos(turn), np.sin(turn)
+        x, y = self.spin[going, 0], self.spin[going, 1]
+        self.spin[going, 0], self.spin[going, 1] = c * x + s * y, c * y - s * x
+
+    def rebound(
+        self, going: NDArray[np.int64], facet: NDArray[np.int64], bounce: Bounce, random: np.random.Generator
+    ) -> NDArray[np.int64]:
+        """Bounce the landers `going` off their facets; gives those that fly on."""
+        up = self.body.shape.normals[facet]
+        velocity = self.velocity[going]
+        axes = impact_frame(velocity, up)
+        speed = np.linalg.norm(velocity, axis=1)
+        incidence = np.arccos(np.clip(-np.einsum("ni,ni->n", velocity, up) / speed, -1.0, 1.0))
+        push = np.einsum("ni,ni->n", self.body.effective_acceleration(self.position[going]), up)
+        local_spin = np.einsum("nij,nj->ni", axes, self.spin[going])
+        result = bounce(Impacts(speed, incidence, local_spin, push), random)
+        stays = result.captured & ~result.outside
+        self.status[going[result.outside]] = "outside"
+        self.status[going[stays]] = np.where(push[stays] < 0.0, "settled", "lofted")
+        on = ~(stays | result.outside)
+        if not (result.velocity[on, 2] > 0.0).all():
+            raise ValueError("a bounce sent a lander into the ground; it must call it captured or outside instead.")
+        self.velocity[going[on]] = np.einsum("nji,nj->ni", axes[on], result.velocity[on])
+        self.spin[going[on]] = np.einsum("nji,nj->ni", axes[on], result.spin[on])
+        self.bounce_count[going[on]] += 1
+        return going[on]
+
+
+def impact_frame(velocity: NDArray[np.float64], up: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Axes in rows, [count, 3, 3]: x along the horizontal velocity, y = z cross x, z = up, the unit normal."""
+    level = velocity - np.einsum("ni,ni->n", velocity, up)[:, None] * up
+    # A vertical impact has no horizontal direction; any will do.
+    aside = np.eye(3)[np.argmin(np.abs(up), axis=1)]
+    length = np.linalg.norm(level, axis=1, keepdims=True)
+    level = np.where(length > 1e-12 * np.linalg.norm(velocity, axis=1, keepdims=True), level, np.cross(up, aside))
+    x = level / np.linalg.norm(level, axis=1, keepdims=True)
+    return np.stack([x, np.cross(up, x), up], axis=1)
