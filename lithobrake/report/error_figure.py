@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from lithobrake.report.look import INK, PAPER_OUTPUTS, QUIET, TEST, TEST_ALL, TRAINING, output
+from lithobrake.report.page import number
 
 Array = NDArray[np.float64]
 
@@ -84,7 +85,8 @@ def _panel(axes: Axes, name: str, series: Sequence[tuple[str, Score, str]]) -> N
         mape, q2 = words_of(score.mape, ".3g", " %"), words_of(score.q2, ".2f")
         lines = (
             f"{len(score.ape)} runs: MAPE {mape}, $Q^2$ {q2}\n"
-            f"RMSE {score.rmse * shown.factor:.2g} at a spread of {score.std * shown.factor:.2g} {shown.unit}"
+            f"RMSE {number(score.rmse * shown.factor, 2)} at a spread of "
+            f"{number(score.std * shown.factor, 2)} {shown.unit}"
         )
         axes.text(0, y, lines, transform=axes.transAxes, va="bottom", fontsize=7.4, color=INK, linespacing=1.3)
         axes.text(

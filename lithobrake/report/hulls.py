@@ -120,7 +120,9 @@ def paint(
     triangles, owners, normals = triangles[order], owners[order], normals[order]
 
     radius = np.array([0.85 * np.linalg.norm(body.vertices, axis=1).mean() for body in bodies])
-    light = light_on_faces(triangles.mean(axis=1), normals, owners, position, radius, surface_height)
+    light = light_on_faces(
+        triangles.mean(axis=1), normals, owners, position, radius, camera.azimuth_deg, surface_height
+    )
     colours = np.empty((len(triangles), 3))
     palette = np.array([body.colour for body in bodies])[owners]
     for colour in np.unique(palette):

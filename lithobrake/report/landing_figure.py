@@ -69,7 +69,8 @@ def _extent(
     path: Array, bodies: Sequence[Body], surface_height: float, width: tuple[float, float], camera: Camera
 ) -> tuple[tuple[float, float], tuple[float, float]]:
     """Part of the picture plane [m] that holds the box and the lander in all frames shown."""
-    reach = float(np.linalg.norm(bodies[-1].vertices, axis=1).max())
+    # A little more than its radius, since perspective enlarges what comes towards the viewer.
+    reach = 1.15 * float(np.linalg.norm(bodies[-1].vertices, axis=1).max())
     x, y = width[0] / 2, width[1] / 2
     corners = np.array([(sx * x, sy * y, z) for sx in (-1, 1) for sy in (-1, 1) for z in (0.0, 1.25 * surface_height)])
     flat_box, _ = camera.project(corners)

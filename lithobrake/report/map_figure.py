@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import LinearNDInterpolator
 from scipy.spatial import cKDTree
 
-from lithobrake.report.look import INK, INPUT_COLOURS, QUIET, SITE, TEST
+from lithobrake.report.look import INK, INPUT_COLOURS, INTERACTIONS, QUIET, SITE, TEST
 
 Array = NDArray[np.float64]
 
@@ -139,7 +139,7 @@ def _relief(axes: Axes, vertices: Array) -> None:
 
 def _shares(axes: Axes, shares: list[Share]) -> None:
     """One bar a fate, with its interval and its figure in per cent."""
-    colours = (INPUT_COLOURS[0], INPUT_COLOURS[5], TEST, QUIET)
+    colours = (INPUT_COLOURS[0], INPUT_COLOURS[5], TEST, QUIET, INTERACTIONS)
     place = np.arange(len(shares))[::-1]
     for y, share, colour in zip(place, shares, colours * 3, strict=False):
         axes.barh(y, 100 * share.value, color=colour, height=0.68)

@@ -43,7 +43,7 @@ def interval(share: dict[str, float], digits: int = 1) -> str:
 
 def hours(seconds: float) -> str:
     """A length of time in hours."""
-    return f"{seconds / 3600:g} h"
+    return f"{seconds / 3600:.3g} h"
 
 
 def answer(data: Results) -> str:
@@ -96,7 +96,7 @@ def counts(data: Results) -> str:
     words = f"The screening of {inputs} inputs at level {level} takes {sparse} runs on the Smolyak grid"
     if inputs in table["input_counts"] and level in table["levels"]:
         full = table["tensor"][table["input_counts"].index(inputs)][table["levels"].index(level)]
-        words += f" in place of {full:,} on the full tensor grid".replace(",", " ")
+        words += f", against {_thousands(full)} on the full tensor grid"
     kept, runs = len(data.results["kept_inputs"]), data.results["designs"]["refined"]["run_count"]
     return f"{words}; the refined design in the {kept} kept inputs at level {design['refined_level']} takes {runs}."
 

@@ -7,6 +7,7 @@ from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
 from lithobrake.report.look import INTERACTIONS, PAPER_OUTPUTS, QUIET, input_colours, input_label, output
+from lithobrake.report.page import number
 
 Array = NDArray[np.float64]
 
@@ -62,7 +63,7 @@ def _ring(axes: Axes, name: str, first: Array, colours: list[str], spread: float
             color="white" if dark else "#1c2733",
         )
     axes.set_title(f"{shown.words} {shown.symbol}".strip(), loc="center")
-    axes.text(0, 0.06, f"{spread * shown.factor:.2g}", ha="center", va="center", fontsize=12, fontweight="bold")
+    axes.text(0, 0.06, number(spread * shown.factor, 2), ha="center", va="center", fontsize=12, fontweight="bold")
     axes.text(0, -0.16, f"{shown.unit} spread", ha="center", va="center", fontsize=7.5, color=QUIET)
     axes.set_xlim(-1.05, 1.05)
     axes.set_ylim(-1.05, 1.05)

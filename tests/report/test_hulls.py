@@ -7,6 +7,7 @@ from matplotlib.figure import Figure
 from scipy.spatial import ConvexHull
 
 from lithobrake.report.hulls import Body, Camera, frame_axes, paint, rotation, subdivide
+from lithobrake.report.light import SUN, direction
 
 CUBE = np.array([(x, y, z) for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
 STRAIGHT = np.array([[1.0, 0.0, 0.0, 0.0]])
@@ -73,7 +74,7 @@ def brightness_of_top(camera: Camera, *, with_shade: bool) -> float:
     bodies, position = [cube()], [[0.0, 0.0, 0.0]]
     if with_shade:
         bodies.append(cube())
-        position.append([-1.1, -0.85, 2.0])
+        position.append((np.array([0.0, 0.0, 0.5]) + 2.5 * direction(SUN, camera.azimuth_deg)).tolist())
     axes = Figure().add_subplot()
     paint(axes, bodies, np.array(position), np.repeat(STRAIGHT, len(bodies), axis=0), camera)
     collection = axes.collections[0]

@@ -40,7 +40,7 @@ def test_sentences_carry_the_numbers_of_the_summary(report: str) -> None:
         "12 grains",
         "solid fraction of 0.58",
         "0.2 m/s and 30 deg from the normal and leaves the surface",
-        "25 runs on the Smolyak grid in place of 125",
+        "25 runs on the Smolyak grid, against 125",
         "V+ varies most with the restitution of the grains (50 % of its variance)",
         "Q2 = 0.80 of V+ (MAPE 1.5 %)",
         "400 samples",
