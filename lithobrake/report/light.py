@@ -6,8 +6,8 @@ from scipy.spatial import cKDTree
 
 Array = NDArray[np.float64]
 
-# Directions as the viewer has them: to the right, towards the viewer, up. The sun stands at the upper left, whatever the
-# camera's azimuth; a weak light from the lower right keeps the form of what the sun does not reach.
+# Directions as the viewer has them: to the right, towards the viewer, up. The sun stands at the upper left, whatever
+# the camera's azimuth; a weak light from the lower right keeps the form of what the sun does not reach.
 SUN = np.array([-0.52, 0.18, 0.83])
 FILL = np.array([0.45, 0.82, 0.2])
 AMBIENT = 0.56
@@ -25,7 +25,8 @@ def light_on_faces(
     """Brightness of each face, 1 for one that faces the sun, shape [face].
 
     centres [m] and unit normals of the faces, shape [face, 3]; owners: the body of each, shape [face]; position [m],
-    shape [body, 3], and radius [m], shape [body], of the bodies; azimuth_deg: of the viewer [deg]; surface_height [m]: below it the sky is narrower.
+    shape [body, 3], and radius [m], shape [body], of the bodies; azimuth_deg: of the viewer [deg]; surface_height [m]:
+    below it the sky is narrower.
     """
     to_sun, to_fill = (direction(light, azimuth_deg) for light in (SUN, FILL))
     sun = np.clip(normals @ to_sun, 0.0, None) * sunlight(centres, owners, position, radius, to_sun)
