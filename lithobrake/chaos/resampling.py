@@ -25,10 +25,11 @@ def sobol_intervals(
 
     Result: "first" and "total", each [2 (lower, upper), input_count, output_count] (last axis dropped for a
     one-dimensional y); "degree" of the least squares that was resampled, or None if it has the terms of the surrogate.
-    Terms of least squares and sparse fits are kept; for a fit of more terms (a process) the least squares of the best
-    degree on the same runs stands in. Rows of residuals are drawn jointly for all outputs and scaled by leverage;
+    Terms of least squares are kept; for terms that the data chose (sparse fits, processes) the least squares of the best
+    degree on the same runs stands in, since its terms would vary too. Rows of residuals are drawn jointly for all outputs and scaled by leverage;
     intervals are of the basic kind, which takes off the bias that scatter gives to squared coefficients.
-    Source: Davison and Hinkley, 1997, sections 5.2 and 6.2; Dubreuil and others, 2014 (indices from expansions).
+    Source: Davison and Hinkley, 1997, sections 5.2 and 6.2; MacKinnon and White, 1985 (residuals, HC3);
+    Dubreuil and others, 2014 (indices from expansions).
     """
     _check(count, level)
     training = checked_training(surrogate.inputs, x, y, output_names=surrogate.output_names)
@@ -37,7 +38,8 @@ def sobol_intervals(
     orthogonal, triangle = np.linalg.qr(matrix)
     fitted = orthogonal @ (orthogonal.T @ training.y)
     leverage = np.einsum("ij,ij->i", orthogonal, orthogonal)
-    residuals = (training.y - fitted) / np.sqrt(np.maximum(1.0 - leverage, 1e-3))[:, None]
+    # The full leverage, not its root: the intervals must also hold what the choice of terms and their cut leave out.
+    residuals = (training.y - fitted) / np.maximum(1.0 - leverage, 0.05)[:, None]
     residuals -= residuals.mean(axis=0)
     generator = np.random.default_rng(seed)
 
@@ -66,7 +68,7 @@ def _check(count: int, level: float) -> None:
 
 def _terms_to_resample(surrogate: Surrogate, training: Training) -> tuple[Indices, int | None]:
     methods = {entry.get("method") for entry in surrogate.report.get("outputs", {}).values()}
-    if "gaussian_process" not in methods and surrogate.term_count <= TERM_SHARE * training.count:
+    if methods == {"ols"} and surrogate.term_count <= TERM_SHARE * training.count:
         return surrogate.multi_indices, None
     degree = best_degree(training)
     while degree > 0 and len(multi_index_set(len(training.inputs), degree)) > TERM_SHARE * training.count:
