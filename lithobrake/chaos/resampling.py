@@ -25,8 +25,8 @@ def sobol_intervals(
 
     Result: "first" and "total", each [2 (lower, upper), input_count, output_count] (last axis dropped for a
     one-dimensional y); "degree" of the least squares that was resampled, or None if it has the terms of the surrogate.
-    Terms of least squares are kept; for terms that the data chose (sparse fits, processes) the least squares of the best
-    degree on the same runs stands in, since its terms would vary too. Rows of residuals are drawn jointly for all outputs and scaled by leverage;
+    Terms of least squares are kept; where the data chose the terms (sparse fits, processes) the least squares of the
+    best degree on the same runs stands in. Rows of residuals are drawn jointly for all outputs and scaled by leverage;
     intervals are of the basic kind, which takes off the bias that scatter gives to squared coefficients.
     Source: Davison and Hinkley, 1997, sections 5.2 and 6.2; MacKinnon and White, 1985 (residuals, HC3);
     Dubreuil and others, 2014 (indices from expansions).
