@@ -74,6 +74,17 @@ class Body:
         p = np.asarray(points, dtype=np.float64)
         return self.acceleration(p) + self.spin_rate**2 * p * np.array([1.0, 1.0, 0.0])
 
+    def slope(self, latitude_deg: ArrayLike, longitude_deg: ArrayLike) -> NDArray[np.float64]:
+        """Angle between the outward normal and the upward plumb line, gravity and rotation together [rad], shape [...].
+
+        Above a right angle the ground does not hold what lies on it.
+        """
+        points, facets = self.shape.locate(latitude_deg, longitude_deg)
+        push = self.effective_acceleration(points)
+        along = -(push * self.shape.normals[facets]).sum(axis=-1) / np.linalg.norm(push, axis=-1)
+        slope: NDArray[np.float64] = np.arccos(np.clip(along, -1.0, 1.0))
+        return slope
+
     def jacobi(self, position: ArrayLike, velocity: ArrayLike) -> NDArray[np.float64]:
         """Jacobi constant [m2/s2] of body-fixed states: half the squared speeds' difference minus the potential.
 

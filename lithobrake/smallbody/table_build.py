@@ -5,7 +5,7 @@ import logging
 import math
 import os
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import fields
+from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -67,7 +67,9 @@ def _store(path: Path, table: GravityTable, error: TableError) -> None:
 
 def _build(polyhedron: Polyhedron, multipole: Multipole, volume: float) -> GravityTable:
     """Sample each grid with the facets' sums or the series, continue below the surface, turn into splines."""
-    gravity = (polyhedron.arrays, multipole.arrays, GravityTable.empty().arrays)
+    # From two radii on the series is off by 1e-7 or less, far below what the splines lose, and ten times faster.
+    closer = replace(multipole, nearest=min(multipole.nearest, 2.0 * multipole.radius))
+    gravity = (polyhedron.arrays, closer.arrays, GravityTable.empty().arrays)
     core = CORE * (3.0 * volume / (4.0 * math.pi)) ** (1.0 / 3.0)
     lower, upper = polyhedron.vertices.min(axis=0), polyhedron.vertices.max(axis=0)
     corners: list[NDArray[np.float64]] = []

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from lithobrake.smallbody import Body, Shape
+from lithobrake.smallbody import Body, Shape, didymos
 from lithobrake.smallbody.body import GRAVITATIONAL_CONSTANT
 from lithobrake.smallbody.lanes import angle, log_ratio
 
@@ -158,6 +158,18 @@ def test_effective_acceleration_by_latitude(shapes):
     assert at_site == pytest.approx(10e-6, abs=2e-6)
     pole = body.effective_acceleration(body.shape.surface_point(85.0, 0.0)) @ body.shape.surface_normal(85.0, 0.0)
     assert pole == pytest.approx(-223e-6, abs=15e-6)
+
+
+def test_slope(cube, shapes):
+    still = Body(cube, mass=1e6, spin_period=math.inf)
+    assert still.slope(90.0, 0.0) == pytest.approx(0.0, abs=1e-7)
+    # Just beside a cube's edge the plumb line points between its two faces.
+    assert still.slope(0.0, 44.999) == pytest.approx(math.radians(45.0), abs=1e-3)
+    body = Body(Shape.read(shapes / "didymos_radar2020_1996.obj"), mass=5.32e11, spin_period=2.26 * 3600)
+    assert body.slope(0.0, 0.0) > 0.5 * math.pi  # lifted off by the rotation
+    # At the pole of the built-in shape the plumb line is the axis: the slope is the facet's own tilt.
+    tilt = math.acos(didymos().shape.surface_normal(90.0, 0.0)[2])
+    assert didymos().slope(90.0, 0.0) == pytest.approx(tilt, abs=1e-3)
 
 
 def test_bad_bodies_are_refused(cube):
