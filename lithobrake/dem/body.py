@@ -6,7 +6,7 @@ import numpy as np
 
 from lithobrake.dem.arrays import Bodies, Cores, Floats, Laws, Planes
 from lithobrake.dem.material import Material, pair_law
-from lithobrake.dem.motion import write_inverse_inertia, write_rotation
+from lithobrake.dem.motion import write_matrices, write_rotations
 from lithobrake.dem.shape import ConvexHull, Shape, equivalent_radius
 
 
@@ -37,6 +37,13 @@ def unit(vector: object, name: str) -> Floats:
     if not 0.0 < length < np.inf:
         raise ValueError(f"{name} is {vector!r}; allowed is any finite vector other than zero: change it")
     return array / length
+
+
+def rotation_matrices(quaternions: Floats) -> Floats:
+    """Return the rotation matrices [count, 3, 3], body to world, of unit quaternions w, x, y, z, shape [count, 4]."""
+    rotation = np.zeros((len(quaternions), 3, 3))
+    write_rotations(quaternions, rotation)
+    return rotation
 
 
 def cores_of(shapes: list[Shape]) -> Cores:
@@ -98,7 +105,5 @@ def bodies_of(bodies: list[Body], shapes: list[Shape], materials: list[Material]
         velocity_predicted=np.zeros((n, 3)), spin_predicted=np.zeros((n, 3)), position_listed=np.zeros((n, 3)),
         travel=np.zeros(n),
     )  # fmt: skip
-    for k in range(n):
-        write_rotation(tuple(arrays.quaternion[k]), arrays.rotation[k])
-        write_inverse_inertia(k, arrays)
+    write_matrices(arrays)
     return arrays

@@ -4,7 +4,7 @@ The way out of a convex difference set leads through one of its faces, and these
 edge pairs whose arcs on the sphere of normals intersect. Source: Gregorius, "The separating axis test" (2013).
 """
 
-from lithobrake.compiled import kernel
+from lithobrake.compiled import kernel, large_kernel
 from lithobrake.dem.arrays import Cores, Floats
 from lithobrake.dem.distance import Search
 from lithobrake.dem.vectors import Vector, cross, dot, minus, plus, put, row, scaled, times, transposed_times
@@ -13,7 +13,7 @@ from lithobrake.dem.vectors import Vector, cross, dot, minus, plus, put, row, sc
 Witness = tuple[float, Vector, Vector, Vector]
 
 
-@kernel
+@large_kernel
 def way_out(
     search: Search, cores: Cores, shapes: tuple[int, int], rotation: Floats, bodies: tuple[int, int], apart: Vector
 ) -> Witness:

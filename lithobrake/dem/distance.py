@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from lithobrake.compiled import kernel
+from lithobrake.compiled import kernel, large_kernel
 from lithobrake.dem.arrays import Cores, Floats, Integers
 from lithobrake.dem.simplex import simplex_weights
 from lithobrake.dem.vectors import Vector, dot, minus, plus, put, row, scaled, times, transposed_times
@@ -104,7 +104,7 @@ def reduce_simplex(search: Search, count: int, closest_before: float) -> tuple[i
     return kept, True
 
 
-@kernel
+@large_kernel
 def approach(
     search: Search,
     count: int,

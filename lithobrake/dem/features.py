@@ -1,6 +1,6 @@
 """Closed forms: how far a point is from a core, and two edges from each other."""
 
-from lithobrake.compiled import kernel
+from lithobrake.compiled import kernel, large_kernel
 from lithobrake.dem.arrays import Cores, Floats
 from lithobrake.dem.vectors import Vector, cross, dot, minus, plus, row, scaled
 
@@ -24,7 +24,7 @@ def face_below(cores: Cores, shape: int, point: Vector, farthest: float) -> tupl
     return best, height
 
 
-@kernel
+@large_kernel
 def point_to_core(cores: Cores, shape: int, point: Vector, farthest: float) -> tuple[float, Vector, bool]:
     """Return the signed distance of a point of the body frame to a core with faces, the outward unit normal at the
     closest point of its surface, and whether it is nearer than `farthest` (if not, the rest is void).

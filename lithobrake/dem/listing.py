@@ -4,7 +4,7 @@ Only names are kept; their distances are computed anew in each step (patch.py), 
 nothing. So it makes no difference to any bit when, or how often, the names are renewed.
 """
 
-from lithobrake.compiled import kernel
+from lithobrake.compiled import kernel, large_kernel
 from lithobrake.dem.arrays import Bodies, Cores, Pairs, Planes
 from lithobrake.dem.crossing import way_out
 from lithobrake.dem.distance import APART, CROSSING, Search, approach, weighted
@@ -38,7 +38,7 @@ def margin_of(bodies: Bodies, cores: Cores, first: int, second: int) -> float:
     return MARGIN_OF_ROUNDING * min(rounding, ROUNDING_OF_RADIUS * radius)
 
 
-@kernel
+@large_kernel
 def renew(bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, search: Search) -> int:
     """Renew the lists of all pairs whose margin is used up; return the longest length that was asked for."""
     longest = 0
@@ -87,7 +87,7 @@ def list_plane(pair: int, bodies: Bodies, cores: Cores, planes: Planes, pairs: P
     return gap
 
 
-@kernel
+@large_kernel
 def list_bodies(pair: int, bodies: Bodies, cores: Cores, pairs: Pairs, margin: float, search: Search) -> float:
     """List the features of two bodies that are near each other; return a lower bound of the gap."""
     first, second = pairs.first[pair], pairs.second[pair]
@@ -149,7 +149,7 @@ def list_corners(
                 note_term(pairs, pair, CORNER_OF_SECOND, k - start, 0)
 
 
-@kernel
+@large_kernel
 def list_edges(
     pair: int, pairs: Pairs, cores: Cores, shapes: tuple[int, int], search: Search, there: Vector, normal: Vector,
     farthest: float, distance: float,

@@ -1,9 +1,9 @@
 """Motion of rigid bodies: half kick, drift, half kick, with the angular momentum in the world frame as state."""
 
-from lithobrake.compiled import kernel
+from lithobrake.compiled import kernel, large_kernel
 from lithobrake.dem.arrays import Bodies, Floats
 from lithobrake.dem.force import Step
-from lithobrake.dem.vectors import Vector, add, dot, plus, put, row, scaled, times
+from lithobrake.dem.vectors import Vector, add, dot, plus, put, row, scaled, times, transposed_times
 
 Quaternion = tuple[float, float, float, float]
 # Evaluations of the mid-step spin; the error left after three is of the sixth order in spin times step.
@@ -35,6 +35,22 @@ def write_rotation(q: Quaternion, rotation: Floats) -> None:
 
 
 @kernel
+def write_rotations(quaternions: Floats, rotations: Floats) -> None:
+    """Write the rotation matrices [count, 3, 3] of unit quaternions [count, 4]."""
+    for k in range(len(quaternions)):
+        q = (quaternions[k, 0], quaternions[k, 1], quaternions[k, 2], quaternions[k, 3])
+        write_rotation(q, rotations[k])
+
+
+@kernel
+def write_matrices(bodies: Bodies) -> None:
+    """Write rotation and inverse inertia in the world frame of all bodies."""
+    write_rotations(bodies.quaternion, bodies.rotation)
+    for body in range(len(bodies.mass)):
+        write_inverse_inertia(body, bodies)
+
+
+@kernel
 def write_inverse_inertia(body: int, bodies: Bodies) -> None:
     """Turn the inverse inertia of a body into the world frame."""
     r, inner, outer = bodies.rotation[body], bodies.inverse_inertia_body[body], bodies.inverse_inertia[body]
@@ -59,8 +75,8 @@ def rotate(body: int, bodies: Bodies, time_step: float) -> None:
     spin = times(bodies.inverse_inertia, body, momentum)
     for _ in range(MIDPOINT_ITERATIONS):
         write_rotation(turned(before, spin, 0.5 * time_step), bodies.rotation[body])
-        write_inverse_inertia(body, bodies)
-        spin = times(bodies.inverse_inertia, body, momentum)
+        within = times(bodies.inverse_inertia_body, body, transposed_times(bodies.rotation, body, momentum))
+        spin = times(bodies.rotation, body, within)
     after = turned(before, spin, time_step)
     write_rotation(after, bodies.rotation[body])
     write_inverse_inertia(body, bodies)
@@ -68,7 +84,7 @@ def rotate(body: int, bodies: Bodies, time_step: float) -> None:
     put(bodies.half_spin, body, spin)
 
 
-@kernel
+@large_kernel
 def kick(bodies: Bodies, step: Step) -> None:
     """Advance the velocities by half a step under the forces at hand."""
     half = 0.5 * step.time_step
@@ -78,7 +94,7 @@ def kick(bodies: Bodies, step: Step) -> None:
         add(bodies.angular_momentum, body, half, row(bodies.torque, body))
 
 
-@kernel
+@large_kernel
 def drift(bodies: Bodies, step: Step) -> float:
     """Advance positions by a step at the half-step velocities and predict the velocities at their instant.
 

@@ -6,7 +6,7 @@ energy by its own overlap. So the forces come from one potential of the relative
 corner, and hold a face by all of its corners.
 """
 
-from lithobrake.compiled import kernel
+from lithobrake.compiled import kernel, large_kernel
 from lithobrake.dem.arrays import Bodies, Cores, Pairs, Planes
 from lithobrake.dem.crossing import way_out
 from lithobrake.dem.distance import APART, CROSSING, Search, approach, weighted
@@ -107,7 +107,7 @@ def touch_spheres(bodies: Bodies, first: int, second: int, apart: Vector, search
     return note_point(search, 0, middle, normal, depth, 1.0)
 
 
-@kernel
+@large_kernel
 def touch_deep(bodies: Bodies, cores: Cores, first: int, second: int, apart: Vector, search: Search) -> int:
     """Write the deepest point of two bodies whose cores cross or nearly so."""
     shapes, members = (bodies.shape[first], bodies.shape[second]), (first, second)

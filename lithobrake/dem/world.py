@@ -20,13 +20,11 @@ from lithobrake.dem.advance import (
     STEP_TOO_LARGE,
     Limits,
     advance,
-    apply_forces,
 )
 from lithobrake.dem.arrays import Bodies, Cores, Floats, Laws, Pairs, Planes
-from lithobrake.dem.body import Body, Plane, bodies_of, cores_of, laws_of, planes_of, unit
+from lithobrake.dem.body import Body, Plane, bodies_of, cores_of, laws_of, planes_of, rotation_matrices, unit
 from lithobrake.dem.distance import Search, search_for
 from lithobrake.dem.force import FREQUENCY_SQUARED, Step
-from lithobrake.dem.listing import renew
 from lithobrake.dem.material import PAIR_RULES, SHEAR_MODULUS_RULES, Material
 from lithobrake.dem.neighbours import neighbours, pairs_of, renewed, roomier
 from lithobrake.dem.shape import Shape, equivalent_radius
@@ -118,7 +116,7 @@ class World:
             raise ValueError(f"add_body inertia is {tensor!r} kg m2; allowed is a positive definite 3 x 3 tensor: change it")
         quaternion = unit(orientation, "add_body orientation")
         body = Body(shape, material, mass, tensor)
-        rotation = _rotation_matrix(quaternion)
+        rotation = rotation_matrices(quaternion[None])[0]
         spinning = np.array(_vector(spin, "add_body spin"))
         row = {
             "position": np.array(_vector(position, "add_body position")),
@@ -217,15 +215,19 @@ class World:
                 self._time_step = duration / math.ceil(duration / self.time_step)
             steps = round(duration / self.time_step)
         self._assemble()
-        step, limits = self._step(self.time_step), Limits(0.5 * self._skin, timestep.FREQUENCY_LIMIT)
-        left, drifted = steps, False
-        while left > 0:
+        self._advance(steps, self._step(self.time_step), self._watched)
+
+    def _advance(self, steps: int, step: Step, watched: int) -> None:
+        """Take steps, renewing the lists as they are used up. A step of no duration computes the forces at hand."""
+        limits = Limits(0.5 * self._skin, timestep.FREQUENCY_LIMIT)
+        drifted = False
+        while steps > 0:
             taken, reason, drifted = advance(
-                left, drifted, self._arrays, self._cores, self._plane_arrays, self._pairs, self._laws, step, limits,
-                self._search, self._totals, self._watched, self._probed,
+                steps, drifted, *self._geometry, self._laws, step, limits, self._search, self._totals, watched,
+                self._probed,
             )  # fmt: skip
-            left -= taken
-            self.time += taken * self.time_step
+            steps -= taken
+            self.time += taken * step.time_step
             if reason == LIST_USED_UP:
                 self._list_neighbours()
             elif reason == NAMES_OVERFLOW:
@@ -275,15 +277,7 @@ class World:
         self._search: Search = self._scratch()
         self._list_neighbours()
         self._pairs.wake[:] = 0.0
-        while renew(*self._geometry, self._search) > self._pairs.term.shape[1]:
-            self._make_room()
-        self._arrays.velocity_predicted[:] = self._arrays.velocity
-        self._arrays.spin_predicted[:] = self.spin
-        self._arrays.half_spin[:] = self.spin
-        apply_forces(
-            self._arrays, self._cores, self._plane_arrays, self._pairs, self._laws, self._step(0.0), self._search,
-            self._totals,
-        )  # fmt: skip
+        self._advance(1, self._step(0.0), -1)
         self._assembled = True
 
     def _disassemble(self) -> None:
@@ -335,11 +329,10 @@ class World:
     @property
     def spin(self) -> Floats:
         """Angular velocities [rad/s], shape [body_count, 3], world frame."""
-        spins = np.zeros((len(self.bodies), 3))
-        for k, body in enumerate(self.bodies):
-            rotation = _rotation_matrix(self._state["quaternion"][k])
-            spins[k] = rotation @ np.linalg.solve(body.inertia, rotation.T @ self._state["angular_momentum"][k])
-        return spins
+        rotation = rotation_matrices(self._state["quaternion"])
+        inertia = np.array([body.inertia for body in self.bodies]).reshape(-1, 3, 3)
+        within = np.einsum("kji,kj->ki", rotation, self._state["angular_momentum"])
+        return np.einsum("kij,kj->ki", rotation, np.linalg.solve(inertia, within[:, :, None])[:, :, 0])
 
     @property
     def mass(self) -> Floats:
@@ -397,12 +390,3 @@ def _vector(value: Sequence[float], name: str) -> tuple[float, float, float]:
     if array.shape != (3,) or not np.isfinite(array).all():
         raise ValueError(f"{name} is {value!r}; allowed are three finite numbers: change it")
     return (float(array[0]), float(array[1]), float(array[2]))
-
-
-def _rotation_matrix(q: Floats) -> Floats:
-    """Return the rotation matrix of a unit quaternion."""
-    from lithobrake.dem.motion import write_rotation
-
-    rotation = np.zeros((3, 3))
-    write_rotation((q[0], q[1], q[2], q[3]), rotation)
-    return rotation

@@ -31,7 +31,7 @@ class FlightLine:
         self.bed, self.lander, self.landing, self.world, self.number = bed, lander, landing, world, number
         self.start_time = world.time
         self.start_energy = self.energy()
-        self.clear_height = bed.surface_top + bed.grain_diameter
+        self.clear_height = bed.surface_height + bed.grain_diameter
         self.fate: str | None = None
         self.height_at_contact: float | None = None
         self.lowest = self.height()
