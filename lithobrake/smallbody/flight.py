@@ -133,8 +133,15 @@ def _run(
     workers = threads if threads is not None else os.cpu_count() or 1
     if workers < 1:
         raise ValueError(f"threads is {threads}; it must be 1 or more.")
+    firsts = range(0, count, CHUNK)
+    if min(workers, len(firsts)) <= 1:
+        for number, first in enumerate(firsts, 1):
+            part(first)
+            if progress:
+                progress(number / len(firsts))
+        return
     with ThreadPoolExecutor(workers) as pool:
-        futures: list[Any] = [pool.submit(part, first) for first in range(0, count, CHUNK)]
+        futures: list[Any] = [pool.submit(part, first) for first in firsts]
         try:
             for number, future in enumerate(futures, 1):
                 future.result()
