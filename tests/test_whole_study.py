@@ -2,6 +2,7 @@
 
 import json
 import os
+import shutil
 import signal
 import sqlite3
 import subprocess
@@ -15,38 +16,43 @@ import pytest
 STUDY = """
 title = "A few grains"
 [bed]
-grain_count = 16
-width = [0.3, 0.3]
-diameter = { distribution = "constant", value = 0.1 }
+grain_count = 45
+width = [0.5, 0.5]
+diameter = { distribution = "constant", value = 0.08 }
 cloud_point_count = 10
+pour_gravity = 0.1
 [grain]
 density = 2500.0
 young_modulus = 1e6
 poisson_ratio = 0.25
-restitution = { distribution = "uniform", lower = 0.4, upper = 0.8 }
-friction = { distribution = "uniform", lower = 0.3, upper = 0.9 }
+restitution = { distribution = "uniform", lower = 0.5, upper = 0.8 }
+friction = { distribution = "uniform", lower = 0.5, upper = 0.9 }
 [lander]
 shape = "sphere"
-diameter = 0.1
-mass = 1.0
+diameter = 0.14
+mass = 0.1
+restitution = 0.95
 [impact]
-speed = 0.3
-incidence_deg = 20.0
+speed = 0.4
+incidence_deg = 5.0
 [surface]
-gravity = 1e-3
+gravity = 1e-4
+[contact]
+pair_rule = "mean"
+steps_per_contact = 20.0
 [design]
 screening_level = 1
 screening_degree = 1
 refined_level = 1
 refined_degree = 1
 kept_outputs = ["speed_out"]
-test_count = 3
+test_count = 2
 [monte_carlo]
 sample_count = 500
 [site]
 mass = { distribution = "uniform", lower = 5.0e11, upper = 5.6e11 }
 [flight]
-flight_count = 20
+flight_count = 10
 duration = 20000.0
 """
 FILES = (
@@ -101,11 +107,11 @@ def test_every_file_is_there_and_the_summary_adds_up(out: Path) -> None:
     results = summary(out)["results"]
     designs, shares = results["designs"], results["shares"]
     assert sum(designs["screening"]["outcomes"].values()) == designs["screening"]["run_count"] == 5
-    assert designs["test_all"]["run_count"] == 3
+    assert designs["test_all"]["run_count"] == 2
     ends = ("captured", "no_outward_velocity", "impact", "flying", "escaped")
     assert sum(shares[name]["count"] for name in ends) == shares["sample_count"]
     assert shares["flight_count"] == sum(shares[name]["count"] for name in ends[2:])
-    assert 0 < results["monte_carlo"]["outputs"]["speed_out"]["mean"] < 0.3
+    assert 0 < results["monte_carlo"]["outputs"]["speed_out"]["mean"] < 0.4
     assert results["kept_share"]["speed_out"] >= 0.9
 
 
@@ -128,11 +134,15 @@ def test_a_deleted_file_is_made_again_with_the_same_bytes_and_nothing_before_it(
 @pytest.mark.skipif(os.name != "posix", reason="signals of this kind exist on POSIX only")
 def test_ctrl_c_keeps_the_runs_and_one_worker_ends_with_the_same_bits(study: Path, out: Path) -> None:
     other = study.parent / "second"
+    # The bed and the landing at the medians are there already; all the rest is not.
+    shutil.copytree(out / "beds", other / "beds")
+    for name in ("landing.h5", "keys.json"):
+        shutil.copy(out / name, other / name)
     process = subprocess.Popen(
         command(study, other, workers=1), stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True
     )
     deadline = time.monotonic() + 300
-    while finished_runs(other) < 3 and process.poll() is None and time.monotonic() < deadline:
+    while finished_runs(other) < 2 and process.poll() is None and time.monotonic() < deadline:
         time.sleep(0.02)
     process.send_signal(signal.SIGINT)
     _, said = process.communicate(timeout=60)
@@ -140,7 +150,7 @@ def test_ctrl_c_keeps_the_runs_and_one_worker_ends_with_the_same_bits(study: Pat
     assert "the same command goes on from there" in said
     assert "Traceback" not in said
     kept = finished_runs(other)
-    assert 3 <= kept < finished_runs(out)
+    assert 2 <= kept < finished_runs(out)
     assert lithobrake(study, other, workers=1).returncode == 0
     assert summary(other)["results"] == summary(out)["results"]
     assert summary(other)["study"] == summary(out)["study"]

@@ -141,9 +141,11 @@ def _fit(study: Study, design: str, runs: DesignRuns, names: Sequence[str]) -> "
     terms = term_count(len(names), degree)
     if found < terms:
         counts = ", ".join(f"{count} {name}" for name, count in runs.outcome_counts().items())
+        reason = next((f"; the first failure: {record.reason}" for record in runs.runs.records if record.reason), "")
         raise ValueError(
             f"of {len(runs.x)} {design} runs {found} have outputs ({counts}), fewer than the {terms} terms of degree "
             f"{degree}; raise design.{design}_level, lower design.{design}_degree, or choose an impact that rebounds"
+            f"{reason}"
         )
     inputs = design_inputs(study)
     chosen = {name: inputs[name] for name in names}
