@@ -6,18 +6,15 @@ from typing import Any
 import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
 from numpy.typing import NDArray
 from scipy.interpolate import LinearNDInterpolator
-from scipy.spatial import cKDTree
 
+from lithobrake.report.density import WHOLE, Window, close_window, draw_density, near
 from lithobrake.report.look import INK, INPUT_COLOURS, INTERACTIONS, QUIET, SITE, TEST
 
 Array = NDArray[np.float64]
-
-# Below this, cells of 3 deg would be mostly empty.
-MANY_IMPACTS = 10_000
 
 
 @dataclass(frozen=True)
@@ -46,21 +43,7 @@ def map_figure(
     axes = figure.add_axes((0.06, 0.335, 0.84, 0.645))
     if vertices is not None:
         _relief(axes, vertices)
-    _density(figure, axes, latitude, longitude)
-    axes.plot(
-        site[1], site[0], marker="*", markersize=15, color=SITE, markeredgecolor="white", markeredgewidth=1.0, zorder=6
-    )
-    axes.annotate(
-        "landing site",
-        (site[1], site[0]),
-        xytext=(9, 9),
-        textcoords="offset points",
-        color=SITE,
-        fontweight="bold",
-        fontsize=8.5,
-        zorder=6,
-        bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 1.2},
-    )
+    _mark_site(axes, site)
     axes.set_xlim(-180, 180)
     axes.set_ylim(-90, 90)
     axes.set_aspect("equal")
@@ -68,44 +51,68 @@ def map_figure(
     axes.set_yticks(range(-90, 91, 30))
     axes.set_xlabel("longitude, east [deg]")
     axes.set_ylabel("latitude [deg]")
+    _impacts(figure, axes, latitude, longitude, site)
     _shares(figure.add_axes((0.2, 0.095, 0.7, 0.15)), shares)
     return figure
 
 
-def _density(figure: Figure, axes: Axes, latitude: Array, longitude: Array) -> None:
-    """Many impacts: how many fall in each cell. Fewer: a dot each, coloured by how many lie around it."""
+def _mark_site(axes: Axes, site: tuple[float, float]) -> None:
+    """Mark and name the landing site."""
+    axes.plot(site[1], site[0], marker="*", markersize=13, color=SITE, markeredgecolor="white", zorder=6)
+    axes.annotate(
+        "landing site",
+        (site[1], site[0]),
+        xytext=(9, 9) if inset_left(site) else (-9, 9),
+        textcoords="offset points",
+        ha="left" if inset_left(site) else "right",
+        color=SITE,
+        fontweight="bold",
+        fontsize=8.5,
+        zorder=6,
+        bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 1.2},
+    )
+
+
+def inset_left(site: tuple[float, float]) -> bool:
+    """Whether a close view stands in the left half of the map: the site is in the right one."""
+    return bool(near(np.array([site[1]]), 0.0)[0] > 0)
+
+
+def _impacts(figure: Figure, axes: Axes, latitude: Array, longitude: Array, site: tuple[float, float]) -> None:
+    """Draw the impacts, in a close view beside the site where on the whole map they would lie under its mark."""
     if not len(latitude):
         axes.text(0, -50, "no impact among the flights", ha="center", fontsize=11, color=QUIET)
         return
-    drawn: Any
-    if len(latitude) >= MANY_IMPACTS:
-        cells = (np.arange(-180, 181, 3), np.arange(-90, 91, 3))
-        counts, x_edges, y_edges = np.histogram2d(longitude, latitude, bins=cells)
-        shown = np.ma.masked_equal(counts.T, 0)
-        norm = LogNorm(1, max(counts.max(), 10))
-        drawn = axes.pcolormesh(x_edges, y_edges, shown, norm=norm, cmap="viridis", zorder=2, rasterized=True)
-        words = "impacts per cell of 3 x 3 deg"
-    else:
-        around = _neighbour_count(latitude, longitude, 5.0)
-        order = np.argsort(around, kind="stable")
-        norm = LogNorm(1, max(around.max(), 10))
-        drawn = axes.scatter(
-            longitude[order], latitude[order], c=around[order], norm=norm, cmap="viridis", s=11, linewidths=0, zorder=2
-        )
-        words = "impacts within 5 deg"
+    drawn, words = draw_density(axes, latitude, longitude, WHOLE, 11.0)
+    window = close_window(latitude, longitude, site)
+    if window is not None:
+        drawn, words = _close_view(axes, latitude, longitude, site, window)
     bar = figure.colorbar(drawn, cax=figure.add_axes((0.915, 0.36, 0.014, 0.57)), format="%g")
     bar.set_label(words)
     outline: Any = bar.outline
     outline.set_visible(False)
 
 
-def _neighbour_count(latitude: Array, longitude: Array, distance_deg: float) -> Array:
-    """How many impacts, itself among them, lie within a distance on the sphere of each impact, shape [impact]."""
-    lat, lon = np.radians(latitude), np.radians(longitude)
-    points = np.column_stack([np.cos(lat) * np.cos(lon), np.cos(lat) * np.sin(lon), np.sin(lat)])
-    chord = 2.0 * np.sin(np.radians(distance_deg) / 2.0)
-    count: Array = cKDTree(points).query_ball_point(points, chord, return_length=True).astype(float)
-    return count
+def _close_view(
+    axes: Axes, latitude: Array, longitude: Array, site: tuple[float, float], window: Window
+) -> tuple[Any, str]:
+    """Draw the impacts around the site enlarged, on the side of the map where the site is not."""
+    left = 0.045 if inset_left(site) else 0.615
+    frame = Rectangle((left - 0.03, 0.07), 0.4, 0.88, transform=axes.transAxes, color="white", alpha=0.94, zorder=7)
+    axes.add_patch(frame)
+    view = axes.inset_axes((left + 0.015, 0.15, 0.34, 0.71), zorder=8)
+    drawn, words = draw_density(view, latitude, longitude, window, 9.0)
+    middle = near(np.array([site[1]]), window.longitude)[0]
+    view.plot(middle, site[0], marker="*", markersize=12, color=SITE, markeredgecolor="white", zorder=6)
+    view.set_xlim(window.longitude - window.half_longitude, window.longitude + window.half_longitude)
+    view.set_ylim(window.latitude - window.half, window.latitude + window.half)
+    view.set_title("around the site [deg]", fontsize=8, pad=4)
+    view.tick_params(labelsize=7)
+    view.locator_params(nbins=4)
+    view.grid(visible=True)
+    for spine in view.spines.values():
+        spine.set_visible(True)
+    return drawn, words
 
 
 def _relief(axes: Axes, vertices: Array) -> None:

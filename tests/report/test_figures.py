@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 
 from lithobrake.report.bed_figure import bed_figure, three_moments
 from lithobrake.report.count_figure import Design, count_figure
+from lithobrake.report.density import WHOLE, close_window, draw_density, neighbour_count
 from lithobrake.report.error_figure import Score, error_figure
 from lithobrake.report.hulls import Body
 from lithobrake.report.landing_figure import instants, landing_figure
@@ -158,6 +159,36 @@ def test_map_figure_without_any_impact_is_still_a_map() -> None:
     with figure_style():
         figure = map_figure(np.zeros(0), np.zeros(0), (0.0, 0.0), [Share("escaped", 1.0, 0.9, 1.0)])
     assert picture(figure)
+
+
+def test_map_figure_shows_impacts_near_the_site_in_a_close_view() -> None:
+    generator = np.random.default_rng(4)
+    latitude, longitude = 30 + generator.normal(size=200), 179 + generator.normal(size=200)
+    longitude = np.where(longitude > 180, longitude - 360, longitude)
+    window = close_window(latitude, longitude, (30.0, 179.0))
+    assert window is not None
+    assert window.longitude == pytest.approx(179.0, abs=1.0)
+    assert window.half < 5.0
+    with figure_style():
+        figure = map_figure(latitude, longitude, (30.0, 179.0), [Share("impact", 1.0, 0.98, 1.0)])
+    assert picture(figure)
+
+
+def test_no_impact_is_lost_on_the_map_of_the_whole_body() -> None:
+    generator = np.random.default_rng(6)
+    latitude, longitude = generator.uniform(-90, 90, 12_000), generator.uniform(-180, 180, 12_000)
+    drawn, words = draw_density(Figure().add_subplot(), latitude, longitude, WHOLE, 9.0)
+    assert drawn.get_array().sum() == 12_000
+    assert words == "impacts per cell of 3 deg"
+
+
+def test_impacts_all_over_the_body_have_no_close_view() -> None:
+    assert close_window(np.linspace(-60, 60, 50), np.linspace(-180, 180, 50), (0.0, 0.0)) is None
+
+
+def test_neighbours_are_counted_across_the_date_line() -> None:
+    count = neighbour_count(np.zeros(3), np.array([-179.0, 179.0, 90.0]), 5.0)
+    assert count.tolist() == [2.0, 2.0, 1.0]
 
 
 def test_the_look_leaves_the_settings_of_others_alone() -> None:
