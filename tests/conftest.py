@@ -1,0 +1,8 @@
+"""What holds for all tests."""
+
+import os
+
+# The suite runs in two processes; linear algebra with threads of its own in each would have them wait for one another,
+# which costs many times what it gains on arrays of this size. Set before NumPy is imported for the first time.
+for name in ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS"):
+    os.environ.setdefault(name, "1")
