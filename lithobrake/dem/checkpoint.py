@@ -10,6 +10,7 @@ import numpy as np
 from lithobrake.atomic import atomic_path
 from lithobrake.dem.body import Body, Plane
 from lithobrake.dem.material import Material
+from lithobrake.dem.motion import write_matrices
 from lithobrake.dem.neighbours import pairs_of
 from lithobrake.dem.shape import Box, ConvexHull, Shape, Sphere
 
@@ -90,6 +91,9 @@ def load(path: str | os.PathLike[str]) -> "World":
     world._time_step, world._watched = json.loads(attributes["time_step"]), int(attributes["watched"])
     world._state = {name: data[f"body/{name}"] for name in world._state}
     world._assemble()
+    # Assembling took a step of no duration, which may have rounded the orientations anew.
+    world._arrays.quaternion[:] = data["body/quaternion"]
+    write_matrices(world._arrays)
     world._totals[:], world._probed[:] = data["totals"], data["probed"]
     for name in MOVING:
         getattr(world._arrays, name)[:] = data[f"body/{name}"]

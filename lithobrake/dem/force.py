@@ -56,17 +56,15 @@ def turned_spring(pairs: Pairs, pair: int, normal: Vector, twist: float) -> Vect
 
 
 @kernel
-def rescaled_spring(spring: Vector, stiffness_before: float, stiffness: float, totals: Floats) -> Vector:
-    """Shrink the spring force with its stiffness on unloading, so that no cycle gains energy; book what is lost."""
-    if stiffness_before == 0.0:
-        return spring
-    square = dot(spring, spring)
-    if stiffness < stiffness_before:
-        share = stiffness / stiffness_before
-        totals[FRICTION] += 0.5 * square / stiffness_before * (1.0 - share)
-        return scaled(share, spring)
-    totals[FRICTION] += 0.5 * square * (1.0 / stiffness_before - 1.0 / stiffness)
-    return spring
+def unloaded(stiffness_before: float, stiffness: float) -> float:
+    """Return what is left of a spring's force when its stiffness falls: so no cycle of loading gains energy."""
+    return min(1.0, stiffness / stiffness_before) if stiffness_before > 0.0 else 1.0
+
+
+@kernel
+def stored(force_squared: float, stiffness: float) -> float:
+    """Return the energy of a spring under a force."""
+    return 0.5 * force_squared / stiffness if stiffness > 0.0 else 0.0
 
 
 @kernel
@@ -74,11 +72,10 @@ def part(pairs: Pairs, pair: int, totals: Floats) -> None:
     """End a contact: the spring lets go."""
     if pairs.tangential_stiffness[pair] > 0.0:
         spring = row(pairs.spring, pair)
-        totals[FRICTION] += 0.5 * dot(spring, spring) / pairs.tangential_stiffness[pair]
+        totals[FRICTION] += stored(dot(spring, spring), pairs.tangential_stiffness[pair])
         put(pairs.spring, pair, (0.0, 0.0, 0.0))
         put(pairs.tangential_force, pair, (0.0, 0.0, 0.0))
-    if pairs.twist_stiffness[pair] > 0.0:
-        totals[FRICTION] += 0.5 * pairs.twist[pair] ** 2 / pairs.twist_stiffness[pair]
+    totals[FRICTION] += stored(pairs.twist[pair] ** 2, pairs.twist_stiffness[pair])
     pairs.twist[pair], pairs.twist_stiffness[pair] = 0.0, 0.0
     pairs.tangential_stiffness[pair] = 0.0
     pairs.overlap[pair] = 0.0
@@ -123,15 +120,21 @@ def rub(
     pair: int, pairs: Pairs, normal: Vector, moved: Vector, now: Vector, twist: float, limit: float, stiffness: float,
     dashpot: float, step: Step, totals: Floats,
 ) -> Vector:  # fmt: skip
-    """Return the tangential force on the second body: a spring with history and a dashpot, within the Coulomb limit."""
-    spring = turned_spring(pairs, pair, normal, twist * step.time_step)
-    spring = rescaled_spring(spring, pairs.tangential_stiffness[pair], stiffness, totals)
-    slip = minus(moved, scaled(dot(moved, normal), normal))
-    spring = minus(spring, scaled(stiffness * step.time_step, slip))
+    """Return the tangential force on the second body: a spring with history and a dashpot, within the Coulomb limit.
+
+    Friction is booked as what the spring was given and did not keep: by sliding, and by changes of its stiffness.
+    """
+    before, stiffness_before = (
+        turned_spring(pairs, pair, normal, twist * step.time_step),
+        pairs.tangential_stiffness[pair],
+    )
+    slip = scaled(step.time_step, minus(moved, scaled(dot(moved, normal), normal)))
+    spring = minus(scaled(unloaded(stiffness_before, stiffness), before), scaled(stiffness, slip))
     stretch = dot(spring, spring) ** 0.5
     if stretch > limit:
-        totals[FRICTION] += limit * (stretch - limit) / stiffness
         spring = scaled(limit / stretch, spring)
+    given = stored(dot(before, before), stiffness_before) - 0.5 * dot(plus(before, spring), slip)
+    totals[FRICTION] += given - stored(dot(spring, spring), stiffness)
     put(pairs.spring, pair, spring)
     pairs.tangential_stiffness[pair] = stiffness
     sliding = minus(now, scaled(dot(now, normal), normal))
@@ -151,18 +154,11 @@ def wring(
 
     A patch of more than one point resists twisting as its points would, each with its share of the tangential spring.
     """
-    couple = pairs.twist[pair]
-    before = pairs.twist_stiffness[pair]
-    if before > 0.0:
-        share = min(1.0, stiffness / before)
-        left = share * share / stiffness if stiffness > 0.0 else 0.0
-        totals[FRICTION] += 0.5 * couple * couple * (1.0 / before - left)
-        couple *= share
-    couple -= stiffness * step.time_step * spin
-    size = abs(couple)
-    if size > limit:
-        totals[FRICTION] += limit * (size - limit) / stiffness
-        couple *= limit / size
+    before, stiffness_before = pairs.twist[pair], pairs.twist_stiffness[pair]
+    turn = spin * step.time_step
+    couple = min(max(unloaded(stiffness_before, stiffness) * before - stiffness * turn, -limit), limit)
+    given = stored(before * before, stiffness_before) - 0.5 * (before + couple) * turn
+    totals[FRICTION] += given - stored(couple * couple, stiffness)
     pairs.twist[pair], pairs.twist_stiffness[pair] = couple, stiffness
     total = min(max(couple - dashpot * spin, -limit), limit)
     totals[DAMPING] += (couple - total) * spin * step.time_step
@@ -222,9 +218,7 @@ def act(
         turn = -dot(row(bodies.half_spin, first), normal)
         if is_body:
             turn += dot(row(bodies.half_spin, second), normal)
-        couple = wring(
-            pair, pairs, turn, limit * mean, shear_stiffness * square, shear_dashpot * square, step, totals
-        )
+        couple = wring(pair, pairs, turn, limit * mean, shear_stiffness * square, shear_dashpot * square, step, totals)
         add(bodies.torque, first, -couple, normal)
         if is_body:
             add(bodies.torque, second, couple, normal)

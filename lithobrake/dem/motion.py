@@ -3,7 +3,7 @@
 from lithobrake.compiled import kernel, large_kernel
 from lithobrake.dem.arrays import Bodies, Floats
 from lithobrake.dem.force import Step
-from lithobrake.dem.vectors import Vector, add, dot, plus, put, row, scaled, times, transposed_times
+from lithobrake.dem.vectors import Vector, add, cross, dot, plus, put, row, scaled, times
 
 Quaternion = tuple[float, float, float, float]
 # Evaluations of the mid-step spin; the error left after three is of the sixth order in spin times step.
@@ -63,24 +63,39 @@ def write_inverse_inertia(body: int, bodies: Bodies) -> None:
 
 
 @kernel
+def turned_vector(vector: Vector, half: Vector) -> Vector:
+    """Return a vector turned about the axis of `half`, whose length is the tangent of half the angle (Rodrigues)."""
+    once = cross(half, vector)
+    return plus(vector, scaled(2.0 / (1.0 + dot(half, half)), plus(once, cross(half, once))))
+
+
+@kernel
+def spin_at_mid_step(momentum: Vector, body: int, bodies: Bodies, time_step: float) -> Vector:
+    """Return the spin for which the body, turned half a step by it, has that spin under this angular momentum."""
+    spin = times(bodies.inverse_inertia, body, momentum)
+    for _ in range(MIDPOINT_ITERATIONS):
+        square = dot(spin, spin) * time_step * time_step
+        half = scaled(0.25 * time_step * (1.0 + square / 48.0), spin)
+        within = times(bodies.inverse_inertia, body, turned_vector(momentum, scaled(-1.0, half)))
+        renewed = turned_vector(within, half)
+        if renewed[0] == spin[0] and renewed[1] == spin[1] and renewed[2] == spin[2]:
+            break
+        spin = renewed
+    return spin
+
+
+@kernel
 def rotate(body: int, bodies: Bodies, time_step: float) -> None:
     """Turn a body over one step by the spin at mid-step, which follows from the angular momentum held fixed.
 
     The implicit midpoint is symmetric in time, so the energy of free rotation does not drift.
     """
-    momentum = row(bodies.angular_momentum, body)
-    before = (
-        bodies.quaternion[body, 0], bodies.quaternion[body, 1], bodies.quaternion[body, 2], bodies.quaternion[body, 3]
-    )  # fmt: skip
-    spin = times(bodies.inverse_inertia, body, momentum)
-    for _ in range(MIDPOINT_ITERATIONS):
-        write_rotation(turned(before, spin, 0.5 * time_step), bodies.rotation[body])
-        within = times(bodies.inverse_inertia_body, body, transposed_times(bodies.rotation, body, momentum))
-        spin = times(bodies.rotation, body, within)
-    after = turned(before, spin, time_step)
+    spin = spin_at_mid_step(row(bodies.angular_momentum, body), body, bodies, time_step)
+    q = bodies.quaternion
+    after = turned((q[body, 0], q[body, 1], q[body, 2], q[body, 3]), spin, time_step)
+    q[body, 0], q[body, 1], q[body, 2], q[body, 3] = after
     write_rotation(after, bodies.rotation[body])
     write_inverse_inertia(body, bodies)
-    bodies.quaternion[body] = after
     put(bodies.half_spin, body, spin)
 
 

@@ -33,7 +33,10 @@ def note_point(search: Search, count: int, point: Vector, normal: Vector, depth:
 
 @kernel
 def touch_plane(pair: int, bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, search: Search) -> int:
-    """Write the points where a body presses on a plane; the normal points into the plane. Returns their number."""
+    """Write the points where a body presses on a plane; the normal points into the plane. Returns their number.
+
+    The force acts on the surface of the body as if it were not dented, so that a ball rolls with its own radius.
+    """
     body, plane = pairs.first[pair], -1 - pairs.second[pair]
     outward, shape, count = row(planes.normal, plane), bodies.shape[body], 0
     inward, rounding = scaled(-1.0, outward), cores.rounding[shape]
@@ -43,7 +46,7 @@ def touch_plane(pair: int, bodies: Bodies, cores: Cores, planes: Planes, pairs: 
         corner = row(cores.vertex, cores.vertex_start[shape] + pairs.term[pair, k] // PLACE)
         depth = level - dot(corner, down)
         foot = plus(row(bodies.position, body), times(bodies.rotation, body, corner))
-        count = note_point(search, count, minus(foot, scaled(rounding - 0.5 * depth, outward)), inward, depth, 1.0)
+        count = note_point(search, count, minus(foot, scaled(rounding, outward)), inward, depth, 1.0)
     return count
 
 

@@ -36,7 +36,9 @@ def polyhedron(points: NDArray[np.float64]) -> Polyhedron:
     """
     points = np.asarray(points, dtype=np.float64)
     if points.ndim != 2 or points.shape[1] != 3 or len(points) < 4:
-        raise ValueError(f"a convex hull needs at least 4 points of 3 coordinates, not an array of shape {points.shape}")
+        raise ValueError(
+            f"a convex hull needs at least 4 points of 3 coordinates, not an array of shape {points.shape}"
+        )
     if not np.isfinite(points).all():
         raise ValueError("a convex hull needs finite points: remove NaN and infinite coordinates")
     scale = power_of_two_above(float(np.ptp(points, axis=0).max()))

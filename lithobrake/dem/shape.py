@@ -109,7 +109,9 @@ class Box(ConvexHull):
 
     def __init__(self, lengths: Sequence[float]) -> None:
         if len(lengths) != 3 or not all(0.0 < length < math.inf for length in lengths):
-            raise ValueError(f"Box lengths are {tuple(lengths)!r} m; allowed are three finite values above 0: change them")
+            raise ValueError(
+                f"Box lengths are {tuple(lengths)!r} m; allowed are three finite values above 0: change them"
+            )
         self.lengths = tuple(float(length) for length in lengths)
         signs = np.array([(x, y, z) for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
         super().__init__(signs * np.array(self.lengths))

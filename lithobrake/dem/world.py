@@ -66,7 +66,9 @@ class World:
             if value not in allowed:
                 raise ValueError(f"World {name} is {value!r}; allowed are {', '.join(allowed)}: choose one")
         if time_step is not None and not 0.0 < time_step < math.inf:
-            raise ValueError(f"World time_step is {time_step!r} s; allowed is a finite value above 0, or None: change it")
+            raise ValueError(
+                f"World time_step is {time_step!r} s; allowed is a finite value above 0, or None: change it"
+            )
         self.gravity = np.array(_vector(gravity, "World gravity"))
         self.drag = 0.0  # 1/s, viscous damping of all motion, for settling only
         self.time = 0.0  # s
@@ -111,9 +113,13 @@ class World:
         if mass is not None and not 0.0 < mass < math.inf:
             raise ValueError(f"add_body mass is {mass!r} kg; allowed is a finite value above 0: change it")
         mass = material.density * shape.volume if mass is None else float(mass)
-        tensor = shape.inertia_per_density * (mass / shape.volume) if inertia is None else np.array(inertia, dtype=float)
+        tensor = (
+            shape.inertia_per_density * (mass / shape.volume) if inertia is None else np.array(inertia, dtype=float)
+        )
         if tensor.shape != (3, 3) or not np.isfinite(tensor).all() or np.linalg.eigvalsh(tensor).min() <= 0.0:
-            raise ValueError(f"add_body inertia is {tensor!r} kg m2; allowed is a positive definite 3 x 3 tensor: change it")
+            raise ValueError(
+                f"add_body inertia is {tensor!r} kg m2; allowed is a positive definite 3 x 3 tensor: change it"
+            )
         quaternion = unit(orientation, "add_body orientation")
         body = Body(shape, material, mass, tensor)
         rotation = rotation_matrices(quaternion[None])[0]
@@ -210,7 +216,9 @@ class World:
         if steps is None:
             assert duration is not None
             if not 0.0 <= duration < math.inf:
-                raise ValueError(f"World.run duration is {duration!r} s; allowed is a finite value of at least 0: change it")
+                raise ValueError(
+                    f"World.run duration is {duration!r} s; allowed is a finite value of at least 0: change it"
+                )
             if self._time_step is None and duration > 0.0:
                 self._time_step = duration / math.ceil(duration / self.time_step)
             steps = round(duration / self.time_step)
@@ -244,14 +252,19 @@ class World:
                 f"is at most {largest:.6g} s: make it smaller"
             )
         assert reason == DIVERGED
-        raise FloatingPointError(f"the motion diverged at t = {self.time:.6g} s: positions are no longer finite numbers")
+        raise FloatingPointError(
+            f"the motion diverged at t = {self.time:.6g} s: positions are no longer finite numbers"
+        )
 
     def _top_speed(self) -> float:
         """Return a bound on the speeds [m/s] of the bodies: now, and after falling through all that there is."""
         reach = np.array([body.shape.bounding_radius for body in self.bodies])
         speed = np.linalg.norm(self.velocity, axis=1) + np.linalg.norm(self.spin, axis=1) * reach
-        ends = [self.position + sign * reach[:, None] * unit_gravity for sign in (-1.0, 1.0)
-                for unit_gravity in [self.gravity / max(float(np.linalg.norm(self.gravity)), np.finfo(float).tiny)]]
+        ends = [
+            self.position + sign * reach[:, None] * unit_gravity
+            for sign in (-1.0, 1.0)
+            for unit_gravity in [self.gravity / max(float(np.linalg.norm(self.gravity)), np.finfo(float).tiny)]
+        ]
         points = np.vstack([*ends, *[plane.point[None] for plane in self.planes]])
         fall = float(np.ptp(points @ self.gravity))
         relative = 2.0 * float(speed.max()) if len(self.bodies) > 1 else float(speed.max())

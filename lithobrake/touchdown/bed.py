@@ -26,7 +26,10 @@ class ContactModel:
     def world(self, gravity: tuple[float, float, float]) -> World:
         """Return an empty world under these options."""
         return World(
-            gravity, shear_modulus_rule=self.shear_modulus_rule, damping_mass=self.damping_mass, pair_rule=self.pair_rule
+            gravity,
+            shear_modulus_rule=self.shear_modulus_rule,
+            damping_mass=self.damping_mass,
+            pair_rule=self.pair_rule,
         )
 
 

@@ -162,9 +162,7 @@ def settle(world: World, recorder: Recorder, recipe: BedRecipe, tell: Callable[[
     tell(1.0)
 
 
-def finished(
-    world: World, recorder: Recorder, recipe: BedRecipe, grains: list[ConvexHull], diameter: Floats
-) -> Bed:
+def finished(world: World, recorder: Recorder, recipe: BedRecipe, grains: list[ConvexHull], diameter: Floats) -> Bed:
     """Return the bed at rest."""
     heights = height_map(grains, world.position, world.orientation, recipe.width)
     contacts = world.contacts()
