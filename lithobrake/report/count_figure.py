@@ -15,8 +15,9 @@ from lithobrake.report.look import INK, QUIET, SITE
 
 Counts = NDArray[np.float64]
 
-MARKERS = ("o", "D")
-RING: dict[str, Any] = {"markersize": 8.5, "markerfacecolor": "none", "markeredgecolor": SITE, "markeredgewidth": 1.7}
+# Two sizes, so that two equal designs are both seen.
+MARKERS = (("o", 11.0), ("D", 6.0))
+RING: dict[str, Any] = {"markerfacecolor": "none", "markeredgecolor": SITE, "markeredgewidth": 1.7}
 
 
 @dataclass(frozen=True)
@@ -68,9 +69,9 @@ def _end_label(axes: Axes, x: float, y: float, words: str, colour: NDArray[np.fl
 
 def _mark(left: Axes, right: Axes, designs: Sequence[Design]) -> None:
     """Ring the designs of this study in both panels."""
-    for design, marker in zip(designs, MARKERS, strict=False):
+    for design, (marker, size) in zip(designs, MARKERS, strict=False):
         for axes, x in ((left, design.input_count), (right, design.level)):
-            axes.plot(x, design.node_count, marker, zorder=5, **RING)
+            axes.plot(x, design.node_count, marker, markersize=size, zorder=5, **RING)
 
 
 def _legend(figure: Figure, designs: Sequence[Design]) -> None:
@@ -79,8 +80,8 @@ def _legend(figure: Figure, designs: Sequence[Design]) -> None:
         Line2D([], [], color=QUIET, linestyle="--", linewidth=1.0, label="full tensor grid"),
         Line2D([], [], color=INK, linewidth=1.7, label="Smolyak sparse grid"),
     ]
-    for design, marker in zip(designs, MARKERS, strict=False):
+    for design, (marker, size) in zip(designs, MARKERS, strict=False):
         plural = "s" if design.input_count > 1 else ""
         words = f"{design.name}: {design.input_count} input{plural}, level {design.level}, {design.node_count} runs"
-        handles.append(Line2D([], [], marker=marker, linestyle="none", label=words, **RING))
+        handles.append(Line2D([], [], marker=marker, markersize=size, linestyle="none", label=words, **RING))
     figure.legend(handles=handles, loc="lower center", ncols=4, columnspacing=1.6)
