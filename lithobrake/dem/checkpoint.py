@@ -89,7 +89,7 @@ def load(path: str | os.PathLike[str]) -> "World":
         world.planes.append(Plane(point, data["plane/normal"][k], materials[data["plane/material"][k]], meets))
     world.time, world.drag = float(attributes["time"]), float(attributes["drag"])
     world._time_step, world._watched = json.loads(attributes["time_step"]), int(attributes["watched"])
-    world._state = {name: data[f"body/{name}"] for name in world._state}
+    world._state = {name: data[f"body/{name}"].copy() for name in world._state}
     world._assemble()
     # Assembling took a step of no duration, which may have rounded the orientations anew.
     world._arrays.quaternion[:] = data["body/quaternion"]
