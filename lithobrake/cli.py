@@ -46,19 +46,20 @@ def new(name: Annotated[str, typer.Argument(metavar="NAME", help="Name of the st
 def run(study: StudyPath, out: OutPath = None, workers: Workers = None) -> None:
     """Run a study from its file to its report; what its folder already has is kept."""
     _make(study, out, workers, "report")
-    folder = out or _default_folder(study)
-    _print_results(folder)
+    _print_results(out or _default_folder(study))
 
 
-def _stage_command(name: str, what: str) -> None:
+def _stage_command(name: str, what: str, until: str | None = None) -> None:
+    """Add the command that runs a study up to a stage."""
+
     def command(study: StudyPath, out: OutPath = None, workers: Workers = None) -> None:
-        _make(study, out, workers, name)
+        _make(study, out, workers, until or name)
         print(f"Done: {out or _default_folder(study)}")
 
     app.command(name, help=f"{what} What comes before is made too, where it is missing.")(command)
 
 
-_stage_command("bed", "Pour and settle the beds, and land once at the medians.")
+_stage_command("bed", "Pour and settle the beds, and land once at the medians.", until="landing")
 _stage_command("screen", "Run the screening design and fit all inputs.")
 _stage_command("refine", "Run the refined design and fit the inputs that matter.")
 _stage_command("test", "Make the test runs and score the expansions.")
@@ -101,13 +102,12 @@ def _make(study: Path, out: Path | None, workers: int | None, until: str) -> Non
         from lithobrake.pipeline import run_study
         from lithobrake.progress import StudyProgress
 
-        stage = "fly" if until == "fly" else until
         with StudyProgress() as shown:
             run_study(
                 study,
                 out or _default_folder(study),
                 worker_count=workers,
-                until=stage,
+                until=until,
                 begin=shown.begin,
                 progress=shown.progress,
             )
