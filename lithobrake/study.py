@@ -1,7 +1,6 @@
 """The study file: what a user writes. Every key has its unit, range and default here, and nowhere else.
 
-A key whose range below is `MaybeUncertain` takes a number, or a table with a distribution in place of the number.
-`lithobrake new` writes a commented file from these very lines; `study_file.read` checks one.
+A `MaybeUncertain` key takes a number, or a table with a distribution. `lithobrake new` writes these very lines.
 """
 
 from typing import Annotated, Literal, get_args
@@ -253,8 +252,8 @@ class FlightSection(Section):
     """Longest flight."""
     flight_count: Annotated[int, Whole("", at_least=1)] | None = Field(default=None, examples=["1000"])
     """How many samples fly (the first ones that leave the surface); absent: all."""
-    gravity: Literal["exact"] = "exact"
-    """Gravity of the polyhedron, in closed form."""
+    gravity: Literal["exact", "table"] = "exact"
+    """Gravity of the polyhedron, in closed form or from a table that is built once for a shape."""
 
 
 class Study(Section):

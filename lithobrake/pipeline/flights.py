@@ -108,6 +108,10 @@ def starts(study: Study, samples: Samples) -> Starts:
 def fly_samples(job: Job) -> None:
     """Fly the samples that leave, on all workers, and write flights.csv in the order of the samples."""
     start = starts(job.study, Samples.load(job.folder))
+    body = site_body(job.study)
+    if job.study.flight.gravity == "table":
+        # Built here and kept on disk, it is read by all workers in place of being built by each.
+        body.shape.tabled_gravity  # noqa: B018
     blocks = list(_blocks(job.study, start))
     futures = {job.executor.submit(fly_block, *block): index for index, block in enumerate(blocks)}
     ends: list[dict[str, np.ndarray]] = [{} for _ in blocks]
@@ -117,7 +121,7 @@ def fly_samples(job: Job) -> None:
         ends[futures[future]] = future.result()
         done += len(ends[futures[future]]["time_s"])
         job.progress(done, len(start.sample), "flights")
-    _write_shape(site_body(job.study), job.folder)
+    _write_shape(body, job.folder)
     with atomic_path(job.folder / "flights.csv") as draft, draft.open("w", newline="", encoding="utf-8") as file:
         table = csv.writer(file)
         table.writerow(COLUMNS)
