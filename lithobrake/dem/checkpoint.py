@@ -40,29 +40,27 @@ def save(world: "World", path: str | os.PathLike[str]) -> None:
     """Write a world to an HDF5 file."""
     import h5py
 
-    world._assemble()
-    shapes = list({id(body.shape): body.shape for body in world.bodies}.values())
-    materials = list(dict.fromkeys([thing.material for thing in [*world.bodies, *world.planes]]))
+    engine = world._assembled()
     with atomic_path(path) as draft, h5py.File(draft, "w") as file:
         file.attrs["format"], file.attrs["format_version"] = "lithobrake world", FORMAT_VERSION
-        file.attrs["shapes"] = json.dumps([_shape_text(shape) for shape in shapes])
-        file.attrs["materials"] = json.dumps([asdict(material) for material in materials])
+        file.attrs["shapes"] = json.dumps([_shape_text(shape) for shape in engine.shapes])
+        file.attrs["materials"] = json.dumps([asdict(material) for material in engine.materials])
         file.attrs["options"] = json.dumps(world.options)
         file.attrs["given_time_step"] = json.dumps(world._given_time_step)
         file.attrs["time_step"] = json.dumps(world._time_step)
         file.attrs["time"], file.attrs["drag"], file.attrs["watched"] = world.time, world.drag, world._watched
         for name in ("gravity", "_totals", "_probed"):
             file[name.strip("_")] = getattr(world, name)
-        file["body/shape"], file["body/material"] = world._arrays.shape, world._arrays.material
+        file["body/shape"], file["body/material"] = engine.bodies.shape, engine.bodies.material
         file["body/mass"] = world.mass
         file["body/inertia"] = np.array([body.inertia for body in world.bodies])
         for name in (*world._state, *MOVING):
-            file[f"body/{name}"] = getattr(world._arrays, name)
+            file[f"body/{name}"] = getattr(engine.bodies, name)
         file["plane/point"] = np.array([plane.point for plane in world.planes]).reshape(-1, 3)
         for name in ("normal", "material", "meets"):
-            file[f"plane/{name}"] = getattr(world._plane_arrays, name)
-        for name in world._pairs._fields:
-            file[f"pair/{name}"] = getattr(world._pairs, name)
+            file[f"plane/{name}"] = getattr(engine.planes, name)
+        for name in engine.pairs._fields:
+            file[f"pair/{name}"] = getattr(engine.pairs, name)
 
 
 def load(path: str | os.PathLike[str]) -> "World":
@@ -90,13 +88,14 @@ def load(path: str | os.PathLike[str]) -> "World":
     world.time, world.drag = float(attributes["time"]), float(attributes["drag"])
     world._time_step, world._watched = json.loads(attributes["time_step"]), int(attributes["watched"])
     world._state = {name: data[f"body/{name}"].copy() for name in world._state}
-    world._assemble()
+    engine = world._assembled()
     # Assembling took a step of no duration, which may have rounded the orientations anew.
-    world._arrays.quaternion[:] = data["body/quaternion"]
-    write_matrices(world._arrays)
+    engine.bodies.quaternion[:] = data["body/quaternion"]
+    write_matrices(engine.bodies)
     world._totals[:], world._probed[:] = data["totals"], data["probed"]
     for name in MOVING:
-        getattr(world._arrays, name)[:] = data[f"body/{name}"]
-    world._pairs = pairs_of(data["pair/first"], data["pair/second"])
-    world._pairs = world._pairs._replace(**{name: data[f"pair/{name}"] for name in world._pairs._fields})
+        getattr(engine.bodies, name)[:] = data[f"body/{name}"]
+    engine.pairs = pairs_of(data["pair/first"], data["pair/second"])
+    engine.pairs = engine.pairs._replace(**{name: data[f"pair/{name}"] for name in engine.pairs._fields})
+    engine.search = engine._scratch()
     return world

@@ -23,7 +23,7 @@ APART, CLOSE, CROSSING = 0, 1, 2
 
 
 class Search(NamedTuple):
-    """Scratch of one thread: a simplex while it is sought, a core in another body's frame, the points of a contact."""
+    """Scratch: a simplex while it is sought, a core in another body's frame, the points of a contact."""
 
     on_first: Floats  # [4, 3]
     on_second: Floats  # [4, 3]
@@ -44,7 +44,8 @@ def search_for(vertex_count_max: int, edge_count_max: int, point_max: int) -> Se
     return Search(
         np.zeros((4, 3)), np.zeros((4, 3)), np.zeros((4, 3)), np.zeros((4, 2), dtype=np.int64), np.zeros(4),
         np.zeros((edge_count_max + vertex_count_max, 12)), np.zeros((1, 3, 3)),
-        np.zeros((point_max, 3)), np.zeros((point_max, 3)), np.zeros(point_max), np.zeros(point_max), np.zeros(point_max),
+        np.zeros((point_max, 3)), np.zeros((point_max, 3)),
+        np.zeros(point_max), np.zeros(point_max), np.zeros(point_max),
     )  # fmt: skip
 
 

@@ -73,7 +73,7 @@ def point_to_edges(cores: Cores, shape: int, point: Vector) -> tuple[Vector, flo
 
 @kernel
 def edge_to_edge(a: Vector, along_a: Vector, b: Vector, along_b: Vector) -> tuple[Vector, Vector]:
-    """Return the closest points of two edges that begin at a and b; parallel ones touch in the middle of their overlap."""
+    """Return the closest points of two edges that begin at a and b; parallel ones meet amid their overlap."""
     between = minus(b, a)
     aa, bb, ab = dot(along_a, along_a), dot(along_b, along_b), dot(along_a, along_b)
     ad, bd = dot(along_a, between), dot(along_b, between)

@@ -79,7 +79,7 @@ def touch_bodies(pair: int, bodies: Bodies, cores: Cores, pairs: Pairs, search: 
 def feature(
     term: int, cores: Cores, shapes: tuple[int, int], search: Search, there: Vector, reach: float
 ) -> tuple[Vector, Vector, float]:
-    """Return point on the first core, normal to the second and distance of a named feature, in the first body's frame."""
+    """Return point on the first core, normal to the second and distance of a feature, in the first body's frame."""
     kind, i, j = term // KIND, term % KIND // PLACE, term % PLACE
     if kind == CORNER_OF_FIRST:
         corner = row(cores.vertex, cores.vertex_start[shapes[0]] + i)
@@ -185,7 +185,7 @@ def narrowed(deepest: float, wide: float, rounding: float) -> tuple[float, float
 
 @kernel
 def spin_radii(search: Search, count: int, centre: Vector, normal: Vector) -> tuple[float, float]:
-    """Return mean squared and mean distance of the force of a patch from the axis through its centre along the normal."""
+    """Return mean squared and mean distance of a patch's force from the axis through its centre along the normal."""
     square, mean, weight = 0.0, 0.0, 0.0
     if count == 1:
         return 0.0, 0.0

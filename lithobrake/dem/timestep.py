@@ -22,7 +22,7 @@ def contact_duration(mass: float, radius: float, young_modulus: float, speed: fl
     return 2.868 * (mass * mass / (radius * young_modulus**2 * speed)) ** 0.2
 
 
-def smallest_mass_at_contact(shape: Shape, mass: float, inverse_inertia: Floats) -> float:
+def smallest_mass_at_contact(shape: Shape, mass: float, inertia: Floats) -> float:
     """Return the smallest mass [kg] that a contact force meets on a body: 1/(n . W . n) over the corners of its faces.
 
     A cube's corner pushed along the normal of one of its faces weighs a quarter of the cube.
@@ -33,7 +33,7 @@ def smallest_mass_at_contact(shape: Shape, mass: float, inverse_inertia: Floats)
     normals = np.repeat(surface.face_normals[surface.triangle_face], 3, axis=0)
     arms = surface.vertices[surface.triangles.ravel()] - shape.centroid
     turns = np.cross(arms, normals)
-    return float(1.0 / (1.0 / mass + np.einsum("ij,jk,ik->i", turns, inverse_inertia, turns)).max())
+    return float(1.0 / (1.0 / mass + np.einsum("ij,ij->i", turns, np.linalg.solve(inertia, turns.T).T)).max())
 
 
 def shortest_contact_duration(
@@ -43,9 +43,9 @@ def shortest_contact_duration(
     shear_modulus_rule: str,
     pair_rule: str,
 ) -> float:
-    """Return the duration [s] of the shortest collision that can happen at a speed [m/s] between bodies, or with planes.
+    """Return the duration [s] of the shortest possible collision at a speed [m/s], between bodies or with planes.
 
-    bodies holds material, smallest mass at contact [kg] and contact radius [m] of each body. Infinite where none can meet.
+    bodies holds material, smallest mass at contact [kg] and contact radius [m] of each. Infinite where none can meet.
     """
     smallest: dict[Material, tuple[float, float, int]] = {}
     for material, mass, radius in bodies:

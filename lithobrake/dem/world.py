@@ -9,29 +9,15 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lithobrake.dem import energy, timestep
-from lithobrake.dem.advance import (
-    DIVERGED,
-    DONE,
-    FIRST_CONTACT,
-    LAST_CONTACT,
-    LIST_USED_UP,
-    NAMES_OVERFLOW,
-    PEAK_FORCE,
-    STEP_TOO_LARGE,
-    Limits,
-    advance,
-)
-from lithobrake.dem.arrays import Bodies, Cores, Floats, Laws, Pairs, Planes
-from lithobrake.dem.body import Body, Plane, bodies_of, cores_of, laws_of, planes_of, rotation_matrices, unit
-from lithobrake.dem.distance import Search, search_for
+from lithobrake.dem.advance import DIVERGED, FIRST_CONTACT, LAST_CONTACT, PEAK_FORCE, STEP_TOO_LARGE
+from lithobrake.dem.arrays import Floats, Pairs
+from lithobrake.dem.body import Body, Plane, rotation_matrices, unit
+from lithobrake.dem.engine import Engine, no_pairs
 from lithobrake.dem.force import FREQUENCY_SQUARED, Step
 from lithobrake.dem.material import PAIR_RULES, SHEAR_MODULUS_RULES, Material
-from lithobrake.dem.neighbours import neighbours, pairs_of, renewed, roomier
 from lithobrake.dem.shape import Shape, equivalent_radius
 
 DAMPING_MASSES = ("contact", "paper")
-# Skin of the neighbour list over the smallest bounding radius: costs or saves time, changes no result.
-SKIN = 0.2
 CONTACT = np.dtype(
     [
         ("body_a", np.int64), ("body_b", np.int64), ("point", np.float64, 3), ("normal", np.float64, 3),
@@ -83,11 +69,11 @@ class World:
             "position": np.zeros((0, 3)), "velocity": np.zeros((0, 3)), "quaternion": np.zeros((0, 4)),
             "angular_momentum": np.zeros((0, 3)),
         }  # fmt: skip
-        self._pairs: Pairs = pairs_of(np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64))
+        self._pairs: Pairs = no_pairs()
         self._totals = np.zeros(3)
         self._watched = -1
         self._probed = np.zeros(4)
-        self._assembled = False
+        self._engine: Engine | None = None
 
     # --- what is in it -------------------------------------------------------------------------------------------
 
@@ -157,7 +143,7 @@ class World:
 
     @property
     def watched(self) -> dict[str, float]:
-        """Largest contact force [N] on the watched body, and steps since `watch` to its first and last contact (0: none)."""
+        """Largest contact force [N] on the watched body; steps from `watch` to its first and last contact (0: none)."""
         return {
             "peak_force": float(self._probed[PEAK_FORCE]),
             "first_contact": float(self._probed[FIRST_CONTACT]),
@@ -182,7 +168,7 @@ class World:
     @property
     def contact_frequency(self) -> float:
         """Largest angular frequency [rad/s] of a contact at its present overlap; 0 where nothing touches."""
-        self._assemble()
+        self._assembled()
         return math.sqrt(self._totals[FREQUENCY_SQUARED])
 
     def shortest_contact(self, speed: float) -> float:
@@ -193,9 +179,9 @@ class World:
         if not speed > 0.0:
             raise ValueError("World time_step cannot be chosen while nothing moves or falls: give a time_step [s]")
         parts = [
-            (b.material, timestep.smallest_mass_at_contact(b.shape, b.mass, np.linalg.inv(b.inertia)),
-             equivalent_radius(b.shape)) for b in self.bodies
-        ]  # fmt: skip
+            (b.material, timestep.smallest_mass_at_contact(b.shape, b.mass, b.inertia), equivalent_radius(b.shape))
+            for b in self.bodies
+        ]
         planes = [plane.material for plane in self.planes]
         rules = self.options["shear_modulus_rule"], self.options["pair_rule"]
         duration = timestep.shortest_contact_duration(parts, planes, speed, *rules)
@@ -222,33 +208,17 @@ class World:
             if self._time_step is None and duration > 0.0:
                 self._time_step = duration / math.ceil(duration / self.time_step)
             steps = round(duration / self.time_step)
-        self._assemble()
-        self._advance(steps, self._step(self.time_step), self._watched)
-
-    def _advance(self, steps: int, step: Step, watched: int) -> None:
-        """Take steps, renewing the lists as they are used up. A step of no duration computes the forces at hand."""
-        limits = Limits(0.5 * self._skin, timestep.FREQUENCY_LIMIT)
-        drifted = False
-        while steps > 0:
-            taken, reason, drifted = advance(
-                steps, drifted, *self._geometry, self._laws, step, limits, self._search, self._totals, watched,
-                self._probed,
-            )  # fmt: skip
-            steps -= taken
-            self.time += taken * step.time_step
-            if reason == LIST_USED_UP:
-                self._list_neighbours()
-            elif reason == NAMES_OVERFLOW:
-                self._make_room()
-            elif reason != DONE:
-                self._refuse(reason)
+        taken, reason = self._assembled().advance(steps, self._step(self.time_step), self._watched)
+        self.time += taken * self.time_step
+        if reason in (STEP_TOO_LARGE, DIVERGED):
+            self._refuse(reason)
 
     def _refuse(self, reason: int) -> None:
         """Say why the time loop could not go on."""
         if reason == STEP_TOO_LARGE:
             largest = timestep.FREQUENCY_LIMIT / math.sqrt(self._totals[FREQUENCY_SQUARED])
             raise ValueError(
-                f"World time_step is {self.time_step:.6g} s; allowed for the stiffest contact met at t = {self.time:.6g} s "
+                f"World time_step is {self.time_step:.6g} s; allowed for the contact met at t = {self.time:.6g} s "
                 f"is at most {largest:.6g} s: make it smaller"
             )
         assert reason == DIVERGED
@@ -273,49 +243,24 @@ class World:
     def _step(self, time_step: float) -> Step:
         return Step(time_step, float(self.drag), tuple(self.gravity), self.options["damping_mass"] == "paper")
 
-    # --- between a person's bodies and the kernels' arrays ---------------------------------------------------------
+    # --- between a person's bodies and the engine --------------------------------------------------------------------
 
-    def _assemble(self) -> None:
-        """Build the arrays and compute the forces of the state at hand."""
-        if self._assembled:
-            return
-        shapes = list({id(body.shape): body.shape for body in self.bodies}.values())
-        materials = list(dict.fromkeys([thing.material for thing in [*self.bodies, *self.planes]]))
-        self._cores: Cores = cores_of(shapes)
-        self._laws: Laws = laws_of(materials, self.options["shear_modulus_rule"], self.options["pair_rule"])
-        self._plane_arrays: Planes = planes_of(self.planes, materials, len(self.bodies))
-        self._arrays: Bodies = bodies_of(self.bodies, shapes, materials, self._state)
-        self._state = {name: getattr(self._arrays, name) for name in self._state}
-        self._skin = SKIN * float(self._arrays.bounding_radius.min())
-        self._search: Search = self._scratch()
-        self._list_neighbours()
-        self._pairs.wake[:] = 0.0
-        self._advance(1, self._step(0.0), -1)
-        self._assembled = True
+    def _assembled(self) -> Engine:
+        """Return the engine for what is in the world now, with the forces of the state at hand."""
+        if self._engine is None:
+            self._engine = Engine(
+                self.bodies, self.planes, self.options, self._state, self._pairs, self._totals, self._probed
+            )
+            self._engine.advance(1, self._step(0.0), -1)
+        return self._engine
 
     def _disassemble(self) -> None:
         """Make ready for a change of what is in the world."""
+        if self._engine is not None:
+            self._pairs = self._engine.pairs
         self._state = {name: array.copy() for name, array in self._state.items()}
         self._time_step = self._given_time_step
-        self._assembled = False
-
-    @property
-    def _geometry(self) -> tuple[Bodies, Cores, Planes, Pairs]:
-        return self._arrays, self._cores, self._plane_arrays, self._pairs
-
-    def _scratch(self) -> Search:
-        vertex_max, edge_max = (int(np.diff(s).max()) for s in (self._cores.vertex_start, self._cores.edge_start))
-        return search_for(vertex_max, edge_max, self._pairs.term.shape[1])
-
-    def _make_room(self) -> None:
-        """Double the room for names of near features."""
-        self._pairs = roomier(self._pairs, 2 * self._pairs.term.shape[1])
-        self._search = self._scratch()
-
-    def _list_neighbours(self) -> None:
-        first, second = neighbours(self._arrays, self._plane_arrays, self._skin)
-        self._pairs = renewed(self._pairs, first, second)
-        self._arrays.position_listed[:] = self._arrays.position
+        self._engine = None
 
     # --- what came of it ------------------------------------------------------------------------------------------
 
@@ -360,8 +305,7 @@ class World:
     @property
     def contact_force(self) -> Floats:
         """Sum of the contact forces on each body [N], shape [body_count, 3]."""
-        self._assemble()
-        return self._arrays.force.copy()
+        return self._assembled().bodies.force.copy()
 
     def contacts(self) -> NDArray[Any]:
         """Return the contacts (overlap > 0): structured array, see DESIGN of the fields below.
@@ -369,19 +313,19 @@ class World:
         body_a, body_b (plane k is -1 - k), point [m], normal from a to b, overlap [m], normal_force [N],
         tangential_force on b [N, 3].
         """
-        self._assemble()
-        touching = np.flatnonzero(self._pairs.overlap > 0.0)
+        pairs = self._assembled().pairs
+        touching = np.flatnonzero(pairs.overlap > 0.0)
         result = np.zeros(len(touching), dtype=CONTACT)
-        result["body_a"], result["body_b"] = self._pairs.first[touching], self._pairs.second[touching]
+        result["body_a"], result["body_b"] = pairs.first[touching], pairs.second[touching]
         for name in ("point", "normal", "overlap", "normal_force", "tangential_force"):
-            result[name] = getattr(self._pairs, name)[touching]
+            result[name] = getattr(pairs, name)[touching]
         return result
 
     def energy(self) -> dict[str, float]:
         """Return the energy ledger [J]: kinetic, potential, elastic, damping and friction (both lost), total of all."""
-        self._assemble()
+        pairs = self._assembled().pairs
         return energy.ledger(self.mass, self.position, self.velocity, self.spin, self.angular_momentum, self.gravity,
-                             self._pairs, self._totals)  # fmt: skip
+                             pairs, self._totals)  # fmt: skip
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write everything to an HDF5 file, whole or not at all; `World.load` continues from it bit for bit."""

@@ -1,5 +1,6 @@
 """A settled bed of grains in an open box, and its file."""
 
+import itertools
 import os
 from dataclasses import dataclass, field
 from typing import Any
@@ -89,8 +90,8 @@ class Bed:
             if file.attrs.get("format") != "lithobrake bed" or file.attrs["format_version"] > FORMAT_VERSION:
                 raise ValueError(f"{path} is not a bed of format_version up to {FORMAT_VERSION}: pour it again")
             scalars = {name: plain(file.attrs[name]) for name in SCALARS}
-            groups = {g: {name: file[g][name][()] for name in file.get(g, {})} for g in ("frames", "history")}
-            arrays = {name: file[name][()] for name in ("position", "orientation", "diameter")}
+            groups: dict[str, Any] = {g: {n: file[g][n][()] for n in file.get(g, {})} for g in ("frames", "history")}
+            arrays: dict[str, Any] = {name: file[name][()] for name in ("position", "orientation", "diameter")}
             return Bed(grains=read_hulls(file), **arrays, **groups, **scalars)
 
 
@@ -115,7 +116,7 @@ def write_hulls(file: Any, hulls: list[ConvexHull]) -> None:
 def read_hulls(file: Any) -> list[ConvexHull]:
     """Read what `write_hulls` wrote."""
     vertices, start = file["vertices"][()], file["vertex_start"][()]
-    return [ConvexHull(vertices[a:b]) for a, b in zip(start[:-1], start[1:], strict=True)]
+    return [ConvexHull(vertices[a:b]) for a, b in itertools.pairwise(start)]
 
 
 def boxed_world(

@@ -54,7 +54,8 @@ class GrainSizes:
             from scipy.stats import truncnorm
 
             mean, std = self.mean, self.std
-            assert mean is not None and std is not None
+            assert mean is not None
+            assert std is not None
             return truncnorm.ppf(uniforms, (lower - mean) / std, (upper - mean) / std, loc=mean, scale=std)
         return lower + uniforms * (upper - lower)
 

@@ -22,7 +22,7 @@ class Lander:
 
     @property
     def smallest_edge(self) -> float:
-        """Smallest extent of the body [m]: the shortest edge of a box, the least distance of a hull's parallel planes."""
+        """Smallest extent of the body [m]: the shortest edge of a box, the least width of a hull across a face."""
         if isinstance(self.shape, Box):
             return min(self.shape.lengths)
         if isinstance(self.shape, Sphere):

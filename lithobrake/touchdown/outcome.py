@@ -29,8 +29,8 @@ SPHERE_PICTURE_POINTS = 200
 class Outcome:
     """status is one of FATES; outputs has the keys OUTPUTS (SI); the *_out values are NaN unless the lander is clear.
 
-    frames holds "time" [s, frame_count], "position" [m, frame_count, body_count, 3] and "orientation"; the lander is the
-    last body.
+    frames holds "time" [s, frame_count], "position" [m, frame_count, body_count, 3] and "orientation"; the last body is
+    the lander.
     """
 
     status: str
