@@ -1,7 +1,7 @@
 """Compilation of numerical kernels, with a disk cache that is never stale.
 
 Numba's own cache looks only at the file a function stands in, so an edited function in another file would go unnoticed.
-Here the cache folder is named by a hash of all sources of the part that the kernel belongs to, and the compiler's version.
+Here the cache folder is named by a hash of all sources of the part that it belongs to, and the compiler's version.
 """
 
 import hashlib
