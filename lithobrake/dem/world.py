@@ -156,7 +156,7 @@ class World:
     def time_step(self) -> float:
         """Time step [s]."""
         if self._time_step is None:
-            self._time_step = self.shortest_contact(self._top_speed()) / timestep.STEPS_PER_CONTACT
+            return self.shortest_contact(self._top_speed()) / timestep.STEPS_PER_CONTACT
         return self._time_step
 
     @time_step.setter
@@ -199,19 +199,24 @@ class World:
             raise ValueError("World.run takes either duration [s] or steps: give one of them")
         if not self.bodies:
             raise ValueError("World.run has no body to move: add one first")
-        if steps is None:
-            assert duration is not None
-            if not 0.0 <= duration < math.inf:
-                raise ValueError(
-                    f"World.run duration is {duration!r} s; allowed is a finite value of at least 0: change it"
-                )
-            if self._time_step is None and duration > 0.0:
-                self._time_step = duration / math.ceil(duration / self.time_step)
-            steps = round(duration / self.time_step)
+        steps = self._steps_in(duration) if steps is None else steps
+        if steps == 0:
+            return
+        self._time_step = self.time_step
         taken, reason = self._assembled().advance(steps, self._step(self.time_step), self._watched)
         self.time += taken * self.time_step
         if reason in (STEP_TOO_LARGE, DIVERGED):
             self._refuse(reason)
+
+    def _steps_in(self, duration: float | None) -> int:
+        """Return the number of steps in a duration [s]; a step not yet chosen is made to fit into it."""
+        if duration is None or not 0.0 <= duration < math.inf:
+            raise ValueError(
+                f"World.run duration is {duration!r} s; allowed is a finite value of at least 0: change it"
+            )
+        if self._time_step is None and duration > 0.0:
+            self._time_step = duration / math.ceil(duration / self.time_step)
+        return round(duration / self.time_step) if duration > 0.0 else 0
 
     def _refuse(self, reason: int) -> None:
         """Say why the time loop could not go on."""

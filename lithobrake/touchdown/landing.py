@@ -107,9 +107,8 @@ def release(world: World, bed: Bed, lander: Lander, landing: Landing) -> int:
     top = 0.0
     for k, grain in enumerate(bed.grains):
         if below[k] < reach + grain.bounding_radius:
-            turned = (grain.vertices - grain.centroid) @ rotation_matrix(world.orientation[k]).T + world.position[k]
-            under = np.linalg.norm(turned[:, :2] - place[:2], axis=1) < reach
-            top = max(top, float(turned[under, 2].max(initial=top)))
+            height = (grain.vertices - grain.centroid) @ rotation_matrix(world.orientation[k])[2]
+            top = max(top, float(world.position[k, 2] + height.max()))
     rotation = rotation_matrix(np.array(landing.orientation) / np.linalg.norm(landing.orientation))
     place[2] = top - lander.lowest(np.zeros(3), rotation)
     return world.add_body(

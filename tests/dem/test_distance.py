@@ -1,0 +1,77 @@
+"""Distances of convex cores against brute force over the difference set."""
+
+import numpy as np
+import pytest
+from scipy.spatial import ConvexHull as Quickhull
+
+from lithobrake.dem import Box, ConvexHull
+from lithobrake.dem.body import cores_of, rotation_matrices
+from lithobrake.dem.crossing import way_out
+from lithobrake.dem.distance import CROSSING, approach, search_for, weighted
+from lithobrake.dem.features import edge_to_edge, point_to_core
+from lithobrake.dem.simplex import triangle_weights
+
+
+def signed_distance(first, second):
+    """Distance of the origin to the envelope of all differences, negative inside."""
+    difference = (second[:, None] - first[None]).reshape(-1, 3)
+    hull = Quickhull(difference)
+    depth = -hull.equations[:, 3]
+    if depth.min() >= 0.0:
+        return -depth.min()
+    points = (np.array(triangle_weights(*map(tuple, difference[s]))) @ difference[s] for s in hull.simplices)
+    return min(np.linalg.norm(point) for point in points)
+
+
+@pytest.mark.parametrize("stretch", [1.0, 1e-3])
+def test_distance_and_depth_of_random_pairs(stretch):
+    generator = np.random.default_rng(4)
+    search = search_for(40, 80, 16)
+    seen = {}
+    for trial in range(150):
+        first = ConvexHull(generator.normal(size=(14, 3)) * [0.05, 0.05, 0.05 * stretch])
+        second = Box((0.37, 0.23, 0.1)) if trial % 3 == 0 else ConvexHull(generator.normal(size=(8, 3)) * 0.05)
+        cores = cores_of([first, second])
+        turns = generator.normal(size=(2, 4))
+        rotation = rotation_matrices(turns / np.linalg.norm(turns, axis=1)[:, None])
+        apart = generator.normal(size=3)
+        apart *= generator.uniform(0, 0.3) / np.linalg.norm(apart)
+        search.names[0] = 0
+        found, count, _ = approach(search, 1, cores, (0, 1), rotation, (0, 1), tuple(apart), np.inf)
+        if found == CROSSING:
+            distance = way_out(search, cores, (0, 1), rotation, (0, 1), tuple(apart))[0]
+        else:
+            ends = (np.array(weighted(a, search.weight, count)) for a in (search.on_first, search.on_second))
+            distance = np.linalg.norm(next(ends) - next(ends))
+        expected = signed_distance(first.core @ rotation[0].T, second.core @ rotation[1].T + apart)
+        assert distance == pytest.approx(expected, abs=1e-10)
+        seen[found] = seen.get(found, 0) + 1
+    assert min(seen.values()) > 20
+
+
+def test_point_to_core_is_the_distance_of_a_point():
+    generator = np.random.default_rng(3)
+    hull = ConvexHull(generator.normal(size=(14, 3)))
+    cores = cores_of([hull])
+    for point in generator.normal(size=(300, 3)) * 1.5:
+        distance, normal, near = point_to_core(cores, 0, tuple(point), np.inf)
+        assert near
+        assert np.linalg.norm(normal) == pytest.approx(1.0)
+        assert distance == pytest.approx(signed_distance(hull.core, point[None]), abs=1e-12)
+
+
+def test_edges_meet_at_their_closest_points():
+    generator = np.random.default_rng(6)
+    share = np.linspace(0, 1, 201)
+    for _ in range(50):
+        a, along, b, across = generator.normal(size=(4, 3))
+        here, there = (np.array(p) for p in edge_to_edge(tuple(a), tuple(along), tuple(b), tuple(across)))
+        grid = (a + share[:, None] * along)[:, None] - (b + share[:, None] * across)[None]
+        assert np.linalg.norm(here - there) <= np.linalg.norm(grid, axis=2).min() + 1e-12
+        assert np.linalg.norm(here - there) == pytest.approx(np.linalg.norm(grid, axis=2).min(), abs=0.03)
+
+
+def test_parallel_edges_meet_amid_their_overlap():
+    here, there = edge_to_edge((0.0, 0, 0), (1.0, 0, 0), (0.5, 0, 1), (1.0, 0, 0))
+    assert here == pytest.approx((0.75, 0, 0))
+    assert there == pytest.approx((0.75, 0, 1))

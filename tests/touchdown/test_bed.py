@@ -1,0 +1,123 @@
+"""Grains, pouring, settling, and the file of a bed."""
+
+import numpy as np
+import pytest
+
+from lithobrake.touchdown import Bed, GrainSizes, pour_bed, settling
+from lithobrake.touchdown.grains import make_grain
+from lithobrake.touchdown.surface import height_map
+
+
+def test_sizes_follow_their_distribution():
+    uniforms = (np.arange(100_000) + 0.5) / 100_000
+    power = GrainSizes(distribution="power_law", lower=0.1, upper=0.4, exponent=3.5).draw(uniforms)
+    assert power.min() >= 0.1
+    assert power.max() <= 0.4
+    # Share below the middle of N(d) ~ d^-3.5 between .1 and .4.
+    share = (0.1**-2.5 - 0.2**-2.5) / (0.1**-2.5 - 0.4**-2.5)
+    assert (power < 0.2).mean() == pytest.approx(share, abs=1e-4)
+    normal = GrainSizes(distribution="normal", lower=0.05, upper=0.15, mean=0.1, std=0.01).draw(uniforms)
+    assert normal.mean() == pytest.approx(0.1, abs=1e-5)
+    assert normal.std() == pytest.approx(0.01, rel=1e-3)
+    assert np.all(GrainSizes(distribution="constant", lower=0.1, upper=0.1).draw(uniforms) == 0.1)
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        {"distribution": "gamma", "lower": 0.1, "upper": 0.2},
+        {"distribution": "constant", "lower": 0.1, "upper": 0.2},
+        {"distribution": "uniform", "lower": 0.2, "upper": 0.1},
+        {"distribution": "normal", "lower": 0.1, "upper": 0.2},
+        {"distribution": "power_law", "lower": 0.1, "upper": 0.2},
+    ],
+)
+def test_wrong_sizes_are_refused(wrong):
+    with pytest.raises(ValueError, match=r"grain|sizes"):
+        GrainSizes(**wrong)
+
+
+def test_grain_has_the_volume_of_its_sphere_and_its_centroid_at_the_origin():
+    grain = make_grain(np.random.default_rng(1), 14, 0.1)
+    assert grain.volume == pytest.approx(np.pi / 6 * 1e-3, rel=1e-12)
+    assert np.abs(grain.centroid).max() < 1e-16
+
+
+def test_bed_is_at_rest_in_its_box(bed):
+    assert bed.history["kinetic_ratio"][-1] < settling.KINETIC_RATIO
+    assert bed.history["unbalanced_force"][-1] < settling.UNBALANCED_FORCE
+    assert bed.history["gravity"][-1] == pytest.approx(5e-4)
+    assert bed.history["gravity"][0] == pytest.approx(0.5)
+    assert np.abs(bed.position[:, :2]).max() < 0.18
+    assert bed.position[:, 2].min() > 0.0
+    assert 0.4 < bed.solid_fraction < 0.8
+    assert bed.coordination_number > 2.5
+    assert 0.09 < bed.surface_height < bed.surface_top
+    assert len(bed.frames["time"]) > 4
+
+
+def test_floor_and_contacts_carry_the_weight(bed, recipe):
+    """The sum of all forces on the floor is the weight of the grains, to the balance that counts as rest."""
+    rock = recipe().material
+    world = bed.world(rock, bed.gravity, recipe().contact)
+    period = settling.rest_period(rock, bed.grain_diameter, 5e-4)
+    world.drag = 1.0 / period
+    settling.hold_still(world, period, 5.0, lambda: settling.unbalanced_force(world) < 1e-2)
+    contacts = world.contacts()
+    up = np.zeros(3)
+    for row in contacts[contacts["body_b"] < 0]:
+        up -= row["normal_force"] * row["normal"] + row["tangential_force"]
+    weight = world.mass.sum() * 5e-4
+    assert up[2] == pytest.approx(weight, rel=0.02)
+    assert np.abs(up[:2]).max() < 0.02 * weight
+
+
+def test_rest_period_is_that_of_the_linearised_contact():
+    """VALIDATION: .13 s at E = 1e8 and .6 s at 1e6, for .1 m grains at 5e-5 m/s2."""
+    from lithobrake.dem import Material
+
+    stiff = Material(young_modulus=1e8, poisson_ratio=0.25, restitution=0.5, friction=0.5, density=2500.0)
+    soft = Material(young_modulus=1e6, poisson_ratio=0.25, restitution=0.5, friction=0.5, density=2500.0)
+    assert settling.rest_period(stiff, 0.1, 5e-5) == pytest.approx(0.13, abs=0.01)
+    assert settling.rest_period(soft, 0.1, 5e-5) == pytest.approx(0.6, abs=0.02)
+
+
+def test_bed_survives_its_file(bed, tmp_path):
+    bed.save(tmp_path / "bed.h5")
+    other = Bed.load(tmp_path / "bed.h5")
+    assert np.array_equal(bed.position, other.position)
+    assert np.array_equal(bed.orientation, other.orientation)
+    assert all(np.array_equal(a.core, b.core) for a, b in zip(bed.grains, other.grains, strict=True))
+    assert other.width == bed.width
+    assert other.seed == 3
+    assert np.array_equal(bed.frames["position"], other.frames["position"])
+
+
+def test_same_seed_same_bits_other_seed_other_bed(bed, recipe):
+    again, other = (pour_bed(recipe(seed=seed)) for seed in (3, 4))
+    assert np.array_equal(bed.position, again.position)
+    assert not np.array_equal(bed.position, other.position)
+
+
+def test_height_map_sees_the_top_of_every_grain(bed):
+    heights = height_map(bed.grains, bed.position, bed.orientation, bed.width)
+    assert heights.max() <= bed.surface_top + 1e-12
+    assert heights.max() > 0.1
+    one = height_map(bed.grains[:1], np.array([[0, 0, 5.0]]), np.array([[1.0, 0, 0, 0]]), (0.4, 0.4))
+    assert one.max() == pytest.approx(5.0 + bed.grains[0].vertices[:, 2].max(), abs=0.02)
+    assert (one == 0.0).any()
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        ("grain_count", 0),
+        ("cloud_point_count", 3),
+        ("width", (0.1, 0.4)),
+        ("gravity", (0, 0, 1e-4)),
+        ("pour_gravity", 1e-5),
+    ],
+)
+def test_impossible_recipes_are_refused(recipe, name, value):
+    with pytest.raises(ValueError, match=f"BedRecipe.{name}"):
+        recipe(**{name: value})

@@ -1,0 +1,144 @@
+"""Landings on a small bed: outcomes, outputs, frames, refusals."""
+
+import math
+
+import numpy as np
+import pytest
+
+from lithobrake.dem import Box, Material, Sphere
+from lithobrake.touchdown import OUTPUTS, ContactModel, Lander, Landing, land, read_hull
+from lithobrake.touchdown.outcome import outgoing
+
+BOUNCY = Material(young_modulus=1e6, poisson_ratio=0.25, restitution=0.9, friction=0.3, density=2500.0)
+DEAD = Material(young_modulus=1e6, poisson_ratio=0.25, restitution=0.05, friction=0.9, density=2500.0)
+
+
+def landing(**changes):
+    values = {
+        "grain": BOUNCY, "speed": 0.3, "incidence": 0.2, "azimuth": 0.3, "place": (0.0, 0.0),
+        "orientation": (0.9, 0.3, 0.2, 0.1), "spin": (0.0, 0.0, 0.0), "gravity": (0.0, 0.0, -5e-4), "time_limit": 20.0,
+        "contact": ContactModel(steps_per_contact=25.0),
+    }  # fmt: skip
+    return Landing(**{**values, **changes})
+
+
+def ball(material=BOUNCY, mass=0.3):
+    return Lander(shape=Sphere(0.06), mass=mass, material=material)
+
+
+def test_bouncy_ball_rebounds_and_tells_of_it(bed):
+    outcome = land(bed, ball(), landing(), frame_count=6)
+    assert outcome.status == "clear"
+    assert set(outcome.outputs) == set(OUTPUTS)
+    out = outcome.outputs
+    velocity = np.array([out["velocity_out_x"], out["velocity_out_y"], out["velocity_out_z"]])
+    assert out["speed_out"] == pytest.approx(np.linalg.norm(velocity), rel=1e-12)
+    assert math.sin(out["elevation_out"]) == pytest.approx(velocity[2] / out["speed_out"], rel=1e-9)
+    assert 0.0 < out["speed_out"] < 0.3
+    assert out["velocity_out_z"] > 0.0
+    spin_energy = 0.5 * 0.4 * 0.3 * 0.06**2 * out["spin_out"] ** 2
+    kept = 0.5 * 0.3 * out["speed_out"] ** 2 + spin_energy
+    assert out["energy_lost"] == pytest.approx(0.5 * 0.3 * 0.09 - kept, rel=1e-9)
+    assert out["contact_duration"] > 0.0
+    assert out["penetration"] > 0.0
+    assert out["peak_acceleration"] > 0.3 / out["contact_duration"]
+    assert 6 <= len(outcome.frames["time"]) <= 12
+    assert outcome.frames["position"].shape[1:] == (25, 3)
+
+
+def test_heavy_dead_box_is_captured(bed):
+    lander = Lander(shape=Box((0.1, 0.1, 0.1)), mass=3.0, material=DEAD)
+    outcome = land(bed, lander, landing(grain=DEAD, speed=0.02, incidence=0.0))
+    assert outcome.status == "captured"
+    assert math.isnan(outcome.outputs["speed_out"])
+    assert outcome.outputs["energy_lost"] > 0.9 * 0.5 * 3.0 * 0.02**2
+    assert math.isfinite(outcome.outputs["penetration"])
+
+
+def test_flat_throw_leaves_sideways(bed):
+    outcome = land(bed, ball(), landing(incidence=1.5, speed=1.0, place=(-0.1, 0.0), azimuth=0.0))
+    assert outcome.status in ("left_sideways", "clear")
+    outside = land(bed, ball(), landing(incidence=1.55, speed=1.0, place=(0.15, 0.0), azimuth=0.0))
+    assert outside.status == "left_sideways"
+
+
+def test_time_limit_is_an_outcome(bed):
+    outcome = land(bed, ball(), landing(time_limit=1e-3))
+    assert outcome.status == "time_limit"
+
+
+def test_same_landing_same_bits(bed):
+    first, second = (land(bed, ball(), landing(speed=0.1)) for _ in range(2))
+    assert first.outputs == second.outputs or str(first.outputs) == str(second.outputs)
+    assert first.status == second.status
+
+
+@pytest.mark.parametrize("gravity", [(0.0, 0.0, 0.0), (0.0, 0.0, 1e-5), (1e-4, 0.0, -4e-4)])
+def test_any_constant_acceleration_is_accepted(bed, gravity):
+    outcome = land(bed, ball(), landing(gravity=gravity))
+    assert outcome.status == "clear"
+
+
+def test_outgoing_velocity_is_told_along_the_incoming_one():
+    out = outgoing(np.array([0.0, 2.0, 1.0]), np.array([3.0, 0.0, 4.0]), math.pi / 2, True)
+    assert out["velocity_out_x"] == pytest.approx(2.0)
+    assert out["velocity_out_y"] == pytest.approx(0.0, abs=1e-12)
+    assert out["spin_out"] == 5.0
+    assert out["azimuth_out"] == pytest.approx(0.0, abs=1e-12)
+
+
+def test_recorded_landing_is_written(bed, tmp_path):
+    import h5py
+
+    outcome = land(bed, ball(), landing(), frame_count=4)
+    outcome.save_frames(tmp_path / "landing.h5", bed, ball(), landing())
+    with h5py.File(tmp_path / "landing.h5") as file:
+        assert file.attrs["status"] == "clear"
+        assert len(file["vertex_start"]) == 26
+        assert file["frames/position"].shape[1:] == (25, 3)
+
+
+@pytest.mark.parametrize(
+    ("name", "value"), [("speed", 0.0), ("incidence", 1.6), ("time_limit", 0.0), ("azimuth", math.nan)]
+)
+def test_impossible_landings_are_refused(name, value):
+    with pytest.raises(ValueError, match=f"Landing.{name}"):
+        landing(**{name: value})
+
+
+def test_place_outside_the_box_is_refused(bed):
+    with pytest.raises(ValueError, match="place"):
+        land(bed, ball(), landing(place=(1.0, 0.0)))
+
+
+CUBE = "".join(f"v {x} {y} {z}\n" for x in (0, 1) for y in (0, 1) for z in (0, 1))
+FACES = "f 1 2 4 3\nf 5 7 8 6\nf 1 5 6 2\nf 3 4 8 7\nf 1 3 7 5\nf 2 6 8 4\n"
+
+
+def test_meshes_of_landers_are_read_if_closed(tmp_path):
+    (tmp_path / "cube.obj").write_text(CUBE + FACES)
+    assert read_hull(tmp_path / "cube.obj").volume == pytest.approx(1.0)
+    (tmp_path / "open.obj").write_text(CUBE + FACES[:-10])
+    with pytest.raises(ValueError, match="not closed"):
+        read_hull(tmp_path / "open.obj")
+    (tmp_path / "empty.obj").write_text(CUBE)
+    with pytest.raises(ValueError, match="no faces"):
+        read_hull(tmp_path / "empty.obj")
+    (tmp_path / "cube.ply").write_text("")
+    with pytest.raises(ValueError, match="ending"):
+        read_hull(tmp_path / "cube.ply")
+
+
+def test_stl_is_read_as_text(tmp_path):
+    hull = read_hull_of_stl(tmp_path)
+    assert hull.volume == pytest.approx(1 / 6)
+
+
+def read_hull_of_stl(folder):
+    corners = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
+    lines = ["solid lander"]
+    for triangle in ((0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)):
+        lines += ["facet normal 0 0 0", "outer loop"]
+        lines += ["vertex {} {} {}".format(*corners[k]) for k in triangle] + ["endloop", "endfacet"]
+    (folder / "lander.stl").write_text("\n".join([*lines, "endsolid lander"]))
+    return read_hull(folder / "lander.stl")
