@@ -204,7 +204,8 @@ def act(
     root = (overlap / curvature) ** 0.5
     stiffness = 4.0 / 3.0 * laws.young_modulus[here, there] * root
     shear_stiffness = 8.0 * laws.shear_modulus[here, there] * root
-    totals[FREQUENCY_SQUARED] = max(totals[FREQUENCY_SQUARED], 1.5 * stiffness * inverse_mass)
+    rate = 1.5 * stiffness * inverse_mass * max(1.0, 2.0 * damping_ratio) ** 2
+    totals[FREQUENCY_SQUARED] = max(totals[FREQUENCY_SQUARED], rate)
 
     dashpot = 2.0 * damping_ratio * (1.25 * stiffness / inverse_mass) ** 0.5
     elastic = stiffness * overlap

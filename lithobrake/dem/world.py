@@ -167,7 +167,7 @@ class World:
 
     @property
     def contact_frequency(self) -> float:
-        """Largest angular frequency [rad/s] of a contact at its present overlap; 0 where nothing touches."""
+        """Largest rate [rad/s] of a contact, spring or dashpot, at its present overlap; 0 where nothing touches."""
         self._assembled()
         return math.sqrt(self._totals[FREQUENCY_SQUARED])
 

@@ -45,7 +45,8 @@ def unbalanced_force(world: World) -> float:
     np.subtract.at(resultant, contacts["body_a"], force)
     on_body = contacts["body_b"] >= 0
     np.add.at(resultant, contacts["body_b"][on_body], force[on_body])
-    return float(np.linalg.norm(resultant, axis=1).mean() / np.linalg.norm(force, axis=1).mean())
+    carried = float(np.linalg.norm(force, axis=1).mean())
+    return float(np.linalg.norm(resultant, axis=1).mean()) / carried if carried > 0.0 else math.inf
 
 
 def quiet_time_step(world: World, longest: float) -> float:
