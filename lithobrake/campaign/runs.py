@@ -60,40 +60,45 @@ def run(
     runs in all.
     A run that raises is recorded as failed with its reason, and the campaign goes on.
     """
-    x = np.asarray(x, dtype=float)
-    if x.ndim != 2 or x.shape[1] != len(names):
-        raise ValueError(f"x has shape {x.shape}; allowed: [run_count, {len(names)}], one column for each of the names")
-    if not np.isfinite(x).all():
-        raise ValueError("x holds values that are not finite; every input of a run must be a number")
-    inputs = [{**(fixed or {}), **dict(zip(names, row.tolist(), strict=True))} for row in x]
+    inputs = _inputs_of(x, names, fixed or {})
     keys = [run_key(row, seed, replicate, context or {}) for row in inputs]
     known = ledger.find(keys)
     todo = {key: row for key, row in zip(keys, inputs, strict=True) if key not in known}
     jobs = {key: (model, row, run_seed(row, seed, replicate)) for key, row in todo.items()}
-    ledger.queue(((key, row, job_seed, replicate) for key, (_, row, job_seed) in jobs.items()), _version(context))
-    total = len(set(keys))
+    version = str((context or {}).get("version", ""))
+    ledger.queue(((key, row, job_seed, replicate) for key, (_, row, job_seed) in jobs.items()), version)
+    total, left = len(set(keys)), set(jobs)
 
     def record(key: str, result: Mapping[str, Any]) -> None:
         ledger.finish(key, result)
-        jobs.pop(key, None)
+        left.discard(key)
         if progress:
-            progress(total - len(jobs), total)
+            progress(total - len(left), total)
 
     if progress:
-        progress(total - len(jobs), total)
-    if jobs:
-        own = None if executor else LocalExecutor(worker_count)
-        try:
-            _compute(dict(jobs), executor or own, record)  # type: ignore[arg-type]
-        finally:
-            if own:
+        progress(total - len(left), total)
+    if jobs and executor:
+        _compute(jobs, executor, record)
+    elif jobs:
+        with LocalExecutor(worker_count) as own:
+            try:
+                _compute(jobs, own, record)
+            finally:
                 own.shutdown(cancel_futures=True)
     records = ledger.find(keys)
     return Runs([records[key] for key in keys], reused_count=len(known))
 
 
-def _version(context: Mapping[str, Any] | None) -> str:
-    return str((context or {}).get("version", ""))
+def _inputs_of(x: np.ndarray, names: Sequence[str], fixed: Mapping[str, float]) -> list[dict[str, float]]:
+    """The inputs of each row by name. Raises ValueError for rows that do not fit the names or are not finite."""
+    table = np.asarray(x, dtype=float)
+    if table.ndim != 2 or table.shape[1] != len(names):
+        raise ValueError(
+            f"x has shape {table.shape}; allowed: [run_count, {len(names)}], one column for each of the names"
+        )
+    if not np.isfinite(table).all():
+        raise ValueError("x holds values that are not finite; every input of a run must be a number")
+    return [{**fixed, **dict(zip(names, row.tolist(), strict=True))} for row in table]
 
 
 def _compute(jobs: dict[str, Any], executor: Executor, record: Callable[[str, Mapping[str, Any]], None]) -> None:
