@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 CAPTURED_ENERGY = 1e-4  # of the energy of impact
-CAPTURED_APEX = 0.5  # of the lander's smallest edge
+CAPTURED_APEX = 0.5  # of the lander's smallest edge; the apex if all of its velocity pointed upward
 # A lander that turns round passes through rest: only rest that lasts for so many of the shortest contacts is capture.
 CAPTURED_CONTACTS = 10.0
 
@@ -71,7 +71,7 @@ class FlightLine:
         if has_touched and free and velocity[2] > 0.0:
             if height > self.clear_height:
                 return "clear"
-            if velocity[2] ** 2 < -2.0 * world.gravity[2] * CAPTURED_APEX * self.lander.smallest_edge:
+            if velocity @ velocity < -2.0 * world.gravity[2] * CAPTURED_APEX * self.lander.smallest_edge:
                 return "captured"
         if has_touched and self.energy() < CAPTURED_ENERGY * self.start_energy:
             self.still_since = world.time if self.still_since is None else self.still_since
