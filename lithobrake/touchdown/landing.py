@@ -16,7 +16,8 @@ from lithobrake.touchdown.surface import rotation_matrix
 
 Floats = NDArray[np.float64]
 Vector = tuple[float, float, float]
-RELAX_DAMPING = 0.1  # damping ratio of a grain's small oscillation while a bed takes on another material
+RELAX_DAMPING = 0.1  # damping ratio of a grain's small oscillation while a bed takes on another material, at first
+RELAX_FADING = 5.0  # periods in which that damping falls by a factor of e: what has to slide must be free to
 CHECKS_PER_CONTACT = 5  # looks at the lander in the time of the shortest contact
 
 
@@ -82,7 +83,7 @@ def land(bed: Bed, lander: Lander, landing: Landing, frame_count: int = 0) -> Ou
 
 
 def relax(world: World, bed: Bed, landing: Landing) -> None:
-    """Let the stored bed find its rest under the landing's material and gravity, with extra damping.
+    """Let the stored bed find its rest under the landing's material and gravity, with extra damping that fades.
 
     Where the site's acceleration vanishes or points outward nothing settles: the bed rests under the gravity it was
     made with, and the site's acts from the touchdown on.
@@ -92,9 +93,14 @@ def relax(world: World, bed: Bed, landing: Landing) -> None:
         world.gravity = np.array(bed.gravity)
     period = settling.rest_period(landing.grain, bed.grain_diameter, float(np.linalg.norm(world.gravity)))
     world.drag = 2.0 * RELAX_DAMPING * 2.0 * math.pi / period
-    settling.hold_still(
-        world, period, settling.PERIODS_RELAXED, lambda: settling.unbalanced_force(world) < settling.UNBALANCED_FORCE
-    )
+
+    def fade() -> None:
+        world.drag *= math.exp(-1.0 / (RELAX_FADING * settling.CHECKS_PER_PERIOD))
+
+    def at_rest() -> bool:
+        return settling.unbalanced_force(world) < settling.UNBALANCED_FORCE
+
+    settling.hold_still(world, period, settling.PERIODS_RELAXED, at_rest, fade)
     world.drag = 0.0
     world.gravity = gravity
 
