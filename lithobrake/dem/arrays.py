@@ -60,7 +60,7 @@ class Pairs(NamedTuple):
 
     first: Integers  # [pair_count]
     second: Integers  # [pair_count]
-    wake: Floats  # [pair_count], m: cannot touch before the travels of both add up to this
+    wake: Floats  # [pair_count], m: its list of features serves until the travels of both add up to this
     overlap: Floats  # [pair_count], m, effective; 0 where apart
     normal: Floats  # [pair_count, 3], unit, from first to second
     point: Floats  # [pair_count, 3], centre of pressure

@@ -56,6 +56,7 @@ def save(world: "World", path: str | os.PathLike[str]) -> None:
         file["body/inertia"] = np.array([body.inertia for body in world.bodies])
         for name in (*world._state, *MOVING):
             file[f"body/{name}"] = getattr(engine.bodies, name)
+        file.attrs["meets_all"] = json.dumps([plane.meets is None for plane in world.planes])
         file["plane/point"] = np.array([plane.point for plane in world.planes]).reshape(-1, 3)
         for name in ("normal", "material", "meets"):
             file[f"plane/{name}"] = getattr(engine.planes, name)
@@ -83,7 +84,8 @@ def load(path: str | os.PathLike[str]) -> "World":
     ):
         world.bodies.append(Body(shapes[shape], materials[material], float(mass), inertia))
     for k, point in enumerate(data["plane/point"]):
-        meets = frozenset(np.flatnonzero(data["plane/meets"][k]).tolist())
+        everything = json.loads(attributes["meets_all"])[k]
+        meets = None if everything else frozenset(np.flatnonzero(data["plane/meets"][k]).tolist())
         world.planes.append(Plane(point, data["plane/normal"][k], materials[data["plane/material"][k]], meets))
     world.time, world.drag = float(attributes["time"]), float(attributes["drag"])
     world._time_step, world._watched = json.loads(attributes["time_step"]), int(attributes["watched"])

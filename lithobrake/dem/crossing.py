@@ -7,6 +7,7 @@ edge pairs whose arcs on the sphere of normals intersect. Source: Gregorius, "Th
 from lithobrake.compiled import kernel, large_kernel
 from lithobrake.dem.arrays import Cores, Floats
 from lithobrake.dem.distance import Search
+from lithobrake.dem.features import write_relative
 from lithobrake.dem.vectors import Vector, cross, dot, minus, plus, put, row, scaled, times, transposed_times
 
 # Signed distance, unit normal from first to second, point on first, point on second.
@@ -18,11 +19,7 @@ def way_out(
     search: Search, cores: Cores, shapes: tuple[int, int], rotation: Floats, bodies: tuple[int, int], apart: Vector
 ) -> Witness:
     """Return the witness of crossing cores, relative to the first body's centroid, in the world frame."""
-    for i in range(3):
-        for j in range(3):
-            search.relative[0, i, j] = 0.0
-            for k in range(3):
-                search.relative[0, i, j] += rotation[bodies[0], k, i] * rotation[bodies[1], k, j]
+    write_relative(rotation, bodies[0], bodies[1], search.relative)
     there = transposed_times(rotation, bodies[0], apart)
     best = (-1.0, (0.0, 0.0, 1.0), (0.0, 0.0, 0.0), there)
     best, found = through_first(search, cores, shapes, there, best, False)

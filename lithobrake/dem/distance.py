@@ -108,7 +108,6 @@ def reduce_simplex(search: Search, count: int, closest_before: float) -> tuple[i
 @large_kernel
 def approach(
     search: Search,
-    count: int,
     cores: Cores,
     shapes: tuple[int, int],
     rotation: Floats,
@@ -116,14 +115,14 @@ def approach(
     apart: Vector,
     margin: float,
 ) -> tuple[int, int, float]:
-    """Improve the simplex of `count` named corners until it carries the closest points of the cores.
+    """Search for the simplex of differences that carries the closest points of the cores.
 
     Returns what was found (APART: farther than the margin; CLOSE: points in `search`; CROSSING), the number of corners,
     and a lower bound of the distance where they are apart.
     """
-    for k in range(count):
-        place(search, k, cores, shapes, rotation, bodies, apart)
-    count, _ = reduce_simplex(search, count, -1.0)
+    search.names[0, 0], search.names[0, 1] = 0, 0
+    place(search, 0, cores, shapes, rotation, bodies, apart)
+    count, _ = reduce_simplex(search, 1, -1.0)
     for _ in range(ITERATIONS):
         closest = weighted(search.difference, search.weight, count)
         square = dot(closest, closest)

@@ -98,7 +98,7 @@ def press(
             other_arm = minus(point, row(bodies.position, second))
             now = plus(now, point_velocity(bodies.velocity_predicted, bodies.spin_predicted, second, other_arm))
         speed = dot(now, normal)
-        force = max(0.0, search.share[k] * (elastic - dashpot * speed))
+        force = search.share[k] * max(0.0, elastic - dashpot * speed)
         totals[DAMPING] += (search.share[k] * elastic - force) * speed * step.time_step
         push(bodies, first, second, point, scaled(force, normal))
         total += force
@@ -211,7 +211,7 @@ def act(
     elastic = stiffness * overlap
     force = press(search, count, bodies, first, second, elastic, dashpot, step, totals)
     shear_dashpot = 2.0 * damping_ratio * (5.0 / 6.0 * shear_stiffness / inverse_mass) ** 0.5
-    limit = laws.friction[here, there] * force
+    limit = laws.friction[here, there] * max(0.0, force)
     tangential = rub(pair, pairs, normal, moved, now, twist, limit, shear_stiffness, shear_dashpot, step, totals)
     push(bodies, first, second, point, tangential)
     square, mean = spin_radii(search, count, point, normal)

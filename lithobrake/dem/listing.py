@@ -14,7 +14,7 @@ from lithobrake.dem.vectors import Vector, dot, minus, plus, row, scaled, times,
 # Kinds of features: a corner of the first on the second, of the second on the first, two edges, two spheres.
 CORNER_OF_FIRST, CORNER_OF_SECOND, EDGES, SPHERES = 0, 1, 2, 3
 KIND, PLACE = 1 << 40, 1 << 20
-# In `term_count`: the cores cross or nearly so, and the deepest point alone carries.
+# In `term_count`: the cores cross, and the deepest point alone carries.
 DEEP = -1
 # The margin is this part of the rounding radii, which themselves count for at most this part of the contact radii.
 MARGIN_OF_ROUNDING, ROUNDING_OF_RADIUS = 0.1, 0.04
@@ -49,13 +49,11 @@ def renew(bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, search: Se
             continue
         margin = margin_of(bodies, cores, first, second)
         if second < 0:
-            gap = list_plane(pair, bodies, cores, planes, pairs, margin)
+            serves = max(margin, list_plane(pair, bodies, cores, planes, pairs, margin))
         else:
-            gap = list_bodies(pair, bodies, cores, pairs, margin, search)
+            serves = list_bodies(pair, bodies, cores, pairs, margin, search)
         longest = max(longest, pairs.term_count[pair])
-        pairs.wake[pair] = travel + (1.0 - BOUND_SLACK) * max(gap, margin)
-        if pairs.term_count[pair] == DEEP:
-            pairs.wake[pair] = 0.0
+        pairs.wake[pair] = travel + (1.0 - BOUND_SLACK) * serves
     return longest
 
 
@@ -89,7 +87,7 @@ def list_plane(pair: int, bodies: Bodies, cores: Cores, planes: Planes, pairs: P
 
 @large_kernel
 def list_bodies(pair: int, bodies: Bodies, cores: Cores, pairs: Pairs, margin: float, search: Search) -> float:
-    """List the features of two bodies that are near each other; return a lower bound of the gap."""
+    """List the features of two bodies that are near each other; return the motion for which the list serves."""
     first, second = pairs.first[pair], pairs.second[pair]
     shapes, members = (bodies.shape[first], bodies.shape[second]), (first, second)
     pairs.term_count[pair] = 0
@@ -100,9 +98,8 @@ def list_bodies(pair: int, bodies: Bodies, cores: Cores, pairs: Pairs, margin: f
     reach = cores.rounding[shapes[0]] + cores.rounding[shapes[1]]
     if is_point(cores, shapes[0]) and is_point(cores, shapes[1]):
         note_term(pairs, pair, SPHERES, 0, 0)
-        return bound
-    search.names[0, 0], search.names[0, 1] = 0, 0
-    found, count, bound = approach(search, 1, cores, shapes, bodies.rotation, members, apart, reach + margin)
+        return margin
+    found, count, bound = approach(search, cores, shapes, bodies.rotation, members, apart, reach + margin)
     if found == APART:
         return bound - reach
     if found == CROSSING:
@@ -113,15 +110,16 @@ def list_bodies(pair: int, bodies: Bodies, cores: Cores, pairs: Pairs, margin: f
         )
         distance = dot(between, between) ** 0.5
         normal = scaled(1.0 / distance, between)
-    if distance < margin and not (is_point(cores, shapes[0]) or is_point(cores, shapes[1])):
+    hulls = not (is_point(cores, shapes[0]) or is_point(cores, shapes[1]))
+    if found == CROSSING and hulls:
         pairs.term_count[pair] = DEEP
-        return distance - reach
+        return 0.0
     write_relative(bodies.rotation, first, second, search.relative)
     there = transposed_times(bodies.rotation, first, apart)
     normal = transposed_times(bodies.rotation, first, normal)
     list_corners(pair, pairs, cores, shapes, search, there, reach + margin)
     list_edges(pair, pairs, cores, shapes, search, there, normal, reach + margin, distance)
-    return distance - reach
+    return min(margin, distance) if hulls else margin
 
 
 @kernel
@@ -156,9 +154,9 @@ def list_edges(
 ) -> None:  # fmt: skip
     """List the pairs of edges that are nearer than `farthest`; far ones fall out by their depth behind the gap."""
     band = farthest - distance
-    top, bottom = -depth_range(cores, shapes[0], scaled(-1.0, normal)), 0.0
     turned = transposed_times(search.relative, 0, normal)
-    bottom = depth_range(cores, shapes[1], turned)
+    top = -lowest_height(cores, shapes[0], scaled(-1.0, normal))
+    bottom = lowest_height(cores, shapes[1], turned)
     for i in range(cores.edge_start[shapes[0] + 1] - cores.edge_start[shapes[0]]):
         begin, along = edge_of(cores, shapes[0], i)
         height = dot(begin, normal)
@@ -178,7 +176,7 @@ def list_edges(
 
 
 @kernel
-def depth_range(cores: Cores, shape: int, direction: Vector) -> float:
+def lowest_height(cores: Cores, shape: int, direction: Vector) -> float:
     """Return the smallest height of a core's vertices along a direction of the body frame."""
     start = cores.vertex_start[shape]
     lowest = dot(row(cores.vertex, start), direction)

@@ -60,15 +60,14 @@ def restitution_of(damping_ratio: float) -> float:
     if zeta < 1.0:
         omega = math.sqrt(1.0 - zeta * zeta)
         angle = math.atan2(2.0 * zeta * omega, 2.0 * zeta * zeta - 1.0)
-        growth, cosine, sine = math.exp(-zeta * angle / omega), math.cos(angle), math.sin(angle) / omega
-    elif zeta == 1.0:
-        time = 2.0
-        growth, cosine, sine = math.exp(-time), 1.0, time
-    else:
-        omega = math.sqrt(zeta * zeta - 1.0)
-        angle = math.atanh(2.0 * zeta * omega / (2.0 * zeta * zeta - 1.0))
-        growth, cosine, sine = math.exp(-zeta * angle / omega), math.cosh(angle), math.sinh(angle) / omega
-    return -growth * (cosine - zeta * sine)
+        return -math.exp(-zeta * angle / omega) * (math.cos(angle) - zeta * math.sin(angle) / omega)
+    if zeta == 1.0:
+        return math.exp(-2.0)
+    omega = math.sqrt(zeta * zeta - 1.0)
+    angle, slowness = 2.0 * math.log(zeta + omega), zeta / omega
+    # cosh(angle) - slowness sinh(angle), with 1 - slowness written so that nothing cancels.
+    rising = math.exp(angle * (1.0 - slowness)) / (omega * (omega + zeta))
+    return 0.5 * (rising - math.exp(-angle * (1.0 + slowness)) * (1.0 + slowness))
 
 
 @cache

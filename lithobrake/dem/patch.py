@@ -112,11 +112,10 @@ def touch_spheres(bodies: Bodies, first: int, second: int, apart: Vector, search
 
 @large_kernel
 def touch_deep(bodies: Bodies, cores: Cores, first: int, second: int, apart: Vector, search: Search) -> int:
-    """Write the deepest point of two bodies whose cores cross or nearly so."""
+    """Write the deepest point of two bodies whose cores cross."""
     shapes, members = (bodies.shape[first], bodies.shape[second]), (first, second)
     reach = cores.rounding[shapes[0]] + cores.rounding[shapes[1]]
-    search.names[0, 0], search.names[0, 1] = 0, 0
-    found, count, _ = approach(search, 1, cores, shapes, bodies.rotation, members, apart, reach)
+    found, count, _ = approach(search, cores, shapes, bodies.rotation, members, apart, reach)
     if found == APART:
         return 0
     if found == CROSSING:

@@ -102,9 +102,10 @@ class World:
         tensor = (
             shape.inertia_per_density * (mass / shape.volume) if inertia is None else np.array(inertia, dtype=float)
         )
-        if tensor.shape != (3, 3) or not np.isfinite(tensor).all() or np.linalg.eigvalsh(tensor).min() <= 0.0:
+        symmetric = tensor.shape == (3, 3) and np.isfinite(tensor).all() and np.array_equal(tensor, tensor.T)
+        if not symmetric or np.linalg.eigvalsh(tensor).min() <= 0.0:
             raise ValueError(
-                f"add_body inertia is {tensor!r} kg m2; allowed is a positive definite 3 x 3 tensor: change it"
+                f"add_body inertia is {tensor!r} kg m2; allowed is a symmetric, positive definite 3 x 3 tensor: change it"
             )
         quaternion = unit(orientation, "add_body orientation")
         body = Body(shape, material, mass, tensor)
@@ -163,7 +164,7 @@ class World:
     def time_step(self, value: float) -> None:
         if not 0.0 < value < math.inf:
             raise ValueError(f"World time_step is {value!r} s; allowed is a finite value above 0: change it")
-        self._time_step = float(value)
+        self._time_step = self._given_time_step = float(value)
 
     @property
     def contact_frequency(self) -> float:
@@ -200,6 +201,8 @@ class World:
         if not self.bodies:
             raise ValueError("World.run has no body to move: add one first")
         steps = self._steps_in(duration) if steps is None else steps
+        if steps != int(steps) or steps < 0:
+            raise ValueError(f"World.run steps is {steps!r}; allowed is a whole number of at least 0: change it")
         if steps == 0:
             return
         self._time_step = self.time_step

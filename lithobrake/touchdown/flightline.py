@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 CAPTURED_ENERGY = 1e-4  # of the energy of impact
-CAPTURED_APEX = 0.5  # of the lander's smallest edge; the apex if all of its velocity pointed upward
+CAPTURED_APEX = 0.5  # of the lander's smallest edge; the apex if all of its energy lifted it
 # A lander that turns round passes through rest: only rest that lasts for so many of the shortest contacts is capture.
 CAPTURED_CONTACTS = 10.0
 
@@ -68,10 +68,11 @@ class FlightLine:
         if abs(position[0]) > 0.5 * self.bed.width[0] or abs(position[1]) > 0.5 * self.bed.width[1]:
             return "left_sideways"
         free = not np.any(world.contact_force[k])
-        if has_touched and free and velocity[2] > 0.0:
-            if height > self.clear_height:
+        if has_touched and free:
+            if velocity[2] > 0.0 and height > self.clear_height:
                 return "clear"
-            if velocity @ velocity < -2.0 * world.gravity[2] * CAPTURED_APEX * self.lander.smallest_edge:
+            lift = -world.gravity[2] * CAPTURED_APEX * self.lander.smallest_edge
+            if self.energy() < self.lander.mass * lift:
                 return "captured"
         if has_touched and self.energy() < CAPTURED_ENERGY * self.start_energy:
             self.still_since = world.time if self.still_since is None else self.still_since

@@ -44,6 +44,9 @@ class Landing:
             ("speed", 0.0 < self.speed < math.inf, "a finite value above 0 m/s"),
             ("incidence", 0.0 <= self.incidence < 0.5 * math.pi, "0 <= value < pi/2 rad"),
             ("azimuth", math.isfinite(self.azimuth), "a finite angle"),
+            ("gravity", all(math.isfinite(g) for g in self.gravity), "three finite numbers"),
+            ("spin", all(math.isfinite(w) for w in self.spin), "three finite numbers"),
+            ("orientation", 0.0 < math.hypot(*self.orientation) < math.inf, "four finite numbers, not all zero"),
             ("time_limit", 0.0 < self.time_limit < math.inf, "a finite value above 0 s"),
         ):
             if not fine:
@@ -69,6 +72,11 @@ def land(bed: Bed, lander: Lander, landing: Landing, frame_count: int = 0) -> Ou
     """
     if max(abs(landing.place[0]) / bed.width[0], abs(landing.place[1]) / bed.width[1]) >= 0.5:
         raise ValueError(f"Landing.place is {landing.place!r} m; allowed is inside the box of {bed.width} m: move it")
+    if 2.0 * lander.shape.bounding_radius >= min(bed.width):
+        raise ValueError(
+            f"the lander is {2.0 * lander.shape.bounding_radius:.3g} m across; allowed is less than the bed's width, "
+            f"{min(bed.width)} m: make the bed wider"
+        )
     world = bed.world(landing.grain, landing.gravity, landing.contact)
     relax(world, bed, landing)
     number = release(world, bed, lander, landing)
@@ -106,7 +114,7 @@ def relax(world: World, bed: Bed, landing: Landing) -> None:
 
 
 def release(world: World, bed: Bed, lander: Lander, landing: Landing) -> int:
-    """Put the lander just above everything that stands under its outline, and return its number."""
+    """Put the lander just above every grain under its bounding circle, and return its number."""
     reach = lander.shape.bounding_radius
     place = np.array([*landing.place, 0.0])
     below = np.linalg.norm(world.position[:, :2] - place[:2], axis=1)

@@ -16,7 +16,6 @@ Progress = Callable[[float, str], None]
 RAMP_PERIODS = 2.0  # time constant of the ramp of gravity, in periods of a grain at rest under the local gravity
 RAMP_STEPS = 40  # changes of gravity a time constant
 FALLEN = 1e-3  # kinetic ratio below which the grains lie, and only have to settle
-FRAME_COUNT = 12
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -77,6 +77,6 @@ def hold_still(
             return
     raise ValueError(
         f"the bed did not come to rest within {PERIODS_PATIENCE:.0f} periods of {period:.3g} s under "
-        f"{np.linalg.norm(world.gravity):.3g} m/s2: its slope may be too steep, or its friction too low; "
-        "lower surface.slope_deg or raise grain.friction"
+        f"{np.linalg.norm(world.gravity):.3g} m/s2: its slope may be too steep, its friction too low, or "
+        "its gravity far from that it was made under; lower surface.slope_deg, raise grain.friction, or pour anew"
     )

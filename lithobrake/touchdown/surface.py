@@ -4,26 +4,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lithobrake.dem import ConvexHull
+from lithobrake.dem.body import rotation_matrices
 
 Floats = NDArray[np.float64]
 RAYS_PER_DIAMETER = 4
 
 
-def rotation_matrix(q: Floats) -> Floats:
+def rotation_matrix(quaternion: Floats) -> Floats:
     """Return the rotation matrix [3, 3], body to world, of a unit quaternion w, x, y, z."""
-    w, x, y, z = q
-    return np.array(
-        [
-            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
-        ]
-    )
-
-
-def lowest_point(vertices: Floats, position: Floats, orientation: Floats) -> float:
-    """Return the height [m] of the lowest of vertices [m, about the centroid] of a body."""
-    return float(position[2] + (vertices @ rotation_matrix(orientation)[2]).min())
+    return rotation_matrices(quaternion[None])[0]
 
 
 def height_map(grains: list[ConvexHull], position: Floats, orientation: Floats, width: tuple[float, float]) -> Floats:

@@ -36,8 +36,7 @@ def test_distance_and_depth_of_random_pairs(stretch):
         rotation = rotation_matrices(turns / np.linalg.norm(turns, axis=1)[:, None])
         apart = generator.normal(size=3)
         apart *= generator.uniform(0, 0.3) / np.linalg.norm(apart)
-        search.names[0] = 0
-        found, count, _ = approach(search, 1, cores, (0, 1), rotation, (0, 1), tuple(apart), np.inf)
+        found, count, _ = approach(search, cores, (0, 1), rotation, (0, 1), tuple(apart), np.inf)
         if found == CROSSING:
             distance = way_out(search, cores, (0, 1), rotation, (0, 1), tuple(apart))[0]
         else:

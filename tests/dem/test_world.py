@@ -109,6 +109,7 @@ def test_too_large_a_step_names_the_largest_safe_one():
         (lambda w: w.add_body(Sphere(1.0), ROCK, (0, 0, 0), orientation=(0, 0, 0, 0)), "orientation"),
         (lambda w: w.add_body(Sphere(1.0), ROCK, (0, 0, 0), mass=-1.0), "mass"),
         (lambda w: w.add_body(Sphere(1.0), ROCK, (0, 0, 0), inertia=-np.eye(3)), "inertia"),
+        (lambda w: w.add_body(Sphere(1.0), ROCK, (0, 0, 0), inertia=np.eye(3) + np.eye(3, k=1)), "inertia"),
         (lambda w: w.add_plane((0, 0, 0), (0, 0, 0), ROCK), "normal"),
         (lambda w: w.run(duration=1.0), "no body"),
         (lambda w: w.run(), "either"),
@@ -133,3 +134,30 @@ def test_crowded_pair_grows_its_list():
     assert len(contacts) == 1
     assert abs(contacts["point"][0, :2]).max() < 1e-6
     assert contacts["normal"][0] == pytest.approx((0, 0, 1))
+
+
+def test_loaded_world_takes_new_bodies_on_its_planes(tmp_path):
+    world = World((0, 0, -9.81), 1e-4)
+    world.add_body(Sphere(0.05), ROCK, (0, 0, 0.05))
+    world.add_plane((0, 0, 0), (0, 0, 1), ROCK)
+    world.save(tmp_path / "world.h5")
+    loaded = World.load(tmp_path / "world.h5")
+    loaded.add_body(Sphere(0.05), ROCK, (1, 0, 0.06))
+    loaded.run(duration=0.3)
+    assert loaded.position[1, 2] > 0.04
+
+
+def test_time_step_that_was_set_stays():
+    world = World((0, 0, -9.81))
+    world.add_body(Sphere(0.05), ROCK, (0, 0, 0.05))
+    world.time_step = 1e-5
+    world.add_plane((0, 0, 0), (0, 0, 1), ROCK)
+    assert world.time_step == 1e-5
+
+
+@pytest.mark.parametrize("steps", [-5, 2.5])
+def test_steps_are_whole_and_not_negative(steps):
+    world = World((0, 0, 0), 1e-5)
+    world.add_body(Sphere(0.05), ROCK, (0, 0, 0.05))
+    with pytest.raises(ValueError, match="steps"):
+        world.run(steps=steps)

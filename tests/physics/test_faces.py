@@ -175,3 +175,19 @@ def test_sphere_presses_on_a_face_as_on_a_plane():
     modulus = 1e7 / (2 * (1 - 0.25**2))
     assert contact["overlap"] == pytest.approx(1e-4, rel=1e-9)
     assert contact["normal_force"] == pytest.approx(4 / 3 * modulus * math.sqrt(radius) * 1e-4**1.5, rel=1e-9)
+
+
+@pytest.mark.parametrize("depth", [0.3, 0.6, 0.7, 0.8, 0.95])
+def test_elastic_faces_give_back_all_they_take(depth):
+    """e = 1, mu = 0, two cubes pressed face to face to a part of their rounding: nothing is damped at any depth."""
+    cube = Box((0.1, 0.1, 0.1))
+    world = World(time_step=1e-5)
+    stuff = material(1.0, 0.0, 1e7)
+    world.add_body(cube, stuff, (0, 0, 0))
+    world.add_body(cube, stuff, (0.003, 0.002, 0.1 - depth * 2.0 * cube.rounding))
+    before = world.energy()["total"]
+    world.run(duration=0.02)
+    after = world.energy()
+    assert after["elastic"] == 0.0
+    assert abs(after["damping"]) < 1e-12 * before
+    assert after["kinetic"] == pytest.approx(before, rel=1e-3)

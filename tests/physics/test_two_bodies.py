@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from lithobrake.dem import Material, Sphere, World
-from lithobrake.dem.material import damping_ratio_of
+from lithobrake.dem.material import damping_ratio_of, restitution_of
 from lithobrake.dem.timestep import contact_duration
 
 
@@ -186,3 +186,8 @@ def test_sliding_sphere_begins_to_roll():
     assert world.position[0, 0] == pytest.approx(0.083214, rel=0.005)
     world.run(duration=0.1)
     assert world.velocity[0, 0] == pytest.approx(0.71429, rel=0.005)
+
+
+@pytest.mark.parametrize("restitution", [1e-12, 1e-8, 1e-4, 0.05, 0.1353, 0.1354, 0.99])
+def test_every_restitution_has_a_damping_ratio(restitution):
+    assert restitution_of(damping_ratio_of(restitution)) == pytest.approx(restitution, rel=1e-6)
