@@ -105,7 +105,7 @@ class World:
         symmetric = tensor.shape == (3, 3) and np.isfinite(tensor).all() and np.array_equal(tensor, tensor.T)
         if not symmetric or np.linalg.eigvalsh(tensor).min() <= 0.0:
             raise ValueError(
-                f"add_body inertia is {tensor!r} kg m2; allowed is a symmetric, positive definite 3 x 3 tensor: change it"
+                f"add_body inertia is {tensor!r} kg m2; allowed is a symmetric positive definite 3 x 3 tensor: mend it"
             )
         quaternion = unit(orientation, "add_body orientation")
         body = Body(shape, material, mass, tensor)
