@@ -14,6 +14,7 @@ from lithobrake.touchdown.surface import height_map
 
 Progress = Callable[[float, str], None]
 RAMP_PERIODS = 2.0  # time constant of the ramp of gravity, in periods of a grain at rest under the local gravity
+FREE_FALL_DAMPING = 2.0  # drag while a bed comes to rest, in units of sqrt(gravity / diameter)
 RAMP_STEPS = 40  # changes of gravity a time constant
 FALLEN = 1e-3  # kinetic ratio below which the grains lie, and only have to settle
 
@@ -146,8 +147,13 @@ def lower_gravity(world: World, recorder: Recorder, recipe: BedRecipe, tell: Pro
 
 
 def settle(world: World, recorder: Recorder, recipe: BedRecipe, tell: Callable[[float], None]) -> None:
-    """Wait until the bed has been at rest for long enough under the gravity at hand."""
-    period = settling.rest_period(recipe.material, recorder.diameter, float(np.linalg.norm(world.gravity)))
+    """Wait until the bed has been at rest, undamped, for long enough under the gravity at hand.
+
+    A loose grain rocks and rolls on for minutes. Till the bed first rests, motion is damped at a few times the rate of
+    free fall through a grain: what nothing holds up still falls fast enough to be seen by the criteria.
+    """
+    strength = float(np.linalg.norm(world.gravity))
+    period = settling.rest_period(recipe.material, recorder.diameter, strength)
     checks = 0
 
     def check() -> None:
@@ -156,6 +162,9 @@ def settle(world: World, recorder: Recorder, recipe: BedRecipe, tell: Callable[[
         recorder.note(world)
         tell(1.0 - math.exp(-checks / (settling.PERIODS_HELD * settling.CHECKS_PER_PERIOD)))
 
+    world.drag = FREE_FALL_DAMPING * math.sqrt(strength / recorder.diameter)
+    settling.hold_still(world, period, settling.PERIODS_RELAXED, lambda: recorder.at_rest, check)
+    world.drag = 0.0
     settling.hold_still(world, period, settling.PERIODS_HELD, lambda: recorder.at_rest, check)
     recorder.frame(world)
     tell(1.0)

@@ -11,7 +11,7 @@ KINETIC_RATIO = 1e-5  # of the energy that lifts every grain by its own diameter
 UNBALANCED_FORCE = 1e-2  # of the mean contact force
 PERIODS_HELD = 10.0  # settled: both hold for so many periods of a grain's small oscillation at its rest overlap
 PERIODS_RELAXED = 5.0
-PERIODS_PATIENCE = 400.0  # after so many the bed is given up
+PERIODS_PATIENCE = 1200.0  # after so many the bed is given up
 QUIET_PHASE = 0.1  # contact frequency times step while nothing collides: 63 steps a period
 CHECKS_PER_PERIOD = 20
 
