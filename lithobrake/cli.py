@@ -1,5 +1,6 @@
 """The command line. Everything heavy is imported inside the command that needs it, so that --help answers at once."""
 
+import os
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -98,6 +99,8 @@ def _default_folder(study: Path) -> Path:
 
 def _make(study: Path, out: Path | None, workers: int | None, until: str) -> None:
     """Make the files of a study up to a stage, with two lines of progress."""
+    # The bits of a least-squares fit depend on the threads of the linear algebra, which reads this when it is loaded.
+    os.environ.update(OPENBLAS_NUM_THREADS="1", MKL_NUM_THREADS="1")
     with _one_sentence(" ".join(sys.argv[1:])):
         from lithobrake.pipeline import run_study
         from lithobrake.progress import StudyProgress
