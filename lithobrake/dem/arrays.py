@@ -64,13 +64,16 @@ class Pairs(NamedTuple):
     overlap: Floats  # [pair_count], m, effective; 0 where apart
     normal: Floats  # [pair_count, 3], unit, from first to second
     point: Floats  # [pair_count, 3], centre of pressure
-    normal_force: Floats  # [pair_count], N
+    normal_force: Floats  # [pair_count], N, less cohesion
     elastic_force: Floats  # [pair_count], N, derivative of the elastic energy by the overlap
+    cohesion: Floats  # [pair_count], N, the same of the cohesive energy
     spring: Floats  # [pair_count, 3], N, tangential spring force on second
     tangential_force: Floats  # [pair_count, 3], N, spring and dashpot on second
     tangential_stiffness: Floats  # [pair_count], N/m
     twist: Floats  # [pair_count], N m, couple of the twisting spring about the normal on second
     twist_stiffness: Floats  # [pair_count], N m
+    roll: Floats  # [pair_count, 3], N m, couple of the rolling spring on second
+    roll_stiffness: Floats  # [pair_count], N m
     term_count: Integers  # [pair_count], features near enough to touch before waking; -1: deepest point only
     term: Integers  # [pair_count, term_max], their names
 
@@ -82,3 +85,7 @@ class Laws(NamedTuple):
     shear_modulus: Floats  # effective, Pa
     damping_ratio: Floats
     friction: Floats
+    rolling_friction: Floats
+    spinning_friction: Floats
+    cohesion_force: Floats  # N
+    cohesion_line: Floats  # N/m, cohesion over contact radius

@@ -74,7 +74,7 @@ def cores_of(shapes: list[Shape]) -> Cores:
 def laws_of(materials: list[Material], shear_modulus_rule: str, pair_rule: str) -> Laws:
     """Return the laws of all pairs of materials."""
     table = np.array([[pair_law(a, b, shear_modulus_rule, pair_rule) for b in materials] for a in materials])
-    return Laws(*(np.ascontiguousarray(table[:, :, k]) for k in range(4)))
+    return Laws(*(np.ascontiguousarray(table[:, :, k]) for k in range(table.shape[2])))
 
 
 def planes_of(planes: list[Plane], materials: list[Material], body_count: int) -> Planes:

@@ -3,16 +3,18 @@
 import numpy as np
 
 from lithobrake.dem.arrays import Floats, Pairs
-from lithobrake.dem.force import DAMPING, FRICTION
+from lithobrake.dem.force import DAMPING, FRICTION, ROLLING
 
 
 def ledger(
     mass: Floats, position: Floats, velocity: Floats, spin: Floats, angular_momentum: Floats, gravity: Floats,
     pairs: Pairs, totals: Floats,
 ) -> dict[str, float]:  # fmt: skip
-    """Return the energies [J] of a world: kinetic, potential, elastic, what damping and friction took, and the total.
+    """Return the energies [J] of a world: kinetic, potential, elastic, cohesive, what damping, friction and
+    rolling took, and the total.
 
-    A Hertz contact holds 2/5 force times overlap, a spring half its force squared over its stiffness.
+    A Hertz contact holds 2/5 force times overlap, cohesion minus force times overlap, a spring half its force squared
+    over its stiffness.
     """
     kinetic = 0.5 * float((mass * (velocity * velocity).sum(axis=1)).sum() + (spin * angular_momentum).sum())
     potential = -float((mass[:, None] * position * gravity).sum())
@@ -22,8 +24,11 @@ def ledger(
     elastic += 0.5 * float((spring_square / pairs.tangential_stiffness[touching]).sum())
     twisting = pairs.twist_stiffness > 0.0
     elastic += 0.5 * float((pairs.twist[twisting] ** 2 / pairs.twist_stiffness[twisting]).sum())
+    rolling = pairs.roll_stiffness > 0.0
+    elastic += 0.5 * float(((pairs.roll[rolling] ** 2).sum(axis=1) / pairs.roll_stiffness[rolling]).sum())
     parts = {
         "kinetic": kinetic, "potential": potential, "elastic": elastic,
-        "damping": float(totals[DAMPING]), "friction": float(totals[FRICTION]),
+        "cohesive": -float((pairs.cohesion * pairs.overlap).sum()), "damping": float(totals[DAMPING]),
+        "friction": float(totals[FRICTION]), "rolling": float(totals[ROLLING]),
     }  # fmt: skip
     return {**parts, "total": float(np.sum(list(parts.values())))}

@@ -1,4 +1,4 @@
-"""Contact law: Hertz with damping that gives the entered restitution, and a Coulomb-limited tangential spring.
+"""Contact force of a pair: Hertz with damping that gives the entered restitution, cohesion, friction and rolling.
 
 Source: the paper, Eqs (1) to (9), with Mindlin's (1949) shear modulus; the no-tension end of contact and the damping
 that makes up for it, see material.restitution_of.
@@ -10,11 +10,14 @@ import numpy as np
 
 from lithobrake.compiled import kernel
 from lithobrake.dem.arrays import Bodies, Cores, Floats, Laws, Pairs, Planes
+from lithobrake.dem.couples import let_go, resist_rolling, resist_twisting
 from lithobrake.dem.distance import Search
 from lithobrake.dem.patch import spin_radii, spread, touch_bodies, touch_plane
+from lithobrake.dem.spring import across, hold, stored, turned_spring
 from lithobrake.dem.vectors import Vector, add, cross, dot, minus, plus, put, row, scaled, times
 
-DAMPING, FRICTION, FREQUENCY_SQUARED = 0, 1, 2
+DAMPING, FRICTION, ROLLING, FREQUENCY_SQUARED = 0, 1, 2, 3
+TOTALS = 4
 
 
 class Step(NamedTuple):
@@ -24,6 +27,19 @@ class Step(NamedTuple):
     drag: float  # 1/s, viscous damping of all motion, 0 but in settling
     gravity: Vector  # m/s2
     paper_mass: bool  # damping with the reduced mass of the bodies, not the mass seen at the contact point
+
+
+class Meeting(NamedTuple):
+    """How the members of a pair move against each other, second against first, at their centre of pressure."""
+
+    inverse_mass: float  # 1/kg, of the pair for a force along the normal
+    inertia_along: float  # 1/(kg m2), inverse, of the pair for a couple along the normal
+    inertia_across: float  # 1/(kg m2), inverse, of the pair for a couple across the normal, mean of all directions
+    curvature: float  # 1/m
+    now: Vector  # m/s, predicted for the instant of the positions
+    moved: Vector  # m/s, that made the last step
+    spin: Vector  # rad/s, relative, that made the last step
+    twist: float  # rad/s, mean spin about the normal
 
 
 @kernel
@@ -42,67 +58,35 @@ def inverse_mass_at(bodies: Bodies, body: int, arm: Vector, normal: Vector, pape
 
 
 @kernel
-def turned_spring(pairs: Pairs, pair: int, normal: Vector, twist: float) -> Vector:
-    """Return the spring force turned with the contact frame: with the normal, and with the mean spin about it."""
-    spring = row(pairs.spring, pair)
-    square = dot(spring, spring)
-    if square == 0.0:
-        return spring
-    turn = plus(cross(row(pairs.normal, pair), normal), scaled(twist, normal))
-    spring = plus(spring, cross(turn, spring))
-    spring = minus(spring, scaled(dot(spring, normal), normal))
-    left = dot(spring, spring)
-    return scaled((square / left) ** 0.5, spring) if left > 0.0 else (0.0, 0.0, 0.0)
+def inverse_inertias(bodies: Bodies, body: int, normal: Vector) -> tuple[float, float]:
+    """Return one over the moment of inertia about the normal, and across it in the mean of all directions."""
+    inverse = bodies.inverse_inertia
+    along = dot(normal, times(inverse, body, normal))
+    return along, 0.5 * (inverse[body, 0, 0] + inverse[body, 1, 1] + inverse[body, 2, 2] - along)
 
 
 @kernel
-def unloaded(stiffness_before: float, stiffness: float) -> float:
-    """Return what is left of a spring's force when its stiffness falls: so no cycle of loading gains energy."""
-    return min(1.0, stiffness / stiffness_before) if stiffness_before > 0.0 else 1.0
-
-
-@kernel
-def stored(force_squared: float, stiffness: float) -> float:
-    """Return the energy of a spring under a force."""
-    return 0.5 * force_squared / stiffness if stiffness > 0.0 else 0.0
-
-
-@kernel
-def part(pairs: Pairs, pair: int, totals: Floats) -> None:
-    """End a contact: the spring lets go."""
-    if pairs.tangential_stiffness[pair] > 0.0:
-        spring = row(pairs.spring, pair)
-        totals[FRICTION] += stored(dot(spring, spring), pairs.tangential_stiffness[pair])
-        put(pairs.spring, pair, (0.0, 0.0, 0.0))
-        put(pairs.tangential_force, pair, (0.0, 0.0, 0.0))
-    totals[FRICTION] += stored(pairs.twist[pair] ** 2, pairs.twist_stiffness[pair])
-    pairs.twist[pair], pairs.twist_stiffness[pair] = 0.0, 0.0
-    pairs.tangential_stiffness[pair] = 0.0
-    pairs.overlap[pair] = 0.0
-    pairs.normal_force[pair] = 0.0
-    pairs.elastic_force[pair] = 0.0
-
-
-@kernel
-def press(
-    search: Search, count: int, bodies: Bodies, first: int, second: int, elastic: float, dashpot: float, step: Step,
-    totals: Floats,
-) -> float:  # fmt: skip
-    """Apply the normal forces at the points of a patch, none of them pulling; return their sum."""
-    total = 0.0
-    for k in range(count):
-        point, normal = row(search.point, k), row(search.normal, k)
-        arm = minus(point, row(bodies.position, first))
-        now = scaled(-1.0, point_velocity(bodies.velocity_predicted, bodies.spin_predicted, first, arm))
-        if second >= 0:
-            other_arm = minus(point, row(bodies.position, second))
-            now = plus(now, point_velocity(bodies.velocity_predicted, bodies.spin_predicted, second, other_arm))
-        speed = dot(now, normal)
-        force = search.share[k] * max(0.0, elastic - dashpot * speed)
-        totals[DAMPING] += (search.share[k] * elastic - force) * speed * step.time_step
-        push(bodies, first, second, point, scaled(force, normal))
-        total += force
-    return total
+def meet(bodies: Bodies, first: int, second: int, point: Vector, normal: Vector, paper_mass: bool) -> Meeting:
+    """Return how a body meets another, or a plane (second < 0)."""
+    arm = minus(point, row(bodies.position, first))
+    inverse_mass = inverse_mass_at(bodies, first, arm, normal, paper_mass)
+    along, across_it = inverse_inertias(bodies, first, normal)
+    curvature = 1.0 / bodies.contact_radius[first]
+    now = scaled(-1.0, point_velocity(bodies.velocity_predicted, bodies.spin_predicted, first, arm))
+    moved = scaled(-1.0, point_velocity(bodies.velocity, bodies.half_spin, first, arm))
+    spin = scaled(-1.0, row(bodies.half_spin, first))
+    twist = 0.5 * dot(row(bodies.half_spin, first), normal)
+    if second >= 0:
+        arm = minus(point, row(bodies.position, second))
+        inverse_mass += inverse_mass_at(bodies, second, arm, normal, paper_mass)
+        other_along, other_across = inverse_inertias(bodies, second, normal)
+        along, across_it = along + other_along, across_it + other_across
+        curvature += 1.0 / bodies.contact_radius[second]
+        now = plus(now, point_velocity(bodies.velocity_predicted, bodies.spin_predicted, second, arm))
+        moved = plus(moved, point_velocity(bodies.velocity, bodies.half_spin, second, arm))
+        spin = plus(spin, row(bodies.half_spin, second))
+        twist += 0.5 * dot(row(bodies.half_spin, second), normal)
+    return Meeting(inverse_mass, along, across_it, curvature, now, moved, spin, twist)
 
 
 @kernel
@@ -116,53 +100,72 @@ def push(bodies: Bodies, first: int, second: int, point: Vector, force: Vector) 
 
 
 @kernel
-def rub(
-    pair: int, pairs: Pairs, normal: Vector, moved: Vector, now: Vector, twist: float, limit: float, stiffness: float,
+def press(
+    search: Search, count: int, bodies: Bodies, first: int, second: int, elastic: float, cohesion: float,
     dashpot: float, step: Step, totals: Floats,
-) -> Vector:  # fmt: skip
-    """Return the tangential force on the second body: a spring with history and a dashpot, within the Coulomb limit.
+) -> tuple[float, float]:  # fmt: skip
+    """Apply the normal forces at the points of a patch: repulsion that never pulls, less the cohesion.
 
-    Friction is booked as what the spring was given and did not keep: by sliding, and by changes of its stiffness.
+    Returns the sum of the repulsion and that of all.
     """
-    before, stiffness_before = (
-        turned_spring(pairs, pair, normal, twist * step.time_step),
-        pairs.tangential_stiffness[pair],
-    )
-    slip = scaled(step.time_step, minus(moved, scaled(dot(moved, normal), normal)))
-    spring = minus(scaled(unloaded(stiffness_before, stiffness), before), scaled(stiffness, slip))
-    stretch = dot(spring, spring) ** 0.5
-    if stretch > limit:
-        spring = scaled(limit / stretch, spring)
-    given = stored(dot(before, before), stiffness_before) - 0.5 * dot(plus(before, spring), slip)
-    totals[FRICTION] += given - stored(dot(spring, spring), stiffness)
-    put(pairs.spring, pair, spring)
-    pairs.tangential_stiffness[pair] = stiffness
-    sliding = minus(now, scaled(dot(now, normal), normal))
-    tangential = minus(spring, scaled(dashpot, sliding))
-    pull = dot(tangential, tangential) ** 0.5
-    if pull > limit:
-        tangential = scaled(limit / pull, tangential)
-    totals[DAMPING] += dot(minus(spring, tangential), sliding) * step.time_step
-    return tangential
+    repulsion, total = 0.0, 0.0
+    for k in range(count):
+        point, normal = row(search.point, k), row(search.normal, k)
+        arm = minus(point, row(bodies.position, first))
+        now = scaled(-1.0, point_velocity(bodies.velocity_predicted, bodies.spin_predicted, first, arm))
+        if second >= 0:
+            other_arm = minus(point, row(bodies.position, second))
+            now = plus(now, point_velocity(bodies.velocity_predicted, bodies.spin_predicted, second, other_arm))
+        speed = dot(now, normal)
+        force = search.share[k] * max(0.0, elastic - dashpot * speed)
+        totals[DAMPING] += (search.share[k] * elastic - force) * speed * step.time_step
+        repulsion += force
+        force -= search.share[k] * cohesion
+        push(bodies, first, second, point, scaled(force, normal))
+        total += force
+    return repulsion, total
 
 
 @kernel
-def wring(
-    pair: int, pairs: Pairs, spin: float, limit: float, stiffness: float, dashpot: float, step: Step, totals: Floats
-) -> float:
-    """Return the couple about the normal on the second body: a spring with history and a dashpot, within a limit.
+def rub(
+    pair: int, pairs: Pairs, normal: Vector, meeting: Meeting, limit: float, stiffness: float, dashpot: float,
+    step: Step, totals: Floats,
+) -> Vector:  # fmt: skip
+    """Return the tangential force on the second body, within the Coulomb limit."""
+    before = turned_spring(row(pairs.spring, pair), row(pairs.normal, pair), normal, meeting.twist * step.time_step)
+    slip = scaled(step.time_step, across(meeting.moved, normal))
+    held = hold(
+        before, pairs.tangential_stiffness[pair], stiffness, slip, across(meeting.now, normal), dashpot, limit
+    )  # fmt: skip
+    put(pairs.spring, pair, held.spring)
+    pairs.tangential_stiffness[pair] = stiffness
+    totals[FRICTION] += held.slid
+    totals[DAMPING] += held.damped * step.time_step
+    return held.total
 
-    A patch of more than one point resists twisting as its points would, each with its share of the tangential spring.
-    """
-    before, stiffness_before = pairs.twist[pair], pairs.twist_stiffness[pair]
-    turn = spin * step.time_step
-    couple = min(max(unloaded(stiffness_before, stiffness) * before - stiffness * turn, -limit), limit)
-    given = stored(before * before, stiffness_before) - 0.5 * (before + couple) * turn
-    totals[FRICTION] += given - stored(couple * couple, stiffness)
-    pairs.twist[pair], pairs.twist_stiffness[pair] = couple, stiffness
-    total = min(max(couple - dashpot * spin, -limit), limit)
-    totals[DAMPING] += (couple - total) * spin * step.time_step
-    return total
+
+@kernel
+def part(pairs: Pairs, pair: int, totals: Floats) -> None:
+    """End a contact: the springs let go."""
+    if pairs.tangential_stiffness[pair] > 0.0:
+        spring = row(pairs.spring, pair)
+        totals[FRICTION] += stored(dot(spring, spring), pairs.tangential_stiffness[pair])
+        put(pairs.spring, pair, (0.0, 0.0, 0.0))
+        put(pairs.tangential_force, pair, (0.0, 0.0, 0.0))
+        twisted, rolled = let_go(pair, pairs)
+        totals[FRICTION] += twisted
+        totals[ROLLING] += rolled
+    pairs.tangential_stiffness[pair] = 0.0
+    pairs.overlap[pair] = 0.0
+    pairs.normal_force[pair], pairs.elastic_force[pair], pairs.cohesion[pair] = 0.0, 0.0, 0.0
+
+
+@kernel
+def turn(bodies: Bodies, first: int, second: int, couple: Vector) -> None:
+    """Apply a couple to the second body, and its opposite to the first."""
+    add(bodies.torque, first, -1.0, couple)
+    if second >= 0:
+        add(bodies.torque, second, 1.0, couple)
 
 
 @kernel
@@ -185,45 +188,47 @@ def act(
         part(pairs, pair, totals)
         return
     overlap, point, normal = spread(search, count, rounding)
-    arm = minus(point, row(bodies.position, first))
-    inverse_mass = inverse_mass_at(bodies, first, arm, normal, step.paper_mass)
-    curvature = 1.0 / bodies.contact_radius[first]
-    now = scaled(-1.0, point_velocity(bodies.velocity_predicted, bodies.spin_predicted, first, arm))
-    moved = scaled(-1.0, point_velocity(bodies.velocity, bodies.half_spin, first, arm))
-    twist = 0.5 * dot(row(bodies.half_spin, first), normal)
-    if is_body:
-        arm = minus(point, row(bodies.position, second))
-        inverse_mass += inverse_mass_at(bodies, second, arm, normal, step.paper_mass)
-        curvature += 1.0 / bodies.contact_radius[second]
-        now = plus(now, point_velocity(bodies.velocity_predicted, bodies.spin_predicted, second, arm))
-        moved = plus(moved, point_velocity(bodies.velocity, bodies.half_spin, second, arm))
-        twist += 0.5 * dot(row(bodies.half_spin, second), normal)
+    meeting = meet(bodies, first, second, point, normal, step.paper_mass)
     here, there = bodies.material[first], bodies.material[second] if is_body else planes.material[-1 - second]
     damping_ratio = laws.damping_ratio[here, there]
     # The root is taken of the product: a length scaled by a power of two then scales every bit.
-    root = (overlap / curvature) ** 0.5
+    root = (overlap / meeting.curvature) ** 0.5
     stiffness = 4.0 / 3.0 * laws.young_modulus[here, there] * root
     shear_stiffness = 8.0 * laws.shear_modulus[here, there] * root
-    rate = 1.5 * stiffness * inverse_mass * max(1.0, 2.0 * damping_ratio) ** 2
-    totals[FREQUENCY_SQUARED] = max(totals[FREQUENCY_SQUARED], rate)
+    rate = 1.5 * stiffness * meeting.inverse_mass
 
-    dashpot = 2.0 * damping_ratio * (1.25 * stiffness / inverse_mass) ** 0.5
+    dashpot = 2.0 * damping_ratio * (1.25 * stiffness / meeting.inverse_mass) ** 0.5
     elastic = stiffness * overlap
-    force = press(search, count, bodies, first, second, elastic, dashpot, step, totals)
-    shear_dashpot = 2.0 * damping_ratio * (5.0 / 6.0 * shear_stiffness / inverse_mass) ** 0.5
-    limit = laws.friction[here, there] * max(0.0, force)
-    tangential = rub(pair, pairs, normal, moved, now, twist, limit, shear_stiffness, shear_dashpot, step, totals)
+    cohesion = laws.cohesion_force[here, there] + laws.cohesion_line[here, there] / meeting.curvature
+    force, total = press(search, count, bodies, first, second, elastic, cohesion, dashpot, step, totals)
+    shear_dashpot = 2.0 * damping_ratio * (5.0 / 6.0 * shear_stiffness / meeting.inverse_mass) ** 0.5
+    limit = laws.friction[here, there] * force
+    tangential = rub(pair, pairs, normal, meeting, limit, shear_stiffness, shear_dashpot, step, totals)
     push(bodies, first, second, point, tangential)
+
+    lever = laws.spinning_friction[here, there] / meeting.curvature
     square, mean = spin_radii(search, count, point, normal)
+    square += lever * lever
     if square > 0.0 or pairs.twist_stiffness[pair] > 0.0:
-        turn = -dot(row(bodies.half_spin, first), normal)
-        if is_body:
-            turn += dot(row(bodies.half_spin, second), normal)
-        couple = wring(pair, pairs, turn, limit * mean, shear_stiffness * square, shear_dashpot * square, step, totals)
-        add(bodies.torque, first, -couple, normal)
-        if is_body:
-            add(bodies.torque, second, couple, normal)
-    pairs.overlap[pair], pairs.normal_force[pair], pairs.elastic_force[pair] = overlap, force, elastic
+        couple, slid, damped = resist_twisting(
+            pair, pairs, dot(meeting.spin, normal), limit * mean + force * lever, shear_stiffness * square,
+            damping_ratio, meeting.inertia_along, step.time_step,
+        )  # fmt: skip
+        turn(bodies, first, second, scaled(couple, normal))
+        totals[FRICTION] += slid
+        totals[DAMPING] += damped
+    lever = laws.rolling_friction[here, there] / meeting.curvature
+    if lever > 0.0:
+        rolling, lost, rolling_rate = resist_rolling(
+            pair, pairs, normal, meeting.spin, meeting.twist, lever, force, stiffness, damping_ratio,
+            meeting.inertia_across, step.time_step,
+        )  # fmt: skip
+        turn(bodies, first, second, rolling)
+        totals[ROLLING] += lost
+        rate = max(rate, rolling_rate)
+    totals[FREQUENCY_SQUARED] = max(totals[FREQUENCY_SQUARED], rate * max(1.0, 2.0 * damping_ratio) ** 2)
+    pairs.overlap[pair], pairs.normal_force[pair], pairs.elastic_force[pair] = overlap, total, elastic
+    pairs.cohesion[pair] = cohesion
     put(pairs.normal, pair, normal)
     put(pairs.point, pair, point)
     put(pairs.tangential_force, pair, tangential)

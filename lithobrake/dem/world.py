@@ -13,7 +13,7 @@ from lithobrake.dem.advance import DIVERGED, FIRST_CONTACT, LAST_CONTACT, PEAK_F
 from lithobrake.dem.arrays import Floats, Pairs
 from lithobrake.dem.body import Body, Plane, rotation_matrices, unit
 from lithobrake.dem.engine import Engine, no_pairs
-from lithobrake.dem.force import FREQUENCY_SQUARED, Step
+from lithobrake.dem.force import FREQUENCY_SQUARED, TOTALS, Step
 from lithobrake.dem.material import PAIR_RULES, SHEAR_MODULUS_RULES, Material
 from lithobrake.dem.shape import Shape, equivalent_radius
 
@@ -31,8 +31,8 @@ class World:
 
     gravity [m/s2], shape [3]. time_step [s]; None: a fiftieth of the shortest contact that the speeds at hand can
     make. shear_modulus_rule "mindlin" or "paper" (its Eq. 8 as printed); damping_mass "contact" (the mass seen at
-    the contact point) or "paper" (the reduced mass); pair_rule "smaller", "mean" or "geometric" for restitution and
-    friction of two materials.
+    the contact point) or "paper" (the reduced mass); pair_rule "smaller", "mean" or "geometric" for restitution,
+    frictions and cohesion of two materials.
     """
 
     def __init__(
@@ -70,7 +70,7 @@ class World:
             "angular_momentum": np.zeros((0, 3)),
         }  # fmt: skip
         self._pairs: Pairs = no_pairs()
-        self._totals = np.zeros(3)
+        self._totals = np.zeros(TOTALS)
         self._watched = -1
         self._probed = np.zeros(4)
         self._engine: Engine | None = None
@@ -330,7 +330,7 @@ class World:
         return result
 
     def energy(self) -> dict[str, float]:
-        """Return the energy ledger [J]: kinetic, potential, elastic, damping and friction (both lost), total of all."""
+        """Return the energy ledger [J]: see energy.ledger: kinetic, potential, elastic, cohesive, lost ones, total."""
         pairs = self._assembled().pairs
         return energy.ledger(self.mass, self.position, self.velocity, self.spin, self.angular_momentum, self.gravity,
                              pairs, self._totals)  # fmt: skip

@@ -1,0 +1,68 @@
+"""Springs with history: what rubs and what rolls is held by a spring and a dashpot, up to a limit.
+
+The spring turns with the contact, loses force when its stiffness falls, and books as lost what it was given and did not
+keep: by sliding, and by changes of its stiffness.
+"""
+
+from typing import NamedTuple
+
+from lithobrake.compiled import kernel
+from lithobrake.dem.vectors import Vector, cross, dot, minus, plus, scaled
+
+
+class Hold(NamedTuple):
+    """What a spring with a dashpot does in a step."""
+
+    spring: Vector  # N or N m, force of the spring alone
+    total: Vector  # with the dashpot's
+    slid: float  # J, lost by the spring
+    damped: float  # W, lost in the dashpot, and by the limit on the total
+
+
+@kernel
+def turned_spring(spring: Vector, normal_before: Vector, normal: Vector, twist: float) -> Vector:
+    """Return a spring's force turned with the contact frame: with the normal, and by an angle about it."""
+    square = dot(spring, spring)
+    if square == 0.0:
+        return spring
+    turn = plus(cross(normal_before, normal), scaled(twist, normal))
+    spring = plus(spring, cross(turn, spring))
+    spring = minus(spring, scaled(dot(spring, normal), normal))
+    left = dot(spring, spring)
+    return scaled((square / left) ** 0.5, spring) if left > 0.0 else (0.0, 0.0, 0.0)
+
+
+@kernel
+def across(vector: Vector, normal: Vector) -> Vector:
+    """Return the part of a vector across the normal."""
+    return minus(vector, scaled(dot(vector, normal), normal))
+
+
+@kernel
+def unloaded(stiffness_before: float, stiffness: float) -> float:
+    """Return what is left of a spring's force when its stiffness falls: so no cycle of loading gains energy."""
+    return min(1.0, stiffness / stiffness_before) if stiffness_before > 0.0 else 1.0
+
+
+@kernel
+def stored(force_squared: float, stiffness: float) -> float:
+    """Return the energy of a spring under a force."""
+    return 0.5 * force_squared / stiffness if stiffness > 0.0 else 0.0
+
+
+@kernel
+def hold(
+    before: Vector, stiffness_before: float, stiffness: float, way: Vector, rate: Vector, dashpot: float, limit: float
+) -> Hold:
+    """Stretch a spring by a way, or an angle, and add a dashpot against its rate; neither passes the limit."""
+    spring = minus(scaled(unloaded(stiffness_before, stiffness), before), scaled(stiffness, way))
+    stretch = dot(spring, spring) ** 0.5
+    if stretch > limit:
+        spring = scaled(limit / stretch, spring)
+    given = stored(dot(before, before), stiffness_before) - 0.5 * dot(plus(before, spring), way)
+    total = minus(spring, scaled(dashpot, rate))
+    pull = dot(total, total) ** 0.5
+    if pull > limit:
+        total = scaled(limit / pull, total)
+    slid = given - stored(dot(spring, spring), stiffness)
+    return Hold(spring, total, slid, dot(minus(spring, total), rate))
