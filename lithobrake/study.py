@@ -17,6 +17,8 @@ YoungModulus = Annotated[Scalar, MaybeUncertain("Pa", above=0)]
 PoissonRatio = Annotated[Scalar, MaybeUncertain("", at_least=0, below=0.5)]
 Restitution = Annotated[Scalar, MaybeUncertain("", above=0, at_most=1)]
 Friction = Annotated[Scalar, MaybeUncertain("", at_least=0)]
+Cohesion = Annotated[Scalar, MaybeUncertain("N", at_least=0)]
+SurfaceEnergy = Annotated[Scalar, MaybeUncertain("J/m2", at_least=0)]
 Angle = Annotated[Scalar, MaybeUncertain("deg", at_least=-360, at_most=360)]
 Spin = Annotated[Scalar, MaybeUncertain("rad/s")]
 
@@ -99,6 +101,14 @@ class GrainSection(Section):
     """Coefficient of restitution between grains."""
     friction: Friction = Field(examples=['{ distribution = "uniform", lower = 0.3, upper = 0.9 }'])
     """Coefficient of friction."""
+    rolling_friction: Friction = 0.0
+    """Resistance to rolling: a contact's largest couple over normal force and contact radius."""
+    spinning_friction: Friction = 0.0
+    """Resistance to spinning about the contact normal, likewise."""
+    cohesion_force: Cohesion = 0.0
+    """Pull of every contact, whatever its size."""
+    surface_energy: SurfaceEnergy = 0.0
+    """Pull of a contact in proportion to its radius R*: 4 pi surface_energy R*; lunar soil 0.0029 for clean grains."""
 
 
 class LanderSection(Section):
@@ -128,6 +138,14 @@ class LanderSection(Section):
     """Restitution of the lander's hull; absent: that of the grains."""
     friction: Friction | None = None
     """Friction of the lander's hull; absent: that of the grains."""
+    rolling_friction: Friction | None = None
+    """Rolling friction of the lander's hull; absent: that of the grains."""
+    spinning_friction: Friction | None = None
+    """Spinning friction of the lander's hull; absent: that of the grains."""
+    cohesion_force: Cohesion | None = None
+    """Cohesion of the lander's hull; absent: that of the grains."""
+    surface_energy: SurfaceEnergy | None = None
+    """Surface energy of the lander's hull; absent: that of the grains."""
 
 
 class PlaceSection(Section):

@@ -17,6 +17,11 @@ if TYPE_CHECKING:
     from lithobrake.touchdown import Bed, ContactModel, Lander, Landing
 
 Values = Mapping[str, float]
+# What a material is to a contact, by the names of the study file and of dem.Material.
+SURFACE = (
+    "young_modulus", "poisson_ratio", "restitution", "friction", "rolling_friction", "spinning_friction",
+    "cohesion_force", "surface_energy",
+)  # fmt: skip
 
 
 def medians(study: Study) -> dict[str, float]:
@@ -89,8 +94,7 @@ def grain(values: Values) -> "Material":
     """The rock of the grains."""
     from lithobrake.dem import Material
 
-    names = ("density", "young_modulus", "poisson_ratio", "restitution", "friction")
-    return Material(**{name: values[f"grain.{name}"] for name in names})
+    return Material(**{name: values[f"grain.{name}"] for name in ("density", *SURFACE)})
 
 
 def lander(study: Study, values: Values) -> "Lander":
@@ -104,8 +108,7 @@ def lander(study: Study, values: Values) -> "Lander":
         shape = Box(section.edges)
     else:
         shape = Sphere(values["lander.diameter"] / 2) if section.file is None else read_hull(Path(section.file))
-    names = ("young_modulus", "poisson_ratio", "restitution", "friction")
-    properties = {name: values.get(f"lander.{name}", values[f"grain.{name}"]) for name in names}
+    properties = {name: values.get(f"lander.{name}", values[f"grain.{name}"]) for name in SURFACE}
     # The density of the material plays no part: the mass is given.
     material = Material(density=values["lander.mass"] / shape.volume, **properties)
     inertia = None if section.inertia is None else np.diag(section.inertia)
