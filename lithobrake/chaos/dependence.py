@@ -15,6 +15,7 @@ from lithobrake.chaos.germ import Distribution, checked_inputs
 from lithobrake.chaos.polynomials import Array
 from lithobrake.chaos.storage import content_of, inputs_from_json, inputs_to_json, read, surrogate_of, write
 from lithobrake.chaos.surrogate import Surrogate
+from lithobrake.chaos.threads import one_thread
 from lithobrake.chaos.unbounded import Normal
 
 FORMAT = "lithobrake expansion of dependent inputs"
@@ -51,11 +52,13 @@ class GaussianCopula:
         """The independent standard normal germs, named "germ 1 of 3" and so on: they mix the inputs."""
         return {f"germ {k + 1} of {len(self.inputs)}": Normal(0.0, 1.0) for k in range(len(self.inputs))}
 
+    @one_thread()
     def physical(self, germs: ArrayLike) -> Array:
         """Inputs in physical units of independent germs [count, input_count]; result [count, input_count]."""
         uniforms = special.ndtr(np.asarray(germs, dtype=float) @ self._factor.T)
         return np.column_stack([entry.ppf(uniforms[:, k]) for k, entry in enumerate(self.inputs.values())])
 
+    @one_thread()
     def germs(self, x: ArrayLike) -> Array:
         """Independent germs of inputs x in physical units [count, input_count]; inside the open support only."""
         points = points_of(self.inputs, x)

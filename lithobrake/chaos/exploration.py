@@ -10,6 +10,7 @@ from lithobrake.chaos.basis import germs_of, recurrences_of
 from lithobrake.chaos.design import checked_count, sobol_sequence
 from lithobrake.chaos.polynomials import Array
 from lithobrake.chaos.surrogate import Surrogate
+from lithobrake.chaos.threads import one_thread
 
 
 def marginal(surrogate: Surrogate, names: Sequence[str]) -> Surrogate:
@@ -46,6 +47,7 @@ def main_effect(surrogate: Surrogate, name: str, points: ArrayLike | int = 50) -
     return values, marginal(surrogate, [name])(values[:, None])
 
 
+@one_thread()
 def gradient(surrogate: Surrogate, x: ArrayLike) -> Array:
     """Slopes at points x [count, input_count]; result [count, output_count, input_count] or [count, input_count].
 

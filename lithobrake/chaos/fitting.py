@@ -15,11 +15,13 @@ from lithobrake.chaos.sparse import solve_sparse
 from lithobrake.chaos.storage import data_hash
 from lithobrake.chaos.surrogate import Surrogate
 from lithobrake.chaos.terms import multi_index_set
+from lithobrake.chaos.threads import one_thread
 from lithobrake.chaos.training import Training, checked_training
 
 METHODS = ("ols", "lars", "omp", "gaussian_process")
 
 
+@one_thread()
 def fit(
     inputs: Mapping[str, Distribution],
     x: ArrayLike,

@@ -10,6 +10,7 @@ from lithobrake.chaos.design import checked_count
 from lithobrake.chaos.germ import Distribution, checked_inputs
 from lithobrake.chaos.polynomials import Array
 from lithobrake.chaos.terms import Indices, multi_index_set, term_count
+from lithobrake.chaos.threads import one_thread
 
 # Gauss nodes that stand for the density of one input when points are drawn from it times a squared polynomial.
 RULE_NODES = 200
@@ -58,6 +59,7 @@ def _squared_polynomial_samples(entry: Distribution, powers: Indices, uniforms: 
     return germ
 
 
+@one_thread()
 def fekete(
     inputs: Mapping[str, Distribution], count: int | None = None, seed: int = 0, *, degree: int | None = None
 ) -> Array:
@@ -103,6 +105,7 @@ def _pivoted_choice(matrix: Array, wanted: int) -> Array:
     return np.array(chosen)
 
 
+@one_thread()
 def d_optimal(
     inputs: Mapping[str, Distribution],
     count: int,

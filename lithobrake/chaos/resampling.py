@@ -12,12 +12,14 @@ from lithobrake.chaos.regression import best_degree
 from lithobrake.chaos.scores import score_of
 from lithobrake.chaos.surrogate import Surrogate
 from lithobrake.chaos.terms import Indices, multi_index_set
+from lithobrake.chaos.threads import one_thread
 from lithobrake.chaos.training import Training, checked_training
 
 # With more terms than this share of the points the residuals say too little about the error.
 TERM_SHARE = 0.7
 
 
+@one_thread()
 def sobol_intervals(
     surrogate: Surrogate, x: ArrayLike, y: ArrayLike, *, count: int = 500, level: float = 0.95, seed: int = 0
 ) -> dict[str, Any]:

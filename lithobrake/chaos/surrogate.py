@@ -15,6 +15,7 @@ from lithobrake.chaos.evaluation import Plan, evaluate, make_plan
 from lithobrake.chaos.germ import Distribution, checked_inputs
 from lithobrake.chaos.polynomials import Array
 from lithobrake.chaos.terms import Indices
+from lithobrake.chaos.threads import one_thread
 
 
 class Surrogate:
@@ -83,6 +84,7 @@ class Surrogate:
         points = self.checked_points(x, outside)
         return self.shaped(self.evaluated(points))
 
+    @one_thread()
     def evaluated(self, points: Array) -> Array:
         """Values [count, output_count] at points [count, input_count] that have been checked."""
         return evaluate(self.inputs, self._plan, points)
