@@ -19,6 +19,10 @@ class Cores(NamedTuple):
     face_start: Integers  # [shape_count + 1]
     edge: Integers  # [edge_total, 4]: from, to, left face, right face, counted within the shape
     edge_start: Integers  # [shape_count + 1]
+    edge_begin: Floats  # [edge_total, 3], about the centroid
+    edge_along: Floats  # [edge_total, 3], from begin to end
+    fence: Integers  # [2 edge_total]: the faces across the edges of each face, counted within the shape
+    fence_start: Integers  # [face_total + 1]
     rounding: Floats  # [shape_count]
 
 

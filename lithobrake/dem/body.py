@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from lithobrake.dem.arrays import Bodies, Cores, Floats, Laws, Planes
+from lithobrake.dem.arrays import Bodies, Cores, Floats, Integers, Laws, Planes
 from lithobrake.dem.material import Material, pair_law
 from lithobrake.dem.motion import write_matrices, write_rotations
 from lithobrake.dem.shape import ConvexHull, Shape, equivalent_radius
@@ -48,7 +48,7 @@ def rotation_matrices(quaternions: Floats) -> Floats:
 
 def cores_of(shapes: list[Shape]) -> Cores:
     """Lay the convex cores of shapes one after the other."""
-    vertex, normal, offset, edge = [], [], [], []
+    vertex, normal, offset, edge, line, fence = [], [], [], [], [], []
     for shape in shapes:
         vertex.append(shape.core)
         if isinstance(shape, ConvexHull):
@@ -56,6 +56,8 @@ def cores_of(shapes: list[Shape]) -> Cores:
             normal.append(core.face_normals)
             offset.append(core.face_offsets)
             edge.append(core.edges)
+            line.append(shape.core[core.edges[:, :2]])
+            fence += [fence_of(core.edges, face) for face in range(len(core.face_normals))]
         else:
             normal.append(np.zeros((0, 3)))
             offset.append(np.zeros(0))
@@ -64,11 +66,18 @@ def cores_of(shapes: list[Shape]) -> Cores:
     def starts(parts: list) -> np.ndarray:
         return np.concatenate([[0], np.cumsum([len(part) for part in parts])]).astype(np.int64)
 
-    rounding = np.array([shape.rounding for shape in shapes])
+    ends = np.concatenate([np.zeros((0, 2, 3)), *line])
+    no_face = np.zeros(0, dtype=np.int64)
     return Cores(
         np.concatenate(vertex), starts(vertex), np.concatenate(normal), np.concatenate(offset), starts(normal),
-        np.concatenate(edge), starts(edge), rounding,
+        np.concatenate(edge), starts(edge), ends[:, 0].copy(), ends[:, 1] - ends[:, 0],
+        np.concatenate([no_face, *fence]), starts(fence), np.array([shape.rounding for shape in shapes]),
     )  # fmt: skip
+
+
+def fence_of(edges: Integers, face: int) -> Integers:
+    """Return the faces across the edges [edge_count, 4] of a face."""
+    return np.concatenate([edges[edges[:, 2] == face, 3], edges[edges[:, 3] == face, 2]])
 
 
 def laws_of(materials: list[Material], shear_modulus_rule: str, pair_rule: str) -> Laws:

@@ -24,26 +24,47 @@ def face_below(cores: Cores, shape: int, point: Vector, farthest: float) -> tupl
     return best, height
 
 
+@kernel
+def stands_above(cores: Cores, shape: int, face: int, point: Vector) -> tuple[float, bool]:
+    """Return the height of a point over a face of a core, and whether that face is the closest of all to it.
+
+    It is, where the foot of the point lies behind all faces across the edges of this one.
+    """
+    start = cores.face_start[shape]
+    normal = row(cores.normal, start + face)
+    height = dot(normal, point) - cores.offset[start + face]
+    if height <= 0.0:
+        return height, False
+    foot = minus(point, scaled(height, normal))
+    for k in range(cores.fence_start[start + face], cores.fence_start[start + face + 1]):
+        other = start + cores.fence[k]
+        if dot(row(cores.normal, other), foot) > cores.offset[other]:
+            return height, False
+    return height, True
+
+
 @large_kernel
-def point_to_core(cores: Cores, shape: int, point: Vector, farthest: float) -> tuple[float, Vector, bool]:
+def point_to_core(cores: Cores, shape: int, point: Vector, farthest: float) -> tuple[float, Vector, bool, int]:
     """Return the signed distance of a point of the body frame to a core with faces, the outward unit normal at the
-    closest point of its surface, and whether it is nearer than `farthest` (if not, the rest is void).
+    closest point of its surface, whether it is nearer than `farthest` (if not, the rest is void), and the face where
+    that point lies (-1: on an edge).
     """
     face, height = face_below(cores, shape, point, farthest)
+    start = cores.face_start[shape]
     if face < 0:
-        return height, point, False
+        return height, point, False, -1
     normal = row(cores.normal, face)
     if height <= 0.0 or on_core(cores, shape, minus(point, scaled(height, normal)), face):
-        return height, normal, True
+        return height, normal, True, face - start
     nearest, square = point_to_edges(cores, shape, point)
-    distance = square**0.5
+    distance, found = square**0.5, -1
     normal = scaled(1.0 / distance, minus(point, nearest))
     for face in range(cores.face_start[shape], cores.face_start[shape + 1]):
         other = row(cores.normal, face)
         height = dot(other, point) - cores.offset[face]
         if 0.0 < height < distance and on_core(cores, shape, minus(point, scaled(height, other)), face):
-            normal, distance = other, height
-    return distance, normal, distance < farthest
+            normal, distance, found = other, height, face - start
+    return distance, normal, distance < farthest, found
 
 
 @kernel
@@ -58,11 +79,9 @@ def on_core(cores: Cores, shape: int, foot: Vector, own: int) -> bool:
 @kernel
 def point_to_edges(cores: Cores, shape: int, point: Vector) -> tuple[Vector, float]:
     """Return the closest point of all edges of a core, and its squared distance."""
-    first = cores.vertex_start[shape]
     nearest, square = point, -1.0
     for edge in range(cores.edge_start[shape], cores.edge_start[shape + 1]):
-        begin = row(cores.vertex, first + cores.edge[edge, 0])
-        along = minus(row(cores.vertex, first + cores.edge[edge, 1]), begin)
+        begin, along = row(cores.edge_begin, edge), row(cores.edge_along, edge)
         share = min(max(dot(minus(point, begin), along) / dot(along, along), 0.0), 1.0)
         trial = plus(begin, scaled(share, along))
         away = minus(point, trial)
@@ -105,6 +124,5 @@ def write_relative(rotation: Floats, first: int, second: int, relative: Floats) 
 @kernel
 def edge_of(cores: Cores, shape: int, edge: int) -> tuple[Vector, Vector]:
     """Return begin and direction (not of unit length) of an edge, in the body frame."""
-    k, first = cores.edge_start[shape] + edge, cores.vertex_start[shape]
-    begin = row(cores.vertex, first + cores.edge[k, 0])
-    return begin, minus(row(cores.vertex, first + cores.edge[k, 1]), begin)
+    k = cores.edge_start[shape] + edge
+    return row(cores.edge_begin, k), row(cores.edge_along, k)

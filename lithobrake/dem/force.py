@@ -33,8 +33,6 @@ class Meeting(NamedTuple):
     """How the members of a pair move against each other, second against first, at their centre of pressure."""
 
     inverse_mass: float  # 1/kg, of the pair for a force along the normal
-    inertia_along: float  # 1/(kg m2), inverse, of the pair for a couple along the normal
-    inertia_across: float  # 1/(kg m2), inverse, of the pair for a couple across the normal, mean of all directions
     curvature: float  # 1/m
     now: Vector  # m/s, predicted for the instant of the positions
     moved: Vector  # m/s, that made the last step
@@ -58,11 +56,20 @@ def inverse_mass_at(bodies: Bodies, body: int, arm: Vector, normal: Vector, pape
 
 
 @kernel
-def inverse_inertias(bodies: Bodies, body: int, normal: Vector) -> tuple[float, float]:
-    """Return one over the moment of inertia about the normal, and across it in the mean of all directions."""
+def inverse_inertia_along(bodies: Bodies, first: int, second: int, normal: Vector) -> float:
+    """Return what a couple along the normal meets of a pair, 1/(kg m2)."""
+    inverse = dot(normal, times(bodies.inverse_inertia, first, normal))
+    return inverse + dot(normal, times(bodies.inverse_inertia, second, normal)) if second >= 0 else inverse
+
+
+@kernel
+def inverse_inertia_across(bodies: Bodies, first: int, second: int, normal: Vector) -> float:
+    """Return what a couple across the normal meets of a pair in the mean of all directions, 1/(kg m2)."""
     inverse = bodies.inverse_inertia
-    along = dot(normal, times(inverse, body, normal))
-    return along, 0.5 * (inverse[body, 0, 0] + inverse[body, 1, 1] + inverse[body, 2, 2] - along)
+    trace = inverse[first, 0, 0] + inverse[first, 1, 1] + inverse[first, 2, 2]
+    if second >= 0:
+        trace += inverse[second, 0, 0] + inverse[second, 1, 1] + inverse[second, 2, 2]
+    return 0.5 * (trace - inverse_inertia_along(bodies, first, second, normal))
 
 
 @kernel
@@ -70,7 +77,6 @@ def meet(bodies: Bodies, first: int, second: int, point: Vector, normal: Vector,
     """Return how a body meets another, or a plane (second < 0)."""
     arm = minus(point, row(bodies.position, first))
     inverse_mass = inverse_mass_at(bodies, first, arm, normal, paper_mass)
-    along, across_it = inverse_inertias(bodies, first, normal)
     curvature = 1.0 / bodies.contact_radius[first]
     now = scaled(-1.0, point_velocity(bodies.velocity_predicted, bodies.spin_predicted, first, arm))
     moved = scaled(-1.0, point_velocity(bodies.velocity, bodies.half_spin, first, arm))
@@ -79,14 +85,12 @@ def meet(bodies: Bodies, first: int, second: int, point: Vector, normal: Vector,
     if second >= 0:
         arm = minus(point, row(bodies.position, second))
         inverse_mass += inverse_mass_at(bodies, second, arm, normal, paper_mass)
-        other_along, other_across = inverse_inertias(bodies, second, normal)
-        along, across_it = along + other_along, across_it + other_across
         curvature += 1.0 / bodies.contact_radius[second]
         now = plus(now, point_velocity(bodies.velocity_predicted, bodies.spin_predicted, second, arm))
         moved = plus(moved, point_velocity(bodies.velocity, bodies.half_spin, second, arm))
         spin = plus(spin, row(bodies.half_spin, second))
         twist += 0.5 * dot(row(bodies.half_spin, second), normal)
-    return Meeting(inverse_mass, along, across_it, curvature, now, moved, spin, twist)
+    return Meeting(inverse_mass, curvature, now, moved, spin, twist)
 
 
 @kernel
@@ -100,30 +104,41 @@ def push(bodies: Bodies, first: int, second: int, point: Vector, force: Vector) 
 
 
 @kernel
-def press(
-    search: Search, count: int, bodies: Bodies, first: int, second: int, elastic: float, cohesion: float,
-    dashpot: float, step: Step, totals: Floats,
-) -> tuple[float, float]:  # fmt: skip
-    """Apply the normal forces at the points of a patch: repulsion that never pulls, less the cohesion.
+def repel(share: float, elastic: float, dashpot: float, speed: float, step: Step, totals: Floats) -> float:
+    """Return the repulsion at a point of a patch, which never pulls, and book what its dashpot takes."""
+    force = share * max(0.0, elastic - dashpot * speed)
+    totals[DAMPING] += (share * elastic - force) * speed * step.time_step
+    return force
 
-    Returns the sum of the repulsion and that of all.
+
+@kernel
+def press(
+    search: Search, count: int, bodies: Bodies, first: int, second: int, meeting: Meeting, normal: Vector,
+    elastic: float, cohesion: float, dashpot: float, step: Step, totals: Floats,
+) -> tuple[float, float, float]:  # fmt: skip
+    """Apply the normal forces at the points of a patch: repulsion less cohesion.
+
+    Returns the sum of the repulsion, that of all, and what is left to apply at the centre: all of it, where the patch
+    is one point.
     """
+    if count == 1:
+        repulsion = repel(search.share[0], elastic, dashpot, dot(meeting.now, normal), step, totals)
+        total = repulsion - search.share[0] * cohesion
+        return repulsion, total, total
     repulsion, total = 0.0, 0.0
     for k in range(count):
-        point, normal = row(search.point, k), row(search.normal, k)
+        point, outward = row(search.point, k), row(search.normal, k)
         arm = minus(point, row(bodies.position, first))
         now = scaled(-1.0, point_velocity(bodies.velocity_predicted, bodies.spin_predicted, first, arm))
         if second >= 0:
             other_arm = minus(point, row(bodies.position, second))
             now = plus(now, point_velocity(bodies.velocity_predicted, bodies.spin_predicted, second, other_arm))
-        speed = dot(now, normal)
-        force = search.share[k] * max(0.0, elastic - dashpot * speed)
-        totals[DAMPING] += (search.share[k] * elastic - force) * speed * step.time_step
+        force = repel(search.share[k], elastic, dashpot, dot(now, outward), step, totals)
         repulsion += force
         force -= search.share[k] * cohesion
-        push(bodies, first, second, point, scaled(force, normal))
+        push(bodies, first, second, point, scaled(force, outward))
         total += force
-    return repulsion, total
+    return repulsion, total, 0.0
 
 
 @kernel
@@ -200,11 +215,13 @@ def act(
     dashpot = 2.0 * damping_ratio * (1.25 * stiffness / meeting.inverse_mass) ** 0.5
     elastic = stiffness * overlap
     cohesion = laws.cohesion_force[here, there] + laws.cohesion_line[here, there] / meeting.curvature
-    force, total = press(search, count, bodies, first, second, elastic, cohesion, dashpot, step, totals)
+    force, total, left = press(
+        search, count, bodies, first, second, meeting, normal, elastic, cohesion, dashpot, step, totals
+    )  # fmt: skip
     shear_dashpot = 2.0 * damping_ratio * (5.0 / 6.0 * shear_stiffness / meeting.inverse_mass) ** 0.5
     limit = laws.friction[here, there] * force
     tangential = rub(pair, pairs, normal, meeting, limit, shear_stiffness, shear_dashpot, step, totals)
-    push(bodies, first, second, point, tangential)
+    push(bodies, first, second, point, plus(scaled(left, normal), tangential))
 
     lever = laws.spinning_friction[here, there] / meeting.curvature
     square, mean = spin_radii(search, count, point, normal)
@@ -212,7 +229,7 @@ def act(
     if square > 0.0 or pairs.twist_stiffness[pair] > 0.0:
         couple, slid, damped = resist_twisting(
             pair, pairs, dot(meeting.spin, normal), limit * mean + force * lever, shear_stiffness * square,
-            damping_ratio, meeting.inertia_along, step.time_step,
+            damping_ratio, inverse_inertia_along(bodies, first, second, normal), step.time_step,
         )  # fmt: skip
         turn(bodies, first, second, scaled(couple, normal))
         totals[FRICTION] += slid
@@ -221,7 +238,7 @@ def act(
     if lever > 0.0:
         rolling, lost, rolling_rate = resist_rolling(
             pair, pairs, normal, meeting.spin, meeting.twist, lever, force, stiffness, damping_ratio,
-            meeting.inertia_across, step.time_step,
+            inverse_inertia_across(bodies, first, second, normal), step.time_step,
         )  # fmt: skip
         turn(bodies, first, second, rolling)
         totals[ROLLING] += lost

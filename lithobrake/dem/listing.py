@@ -11,7 +11,8 @@ from lithobrake.dem.distance import APART, CROSSING, Search, approach, weighted
 from lithobrake.dem.features import edge_of, edge_to_edge, point_to_core, write_relative
 from lithobrake.dem.vectors import Vector, dot, minus, plus, row, scaled, times, transposed_times
 
-# Kinds of features: a corner of the first on the second, of the second on the first, two edges, two spheres.
+# Kinds of features: a corner of the first on the second, of the second on the first (i, and one more than the number of
+# the face below it, or 0), two edges (i and j), two spheres.
 CORNER_OF_FIRST, CORNER_OF_SECOND, EDGES, SPHERES = 0, 1, 2, 3
 KIND, PLACE = 1 << 40, 1 << 20
 # In `term_count`: the cores cross, and the deepest point alone carries.
@@ -137,14 +138,16 @@ def list_corners(
         start = cores.vertex_start[shapes[0]]
         for k in range(start, cores.vertex_start[shapes[0] + 1]):
             seen = transposed_times(search.relative, 0, minus(row(cores.vertex, k), there))
-            if point_to_core(cores, shapes[1], seen, farthest)[2]:
-                note_term(pairs, pair, CORNER_OF_FIRST, k - start, 0)
+            _, _, near, face = point_to_core(cores, shapes[1], seen, farthest)
+            if near:
+                note_term(pairs, pair, CORNER_OF_FIRST, k - start, face + 1)
     if not is_point(cores, shapes[0]):
         start = cores.vertex_start[shapes[1]]
         for k in range(start, cores.vertex_start[shapes[1] + 1]):
             seen = plus(times(search.relative, 0, row(cores.vertex, k)), there)
-            if point_to_core(cores, shapes[0], seen, farthest)[2]:
-                note_term(pairs, pair, CORNER_OF_SECOND, k - start, 0)
+            _, _, near, face = point_to_core(cores, shapes[0], seen, farthest)
+            if near:
+                note_term(pairs, pair, CORNER_OF_SECOND, k - start, face + 1)
 
 
 @large_kernel

@@ -10,7 +10,7 @@ from lithobrake.compiled import kernel, large_kernel
 from lithobrake.dem.arrays import Bodies, Cores, Pairs, Planes
 from lithobrake.dem.crossing import way_out
 from lithobrake.dem.distance import APART, CROSSING, Search, approach, weighted
-from lithobrake.dem.features import edge_of, edge_to_edge, point_to_core, write_relative
+from lithobrake.dem.features import edge_of, edge_to_edge, point_to_core, stands_above, write_relative
 from lithobrake.dem.listing import CORNER_OF_FIRST, CORNER_OF_SECOND, DEEP, KIND, PLACE, SPHERES
 from lithobrake.dem.vectors import Vector, dot, minus, plus, put, row, scaled, times, transposed_times
 
@@ -84,19 +84,36 @@ def feature(
     if kind == CORNER_OF_FIRST:
         corner = row(cores.vertex, cores.vertex_start[shapes[0]] + i)
         seen = transposed_times(search.relative, 0, minus(corner, there))
-        distance, outward, near = point_to_core(cores, shapes[1], seen, reach)
-        return corner, scaled(-1.0, times(search.relative, 0, outward)), distance if near else reach
+        distance, outward = over(cores, shapes[1], seen, j - 1, reach)
+        return corner, scaled(-1.0, times(search.relative, 0, outward)), distance
     if kind == CORNER_OF_SECOND:
         corner = plus(times(search.relative, 0, row(cores.vertex, cores.vertex_start[shapes[1]] + i)), there)
-        distance, outward, near = point_to_core(cores, shapes[0], corner, reach)
-        return minus(corner, scaled(distance, outward)), outward, distance if near else reach
+        distance, outward = over(cores, shapes[0], corner, j - 1, reach)
+        return minus(corner, scaled(distance, outward)), outward, distance
     begin, along = edge_of(cores, shapes[0], i)
     other, other_along = edge_of(cores, shapes[1], j)
     other = plus(times(search.relative, 0, other), there)
     here, hither = edge_to_edge(begin, along, other, times(search.relative, 0, other_along))
     between = minus(hither, here)
-    distance = dot(between, between) ** 0.5
+    square = dot(between, between)
+    if square >= reach * reach:
+        return here, between, reach
+    distance = square**0.5
     return here, scaled(1.0 / distance, between) if distance > 0.0 else between, distance
+
+
+@kernel
+def over(cores: Cores, shape: int, point: Vector, face: int, reach: float) -> tuple[float, Vector]:
+    """Return distance (at most `reach`) and normal of a point over a core that stood over `face` when last listed.
+
+    Where it still does, nothing else can be closer; if not, all of the core is searched, with the same result.
+    """
+    if face >= 0:
+        height, closest = stands_above(cores, shape, face, point)
+        if closest:
+            return min(height, reach), row(cores.normal, cores.face_start[shape] + face)
+    distance, normal, near, _ = point_to_core(cores, shape, point, reach)
+    return distance if near else reach, normal
 
 
 @kernel

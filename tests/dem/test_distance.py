@@ -53,7 +53,7 @@ def test_point_to_core_is_the_distance_of_a_point():
     hull = ConvexHull(generator.normal(size=(14, 3)))
     cores = cores_of([hull])
     for point in generator.normal(size=(300, 3)) * 1.5:
-        distance, normal, near = point_to_core(cores, 0, tuple(point), np.inf)
+        distance, normal, near, _ = point_to_core(cores, 0, tuple(point), np.inf)
         assert near
         assert np.linalg.norm(normal) == pytest.approx(1.0)
         assert distance == pytest.approx(signed_distance(hull.core, point[None]), abs=1e-12)
