@@ -32,8 +32,10 @@ class Bodies(NamedTuple):
     shape: Integers  # [body_count]
     material: Integers  # [body_count]
     mass: Floats  # [body_count], kg
+    inverse_mass: Floats  # [body_count], 1/kg
     inverse_inertia_body: Floats  # [body_count, 3, 3], body frame, 1/(kg m2)
     contact_radius: Floats  # [body_count], radius of the volume-equivalent sphere
+    curvature: Floats  # [body_count], 1/m, one over that
     bounding_radius: Floats  # [body_count]
     position: Floats  # [body_count, 3], centroid
     velocity: Floats  # [body_count, 3], m/s
@@ -88,6 +90,7 @@ class Laws(NamedTuple):
     young_modulus: Floats  # effective, Pa
     shear_modulus: Floats  # effective, Pa
     damping_ratio: Floats
+    shear_damping: Floats  # dashpot across the normal over that along it
     friction: Floats
     rolling_friction: Floats
     spinning_friction: Floats

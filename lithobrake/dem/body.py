@@ -104,9 +104,10 @@ def bodies_of(bodies: list[Body], shapes: list[Shape], materials: list[Material]
     arrays = Bodies(
         shape=np.array([shape_of[id(body.shape)] for body in bodies], dtype=np.int64),
         material=np.array([materials.index(body.material) for body in bodies], dtype=np.int64),
-        mass=np.array([body.mass for body in bodies]),
+        mass=np.array([body.mass for body in bodies]), inverse_mass=np.array([1.0 / body.mass for body in bodies]),
         inverse_inertia_body=np.array([np.linalg.inv(body.inertia) for body in bodies]),
         contact_radius=np.array([equivalent_radius(body.shape) for body in bodies]),
+        curvature=np.array([1.0 / equivalent_radius(body.shape) for body in bodies]),
         bounding_radius=np.array([body.shape.bounding_radius for body in bodies]),
         position=state["position"], velocity=state["velocity"], quaternion=state["quaternion"],
         angular_momentum=state["angular_momentum"], rotation=np.zeros((n, 3, 3)), inverse_inertia=np.zeros((n, 3, 3)),

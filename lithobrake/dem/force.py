@@ -50,9 +50,9 @@ def point_velocity(linear: Floats, spin: Floats, body: int, arm: Vector) -> Vect
 def inverse_mass_at(bodies: Bodies, body: int, arm: Vector, normal: Vector, paper_mass: bool) -> float:
     """Return one over the mass that a force along the normal meets at the contact point, n . W . n."""
     if paper_mass:
-        return 1.0 / bodies.mass[body]
+        return bodies.inverse_mass[body]
     turn = cross(arm, normal)
-    return 1.0 / bodies.mass[body] + dot(turn, times(bodies.inverse_inertia, body, turn))
+    return bodies.inverse_mass[body] + dot(turn, times(bodies.inverse_inertia, body, turn))
 
 
 @kernel
@@ -77,7 +77,7 @@ def meet(bodies: Bodies, first: int, second: int, point: Vector, normal: Vector,
     """Return how a body meets another, or a plane (second < 0)."""
     arm = minus(point, row(bodies.position, first))
     inverse_mass = inverse_mass_at(bodies, first, arm, normal, paper_mass)
-    curvature = 1.0 / bodies.contact_radius[first]
+    curvature = bodies.curvature[first]
     now = scaled(-1.0, point_velocity(bodies.velocity_predicted, bodies.spin_predicted, first, arm))
     moved = scaled(-1.0, point_velocity(bodies.velocity, bodies.half_spin, first, arm))
     spin = scaled(-1.0, row(bodies.half_spin, first))
@@ -85,7 +85,7 @@ def meet(bodies: Bodies, first: int, second: int, point: Vector, normal: Vector,
     if second >= 0:
         arm = minus(point, row(bodies.position, second))
         inverse_mass += inverse_mass_at(bodies, second, arm, normal, paper_mass)
-        curvature += 1.0 / bodies.contact_radius[second]
+        curvature += bodies.curvature[second]
         now = plus(now, point_velocity(bodies.velocity_predicted, bodies.spin_predicted, second, arm))
         moved = plus(moved, point_velocity(bodies.velocity, bodies.half_spin, second, arm))
         spin = plus(spin, row(bodies.half_spin, second))
@@ -118,8 +118,8 @@ def press(
 ) -> tuple[float, float, float]:  # fmt: skip
     """Apply the normal forces at the points of a patch: repulsion less cohesion.
 
-    Returns the sum of the repulsion, that of all, and what is left to apply at the centre: all of it, where the patch
-    is one point.
+    Returns the repulsion and the whole force along the normal, and what is left to apply at the centre: all of it,
+    where the patch is one point.
     """
     if count == 1:
         repulsion = repel(search.share[0], elastic, dashpot, dot(meeting.now, normal), step, totals)
@@ -134,10 +134,11 @@ def press(
             other_arm = minus(point, row(bodies.position, second))
             now = plus(now, point_velocity(bodies.velocity_predicted, bodies.spin_predicted, second, other_arm))
         force = repel(search.share[k], elastic, dashpot, dot(now, outward), step, totals)
-        repulsion += force
+        along = dot(outward, normal)
+        repulsion += force * along
         force -= search.share[k] * cohesion
         push(bodies, first, second, point, scaled(force, outward))
-        total += force
+        total += force * along
     return repulsion, total, 0.0
 
 
@@ -161,15 +162,15 @@ def rub(
 
 @kernel
 def part(pairs: Pairs, pair: int, totals: Floats) -> None:
-    """End a contact: the springs let go."""
-    if pairs.tangential_stiffness[pair] > 0.0:
-        spring = row(pairs.spring, pair)
-        totals[FRICTION] += stored(dot(spring, spring), pairs.tangential_stiffness[pair])
-        put(pairs.spring, pair, (0.0, 0.0, 0.0))
-        put(pairs.tangential_force, pair, (0.0, 0.0, 0.0))
-        twisted, rolled = let_go(pair, pairs)
-        totals[FRICTION] += twisted
-        totals[ROLLING] += rolled
+    """End a contact, if there was one: the springs let go."""
+    if pairs.overlap[pair] == 0.0:
+        return
+    spring = row(pairs.spring, pair)
+    twisted, rolled = let_go(pair, pairs)
+    totals[FRICTION] += stored(dot(spring, spring), pairs.tangential_stiffness[pair]) + twisted
+    totals[ROLLING] += rolled
+    put(pairs.spring, pair, (0.0, 0.0, 0.0))
+    put(pairs.tangential_force, pair, (0.0, 0.0, 0.0))
     pairs.tangential_stiffness[pair] = 0.0
     pairs.overlap[pair] = 0.0
     pairs.normal_force[pair], pairs.elastic_force[pair], pairs.cohesion[pair] = 0.0, 0.0, 0.0
@@ -218,7 +219,7 @@ def act(
     force, total, left = press(
         search, count, bodies, first, second, meeting, normal, elastic, cohesion, dashpot, step, totals
     )  # fmt: skip
-    shear_dashpot = 2.0 * damping_ratio * (5.0 / 6.0 * shear_stiffness / meeting.inverse_mass) ** 0.5
+    shear_dashpot = dashpot * laws.shear_damping[here, there]
     limit = laws.friction[here, there] * force
     tangential = rub(pair, pairs, normal, meeting, limit, shear_stiffness, shear_dashpot, step, totals)
     push(bodies, first, second, point, plus(scaled(left, normal), tangential))

@@ -61,6 +61,7 @@ class PairLaw(NamedTuple):
     young_modulus: float  # effective, Pa
     shear_modulus: float  # effective, Pa
     damping_ratio: float  # of the normal contact, -
+    shear_damping: float  # dashpot across the normal over that along it, -
     friction: float
     rolling_friction: float
     spinning_friction: float
@@ -127,6 +128,7 @@ def pair_law(a: Material, b: Material, shear_modulus_rule: str = "mindlin", pair
         )
     }  # fmt: skip
     return PairLaw(
-        young, shear, damping_ratio_of(shared["restitution"]), shared["friction"], shared["rolling_friction"],
-        shared["spinning_friction"], shared["cohesion_force"], 4.0 * math.pi * shared["surface_energy"],
+        young, shear, damping_ratio_of(shared["restitution"]), 2.0 * math.sqrt(shear / young), shared["friction"],
+        shared["rolling_friction"], shared["spinning_friction"], shared["cohesion_force"],
+        4.0 * math.pi * shared["surface_energy"],
     )  # fmt: skip

@@ -58,8 +58,9 @@ def write_inverse_inertia(body: int, bodies: Bodies) -> None:
         u = r[i, 0] * inner[0, 0] + r[i, 1] * inner[1, 0] + r[i, 2] * inner[2, 0]
         v = r[i, 0] * inner[0, 1] + r[i, 1] * inner[1, 1] + r[i, 2] * inner[2, 1]
         w = r[i, 0] * inner[0, 2] + r[i, 1] * inner[1, 2] + r[i, 2] * inner[2, 2]
-        for j in range(3):
+        for j in range(i, 3):
             outer[i, j] = u * r[j, 0] + v * r[j, 1] + w * r[j, 2]
+            outer[j, i] = outer[i, j]
 
 
 @kernel
@@ -104,7 +105,7 @@ def kick(bodies: Bodies, step: Step) -> None:
     """Advance the velocities by half a step under the forces at hand."""
     half = 0.5 * step.time_step
     for body in range(len(bodies.mass)):
-        add(bodies.velocity, body, half / bodies.mass[body], row(bodies.force, body))
+        add(bodies.velocity, body, half * bodies.inverse_mass[body], row(bodies.force, body))
         add(bodies.velocity, body, half, step.gravity)
         add(bodies.angular_momentum, body, half, row(bodies.torque, body))
 
@@ -123,7 +124,7 @@ def drift(bodies: Bodies, step: Step) -> float:
         velocity, spin = row(bodies.velocity, body), row(bodies.half_spin, body)
         way = dot(velocity, velocity) ** 0.5 + bodies.bounding_radius[body] * dot(spin, spin) ** 0.5
         bodies.travel[body] += step.time_step * way
-        gain = scaled(half / bodies.mass[body], row(bodies.force, body))
+        gain = scaled(half * bodies.inverse_mass[body], row(bodies.force, body))
         predicted = plus(row(bodies.velocity, body), plus(gain, scaled(half, step.gravity)))
         put(bodies.velocity_predicted, body, predicted)
         momentum = plus(row(bodies.angular_momentum, body), scaled(half, row(bodies.torque, body)))

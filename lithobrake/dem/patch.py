@@ -16,6 +16,7 @@ from lithobrake.dem.vectors import Vector, dot, minus, plus, put, row, scaled, t
 
 # Weight of a pair of edges beside a corner: where an edge ends, all edges of that corner meet the same place.
 EDGE_WEIGHT = 0.25
+EDGE_ALONE = EDGE_WEIGHT**0.125  # overlap of a patch of one pair of edges over theirs
 # Between these parts of the rounding the patch narrows to its deepest point; the cores themselves stay apart till 1.
 NARROW_FROM, NARROW_TO = 0.5, 0.9
 
@@ -156,9 +157,13 @@ def spread(search: Search, count: int, rounding: float) -> tuple[float, Vector, 
     times as stiff. Toward overlaps as deep as the rounding, D passes into the deepest overlap alone. Returns D, the
     centre of pressure, and the unit normal of the whole force.
     """
-    if count == 1 and search.weight_of_point[0] == 1.0:
-        search.share[0] = 1.0
-        return search.depth[0], row(search.point, 0), row(search.normal, 0)
+    if count == 1:
+        depth, share = search.depth[0], 1.0
+        if search.weight_of_point[0] < 1.0:
+            depth, narrowing, slope = narrowed(depth, EDGE_ALONE * depth, rounding)
+            share = EDGE_ALONE + narrowing * (1.0 - EDGE_ALONE) + slope
+        search.share[0] = share
+        return depth, row(search.point, 0), row(search.normal, 0)
     top = 0
     for k in range(1, count):
         if search.depth[k] > search.depth[top]:

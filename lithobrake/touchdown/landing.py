@@ -77,7 +77,7 @@ def land(bed: Bed, lander: Lander, landing: Landing, frame_count: int = 0) -> Ou
             f"the lander is {2.0 * lander.shape.bounding_radius:.3g} m across; allowed is less than the bed's width, "
             f"{min(bed.width)} m: make the bed wider"
         )
-    world = bed.world(landing.grain, landing.gravity, landing.contact)
+    world = bed.world(landing.grain, bed.gravity, landing.contact)
     relax(world, bed, landing)
     number = release(world, bed, lander, landing)
     world.time_step = world.shortest_contact(landing.speed) / landing.contact.steps_per_contact
@@ -97,10 +97,10 @@ def relax(world: World, bed: Bed, landing: Landing) -> None:
     made with, and the site's acts from the touchdown on.
     """
     gravity = np.array(landing.gravity)
-    if gravity[2] >= 0.0:
-        world.gravity = np.array(bed.gravity)
-    period = settling.rest_period(landing.grain, bed.grain_diameter, float(np.linalg.norm(world.gravity)))
+    rests_under = gravity if gravity[2] < 0.0 else np.array(bed.gravity)
+    period = settling.rest_period(landing.grain, bed.grain_diameter, float(np.linalg.norm(rests_under)))
     world.drag = 2.0 * RELAX_DAMPING * 2.0 * math.pi / period
+    settling.ramp(world, rests_under, period)
 
     def fade() -> None:
         world.drag *= math.exp(-1.0 / (RELAX_FADING * settling.CHECKS_PER_PERIOD))

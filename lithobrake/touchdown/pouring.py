@@ -13,9 +13,7 @@ from lithobrake.touchdown.grains import GrainSizes, make_grain, random_orientati
 from lithobrake.touchdown.surface import height_map
 
 Progress = Callable[[float, str], None]
-RAMP_PERIODS = 2.0  # time constant of the ramp of gravity, in periods of a grain at rest under the local gravity
 FREE_FALL_DAMPING = 2.0  # drag while a bed comes to rest, in units of sqrt(gravity / diameter)
-RAMP_STEPS = 40  # changes of gravity a time constant
 FALLEN = 1e-3  # kinetic ratio below which the grains lie, and only have to settle
 
 
@@ -129,20 +127,13 @@ def fall(world: World, recorder: Recorder, recipe: BedRecipe, tell: Progress) ->
 
 def lower_gravity(world: World, recorder: Recorder, recipe: BedRecipe, tell: Progress) -> None:
     """Lower the gravity exponentially from the pour's to the local one, slowly against the contacts."""
-    local = np.array(recipe.gravity)
-    strength = float(np.linalg.norm(local))
-    start = world.gravity.copy()
-    period = settling.rest_period(recipe.material, recorder.diameter, strength)
-    time_constant = RAMP_PERIODS * period
-    chunk = time_constant / RAMP_STEPS
-    # The ramp ends where what is left of the pour gravity is a thousandth of the local one.
-    chunks = math.ceil(RAMP_STEPS * math.log(1000.0 * recipe.pour_gravity / strength))
-    for k in range(1, chunks + 1):
-        world.gravity = local + (start - local) * math.exp(-k / RAMP_STEPS) * (k < chunks)
-        world.time_step = chunk / math.ceil(chunk / settling.quiet_time_step(world, chunk / 4.0))
-        world.run(chunk)
+    period = settling.rest_period(recipe.material, recorder.diameter, float(np.linalg.norm(recipe.gravity)))
+
+    def note(done: float) -> None:
         recorder.note(world)
-        tell(0.6 + 0.2 * k / chunks, "lowering gravity")
+        tell(0.6 + 0.2 * done, "lowering gravity")
+
+    settling.ramp(world, np.array(recipe.gravity), period, note)
     recorder.frame(world)
 
 

@@ -4,9 +4,15 @@ import math
 from collections.abc import Callable
 
 import numpy as np
+from numpy.typing import NDArray
 
 from lithobrake.dem import Material, World
 
+Floats = NDArray[np.float64]
+
+RAMP_PERIODS = 2.0  # time constant of a ramp of gravity, in periods of a grain at rest under the gravity it ends at
+RAMP_STEPS = 40  # changes of gravity a time constant
+RAMP_LEFT = 1e-3  # of the gravity it ends at, where a ramp makes its last step
 KINETIC_RATIO = 1e-5  # of the energy that lifts every grain by its own diameter
 UNBALANCED_FORCE = 1e-2  # of the mean contact force
 PERIODS_HELD = 10.0  # settled: both hold for so many periods of a grain's small oscillation at its rest overlap
@@ -53,6 +59,23 @@ def quiet_time_step(world: World, longest: float) -> float:
     """Return a time step [s] that resolves the contacts at their present overlaps, at most `longest`."""
     frequency = world.contact_frequency
     return min(longest, QUIET_PHASE / frequency) if frequency > 0.0 else longest
+
+
+def ramp(world: World, gravity: Floats, period: float, each_chunk: Callable[[float], None] = lambda _: None) -> None:
+    """Bring the gravity of a world exponentially to another [m/s2], slowly against a grain's period [s] there.
+
+    Calls each_chunk with the share done. Changed at once, what was compressed would throw up the grains.
+    """
+    start = world.gravity.copy()
+    change = float(np.linalg.norm(start - gravity) / np.linalg.norm(gravity))
+    chunk = RAMP_PERIODS * period / RAMP_STEPS
+    chunks = math.ceil(RAMP_STEPS * math.log(change / RAMP_LEFT)) if change > RAMP_LEFT else 0
+    for k in range(1, chunks + 1):
+        world.gravity = gravity + (start - gravity) * math.exp(-k / RAMP_STEPS) * (k < chunks)
+        world.time_step = chunk / math.ceil(chunk / quiet_time_step(world, chunk / 4.0))
+        world.run(chunk)
+        each_chunk(k / chunks)
+    world.gravity = gravity.copy()
 
 
 def hold_still(
