@@ -34,6 +34,7 @@ class Bodies(NamedTuple):
     mass: Floats  # [body_count], kg
     inverse_mass: Floats  # [body_count], 1/kg
     inverse_inertia_body: Floats  # [body_count, 3, 3], body frame, 1/(kg m2)
+    isotropic: NDArray[np.bool_]  # [body_count], whether all moments of inertia are the same number
     contact_radius: Floats  # [body_count], radius of the volume-equivalent sphere
     curvature: Floats  # [body_count], 1/m, one over that
     bounding_radius: Floats  # [body_count]

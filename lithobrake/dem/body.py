@@ -106,6 +106,7 @@ def bodies_of(bodies: list[Body], shapes: list[Shape], materials: list[Material]
         material=np.array([materials.index(body.material) for body in bodies], dtype=np.int64),
         mass=np.array([body.mass for body in bodies]), inverse_mass=np.array([1.0 / body.mass for body in bodies]),
         inverse_inertia_body=np.array([np.linalg.inv(body.inertia) for body in bodies]),
+        isotropic=np.array([np.array_equal(body.inertia, body.inertia[0, 0] * np.eye(3)) for body in bodies]),
         contact_radius=np.array([equivalent_radius(body.shape) for body in bodies]),
         curvature=np.array([1.0 / equivalent_radius(body.shape) for body in bodies]),
         bounding_radius=np.array([body.shape.bounding_radius for body in bodies]),

@@ -54,6 +54,10 @@ def write_matrices(bodies: Bodies) -> None:
 def write_inverse_inertia(body: int, bodies: Bodies) -> None:
     """Turn the inverse inertia of a body into the world frame."""
     r, inner, outer = bodies.rotation[body], bodies.inverse_inertia_body[body], bodies.inverse_inertia[body]
+    if bodies.isotropic[body]:
+        for i in range(3):
+            put(outer, i, row(inner, i))
+        return
     for i in range(3):
         u = r[i, 0] * inner[0, 0] + r[i, 1] * inner[1, 0] + r[i, 2] * inner[2, 0]
         v = r[i, 0] * inner[0, 1] + r[i, 1] * inner[1, 1] + r[i, 2] * inner[2, 1]
@@ -91,12 +95,17 @@ def rotate(body: int, bodies: Bodies, time_step: float) -> None:
 
     The implicit midpoint is symmetric in time, so the energy of free rotation does not drift.
     """
-    spin = spin_at_mid_step(row(bodies.angular_momentum, body), body, bodies, time_step)
+    momentum = row(bodies.angular_momentum, body)
+    if bodies.isotropic[body]:
+        spin = times(bodies.inverse_inertia, body, momentum)
+    else:
+        spin = spin_at_mid_step(momentum, body, bodies, time_step)
     q = bodies.quaternion
     after = turned((q[body, 0], q[body, 1], q[body, 2], q[body, 3]), spin, time_step)
     q[body, 0], q[body, 1], q[body, 2], q[body, 3] = after
     write_rotation(after, bodies.rotation[body])
-    write_inverse_inertia(body, bodies)
+    if not bodies.isotropic[body]:
+        write_inverse_inertia(body, bodies)
     put(bodies.half_spin, body, spin)
 
 
