@@ -137,6 +137,22 @@ class World:
         self.planes.append(Plane(place, unit(normal, "add_plane normal"), material, meets))
         return len(self.planes) - 1
 
+    def move_plane(
+        self, plane: int, point: Sequence[float] | None = None, *, bodies: Iterable[int] | None = None
+    ) -> None:
+        """Put a plane through another point [m], or let it meet other bodies; its contacts go on with their history.
+
+        The move is a jump: keep it far below the overlaps. None leaves a value as it is.
+        """
+        number = range(len(self.planes))[plane]
+        old = self.planes[number]
+        place = old.point if point is None else np.array(_vector(point, "move_plane point"))
+        meets = old.meets if bodies is None else frozenset(bodies)
+        given, chosen = self._given_time_step, self._time_step
+        self._disassemble()
+        self._given_time_step, self._time_step = given, chosen
+        self.planes[number] = Plane(place, old.normal, old.material, meets)
+
     def watch(self, body: int) -> None:
         """Note from now on the contact forces on one body, see `watched`."""
         self._watched = range(len(self.bodies))[body]

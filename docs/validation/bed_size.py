@@ -1,0 +1,119 @@
+"""Does a landing feel the walls and the floor? The same landings on a bed and on one twice as wide and deep.
+
+    python docs/validation/bed_size.py [--placements 20] [--out docs/validation]
+
+Writes bed_size.csv, a line for each landing as it ends, and bed_size.json with the means and their standard errors.
+Places and attitudes are drawn once, and are the same on both beds.
+"""
+
+import argparse
+import csv
+import json
+import math
+import platform
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+
+from lithobrake.dem import Box, Material
+from lithobrake.touchdown import Bed, BedRecipe, ContactModel, GrainSizes, Lander, Landing, land, pour_bed
+from lithobrake.touchdown.smallest_bed import smallest_bed
+
+ROCK = Material(young_modulus=1.5e6, poisson_ratio=0.25, restitution=0.5, friction=0.7, density=2500.0)
+GRAVITY, DIAMETER, CONTACT = 5e-5, 0.09, ContactModel(steps_per_contact=30.0)
+BEDS = {"plain": (150, 0.7), "double": (1200, 1.4)}
+LANDINGS = {"steep": (0.4, 0.0), "slanted": (0.4, 15.0), "slow": (0.2, 30.0)}  # m/s, deg from the normal
+LANDER = Lander(shape=Box((0.1, 0.1, 0.1)), mass=1.3, inertia=None, material=ROCK)
+OUTPUTS = ("speed_out", "elevation_out", "spin_out")
+
+
+def bed(name: str, folder: Path) -> Bed:
+    """Return a bed, poured unless it lies there."""
+    path = folder / f"bed_size_{name}.h5"
+    if not path.exists():
+        count, width = BEDS[name]
+        sizes = GrainSizes(distribution="constant", lower=DIAMETER, upper=DIAMETER)
+        recipe = BedRecipe(
+            grain_count=count, sizes=sizes, cloud_point_count=14, width=(width, width), material=ROCK,
+            gravity=(0.0, 0.0, -GRAVITY), pour_gravity=0.1, seed=3, contact=CONTACT,
+        )  # fmt: skip
+        pour_bed(recipe).save(path)
+    return Bed.load(path)
+
+
+def landings(bed: Bed, name: str, placements: int, table: Path) -> list[dict[str, object]]:
+    """Land at each place in each way."""
+    rows: list[dict[str, object]] = []
+    generator = np.random.default_rng(11)
+    for placement in range(placements):
+        place = tuple(generator.uniform(-0.1, 0.1, size=2))
+        attitude = tuple(generator.normal(size=4))
+        azimuth = float(generator.uniform(-math.pi, math.pi))
+        for way, (speed, incidence_deg) in LANDINGS.items():
+            landing = Landing(
+                grain=ROCK, speed=speed, incidence=math.radians(incidence_deg), azimuth=azimuth, place=place,
+                orientation=attitude, spin=(0.0, 0.0, 0.0), gravity=(0.0, 0.0, -GRAVITY), time_limit=60.0,
+                contact=CONTACT,
+            )  # fmt: skip
+            outcome = land(bed, LANDER, landing)
+            rows.append(
+                {"bed": name, "landing": way, "placement": placement, "status": outcome.status}
+                | {key: outcome.outputs[key] for key in OUTPUTS}
+            )
+            note(rows[-1], table)
+    return rows
+
+
+def note(row: dict[str, object], table: Path) -> None:
+    """Append a line to the table on disk."""
+    with table.open("a", newline="") as file:
+        writer = csv.DictWriter(file, list(row))
+        if file.tell() == 0:
+            writer.writeheader()
+        writer.writerow(row)
+
+
+def summary(rows: list[dict[str, object]]) -> dict[str, object]:
+    """Means over the landings that left upward on both beds, their differences and standard errors."""
+    result: dict[str, object] = {}
+    for way in LANDINGS:
+        of = {name: {r["placement"]: r for r in rows if r["bed"] == name and r["landing"] == way} for name in BEDS}
+        shared = [k for k in of["plain"] if all(of[name][k]["status"] == "clear" for name in BEDS)]
+        statuses = {name: sorted({(s, sum(r["status"] == s for r in of[name].values())) for s in
+                                  {str(r["status"]) for r in of[name].values()}}) for name in BEDS}  # fmt: skip
+        entry: dict[str, object] = {"outcomes": statuses, "compared": len(shared)}
+        for key in OUTPUTS:
+            values = {name: np.array([of[name][k][key] for k in shared], dtype=float) for name in BEDS}
+            error = math.sqrt(sum(v.var(ddof=1) / len(v) for v in values.values()))
+            entry[key] = {name: float(v.mean()) for name, v in values.items()} | {
+                "difference_in_standard_errors": float((values["double"].mean() - values["plain"].mean()) / error),
+                "standard_error": error,
+            }
+        result[way] = entry
+    return result
+
+
+def main() -> None:
+    """Run all landings and write what came of them."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--placements", type=int, default=20)
+    parser.add_argument("--out", type=Path, default=Path(__file__).parent)
+    chosen = parser.parse_args()
+    table = chosen.out / "bed_size.csv"
+    table.unlink(missing_ok=True)
+    start, rows = time.process_time(), []
+    for name in BEDS:
+        rows += landings(bed(name, chosen.out), name, chosen.placements, table)
+    rule = {way: smallest_bed(LANDER, ROCK, DIAMETER, speed) for way, (speed, _) in LANDINGS.items()}
+    document = {
+        "date": time.strftime("%Y-%m-%d"), "machine": f"{platform.machine()}, {sys.platform}",
+        "command": f"python docs/validation/bed_size.py --placements {chosen.placements}",
+        "cpu_s": round(time.process_time() - start), "smallest_width_and_depth_m": rule, "landings": summary(rows),
+    }  # fmt: skip
+    (chosen.out / "bed_size.json").write_text(json.dumps(document, indent=1) + "\n")
+
+
+if __name__ == "__main__":
+    main()
