@@ -86,14 +86,21 @@ def _plain(value: Any) -> Any:
 
 
 def _bed(job: Job, name: str) -> dict[str, Any]:
-    from lithobrake.pipeline.landings import stored_bed
+    from lithobrake.pipeline.landings import grain, lander, medians, stored_bed
+    from lithobrake.touchdown import smallest_bed
 
-    bed = stored_bed(job.folder / name)
+    bed, values = stored_bed(job.folder / name), medians(job.study)
+    width, depth = smallest_bed(
+        lander(job.study, values), grain(values), float(bed.grain_diameter), values["impact.speed"]
+    )  # fmt: skip
     return {
         "solid_fraction": float(bed.solid_fraction),
         "coordination_number": float(bed.coordination_number),
         "surface_height_m": float(bed.surface_height),
         "mean_diameter_m": float(bed.grain_diameter),
+        "smallest_width_m": width,
+        "smallest_depth_m": depth,
+        "large_enough": bool(min(bed.width) >= width and bed.surface_height >= depth),
     }
 
 

@@ -108,6 +108,9 @@ def made_up_summary(scores: dict[str, dict[str, dict[str, object]]]) -> dict[str
                     "coordination_number": 4.1,
                     "surface_height_m": 0.2,
                     "mean_diameter_m": 0.1,
+                    "smallest_width_m": 0.5,
+                    "smallest_depth_m": 0.1,
+                    "large_enough": True,
                 }
             ],
             "designs": {
