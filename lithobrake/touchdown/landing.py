@@ -108,7 +108,8 @@ def relax(world: World, bed: Bed, landing: Landing) -> None:
     def at_rest() -> bool:
         return settling.unbalanced_force(world) < settling.UNBALANCED_FORCE
 
-    settling.hold_still(world, period, settling.PERIODS_RELAXED, at_rest, fade)
+    if not settling.rests(world, period, settling.PERIODS_RELAXED, at_rest, fade):
+        raise ValueError(settling.restless(world))
     world.drag = 0.0
     world.gravity = gravity
 

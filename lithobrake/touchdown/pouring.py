@@ -82,9 +82,12 @@ def pour_bed(recipe: BedRecipe, progress: Progress | None = None) -> Bed:
     world = boxed_world(grains, position, orientation, recipe.width, recipe.material, down, recipe.contact)
     recorder = Recorder(float(diameter.mean()))
     fall(world, recorder, recipe, tell)
-    settle(world, recorder, recipe, lambda share: tell(0.4 + 0.2 * share, "settling under the pour gravity"))
+    # Faces pressed together deeper than their rounding may hop for ever: such a bed need only rest under less gravity.
+    patience = settling.PERIODS_PRESSED
+    settle(world, recorder, recipe, lambda share: tell(0.4 + 0.2 * share, "settling under the pour gravity"), patience)
     lower_gravity(world, recorder, recipe, tell)
-    settle(world, recorder, recipe, lambda share: tell(0.8 + 0.2 * share, "settling under the local gravity"))
+    if not settle(world, recorder, recipe, lambda share: tell(0.8 + 0.2 * share, "settling under the local gravity")):
+        raise ValueError(settling.restless(world))
     return finished(world, recorder, recipe, grains, diameter)
 
 
@@ -137,8 +140,11 @@ def lower_gravity(world: World, recorder: Recorder, recipe: BedRecipe, tell: Pro
     recorder.frame(world)
 
 
-def settle(world: World, recorder: Recorder, recipe: BedRecipe, tell: Callable[[float], None]) -> None:
-    """Wait until the bed has been at rest, undamped, for long enough under the gravity at hand.
+def settle(
+    world: World, recorder: Recorder, recipe: BedRecipe, tell: Callable[[float], None],
+    patience: float = settling.PERIODS_PATIENCE,
+) -> bool:  # fmt: skip
+    """Wait until the bed has been at rest, undamped, for long enough under the gravity at hand; tell whether it was.
 
     A loose grain rocks and rolls on for minutes. Till the bed first rests, motion is damped at a few times the rate of
     free fall through a grain: what nothing holds up still falls fast enough to be seen by the criteria.
@@ -154,11 +160,12 @@ def settle(world: World, recorder: Recorder, recipe: BedRecipe, tell: Callable[[
         tell(1.0 - math.exp(-checks / (settling.PERIODS_HELD * settling.CHECKS_PER_PERIOD)))
 
     world.drag = FREE_FALL_DAMPING * math.sqrt(strength / recorder.diameter)
-    settling.hold_still(world, period, settling.PERIODS_RELAXED, lambda: recorder.at_rest, check)
+    calm = settling.rests(world, period, settling.PERIODS_RELAXED, lambda: recorder.at_rest, check, patience)
     world.drag = 0.0
-    settling.hold_still(world, period, settling.PERIODS_HELD, lambda: recorder.at_rest, check)
+    calm = calm and settling.rests(world, period, settling.PERIODS_HELD, lambda: recorder.at_rest, check, patience)
     recorder.frame(world)
     tell(1.0)
+    return calm
 
 
 def finished(world: World, recorder: Recorder, recipe: BedRecipe, grains: list[ConvexHull], diameter: Floats) -> Bed:

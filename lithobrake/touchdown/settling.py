@@ -18,6 +18,7 @@ UNBALANCED_FORCE = 1e-2  # of the mean contact force
 PERIODS_HELD = 10.0  # settled: both hold for so many periods of a grain's small oscillation at its rest overlap
 PERIODS_RELAXED = 5.0
 PERIODS_PATIENCE = 1200.0  # after so many the bed is given up
+PERIODS_PRESSED = 300.0  # after so many a bed need not rest under the pour gravity any more
 QUIET_PHASE = 0.1  # contact frequency times step while nothing collides: 63 steps a period
 CHECKS_PER_PERIOD = 20
 
@@ -78,28 +79,31 @@ def ramp(world: World, gravity: Floats, period: float, each_chunk: Callable[[flo
     world.gravity = gravity.copy()
 
 
-def hold_still(
+def rests(
     world: World,
     period: float,
     periods_held: float,
     at_rest: Callable[[], bool],
     each_check: Callable[[], None] = lambda: None,
-) -> None:
-    """Run until the world has been at rest for so many periods [s].
-
-    Raises ValueError when it does not come to rest within PERIODS_PATIENCE periods.
-    """
+    patience: float = PERIODS_PATIENCE,
+) -> bool:
+    """Run until the world has been at rest for so many periods [s]; tell whether it was within its patience."""
     chunk = period / CHECKS_PER_PERIOD
     held = 0.0
-    for _ in range(int(PERIODS_PATIENCE * CHECKS_PER_PERIOD)):
+    for _ in range(int(patience * CHECKS_PER_PERIOD)):
         world.time_step = chunk / math.ceil(chunk / quiet_time_step(world, chunk / 4.0))
         world.run(chunk)
         each_check()
         held = held + 1.0 / CHECKS_PER_PERIOD if at_rest() else 0.0
         if held >= periods_held:
-            return
-    raise ValueError(
-        f"the bed did not come to rest within {PERIODS_PATIENCE:.0f} periods of {period:.3g} s under "
+            return True
+    return False
+
+
+def restless(world: World) -> str:
+    """Return what to say of a bed that does not come to rest."""
+    return (
+        f"the bed did not come to rest within {PERIODS_PATIENCE:.0f} periods of a grain's small oscillation under "
         f"{np.linalg.norm(world.gravity):.3g} m/s2: its slope may be too steep, its friction too low, or "
         "its gravity far from that it was made under; lower surface.slope_deg, raise grain.friction, or pour anew"
     )

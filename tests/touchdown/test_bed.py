@@ -62,7 +62,7 @@ def test_floor_and_contacts_carry_the_weight(bed, recipe):
     world = bed.world(rock, bed.gravity, recipe().contact)
     period = settling.rest_period(rock, bed.grain_diameter, 5e-4)
     world.drag = 1.0 / period
-    settling.hold_still(world, period, 5.0, lambda: settling.unbalanced_force(world) < 1e-2)
+    assert settling.rests(world, period, 5.0, lambda: settling.unbalanced_force(world) < 1e-2)
     contacts = world.contacts()
     up = np.zeros(3)
     for row in contacts[contacts["body_b"] < 0]:
