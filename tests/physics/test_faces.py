@@ -41,14 +41,15 @@ def test_block_on_a_slope_about_the_friction_angle(friction):
     start, speed = world.position[0, 0], world.velocity[0, 0]
     world.run(duration=1.0)
     if friction > 1.0:
-        assert abs(world.position[0, 0] - start) < 1e-7
+        world.run(duration=9.0)
+        assert abs(world.position[0, 0] - start) < 1e-6
     else:
         expected = 9.81 * (math.sin(angle) - mu * math.cos(angle))
         assert world.velocity[0, 0] - speed == pytest.approx(expected, rel=0.01)
 
 
 def test_tall_block_rocks_without_gain_or_loss_of_energy():
-    """e = 1, mu = 0: the patch has a potential. 1e-3 over 50 s here; VALIDATION asks 1e-2 over 1000 periods."""
+    """e = 1, mu = 0: the patch has a potential; 1e-2 of the energy of rocking over 1000 periods."""
     tilt = 0.02
     turn = (math.cos(tilt / 2), math.sin(tilt / 2), 0, 0)
     height = 0.1 * math.cos(tilt) + 0.05 * math.sin(tilt)
@@ -56,8 +57,12 @@ def test_tall_block_rocks_without_gain_or_loss_of_energy():
     world.run(steps=1)
     start = world.energy()["total"]
     rocking = world.mass[0] * 9.81 * 0.05 * tilt
-    world.run(duration=50.0)
-    assert abs(world.energy()["total"] - start) < 1e-3 * rocking
+    periods, before = 0, -1.0
+    while periods < 1000:
+        world.run(steps=50)
+        spin = world.spin[0, 0]
+        periods, before = periods + (before < 0.0 < spin), spin if spin != 0.0 else before
+    assert abs(world.energy()["total"] - start) < 1e-2 * rocking
 
 
 def test_tall_block_rings_down_to_rest():

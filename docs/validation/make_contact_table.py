@@ -1,0 +1,98 @@
+"""Write contact.md: every assertion of the physical tests with what it found, from a run of the tests themselves.
+
+python docs/validation/make_contact_table.py
+"""
+
+import platform
+import re
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+PAGE = Path(__file__).with_name("contact.md")
+SECTIONS = {
+    "test_two_bodies.py": "Two bodies",
+    "test_contact_law.py": "The contact law",
+    "test_resistance_and_cohesion.py": "Rolling, spinning, cohesion",
+    "test_faces.py": "Faces",
+    "test_many_bodies.py": "Many bodies",
+}
+
+
+class Notes:
+    """Collects, for every test, what its assertions compared."""
+
+    def __init__(self) -> None:
+        self.found: dict[str, list[tuple[str, str]]] = {}
+        self.about: dict[str, str] = {}
+        self.outcome: dict[str, str] = {}
+
+    def pytest_assertion_pass(self, item: pytest.Item, orig: str, expl: str) -> None:
+        """Note one assertion that held: as it is written, and with its values."""
+        self.found.setdefault(item.nodeid, []).append((orig, expl.splitlines()[0]))
+
+    def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
+        """Note whether a test passed."""
+        if report.when == "call" or report.failed:
+            self.outcome[report.nodeid] = report.outcome
+
+    def pytest_itemcollected(self, item: pytest.Item) -> None:
+        """Note what a test is about: the first sentence under its name, or the name."""
+        text = (getattr(item, "obj", None).__doc__ or "").strip().split("\n\n")[0]
+        self.about[item.nodeid] = " ".join(text.split())
+
+
+def short(text: str) -> str:
+    """Shorten an explanation: six digits, no types, no calls."""
+    text = re.sub(r"np\.(float64|True_|False_)(\(([^()]*)\))?", lambda m: m[3] or m[1].strip("_"), text)
+    text = re.sub(r"-?\d+\.\d{5,}(e[-+]?\d+)?", lambda m: f"{float(m[0]):.6g}", text)
+    return text.replace("|", "/").replace("\n", " ")[:160]
+
+
+def rows(notes: Notes, file: str) -> Iterator[str]:
+    """Table lines of one file: the last few assertions of every test, since a loop may repeat one many times."""
+    for test, outcome in notes.outcome.items():
+        if f"/{file}::" not in f"/{test}":
+            continue
+        name = test.split("::")[1].removeprefix("test_").replace("_", " ")
+        written = dict(notes.found.get(test, []))
+        checks = "<br>".join(f"`{short(expl)}`" for expl in written.values())
+        yield f"| {name.replace('|', '/')} | {short(notes.about[test])} | {checks} | {outcome} |"
+
+
+def main() -> None:
+    """Run the tests and write the page."""
+    notes = Notes()
+    with tempfile.TemporaryDirectory() as folder:
+        # Compiled tests without the hook may lie about; nothing is read from them, and none are left.
+        sys.pycache_prefix = folder
+        code = pytest.main(
+            ["-q", "-p", "no:cacheprovider", "-o", "enable_assertion_pass_hook=true", "-o", "verbosity_assertions=2",
+             str(ROOT / "tests" / "physics")],
+            plugins=[notes],
+        )  # fmt: skip
+    passed = sum(outcome == "passed" for outcome in notes.outcome.values())
+    lines = [
+        "# What the contact physics reproduces",
+        "",
+        "Every physical test with what its assertions compared: the value found, and the value and tolerance asked for.",
+        'Where a test repeats an assertion, the last one stands here; "True" is a comparison of arrays that held.',
+        "Written by `python docs/validation/make_contact_table.py`; do not edit.",
+        "",
+        f"{time.strftime('%Y-%m-%d')}, {platform.machine()}, {sys.platform}, Python {platform.python_version()}: "
+        f"{passed} of {len(notes.outcome)} passed.",
+    ]
+    for file, title in SECTIONS.items():
+        lines += ["", f"## {title}", "", "| test | what it is | found, and asked | outcome |", "|---|---|---|---|"]
+        lines += rows(notes, file)
+    PAGE.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    sys.exit(code)
+
+
+if __name__ == "__main__":
+    main()

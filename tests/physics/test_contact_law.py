@@ -1,0 +1,134 @@
+"""What the contact law must do beyond published cases: never make energy, bounce as entered wherever it is hit."""
+
+import math
+import re
+
+import numpy as np
+import pytest
+
+from lithobrake.dem import Box, Material, Sphere, World
+from lithobrake.dem.timestep import contact_duration
+
+
+def material(restitution=1.0, friction=0.0, poisson_ratio=0.25, young_modulus=1e7):
+    return Material(
+        young_modulus=young_modulus, poisson_ratio=poisson_ratio, restitution=restitution, friction=friction,
+        density=2500.0,
+    )  # fmt: skip
+
+
+def kinetic(world):
+    return world.energy()["kinetic"]
+
+
+def test_elastic_head_on_impact_keeps_kinetic_energy():
+    """Derived: nothing is lost at e = 1; at a fiftieth of the contact duration."""
+    stuff, mass = material(), 2500.0 * Sphere(0.05).volume
+    modulus = 1e7 / (1 - 0.25**2) / 2
+    world = World(time_step=contact_duration(0.5 * mass, 0.025, modulus, 0.2) / 50)
+    for side in (-1.0, 1.0):
+        world.add_body(Sphere(0.05), stuff, (side * 0.0501, 0, 0), velocity=(-side * 0.1, 0, 0))
+    before = kinetic(world)
+    world.run(steps=200)
+    assert len(world.contacts()) == 0
+    assert world.velocity[1, 0] > 0.0
+    assert kinetic(world) == pytest.approx(before, rel=1e-4)
+
+
+@pytest.mark.parametrize("poisson_ratio", [0.0, 0.1, 0.24, 0.3, 0.49])
+def test_oblique_impacts_never_make_energy(poisson_ratio):
+    """Loading and unloading in every proportion of slip and spin: the rescaled spring only loses (e = 1)."""
+    generator = np.random.default_rng(3)
+    stuff = material(1.0, 0.8, poisson_ratio)
+    for _ in range(20):
+        world = World(time_step=2e-5)
+        spin, slide = generator.normal(size=3) * 10.0, generator.normal(size=2) * 0.4
+        world.add_body(Sphere(0.05), stuff, (0, 0, 0.0501), velocity=(*slide, -0.2), spin=spin)
+        world.add_plane((0, 0, 0), (0, 0, 1), stuff)
+        before = kinetic(world)
+        world.run(duration=0.02)
+        assert len(world.contacts()) == 0
+        assert kinetic(world) <= before * (1.0 + 1e-4)
+        assert world.energy()["friction"] >= -1e-6 * before
+
+
+def corner_drop(damping_mass):
+    """Restitution at the corner of a box that falls on it, far from below its centre, without friction.
+
+    The box is stiff, so that it hardly turns while it touches (at 1e7 Pa it turns by 2 degrees, and .488 comes out).
+    """
+    stuff = material(0.5, young_modulus=1e9)
+    box = Box((0.2, 0.1, 0.1))
+    tilt = np.array([math.cos(0.25), 0.6 * math.sin(0.25), 0.8 * math.sin(0.25), 0.0])
+    world = World(time_step=2e-6, damping_mass=damping_mass)
+    world.add_body(box, stuff, (0, 0, 1.0), velocity=(0, 0, -0.2), orientation=tilt)
+    world.add_plane((0, 0, 0.9), (0, 0, 1), stuff)
+    while not len(world.contacts()):
+        world.run(steps=1)
+    point = world.contacts()["point"][0] - world.position[0]
+    while len(world.contacts()):
+        world.run(steps=1)
+    return (world.velocity[0] + np.cross(world.spin[0], point))[2] / 0.2
+
+
+def test_restitution_off_centre_is_that_of_the_contact_point():
+    """The mass in the damping is the one that the force meets at the contact point, 1/(n . W . n)."""
+    assert corner_drop("contact") == pytest.approx(0.5, abs=0.005)
+    assert corner_drop("paper") < 0.45
+
+
+@pytest.mark.parametrize("ratio", [10.0, 100.0])
+@pytest.mark.parametrize("refinement", [1.0, 4.0])
+def test_a_heavy_plate_rolls_on_small_balls(ratio, refinement):
+    """Derived: balls between a moving plate and the ground roll at half its speed and take nothing from it."""
+    radius, speed = 0.05 / ratio * 2.0, 0.02
+    stuff = material(0.5, 0.5, young_modulus=1e8)
+    plate = Box((1.0, 1.0, 0.1))
+    world = World((0, 0, -1e-3), 1e-3 / ratio / refinement)
+    for x, y in ((-0.3, -0.3), (0.3, -0.3), (0.0, 0.3)):
+        world.add_body(
+            Sphere(radius), stuff, (x, y, radius), velocity=(0.5 * speed, 0, 0), spin=(0, 0.5 * speed / radius, 0)
+        )  # fmt: skip
+    world.add_body(plate, stuff, (0, 0, 2.0 * radius + 0.05), velocity=(speed, 0, 0), mass=250.0)
+    world.add_plane((0, 0, 0), (0, 0, 1), stuff)
+    world.run(duration=0.5)
+    # The balls yield to their load first, and roll on radii that much shorter.
+    assert world.velocity[3, 0] == pytest.approx(speed, rel=2e-3)
+    assert np.allclose(world.velocity[:3, 0], 0.5 * speed, rtol=0.02)
+
+
+def test_a_step_too_large_is_refused_with_one_that_serves():
+    """The message names the largest safe step; with it the same impact runs."""
+
+    def impact(step):
+        world = World(time_step=step)
+        stuff = material(0.5, 0.5)
+        world.add_body(Sphere(0.05), stuff, (0, 0, 0.0501), velocity=(0, 0, -1.0))
+        world.add_plane((0, 0, 0), (0, 0, 1), stuff)
+        world.run(duration=0.05)
+        return world
+
+    with pytest.raises(ValueError, match="at most") as refused:
+        impact(2e-3)
+    largest = float(re.search(r"at most ([0-9.e+-]+) s", str(refused.value))[1])
+    assert 0.0 < largest < 2e-3
+    assert impact(0.5 * largest).velocity[0, 2] > 0.0
+
+
+def test_box_of_boxes_comes_to_rest():
+    """Eight cubes side by side and on each other in a pit of frictional walls stand still."""
+    stuff = material(0.5, 0.5)
+    world = World((0, 0, -9.81), 5e-5)
+    for k in range(8):
+        world.add_body(
+            Box((0.1, 0.1, 0.1)), stuff, (0.1002 * (k % 2), 0.1002 * (k // 2 % 2), 0.05 + 0.1 * (k // 4))
+        )  # fmt: skip
+    world.add_plane((0, 0, 0), (0, 0, 1), stuff)
+    for axis in (0, 1):
+        for sign, place in ((1.0, -0.0502), (-1.0, 0.1504)):
+            normal, point = np.zeros(3), np.zeros(3)
+            normal[axis], point[axis] = sign, place
+            world.add_plane(point, normal, stuff)
+    world.run(duration=4.0)
+    assert kinetic(world) < 1e-9 * world.mass.sum() * 9.81 * 0.1
+    assert np.abs(world.position[:, 2] - (0.05 + 0.1 * (np.arange(8) // 4))).max() < 2e-3
