@@ -42,7 +42,7 @@ class Notes:
             self.outcome[report.nodeid] = report.outcome
 
     def pytest_itemcollected(self, item: pytest.Item) -> None:
-        """Note what a test is about: the first sentence under its name, or the name."""
+        """Note what a test is about: the first sentence under its name."""
         text = (getattr(item, "obj", None).__doc__ or "").strip().split("\n\n")[0]
         self.about[item.nodeid] = " ".join(text.split())
 
@@ -80,7 +80,7 @@ def main() -> None:
     lines = [
         "# What the contact physics reproduces",
         "",
-        "Every physical test with what its assertions compared: the value found, and the value and tolerance asked for.",
+        "Every physical test with what its assertions compared: what was found, and the value and tolerance asked for.",
         'Where a test repeats an assertion, the last one stands here; "True" is a comparison of arrays that held.',
         "Written by `python docs/validation/make_contact_table.py`; do not edit.",
         "",

@@ -1,0 +1,116 @@
+"""Draw what the bulk checks and the check of the bed's size found, and write bulk.md.
+
+    python docs/validation/bulk_figures.py
+
+Reads every bulk_*.json and bed_size.json beside it that is there; a check that was not run is named as such.
+"""
+
+import json
+from collections import defaultdict
+from pathlib import Path
+from typing import Any
+
+import matplotlib
+
+matplotlib.use("agg")
+import matplotlib.pyplot as plt
+import numpy as np
+from bulk import CHECKS
+
+HERE = Path(__file__).parent
+Rows = list[dict[str, Any]]
+
+
+def grouped(rows: Rows, by: str, what: str) -> dict[Any, np.ndarray]:
+    """Values of one column by those of another."""
+    table: dict[Any, list[float]] = defaultdict(list)
+    for row in rows:
+        table[row[by]].append(row[what])
+    return {key: np.array(values) for key, values in table.items()}
+
+
+def lines(rows: Rows, by: str, columns: list[str]) -> list[str]:
+    """A table of means and scatter."""
+    head = [f"| {by} | runs | " + " | ".join(columns) + " |", "|" + "---|" * (2 + len(columns))]
+    for key, first in grouped(rows, by, columns[0]).items():
+        cells = [grouped(rows, by, column)[key] for column in columns]
+        scatter = [f"{c.mean():.4g} +- {c.std(ddof=1):.2g}" if len(c) > 1 else f"{c.mean():.4g}" for c in cells]
+        head.append(f"| {key} | {len(first)} | " + " | ".join(scatter) + " |")
+    return head
+
+
+def draw_froude(rows: Rows) -> None:
+    """Penetration and duration against the Froude number, by gravity."""
+    figure, axes = plt.subplots(1, 2, figsize=(8.0, 3.4), constrained_layout=True)
+    for axis, column, label in (
+        (axes[0], "penetration_over_diameter", "penetration / D"),
+        (axes[1], "duration_scaled", "duration sqrt(g / D)"),
+    ):
+        for gravity in sorted({row["gravity"] for row in rows}):
+            table = grouped([row for row in rows if row["gravity"] == gravity], "froude", column)
+            mean = [values.mean() for values in table.values()]
+            spread = [values.std(ddof=1) for values in table.values()]
+            axis.errorbar(list(table), mean, spread, marker="o", capsize=3, label=f"g = {gravity:g} m/s2")
+        axis.set(xlabel="v / sqrt(g D)", ylabel=label, xscale="log")
+    axes[0].legend(frameon=False)
+    figure.savefig(HERE / "bulk_froude.png", dpi=130)
+
+
+SHOWN = {
+    "compression": ("friction", ["solid_fraction", "coordination_without_rattlers"],
+                    "Spheres pressed from six sides; expected .639 and .593, 6 and 4.5 (Agnolin, Roux 2007)."),
+    "friction": ("friction", ["solid_fraction", "coordination"], "Poured beds of 150 hulls."),
+    "repose": ("kind", ["angle_deg", "stayed"], "Slope left when one end opens; about 25 and 40 deg (Kleinhans 2011)."),
+    "packing": ("shape", ["solid_fraction", "coordination"], "The Platonic solids, poured, amid the heap."),
+    "froude": ("froude", ["penetration_over_diameter", "duration_scaled"],
+               "A sphere dropped into beds at three gravities; equal Froude numbers should give equal values."),
+}  # fmt: skip
+
+
+def main() -> None:
+    """Write the page and the figure."""
+    page = [
+        "# Bulk checks",
+        "",
+        "Written by `python docs/validation/bulk_figures.py`. Means and standard deviations.",
+        "",
+    ]
+    for name in CHECKS:
+        by, columns, text = SHOWN[name]
+        path = HERE / f"bulk_{name}.json"
+        page += [f"## {name}", "", text, ""]
+        if not path.exists():
+            page += ["Not run yet.", ""]
+            continue
+        found = json.loads(path.read_text())
+        page += [*lines(found["rows"], by, columns), ""]
+        page += [f"`{found['command']}`, {found['date']}, {found['machine']}, {found['cpu_s']} s of CPU time.", ""]
+        if name == "froude":
+            draw_froude(found["rows"])
+            page += ["![Froude](bulk_froude.png)", ""]
+    path = HERE / "bed_size.json"
+    if path.exists():
+        page += ["## Size of the bed", "", *bed_size(json.loads(path.read_text()))]
+    (HERE / "bulk.md").write_text("\n".join(page) + "\n", encoding="utf-8")
+
+
+def bed_size(found: dict[str, Any]) -> list[str]:
+    """Means on a bed and on one twice as wide and deep."""
+    text = [
+        "| landing | compared | output | plain bed | double bed | difference in standard errors |",
+        "|---|---|---|---|---|---|",
+    ]
+    for way, entry in found["landings"].items():
+        for output in ("speed_out", "elevation_out", "spin_out"):
+            value = entry[output]
+            text.append(
+                f"| {way} | {entry['compared']} | {output} | {value['plain']:.4g} | {value['double']:.4g} | "
+                f"{value['difference_in_standard_errors']:.2g} |"
+            )
+    rule = ", ".join(f"{way} {w:.3g} and {d:.3g} m" for way, (w, d) in found["smallest_width_and_depth_m"].items())
+    return [*text, "", f"Smallest width and depth by the rule: {rule}. {found['command']}, {found['date']}, "
+            f"{found['machine']}, {found['cpu_s']} s of CPU time."]  # fmt: skip
+
+
+if __name__ == "__main__":
+    main()
