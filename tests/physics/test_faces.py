@@ -196,3 +196,39 @@ def test_elastic_faces_give_back_all_they_take(depth):
     assert after["elastic"] == 0.0
     assert abs(after["damping"]) < 1e-12 * before
     assert after["kinetic"] == pytest.approx(before, rel=1e-3)
+
+
+def largest_jumps(path, steps):
+    """Largest changes of force and torque on the second of two boxes from one pose to the next along a path."""
+    first, second = Box((0.1, 0.1, 0.1)), Box((0.08, 0.12, 0.1))
+    found = []
+    for share in np.linspace(0.0, 1.0, steps + 1):
+        place, turn = path(share)
+        world = World(time_step=1e-9)
+        world.add_body(first, material(1.0, 0.0, 1e7), (0, 0, 0))
+        world.add_body(second, material(1.0, 0.0, 1e7), place, orientation=turn)
+        found.append(np.concatenate([world.contact_force[1], world._assembled().bodies.torque[1] / 0.05]))
+    assert np.abs(found).max() > 0.0
+    return np.abs(np.diff(found, axis=0)).max()
+
+
+def slide(share):
+    """A face slides over a face, yawed, past edges and corners of both."""
+    depth = 0.3 * (Box((0.1, 0.1, 0.1)).rounding + Box((0.08, 0.12, 0.1)).rounding)
+    return (-0.06 + 0.1 * share, 0.013 * share, 0.1 - depth), (math.cos(0.1), 0.0, 0.0, math.sin(0.1))
+
+
+def tilt(share):
+    """A box tilts over a face, from one of its own faces past the edge to the next, its lowest point as deep."""
+    angle = -0.05 + (0.5 * math.pi + 0.1) * share
+    corners = np.array([(y, z) for y in (-0.06, 0.06) for z in (-0.05, 0.05)])
+    lowest = (corners @ (math.sin(angle), math.cos(angle))).min()
+    depth = 0.3 * (Box((0.1, 0.1, 0.1)).rounding + Box((0.08, 0.12, 0.1)).rounding)
+    return (0.007, 0.004, 0.05 - lowest - depth), (math.cos(0.5 * angle), math.sin(0.5 * angle), 0.0, 0.0)
+
+
+@pytest.mark.parametrize("path", [slide, tilt])
+def test_force_and_torque_have_no_jumps(path):
+    """Halving the steps of a path halves the largest change, within a fifth: first order, no jumps."""
+    coarse, fine = largest_jumps(path, 2000), largest_jumps(path, 4000)
+    assert fine < 0.6 * coarse
