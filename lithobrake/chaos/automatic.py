@@ -18,7 +18,7 @@ PROCESS_FROM = 5
 MARGIN, MARGIN_IN_TAILS = 0.95, 0.3
 # The sum of squared polynomials up to this degree is 121 at the ends of a uniform input, 2900 for a normal one cut
 # at three standard deviations.
-TAIL_DEGREE, TAIL_GROWTH = 10, 2000.0
+TAIL_DEGREE, TAIL_GROWTH, TAIL_DISTANCE = 10, 2000.0, 3.0
 CHALLENGER = "gaussian process with nugget, radial Matern 5/2"
 
 
@@ -53,9 +53,10 @@ def has_long_tails(entry: Distribution) -> bool:
     """Whether the ends of an input are so rare that polynomials fitted to few runs are free to grow there."""
     if not entry.bounded:
         return True
-    degree = min(TAIL_DEGREE, len(set(getattr(entry, "samples", range(TAIL_DEGREE + 1)))) - 1)
-    table = entry.recurrence(degree).values(entry.germ(np.array(entry.support)))
-    return float((table**2).sum(axis=0).max()) > TAIL_GROWTH
+    table = entry.recurrence(int(min(TAIL_DEGREE, entry.highest_degree))).values(entry.germ(np.array(entry.support)))
+    # Of samples that sum is at most their number, so for them the distance from the mean in standard deviations tells.
+    far = np.isfinite(entry.highest_degree) and float(np.abs(table[1]).max()) > TAIL_DISTANCE
+    return bool(far) or float((table**2).sum(axis=0).max()) > TAIL_GROWTH
 
 
 def _preferred(candidates: list[Solution], margin: float) -> Solution:

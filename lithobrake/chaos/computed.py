@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy import special
 
-from lithobrake.chaos.germ import Distribution, Support
+from lithobrake.chaos.germ import NO_CHOICES, Distribution, Support
 from lithobrake.chaos.polynomials import Array, Recurrence, discretised
 
 # Densities below exp(-350) of the largest cannot be felt by polynomials of the degrees in use.
@@ -17,6 +17,9 @@ NEGLIGIBLE_LOG_DENSITY = 350.0
 PANEL_NODES, PANELS = 40, 20
 # Samples that a fine rule keeps for each node asked for.
 SAMPLES_PER_NODE = 10
+# Polynomials of samples are made up to this degree, or to where rounding spoils their orthonormality by this much: at
+# a lone far value a polynomial of high degree is the small difference of huge numbers.
+SAMPLE_DEGREE, SAMPLE_ERROR = 40, 1e-8
 
 
 @dataclass(frozen=True)
@@ -115,7 +118,10 @@ class Empirical(Distribution):
     kind = "empirical"
 
     def __post_init__(self) -> None:
-        values = np.sort(np.asarray(self.samples, dtype=float).ravel())
+        try:
+            values = np.sort(np.asarray(self.samples, dtype=float).ravel())
+        except (TypeError, ValueError):
+            raise ValueError(f"Empirical.samples must be numbers, but holds others; {NO_CHOICES}") from None
         if not np.all(np.isfinite(values)) or len(np.unique(values)) < 2:
             raise ValueError(
                 f"Empirical.samples holds {values.size} values, but needs finite ones, at least two of them distinct"
@@ -166,5 +172,28 @@ class Empirical(Distribution):
         merged = np.add.reduceat(weights, starts)
         return np.add.reduceat(weights * nodes, starts) / merged, merged
 
+    @cached_property
+    def _polynomials(self) -> Recurrence:
+        """Polynomials of all degrees that the samples determine."""
+        nodes, weights = self._measure()
+        made = discretised(min(len(nodes) - 1, SAMPLE_DEGREE), nodes, weights)
+        # Degrees beyond the usable ones may overflow; they are left out just below.
+        with np.errstate(over="ignore", invalid="ignore"):
+            table = made.values(nodes)
+            error = np.abs((table * weights) @ table.T - np.eye(len(table)))
+        worst = np.maximum.accumulate(np.tril(error).max(axis=1))
+        usable = int(np.sum(worst < SAMPLE_ERROR)) - 1
+        return Recurrence(made.center[:usable], made.spread[:usable])
+
+    @property
+    def highest_degree(self) -> float:
+        return self._polynomials.degree
+
     def recurrence(self, degree: int) -> Recurrence:
-        return discretised(degree, *self._measure())
+        made = self._polynomials
+        if degree > made.degree:
+            raise ValueError(
+                f"degree {degree} is asked of {len(self.samples)} samples with {len(np.unique(self._sorted))} distinct "
+                f"values, which determine polynomials up to degree {made.degree}: lower the degree or give more samples"
+            )
+        return Recurrence(made.center[:degree], made.spread[:degree])

@@ -8,13 +8,12 @@ import numpy as np
 
 from lithobrake.chaos.germ import Distribution, checked_inputs
 from lithobrake.chaos.polynomials import Array
+from lithobrake.chaos.terms import whole_number
 
 
 def checked_count(count: int) -> int:
     """Check a number of points."""
-    if int(count) != count or count < 1:
-        raise ValueError(f"count is {count}, but must be a whole number of at least 1")
-    return int(count)
+    return whole_number("count", count, 1)
 
 
 def tensor_count(input_count: int, level: int) -> int:
@@ -29,9 +28,10 @@ def tensor_grid(inputs: Mapping[str, Distribution], level: int | Sequence[int]) 
     Raises ValueError for a level below 0 or more than ten million nodes.
     """
     distributions = checked_inputs(inputs)
-    levels = [level] * len(distributions) if isinstance(level, int | np.integer) else list(level)
-    if len(levels) != len(distributions) or any(int(one) != one or one < 0 for one in levels):
-        raise ValueError(f"level is {level}, but must be a whole number of at least 0, or one for each input")
+    given = list(level) if isinstance(level, Sequence | np.ndarray) else [level] * len(distributions)
+    levels = [whole_number("level", one, 0) for one in given]
+    if len(levels) != len(distributions):
+        raise ValueError(f"level has {len(levels)} entries, but must be one number or one for each input")
     if np.prod([one + 1.0 for one in levels]) > 1e7:
         raise ValueError(f"a tensor grid of level {level} in {len(levels)} inputs has over 1e7 nodes: use smolyak")
     nodes = []
@@ -50,7 +50,7 @@ def sobol_sequence(inputs: Mapping[str, Distribution], count: int, seed: int = 0
 
     distributions = checked_inputs(inputs)
     engine = qmc.Sobol(len(distributions), scramble=True, rng=np.random.default_rng(seed))
-    if skip > 0:
+    if whole_number("skip", skip, 0):
         engine.fast_forward(skip)
     # Powers of two are advised for quadrature; a regression design needs no balance, so no warning either.
     with warnings.catch_warnings():

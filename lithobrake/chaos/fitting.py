@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 from lithobrake.chaos.automatic import best_solutions, process_solution
 from lithobrake.chaos.germ import Distribution
 from lithobrake.chaos.noise import with_noise
-from lithobrake.chaos.regression import best_degree, solve_ols
+from lithobrake.chaos.regression import best_terms, solve_ols
 from lithobrake.chaos.solution import Solution, joined, summary
 from lithobrake.chaos.sparse import solve_sparse
 from lithobrake.chaos.storage import data_hash
@@ -54,8 +54,11 @@ def fit(
         solutions, extra = best_solutions(training)
     elif method == "ols":
         norm = 1.0 if q_norm is None else q_norm
-        chosen = best_degree(training, norm, max_degrees) if degree is None else degree
-        solutions = solve_ols(training, multi_index_set(len(inputs), chosen, q_norm=norm, max_degrees=max_degrees))
+        if degree is None:
+            indices = best_terms(training, norm, max_degrees)
+        else:
+            indices = multi_index_set(len(inputs), degree, q_norm=norm, max_degrees=max_degrees)
+        solutions = solve_ols(training, indices)
     elif method == "gaussian_process":
         solutions = [process_solution(training, k) for k in outputs]
     else:

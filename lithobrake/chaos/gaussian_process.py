@@ -79,11 +79,7 @@ def highest_degrees(inputs: Sequence[Distribution]) -> list[int]:
     cap = {1: 40, 2: 30, 3: 20}.get(len(inputs), 14)
     while cap > 1 and term_count(len(inputs), cap) > TERM_LIMIT:
         cap -= 1
-    degrees = []
-    for entry in inputs:
-        samples = getattr(entry, "samples", None)
-        degrees.append(cap if samples is None else min(cap, len(set(samples)) - 1))
-    return degrees
+    return [int(min(cap, entry.highest_degree)) for entry in inputs]
 
 
 def learn(training: Training, output: int, family: type[Covariance]) -> Process:

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 from lithobrake.chaos.polynomials import Array, Recurrence
 
 Support = tuple[float, float]
+NO_CHOICES = "discrete choices are not supported: fit one expansion for each choice"
 
 
 class Distribution(ABC):
@@ -52,6 +53,11 @@ class Distribution(ABC):
     def rule(self, count: int) -> tuple[Array, Array]:
         """Germ nodes and weights (summing to 1) of a fine quadrature over this distribution, about `count` of each."""
         return self.recurrence(count).gauss_rule()
+
+    @property
+    def highest_degree(self) -> float:
+        """Highest degree of polynomials that the distribution determines: infinite unless it is made of samples."""
+        return np.inf
 
     @property
     def bounded(self) -> bool:
@@ -111,7 +117,6 @@ def checked_inputs(inputs: Any) -> dict[str, Distribution]:
         if not isinstance(entry, Distribution):
             raise ValueError(
                 f"input {name!r} is {entry!r}, but must be a distribution (Uniform, LogUniform, Normal, LogNormal, "
-                "TruncatedNormal, Beta, Gamma, Exponential, Empirical); discrete choices are not supported: "
-                "fit one expansion for each choice"
+                f"TruncatedNormal, Beta, Gamma, Exponential, Empirical); {NO_CHOICES}"
             )
     return dict(inputs)

@@ -5,7 +5,7 @@ from typing import Any
 
 from lithobrake.chaos.bounded import Beta, LogUniform, Uniform
 from lithobrake.chaos.computed import Empirical, TruncatedNormal
-from lithobrake.chaos.germ import Distribution
+from lithobrake.chaos.germ import NO_CHOICES, Distribution
 from lithobrake.chaos.unbounded import Exponential, Gamma, LogNormal, Normal
 
 KINDS: dict[str, type[Distribution]] = {
@@ -20,7 +20,7 @@ def distribution(kind: str, **parameters: Any) -> Distribution:
     Raises ValueError for an unknown name, a missing, a surplus or a wrong parameter.
     """
     if kind not in KINDS:
-        raise ValueError(f"distribution is {kind!r}, but must be one of {', '.join(KINDS)}")
+        raise ValueError(f"distribution is {kind!r}, but must be one of {', '.join(KINDS)}; {NO_CHOICES}")
     maker = KINDS[kind]
     allowed = [field.name for field in fields(maker)]  # type: ignore[arg-type]
     surplus = sorted(set(parameters) - set(allowed))

@@ -12,6 +12,8 @@ from lithobrake.chaos.terms import Indices
 # Singular values below this share of the largest are rank loss: far below any usable condition number,
 # far above the rounding of an exactly deficient system.
 RANK_TOLERANCE = 1e-10
+# Lost terms that a refusal names.
+LOST_LISTED = 20
 
 
 @dataclass(frozen=True)
@@ -56,9 +58,11 @@ def _lost_terms(triangle: Array, values: Array, indices: Indices, names: Sequenc
 
     _, _, order = qr(triangle, mode="economic", pivoting=True)
     rank = int(np.sum(values > RANK_TOLERANCE * values[0]))
-    lost = ", ".join(term_name(indices[k], names) for k in order[rank:][:5])
+    lost = [term_name(indices[k], names) for k in sorted(order[rank:])]
+    more = f" and {len(lost) - LOST_LISTED} more" if len(lost) > LOST_LISTED else ""
     return (
-        f"the {count} points determine only {rank} of {len(indices)} terms (lost among others: {lost}): "
+        f"the {count} points determine only {rank} of {len(indices)} terms "
+        f"(lost: {', '.join(lost[:LOST_LISTED])}{more}, which the others cannot be told from): "
         "lower the degree, raise the level of the design or add points"
     )
 

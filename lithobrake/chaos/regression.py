@@ -36,14 +36,23 @@ def solve_ols(training: Training, indices: Indices) -> list[Solution]:
     ]
 
 
+def terms_to_try(
+    training: Training, degree: int, q_norm: float = 1.0, max_degrees: Sequence[int] | None = None
+) -> Indices:
+    """Terms up to a total degree, no input beyond the degree that its distribution determines."""
+    limits = [int(min(degree, entry.highest_degree)) for entry in training.inputs.values()]
+    indices = multi_index_set(len(limits), degree, q_norm=q_norm, max_degrees=max_degrees)
+    return np.ascontiguousarray(indices[(indices <= limits).all(axis=1)])
+
+
 def ols_by_degree(
     training: Training, q_norm: float = 1.0, max_degrees: Sequence[int] | None = None
 ) -> list[list[Solution]]:
     """Solutions of all degrees that the points determine with at least one to spare, [degree][output]."""
     ladder: list[list[Solution]] = []
     for degree in range(HIGHEST_DEGREE + 1):
-        indices = multi_index_set(len(training.inputs), degree, q_norm=q_norm, max_degrees=max_degrees)
-        if degree > 0 and (len(indices) >= training.count or (ladder and len(indices) == len(ladder[-1][0].indices))):
+        indices = terms_to_try(training, degree, q_norm, max_degrees)
+        if degree > 0 and (len(indices) >= training.count or len(indices) == len(ladder[-1][0].indices)):
             break
         try:
             ladder.append(solve_ols(training, indices))
@@ -53,9 +62,20 @@ def ols_by_degree(
     return ladder
 
 
-def best_degree(training: Training, q_norm: float = 1.0, max_degrees: Sequence[int] | None = None) -> int:
-    """Degree with the smallest leave-one-out error relative to the spread, averaged over outputs."""
+def best_terms(
+    training: Training,
+    q_norm: float = 1.0,
+    max_degrees: Sequence[int] | None = None,
+    *,
+    term_limit: float = np.inf,
+) -> Indices:
+    """Terms of the degree with the smallest leave-one-out error relative to the spread, averaged over outputs.
+
+    term_limit: sets with more terms are not looked at.
+    """
     spread = np.std(training.y, axis=0)
     spread[spread == 0.0] = 1.0
     ladder = ols_by_degree(training, q_norm, max_degrees)
-    return int(np.argmin([np.mean([s.expected_error for s in row] / spread) for row in ladder]))
+    ladder = [row for row in ladder if len(row[0].indices) <= max(term_limit, 1)]
+    best = int(np.argmin([np.mean([one.expected_error for one in row] / spread) for row in ladder]))
+    return ladder[best][0].indices

@@ -8,10 +8,10 @@ from numpy.typing import ArrayLike
 from lithobrake.chaos import sensitivity
 from lithobrake.chaos.basis import basis_matrix
 from lithobrake.chaos.polynomials import Array
-from lithobrake.chaos.regression import best_degree
+from lithobrake.chaos.regression import best_terms
 from lithobrake.chaos.scores import score_of
 from lithobrake.chaos.surrogate import Surrogate
-from lithobrake.chaos.terms import Indices, multi_index_set
+from lithobrake.chaos.terms import Indices
 from lithobrake.chaos.threads import one_thread
 from lithobrake.chaos.training import Training, checked_training
 
@@ -72,10 +72,8 @@ def _terms_to_resample(surrogate: Surrogate, training: Training) -> tuple[Indice
     methods = {entry.get("method") for entry in surrogate.report.get("outputs", {}).values()}
     if methods == {"ols"} and surrogate.term_count <= TERM_SHARE * training.count:
         return surrogate.multi_indices, None
-    degree = best_degree(training)
-    while degree > 0 and len(multi_index_set(len(training.inputs), degree)) > TERM_SHARE * training.count:
-        degree -= 1
-    return multi_index_set(len(training.inputs), degree), degree
+    indices = best_terms(training, term_limit=TERM_SHARE * training.count)
+    return indices, int(indices.sum(axis=1).max())
 
 
 def score_intervals(

@@ -5,12 +5,14 @@ Error estimates come from folds over the whole selection path: leave-one-out aft
 
 import warnings
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lithobrake.chaos.basis import basis_matrix
 from lithobrake.chaos.polynomials import Array
+from lithobrake.chaos.regression import solve_ols, terms_to_try
 from lithobrake.chaos.solution import Solution
 from lithobrake.chaos.terms import Indices, multi_index_set
 from lithobrake.chaos.training import Training
@@ -41,23 +43,28 @@ def solve_sparse(training: Training, output: int, method: str, *, degree: int | 
     Source: Blatman and Sudret, 2011 (hybrid LARS); Pati and others, 1993 (OMP).
     """
     y = training.y[:, output]
+    ladders = _candidate_ladders(training, degree, q_norm)
+    if degree is not None and not any(ladders):
+        raise ValueError(f"degree {degree} has more than {CANDIDATE_LIMIT} candidate terms: lower it or q_norm")
+    if not any(ladders) or len(np.unique(training.x, axis=0)) < 2:
+        # Too few distinct points to tell any term from another.
+        constant = solve_ols(training, multi_index_set(len(training.inputs), 0))[output]
+        return replace(constant, method=method)
     grid = is_structured(training.x)
     folds = [] if grid else _folds(training)
-    best: tuple[float, int, Indices] | None = None
-    for ladder in _candidate_ladders(training, degree, q_norm):
+    best: tuple[float, int, Indices] = np.inf, 0, ladders[0][0]
+    for ladder in ladders:
         idle, lowest = 0, np.inf
         for indices in ladder:
             matrix = basis_matrix(training.inputs, indices, training.x)
             errors = _grid_errors(matrix, y, method) if grid else _fold_errors(matrix, y, method, folds)
             length = int(np.argmin(errors))
             # A larger set must be clearly better, or rounding decides between equal fits.
-            if best is None or errors[length] < best[0] * (1.0 - 1e-6):
+            if errors[length] < best[0] * (1.0 - 1e-6) or best[0] == np.inf:
                 best = float(errors[length]), length, indices
             idle, lowest = (0, errors[length]) if errors[length] < 0.99 * lowest else (idle + 1, lowest)
             if idle == PATIENCE:
                 break
-    if best is None:
-        raise ValueError(f"degree {degree} has more than {CANDIDATE_LIMIT} candidate terms: lower it or q_norm")
     error, length, indices = best
     matrix = basis_matrix(training.inputs, indices, training.x)
     chosen = _order(matrix, y, method)[:length]
@@ -81,8 +88,16 @@ def _candidate_ladders(training: Training, degree: int | None, q_norm: float | N
     limit = CANDIDATE_LIMIT if degree is not None else min(CANDIDATE_LIMIT, 6 * training.count)
     ladders: list[list[Indices]] = []
     for norm in norms if input_count > 1 else norms[:1]:
-        ladder = [multi_index_set(input_count, one, q_norm=norm) for one in degrees]
-        ladders.append([indices for indices in ladder if len(indices) <= limit])
+        ladder: list[Indices] = []
+        for one in degrees:
+            # Sets of higher degrees hold those of lower ones, so after the first that is too large none is made.
+            indices = (
+                terms_to_try(training, one, norm) if degree is None else multi_index_set(input_count, one, q_norm=norm)
+            )
+            if len(indices) > limit:
+                break
+            ladder.append(indices)
+        ladders.append(ladder)
     return ladders
 
 
@@ -106,12 +121,14 @@ def _order(matrix: Array, y: Array, method: str) -> Rows:
     if not len(usable) or not np.any(centred):
         return np.zeros(0, dtype=np.int64)
     scaled = columns[:, usable] / lengths[usable]
-    if method == "lars":
-        _, active, _ = lars_path(scaled, centred, method="lar", max_iter=limit)
-        return (usable[np.asarray(active, dtype=np.int64)] + 1).astype(np.int64)
     with warnings.catch_warnings():
-        # The pursuit may reach the data exactly before the limit; the path up to there is all that is wanted.
+        # Either method may reach the data exactly, or columns that depend on others, before the limit; the path up to
+        # there is all that is wanted.
         warnings.filterwarnings("ignore", message="(?s).*Orthogonal matching pursuit ended prematurely")
+        warnings.filterwarnings("ignore", message="(?s).*(Regressors in active set degenerate|Early stopping the lars)")
+        if method == "lars":
+            _, active, _ = lars_path(scaled, centred, method="lar", max_iter=limit)
+            return (usable[np.asarray(active, dtype=np.int64)] + 1).astype(np.int64)
         path = orthogonal_mp(scaled, centred, n_nonzero_coefs=limit, return_path=True)
     path = np.asarray(path).reshape(len(usable), -1)
     entered = np.where((path != 0.0).any(axis=1), (path != 0.0).argmax(axis=1), path.shape[1])

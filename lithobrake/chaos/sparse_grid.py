@@ -8,6 +8,7 @@ import numpy as np
 
 from lithobrake.chaos.germ import Distribution, checked_inputs
 from lithobrake.chaos.polynomials import Array
+from lithobrake.chaos.terms import whole_number
 
 
 def new_nodes(level: int) -> Array:
@@ -49,8 +50,7 @@ def smolyak_count(input_count: int, level: int) -> int:
 
 
 def _check_level(level: int) -> None:
-    if int(level) != level or not 0 <= level <= 20:
-        raise ValueError(f"level is {level}, but must be a whole number from 0 to 20")
+    whole_number("level", level, 0, 20)
 
 
 def smolyak(inputs: Mapping[str, Distribution], level: int) -> Array:

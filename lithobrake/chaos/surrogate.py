@@ -155,9 +155,14 @@ class Surrogate:
 
         Raises ValueError for NaN in y. Source: the paper, Eq 24; `score_of` has the definitions.
         """
-        truth = np.asarray(y, dtype=float).reshape(len(points_of(self.inputs, x)), -1)
-        if truth.shape[1] != len(self.output_names):
-            raise ValueError(f"y has {truth.shape[1]} outputs, but must have {len(self.output_names)}")
+        truth, count = np.asarray(y, dtype=float), len(points_of(self.inputs, x))
+        if truth.ndim == 1 and len(self.output_names) == 1:
+            truth = truth[:, None]
+        if truth.shape != (count, len(self.output_names)) or count == 0:
+            raise ValueError(
+                f"y has shape {truth.shape}, but must be [{count}, {len(self.output_names)}], one row for each of at "
+                "least one point"
+            )
         if not np.all(np.isfinite(truth)):
             raise ValueError("y holds values that are not finite: leave out the runs without outputs before scoring")
         predicted = np.asarray(self(x)).reshape(truth.shape)

@@ -2,11 +2,21 @@
 
 from collections.abc import Sequence
 from math import comb
+from numbers import Real
 
 import numpy as np
 from numpy.typing import NDArray
 
 Indices = NDArray[np.int64]
+
+
+def whole_number(name: str, value: object, at_least: int, at_most: int | None = None) -> int:
+    """Check a whole number and give it back; raises ValueError for anything else, with its name and range."""
+    whole = isinstance(value, Real) and not isinstance(value, bool) and float(value).is_integer()
+    if not whole or value < at_least or (at_most is not None and value > at_most):  # type: ignore[operator]
+        allowed = f"of at least {at_least}" if at_most is None else f"from {at_least} to {at_most}"
+        raise ValueError(f"{name} is {value!r}, but must be a whole number {allowed}")
+    return int(value)  # type: ignore[call-overload]
 
 
 def term_count(input_count: int, degree: int) -> int:
@@ -23,11 +33,12 @@ def multi_index_set(
     Raises ValueError for a negative degree or q_norm outside (0, 1].
     Source: the paper, Eq 13; Blatman and Sudret, 2011, Eq 22 (hyperbolic sets).
     """
-    if input_count < 1 or degree < 0 or int(degree) != degree:
-        raise ValueError(f"degree is {degree} for {input_count} inputs, but must be a whole number of at least 0")
-    if not 0.0 < q_norm <= 1.0:
-        raise ValueError(f"q_norm is {q_norm}, but must be above 0 and at most 1")
-    highest = [int(degree)] * input_count if max_degrees is None else [min(int(m), int(degree)) for m in max_degrees]
+    total = whole_number("degree", degree, 0)
+    if not isinstance(q_norm, Real) or not 0.0 < q_norm <= 1.0:
+        raise ValueError(f"q_norm is {q_norm!r}, but must be above 0 and at most 1")
+    highest = [total] * input_count
+    if max_degrees is not None:
+        highest = [min(whole_number("an entry of max_degrees", one, 0), total) for one in max_degrees]
     if len(highest) != input_count:
         raise ValueError(f"max_degrees has {len(highest)} entries, but must have one for each of {input_count} inputs")
     budget = float(degree) ** q_norm * (1.0 + 1e-12)

@@ -93,3 +93,11 @@ def test_empirical_quantiles_are_its_samples():
 def test_wrong_parameters_are_refused_in_one_sentence(make):
     with pytest.raises(ValueError, match=r"^[^\n]+$"):
         make()
+
+
+@pytest.mark.parametrize("samples", [["rough", "smooth"], [1j, 2.0]])
+def test_samples_that_are_no_numbers_are_refused_as_choices(samples):
+    with pytest.raises(ValueError, match="discrete choices are not supported"):
+        Empirical(samples)
+    with pytest.raises(ValueError, match="discrete choices are not supported"):
+        distribution("choice", values=samples)

@@ -177,3 +177,55 @@ def test_shapes_and_supports_are_refused():
             fit(inputs, wrong_x, wrong_y, degree=1)
     with pytest.raises(ValueError, match="discrete"):
         fit({"a": [1, 2, 3], "b": Uniform(0.0, 1.0)}, x, x[:, 0], degree=1)
+
+
+def test_lost_terms_are_named():
+    inputs = {name: Uniform(-1.0, 1.0) for name in "abcd"}
+    x = smolyak(inputs, 2)
+    with pytest.raises(ValueError, match=r"31 of 35 terms \(lost: a b c, a b d, a c d, b c d, "):
+        fit(inputs, x, x[:, 0], degree=3, method="ols")
+
+
+@pytest.mark.parametrize("wrong", [None, "2", 2.5, float("nan"), True, -1])
+def test_what_is_no_whole_number_is_refused_with_its_name(wrong):
+    inputs = {"a": Uniform(0.0, 1.0), "b": Uniform(0.0, 1.0)}
+    x = sobol_sequence(inputs, 20)
+    calls = {
+        "level": [lambda: smolyak(inputs, wrong), lambda: tensor_grid(inputs, wrong)],
+        "count": [lambda: sobol_sequence(inputs, wrong), lambda: latin_hypercube(inputs, wrong)],
+        "max_degrees": [lambda: fit(inputs, x, x[:, 0], degree=1, max_degrees=[1, wrong])],
+    }
+    for name, makers in calls.items():
+        for make in makers:
+            with pytest.raises(ValueError, match=f"{name} is"):
+                make()
+    if wrong is not None:
+        with pytest.raises(ValueError, match="degree is"):
+            fit(inputs, x, x[:, 0], degree=wrong)
+
+
+@pytest.mark.parametrize("method", [None, "ols", "lars", "omp"])
+def test_inputs_of_few_values_limit_only_their_own_degree(method):
+    inputs = {"a": Empirical([1.0, 2.0, 4.0]), "b": Uniform(0.0, 1.0)}
+    x, test = sobol_sequence(inputs, 60, seed=1), sobol_sequence(inputs, 200, seed=2)
+    surrogate = fit(inputs, x, x[:, 0] + np.tanh(3.0 * x[:, 1]), method=method)
+    assert surrogate.score(test, test[:, 0] + np.tanh(3.0 * test[:, 1]))["y"]["rrmse"] < 1e-3
+    assert surrogate.multi_indices[:, 0].max() <= 2
+
+
+def test_equal_points_and_far_too_few_still_give_an_expansion():
+    inputs = {f"x{k}": Uniform(0.0, 1.0) for k in range(12)}
+    x = sobol_sequence(inputs, 8)
+    assert np.isfinite(fit(inputs, np.tile(x[:1], (8, 1)), np.arange(8.0)).mean)
+    for count in (1, 2, 8):
+        for method in (None, "lars", "omp"):
+            assert np.isfinite(fit(inputs, x[:count], x[:count, 0], method=method).mean)
+
+
+def test_scores_of_wrong_shapes_are_refused():
+    inputs = {"a": Uniform(0.0, 1.0)}
+    x = sobol_sequence(inputs, 10)
+    surrogate = fit(inputs, x, x[:, 0], degree=1)
+    for points, y in ((x, x[:5, 0]), (x, np.zeros((10, 2))), (np.zeros((0, 1)), np.zeros(0))):
+        with pytest.raises(ValueError, match="y has shape"):
+            surrogate.score(points, y)

@@ -66,8 +66,18 @@ def test_empirical_is_orthonormal_over_its_samples():
 
 
 def test_empirical_refuses_a_degree_that_its_values_cannot_tell_apart():
-    with pytest.raises(ValueError, match="distinct values"):
+    with pytest.raises(ValueError, match="distinct"):
         Empirical([1.0, 2.0, 2.0, 3.0]).recurrence(3)
+
+
+def test_degrees_that_rounding_spoils_are_refused():
+    entry = Empirical(np.random.default_rng(0).lognormal(0.0, 1.5, size=300))
+    highest = int(entry.highest_degree)
+    assert 5 < highest < 20
+    table = entry.recurrence(highest).values(entry.germ(np.array(entry.samples)))
+    assert gram_error(table, np.full(300, 1.0 / 300)) < 1e-8
+    with pytest.raises(ValueError, match=f"up to degree {highest}"):
+        entry.recurrence(highest + 1)
 
 
 def test_slopes_are_derivatives():
