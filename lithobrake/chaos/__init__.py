@@ -13,11 +13,11 @@ from lithobrake.chaos.exploration import (
     output_correlation,
     quantiles,
     sampled_outputs,
-    shape_moments,
 )
 from lithobrake.chaos.fitting import fit
 from lithobrake.chaos.germ import Distribution
 from lithobrake.chaos.kinds import distribution
+from lithobrake.chaos.moments import shape_moments
 from lithobrake.chaos.noise import replicates
 from lithobrake.chaos.optimal import christoffel, christoffel_weights, d_optimal, fekete
 from lithobrake.chaos.resampling import score_intervals, sobol_intervals

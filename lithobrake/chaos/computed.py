@@ -163,6 +163,10 @@ class Empirical(Distribution):
         nodes, repeats = np.unique(self._sorted, return_counts=True)
         return self.germ(nodes), repeats / len(self.samples)
 
+    def gauss(self, count: int) -> tuple[Array, Array]:
+        # The samples themselves are exact for any degree, only more.
+        return super().gauss(count) if count <= self.highest_degree else self._measure()
+
     def rule(self, count: int) -> tuple[Array, Array]:
         nodes, weights = self._measure()
         if len(nodes) <= SAMPLES_PER_NODE * count:

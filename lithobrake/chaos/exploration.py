@@ -1,13 +1,12 @@
 """What an expansion tells beyond its moments: effects, slopes, expansions in fewer inputs, distributions."""
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from lithobrake.chaos.basis import germs_of, recurrences_of
-from lithobrake.chaos.design import checked_count, sobol_sequence
+from lithobrake.chaos.design import checked_count
 from lithobrake.chaos.polynomials import Array
 from lithobrake.chaos.surrogate import Surrogate
 from lithobrake.chaos.threads import one_thread
@@ -104,16 +103,6 @@ def density(
     points = np.linspace(edges[0], edges[-1], point_count)
     bumps = np.exp(-0.5 * ((points[:, None] - middles) / width) ** 2) / (width * np.sqrt(2.0 * np.pi))
     return points, bumps @ shares
-
-
-def shape_moments(surrogate: Surrogate, *, count: int = 100_000, seed: int = 0) -> dict[str, Any]:
-    """Skewness and kurtosis (3 for a normal) of each output by a Sobol sequence: [output_count] or numbers."""
-    points = sobol_sequence(surrogate.inputs, count, seed=seed)
-    outputs = np.asarray(surrogate(points)).reshape(len(points), -1)
-    centred = outputs - outputs.mean(axis=0)
-    std = np.where(np.ptp(outputs, axis=0) > 0.0, centred.std(axis=0), 1.0)
-    powers = {name: np.mean((centred / std) ** power, axis=0) for name, power in (("skewness", 3), ("kurtosis", 4))}
-    return {name: surrogate.shaped(value) for name, value in powers.items()}
 
 
 def output_correlation(surrogate: Surrogate) -> Array:

@@ -50,9 +50,15 @@ class Distribution(ABC):
     def slope(self, x: Array) -> Array:
         """Derivative of the germ with respect to x [1 / unit of the input]."""
 
+    def gauss(self, count: int) -> tuple[Array, Array]:
+        """Germ nodes and weights (summing to 1), exact for polynomials up to degree 2 count - 1; at most `count`
+        unless samples determine fewer.
+        """
+        return self.recurrence(count).gauss_rule()
+
     def rule(self, count: int) -> tuple[Array, Array]:
         """Germ nodes and weights (summing to 1) of a fine quadrature over this distribution, about `count` of each."""
-        return self.recurrence(count).gauss_rule()
+        return self.gauss(count)
 
     @property
     def highest_degree(self) -> float:

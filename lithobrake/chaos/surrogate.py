@@ -124,6 +124,22 @@ class Surrogate:
         """Variance of each output [output_count], or a number. Source: the paper, Eq 21."""
         return self.shaped(sensitivity.variance_of(self.multi_indices, self._coefficients))
 
+    @cached_property
+    def _shape(self) -> dict[str, Any]:
+        from lithobrake.chaos.moments import shape_moments
+
+        return shape_moments(self)
+
+    @property
+    def skewness(self) -> Any:
+        """Skewness of each output [output_count], or a number; `shape_moments` says how, and whether exactly."""
+        return self._shape["skewness"]
+
+    @property
+    def kurtosis(self) -> Any:
+        """Kurtosis of each output (3 for a normal) [output_count], or a number; as for the skewness."""
+        return self._shape["kurtosis"]
+
     @property
     def sobol_first(self) -> Array:
         """First-order Sobol indices [input_count, output_count] or [input_count]; 0 where nothing varies."""
