@@ -1,9 +1,17 @@
-"""Writing a file so that a reader sees the old one or the new one, whole, whatever happens in between."""
+"""Files that nothing can spoil: written whole or not at all, and by one process at a time."""
 
+import json
 import os
-from collections.abc import Iterator
+import platform
+import time
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
+
+# A reader of a lock holds it for microseconds; only a coordinator holds it for longer than this [s].
+_PATIENCE, _PAUSE = 0.5, 0.02
+_NOTE_LENGTH = 1024
 
 
 @contextmanager
@@ -18,3 +26,61 @@ def atomic_path(path: str | os.PathLike[str]) -> Iterator[Path]:
         os.replace(draft, final)
     finally:
         draft.unlink(missing_ok=True)
+
+
+@contextmanager
+def locked(path: str | os.PathLike[str], refusal: str) -> Iterator[Callable[..., None]]:
+    """Hold a lock file while no other process does; the lock goes with the process, however it ends.
+
+    Gives a function that notes what is being done, for `lock_holder` to read. Raises ValueError with the refusal, and
+    who is at work, when another process holds the lock.
+    """
+    if os.name != "posix":
+        yield lambda **what: None
+        return
+    import fcntl
+
+    with open(path, "a+") as lock:
+        limit = time.monotonic() + _PATIENCE
+        while not _taken(lock.fileno(), fcntl.LOCK_EX):
+            if time.monotonic() > limit:
+                holder = _noted(Path(path))
+                who = f" (process {holder['process']} on {holder['host']})" if holder else ""
+                raise ValueError(refusal.format(who=who))
+            time.sleep(_PAUSE)
+
+        def note(**what: Any) -> None:
+            content = {"process": os.getpid(), "host": platform.node(), **what}
+            # One write of one length: a reader sees the old note or the new one.
+            os.pwrite(lock.fileno(), json.dumps(content).ljust(_NOTE_LENGTH).encode(), 0)
+
+        # Opened for appending, so that a refused process changes nothing; notes go to the beginning.
+        fcntl.fcntl(lock.fileno(), fcntl.F_SETFL, fcntl.fcntl(lock.fileno(), fcntl.F_GETFL) & ~os.O_APPEND)
+        note()
+        yield note
+
+
+def lock_holder(path: str | os.PathLike[str]) -> dict[str, Any] | None:
+    """What the process that holds a lock file has noted, its number and host included; None when nobody holds it."""
+    if os.name != "posix" or not Path(path).is_file():
+        return None
+    import fcntl
+
+    with open(path, "rb") as lock:
+        return None if _taken(lock.fileno(), fcntl.LOCK_SH) else _noted(Path(path))
+
+
+def _taken(file: int, kind: int) -> bool:
+    import fcntl
+
+    try:
+        fcntl.flock(file, kind | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return False
+    return True
+
+
+def _noted(path: Path) -> dict[str, Any]:
+    text = path.read_text(encoding="utf-8").strip()
+    note: dict[str, Any] = json.loads(text) if text else {}
+    return note

@@ -2,7 +2,26 @@
 
 from lithobrake.campaign.identity import run_key, run_seed
 from lithobrake.campaign.ledger import Ledger
-from lithobrake.campaign.local import LocalExecutor
+from lithobrake.campaign.limits import Limits
+from lithobrake.campaign.local import LocalExecutor, WorkerDiedError
+from lithobrake.campaign.missing import missing
+from lithobrake.campaign.record import Record, read_records, write_csv
 from lithobrake.campaign.runs import Runs, run
+from lithobrake.campaign.tally import Tally, ledger_tally
 
-__all__ = ["Ledger", "LocalExecutor", "Runs", "run", "run_key", "run_seed"]
+__all__ = [
+    "Ledger",
+    "Limits",
+    "LocalExecutor",
+    "Record",
+    "Runs",
+    "Tally",
+    "WorkerDiedError",
+    "ledger_tally",
+    "missing",
+    "read_records",
+    "run",
+    "run_key",
+    "run_seed",
+    "write_csv",
+]

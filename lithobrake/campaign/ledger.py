@@ -1,111 +1,143 @@
 """The ledger of runs: one SQLite file, one row a run, one transaction a run.
 
-Only the coordinating process writes. Readers, the sqlite3 shell among them, may look at any time:
-`sqlite3 runs.sqlite "SELECT outcome, json_extract(outputs, '$.speed_out') FROM runs"`.
+Only the coordinating process writes, and there is only one. Readers, the sqlite3 shell among them, may look at any
+time: `sqlite3 runs.sqlite "SELECT outcome, json_extract(outputs, '$.speed_out') FROM runs"`.
 """
 
 import json
 import sqlite3
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
-from datetime import UTC, datetime
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import ExitStack, contextmanager
 from os import PathLike
+from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
 
-FORMAT_VERSION = 1
+from lithobrake.atomic import locked
+from lithobrake.campaign.record import COLUMNS, Record, record, utc_now
 
-# status   queued, done, or failed (then `reason` says why); a run without a result has no outcome
-# outcome  how the run ended, in the model's own words; outputs, inputs and draws are JSON objects (draws = what the
-#          run drew by chance); an output that has no value is absent
+FORMAT_VERSION = 2
+
+# status    queued, running (handed to a worker), done, or failed (then `reason` says why, `attempts` how often tried)
+# outcome   how the run ended, in the model's own words; inputs, outputs and draws are JSON objects (draws = what the
+#           run drew by chance); an output that has no value is absent
+# version   of the code that made the run; started, ended: UTC
 _SCHEMA = """
 CREATE TABLE IF NOT EXISTS runs (
     key TEXT PRIMARY KEY, status TEXT NOT NULL, outcome TEXT, inputs TEXT NOT NULL, draws TEXT, outputs TEXT,
     seed INTEGER NOT NULL, replicate INTEGER NOT NULL, reason TEXT, wall_s REAL, cpu_s REAL, host TEXT,
-    version TEXT NOT NULL, ended TEXT
+    version TEXT NOT NULL, ended TEXT, attempts INTEGER NOT NULL DEFAULT 0, started TEXT
 ) WITHOUT ROWID
 """
-
-
-@dataclass(frozen=True)
-class Record:
-    """One run as the ledger keeps it."""
-
-    key: str
-    status: str
-    outcome: str | None
-    inputs: dict[str, float]
-    outputs: dict[str, float]
-    draws: dict[str, Any]
-    reason: str | None
-    wall_s: float | None
-    cpu_s: float | None
+# What format 2 has more than format 1; the runs of an older ledger were each tried once.
+_FROM_FIRST = (
+    "ALTER TABLE runs ADD COLUMN attempts INTEGER NOT NULL DEFAULT 1",
+    "ALTER TABLE runs ADD COLUMN started TEXT",
+)
 
 
 class Ledger:
     """Runs in a SQLite file. Use as a context manager, from one process and one thread."""
 
     def __init__(self, path: str | PathLike[str]) -> None:
-        """Open or create the ledger. Raises ValueError when the file is no ledger or cannot be written."""
-        self.path = path
+        """Open or create the ledger.
+
+        Raises ValueError when another process has it open, when the file is no ledger, or when it cannot be written.
+        """
+        self.path = Path(path)
+        self._open = ExitStack()
+        refusal = f"another campaign is at work on {self.path}{{who}}; wait for it, or choose another ledger"
         try:
-            self._database = sqlite3.connect(path, isolation_level=None)
-            # A finished run must survive a power cut: the log is synced at each commit.
-            self._database.execute("PRAGMA journal_mode = WAL")
-            self._database.execute("PRAGMA synchronous = FULL")
-            version = self._database.execute("PRAGMA user_version").fetchone()[0]
-            if version not in (0, FORMAT_VERSION):
-                raise ValueError(
-                    f"{path} has ledger format {version}; this version reads {FORMAT_VERSION}: "
-                    "move the file away, or use the version of lithobrake that wrote it"
-                )
-            self._database.execute(_SCHEMA)
+            self._note = self._open.enter_context(locked(lock_path(self.path), refusal))
+            self._database = sqlite3.connect(self.path, isolation_level=None)
+            self._open.callback(self._database.close)
+            self._prepare()
+        except (sqlite3.Error, OSError) as error:
+            self._open.close()
+            raise ValueError(
+                f"{self.path} cannot be used as a ledger ({error}); choose a folder that can be written and has room"
+            ) from error
+        except BaseException:
+            self._open.close()
+            raise
+
+    def _prepare(self) -> None:
+        # A finished run must survive a power cut: the log is synced at each commit.
+        self._database.execute("PRAGMA journal_mode = WAL")
+        self._database.execute("PRAGMA synchronous = FULL")
+        version = self._database.execute("PRAGMA user_version").fetchone()[0]
+        if version not in (0, 1, FORMAT_VERSION):
+            raise ValueError(
+                f"{self.path} has ledger format {version}; this version reads 1 to {FORMAT_VERSION}: "
+                "move the file away, or use the version of lithobrake that wrote it"
+            )
+        with self._database:
+            self._database.execute("BEGIN IMMEDIATE")
+            for statement in _FROM_FIRST if version == 1 else (_SCHEMA,):
+                self._database.execute(statement)
             self._database.execute(f"PRAGMA user_version = {FORMAT_VERSION}")
-        except sqlite3.Error as error:
-            raise ValueError(f"{path} cannot be used as a ledger ({error}); check the disk and the folder") from error
 
     def queue(self, runs: Iterable[tuple[str, Mapping[str, float], int, int]], version: str) -> None:
-        """Enter runs that are to be made (key, inputs, seed, replicate) in one transaction; known keys stay."""
+        """Enter the runs that are to be made now (key, inputs, seed, replicate); ended runs among them start anew.
+
+        What was queued before and never ended is forgotten: whoever still wants it asks for it again.
+        """
         rows = [(key, json.dumps(dict(inputs)), seed, replicate, version) for key, inputs, seed, replicate in runs]
-        with self._database:
-            self._database.execute("BEGIN")
+        self._note(began=utc_now())
+        with self._transaction():
+            self._database.execute("DELETE FROM runs WHERE status IN ('queued', 'running')")
             self._database.executemany(
-                "INSERT OR IGNORE INTO runs (key, status, inputs, seed, replicate, version) "
-                "VALUES (?, 'queued', ?, ?, ?, ?)",
+                "INSERT INTO runs (key, status, inputs, seed, replicate, version) VALUES (?, 'queued', ?, ?, ?, ?) "
+                "ON CONFLICT (key) DO UPDATE SET status = 'queued'",
                 rows,
             )
 
+    def start(self, keys: Iterable[str]) -> None:
+        """Mark queued runs as running."""
+        # Nothing is lost with this mark, so it need not wait for the disk.
+        self._database.execute("PRAGMA synchronous = NORMAL")
+        try:
+            with self._transaction():
+                self._database.executemany(
+                    "UPDATE runs SET status = 'running', started = ? WHERE key = ? AND status = 'queued'",
+                    [(utc_now(), key) for key in keys],
+                )
+        finally:
+            self._database.execute("PRAGMA synchronous = FULL")
+
     def finish(self, key: str, result: Mapping[str, Any]) -> None:
-        """Enter the result of a queued run: status, outcome, outputs, draws, reason, wall_s, cpu_s, host."""
-        with self._database:
-            self._database.execute("BEGIN")
+        """Enter the result of a queued run: what `perform` gives, and attempts."""
+        texts = {name: json.dumps(result.get(name, {}), allow_nan=False) for name in ("outputs", "draws")}
+        plain = [result.get(name) for name in ("outcome", "reason", "wall_s", "cpu_s", "host", "started")]
+        with self._transaction():
             self._database.execute(
-                "UPDATE runs SET status = ?, outcome = ?, outputs = ?, draws = ?, reason = ?, wall_s = ?, cpu_s = ?, "
-                "host = ?, ended = ? WHERE key = ?",
-                (
-                    result["status"],
-                    result.get("outcome"),
-                    json.dumps(result.get("outputs", {}), allow_nan=False),
-                    json.dumps(result.get("draws", {}), allow_nan=False),
-                    result.get("reason"),
-                    result.get("wall_s"),
-                    result.get("cpu_s"),
-                    result.get("host"),
-                    datetime.now(UTC).isoformat(timespec="milliseconds"),
-                    key,
-                ),
+                "UPDATE runs SET status = ?, outputs = ?, draws = ?, outcome = ?, reason = ?, wall_s = ?, cpu_s = ?, "
+                "host = ?, started = coalesce(?, started), attempts = ?, ended = ? WHERE key = ?",
+                (result["status"], texts["outputs"], texts["draws"], *plain, result.get("attempts", 1), utc_now(), key),
             )
 
     def find(self, keys: Iterable[str]) -> dict[str, Record]:
         """The runs with these keys that have ended, by key."""
         wanted = set(keys)
-        columns = "key, status, outcome, inputs, outputs, draws, reason, wall_s, cpu_s"
-        rows = self._database.execute(f"SELECT {columns} FROM runs WHERE status IN ('done', 'failed')")
-        return {row[0]: _record(row) for row in rows if row[0] in wanted}
+        rows = self._database.execute(f"SELECT {', '.join(COLUMNS)} FROM runs WHERE status IN ('done', 'failed')")
+        return {row[0]: record(row) for row in rows if row[0] in wanted}
+
+    @contextmanager
+    def _transaction(self) -> Iterator[None]:
+        """Change the file, or leave it as it was. Raises OSError when the disk is full or does not answer."""
+        try:
+            with self._database:
+                self._database.execute("BEGIN IMMEDIATE")
+                yield
+        except sqlite3.OperationalError as error:
+            raise OSError(
+                f"{self.path} cannot be written ({error}); every run that had ended before is kept: make room on the "
+                "disk, or end what holds the file, and give the same command again"
+            ) from error
 
     def close(self) -> None:
         """Close the file."""
-        self._database.close()
+        self._open.close()
 
     def __enter__(self) -> Self:
         """Give the ledger itself."""
@@ -118,7 +150,6 @@ class Ledger:
         self.close()
 
 
-def _record(row: tuple[Any, ...]) -> Record:
-    key, status, outcome, inputs, outputs, draws, reason, wall_s, cpu_s = row
-    inputs, outputs, draws = (json.loads(text or "{}") for text in (inputs, outputs, draws))
-    return Record(key, status, outcome, inputs, outputs, draws, reason, wall_s, cpu_s)
+def lock_path(path: Path) -> Path:
+    """The file that the process at work on a ledger holds; it notes when its present campaign began."""
+    return path.with_name(f".{path.name}.lock")

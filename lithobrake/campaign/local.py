@@ -1,75 +1,168 @@
-"""Runs on the cores of this machine: a process pool that mends itself, behind the interface of concurrent.futures."""
+"""Runs on the cores of this machine, behind the interface of concurrent.futures.
+
+A pool of the standard library breaks as a whole when one process dies, does not say at which call, and cannot end a
+single call. Here each process has a pipe of its own: the call of a dead one is known, the others go on undisturbed.
+"""
 
 import contextlib
-import multiprocessing
 import os
-import signal
-from collections.abc import Callable, Iterator
-from concurrent.futures import Executor, Future, ProcessPoolExecutor
-from concurrent.futures.process import BrokenProcessPool
+import pickle
+import threading
+import time
+from collections import deque
+from collections.abc import Callable
+from concurrent.futures import Executor, Future
+from multiprocessing.connection import Pipe, wait
 from typing import Any
 
-# One run fills one core; a numerical library that starts threads of its own would only slow the others down.
-_THREAD_COUNTS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
-_ONE_THREAD = dict.fromkeys(_THREAD_COUNTS, "1")
+from lithobrake.campaign.limits import Limits, memory_by_session
+from lithobrake.campaign.worker import BEGUN, Worker
+
+# How often running calls are looked at when they have limits [s].
+_LOOK = 0.2
+
+
+class WorkerDiedError(RuntimeError):
+    """The process of a call died, or was ended because the call went over its limits; the message says which."""
 
 
 class LocalExecutor(Executor):
-    """A pool of processes, each with one thread.
+    """A pool of processes, each with one thread; one that dies is replaced.
 
-    Processes are spawned, never forked: a fork of a process that has threads may hang. When a worker dies, its pool is
-    given up and the next submit starts a new one.
+    Processes are spawned, never forked: a fork of a process that has threads may hang. They end with this one, however
+    it ends.
     """
 
-    def __init__(self, worker_count: int | None = None) -> None:
-        """Prepare a pool of `worker_count` processes (None: one for each core); they start with the first submit."""
+    def __init__(self, worker_count: int | None = None, limits: Limits | None = None) -> None:
+        """Prepare `worker_count` processes (None: one for each core); they start when there is work for them."""
         self.worker_count = worker_count or available_cores()
-        self._pool: ProcessPoolExecutor | None = None
+        self.limits = limits or Limits()
+        self._waiting: deque[tuple[Future[Any], bytes]] = deque()
+        self._workers: list[Worker] = []
+        self._ear, self._bell = Pipe(duplex=False)
+        self._lock = threading.Lock()
+        self._thread: threading.Thread | None = None
+        self._closing = False
 
     def submit(self, function: Callable[..., Any], /, *args: Any, **kwargs: Any) -> "Future[Any]":
-        """Queue a call; it is pickled."""
-        # The children read the variables while their interpreter starts, which may be at any submit.
-        with _environment(_ONE_THREAD):
-            if self._pool is not None:
-                try:
-                    return self._pool.submit(function, *args, **kwargs)
-                except BrokenProcessPool:
-                    self.shutdown(wait=False, cancel_futures=True)
-            context = multiprocessing.get_context("spawn")
-            self._pool = ProcessPoolExecutor(self.worker_count, mp_context=context, initializer=_ignore_interrupt)
-            return self._pool.submit(function, *args, **kwargs)
+        """Queue a call; it is pickled here and now."""
+        call, future = pickle.dumps((function, args, kwargs)), Future[Any]()
+        with self._lock:
+            if self._closing:
+                raise RuntimeError("this LocalExecutor is shut down; make another one")
+            self._waiting.append((future, call))
+            if self._thread is None:
+                self._thread = threading.Thread(target=self._serve, name="local executor", daemon=True)
+                self._thread.start()
+        self._bell.send_bytes(b"call")
+        return future
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
-        """Stop the pool; with cancel_futures, runs under way are ended too."""
-        pool, self._pool = self._pool, None
-        if pool is None:
+        """Take no more calls; with cancel_futures, those that wait are cancelled and those under way are ended."""
+        with self._lock:
+            self._closing = True
+            given_up = [future for future, _ in self._waiting] if cancel_futures else []
+            if cancel_futures:
+                self._waiting.clear()
+        for future in given_up:
+            future.cancel()
+        if cancel_futures:
+            for worker in list(self._workers):
+                worker.kill()
+        if self._thread is not None:
+            # Where the thread has ended already, nobody listens.
+            with contextlib.suppress(OSError):
+                self._bell.send_bytes(b"end")
+            if wait:
+                self._thread.join()
+
+    def _serve(self) -> None:
+        """Hand out calls and collect answers until the executor is shut down and nothing is left to do."""
+        has_limits = self.limits != Limits()
+        try:
+            while self._hand_out():
+                busy = [worker for worker in self._workers if worker.future]
+                pipes = [self._ear, *(worker.connection for worker in busy)]
+                ready = wait(pipes, timeout=_LOOK if has_limits and busy else None)
+                if self._ear in ready:
+                    self._ear.recv_bytes()
+                for worker in busy:
+                    if worker.connection in ready:
+                        self._hear(worker)
+                if has_limits:
+                    self._end_those_over_their_limits()
+        # Say, no process can be started: whoever waits for a future has to hear of it.
+        except BaseException as error:
+            self._give_up(error)
+        for worker in self._workers:
+            worker.connection.close()
+
+    def _hand_out(self) -> bool:
+        """Give waiting calls to idle processes, starting processes as needed; False when all is done and closed."""
+        while True:
+            with self._lock:
+                idle = next((worker for worker in self._workers if worker.future is None), None)
+                if not self._waiting or (idle is None and len(self._workers) >= self.worker_count):
+                    busy = any(worker.future for worker in self._workers)
+                    return bool(self._waiting) or busy or not self._closing
+                future, call = self._waiting.popleft()
+            if not (future.running() or future.set_running_or_notify_cancel()):
+                continue
+            if idle is None:
+                idle = Worker()
+                self._workers.append(idle)
+            if not idle.take(future, call):
+                # It died while it had nothing to do; the call has not begun, so another process takes it.
+                self._remove(idle)
+                with self._lock:
+                    self._waiting.appendleft((future, call))
+
+    def _hear(self, worker: Worker) -> None:
+        """Take in what a process says: that it has begun, or how its call ended."""
+        try:
+            said = worker.connection.recv_bytes()
+        except (EOFError, OSError):
+            self._lose(worker, "its process died ({ended})")
             return
-        # Python 3.14 has kill_workers; until then the processes of a pool are found only in its inner table.
-        children = list((getattr(pool, "_processes", None) or {}).values()) if cancel_futures else []
-        pool.shutdown(wait=wait and not cancel_futures, cancel_futures=cancel_futures)
-        for child in children:
-            child.terminate()
+        if said == BEGUN:
+            worker.begun = time.monotonic()
+            return
+        future, worker.future = worker.future, None
+        # The next call goes out before anybody is told of this one, so that the process need not wait.
+        self._hand_out()
+        fine, answer = pickle.loads(said)
+        if future and fine:
+            future.set_result(answer)
+        elif future:
+            future.set_exception(answer)
+
+    def _lose(self, worker: Worker, reason: str) -> None:
+        self._remove(worker)
+        if worker.future is not None:
+            worker.future.set_exception(WorkerDiedError(reason.format(ended=worker.ended())))
+
+    def _remove(self, worker: Worker) -> None:
+        worker.kill()
+        self._workers.remove(worker)
+
+    def _give_up(self, error: BaseException) -> None:
+        with self._lock:
+            self._closing = True
+            futures = [future for future, _ in self._waiting]
+        futures += [worker.future for worker in self._workers if worker.future]
+        for future in futures:
+            if not future.done() and (future.running() or future.set_running_or_notify_cancel()):
+                future.set_exception(error)
+
+    def _end_those_over_their_limits(self) -> None:
+        memory = memory_by_session() if self.limits.memory_bytes < float("inf") else {}
+        for worker in [worker for worker in self._workers if worker.future and worker.begun]:
+            wall_s = time.monotonic() - (worker.begun or 0.0)
+            reason = self.limits.exceeded(wall_s, memory.get(worker.number, 0))
+            if reason:
+                self._lose(worker, reason)
 
 
 def available_cores() -> int:
     """Cores that this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-
-
-def _ignore_interrupt() -> None:
-    """Leave Ctrl-C to the coordinator, which keeps what is finished and then ends the workers."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-
-
-@contextlib.contextmanager
-def _environment(variables: dict[str, str]) -> Iterator[None]:
-    before = {name: os.environ.get(name) for name in variables}
-    os.environ.update(variables)
-    try:
-        yield
-    finally:
-        for name, value in before.items():
-            if value is None:
-                os.environ.pop(name, None)
-            else:
-                os.environ[name] = value

@@ -2,6 +2,8 @@
 
 import os
 import signal
+import time
+from pathlib import Path
 from typing import Any
 
 
@@ -28,4 +30,50 @@ def captured_below_two(inputs: dict[str, float], seed: int) -> dict[str, Any]:
     """A model with an outcome that has no height."""
     if inputs["a"] < 2.0:
         return {"outcome": "captured", "outputs": {"height": float("nan"), "depth": 0.1}}
+    return parabola(inputs, seed)
+
+
+def sleeps_at_two(inputs: dict[str, float], seed: int) -> dict[str, Any]:
+    """A model that does not end at one point."""
+    if inputs["a"] == 2.0:
+        time.sleep(600)
+    return parabola(inputs, seed)
+
+
+def swells_at_two(inputs: dict[str, float], seed: int) -> dict[str, Any]:
+    """A model that holds half a gigabyte at one point, and does not end."""
+    if inputs["a"] == 2.0:
+        filled = bytearray(os.urandom(1 << 20) * 512)
+        time.sleep(600)
+        return {"height": float(len(filled))}
+    return parabola(inputs, seed)
+
+
+class FailsOnce:
+    """A model whose first run at each point fails; a file remembers."""
+
+    def __init__(self, folder: Path, how: str) -> None:
+        self.folder, self.how = folder, how
+
+    def __call__(self, inputs: dict[str, float], seed: int) -> dict[str, Any]:
+        mark = self.folder / f"{inputs['a']}"
+        if not mark.exists():
+            mark.touch()
+            if self.how == "dies":
+                os.kill(os.getpid(), signal.SIGKILL)
+            raise OSError("no licence is free")
+        return parabola(inputs, seed)
+
+
+def talks(inputs: dict[str, float], seed: int) -> dict[str, float]:
+    """A model that says what it does, gives its outputs alone, and breaks at one point."""
+    print("rolling on", inputs["a"])
+    if inputs["a"] == 2.0:
+        raise FloatingPointError("the overlap grew without bound")
+    return {"height": inputs["a"]}
+
+
+def sleeps_a_little(inputs: dict[str, float], seed: int) -> dict[str, Any]:
+    """A model that takes long enough to be seen."""
+    time.sleep(0.8)
     return parabola(inputs, seed)

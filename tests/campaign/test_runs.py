@@ -10,7 +10,7 @@ import campaign_models as models
 import numpy as np
 import pytest
 
-from lithobrake.campaign import Ledger, LocalExecutor, Runs, run
+from lithobrake.campaign import Ledger, LocalExecutor, Runs, Tally, run
 
 X = np.array([[1.0, 0.5], [2.0, 0.5], [3.0, 0.5], [1.0, 0.5]])
 
@@ -84,15 +84,15 @@ def test_processes_give_the_same_bits_as_this_one_and_survive_a_dead_worker(tmp_
     with LocalExecutor(2) as executor:
         there = campaign(tmp_path, models.dies_at_two, executor)
     assert there.outcomes == ["clear", "failed", "clear", "clear"]
-    assert there.records[1].reason == "its process died"
+    assert there.records[1].reason == "its process died (signal 9)"
     for row in (0, 2):
         assert there.records[row].outputs == here.records[row].outputs
         assert there.records[row].draws == here.records[row].draws
 
 
 def test_an_interrupt_keeps_what_is_finished(tmp_path: Path) -> None:
-    def interrupt(done: int, total: int) -> None:
-        if done == 2:
+    def interrupt(state: Tally) -> None:
+        if state.done >= 2:
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):

@@ -1,0 +1,122 @@
+"""The one process that hands out runs, tries failed ones again, and writes each end into the ledger."""
+
+import queue
+import time
+from collections import deque
+from collections.abc import Callable, Mapping
+from concurrent.futures import BrokenExecutor, Executor, Future
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from lithobrake.campaign.ledger import Ledger
+from lithobrake.campaign.local import WorkerDiedError
+from lithobrake.campaign.one_run import Model, perform
+from lithobrake.campaign.tally import Tally
+
+# Runs handed out for each worker: enough that none waits for the coordinator.
+_AHEAD = 2
+# Workers to expect of an executor that does not say how many it has.
+_UNKNOWN_COUNT = 32
+# Progress is shown at least this often, and which runs are under way is looked at [s].
+_LOOK = 0.5
+
+
+@dataclass(frozen=True)
+class Job:
+    """A run that is to be made."""
+
+    model: Model
+    inputs: dict[str, float]
+    seed: int
+    log: Path | None = None
+
+
+@dataclass
+class Coordinator:
+    """A campaign under way; jobs, and how often each was tried in this campaign and before, by the key of the run."""
+
+    ledger: Ledger
+    executor: Executor
+    jobs: dict[str, Job]
+    state: Tally
+    retry_count: int
+    tried: dict[str, int]
+    progress: Callable[[Tally], None]
+
+    def __post_init__(self) -> None:
+        self.waiting = deque(self.jobs)
+        self.flying: dict[Future[Any], str] = {}
+        self._unmarked: list[Future[Any]] = []
+        self._ended: queue.SimpleQueue[Future[Any]] = queue.SimpleQueue()
+
+    def compute(self) -> None:
+        """Make all runs. Raises OSError when the ledger cannot be written or the executor gives up."""
+        began = time.monotonic()
+        self.progress(self.state)
+        try:
+            while self.waiting or self.flying:
+                self._hand_out()
+                self._collect()
+                self.state.seconds = time.monotonic() - began
+                self.progress(self.state)
+        except KeyboardInterrupt:
+            # A run may have ended between two looks; it is kept too.
+            for future, key in self.flying.items():
+                if future.done() and not future.cancelled() and future.exception() is None:
+                    self.ledger.finish(key, future.result())
+            raise
+
+    def _hand_out(self) -> None:
+        window = _AHEAD * getattr(self.executor, "worker_count", _UNKNOWN_COUNT)
+        while self.waiting and len(self.flying) < window:
+            key = self.waiting.popleft()
+            job = self.jobs[key]
+            future = self.executor.submit(perform, job.model, job.inputs, job.seed, job.log)
+            self.flying[future] = key
+            self._unmarked.append(future)
+            future.add_done_callback(self._ended.put)
+
+    def _collect(self) -> None:
+        """Wait for a run to end, or for a moment, and take in all that have ended."""
+        try:
+            ended = [self._ended.get(timeout=_LOOK)]
+        except queue.Empty:
+            ended = []
+        while not self._ended.empty():
+            ended.append(self._ended.get())
+        for future in ended:
+            self._take(self.flying[future], _result(future))
+            del self.flying[future]
+        flying = [future for future in self._unmarked if future in self.flying]
+        running = [future for future in flying if future.running()]
+        if running:
+            self.ledger.start(self.flying[future] for future in running)
+        self._unmarked = [future for future in flying if not future.running()]
+        self.state.running = len(self.flying) - len(self._unmarked)
+
+    def _take(self, key: str, result: Mapping[str, Any]) -> None:
+        self.tried[key] = self.tried.get(key, 0) + 1
+        if result["status"] == "failed" and self.tried[key] <= self.retry_count:
+            self.waiting.append(key)
+            return
+        self.ledger.finish(key, {**result, "attempts": self.tried[key]})
+        self.state.add(result["status"], result.get("outputs", {}))
+
+
+def _result(future: "Future[Any]") -> Mapping[str, Any]:
+    """How a run has ended. Raises OSError when the executor has dropped it."""
+    if future.cancelled():
+        raise ConnectionError(
+            "the executor has dropped its runs (is its scheduler still there?); every run that had ended is kept: "
+            "start it again and give the same command"
+        )
+    error = future.exception()
+    if error is None:
+        answer: Mapping[str, Any] = future.result()
+        return answer
+    # A pool that breaks takes no more runs; the campaign cannot go on with it.
+    if isinstance(error, BrokenExecutor):
+        raise error
+    said = str(error) if isinstance(error, WorkerDiedError) else f"{type(error).__name__}: {error}"
+    return {"status": "failed", "reason": said}

@@ -1,0 +1,80 @@
+"""One run as the ledger keeps it, and the ledger as another process reads it."""
+
+import csv
+import json
+import sqlite3
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from os import PathLike
+from pathlib import Path
+from typing import Any, TextIO
+
+
+@dataclass(frozen=True)
+class Record:
+    """One run: its state, what determined it, what came out, and where and how long it was made."""
+
+    key: str
+    status: str
+    outcome: str | None
+    inputs: dict[str, float]
+    outputs: dict[str, float]
+    draws: dict[str, Any]
+    seed: int
+    replicate: int
+    attempts: int
+    reason: str | None
+    wall_s: float | None
+    cpu_s: float | None
+    host: str | None
+    version: str
+    started: str | None
+    ended: str | None
+
+
+COLUMNS = tuple(Record.__dataclass_fields__)
+_OBJECTS = ("inputs", "outputs", "draws")
+
+
+def record(row: tuple[Any, ...]) -> Record:
+    """A row of the ledger, its columns in the order of COLUMNS."""
+    values = dict(zip(COLUMNS, row, strict=True))
+    return Record(**(values | {name: json.loads(values[name] or "{}") for name in _OBJECTS}))
+
+
+def utc_now() -> str:
+    """The present moment (ISO, UTC)."""
+    return datetime.now(UTC).isoformat(timespec="milliseconds")
+
+
+def read_records(path: str | PathLike[str]) -> list[Record]:
+    """All runs of a ledger in the order of their ends, the unended last; a campaign may be at work on it meanwhile.
+
+    Raises ValueError when there is no ledger at the path.
+    """
+    path = Path(path)
+    # Without a log beside it the file is complete; so it can be read where nothing may be written, too.
+    whole = "" if path.with_name(f"{path.name}-wal").exists() else "&immutable=1"
+    try:
+        database = sqlite3.connect(f"{path.absolute().as_uri()}?mode=ro{whole}", uri=True)
+        try:
+            order = "ended IS NULL OR status IN ('queued', 'running'), ended, key"
+            rows = database.execute(f"SELECT {', '.join(COLUMNS)} FROM runs ORDER BY {order}").fetchall()
+        finally:
+            database.close()
+    except sqlite3.Error as error:
+        raise ValueError(f"{path} cannot be read as a ledger ({error}); name the folder of a study that ran") from error
+    return [record(row) for row in rows]
+
+
+def write_csv(records: list[Record], file: TextIO) -> None:
+    """Write runs as CSV, one row a run: its columns, then one for each input, output and draw, by its name."""
+    plain = [name for name in COLUMNS if name not in _OBJECTS]
+    tables = [[getattr(entry, name) for name in _OBJECTS] for entry in records]
+    names = [list(dict.fromkeys(name for row in tables for name in row[part])) for part in range(len(_OBJECTS))]
+    titles = [f"{part.rstrip('s')}:{name}" for part, group in zip(_OBJECTS, names, strict=True) for name in group]
+    writer = csv.writer(file)
+    writer.writerow([*plain, *titles])
+    for entry, row in zip(records, tables, strict=True):
+        values = [table.get(name, "") for table, group in zip(row, names, strict=True) for name in group]
+        writer.writerow([*(getattr(entry, name) for name in plain), *values])

@@ -1,0 +1,118 @@
+"""Runs that fail: recorded with their reason, tried again as configured, counted, and looked at for holes."""
+
+import time
+from pathlib import Path
+from typing import Any
+
+import campaign_models as models
+import numpy as np
+import pytest
+
+from lithobrake.campaign import Ledger, Limits, LocalExecutor, Runs, missing, run
+
+X = np.array([[1.0, 0.5], [2.0, 0.5], [3.0, 0.5], [4.0, 0.5]])
+
+
+def campaign(path: Path, model: Any, limits: Limits | None = None, **options: Any) -> Runs:
+    with Ledger(path / "runs.sqlite") as ledger, LocalExecutor(2, limits) as executor:
+        return run(model, X, names=("a", "b"), ledger=ledger, executor=executor, **options)
+
+
+def test_a_run_over_its_wall_limit_is_ended_and_the_others_go_on(tmp_path: Path) -> None:
+    began = time.monotonic()
+    runs = campaign(tmp_path, models.sleeps_at_two, Limits(wall_s=0.5))
+    assert runs.outcomes == ["clear", "failed", "clear", "clear"]
+    assert runs.records[1].reason == "it ran longer than its limit of 0.5 s"
+    assert time.monotonic() - began < 600
+
+
+@pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="memory is measured on Linux only")
+def test_a_run_over_its_memory_limit_is_ended_and_the_others_go_on(tmp_path: Path) -> None:
+    runs = campaign(tmp_path, models.swells_at_two, Limits(memory_bytes=4e8))
+    assert runs.outcomes == ["clear", "failed", "clear", "clear"]
+    assert "bytes of memory, more than its limit of 4e+08" in str(runs.records[1].reason)
+
+
+def test_limits_are_above_zero() -> None:
+    with pytest.raises(ValueError, match=r"Limits\.wall_s is 0"):
+        Limits(wall_s=0.0)
+
+
+@pytest.mark.parametrize("how", ["raises", "dies"])
+def test_a_failed_run_is_tried_again_as_often_as_configured(how: str, tmp_path: Path) -> None:
+    model = models.FailsOnce(tmp_path, how)
+    once = campaign(tmp_path, model)
+    assert once.outcomes == ["failed"] * 4
+    assert [entry.attempts for entry in once.records] == [1] * 4
+    # Asked for again with as few tries, they stay what they are; with one more, they are made.
+    assert campaign(tmp_path, model).reused_count == 4
+    again = campaign(tmp_path, model, retry_count=1)
+    assert again.outcomes == ["clear"] * 4
+    assert [(entry.attempts, entry.reason) for entry in again.records] == [(2, None)] * 4
+
+
+def test_a_retry_within_one_campaign(tmp_path: Path) -> None:
+    runs = campaign(tmp_path, models.FailsOnce(tmp_path, "dies"), retry_count=1)
+    assert runs.outcomes == ["clear"] * 4
+    assert [entry.attempts for entry in runs.records] == [2] * 4
+
+
+def test_a_log_of_each_run_on_demand(tmp_path: Path) -> None:
+    runs = campaign(tmp_path, models.talks, log_folder=tmp_path / "logs")
+    logs = [(tmp_path / "logs" / f"{entry.key}.log").read_text() for entry in runs.records]
+    assert all(f"rolling on {row[0]}" in log for row, log in zip(X, logs, strict=True))
+    assert "Traceback" in logs[1]
+    assert "Traceback" not in logs[0]
+    assert runs.records[0].outputs == {"height": 1.0}
+
+
+def grid() -> np.ndarray:
+    return np.array([[a, b] for a in np.linspace(0, 1, 10) for b in np.linspace(0, 1, 10)])
+
+
+def reasons(failed: np.ndarray) -> list[str | None]:
+    return ["it diverged" if entry else None for entry in failed]
+
+
+def test_nothing_missing_says_nothing() -> None:
+    assert missing(grid(), [None] * 100, ("a", "b"), 0.1) == ""
+
+
+def test_scattered_failures_are_counted_and_accepted() -> None:
+    failed = np.zeros(100, dtype=bool)
+    failed[np.random.default_rng(3).choice(100, 8, replace=False)] = True
+    assert missing(grid(), reasons(failed), ("a", "b"), 0.1) == (
+        "8 of 100 runs have failed (8 times: it diverged); what is fitted goes without them"
+    )
+
+
+def test_too_many_failures_are_refused() -> None:
+    failed = np.zeros(100, dtype=bool)
+    failed[::9] = True
+    with pytest.raises(ValueError, match=r"12 of 100 runs have failed .* allowed: at most 10 %"):
+        missing(grid(), reasons(failed), ("a", "b"), 0.1)
+
+
+def test_failures_on_one_side_of_an_input_are_refused_and_the_side_is_named() -> None:
+    failed = grid()[:, 0] > 0.95
+    with pytest.raises(ValueError, match=r"10 of them lie where a > 0\.5, so"):
+        missing(grid(), reasons(failed), ("a", "b"), 0.1)
+
+
+def test_failures_in_a_corner_of_two_inputs_are_refused_and_the_corner_is_named() -> None:
+    failed = (grid()[:, 0] > 0.6) & (grid()[:, 1] < 0.2)
+    with pytest.raises(ValueError, match=r"8 of them lie where a > 0\.5 and b < 0\.5"):
+        missing(grid(), reasons(failed), ("a", "b"), 0.1)
+
+
+def test_chance_alone_seldom_looks_like_a_corner() -> None:
+    generator, refused = np.random.default_rng(1), 0
+    for _ in range(300):
+        failed = np.zeros(100, dtype=bool)
+        failed[generator.choice(100, 10, replace=False)] = True
+        try:
+            missing(grid(), reasons(failed), ("a", "b"), 0.1)
+        except ValueError:
+            refused += 1
+    # The chance is at most .01 in each of the 300; more than 9 would itself have a chance below .002.
+    assert refused <= 9

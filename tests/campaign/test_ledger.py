@@ -1,0 +1,172 @@
+"""The ledger: its states, one writer, many readers, older formats, a disk that is full."""
+
+import io
+import resource
+import sqlite3
+import subprocess
+import sys
+from pathlib import Path
+
+import campaign_models as models
+import numpy as np
+import pytest
+
+from lithobrake.atomic import lock_holder
+from lithobrake.campaign import Ledger, LocalExecutor, Tally, ledger_tally, read_records, run, write_csv
+from lithobrake.campaign.ledger import lock_path
+
+X = np.array([[1.0, 0.5], [2.0, 0.5], [3.0, 0.5]])
+
+
+def fill(path: Path, model: object = models.captured_below_two) -> None:
+    with Ledger(path) as ledger, LocalExecutor(1) as executor:
+        run(model, X, names=("a", "b"), ledger=ledger, executor=executor, context={"version": "7"})  # type: ignore[arg-type]
+
+
+def test_a_row_has_all_that_is_known_of_a_run(tmp_path: Path) -> None:
+    fill(tmp_path / "runs.sqlite", models.breaks_at_two)
+    entries = {entry.inputs["a"]: entry for entry in read_records(tmp_path / "runs.sqlite")}
+    one, two = entries[1.0], entries[2.0]
+    assert (one.status, one.outcome, one.outputs, one.version, one.attempts) == (
+        "done",
+        "clear",
+        {"height": 1.5},
+        "7",
+        1,
+    )
+    assert (two.status, two.outcome, two.reason) == (
+        "failed", None, "FloatingPointError: the overlap grew without bound"
+    )  # fmt: skip
+    assert one.wall_s is not None
+    assert one.cpu_s is not None
+    assert one.host
+    assert one.draws["seed"] == one.seed
+    assert str(one.started) <= str(one.ended)
+
+
+def test_a_run_is_queued_then_running_then_done_as_another_process_sees_it(tmp_path: Path) -> None:
+    seen: set[tuple[str, ...]] = set()
+    path = tmp_path / "runs.sqlite"
+
+    def look(state: Tally) -> None:
+        seen.add(tuple(sorted(entry.status for entry in read_records(path))))
+
+    with Ledger(path) as ledger, LocalExecutor(1) as executor:
+        run(models.sleeps_a_little, X, names=("a", "b"), ledger=ledger, executor=executor, progress=look)
+    assert ("queued", "queued", "queued") in seen
+    assert ("done", "done", "done") in seen
+    assert any("running" in statuses for statuses in seen)
+
+
+def test_a_second_coordinator_is_refused_with_who_is_at_work(tmp_path: Path) -> None:
+    path = tmp_path / "runs.sqlite"
+    code = f"from lithobrake.campaign import Ledger; Ledger({str(path)!r})"
+    with Ledger(path):
+        second = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+        holder = lock_holder(lock_path(path))
+    assert holder is not None
+    assert f"another campaign is at work on {path} (process {holder['process']} on {holder['host']})" in second.stderr
+    assert lock_holder(lock_path(path)) is None
+    Ledger(path).close()
+
+
+def test_what_was_queued_and_never_ended_is_forgotten_by_the_next_campaign(tmp_path: Path) -> None:
+    path = tmp_path / "runs.sqlite"
+    with Ledger(path) as ledger:
+        ledger.queue([("left over", {"a": 9.0}, 1, 0)], "7")
+    fill(path)
+    assert {entry.inputs["a"] for entry in read_records(path)} == {1.0, 2.0, 3.0}
+
+
+def test_a_ledger_of_the_first_format_keeps_its_runs(tmp_path: Path) -> None:
+    path = tmp_path / "runs.sqlite"
+    fill(path)
+    with sqlite3.connect(path) as database:
+        for column in ("attempts", "started"):
+            database.execute(f"ALTER TABLE runs DROP COLUMN {column}")
+        database.execute("PRAGMA user_version = 1")
+    database.close()
+    with Ledger(path) as ledger, LocalExecutor(1) as executor:
+        runs = run(
+            models.parabola, X, names=("a", "b"), ledger=ledger, executor=executor, context={"version": "7"}
+        )  # fmt: skip
+    assert runs.reused_count == 3
+    assert [entry.attempts for entry in runs.records] == [1, 1, 1]
+
+
+def test_runs_as_csv(tmp_path: Path) -> None:
+    fill(tmp_path / "runs.sqlite")
+    text = io.StringIO()
+    write_csv(read_records(tmp_path / "runs.sqlite"), text)
+    lines = text.getvalue().splitlines()
+    titles = lines[0].split(",")
+    assert titles[-5:] == ["input:a", "input:b", "output:depth", "output:height", "draw:seed"]
+    rows = sorted(
+        (dict(zip(titles, line.split(","), strict=True)) for line in lines[1:]), key=lambda row: row["input:a"]
+    )
+    assert [(row["input:a"], row["outcome"], row["output:height"], row["output:depth"]) for row in rows] == [
+        ("1.0", "captured", "", "0.1"), ("2.0", "clear", "4.5", ""), ("3.0", "clear", "9.5", "")
+    ]  # fmt: skip
+
+
+def test_a_folder_without_a_ledger_is_one_sentence(tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match="cannot be read as a ledger"):
+        read_records(tmp_path / "runs.sqlite")
+
+
+def test_what_a_tally_tells(tmp_path: Path) -> None:
+    fill(tmp_path / "runs.sqlite", models.breaks_at_two)
+    state = ledger_tally(read_records(tmp_path / "runs.sqlite"), began="2000-01-01T00:00:00+00:00")
+    assert (state.total, state.done, state.failed, state.running, state.reused) == (3, 2, 1, 0, 0)
+    assert state.spreads["height"].mean == 5.5
+    assert state.spreads["height"].std == pytest.approx(np.std([1.5, 9.5], ddof=1))
+    assert state.time_left == 0.0
+    assert state.sentence().startswith("3 runs: 2 done, 0 running, 1 failed, ")
+
+
+FULL_DISK = """
+import resource, sys
+import numpy as np
+import campaign_models as models
+from lithobrake.campaign import Ledger, run
+
+class Here:
+    def submit(self, function, *args):
+        from concurrent.futures import Future
+        future = Future()
+        future.set_result(function(*args))
+        return future
+
+# As with a full disk, the log cannot grow any more at some run.
+def fill(state):
+    if state.done >= 5:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (int(sys.argv[2]), resource.RLIM_INFINITY))
+
+x = np.column_stack([np.arange(400.0), np.ones(400)])
+with Ledger(sys.argv[1]) as ledger:
+    run(models.parabola, x, names=("a", "b"), ledger=ledger, executor=Here(), progress=fill)
+"""
+
+
+@pytest.mark.skipif(not hasattr(resource, "RLIMIT_FSIZE"), reason="this system does not limit the size of files")
+def test_a_disk_that_is_full_is_one_sentence_and_spoils_nothing(tmp_path: Path) -> None:
+    path = tmp_path / "runs.sqlite"
+    folder = str(Path(models.__file__).parent)
+    code = f"import sys; sys.path.insert(0, {folder!r})\n{FULL_DISK}"
+    full = subprocess.run(
+        [sys.executable, "-c", code, str(path), "200000"], capture_output=True, text=True, check=False
+    )
+    assert full.returncode == 1
+    assert "OSError: " in full.stderr
+    assert "runs.sqlite cannot be written (" in full.stderr
+    assert "every run that had ended before is kept" in full.stderr
+    with sqlite3.connect(path) as database:
+        assert database.execute("PRAGMA integrity_check").fetchone() == ("ok",)
+    database.close()
+    kept = sum(entry.status == "done" for entry in read_records(path))
+    assert 5 <= kept < 400
+    x = np.column_stack([np.arange(400.0), np.ones(400)])
+    with Ledger(path) as ledger, LocalExecutor(1) as executor:
+        runs = run(models.parabola, x, names=("a", "b"), ledger=ledger, executor=executor)
+    assert runs.reused_count == kept
+    assert runs.outputs(["height"])[:, 0].tolist() == (x[:, 0] ** 2 + 1).tolist()
