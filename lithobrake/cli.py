@@ -20,6 +20,7 @@ StudyPath = Annotated[Path, typer.Argument(metavar="STUDY.toml", help="The study
 OutPath = Annotated[
     Path | None, typer.Option("--out", metavar="DIR", help="Folder of the study; absent: runs/<study name>.")
 ]
+Logs = Annotated[bool, typer.Option("--logs", help="Keep a log of each run, in DIR/logs.")]
 Workers = Annotated[int | None, typer.Option("--workers", min=1, metavar="N", help="Processes; absent: all cores.")]
 StudyDirectory = Annotated[Path, typer.Argument(metavar="DIR", help="The folder of a study.", show_default=False)]
 
@@ -44,17 +45,17 @@ def new(name: Annotated[str, typer.Argument(metavar="NAME", help="Name of the st
 
 
 @app.command()
-def run(study: StudyPath, out: OutPath = None, workers: Workers = None) -> None:
+def run(study: StudyPath, out: OutPath = None, workers: Workers = None, logs: Logs = False) -> None:
     """Run a study from its file to its report; what its folder already has is kept."""
-    _make(study, out, workers, "report")
+    _make(study, out, "report", workers, logs)
     _print_results(out or _default_folder(study))
 
 
 def _stage_command(name: str, what: str, until: str | None = None) -> None:
     """Add the command that runs a study up to a stage."""
 
-    def command(study: StudyPath, out: OutPath = None, workers: Workers = None) -> None:
-        _make(study, out, workers, until or name)
+    def command(study: StudyPath, out: OutPath = None, workers: Workers = None, logs: Logs = False) -> None:
+        _make(study, out, until or name, workers, logs)
         print(f"Done: {out or _default_folder(study)}")
 
     app.command(name, help=f"{what} What comes before is made too, where it is missing.")(command)
@@ -81,6 +82,32 @@ def report(folder: StudyDirectory) -> None:
 
 
 @app.command()
+def status(folder: StudyDirectory) -> None:
+    """Say where a study is; from any terminal, also while it runs."""
+    with _one_sentence(f"lithobrake status {folder}"):
+        from lithobrake.pipeline import study_status
+
+        print("\n".join(study_status(folder)))
+
+
+@app.command()
+def runs(
+    folder: StudyDirectory, csv: Annotated[bool, typer.Option("--csv", help="Every column, as CSV.")] = False
+) -> None:
+    """List the runs of a study."""
+    with _one_sentence(f"lithobrake runs {folder}"):
+        from lithobrake.campaign import read_records, write_csv
+
+        records = read_records(folder / "runs.sqlite")
+        if csv:
+            write_csv(records, sys.stdout)
+            return
+        for entry in records:
+            wall = "" if entry.wall_s is None else f"{entry.wall_s:.4g} s"
+            print(f"{entry.key[:12]}  {entry.status:<8} {wall:>10}  {entry.outcome or entry.reason or ''}")
+
+
+@app.command()
 def view(folder: StudyDirectory) -> None:
     """Open the report of a study in the browser."""
     with _one_sentence(f"lithobrake view {folder}"):
@@ -97,7 +124,7 @@ def _default_folder(study: Path) -> Path:
     return Path("runs") / study.stem
 
 
-def _make(study: Path, out: Path | None, workers: int | None, until: str) -> None:
+def _make(study: Path, out: Path | None, until: str, workers: int | None, logs: bool) -> None:
     """Make the files of a study up to a stage, with two lines of progress."""
     # The bits of a least-squares fit depend on the threads of the linear algebra, which reads this when it is loaded.
     os.environ.update(OPENBLAS_NUM_THREADS="1", MKL_NUM_THREADS="1")
@@ -113,6 +140,8 @@ def _make(study: Path, out: Path | None, workers: int | None, until: str) -> Non
                 until=until,
                 begin=shown.begin,
                 progress=shown.progress,
+                say=shown.say,
+                keeps_logs=logs,
             )
 
 

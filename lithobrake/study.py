@@ -5,9 +5,10 @@ A `MaybeUncertain` key takes a number, or a table with a distribution. `lithobra
 
 from typing import Annotated, Literal, get_args
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, Field
 
 from lithobrake.quantity import MaybeUncertain, Number, Numbers, Scalar, Uncertain, Whole
+from lithobrake.study_campaign import CampaignSection, Section
 
 Metres = Annotated[float, Number("m", above=0)]
 Interval = Annotated[tuple[float, float], Numbers("m", count=2, ascending=True)]
@@ -24,12 +25,6 @@ Spin = Annotated[Scalar, MaybeUncertain("rad/s")]
 
 OutputName = Literal["speed_out", "elevation_out", "spin_out", "velocity_out_x", "velocity_out_y", "velocity_out_z"]
 OUTPUTS: tuple[OutputName, ...] = get_args(OutputName)
-
-
-class Section(BaseModel):
-    """One table of the study file; a key that it does not know is refused."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True, use_attribute_docstrings=True)
 
 
 class Constant(Section):
@@ -288,6 +283,7 @@ class Study(Section):
     surface: SurfaceSection
     contact: ContactSection = ContactSection()
     landing: LandingSection = LandingSection()
+    campaign: CampaignSection = CampaignSection()
     design: DesignSection = DesignSection()
     monte_carlo: MonteCarloSection = MonteCarloSection()
     site: SiteSection = SiteSection()

@@ -19,7 +19,8 @@ ALLOWED: dict[str, set[str]] = {
     "report": {"chaos"},
     "wording": set(),
     "quantity": {"wording", "chaos"},
-    "study": {"quantity"},
+    "study_campaign": {"quantity"},
+    "study": {"study_campaign", "quantity"},
     "study_file": {"study", "quantity", "wording", "chaos", "touchdown"},
     "study_template": {"study", "quantity"},
     "pipeline": {
@@ -28,7 +29,7 @@ ALLOWED: dict[str, set[str]] = {
     },
     "progress": set(),
     "__main__": {"cli"},
-    "cli": {"pipeline", "progress", "study_template", "report"},
+    "cli": {"pipeline", "campaign", "progress", "study_template", "report"},
 }
 
 

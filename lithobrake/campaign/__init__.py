@@ -5,7 +5,7 @@ from lithobrake.campaign.ledger import Ledger
 from lithobrake.campaign.limits import Limits
 from lithobrake.campaign.local import LocalExecutor, WorkerDiedError
 from lithobrake.campaign.missing import missing
-from lithobrake.campaign.record import Record, read_records, write_csv
+from lithobrake.campaign.record import Record, campaign_began, read_records, write_csv
 from lithobrake.campaign.runs import Runs, run
 from lithobrake.campaign.tally import Tally, ledger_tally
 
@@ -17,6 +17,7 @@ __all__ = [
     "Runs",
     "Tally",
     "WorkerDiedError",
+    "campaign_began",
     "ledger_tally",
     "missing",
     "read_records",

@@ -14,7 +14,7 @@ from types import TracebackType
 from typing import Any, Self
 
 from lithobrake.atomic import locked
-from lithobrake.campaign.record import COLUMNS, Record, record, utc_now
+from lithobrake.campaign.record import COLUMNS, Record, lock_path, record, utc_now
 
 FORMAT_VERSION = 2
 
@@ -148,8 +148,3 @@ class Ledger:
     ) -> None:
         """Close the file."""
         self.close()
-
-
-def lock_path(path: Path) -> Path:
-    """The file that the process at work on a ledger holds; it notes when its present campaign began."""
-    return path.with_name(f".{path.name}.lock")

@@ -28,7 +28,8 @@ def missing(x: np.ndarray, reasons: Sequence[str | None], names: Sequence[str], 
     sentence = f"{count} of {total} runs have failed ({said})"
     if count > largest_share * total:
         raise ValueError(
-            f"{sentence}; allowed: at most {100 * largest_share:g} %; remove what makes them fail, or allow more"
+            f"{sentence}; allowed: at most {100 * largest_share:g} %; remove what makes them fail, try them again "
+            "(campaign.retry_count), or allow more (campaign.failed_share)"
         )
     corner = _corner(x, failed, names)
     if corner:

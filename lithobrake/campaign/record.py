@@ -9,6 +9,8 @@ from os import PathLike
 from pathlib import Path
 from typing import Any, TextIO
 
+from lithobrake.atomic import lock_holder
+
 
 @dataclass(frozen=True)
 class Record:
@@ -65,6 +67,17 @@ def read_records(path: str | PathLike[str]) -> list[Record]:
     except sqlite3.Error as error:
         raise ValueError(f"{path} cannot be read as a ledger ({error}); name the folder of a study that ran") from error
     return [record(row) for row in rows]
+
+
+def lock_path(path: Path) -> Path:
+    """The file that the process at work on a ledger holds."""
+    return path.with_name(f".{path.name}.lock")
+
+
+def campaign_began(path: str | PathLike[str]) -> str | None:
+    """When the campaign that is at work on a ledger began (ISO, UTC); None when none is."""
+    holder = lock_holder(lock_path(Path(path)))
+    return holder.get("began") if holder else None
 
 
 def write_csv(records: list[Record], file: TextIO) -> None:

@@ -83,6 +83,16 @@ class Tally:
             parts += [per, f"{duration(self.time_left)} left"]
         return f"{self.total} runs: {', '.join(parts)}"
 
+    def spread_lines(self, names: Iterable[str]) -> list[str]:
+        """Mean and standard deviation so far of each of these outputs [SI], in lines."""
+        width = max(map(len, names), default=0)
+        return [
+            f"{name:<{width}}  {self.spreads[name].mean:>10.4g} +- {self.spreads[name].std:<9.3g}"
+            f" ({self.spreads[name].count} runs)"
+            for name in names
+            if name in self.spreads
+        ]
+
 
 def duration(seconds: float) -> str:
     """A time in the unit that suits it."""

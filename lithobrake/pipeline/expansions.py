@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from lithobrake.campaign import Ledger, Runs
+from lithobrake.campaign import Ledger, Runs, Tally, missing
 from lithobrake.campaign import run as run_campaign
 from lithobrake.pipeline.folder import json_hash
 from lithobrake.pipeline.job import Job
@@ -101,8 +101,9 @@ def design_runs(job: Job, design: str, kept: Sequence[str] = ()) -> DesignRuns:
     inputs, values = design_inputs(study), medians(study)
     model = TouchdownModel(study, tuple(job.folder / name for name in bed_files(study)))
 
-    def show(done: int, total: int) -> None:
-        job.progress(done, total, f"{design.replace('_', ' ')} runs")
+    def show(state: Tally) -> None:
+        detail = "\n".join([state.sentence(), *state.spread_lines(OUTPUTS)])
+        job.progress(state.ended, state.total, f"{design.replace('_', ' ')} runs", detail)
 
     with Ledger(job.folder / "runs.sqlite") as ledger:
         runs = run_campaign(
@@ -114,14 +115,27 @@ def design_runs(job: Job, design: str, kept: Sequence[str] = ()) -> DesignRuns:
             ledger=ledger,
             seed=study.seed,
             executor=job.executor,
+            retry_count=study.campaign.retry_count,
+            log_folder=job.folder / "logs" if job.keeps_logs else None,
             progress=show,
         )
     return DesignRuns(tuple(inputs), x, runs)
 
 
+def account(job: Job, design: str, runs: DesignRuns) -> None:
+    """Say what of a design was known before, and what is missing. Raises ValueError when too much is."""
+    name, distinct = design.replace("_", " "), len({record.key for record in runs.runs.records})
+    if runs.runs.reused_count:
+        job.say(f"{name}: {runs.runs.reused_count} of {distinct} runs were known and are reused")
+    lost = missing(runs.x, runs.runs.reasons, runs.input_names, job.study.campaign.failed_share)
+    if lost:
+        job.say(f"{name}: {lost}")
+
+
 def fit_screening(job: Job) -> None:
     """Run the screening design and fit all inputs at medium order."""
     design = design_runs(job, "screening")
+    account(job, "screening", design)
     _fit(job.study, "screening", design, list(design_inputs(job.study))).save(job.folder / "screening.json")
 
 
@@ -130,7 +144,9 @@ def fit_refined(job: Job) -> None:
     from lithobrake.chaos import load
 
     kept = kept_inputs(job.study, load(job.folder / "screening.json"))
-    _fit(job.study, "refined", design_runs(job, "refined", kept), kept).save(job.folder / "refined.json")
+    design = design_runs(job, "refined", kept)
+    account(job, "refined", design)
+    _fit(job.study, "refined", design, kept).save(job.folder / "refined.json")
 
 
 def _fit(study: Study, design: str, runs: DesignRuns, names: Sequence[str]) -> "Surrogate":
@@ -159,6 +175,8 @@ def score_all(job: Job) -> None:
     screening, refined = load(job.folder / "screening.json"), load(job.folder / "refined.json")
     kept = refined.input_names
     runs = {design: design_runs(job, design, kept) for design in DESIGNS}
+    for design in ("test_kept", "test_all"):
+        account(job, design, runs[design])
     scores = {design: _score(screening if design == "screening" else refined, runs[design]) for design in DESIGNS}
     scores["test_screening"] = _score(screening, runs["test_all"])
     job.folder.write_json("scores.json", scores)

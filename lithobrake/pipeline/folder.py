@@ -7,15 +7,15 @@ study makes again what depends on the change, and nothing else.
 
 import hashlib
 import json
-import os
-from collections.abc import Iterable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable, Mapping
+from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import Any
 
-from lithobrake.atomic import atomic_path
+from lithobrake.atomic import atomic_path, locked
 
 FORMAT_VERSION = 1
+LOCK = ".lock"
 
 
 class StudyFolder:
@@ -32,23 +32,12 @@ class StudyFolder:
         except OSError as error:
             raise ValueError(f"{path} cannot be written ({error}); choose another folder with --out") from error
 
-    @contextmanager
-    def alone(self) -> Iterator[None]:
-        """Work in the folder while nobody else does. Raises ValueError when another process is at work in it."""
-        if os.name != "posix":
-            yield
-            return
-        import fcntl
-
-        # The lock goes with the process, however it ends.
-        with (self / ".lock").open("w") as lock:
-            try:
-                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            except BlockingIOError:
-                raise ValueError(
-                    f"another lithobrake is at work in {self.path}; wait for it, or choose another folder with --out"
-                ) from None
-            yield
+    def alone(self) -> AbstractContextManager[Callable[..., None]]:
+        """Work in the folder while nobody else does, and note at what. Raises ValueError when another process does."""
+        refusal = (
+            f"another lithobrake is at work in {self.path}{{who}}; wait for it, or choose another folder with --out"
+        )
+        return locked(self / LOCK, refusal)
 
     def __truediv__(self, name: str) -> Path:
         """Path of a file in the folder."""

@@ -9,7 +9,6 @@ from lithobrake.pipeline.folder import StudyFolder
 from lithobrake.study import Study
 
 
-
 class Progress(Protocol):
     """Shows how far a piece of work is; detail: more about it, in lines."""
 
@@ -17,13 +16,12 @@ class Progress(Protocol):
         """Show it."""
 
 
-
 @dataclass(frozen=True)
 class Job:
     """A study, its folder, where runs are made, and where progress is shown.
 
-    tables: the study file as it was written, for the record. say: tells the user a sentence. keeps_logs: each run leaves
-    a log in the folder.
+    tables: the study file as it was written, for the record. say: tells the user a sentence. keeps_logs: each run
+    leaves a log in the folder.
     """
 
     study: Study

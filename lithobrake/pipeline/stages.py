@@ -91,11 +91,16 @@ def make(job: Job, until: str, begin: Callable[[str, int, int], None]) -> None:
     """
     keys = stage_keys(job.study)
     last = [stage.name for stage in STAGES].index(until)
+    kept: list[str] = []
     for number, stage in enumerate(STAGES[: last + 1], start=1):
         begin(stage.title, number, last + 1)
         files = stage.files(job.study)
         if job.folder.is_current(files, keys[stage.name]):
+            kept.append(stage.title)
             continue
+        if kept:
+            job.say(f"still good, and kept: {', '.join(kept)}")
+            kept = []
         started = time.perf_counter()
         stage.make(job)
         job.folder.note(stage.name, files, keys[stage.name], time.perf_counter() - started)

@@ -1,14 +1,16 @@
 """Running a study file in a folder."""
 
+import math
 from collections.abc import Callable
 from pathlib import Path
 
 from lithobrake import study_file
 from lithobrake.atomic import atomic_path
-from lithobrake.campaign import LocalExecutor
+from lithobrake.campaign import Limits, LocalExecutor
 from lithobrake.pipeline.folder import StudyFolder
 from lithobrake.pipeline.job import Job, Progress
 from lithobrake.pipeline.stages import make
+from lithobrake.study import Study
 
 
 def run_study(
@@ -18,21 +20,35 @@ def run_study(
     worker_count: int | None = None,
     until: str = "report",
     begin: Callable[[str, int, int], None] = lambda title, number, count: None,
-    progress: Progress = lambda done, total, what: None,
+    progress: Progress = lambda done, total, what, detail="": None,
+    say: Callable[[str], None] = lambda sentence: None,
+    keeps_logs: bool = False,
 ) -> None:
     """Make what a study file asks for, up to and with a stage; what the folder already has is kept.
 
-    begin(title, number, count) is called as each stage begins, progress(done, total, what) within it.
+    begin(title, number, count) is called as each stage begins, progress(done, total, what, detail) within it, say with
+    a sentence that the user should read. keeps_logs: each run leaves a log in the folder.
     Raises ValueError for a study file that is refused, a folder that cannot be written, too few runs with outputs.
     """
     study, tables = study_file.read(path), study_file.load(path)
     folder = StudyFolder(out)
-    with folder.alone(), LocalExecutor(worker_count) as executor:
+    with folder.alone() as note, LocalExecutor(worker_count, run_limits(study)) as executor:
         with atomic_path(folder / "study.toml") as draft:
             draft.write_bytes(path.read_bytes())
+
+        def begin_and_note(title: str, number: int, count: int) -> None:
+            note(stage=title, number=number, count=count)
+            begin(title, number, count)
+
         try:
-            make(Job(study, tables, folder, executor, progress), until, begin)
+            make(Job(study, tables, folder, executor, progress, say, keeps_logs), until, begin_and_note)
         except BaseException:
             # What is under way would be waited for otherwise; every finished run is in the ledger already.
             executor.shutdown(cancel_futures=True)
             raise
+
+
+def run_limits(study: Study) -> Limits:
+    """What one run may take."""
+    section = study.campaign
+    return Limits(section.wall_limit or math.inf, section.memory_limit or math.inf)

@@ -13,7 +13,7 @@ import pytest
 
 from lithobrake.atomic import lock_holder
 from lithobrake.campaign import Ledger, LocalExecutor, Tally, ledger_tally, read_records, run, write_csv
-from lithobrake.campaign.ledger import lock_path
+from lithobrake.campaign.record import lock_path
 
 X = np.array([[1.0, 0.5], [2.0, 0.5], [3.0, 0.5]])
 

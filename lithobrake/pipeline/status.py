@@ -1,0 +1,48 @@
+"""Where a study is, as another process sees it while the study runs, or after."""
+
+from collections import Counter
+from pathlib import Path
+
+from lithobrake.atomic import lock_holder
+from lithobrake.campaign import Record, campaign_began, ledger_tally, read_records
+from lithobrake.pipeline.folder import LOCK
+from lithobrake.study import OUTPUTS
+
+
+def study_status(path: Path) -> list[str]:
+    """Say who is at work on a study and at which stage, and where its runs stand, in lines.
+
+    Raises ValueError when the folder is not that of a study.
+    """
+    if not (path / "study.toml").is_file():
+        raise ValueError(f"{path} has no study.toml; name the folder of a study, or make one with: lithobrake run")
+    lines = [_work(path)]
+    if (path / "runs.sqlite").is_file():
+        lines += _runs(path / "runs.sqlite")
+    return lines
+
+
+def _work(path: Path) -> str:
+    holder = lock_holder(path / LOCK)
+    if holder is None:
+        finished = (path / "report" / "index.html").is_file()
+        return f"{path}: nobody is at work; {'the report is there' if finished else 'there is no report yet'}"
+    stage = f"stage {holder['number']} of {holder['count']}, {holder['stage']}" if "stage" in holder else "beginning"
+    return f"{path}: {stage} (process {holder['process']} on {holder['host']})"
+
+
+def _runs(path: Path) -> list[str]:
+    records = read_records(path)
+    state = ledger_tally(records, campaign_began(path))
+    lines = [state.sentence()]
+    outcomes = Counter(entry.outcome for entry in records if entry.status == "done")
+    if outcomes:
+        lines.append("outcomes: " + ", ".join(f"{count} {name}" for name, count in sorted(outcomes.items())))
+    for reason, count in _reasons(records).most_common(3):
+        lines.append(f"failed {count} times: {reason}")
+    spreads = state.spread_lines(OUTPUTS)
+    return lines + (["mean and standard deviation so far [SI]:", *spreads] if spreads else [])
+
+
+def _reasons(records: list[Record]) -> "Counter[str]":
+    return Counter(entry.reason or "" for entry in records if entry.status == "failed")

@@ -1,0 +1,26 @@
+"""The table of the study file that says how runs are made, and what every table of the file has in common."""
+
+from typing import Annotated
+
+from pydantic import BaseModel, ConfigDict
+
+from lithobrake.quantity import Number, Whole
+
+
+class Section(BaseModel):
+    """One table of the study file; a key that it does not know is refused."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, use_attribute_docstrings=True)
+
+
+class CampaignSection(Section):
+    """How runs are made, and how many may fail; nothing here changes what a run gives."""
+
+    wall_limit: Annotated[float, Number("s", above=0)] | None = None
+    """Longest time that one run may take on the clock; it is then ended and counts as failed. Absent: any time."""
+    memory_limit: Annotated[float, Number("bytes", above=0)] | None = None
+    """Most memory that one run may hold, with all that it starts; above that it is ended. Absent: any (Linux only)."""
+    retry_count: Annotated[int, Whole("", at_least=0, at_most=100)] = 1
+    """How often a run that failed is tried again."""
+    failed_share: Annotated[float, Number("", at_least=0, below=1)] = 0.05
+    """Largest share of failed runs of a design with which an expansion is still fitted."""
