@@ -77,7 +77,7 @@ class Tally:
         """All counts in one line."""
         parts = [f"{self.done} done", f"{self.running} running", f"{self.failed} failed"]
         if self.reused:
-            parts[0] += f" ({self.reused} from the ledger)"
+            parts[0] += f" ({self.reused} known before)"
         if math.isfinite(self.rate):
             per = f"{self.rate:.3g} runs/s" if self.rate >= 1 else f"{60 * self.rate:.3g} runs/min"
             parts += [per, f"{duration(self.time_left)} left"]
@@ -110,7 +110,7 @@ def ledger_tally(records: Iterable[Record], began: str | None = None) -> Tally:
         result.running += entry.status == "running"
         if entry.status in ("done", "failed"):
             result.add(entry.status, entry.outputs)
-            result.reused += began is None or (entry.ended or "") < began
+            result.reused += began is not None and (entry.ended or "") < began
     if began is not None:
         result.seconds = (datetime.now(UTC) - datetime.fromisoformat(began)).total_seconds()
     return result
