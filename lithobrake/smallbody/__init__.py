@@ -6,6 +6,7 @@ from lithobrake.smallbody.didymos import didymos, dimorphos
 from lithobrake.smallbody.flight import fly
 from lithobrake.smallbody.flights import Flights
 from lithobrake.smallbody.journey import Journeys, hop
+from lithobrake.smallbody.partner import Partner
 from lithobrake.smallbody.shape import Shape
 
 __all__ = [
@@ -15,6 +16,7 @@ __all__ = [
     "HardSurface",
     "Impacts",
     "Journeys",
+    "Partner",
     "Rebounds",
     "Shape",
     "didymos",

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lithobrake.compiled import compiled
+from lithobrake.compiled import compiled, kernel, large_kernel
 from lithobrake.smallbody.lanes import LANES, WIDTH
 from lithobrake.smallbody.multipole import SCRATCH, series_block
 from lithobrake.smallbody.polyhedron import ROWS, field_block
@@ -15,7 +15,7 @@ from lithobrake.smallbody.table import level_of, read_table
 @compiled
 def workspace(vertex_count: int) -> Any:
     """Scratch of attract: the near points' block, the far points', their lanes, vertex distances, series,
-    spline weights and sums."""
+    spline weights and sums; then cosines and sines for acceleration."""
     return (
         np.zeros(ROWS * LANES),
         np.zeros(ROWS * LANES),
@@ -24,10 +24,11 @@ def workspace(vertex_count: int) -> Any:
         np.zeros(SCRATCH),
         np.empty((3, 4)),
         np.empty(12),
+        np.empty((4, LANES)),
     )
 
 
-@compiled
+@kernel
 def _fill(block: Any, count: int) -> int:
     """Repeat the first point up to a multiple of WIDTH points: points left over would be done one at a time."""
     full = (count + WIDTH - 1) // WIDTH * WIDTH
@@ -37,14 +38,14 @@ def _fill(block: Any, count: int) -> int:
     return full
 
 
-@compiled
+@large_kernel
 def attract(lane: Any, count: int, scratch: Any, gravity: Any) -> None:
     """Field of one block, as field_block: lane [ROWS * LANES], reads rows X, Y, Z of `count` points, writes the others.
 
     gravity: (polyhedron arrays, multipole arrays, table arrays); scratch: see workspace. A point that the table serves
     gets the pull only.
     """
-    near, far, index, distance, series, weight, total = scratch
+    near, far, index, distance, series, weight, total, _ = scratch
     polyhedron, multipole, table = gravity
     centre, nearest = multipole[0], multipole[2]
     near_count = far_count = 0

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lithobrake.smallbody import attraction
+from lithobrake.smallbody.partner import Orbit, Partner
 from lithobrake.smallbody.shape import Shape
 
 GRAVITATIONAL_CONSTANT = 6.67430e-11  # m3/(kg s2), CODATA 2018
@@ -18,12 +19,17 @@ class Body:
 
     mass          [kg]
     spin_period   sidereal, counter-clockwise seen from +z [s]; infinite for a body that does not turn
+    partner       the other body of a binary, which flights feel and may hit; None: the body is alone
+
+    Acceleration and potential are those of the body itself, without its partner. Its centre of mass is taken to be at
+    the origin in what concerns the partner.
     """
 
     shape: Shape
     mass: float
     spin_period: float
     name: str = "body"
+    partner: Partner | None = None
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.mass) and self.mass > 0.0):
@@ -32,6 +38,18 @@ class Body:
             raise ValueError(
                 f"{self.name}: spin_period is {self.spin_period} s; it must be above 0 (infinite: no spin)."
             )
+        if self.partner is not None:
+            apart, reach = self.orbit.distance, self.shape.radius + self.partner.body.shape.radius
+            if apart <= reach:
+                raise ValueError(
+                    f"{self.name}: the partner's period of {self.partner.period:g} s puts the two centres "
+                    f"{apart:.4g} m apart, within their radii together ({reach:.4g} m); give a longer period."
+                )
+
+    @property
+    def orbit(self) -> Orbit:
+        """How the partner moves in the frame of this body."""
+        return Orbit.of(self)
 
     @property
     def density(self) -> float:

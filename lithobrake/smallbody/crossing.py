@@ -8,13 +8,13 @@ from typing import Any
 
 import numpy as np
 
-from lithobrake.compiled import compiled
+from lithobrake.compiled import compiled, kernel, large_kernel
 from lithobrake.smallbody.grid import place
 
 RIM = 1e-9  # share of a facet by which it is widened, so that a line through a common edge meets at least one facet
 
 
-@compiled
+@kernel
 def meet(corner: Any, f: int, origin: Any, along: Any) -> Any:
     """Multiple of `along` at which the line meets facet f (nan: it does not), and the side it comes from.
 
@@ -39,7 +39,7 @@ def meet(corner: Any, f: int, origin: Any, along: Any) -> Any:
     return (vx * qx + vy * qy + vz * qz) / side, side
 
 
-@compiled
+@large_kernel
 def first_entry(grid: Any, corner: Any, origin: Any, along: Any) -> Any:
     """Where the chord from origin to origin + along first goes from outside inwards: share of the chord, and facet.
 

@@ -1,39 +1,66 @@
 """Built-in bodies, generated from published extents."""
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
 from lithobrake.smallbody.body import Body
+from lithobrake.smallbody.partner import Partner
 from lithobrake.smallbody.shape import Shape
 
+# Ecliptic longitude and latitude of the pole [deg], of spin and mutual orbit: recalled from orbit solutions of before
+# the impact of DART, to be checked before it is used; no flight depends on it.
+DIDYMOS_POLE = (310.0, -80.7)
+MUTUAL_PERIOD = 11.3674 * 3600.0  # [s], since the impact of DART; Naidu et al. (2024)
 RINGS = 15  # between a pole and the band along the equator: 8 * 15 * 16 = 1920 facets
 
 
-def didymos() -> Body:
+def didymos(*, partner: bool = True) -> Body:
     """(65803) Didymos: a top shape with an equatorial ridge, extents 851 x 849 x 620 m, 5.32e11 kg, 2.2600 h.
 
+    partner: Dimorphos attracts and may be hit; False leaves Didymos alone, as the published landing dispersion does.
+
     The flanks are an ellipsoid; the ridge stands 20 m above it, narrowing over 12 degrees of latitude. Both are choices
-    within the 15 m by which the extents are known; no boulder or crater is drawn.
+    within the 15 m by which the extents are known; no boulder or crater is drawn. The pole is DIDYMOS_POLE.
 
     Sources: extents (+-15 m) Daly et al. (2023), Successful kinetic impact into an asteroid for planetary defence,
     Nature 616, 443-447; period before the DART impact Naidu et al. (2020), Radar observations and a physical model of
     binary near-Earth asteroid 65803 Didymos, Icarus 348, 113777. The mass is a choice inside the published 5.4 +- .4
     e11 kg of the system less Dimorphos; the density follows as 2396 kg/m3, published is 2400 +- 300.
     """
+    other = Partner(_dimorphos(), period=MUTUAL_PERIOD, longitude_deg=0.0) if partner else None
+    return replace(_didymos(), partner=other)
+
+
+def dimorphos(*, partner: bool = True) -> Body:
+    """Dimorphos: an ellipsoid of extents 177 x 174 x 116 m, 4.3e9 kg, turning in 11.3674 h, its orbit's period.
+
+    partner: Didymos attracts and may be hit; it stands over longitude 0 at all times. False leaves Dimorphos alone.
+
+    One face towards Didymos is assumed, not measured: the impact of DART may have set it tumbling. Its shape is that
+    before the impact. The orbit is taken as a circle (published eccentricity below .03) in the equator of Didymos; its
+    radius follows from period and masses as 1149 m, published are 1144 +- 70 m. The pole is that of the orbit,
+    DIDYMOS_POLE.
+
+    Sources: extents and mass Daly et al. (2023), Nature 616, 443-447; period Naidu et al. (2024), Orbital and physical
+    characterization of asteroid Dimorphos following the DART impact, Planetary Science Journal 5, 74; distance and
+    eccentricity Thomas et al. (2023), Orbital period change of Dimorphos due to the DART kinetic impact, Nature 616,
+    448-451, and Scheirich et al. (2024), Dimorphos orbit determination from mutual events photometry, Planetary Science
+    Journal 5, 17.
+    """
+    # From Dimorphos, which always shows the same face, Didymos never moves; it turns once in its own period.
+    other = Partner(_didymos(), period=MUTUAL_PERIOD, longitude_deg=0.0) if partner else None
+    return replace(_dimorphos(), partner=other)
+
+
+def _didymos() -> Body:
     return Body(top_shape((851.0, 849.0, 620.0), ridge_height=20.0, name="didymos"), 5.32e11, 2.26 * 3600.0, "didymos")
 
 
-def dimorphos() -> Body:
-    """Dimorphos: an ellipsoid of extents 177 x 174 x 116 m, 4.3e9 kg, turning in 11.368 h.
-
-    The period is that of its orbit after the DART impact: one face towards Didymos is assumed, not measured.
-
-    Sources: extents and mass Daly et al. (2023), Nature 616, 443-447; period Thomas et al. (2023), Orbital period
-    change of Dimorphos due to the DART kinetic impact, Nature 616, 448-451.
-    """
-    return Body(
-        top_shape((177.0, 174.0, 116.0), ridge_height=0.0, name="dimorphos"), 4.3e9, 11.368 * 3600.0, "dimorphos"
-    )
+def _dimorphos() -> Body:
+    shape = top_shape((177.0, 174.0, 116.0), ridge_height=0.0, name="dimorphos")
+    return Body(shape, 4.3e9, MUTUAL_PERIOD, "dimorphos")
 
 
 def top_shape(

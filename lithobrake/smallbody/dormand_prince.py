@@ -11,9 +11,10 @@ from typing import Any
 
 import numpy as np
 
-from lithobrake.compiled import compiled
+from lithobrake.compiled import kernel
 
 STAGES = 7
+NODES = np.array([0, 1 / 5, 3 / 10, 4 / 5, 8 / 9, 1, 1])
 WEIGHTS = np.array(
     [
         [0, 0, 0, 0, 0, 0],
@@ -39,7 +40,7 @@ DENSE = np.array(
 )
 
 
-@compiled
+@kernel
 def stage_state(state: Any, slope: Any, step: Any, stage: int, count: int, result: Any) -> None:
     """Write into result [6, lane] the state at which a stage takes its slope; stage 6 gives the end of the step."""
     for i in range(6):
@@ -54,7 +55,7 @@ def stage_state(state: Any, slope: Any, step: Any, stage: int, count: int, resul
             row[j] = state[i, j] + step[j] * row[j]
 
 
-@compiled
+@kernel
 def step_error(slope: Any, step: float, j: int, length: float, speed: float) -> float:
     """Largest error of lane j over its step, position in units of `length` [m], velocity of `speed` [m/s]."""
     worst = 0.0
@@ -69,7 +70,7 @@ def step_error(slope: Any, step: float, j: int, length: float, speed: float) -> 
     return worst
 
 
-@compiled
+@kernel
 def next_step(step: float, error: float) -> float:
     """Step size whose error is expected to be just below 1."""
     if not error > 0.0:
@@ -77,7 +78,7 @@ def next_step(step: float, error: float) -> float:
     return step * min(5.0, max(0.2, 0.9 * error**-0.2))
 
 
-@compiled
+@kernel
 def interpolate(state: Any, end: Any, slope: Any, step: float, j: int, curve: Any) -> None:
     """Write the coefficients curve [5, 6] of the polynomial of lane j between state and end [6, lane]."""
     for i in range(6):
@@ -93,7 +94,7 @@ def interpolate(state: Any, end: Any, slope: Any, step: float, j: int, curve: An
         curve[4, i] = step * total
 
 
-@compiled
+@kernel
 def along(curve: Any, share: float, i: int) -> float:
     """Component i of the state at a share of the step."""
     rest = 1.0 - share

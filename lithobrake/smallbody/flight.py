@@ -10,9 +10,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lithobrake.smallbody.body import GRAVITATIONAL_CONSTANT, Body
-from lithobrake.smallbody.flights import ESCAPE_RADII, STATUSES, Flights
+from lithobrake.smallbody.flights import ESCAPE_ORBITS, ESCAPE_RADII, STATUSES, Flights
 from lithobrake.smallbody.impact import ALOFT, ON_SURFACE
 from lithobrake.smallbody.nearest import near_heights
+from lithobrake.smallbody.shape import Shape
 from lithobrake.smallbody.trajectory import FAILED, fly_lanes
 
 CHUNK = 1024  # flights that a thread takes at a time
@@ -25,54 +26,73 @@ def fly(
     duration: ArrayLike,
     *,
     gravity: str = "exact",
+    frame: str = "body",
+    start_time: ArrayLike = 0.0,
     tolerance: float | None = None,
     threads: int | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> Flights:
     """Fly from start states to the first impact, the end of the duration [s] (one, or one a flight), or escape.
 
-    position, velocity   body-fixed (turning) frame [m], [m/s], shape [count, 3] or [3]; a velocity of zero turns with
-                         the body
+    position, velocity   [m], [m/s], shape [count, 3] or [3], in the frame
+    frame                "body": body-fixed, turning; a velocity of zero turns with the body. "inertial": axes that do
+                         not turn and that are the body's at time 0; a lander at rest on the ground has the velocity of
+                         the ground, spin_rate z cross position
+    start_time           when each flight begins [s], one or one a flight: how far the body has then turned against the
+                         inertial axes, and where its partner is
     gravity              "exact": the polyhedron's; "table": read from grids that are built once for a shape and kept
                          on disk, with the error shape.table_error
     tolerance            error that one step may make: this share of the body's radius in position, and the same share
-                         of radius over dynamical time in velocity; by default 1e-7, with the table 1e-6, whose own
-                         error is larger
+                         of radius over dynamical time in velocity; by default 3e-7 (impacts within centimetres), with
+                         the table 3e-6, whose own error is larger
     threads              defaults to the number of cores; the result does not depend on it
     progress             called with the finished share of the flights, from this thread
 
     A start on the surface (within a millionth of the radius, at most 1 mm) is no impact; the first meeting with the
     ground after the flight has left it is. A flight that starts on the surface and moves into it at once has its impact
-    at time 0. Raises ValueError for starts below the surface and for values that are not finite or out of range.
+    at time 0. The body's partner, if it has one, attracts and may be hit. Results are body-fixed whatever the frame of
+    the starts. Raises ValueError for starts below the surface and for values that are not finite or out of range.
     """
     starts = _starts(position, velocity)
-    times = np.array(np.broadcast_to(np.asarray(duration, dtype=np.float64), len(starts)))
-    if not (np.isfinite(times) & (times > 0.0)).all():
+    begin = _one_each("start_time", start_time, len(starts))
+    times = _one_each("duration", duration, len(starts))
+    if not (times > 0.0).all():
         raise ValueError(f"duration is {duration!r} s; it must be finite and above 0.")
+    if frame not in ("body", "inertial"):
+        raise ValueError(f"frame is {frame!r}; allowed are 'body' and 'inertial'.")
+    if frame == "inertial":
+        starts = _into_turning_frame(starts, body.spin_rate, begin)
     if gravity not in ("exact", "table"):
         raise ValueError(f"gravity is {gravity!r}; allowed are 'exact' and 'table'.")
     if tolerance is None:
-        tolerance = 1e-7 if gravity == "exact" else 1e-6
+        tolerance = 3e-7 if gravity == "exact" else 3e-6
     if not 1e-13 <= tolerance <= 1e-3:
         raise ValueError(f"tolerance is {tolerance}; it must lie in 1e-13 to 1e-3.")
-    shape, count = body.shape, len(starts)
-    slack = min(1e-6 * shape.radius, 1e-3)
-    ground = (shape.grid.arrays, shape.corners, shape.pseudonormals, slack)
-    phase = _phases(body, starts, slack)
-    source = shape.gravity if gravity == "exact" else shape.tabled_gravity
-    forces = (source, GRAVITATIONAL_CONSTANT * body.density, body.spin_rate)
+    count = len(starts)
+    phase, grounds = _phases(body, starts, begin)
+    forces, limits = _forces(body, gravity), _limits(body, tolerance)
     status, time, final = np.zeros(count, dtype=np.int64), np.zeros(count), np.zeros((count, 6))
     facet, steps = np.full(count, -1), np.zeros(count, dtype=np.int64)
 
     def part(first: int) -> None:
         piece = slice(first, first + CHUNK)
         out = (status[piece], time[piece], final[piece], facet[piece], steps[piece])
-        fly_lanes(starts[piece], phase[piece], times[piece], forces, ground, _limits(body, tolerance), out)
+        fly_lanes(starts[piece], begin[piece], times[piece], phase[piece], forces, grounds, limits, out)
 
     _run(part, count, threads, progress)
     _refuse_failed(starts, status, time, tolerance)
     where, rate = starts[:, :3].copy(), starts[:, 3:].copy()
-    return Flights(body, where, rate, STATUSES[status], time, final[:, :3], final[:, 3:], facet, steps)
+    return Flights(body, begin, where, rate, STATUSES[status], time, final[:, :3], final[:, 3:], facet, steps)
+
+
+def _forces(body: Body, gravity: str) -> tuple[Any, ...]:
+    """What acceleration.accelerate reads; without a partner the body stands in its place, and is not asked."""
+    other = body.partner.body if body.partner is not None else body
+    sources: list[Any] = []
+    for source in (body, other):
+        field = source.shape.gravity if gravity == "exact" else source.shape.tabled_gravity
+        sources += [field, GRAVITATIONAL_CONSTANT * source.density]
+    return *sources[:2], body.spin_rate, *sources[2:], body.orbit.numbers
 
 
 def _limits(body: Body, tolerance: float) -> tuple[float, ...]:
@@ -81,7 +101,34 @@ def _limits(body: Body, tolerance: float) -> tuple[float, ...]:
     dynamical_time = math.sqrt(radius**3 / body.gravitational_parameter)
     length = tolerance * radius
     errors = length, length / dynamical_time
-    return *errors, 0.02 * dynamical_time, ESCAPE_RADII * radius, body.gravitational_parameter
+    parameter = body.gravitational_parameter
+    if body.partner is not None:
+        parameter += body.partner.body.gravitational_parameter
+    far = max(ESCAPE_RADII * radius, ESCAPE_ORBITS * body.orbit.distance)
+    return *errors, 0.02 * dynamical_time, far, parameter
+
+
+def _one_each(name: str, given: ArrayLike, count: int) -> NDArray[np.float64]:
+    """A number a flight. Raises ValueError where there is another count of them, or one is not finite."""
+    numbers = np.asarray(given, dtype=np.float64)
+    if numbers.shape not in ((), (1,), (count,)):
+        raise ValueError(f"{name} has shape {numbers.shape} for {count} flights; give one number, or one a flight.")
+    if not np.isfinite(numbers).all():
+        raise ValueError(f"{name} is {given!r} s; it must be finite.")
+    return np.array(np.broadcast_to(numbers, count))
+
+
+def _into_turning_frame(
+    starts: NDArray[np.float64], spin_rate: float, begin: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """States [count, 6] of the inertial axes as the turning body sees them: the ground's velocity is taken off."""
+    c, s = np.cos(spin_rate * begin), np.sin(spin_rate * begin)
+    result = starts.copy()
+    for x, y in ((0, 1), (3, 4)):
+        result[:, x], result[:, y] = c * starts[:, x] + s * starts[:, y], c * starts[:, y] - s * starts[:, x]
+    result[:, 3] += spin_rate * result[:, 1]
+    result[:, 4] -= spin_rate * result[:, 0]
+    return result
 
 
 def _refuse_failed(
@@ -108,19 +155,38 @@ def _starts(position: ArrayLike, velocity: ArrayLike) -> NDArray[np.float64]:
     return starts
 
 
-def _phases(body: Body, starts: NDArray[np.float64], slack: float) -> NDArray[np.int64]:
-    """ON_SURFACE or ALOFT for each start; raises for those below the surface."""
-    shape = body.shape
-    height = np.empty(len(starts))
-    position, facet = np.ascontiguousarray(starts[:, :3]), np.empty(len(starts), dtype=np.int64)
+def _phases(
+    body: Body, starts: NDArray[np.float64], begin: NDArray[np.float64]
+) -> tuple[NDArray[np.int64], tuple[Any, ...]]:
+    """ON_SURFACE or ALOFT of each start for the body and its partner, [count, 2], and the grounds of both.
+
+    Raises ValueError for starts below a surface.
+    """
+    slack = min(1e-6 * body.shape.radius, 1e-3)
+    phase = np.full((len(starts), 2), ALOFT)
+    grounds = []
+    phase[:, 0] = _phase(body.shape, starts[:, :3], slack, body.name)
+    for column, other in enumerate((body, body if body.partner is None else body.partner.body)):
+        shape = other.shape
+        grounds.append((shape.grid.arrays, shape.corners, shape.pseudonormals, slack, shape.radius))
+        if column and body.partner is not None:
+            position, _ = body.orbit.seen_from_partner(starts[:, :3], starts[:, 3:], begin)
+            phase[:, 1] = _phase(shape, position, slack, other.name)
+    return phase, tuple(grounds)
+
+
+def _phase(shape: Shape, position: NDArray[np.float64], slack: float, name: str) -> NDArray[np.int64]:
+    """ON_SURFACE or ALOFT for positions [count, 3] in the frame of a shape; raises for those below its surface."""
+    height = np.empty(len(position))
+    position, facet = np.ascontiguousarray(position), np.empty(len(position), dtype=np.int64)
     near_heights(shape.grid.arrays, shape.corners, shape.pseudonormals, position, height, facet)
     far = np.flatnonzero(np.isinf(height))
-    height[far[shape.contains(starts[far, :3])]] = -np.inf
+    height[far[shape.contains(position[far])]] = -np.inf
     if (height < -slack).any():
         flight = int(np.flatnonzero(height < -slack)[0])
-        depth = -float(shape.height(starts[flight, :3]))
+        depth = -float(shape.height(position[flight]))
         raise ValueError(
-            f"flight {flight} starts {depth:.6g} m below the surface of {body.name}, at {starts[flight, :3]} m; "
+            f"flight {flight} starts {depth:.6g} m below the surface of {name}, at {position[flight]} m; "
             f"start on it or above it ({slack:.2g} m are forgiven)."
         )
     return np.where(np.abs(height) <= slack, ON_SURFACE, ALOFT)

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import distance_transform_cdt
 
-from lithobrake.compiled import compiled
+from lithobrake.compiled import compiled, kernel
 
 LARGEST = 160  # cells along the longest side: 20 MB of indices, and few facets in a cell
 PAD = 1e-3  # of a cell: covers the rounding of a point that lies on a facet and on a cell's side
@@ -87,7 +87,7 @@ def _sort(first: Any, last: Any, plane: Any, size: Any, start: Any, facets: Any)
                         start[cell + 1] += 1
 
 
-@compiled
+@kernel
 def place(grid: Any, x: float, y: float, z: float) -> Any:
     """Cell (i, j, k) of a point; outside the grid it lies outside 0 to size - 1."""
     lower, edge = grid[0], grid[1]
@@ -98,7 +98,7 @@ def place(grid: Any, x: float, y: float, z: float) -> Any:
     )
 
 
-@compiled
+@kernel
 def clearance(grid: Any, x: float, y: float, z: float) -> float:
     """A distance [m] within which there is certainly no facet; 0 near the surface."""
     lower, edge, size, _, _, gap = grid

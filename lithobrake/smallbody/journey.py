@@ -19,8 +19,8 @@ class Journeys:
     """Where each lander ended; every array has one entry or row a lander.
 
     status         "settled": captured where the ground holds it; "lofted": captured where gravity and rotation together
-                   push outwards; "flying": the time was over; "escaped"; "outside": an impact that the bounce does not
-                   know; "bouncing": bounce_limit was reached
+                   push outwards; "flying": the time was over; "escaped"; "partner": on the partner, where no bounce is
+                   followed; "outside": an impact that the bounce does not know; "bouncing": bounce_limit was reached
     time           from the start to the end [s]; of a settled lander, to rest
     position       at the end, body-fixed [m], [count, 3]
     latitude       planetocentric [deg], longitude east in (-180, 180] [deg], of that position
@@ -56,6 +56,7 @@ def hop(
     duration: float,
     *,
     spin: ArrayLike = (0.0, 0.0, 0.0),
+    start_time: ArrayLike = 0.0,
     gravity: str = "table",
     bounce_limit: int = 1000,
     seed: int = 0,
@@ -66,16 +67,19 @@ def hop(
 
     bounce     called once a round with the impacts of all landers still under way and a generator of random numbers
     spin       angular velocity at the start, body-fixed axes, relative to the stars [rad/s], [count, 3] or [3]
+    start_time   as of `fly`
     seed       of the generator: the same call gives the same result
     progress   called with the share of landers that have ended
     """
     start = np.array(np.atleast_2d(np.asarray(position, dtype=np.float64)))
     state = _State(body, start, np.array(np.atleast_2d(np.asarray(velocity, dtype=np.float64))))
     state.spin[:] = np.asarray(spin, dtype=np.float64)
+    begin = np.array(np.broadcast_to(np.asarray(start_time, dtype=np.float64), len(start)))
     going = np.arange(len(start))
     for number in range(bounce_limit + 1):
         where, rate, left = state.position[going], state.velocity[going], duration - state.time[going]
-        flights = fly(body, where, rate, left, gravity=gravity, threads=threads)
+        now = begin[going] + state.time[going]
+        flights = fly(body, where, rate, left, gravity=gravity, start_time=now, threads=threads)
         state.advance(going, flights)
         going = going[flights.status == "impact"]
         facet = flights.facet[flights.status == "impact"]
@@ -115,7 +119,7 @@ class _State:
         self.path_length[going] += np.linalg.norm(flights.position - self.position[going], axis=1)
         self.position[going], self.velocity[going] = flights.position, flights.velocity
         self.time[going] += flights.time
-        self.status[going] = np.where(flights.status == "escaped", "escaped", "flying")
+        self.status[going] = np.where(flights.status == "impact", "flying", flights.status)
         # The body turns on while a spin stays among the stars.
         turn = self.body.spin_rate * flights.time
         c, s = np.cos(turn), np.sin(turn)

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lithobrake.compiled import compiled
+from lithobrake.compiled import compiled, kernel, large_kernel
 from lithobrake.smallbody.grid import place
 
 
@@ -40,7 +40,7 @@ def pseudonormals(
     return result
 
 
-@compiled
+@kernel
 def _feature(p: Any, a: Any, b: Any, c: Any) -> Any:
     """Closest point of triangle a, b, c to p as weights of b and c, and its feature (as in pseudonormals)."""
     d1 = d2 = d3 = d4 = d5 = d6 = 0.0
@@ -72,7 +72,7 @@ def _feature(p: Any, a: Any, b: Any, c: Any) -> Any:
     return area_b / total, area_c / total, 0
 
 
-@compiled
+@kernel
 def _signed(corner: Any, outward: Any, f: int, p: Any) -> Any:
     """Distance of p to facet f [m] and the same with the sign of the side of its nearest feature."""
     v, w, feature = _feature(p, corner[f, 0], corner[f, 1], corner[f, 2])
@@ -86,7 +86,7 @@ def _signed(corner: Any, outward: Any, f: int, p: Any) -> Any:
     return distance, -distance if side < 0.0 else distance
 
 
-@compiled
+@large_kernel
 def height_near(grid: Any, corner: Any, outward: Any, p: Any) -> Any:
     """Signed distance [m] and nearest facet, for a p whose distance is below a cell's edge; else inf and -1.
 

@@ -14,10 +14,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lithobrake.compiled import compiled
+from lithobrake.compiled import kernel
 
 # Edge of the cells and reach of each grid in radii of the body; the first reaches MARGIN cells beyond the bounding box.
-LEVELS = ((1 / 40, 0.0), (1 / 20, 1.6), (1 / 10, 3.0), (1 / 3, 8.0), (1.0, 24.0))
+LEVELS = ((1 / 40, 0.0), (1 / 20, 1.6), (1 / 10, 3.0), (1 / 3, 8.0), (1.0, 24.0), (4.0, 80.0))
 MARGIN = 8
 CORE = 0.3  # of the radius of a sphere of the same volume: inside it the point mass is a homogeneous sphere
 RIM = 2  # nodes along the sides of a grid that only serve the cells within
@@ -71,7 +71,7 @@ def spline_coefficients(samples: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.ascontiguousarray(samples)
 
 
-@compiled
+@kernel
 def level_of(x: float, y: float, z: float, table: Any) -> int:
     """Finest grid that can serve a point [m]; -1 where none does."""
     first, last = table[8], table[9]
@@ -82,7 +82,7 @@ def level_of(x: float, y: float, z: float, table: Any) -> int:
     return -1
 
 
-@compiled
+@kernel
 def _weights(share: float, weight: Any, i: int) -> int:
     """Write the four cubic B-spline weights of axis i for an offset in cells; gives the first of the four nodes."""
     node = int(np.floor(share))
@@ -95,7 +95,7 @@ def _weights(share: float, weight: Any, i: int) -> int:
     return node - 1
 
 
-@compiled
+@kernel
 def read_table(x: float, y: float, z: float, level: int, table: Any, weight: Any, total: Any) -> Any:
     """Field sum x, y, z [m] at a point [m] of a level. weight [3, 4] and total [12] are scratch."""
     centre, volume, core, lower, edge, size, start, values, _, _ = table
@@ -120,7 +120,7 @@ def read_table(x: float, y: float, z: float, level: int, table: Any, weight: Any
     return px, py, pz
 
 
-@compiled
+@kernel
 def point_mass(x: float, y: float, z: float, centre: Any, volume: float, core: float) -> Any:
     """Field sum x, y, z [m] of the volume [m3] in the centre, a homogeneous sphere of radius core [m] within that."""
     dx, dy, dz = x - centre[0], y - centre[1], z - centre[2]

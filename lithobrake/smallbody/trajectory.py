@@ -8,48 +8,19 @@ from typing import Any
 
 import numpy as np
 
-from lithobrake.compiled import compiled
-from lithobrake.smallbody.attraction import attract, workspace
-from lithobrake.smallbody.dormand_prince import STAGES, interpolate, next_step, stage_state, step_error
-from lithobrake.smallbody.dormand_prince import along as along_curve
+from lithobrake.compiled import compiled, kernel, large_kernel
+from lithobrake.smallbody.acceleration import accelerate, has_escaped
+from lithobrake.smallbody.attraction import workspace
+from lithobrake.smallbody.dormand_prince import NODES, STAGES, along, interpolate, next_step, stage_state, step_error
 from lithobrake.smallbody.impact import find_impact
 from lithobrake.smallbody.lanes import LANES
-from lithobrake.smallbody.polyhedron import PULL_X, ROWS
+from lithobrake.smallbody.partner import motion_over
+from lithobrake.smallbody.polyhedron import ROWS
 
-FLYING, IMPACT, ESCAPED, FAILED = 0, 1, 2, 3
-
-
-@compiled
-def accelerate(state: Any, slope: Any, stage: int, count: int, lane: Any, scratch: Any, forces: Any) -> None:
-    """Write slope [stage, 6, lane] of state [6, lane] in the turning frame: gravity, centrifugal and Coriolis
-    acceleration.
-
-    forces: (gravity arrays, G density [1/s2], spin rate [rad/s]); lane and scratch are overwritten.
-    """
-    gravity, strength, spin = forces
-    for i in range(3):
-        for j in range(count):
-            lane[i * LANES + j] = state[i, j]
-    attract(lane, count, scratch, gravity)
-    for j in range(count):
-        for i in range(3):
-            slope[stage, i, j] = state[3 + i, j]
-            slope[stage, 3 + i, j] = strength * lane[(PULL_X + i) * LANES + j]
-        slope[stage, 3, j] += spin * (spin * state[0, j] + 2.0 * state[4, j])
-        slope[stage, 4, j] += spin * (spin * state[1, j] - 2.0 * state[3, j])
+FLYING, IMPACT, ESCAPED, PARTNER, FAILED = 0, 1, 2, 3, 4
 
 
-@compiled
-def has_escaped(state: Any, j: int, parameter: float, spin: float, radius: float) -> bool:
-    """Farther out than radius [m], moving outwards, with positive two-body energy in the inertial frame."""
-    x, y, z = state[0, j], state[1, j], state[2, j]
-    u, v, w = state[3, j] - spin * y, state[4, j] + spin * x, state[5, j]
-    r = np.sqrt(x * x + y * y + z * z)
-    outward = x * u + y * v + z * w > 0.0
-    return r > radius and outward and 0.5 * (u * u + v * v + w * w) > parameter / r
-
-
-@compiled
+@kernel
 def _move(state: Any, slope: Any, step: Any, clock: Any, flight: Any, source: int, target: int) -> None:
     """Copy one lane onto another."""
     for i in range(6):
@@ -58,7 +29,7 @@ def _move(state: Any, slope: Any, step: Any, clock: Any, flight: Any, source: in
     step[target], clock[target], flight[target] = step[source], clock[source], flight[source]
 
 
-@compiled
+@kernel
 def _begin(starts: Any, f: int, state: Any, slope: Any, step: Any, clock: Any, flight: Any, j: int) -> None:
     """Put flight f into lane j, at a step of zero: its first pass gives its first slope."""
     flight[j], clock[j], step[j] = f, 0.0, 0.0
@@ -69,27 +40,52 @@ def _begin(starts: Any, f: int, state: Any, slope: Any, step: Any, clock: Any, f
             slope[stage, i, j] = 0.0
 
 
-@compiled
+@kernel
 def _shift(slope: Any, j: int) -> None:
     """The last slope of lane j's step is the first of its next."""
     for i in range(6):
         slope[0, i, j] = slope[6, i, j]
 
 
+@large_kernel
+def _meet(
+    curve: Any, slope: Any, step: float, j: int, phase: Any, grounds: Any, orbit: Any, time: float, room: Any
+) -> Any:
+    """Share of lane j's step, begun at `time` [s], at which it ends on the ground, the facet, and the status.
+
+    phase [2] of this flight, for the body and its partner, is read and written (see impact).
+    """
+    still = (0.0, 0.0, 0.0, 0.0, 0.0)
+    share, facet, phase[0] = find_impact(curve, slope, step, j, phase[0], grounds[0], still, room)
+    status = IMPACT if facet >= 0 else FLYING
+    if orbit[0] > 0.0:
+        motion = motion_over(orbit, time, step)
+        partner_share, partner_facet, phase[1] = find_impact(curve, slope, step, j, phase[1], grounds[1], motion, room)
+        if partner_facet >= 0 and partner_share < share:
+            return partner_share, partner_facet, PARTNER
+    return share, facet, status
+
+
 @compiled
-def fly_lanes(starts: Any, phase: Any, duration: Any, forces: Any, ground: Any, limits: Any, out: Any) -> None:
+def fly_lanes(
+    starts: Any, begin: Any, duration: Any, phase: Any, forces: Any, grounds: Any, limits: Any, out: Any
+) -> None:
     """Fly all starts [count, 6] to their ends.
 
-    duration  [s], [count]
-    phase     [count], read and written: whether the flight has left the surface (see impact)
+    begin     time at the start [s], [count]; duration [s], [count]
+    phase     [count, 2], read and written: whether the flight has left the body, the partner (see impact)
+    forces    see acceleration
+    grounds   of the body and its partner, each as in impact
     limits    (length error [m] and speed error [m/s] of a step, first step [s], escape radius [m], G mass [m3/s2])
     out       written: (status [count], time [s] [count], state [count, 6], facet [count], steps [count])
     """
     length, speed, first_step, radius, parameter = limits
+    spin, orbit = forces[2], forces[5]
     status, time, final, touched, steps = out
     state, end, slope = np.empty((6, LANES)), np.empty((6, LANES)), np.empty((STAGES, 6, LANES))
-    step, clock, flight = np.empty(LANES), np.empty(LANES), np.empty(LANES, dtype=np.int64)
-    lane, scratch, curve = np.zeros(ROWS * LANES), workspace(len(forces[0][0][0])), np.empty((5, 6))
+    step, clock, flight, when = np.empty(LANES), np.empty(LANES), np.empty(LANES, dtype=np.int64), np.empty(LANES)
+    lane, curve, room = np.zeros(ROWS * LANES), np.empty((5, 6)), np.empty((3, 3))
+    scratch = workspace(max(len(forces[0][0][0]), len(forces[3][0][0])))
     active = queued = 0
     for j in range(min(LANES, len(starts))):
         _begin(starts, queued, state, slope, step, clock, flight, j)
@@ -97,7 +93,9 @@ def fly_lanes(starts: Any, phase: Any, duration: Any, forces: Any, ground: Any, 
     while active > 0:
         for stage in range(1, STAGES):
             stage_state(state, slope, step, stage, active, end)
-            accelerate(end, slope, stage, active, lane, scratch, forces)
+            for j in range(active):
+                when[j] = begin[flight[j]] + clock[j] + NODES[stage] * step[j]
+            accelerate(end, slope, stage, active, lane, scratch, forces, when)
         for j in range(active - 1, -1, -1):
             f = flight[j]
             if step[j] == 0.0:
@@ -114,9 +112,10 @@ def fly_lanes(starts: Any, phase: Any, duration: Any, forces: Any, ground: Any, 
                 status[f], share = FAILED, 0.0
             else:
                 interpolate(state, end, slope, taken, j, curve)
-                share, touched[f], phase[f] = find_impact(curve, slope, taken, j, phase[f], ground)
-                status[f] = IMPACT if touched[f] >= 0 else FLYING
-                if status[f] == FLYING and has_escaped(end, j, parameter, forces[2], radius):
+                share, touched[f], status[f] = _meet(
+                    curve, slope, taken, j, phase[f], grounds, orbit, begin[f] + clock[j], room
+                )
+                if status[f] == FLYING and has_escaped(end, j, parameter, spin, orbit, when[j], radius):
                     status[f] = ESCAPED
                 _shift(slope, j)
                 for i in range(6):
@@ -127,10 +126,10 @@ def fly_lanes(starts: Any, phase: Any, duration: Any, forces: Any, ground: Any, 
                     continue
             # The flight is over.
             time[f] = clock[j]
-            if status[f] == IMPACT:
+            if touched[f] >= 0:
                 time[f] -= (1.0 - share) * taken
             for i in range(6):
-                final[f, i] = along_curve(curve, share, i) if status[f] == IMPACT else state[i, j]
+                final[f, i] = along(curve, share, i) if touched[f] >= 0 else state[i, j]
             if queued < len(starts):
                 _begin(starts, queued, state, slope, step, clock, flight, j)
                 queued += 1

@@ -22,7 +22,7 @@ def cone(body: Body, latitude: float, longitude: float, count: int, seed: int) -
 
 @pytest.fixture(scope="module")
 def top() -> Body:
-    return didymos()
+    return didymos(partner=False)
 
 
 def test_kepler_orbit_around_a_sphere(ball):
@@ -189,9 +189,28 @@ def test_wrong_calls_are_refused(ball):
         ({"gravity": "guess"}, "gravity is 'guess'"),
         ({"tolerance": 1.0}, "tolerance is 1"),
         ({"threads": 0}, "threads is 0"),
+        ({"frame": "rotating"}, "frame is 'rotating'"),
+        ({"start_time": math.inf}, "start_time is inf"),
+        ({"start_time": [0.0, 1.0]}, "start_time has shape"),
         ({"position": [math.nan, 0.0, 0.0]}, "must be finite"),
         ({"position": [1.0, 2.0]}, "must be"),
     ]:
         arguments = {"position": start, "velocity": rate, "duration": 10.0} | change
         with pytest.raises(ValueError, match=said):
             fly(ball, **arguments)
+
+
+def test_inertial_starts_are_the_same_flights(top):
+    """The surface moves: what is at rest on it has the velocity of the ground in axes that do not turn."""
+    position, velocity = cone(top, 10.0, 0.0, 5, seed=3)
+    begin = np.linspace(0.0, 5000.0, 5)
+    turning = fly(top, position, velocity, 3600.0, start_time=begin)
+    turn = top.spin_rate * begin
+    c, s, zero, one = np.cos(turn), np.sin(turn), np.zeros(5), np.ones(5)
+    out = np.array([[c, -s, zero], [s, c, zero], [zero, zero, one]]).transpose(2, 0, 1)
+    ground = np.cross([0.0, 0.0, top.spin_rate], position)
+    where, rate = (np.einsum("nij,nj->ni", out, given) for given in (position, velocity + ground))
+    still = fly(top, where, rate, 3600.0, frame="inertial", start_time=begin)
+    assert np.array_equal(still.status, turning.status)
+    assert still.start_velocity == pytest.approx(velocity, abs=1e-12)
+    assert still.position == pytest.approx(turning.position, abs=1e-6)
