@@ -1,6 +1,5 @@
 """Flights from start states to the ground, to the end of the time, or away."""
 
-import math
 import os
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
@@ -9,10 +8,23 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from lithobrake.smallbody.acceleration import (
+    COLUMNS,
+    FAR,
+    FIRST_STEP,
+    LENGTH,
+    ORBIT,
+    PARAMETER,
+    PARTNER_STRENGTH,
+    SPEED,
+    SPIN,
+    STRENGTH,
+)
 from lithobrake.smallbody.body import GRAVITATIONAL_CONSTANT, Body
-from lithobrake.smallbody.flights import ESCAPE_ORBITS, ESCAPE_RADII, STATUSES, Flights
+from lithobrake.smallbody.flights import ESCAPE_ORBITS, ESCAPE_RADII, STATUSES, Flights, Starts
 from lithobrake.smallbody.impact import ALOFT, ON_SURFACE
 from lithobrake.smallbody.nearest import near_heights
+from lithobrake.smallbody.partner import Orbit
 from lithobrake.smallbody.shape import Shape
 from lithobrake.smallbody.trajectory import FAILED, fly_lanes
 
@@ -28,6 +40,8 @@ def fly(
     gravity: str = "exact",
     frame: str = "body",
     start_time: ArrayLike = 0.0,
+    mass: ArrayLike | None = None,
+    spin_period: ArrayLike | None = None,
     tolerance: float | None = None,
     threads: int | None = None,
     progress: Callable[[float], None] | None = None,
@@ -42,6 +56,7 @@ def fly(
                          inertial axes, and where its partner is
     gravity              "exact": the polyhedron's; "table": read from grids that are built once for a shape and kept
                          on disk, with the error shape.table_error
+    mass, spin_period    [kg], [s], of the body in each flight, in place of its own: for a body that is not well known
     tolerance            error that one step may make: this share of the body's radius in position, and the same share
                          of radius over dynamical time in velocity; by default 3e-7 (impacts within centimetres), with
                          the table 3e-6, whose own error is larger
@@ -60,8 +75,6 @@ def fly(
         raise ValueError(f"duration is {duration!r} s; it must be finite and above 0.")
     if frame not in ("body", "inertial"):
         raise ValueError(f"frame is {frame!r}; allowed are 'body' and 'inertial'.")
-    if frame == "inertial":
-        starts = _into_turning_frame(starts, body.spin_rate, begin)
     if gravity not in ("exact", "table"):
         raise ValueError(f"gravity is {gravity!r}; allowed are 'exact' and 'table'.")
     if tolerance is None:
@@ -69,57 +82,74 @@ def fly(
     if not 1e-13 <= tolerance <= 1e-3:
         raise ValueError(f"tolerance is {tolerance}; it must lie in 1e-13 to 1e-3.")
     count = len(starts)
-    phase, grounds = _phases(body, starts, begin)
-    forces, limits = _forces(body, gravity), _limits(body, tolerance)
+    masses = _one_each("mass", body.mass if mass is None else mass, count, "kg")
+    periods = _one_each("spin_period", body.spin_period if spin_period is None else spin_period, count, infinite=True)
+    worlds = _worlds(body, masses, periods, tolerance)
+    if frame == "inertial":
+        starts = _into_turning_frame(starts, worlds[:, SPIN], begin)
+    orbit = Orbit(*worlds[:, ORBIT : ORBIT + 8].T)
+    phase, grounds = _phases(body, starts, orbit, begin)
+    sources = [_field(body, gravity), _field(body if body.partner is None else body.partner.body, gravity)]
     status, time, final = np.zeros(count, dtype=np.int64), np.zeros(count), np.zeros((count, 6))
     facet, steps = np.full(count, -1), np.zeros(count, dtype=np.int64)
 
     def part(first: int) -> None:
         piece = slice(first, first + CHUNK)
         out = (status[piece], time[piece], final[piece], facet[piece], steps[piece])
-        fly_lanes(starts[piece], begin[piece], times[piece], phase[piece], forces, grounds, limits, out)
+        forces = (*sources, worlds[piece])
+        fly_lanes(starts[piece], begin[piece], times[piece], phase[piece], forces, grounds, out)
 
     _run(part, count, threads, progress)
     _refuse_failed(starts, status, time, tolerance)
     where, rate = starts[:, :3].copy(), starts[:, 3:].copy()
-    return Flights(body, begin, where, rate, STATUSES[status], time, final[:, :3], final[:, 3:], facet, steps)
+    begins = Starts(begin, where, rate, masses, periods)
+    return Flights(body, begins, STATUSES[status], time, final[:, :3], final[:, 3:], facet, steps)
 
 
-def _forces(body: Body, gravity: str) -> tuple[Any, ...]:
-    """What acceleration.accelerate reads; without a partner the body stands in its place, and is not asked."""
-    other = body.partner.body if body.partner is not None else body
-    sources: list[Any] = []
-    for source in (body, other):
-        field = source.shape.gravity if gravity == "exact" else source.shape.tabled_gravity
-        sources += [field, GRAVITATIONAL_CONSTANT * source.density]
-    return *sources[:2], body.spin_rate, *sources[2:], body.orbit.numbers
+def _field(body: Body, gravity: str) -> tuple[Any, ...]:
+    """What attraction.attract reads of a body."""
+    return body.shape.gravity if gravity == "exact" else body.shape.tabled_gravity
 
 
-def _limits(body: Body, tolerance: float) -> tuple[float, ...]:
-    """Errors of a step in position [m] and velocity [m/s], first step [s], escape radius [m], G mass [m3/s2]."""
-    radius = body.shape.radius
-    dynamical_time = math.sqrt(radius**3 / body.gravitational_parameter)
-    length = tolerance * radius
-    errors = length, length / dynamical_time
-    parameter = body.gravitational_parameter
+def _worlds(
+    body: Body, mass: NDArray[np.float64], spin_period: NDArray[np.float64], tolerance: float
+) -> NDArray[np.float64]:
+    """What differs between flights, [count, COLUMNS] (see acceleration)."""
+    if not ((mass > 0.0).all() and (spin_period > 0.0).all()):
+        raise ValueError("mass and spin_period must be above 0 in every flight.")
+    worlds = np.zeros((len(mass), COLUMNS))
+    radius, parameter = body.shape.radius, GRAVITATIONAL_CONSTANT * mass
+    spin_rate = 2.0 * np.pi / spin_period
+    orbit = Orbit.of(body, parameter, spin_rate)
+    worlds[:, STRENGTH], worlds[:, SPIN] = parameter / body.shape.volume, spin_rate
+    for column, numbers in enumerate(orbit.numbers):
+        worlds[:, ORBIT + column] = numbers
+    dynamical_time = np.sqrt(radius**3 / parameter)
+    worlds[:, LENGTH], worlds[:, SPEED] = tolerance * radius, tolerance * radius / dynamical_time
+    worlds[:, FIRST_STEP] = 0.02 * dynamical_time
+    worlds[:, FAR] = np.maximum(ESCAPE_RADII * radius, ESCAPE_ORBITS * np.asarray(orbit.distance))
+    worlds[:, PARAMETER] = parameter
     if body.partner is not None:
-        parameter += body.partner.body.gravitational_parameter
-    far = max(ESCAPE_RADII * radius, ESCAPE_ORBITS * body.orbit.distance)
-    return *errors, 0.02 * dynamical_time, far, parameter
+        other = body.partner.body
+        worlds[:, PARTNER_STRENGTH] = GRAVITATIONAL_CONSTANT * other.density
+        worlds[:, PARAMETER] += other.gravitational_parameter
+    return worlds
 
 
-def _one_each(name: str, given: ArrayLike, count: int) -> NDArray[np.float64]:
+def _one_each(
+    name: str, given: ArrayLike, count: int, unit: str = "s", *, infinite: bool = False
+) -> NDArray[np.float64]:
     """A number a flight. Raises ValueError where there is another count of them, or one is not finite."""
     numbers = np.asarray(given, dtype=np.float64)
     if numbers.shape not in ((), (1,), (count,)):
         raise ValueError(f"{name} has shape {numbers.shape} for {count} flights; give one number, or one a flight.")
-    if not np.isfinite(numbers).all():
-        raise ValueError(f"{name} is {given!r} s; it must be finite.")
+    if not (~np.isnan(numbers) if infinite else np.isfinite(numbers)).all():
+        raise ValueError(f"{name} is {given!r} {unit}; it must be finite.")
     return np.array(np.broadcast_to(numbers, count))
 
 
 def _into_turning_frame(
-    starts: NDArray[np.float64], spin_rate: float, begin: NDArray[np.float64]
+    starts: NDArray[np.float64], spin_rate: NDArray[np.float64], begin: NDArray[np.float64]
 ) -> NDArray[np.float64]:
     """States [count, 6] of the inertial axes as the turning body sees them: the ground's velocity is taken off."""
     c, s = np.cos(spin_rate * begin), np.sin(spin_rate * begin)
@@ -156,7 +186,7 @@ def _starts(position: ArrayLike, velocity: ArrayLike) -> NDArray[np.float64]:
 
 
 def _phases(
-    body: Body, starts: NDArray[np.float64], begin: NDArray[np.float64]
+    body: Body, starts: NDArray[np.float64], orbit: Orbit, begin: NDArray[np.float64]
 ) -> tuple[NDArray[np.int64], tuple[Any, ...]]:
     """ON_SURFACE or ALOFT of each start for the body and its partner, [count, 2], and the grounds of both.
 
@@ -170,7 +200,7 @@ def _phases(
         shape = other.shape
         grounds.append((shape.grid.arrays, shape.corners, shape.pseudonormals, slack, shape.radius))
         if column and body.partner is not None:
-            position, _ = body.orbit.seen_from_partner(starts[:, :3], starts[:, 3:], begin)
+            position, _ = orbit.seen_from_partner(starts[:, :3], starts[:, 3:], begin)
             phase[:, 1] = _phase(shape, position, slack, other.name)
     return phase, tuple(grounds)
 

@@ -6,7 +6,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from lithobrake.smallbody.body import Body
+from lithobrake.smallbody.body import GRAVITATIONAL_CONSTANT, Body
+from lithobrake.smallbody.partner import Orbit
 
 STATUSES = np.array(["flying", "impact", "escaped", "partner"])
 ESCAPE_RADII = 10.0  # radii of the body beyond which a flight with positive energy has escaped
@@ -14,9 +15,26 @@ ESCAPE_ORBITS = 4.0  # the same for a binary, in distances of the centres
 
 
 @dataclass(frozen=True)
+class Starts:
+    """How flights began; every array has one entry or row a flight.
+
+    time            [s] (see fly)
+    position        [m], velocity [m/s], body-fixed, shape [count, 3]
+    mass            of the body [kg]; spin_period [s]
+    """
+
+    time: NDArray[np.float64]
+    position: NDArray[np.float64]
+    velocity: NDArray[np.float64]
+    mass: NDArray[np.float64]
+    spin_period: NDArray[np.float64]
+
+
+@dataclass(frozen=True)
 class Flights:
     """How each flight ended; every array has one entry or row a flight.
 
+    start           how they began
     status          "impact", "flying" (still, at the end of the duration), "partner" (an impact on the partner) or
                     "escaped": farther from the origin than ESCAPE_RADII times the farthest vertex, moving outwards,
                     with positive two-body energy in the inertial frame. In a binary: also farther from the common
@@ -33,9 +51,7 @@ class Flights:
     """
 
     body: Body
-    start_time: NDArray[np.float64]
-    start_position: NDArray[np.float64]
-    start_velocity: NDArray[np.float64]
+    start: Starts
     status: NDArray[np.str_]
     time: NDArray[np.float64]
     position: NDArray[np.float64]
@@ -52,8 +68,10 @@ class Flights:
         position, velocity = self.position.copy(), self.velocity.copy()
         hit = self.status == "partner"
         if hit.any():
-            time = (self.start_time + self.time)[hit]
-            position[hit], velocity[hit] = self.body.orbit.seen_from_partner(position[hit], velocity[hit], time)
+            parameter, spin_rate = GRAVITATIONAL_CONSTANT * self.start.mass, 2.0 * np.pi / self.start.spin_period
+            orbit = Orbit.of(self.body, parameter[hit], spin_rate[hit])
+            time = (self.start.time + self.time)[hit]
+            position[hit], velocity[hit] = orbit.seen_from_partner(position[hit], velocity[hit], time)
         return position, velocity
 
     @cached_property
@@ -92,6 +110,12 @@ class Flights:
         """
         if self.body.partner is not None:
             return np.full(len(self), np.nan)
-        return self.body.jacobi(self.position, self.velocity) - self.body.jacobi(
-            self.start_position, self.start_velocity
-        )
+        return self._jacobi(self.position, self.velocity) - self._jacobi(self.start.position, self.start.velocity)
+
+    def _jacobi(self, position: NDArray[np.float64], velocity: NDArray[np.float64]) -> NDArray[np.float64]:
+        """As Body.jacobi, with the mass and spin of each flight."""
+        spin_rate = 2.0 * np.pi / self.start.spin_period
+        turning = spin_rate**2 * (position[:, 0] ** 2 + position[:, 1] ** 2)
+        depth = self.body.potential(position) * (self.start.mass / self.body.mass)
+        constant: NDArray[np.float64] = 0.5 * ((velocity * velocity).sum(axis=1) - turning) - depth
+        return constant

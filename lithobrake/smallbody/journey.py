@@ -57,6 +57,8 @@ def hop(
     *,
     spin: ArrayLike = (0.0, 0.0, 0.0),
     start_time: ArrayLike = 0.0,
+    mass: ArrayLike | None = None,
+    spin_period: ArrayLike | None = None,
     gravity: str = "table",
     bounce_limit: int = 1000,
     seed: int = 0,
@@ -67,19 +69,30 @@ def hop(
 
     bounce     called once a round with the impacts of all landers still under way and a generator of random numbers
     spin       angular velocity at the start, body-fixed axes, relative to the stars [rad/s], [count, 3] or [3]
-    start_time   as of `fly`
+    start_time   as of `fly`, and so are mass and spin_period
     seed       of the generator: the same call gives the same result
     progress   called with the share of landers that have ended
     """
     start = np.array(np.atleast_2d(np.asarray(position, dtype=np.float64)))
-    state = _State(body, start, np.array(np.atleast_2d(np.asarray(velocity, dtype=np.float64))))
+    masses, periods = (
+        np.array(np.broadcast_to(np.asarray(own if given is None else given, dtype=np.float64), len(start)))
+        for own, given in ((body.mass, mass), (body.spin_period, spin_period))
+    )
+    state = _State(body, start, np.array(np.atleast_2d(np.asarray(velocity, dtype=np.float64))), masses, periods)
     state.spin[:] = np.asarray(spin, dtype=np.float64)
     begin = np.array(np.broadcast_to(np.asarray(start_time, dtype=np.float64), len(start)))
     going = np.arange(len(start))
     for number in range(bounce_limit + 1):
         where, rate, left = state.position[going], state.velocity[going], duration - state.time[going]
         now = begin[going] + state.time[going]
-        flights = fly(body, where, rate, left, gravity=gravity, start_time=now, threads=threads)
+        flights = fly(
+            *(body, where, rate, left),
+            gravity=gravity,
+            start_time=now,
+            mass=masses[going],
+            spin_period=periods[going],
+            threads=threads,
+        )
         state.advance(going, flights)
         going = going[flights.status == "impact"]
         facet = flights.facet[flights.status == "impact"]
@@ -103,6 +116,8 @@ class _State:
     body: Body
     position: NDArray[np.float64]
     velocity: NDArray[np.float64]
+    mass: NDArray[np.float64]
+    spin_period: NDArray[np.float64]
     spin: NDArray[np.float64] = field(init=False)
     time: NDArray[np.float64] = field(init=False)
     status: NDArray[Any] = field(init=False)
@@ -121,10 +136,18 @@ class _State:
         self.time[going] += flights.time
         self.status[going] = np.where(flights.status == "impact", "flying", flights.status)
         # The body turns on while a spin stays among the stars.
-        turn = self.body.spin_rate * flights.time
+        turn = 2.0 * np.pi / self.spin_period[going] * flights.time
         c, s = np.cos(turn), np.sin(turn)
         x, y = self.spin[going, 0], self.spin[going, 1]
         self.spin[going, 0], self.spin[going, 1] = c * x + s * y, c * y - s * x
+
+    def _push(self, going: NDArray[np.int64]) -> NDArray[np.float64]:
+        """Gravity and centrifugal acceleration [m/s2] at the landers `going`, [count, 3]."""
+        place = self.position[going]
+        gravity = self.body.acceleration(place) * (self.mass[going] / self.body.mass)[:, None]
+        spin_rate = 2.0 * np.pi / self.spin_period[going]
+        push: NDArray[np.float64] = gravity + (spin_rate**2)[:, None] * place * np.array([1.0, 1.0, 0.0])
+        return push
 
     def rebound(
         self, going: NDArray[np.int64], facet: NDArray[np.int64], bounce: Bounce, random: np.random.Generator
@@ -135,7 +158,7 @@ class _State:
         axes = impact_frame(velocity, up)
         speed = np.linalg.norm(velocity, axis=1)
         incidence = np.arccos(np.clip(-np.einsum("ni,ni->n", velocity, up) / speed, -1.0, 1.0))
-        push = np.einsum("ni,ni->n", self.body.effective_acceleration(self.position[going]), up)
+        push = np.einsum("ni,ni->n", self._push(going), up)
         local_spin = np.einsum("nij,nj->ni", axes, self.spin[going])
         result = bounce(Impacts(speed, incidence, local_spin, push), random)
         stays = result.captured & ~result.outside

@@ -47,7 +47,7 @@ class Partner:
 
 @dataclass(frozen=True)
 class Orbit:
-    """How a partner moves in the turning frame of the body that holds it.
+    """How a partner moves in the turning frame of the body that holds it; each entry a number, or one a flight.
 
     distance   of the centres [m]
     angle      longitude of the partner's centre at time 0 [rad] and rate [rad/s] of it
@@ -57,38 +57,43 @@ class Orbit:
     share      of the partner in both masses
     """
 
-    distance: float = 0.0
-    angle: float = 0.0
-    rate: float = 0.0
-    attitude: float = 0.0
-    swing: float = 0.0
-    pull: float = 0.0
-    drift: float = 0.0
-    share: float = 0.0
+    distance: Any = 0.0
+    angle: Any = 0.0
+    rate: Any = 0.0
+    attitude: Any = 0.0
+    swing: Any = 0.0
+    pull: Any = 0.0
+    drift: Any = 0.0
+    share: Any = 0.0
 
     @classmethod
-    def of(cls, body: "Body") -> "Orbit":
-        """The motion of a body's partner; all zero without one."""
+    def of(cls, body: "Body", parameter: Any = None, spin_rate: Any = None) -> "Orbit":
+        """The motion of a body's partner; all zero without one.
+
+        parameter [m3/s2] and spin_rate [rad/s] stand in place of the body's G mass and spin.
+        """
         partner = body.partner
         if partner is None:
             return cls()
-        total = body.gravitational_parameter + partner.body.gravitational_parameter
+        parameter = body.gravitational_parameter if parameter is None else parameter
+        spin_rate = body.spin_rate if spin_rate is None else spin_rate
+        total = parameter + partner.body.gravitational_parameter
         mean_motion = 2.0 * math.pi / partner.period
         distance = (total / mean_motion**2) ** (1.0 / 3.0)
         angle, share = math.radians(partner.longitude_deg), partner.body.gravitational_parameter / total
         return cls(
             distance=distance,
             angle=angle,
-            rate=mean_motion - body.spin_rate,
+            rate=mean_motion - spin_rate,
             attitude=angle + math.pi - math.radians(partner.facing_deg),
-            swing=partner.body.spin_rate - body.spin_rate,
+            swing=partner.body.spin_rate - spin_rate,
             pull=partner.body.gravitational_parameter / distance**2,
             drift=share * mean_motion * distance,
             share=share,
         )
 
     @property
-    def numbers(self) -> tuple[float, ...]:
+    def numbers(self) -> tuple[Any, ...]:
         """The numbers in the order in which kernels take them."""
         return (*(self.distance, self.angle, self.rate, self.attitude, self.swing, self.pull, self.drift, self.share),)
 
@@ -101,11 +106,11 @@ class Orbit:
         """
         p, v, t = (np.array(given, dtype=np.float64) for given in (position, velocity, time))
         angle = self.angle + self.rate * t
-        centre = self.distance * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
-        p[..., :2] -= centre
+        x, y = self.distance * np.cos(angle), self.distance * np.sin(angle)
+        p[..., 0], p[..., 1] = p[..., 0] - x, p[..., 1] - y
         # Velocity against the partner's ground: less the centre's, less the turning about it.
-        v[..., 0] += self.rate * centre[..., 1] + self.swing * p[..., 1]
-        v[..., 1] -= self.rate * centre[..., 0] + self.swing * p[..., 0]
+        v[..., 0] += self.rate * y + self.swing * p[..., 1]
+        v[..., 1] -= self.rate * x + self.swing * p[..., 0]
         turn = self.attitude + self.swing * t
         c, s = np.cos(turn), np.sin(turn)
         for array in (p, v):
@@ -116,14 +121,8 @@ class Orbit:
 
 @kernel
 def motion_over(orbit: Any, time: float, step: float) -> Any:
-    """Motion of the partner over a step that begins at a time [s]: (distance, angle, turn, attitude, swing)."""
-    return (
-        orbit[0],
-        orbit[1] + orbit[2] * time,
-        orbit[2] * step,
-        orbit[3] + orbit[4] * time,
-        orbit[4] * step,
-    )
+    """Motion of the partner over a step that begins at a time [s]; orbit: Orbit.numbers."""
+    return orbit[0], orbit[1] + orbit[2] * time, orbit[2] * step, orbit[3] + orbit[4] * time, orbit[4] * step
 
 
 @kernel

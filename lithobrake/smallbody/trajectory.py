@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from lithobrake.compiled import compiled, kernel, large_kernel
-from lithobrake.smallbody.acceleration import accelerate, has_escaped
+from lithobrake.smallbody.acceleration import FIRST_STEP, LENGTH, ORBIT, SPEED, accelerate, has_escaped
 from lithobrake.smallbody.attraction import workspace
 from lithobrake.smallbody.dormand_prince import NODES, STAGES, along, interpolate, next_step, stage_state, step_error
 from lithobrake.smallbody.impact import find_impact
@@ -67,25 +67,21 @@ def _meet(
 
 
 @compiled
-def fly_lanes(
-    starts: Any, begin: Any, duration: Any, phase: Any, forces: Any, grounds: Any, limits: Any, out: Any
-) -> None:
+def fly_lanes(starts: Any, begin: Any, duration: Any, phase: Any, forces: Any, grounds: Any, out: Any) -> None:
     """Fly all starts [count, 6] to their ends.
 
     begin     time at the start [s], [count]; duration [s], [count]
     phase     [count, 2], read and written: whether the flight has left the body, the partner (see impact)
-    forces    see acceleration
+    forces    see acceleration; one row of worlds a flight
     grounds   of the body and its partner, each as in impact
-    limits    (length error [m] and speed error [m/s] of a step, first step [s], escape radius [m], G mass [m3/s2])
     out       written: (status [count], time [s] [count], state [count, 6], facet [count], steps [count])
     """
-    length, speed, first_step, radius, parameter = limits
-    spin, orbit = forces[2], forces[5]
+    worlds = forces[2]
     status, time, final, touched, steps = out
     state, end, slope = np.empty((6, LANES)), np.empty((6, LANES)), np.empty((STAGES, 6, LANES))
     step, clock, flight, when = np.empty(LANES), np.empty(LANES), np.empty(LANES, dtype=np.int64), np.empty(LANES)
     lane, curve, room = np.zeros(ROWS * LANES), np.empty((5, 6)), np.empty((3, 3))
-    scratch = workspace(max(len(forces[0][0][0]), len(forces[3][0][0])))
+    scratch = workspace(max(len(forces[0][0][0]), len(forces[1][0][0])))
     active = queued = 0
     for j in range(min(LANES, len(starts))):
         _begin(starts, queued, state, slope, step, clock, flight, j)
@@ -95,15 +91,16 @@ def fly_lanes(
             stage_state(state, slope, step, stage, active, end)
             for j in range(active):
                 when[j] = begin[flight[j]] + clock[j] + NODES[stage] * step[j]
-            accelerate(end, slope, stage, active, lane, scratch, forces, when)
+            accelerate(end, slope, stage, active, lane, scratch, forces, when, flight)
         for j in range(active - 1, -1, -1):
             f = flight[j]
+            world = worlds[f]
             if step[j] == 0.0:
                 _shift(slope, j)
-                step[j] = min(first_step, duration[f])
+                step[j] = min(world[FIRST_STEP], duration[f])
                 continue
             steps[f] += 1
-            error = step_error(slope, step[j], j, length, speed)
+            error = step_error(slope, step[j], j, world[LENGTH], world[SPEED])
             taken, last = step[j], step[j] >= duration[f] - clock[j]
             step[j] = next_step(taken, error)
             if not error <= 1.0:
@@ -113,9 +110,9 @@ def fly_lanes(
             else:
                 interpolate(state, end, slope, taken, j, curve)
                 share, touched[f], status[f] = _meet(
-                    curve, slope, taken, j, phase[f], grounds, orbit, begin[f] + clock[j], room
+                    curve, slope, taken, j, phase[f], grounds, world[ORBIT:], begin[f] + clock[j], room
                 )
-                if status[f] == FLYING and has_escaped(end, j, parameter, spin, orbit, when[j], radius):
+                if status[f] == FLYING and has_escaped(end, j, world, when[j]):
                     status[f] = ESCAPED
                 _shift(slope, j)
                 for i in range(6):

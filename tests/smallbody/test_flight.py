@@ -1,6 +1,7 @@
 """Flights against Kepler's laws, conserved quantities and an independent integrator."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -212,5 +213,19 @@ def test_inertial_starts_are_the_same_flights(top):
     where, rate = (np.einsum("nij,nj->ni", out, given) for given in (position, velocity + ground))
     still = fly(top, where, rate, 3600.0, frame="inertial", start_time=begin)
     assert np.array_equal(still.status, turning.status)
-    assert still.start_velocity == pytest.approx(velocity, abs=1e-12)
+    assert still.start.velocity == pytest.approx(velocity, abs=1e-12)
     assert still.position == pytest.approx(turning.position, abs=1e-6)
+
+
+def test_a_mass_and_a_spin_for_each_flight(top):
+    """The same bits as from bodies of that mass and spin, one by one; the Jacobi constant is that of each."""
+    position, velocity = cone(top, 10.0, 0.0, 4, seed=3)
+    mass, period = np.array([4.9e11, 5.2e11, 5.5e11, 5.8e11]), np.array([8000.0, 8200.0, 8400.0, math.inf])
+    together = fly(top, position, velocity, 5000.0, mass=mass, spin_period=period)
+    for i in range(4):
+        alone = fly(replace(top, mass=mass[i], spin_period=period[i]), position[i], velocity[i], 5000.0)
+        assert np.array_equal(alone.position[0], together.position[i])
+        assert alone.jacobi_drift[0] == pytest.approx(together.jacobi_drift[i], abs=1e-9)
+    assert np.abs(together.jacobi_drift).max() < 3e-6
+    with pytest.raises(ValueError, match="above 0"):
+        fly(top, position, velocity, 10.0, mass=-1.0)
