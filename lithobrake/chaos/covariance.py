@@ -51,7 +51,9 @@ class Covariance(ABC):
 
     @abstractmethod
     def projection(self, theta: Array, germs: Array, indices: Indices, weights: Array) -> Array:
-        """Coefficients [term_count] of sum_m weights_m K(., germ_m) on the orthonormal polynomials."""
+        """Coefficients [term_count] of sum_m weights_m K(., germ_m) on the orthonormal polynomials; several columns of
+        weights [count, any] give [term_count, any].
+        """
 
 
 class ProductCovariance(Covariance):
@@ -178,7 +180,7 @@ class RadialMatern(Covariance):
         return np.full(germs.shape[1], np.exp(theta[-1]))
 
     def projection(self, theta: Array, germs: Array, indices: Indices, weights: Array) -> Array:
-        total = np.zeros(len(indices))
+        total = np.zeros((len(indices), *weights.shape[1:]))
         for v, share in self._mixture():
             lengths = np.exp(theta[:-1]) * np.sqrt(v)
             rows = zip(self.entries, self.degrees, germs, lengths, strict=True)
@@ -188,8 +190,10 @@ class RadialMatern(Covariance):
 
 
 def contracted(tables: list[Array], indices: Indices, weights: Array) -> Array:
-    """Sum over points m of weights_m prod_k tables[k][i_k, m] for each multi-index; result [term_count]."""
-    result = np.empty(len(indices))
+    """Sum over points m of weights_m prod_k tables[k][i_k, m] for each multi-index; weights [count] or [count, any];
+    result [term_count] or [term_count, any].
+    """
+    result = np.empty((len(indices), *weights.shape[1:]))
     # Slices keep the products of many terms and points out of main memory.
     for start in range(0, len(indices), 1024):
         part = indices[start : start + 1024]

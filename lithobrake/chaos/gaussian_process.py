@@ -64,7 +64,16 @@ class Process:
 
     def coefficients(self, indices: Indices) -> Array:
         """Exact projection of the mean on orthonormal terms, [term_count]."""
-        parts = self.scale * self.covariance.projection(self.theta, self.germs, indices, self.weights)
+        return self._projected(indices, self.weights)
+
+    def refitted(self, indices: Indices, y: Array) -> Array:
+        """The same with the parameters kept and other outputs y [count, any] at the same points, [term_count, any]."""
+        from scipy.linalg import cho_solve
+
+        return self._projected(indices, cho_solve((self.factor, True), (y - self.shift) / self.scale))
+
+    def _projected(self, indices: Indices, weights: Array) -> Array:
+        parts = self.scale * self.covariance.projection(self.theta, self.germs, indices, weights)
         parts[indices.sum(axis=1) == 0] += self.shift
         return parts
 

@@ -1,14 +1,18 @@
-"""Confidence intervals by resampling: for Sobol indices, and for scores on a test set."""
+"""Confidence intervals by resampling: of Sobol indices from the residuals, of scores from the test runs."""
 
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from lithobrake.chaos import sensitivity
-from lithobrake.chaos.basis import basis_matrix
+from lithobrake.chaos.basis import basis_matrix, condition_number
+from lithobrake.chaos.gaussian_process import FAMILIES, learn
+from lithobrake.chaos.least_squares import RANK_TOLERANCE
 from lithobrake.chaos.polynomials import Array
-from lithobrake.chaos.regression import best_terms
+from lithobrake.chaos.regression import best_terms, terms_to_try
 from lithobrake.chaos.scores import score_of
 from lithobrake.chaos.surrogate import Surrogate
 from lithobrake.chaos.terms import Indices
@@ -17,6 +21,23 @@ from lithobrake.chaos.training import Training, checked_training
 
 # With more terms than this share of the points the residuals say too little about the error.
 TERM_SHARE = 0.7
+SMALLEST_FREEDOM = 0.05
+
+
+@dataclass(frozen=True)
+class Refit:
+    """A fit of one output that can be made again, and where draws of its runs come from.
+
+    indices [term_count, input_count]; coefficients: of outputs [count, draw_count], result [term_count, draw_count].
+    fitted [count]: outputs that draws scatter about; truth [2, input_count]: first-order and total indices of what
+    gave them; residuals [count], as large as errors at new points.
+    """
+
+    indices: Indices
+    coefficients: Callable[[Array], Array]
+    fitted: Array
+    truth: Array
+    residuals: Array
 
 
 @one_thread()
@@ -26,54 +47,112 @@ def sobol_intervals(
     """Confidence intervals of the Sobol indices by resampling the residuals of the training runs x, y.
 
     Result: "first" and "total", each [2 (lower, upper), input_count, output_count] (last axis dropped for a
-    one-dimensional y); "degree" of the least squares that was resampled, or None if it has the terms of the surrogate.
-    Terms of least squares are kept; where the data chose the terms (sparse fits, processes) the least squares of the
-    best degree on the same runs stands in. Rows of residuals are drawn jointly for all outputs and scaled by leverage;
-    intervals are of the basic kind, which takes off the bias that scatter gives to squared coefficients.
-    Source: Davison and Hinkley, 1997, sections 5.2 and 6.2; MacKinnon and White, 1985 (residuals, HC3);
-    Dubreuil and others, 2014 (indices from expansions).
+    one-dimensional y). Draws are fitted again: least squares with its terms, a sparse fit by least squares on its terms
+    and all of low degree, a process with its parameters. Rows of residuals are drawn jointly for all outputs and are as
+    large as the error at new points, so that they hold what the fit left out. An interval is of the basic kind, which
+    takes off the bias that scatter gives to squared coefficients; it holds the index of the expansion itself, and
+    reaches up to the percentile of the draws, without which small effects would be missed.
+    Source: Davison and Hinkley, 1997, sections 5.2 and 6.2; Dubreuil and others, 2014 (indices from expansions).
     """
-    _check(count, level)
+    _check_resampling(count, level)
     training = checked_training(surrogate.inputs, x, y, output_names=surrogate.output_names)
-    indices, degree = _terms_to_resample(surrogate, training)
-    matrix = basis_matrix(training.inputs, indices, training.x)
-    orthogonal, triangle = np.linalg.qr(matrix)
-    fitted = orthogonal @ (orthogonal.T @ training.y)
-    leverage = np.einsum("ij,ij->i", orthogonal, orthogonal)
-    # The full leverage, not its root: the intervals must also hold what the choice of terms and their cut leave out.
-    residuals = (training.y - fitted) / np.maximum(1.0 - leverage, 0.05)[:, None]
-    residuals -= residuals.mean(axis=0)
-    generator = np.random.default_rng(seed)
-
-    def indices_of(values: Array) -> Array:
-        coefficients = np.linalg.solve(triangle, orthogonal.T @ values)
-        return np.stack(
-            [sensitivity.first_order(indices, coefficients), sensitivity.total_order(indices, coefficients)]
-        )
-
-    estimate = indices_of(training.y)
-    draws = [
-        indices_of(fitted + residuals[generator.integers(training.count, size=training.count)]) for _ in range(count)
-    ]
-    tails = np.quantile(np.array(draws), [0.5 + 0.5 * level, 0.5 - 0.5 * level], axis=0)
-    bounds = np.clip(2.0 * estimate - tails, 0.0, 1.0)
-    first, total = surrogate.shaped(bounds[:, 0]), surrogate.shaped(bounds[:, 1])
-    return {"first": first, "total": total, "degree": degree}
+    rows = np.random.default_rng(seed).integers(training.count, size=(count, training.count))
+    own = np.stack([surrogate.sobol_first, surrogate.sobol_total]).reshape(2, len(training.inputs), -1)
+    bounds = []
+    for output in range(len(surrogate.output_names)):
+        refit = _refit_of(surrogate, training, output)
+        draws = _indices_of(refit.indices, refit.coefficients(refit.fitted[:, None] + refit.residuals[rows].T))
+        low, high = np.quantile(draws, [0.5 - 0.5 * level, 0.5 + 0.5 * level], axis=-1)
+        bias = draws.mean(axis=-1) - refit.truth
+        lower = np.minimum(2.0 * refit.truth - high, own[..., output])
+        upper = np.maximum(np.maximum(2.0 * refit.truth - low, high - bias), own[..., output])
+        bounds.append(np.clip([lower, upper], 0.0, 1.0))
+    table = np.stack(bounds, axis=-1)
+    return {"first": surrogate.shaped(table[:, 0]), "total": surrogate.shaped(table[:, 1])}
 
 
-def _check(count: int, level: float) -> None:
+def _indices_of(indices: Indices, coefficients: Array) -> Array:
+    """First-order and total indices [2, input_count, draw_count] of coefficients [term_count, draw_count]."""
+    return np.stack([sensitivity.first_order(indices, coefficients), sensitivity.total_order(indices, coefficients)])
+
+
+def _check_resampling(count: int, level: float) -> None:
+    """Check a number of resamplings and a level of confidence; raises ValueError."""
     if count < 20:
         raise ValueError(f"count is {count}, but at least 20 resamplings are needed for an interval")
     if not 0.0 < level < 1.0:
         raise ValueError(f"level is {level}, but must be between 0 and 1, for instance 0.95")
 
 
-def _terms_to_resample(surrogate: Surrogate, training: Training) -> tuple[Indices, int | None]:
-    methods = {entry.get("method") for entry in surrogate.report.get("outputs", {}).values()}
-    if methods == {"ols"} and surrogate.term_count <= TERM_SHARE * training.count:
-        return surrogate.multi_indices, None
-    indices = best_terms(training, term_limit=TERM_SHARE * training.count)
-    return indices, int(indices.sum(axis=1).max())
+def _refit_of(surrogate: Surrogate, training: Training, output: int) -> Refit:
+    """How one output was fitted, as the report says; the least squares of the best degree where it does not say."""
+    entry = surrogate.report.get("outputs", {}).get(surrogate.output_names[output], {})
+    method = entry.get("method")
+    coefficients = surrogate.coefficients.reshape(surrogate.term_count, -1)[:, output]
+    indices = surrogate.multi_indices[(coefficients != 0.0) | (surrogate.multi_indices.sum(axis=1) == 0)]
+    if method in ("lars", "omp") and "candidate_degree" in entry:
+        return _sparse_refit(training, output, entry["rmse_estimate"], indices)
+    if method == "gaussian_process" and "covariance" in entry:
+        return _process_refit(training, output, entry, indices)
+    if method != "ols" or len(indices) > TERM_SHARE * training.count:
+        indices = best_terms(training, term_limit=TERM_SHARE * training.count)
+    return _least_squares_refit(training, output, indices)
+
+
+def _least_squares_refit(training: Training, output: int, indices: Indices) -> Refit:
+    """Source of the residuals: MacKinnon and White, 1985 (HC3: the full leverage, as for left-out points)."""
+    orthogonal, triangle = np.linalg.qr(basis_matrix(training.inputs, indices, training.x))
+    y = training.y[:, output]
+    fitted = orthogonal @ (orthogonal.T @ y)
+    freedom = 1.0 - np.einsum("ij,ij->i", orthogonal, orthogonal)
+    residuals = (y - fitted) / np.maximum(freedom, SMALLEST_FREEDOM)
+
+    def coefficients(values: Array) -> Array:
+        return np.linalg.solve(triangle, orthogonal.T @ values)
+
+    truth = _indices_of(indices, coefficients(y[:, None]))[..., 0]
+    return Refit(indices, coefficients, fitted, truth, residuals - residuals.mean())
+
+
+def _sparse_refit(training: Training, output: int, expected_error: float, kept: Indices) -> Refit:
+    """Least squares on the chosen terms and all of low degree, with residuals as large as the error of the folds.
+
+    From the chosen terms alone no effect that the choice has overlooked could ever return, and their residuals are
+    too small.
+    """
+    rich = _least_squares_refit(training, output, _with_low_degrees(kept, training))
+    return replace(rich, residuals=_grown(rich.residuals, expected_error))
+
+
+def _grown(residuals: Array, size: float) -> Array:
+    """Residuals [count] with at least this root mean square."""
+    own = float(np.sqrt(np.mean(residuals**2)))
+    return residuals * max(size / own, 1.0) if own > 0.0 else residuals
+
+
+def _with_low_degrees(kept: Indices, training: Training) -> Indices:
+    """The kept terms and those of the highest total degree with which the points still determine them twice over."""
+    union, degree = kept, 1
+    while True:
+        more = np.unique(np.concatenate([kept, terms_to_try(training, degree)]), axis=0)
+        if 2 * len(more) > training.count or len(more) == len(union):
+            return union
+        if condition_number(training.inputs, training.x, more) > 1.0 / RANK_TOLERANCE:
+            return union
+        union, degree = more, degree + 1
+
+
+def _process_refit(training: Training, output: int, entry: dict[str, Any], indices: Indices) -> Refit:
+    """The process with its parameters kept, which is linear in the outputs."""
+    process = learn(training, output, next(one for one in FAMILIES if one.name == entry["covariance"]))
+    errors = process.leave_one_out
+
+    def coefficients(values: Array) -> Array:
+        return process.refitted(indices, values)
+
+    truth = _indices_of(indices, process.coefficients(indices)[:, None])[..., 0]
+    residuals = _grown(errors - errors.mean(), entry["rmse_estimate"])
+    return Refit(indices, coefficients, process.predict(process.germs), truth, residuals)
 
 
 def score_intervals(
@@ -83,16 +162,18 @@ def score_intervals(
 
     Source: Davison and Hinkley, 1997, section 5.3 (percentile intervals).
     """
-    _check(count, level)
+    _check_resampling(count, level)
     training = checked_training(surrogate.inputs, x, y, output_names=surrogate.output_names)
     predicted = np.asarray(surrogate(training.x)).reshape(training.y.shape)
     rows = np.random.default_rng(seed).integers(training.count, size=(count, training.count))
-    tails = [0.5 - 0.5 * level, 0.5 + 0.5 * level]
     result: dict[str, dict[str, tuple[float, float]]] = {}
     for k, name in enumerate(surrogate.output_names):
         scores = [score_of(predicted[draw, k], training.y[draw, k]) for draw in rows]
         result[name] = {}
         for key in ("mape", "q2", "rrmse", "rmse"):
-            low, high = np.quantile([score[key] for score in scores], tails)
+            values = [score[key] for score in scores]
+            # No interpolation: a draw of equal runs has an infinite rrmse.
+            low = np.quantile(values, 0.5 - 0.5 * level, method="lower")
+            high = np.quantile(values, 0.5 + 0.5 * level, method="higher")
             result[name][key] = (float(low), float(high))
     return result

@@ -5,7 +5,7 @@ Error estimates come from folds over the whole selection path: leave-one-out aft
 
 import warnings
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,6 +37,15 @@ def is_structured(x: Array) -> bool:
     return len(x) > 4 and float(np.median(shares)) < 1.0 / 3.0
 
 
+@dataclass(frozen=True)
+class Candidates:
+    """The terms that a sparse method may choose from: those of a total degree and a norm."""
+
+    degree: int
+    q_norm: float
+    indices: Indices
+
+
 def solve_sparse(training: Training, output: int, method: str, *, degree: int | None, q_norm: float | None) -> Solution:
     """Fit one output by "lars" or "omp"; degree and q_norm None are chosen by the same folds.
 
@@ -50,53 +59,65 @@ def solve_sparse(training: Training, output: int, method: str, *, degree: int | 
         # Too few distinct points to tell any term from another.
         constant = solve_ols(training, multi_index_set(len(training.inputs), 0))[output]
         return replace(constant, method=method)
-    grid = is_structured(training.x)
-    folds = [] if grid else _folds(training)
-    best: tuple[float, int, Indices] = np.inf, 0, ladders[0][0]
+    folds = [] if is_structured(training.x) else _folds(training)
+    error, length, candidates = _best_candidates(training, y, method, ladders, folds)
+    matrix = basis_matrix(training.inputs, candidates.indices, training.x)
+    kept = np.concatenate([[0], np.sort(_order(matrix, y, method)[:length])]).astype(np.int64)
+    used = matrix[:, kept]
+    coefficients: Array = np.linalg.lstsq(used, y, rcond=None)[0].astype(float)
+    # As for least squares: folds do not see the tails where no run stands.
+    residual = float(np.sum((y - used @ coefficients) ** 2)) / max(len(y) - len(kept), 1)
+    values = np.linalg.svd(used, compute_uv=False)
+    values = values[values > values[0] * max(used.shape) * np.finfo(float).eps]
+    error = max(error, residual * (1.0 + float(np.sum(values**-2.0))))
+    estimate = f"{len(folds)}-fold over the selection path" if folds else "leave-one-out on a grid"
+    facts = {
+        "candidate_degree": candidates.degree,
+        "candidate_q_norm": candidates.q_norm,
+        "condition_number": float(values[0] / values[-1]),
+    }
+    return Solution(method, candidates.indices[kept], coefficients, float(np.sqrt(error)), estimate, facts)
+
+
+def _best_candidates(
+    training: Training, y: Array, method: str, ladders: list[list[Candidates]], folds: list[Rows]
+) -> tuple[float, int, Candidates]:
+    """Smallest mean squared error, the number of terms that has it, and the candidates they are chosen from."""
+    best = np.inf, 0, next(one for ladder in ladders for one in ladder)
     for ladder in ladders:
         idle, lowest = 0, np.inf
-        for indices in ladder:
-            matrix = basis_matrix(training.inputs, indices, training.x)
-            errors = _grid_errors(matrix, y, method) if grid else _fold_errors(matrix, y, method, folds)
+        for candidates in ladder:
+            matrix = basis_matrix(training.inputs, candidates.indices, training.x)
+            errors = _fold_errors(matrix, y, method, folds) if folds else _grid_errors(matrix, y, method)
             length = int(np.argmin(errors))
             # A larger set must be clearly better, or rounding decides between equal fits.
-            if errors[length] < best[0] * (1.0 - 1e-6) or best[0] == np.inf:
-                best = float(errors[length]), length, indices
+            if errors[length] < best[0] * (1.0 - 1e-6):
+                best = float(errors[length]), length, candidates
             idle, lowest = (0, errors[length]) if errors[length] < 0.99 * lowest else (idle + 1, lowest)
             if idle == PATIENCE:
                 break
-    error, length, indices = best
-    matrix = basis_matrix(training.inputs, indices, training.x)
-    chosen = _order(matrix, y, method)[:length]
-    kept = np.concatenate([[0], np.sort(chosen)]).astype(np.int64)
-    coefficients: Array = np.linalg.lstsq(matrix[:, kept], y, rcond=None)[0].astype(float)
-    used = matrix[:, kept]
-    # As for least squares: folds do not see the tails where no run stands.
-    residual = float(np.sum((y - used @ coefficients) ** 2)) / max(len(y) - len(kept), 1)
-    tails = float(np.trace(np.linalg.pinv(used.T @ used)))
-    error = max(error, residual * (1.0 + tails))
-    estimate = "leave-one-out on a grid" if grid else f"{len(folds)}-fold over the selection path"
-    return Solution(method, indices[kept], coefficients, float(np.sqrt(error)), estimate)
+    return best
 
 
-def _candidate_ladders(training: Training, degree: int | None, q_norm: float | None) -> list[list[Indices]]:
+def _candidate_ladders(training: Training, degree: int | None, q_norm: float | None) -> list[list[Candidates]]:
     """For each norm the index sets of rising degree."""
     input_count = len(training.inputs)
     degrees = range(1, HIGHEST_SPARSE_DEGREE + 1) if degree is None else [degree]
     norms = NORMS if q_norm is None else (q_norm,)
     # Far more candidates than points cannot be told apart.
     limit = CANDIDATE_LIMIT if degree is not None else min(CANDIDATE_LIMIT, 6 * training.count)
-    ladders: list[list[Indices]] = []
+    ladders: list[list[Candidates]] = []
     for norm in norms if input_count > 1 else norms[:1]:
-        ladder: list[Indices] = []
+        ladder: list[Candidates] = []
         for one in degrees:
+            if degree is None:
+                indices = terms_to_try(training, one, norm)
+            else:
+                indices = multi_index_set(input_count, one, q_norm=norm)
             # Sets of higher degrees hold those of lower ones, so after the first that is too large none is made.
-            indices = (
-                terms_to_try(training, one, norm) if degree is None else multi_index_set(input_count, one, q_norm=norm)
-            )
             if len(indices) > limit:
                 break
-            ladder.append(indices)
+            ladder.append(Candidates(one, norm, indices))
         ladders.append(ladder)
     return ladders
 

@@ -1,4 +1,4 @@
-"""Effects, slopes, marginals, distributions and intervals against closed forms."""
+"""Effects, slopes, marginals and distributions against closed forms."""
 
 import numpy as np
 import pytest
@@ -14,9 +14,7 @@ from lithobrake.chaos import (
     marginal,
     output_correlation,
     quantiles,
-    score_intervals,
     shape_moments,
-    sobol_intervals,
     sobol_sequence,
 )
 
@@ -71,44 +69,3 @@ def test_distribution_of_the_outputs(surrogate):
     assert output_correlation(surrogate)[0, 1] == pytest.approx(correlation, rel=1e-10)
     with pytest.raises(ValueError, match="output"):
         density(surrogate, "z")
-
-
-def test_sobol_intervals_cover_the_truth_under_noise():
-    inputs = {name: Uniform(-1.0, 1.0) for name in "abc"}
-    # y = a + b / 2 + a c: variances 1/3, 1/12, 1/9.
-    parts = np.array([1.0 / 3.0, 1.0 / 12.0, 1.0 / 9.0])
-    first = np.array([parts[0], parts[1], 0.0]) / parts.sum()
-    total = np.array([parts[0] + parts[2], parts[1], parts[2]]) / parts.sum()
-    covered = np.zeros(5)
-    trials = 60
-    for seed in range(trials):
-        x = sobol_sequence(inputs, 60, seed=seed)
-        noise = 0.2 * np.random.default_rng(seed).normal(size=60)
-        y = x[:, 0] + 0.5 * x[:, 1] + x[:, 0] * x[:, 2] + noise
-        bounds = sobol_intervals(fit(inputs, x, y, degree=2), x, y, count=200, level=0.9, seed=seed)
-        inside_first = (bounds["first"][0] <= first) & (first <= bounds["first"][1])
-        inside_total = (bounds["total"][0] <= total) & (total <= bounds["total"][1])
-        covered += np.append(inside_first[:2], inside_total)
-    # 90 % intervals; 60 trials have a standard deviation of 4 % in the share covered.
-    assert np.all(covered / trials > 0.78)
-
-
-def test_score_intervals_hold_the_score(surrogate):
-    x = sobol_sequence(INPUTS, 60, seed=9)
-    y = np.column_stack([truth(x), x[:, 2]]) + 0.3 * np.random.default_rng(0).normal(size=(60, 2))
-    bounds, score = score_intervals(surrogate, x, y), surrogate.score(x, y)
-    for name in ("t", "c"):
-        for key in ("mape", "q2"):
-            assert bounds[name][key][0] < score[name][key] < bounds[name][key][1]
-    with pytest.raises(ValueError, match="level"):
-        score_intervals(surrogate, x, y, level=1.5)
-
-
-def test_intervals_stand_for_a_process_by_least_squares():
-    inputs = {name: Uniform(0.0, 1.0) for name in "ab"}
-    x = sobol_sequence(inputs, 50)
-    y = np.abs(x[:, 0] - 0.4) + 0.1 * x[:, 1]
-    surrogate = fit(inputs, x, y)
-    bounds = sobol_intervals(surrogate, x, y, count=100)
-    assert bounds["degree"] is None or bounds["degree"] >= 1
-    assert bounds["first"].shape == (2, 2)
