@@ -8,7 +8,7 @@ from typing import Annotated, Literal, get_args
 from pydantic import BaseModel, Field
 
 from lithobrake.quantity import MaybeUncertain, Number, Numbers, Scalar, Uncertain, Whole
-from lithobrake.study_campaign import CampaignSection, Section
+from lithobrake.study_campaign import CampaignSection, Section, SolverSection
 
 Metres = Annotated[float, Number("m", above=0)]
 Interval = Annotated[tuple[float, float], Numbers("m", count=2, ascending=True)]
@@ -283,6 +283,7 @@ class Study(Section):
     surface: SurfaceSection
     contact: ContactSection = ContactSection()
     landing: LandingSection = LandingSection()
+    solver: SolverSection = SolverSection()
     campaign: CampaignSection = CampaignSection()
     design: DesignSection = DesignSection()
     monte_carlo: MonteCarloSection = MonteCarloSection()
@@ -292,7 +293,7 @@ class Study(Section):
     def touchdown_values(self) -> dict[str, Scalar]:
         """Every scalar that the touchdown reads, by dotted key, in the units of the file; absent ones are left out."""
         values: dict[str, Scalar] = {}
-        for section in ("grain", "lander", "impact", "surface"):
+        for section in ("grain", "lander", "impact", "surface", "solver"):
             values |= _scalars(section, getattr(self, section))
         if self.impact.region is None and self.impact.place is None:
             values |= {"impact.place.x": 0.0, "impact.place.y": 0.0}
@@ -311,4 +312,6 @@ def _scalars(path: str, section: BaseModel) -> dict[str, Scalar]:
             values[f"{path}.{name}"] = value
         elif isinstance(value, PlaceSection):
             values |= _scalars(f"{path}.{name}", value)
+        elif isinstance(value, dict):
+            values |= {f"{path}.{name}.{key}": entry for key, entry in value.items()}
     return values

@@ -2,9 +2,9 @@
 
 from typing import Annotated
 
-from pydantic import BaseModel, ConfigDict
+from pydantic import BaseModel, ConfigDict, Field
 
-from lithobrake.quantity import Number, Whole
+from lithobrake.quantity import MaybeUncertain, Number, Scalar, Whole
 
 
 class Section(BaseModel):
@@ -24,3 +24,13 @@ class CampaignSection(Section):
     """How often a run that failed is tried again."""
     failed_share: Annotated[float, Number("", at_least=0, below=1)] = 0.05
     """Largest share of failed runs of a design with which an expansion is still fitted."""
+
+
+class SolverSection(Section):
+    """A program of your own that makes the touchdowns in place of this one (docs/own_solver.md)."""
+
+    command: str | None = None
+    """Its command line, started in a folder for each run, where it reads inputs.json and writes outputs.json; words
+    that name files count from the study file. Absent: this program's own soil."""
+    inputs: dict[str, Annotated[Scalar, MaybeUncertain("")]] = Field(default={})
+    """Numbers that only your program knows, by names of your own."""

@@ -1,6 +1,9 @@
 """Reading a study file: all that is wrong with it is said at once, before anything runs."""
 
+import contextlib
 import math
+import shlex
+import shutil
 import tomllib
 from collections.abc import Iterator, Mapping
 from pathlib import Path
@@ -8,6 +11,7 @@ from typing import Any, get_args
 
 from pydantic import BaseModel, ValidationError
 
+from lithobrake.campaign import absolute_words
 from lithobrake.quantity import Scalar, Uncertain, uncertain
 from lithobrake.study import Study
 from lithobrake.wording import sentences
@@ -84,6 +88,11 @@ def _absolute(tables: Mapping[str, Any], folder: Path) -> dict[str, Any]:
         table = result.get(section)
         if isinstance(table, dict) and isinstance(table.get(key), str) and table[key] != "didymos":
             table[key] = str(folder / table[key])
+    solver = result.get("solver")
+    if isinstance(solver, dict) and isinstance(solver.get("command"), str):
+        # Quotes that do not match are told by _solver_problems.
+        with contextlib.suppress(ValueError):
+            solver["command"] = shlex.join(absolute_words(solver["command"], folder))
     return result
 
 
@@ -93,6 +102,7 @@ def _problems(study: Study) -> Iterator[str]:
     yield from _grain_problems(study)
     yield from _place_problems(study)
     yield from _design_problems(study)
+    yield from _solver_problems(study)
     if study.bed.settle_gravity is None and _reach(study.surface.gravity)[0] <= 0:
         yield (
             "surface.gravity reaches zero or points outward, and no bed settles under that; "
@@ -198,6 +208,21 @@ def _design_problems(study: Study) -> Iterator[str]:
                     f"{node_count} nodes of level {level}; lower the degree or raise design.{stage}_level"
                 )
                 break
+
+
+def _solver_problems(study: Study) -> Iterator[str]:
+    solver = study.solver
+    if solver.command is None:
+        if solver.inputs:
+            yield "solver.inputs has numbers, and solver.command is missing; give the command that reads them"
+        return
+    try:
+        words = shlex.split(solver.command)
+    except ValueError as error:
+        yield f"solver.command is {solver.command!r}; {str(error).lower()}: close every quotation mark"
+        return
+    if not words or shutil.which(words[0]) is None:
+        yield f'solver.command begins with "{" ".join(words[:1])}", which is no program here; give its path'
 
 
 def _reach(value: Scalar) -> tuple[float, float]:

@@ -21,7 +21,7 @@ ALLOWED: dict[str, set[str]] = {
     "quantity": {"wording", "chaos"},
     "study_campaign": {"quantity"},
     "study": {"study_campaign", "quantity"},
-    "study_file": {"study", "quantity", "wording", "chaos", "touchdown"},
+    "study_file": {"study", "quantity", "wording", "chaos", "campaign", "touchdown"},
     "study_template": {"study", "quantity"},
     "pipeline": {
         *("dem", "touchdown", "chaos", "campaign", "smallbody", "analysis", "report"),

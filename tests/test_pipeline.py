@@ -12,7 +12,7 @@ from lithobrake.chaos import Uniform, fit, smolyak
 from lithobrake.pipeline import STAGES, StudyFolder, stage_keys
 from lithobrake.pipeline.expansions import design_inputs, kept_inputs, points
 from lithobrake.pipeline.flights import starts
-from lithobrake.pipeline.landings import acceleration, draw, medians
+from lithobrake.pipeline.landings import ORIENTATION, PLACE, acceleration, draw, medians
 from lithobrake.pipeline.samples import Samples
 from lithobrake.pipeline.summary import shares, study_tables
 from lithobrake.study import OUTPUTS, Study
@@ -94,20 +94,31 @@ def test_draws_are_given_by_the_seed_and_what_is_fixed_is_not_drawn() -> None:
     study = changed()
     one = draw(study, medians(study), 5)
     assert one == draw(study, medians(study), 5)
-    assert one == {"bed": 0, "place": [0.0, 0.0], "azimuth_deg": 0.0, "orientation": [1.0, 0.0, 0.0, 0.0]}
+    drawn = {name: value for name, value in one.items() if medians(study).get(name) != value}
+    assert drawn == {"bed": 0.0, **dict(zip(ORIENTATION, [1.0, 0.0, 0.0, 0.0], strict=True))}
 
 
 def test_nuisances_are_drawn_in_their_ranges_and_evenly() -> None:
     region = {"x": [-0.1, 0.1], "y": [0.0, 0.05]}
     study = changed(bed={"bed_count": 3}, impact={"region": region, "azimuth_deg": "random", "orientation": "random"})
     draws = [draw(study, medians(study), seed) for seed in range(3000)]
-    places = np.array([one["place"] for one in draws])
-    assert np.bincount([one["bed"] for one in draws]).tolist() == pytest.approx([1000] * 3, abs=100)
+    places = np.array([[one[name] for name in PLACE] for one in draws])
+    assert np.bincount([round(one["bed"]) for one in draws]).tolist() == pytest.approx([1000] * 3, abs=100)
     assert places.min(axis=0) == pytest.approx([-0.1, 0.0], abs=1e-3)
     assert places.max(axis=0) == pytest.approx([0.1, 0.05], abs=1e-3)
-    assert np.mean([one["azimuth_deg"] for one in draws]) == pytest.approx(180, abs=8)
+    assert np.mean([one["impact.azimuth_deg"] for one in draws]) == pytest.approx(180, abs=8)
     # For rotations drawn evenly, each squared component of the quaternion has the mean 1/4.
-    assert np.mean(np.array([one["orientation"] for one in draws]) ** 2, axis=0) == pytest.approx([0.25] * 4, abs=0.02)
+    quaternions = np.array([[one[name] for name in ORIENTATION] for one in draws])
+    assert np.mean(quaternions**2, axis=0) == pytest.approx([0.25] * 4, abs=0.02)
+
+
+def test_one_more_bed_takes_its_share_of_runs_and_leaves_the_others_as_they_are() -> None:
+    random = {"azimuth_deg": "random", "orientation": "random"}
+    two, three = (changed(bed={"bed_count": count}, impact=random) for count in (2, 3))
+    pairs = [(draw(two, medians(two), seed), draw(three, medians(three), seed)) for seed in range(900)]
+    moved = [after for before, after in pairs if before != after]
+    assert {one["bed"] for one in moved} == {2.0}
+    assert len(moved) == pytest.approx(300, abs=45)
 
 
 def test_a_slope_tilts_the_acceleration_downhill() -> None:

@@ -1,5 +1,6 @@
 """Many runs of any model: each is computed once, kept in a ledger the moment it ends, and never lost."""
 
+from lithobrake.campaign.command import Command, absolute_words
 from lithobrake.campaign.identity import run_key, run_seed
 from lithobrake.campaign.ledger import Ledger
 from lithobrake.campaign.limits import Limits
@@ -10,6 +11,7 @@ from lithobrake.campaign.runs import Runs, run
 from lithobrake.campaign.tally import Tally, ledger_tally
 
 __all__ = [
+    "Command",
     "Ledger",
     "Limits",
     "LocalExecutor",
@@ -17,6 +19,7 @@ __all__ = [
     "Runs",
     "Tally",
     "WorkerDiedError",
+    "absolute_words",
     "campaign_began",
     "ledger_tally",
     "missing",

@@ -7,12 +7,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from lithobrake.campaign import Ledger, Runs, Tally, missing
-from lithobrake.campaign import run as run_campaign
+from lithobrake.campaign import Runs, missing
 from lithobrake.pipeline.folder import json_hash
 from lithobrake.pipeline.job import Job
-from lithobrake.pipeline.landings import TouchdownModel, medians
-from lithobrake.pipeline.surface import bed_files, touchdown_reads
+from lithobrake.pipeline.surface import touchdown_reads
+from lithobrake.pipeline.touchdowns import drawn_reads, touchdowns
 from lithobrake.quantity import uncertain
 from lithobrake.study import OUTPUTS, Study
 
@@ -60,7 +59,7 @@ def design_reads(study: Study) -> dict[str, Any]:
     values = study.touchdown_values()
     fixed = {name: value for name, value in values.items() if name not in uncertain(values)}
     inputs = {name: distribution.to_json() for name, distribution in design_inputs(study).items()}
-    return {"touchdown": touchdown_reads(study), "fixed": fixed, "inputs": inputs}
+    return {"touchdown": touchdown_reads(study), "drawn": drawn_reads(study), "fixed": fixed, "inputs": inputs}
 
 
 def kept_inputs(study: Study, screening: "Surrogate") -> tuple[str, ...]:
@@ -97,29 +96,8 @@ def points(study: Study, design: str, kept: Sequence[str]) -> np.ndarray:
 
 def design_runs(job: Job, design: str, kept: Sequence[str] = ()) -> DesignRuns:
     """Make the runs of a design; those that the ledger has are read from it."""
-    study, x = job.study, points(job.study, design, kept)
-    inputs, values = design_inputs(study), medians(study)
-    model = TouchdownModel(study, tuple(job.folder / name for name in bed_files(study)))
-
-    def show(state: Tally) -> None:
-        detail = "\n".join([state.sentence(), *state.spread_lines(OUTPUTS)])
-        job.progress(state.ended, state.total, f"{design.replace('_', ' ')} runs", detail)
-
-    with Ledger(job.folder / "runs.sqlite") as ledger:
-        runs = run_campaign(
-            model,
-            x,
-            names=list(inputs),
-            fixed={name: value for name, value in values.items() if name not in inputs},
-            context=touchdown_reads(study),
-            ledger=ledger,
-            seed=study.seed,
-            executor=job.executor,
-            retry_count=study.campaign.retry_count,
-            log_folder=job.folder / "logs" if job.keeps_logs else None,
-            progress=show,
-        )
-    return DesignRuns(tuple(inputs), x, runs)
+    inputs, x = tuple(design_inputs(job.study)), points(job.study, design, kept)
+    return DesignRuns(inputs, x, touchdowns(job, inputs, x, f"{design.replace('_', ' ')} runs"))
 
 
 def account(job: Job, design: str, runs: DesignRuns) -> None:

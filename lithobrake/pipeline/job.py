@@ -21,7 +21,7 @@ class Job:
     """A study, its folder, where runs are made, and where progress is shown.
 
     tables: the study file as it was written, for the record. say: tells the user a sentence. keeps_logs: each run
-    leaves a log in the folder.
+    leaves a log in the folder. wanted: files of the present stage that are not there, or no longer good.
     """
 
     study: Study
@@ -31,3 +31,4 @@ class Job:
     progress: Progress
     say: Callable[[str], None]
     keeps_logs: bool = False
+    wanted: tuple[str, ...] = ()

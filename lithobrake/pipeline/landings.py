@@ -3,12 +3,13 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cache, lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from lithobrake.pipeline.folder import source_hash
 from lithobrake.quantity import median
 from lithobrake.study import Study
 
@@ -22,6 +23,8 @@ SURFACE = (
     "young_modulus", "poisson_ratio", "restitution", "friction", "rolling_friction", "spinning_friction",
     "cohesion_force", "surface_energy",
 )  # fmt: skip
+PLACE = ("impact.place.x", "impact.place.y")
+ORIENTATION = ("impact.orientation.w", "impact.orientation.x", "impact.orientation.y", "impact.orientation.z")
 
 
 def medians(study: Study) -> dict[str, float]:
@@ -31,20 +34,33 @@ def medians(study: Study) -> dict[str, float]:
 
 @dataclass(frozen=True)
 class TouchdownModel:
-    """A touchdown of a study, for any process: called with all its numbers and a seed, it lands once."""
+    """A touchdown of a study, for any process: called with all its numbers, drawn ones included, it lands once.
+
+    engine: hash of the code that decides what a touchdown gives, where the study is coordinated.
+    """
 
     study: Study
     bed_paths: tuple[Path, ...]
+    engine: str
 
     def __call__(self, values: dict[str, float], seed: int) -> dict[str, Any]:
-        """Land once and say the outcome, the outputs [SI] and what was drawn by chance."""
+        """Land once and say the outcome and the outputs [SI]. Raises ValueError where the code is another one."""
         from lithobrake.touchdown import land
 
-        draws = draw(self.study, values, seed)
-        outcome = land(
-            stored_bed(self.bed_paths[draws["bed"]]), lander(self.study, values), landing(self.study, values, draws)
-        )
-        return {"outcome": outcome.status, "outputs": outcome.outputs, "draws": draws}
+        if engine_hash() != self.engine:
+            raise ValueError(
+                f"this worker has the code {engine_hash()} and the coordinator {self.engine}; install the same version "
+                "of lithobrake on both"
+            )
+        bed = stored_bed(self.bed_paths[round(values["bed"])])
+        outcome = land(bed, lander(self.study, values), landing(self.study, values))
+        return {"outcome": outcome.status, "outputs": outcome.outputs}
+
+
+@cache
+def engine_hash() -> str:
+    """Hash of the code that decides what a touchdown gives."""
+    return source_hash("dem", "touchdown", "pipeline/landings.py")
 
 
 def stored_bed(path: Path) -> "Bed":
@@ -60,13 +76,17 @@ def _read_bed(path: Path, _changed: int, _size: int) -> "Bed":
     return Bed.load(path)
 
 
-def draw(study: Study, values: Values, seed: int) -> dict[str, Any]:
-    """What a run draws by chance, or is given in its place: bed, place [m], azimuth [deg], orientation (w, x, y, z).
+def draw(study: Study, values: Values, seed: int) -> dict[str, float]:
+    """The values of a run with what it draws by chance, or is given in its place.
 
-    All are drawn, whether used or not, so that each has the same random numbers in every study.
+    bed: number of the bed; impact.place.x and .y [m], impact.azimuth_deg, impact.orientation.w to .z. All are drawn,
+    whether used or not, so that each has the same random numbers in every study. A run takes the bed with the largest
+    number of its own: one more bed takes its share of runs over, and all others stay on theirs (rendezvous hashing).
+
+    Source: Thaler and Ravishankar (1998), IEEE/ACM Transactions on Networking 6, 1.
     """
+    bed = int(np.argmax(np.random.Generator(np.random.PCG64([seed, 1])).random(study.bed.bed_count)))
     generator = np.random.Generator(np.random.PCG64(seed))
-    bed = int(generator.integers(study.bed.bed_count))
     shares, turn = generator.random(2), generator.random()
     # Four normal numbers point evenly over the unit quaternions.
     quaternion = generator.standard_normal(4)
@@ -80,7 +100,13 @@ def draw(study: Study, values: Values, seed: int) -> dict[str, Any]:
     if impact.orientation != "random":
         quaternion = np.array(impact.orientation)
     orientation = (quaternion / np.linalg.norm(quaternion)).tolist()
-    return {"bed": bed, "place": place, "azimuth_deg": azimuth, "orientation": orientation}
+    return {
+        **values,
+        "bed": float(bed),
+        **dict(zip(PLACE, place, strict=True)),
+        "impact.azimuth_deg": float(azimuth),
+        **dict(zip(ORIENTATION, orientation, strict=True)),
+    }
 
 
 def contact(study: Study) -> "ContactModel":
@@ -115,17 +141,18 @@ def lander(study: Study, values: Values) -> "Lander":
     return Lander(shape=shape, mass=values["lander.mass"], inertia=inertia, material=material)
 
 
-def landing(study: Study, values: Values, draws: Mapping[str, Any]) -> "Landing":
-    """How the lander arrives, on which soil, under which acceleration."""
+def landing(study: Study, values: Values) -> "Landing":
+    """How the lander arrives, on which soil, under which acceleration; values with what was drawn."""
     from lithobrake.touchdown import Landing
 
+    w, x, y, z = (values[name] for name in ORIENTATION)
     return Landing(
         grain=grain(values),
         speed=values["impact.speed"],
         incidence=math.radians(values["impact.incidence_deg"]),
-        azimuth=math.radians(draws["azimuth_deg"]),
-        place=tuple(draws["place"]),
-        orientation=tuple(draws["orientation"]),
+        azimuth=math.radians(values["impact.azimuth_deg"]),
+        place=(values[PLACE[0]], values[PLACE[1]]),
+        orientation=(w, x, y, z),
         spin=(values["impact.spin_x"], values["impact.spin_y"], values["impact.spin_z"]),
         gravity=acceleration(values, values["surface.gravity"]),
         time_limit=study.landing.time_limit,

@@ -2,7 +2,7 @@
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from lithobrake.pipeline.expansions import design_reads, fit_refined, fit_screening, score_all
@@ -11,7 +11,7 @@ from lithobrake.pipeline.folder import json_hash, source_hash
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.samples import draw_samples
 from lithobrake.pipeline.summary import study_tables, write_summary
-from lithobrake.pipeline.surface import bed_files, bed_reads, land_once, landing_reads, pour_beds
+from lithobrake.pipeline.surface import bed_files, bed_reads, land_once, landing_files, landing_reads, pour_beds
 from lithobrake.study import Study
 
 
@@ -64,7 +64,7 @@ _TEST = _design("test_count")
 
 STAGES = (
     Stage("bed", "bed", bed_files, bed_reads, (), (), pour_beds),
-    Stage("landing", "median landing", _files("landing.h5"), landing_reads, ("bed",), (), land_once),
+    Stage("landing", "median landing", landing_files, landing_reads, ("bed",), (), land_once),
     Stage("screen", "screening", _files("screening.json"), _screening, ("bed",), FIT, fit_screening),
     Stage("refine", "refinement", _files("refined.json"), _REFINED, ("screen",), FIT, fit_refined),
     Stage("test", "test runs", _files("scores.json"), _TEST, ("screen", "refine"), FIT, score_all),
@@ -95,12 +95,15 @@ def make(job: Job, until: str, begin: Callable[[str, int, int], None]) -> None:
     for number, stage in enumerate(STAGES[: last + 1], start=1):
         begin(stage.title, number, last + 1)
         files = stage.files(job.study)
-        if job.folder.is_current(files, keys[stage.name]):
-            kept.append(stage.title)
+        wanted = tuple(name for name in files if not job.folder.is_current([name], keys[stage.name]))
+        if not wanted:
+            kept += [stage.title] if files else []
             continue
         if kept:
             job.say(f"still good, and kept: {', '.join(kept)}")
             kept = []
+        if set(wanted) < set(files):
+            job.say(f"{stage.title}: {len(files) - len(wanted)} of {len(files)} files are still good, and kept")
         started = time.perf_counter()
-        stage.make(job)
+        stage.make(replace(job, wanted=wanted))
         job.folder.note(stage.name, files, keys[stage.name], time.perf_counter() - started)

@@ -71,7 +71,7 @@ def write_summary(job: Job) -> None:
 def study_tables(study: Study, tables: Any = None) -> dict[str, Any]:
     """The study with its defaults, as the tables of its file; paths of meshes as they were written."""
     dump: dict[str, Any] = _plain(study.model_dump())
-    for section, key in (("lander", "file"), ("site", "body")):
+    for section, key in (("lander", "file"), ("site", "body"), ("solver", "command")):
         dump[section][key] = (tables or {}).get(section, {}).get(key, dump[section][key])
     return dump
 

@@ -29,15 +29,16 @@ class Results:
     """All that the page shows.
 
     study, results, provenance: the three tables of summary.json; scores: stage, output, score;
-    latitude, longitude: of the impacts [deg], shape [impact]; body_vertices: of the body [m], or None.
+    latitude, longitude: of the impacts [deg], shape [impact]; body_vertices: of the body [m], or None. bed and landing
+    are None where a solver of the user's own made the touchdowns.
     """
 
     study: dict[str, Any]
     results: dict[str, Any]
     provenance: dict[str, Any]
     study_text: str
-    bed: Scene
-    landing: Scene
+    bed: Scene | None
+    landing: Scene | None
     scores: dict[str, dict[str, Score]]
     samples: Samples
     latitude: Array
@@ -47,27 +48,33 @@ class Results:
 
 def read_results(folder: Path) -> Results:
     """Read a study's folder. Raises ValueError that names the file when one is missing."""
-    needed = ("summary.json", "scores.json", "samples.h5", "flights.csv", "landing.h5", "beds/bed_0.h5", "study.toml")
-    missing = [name for name in needed if not (folder / name).is_file()]
-    if missing:
-        raise ValueError(
-            f"{folder} lacks {', '.join(missing)}, so there is no report yet; run the study to its end first"
-        )
+    _refuse_without(folder, ("summary.json", "scores.json", "samples.h5", "flights.csv", "study.toml"))
     summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    has_scenes = not summary["study"].get("solver", {}).get("command")
+    if has_scenes:
+        _refuse_without(folder, ("landing.h5", "beds/bed_0.h5"))
     latitude, longitude = read_impacts(folder / "flights.csv")
     return Results(
         study=summary["study"],
         results=summary["results"],
         provenance=summary["provenance"],
         study_text=(folder / "study.toml").read_text(encoding="utf-8"),
-        bed=read_scene(folder / "beds/bed_0.h5", has_lander=False),
-        landing=read_scene(folder / "landing.h5", has_lander=True),
+        bed=read_scene(folder / "beds/bed_0.h5", has_lander=False) if has_scenes else None,
+        landing=read_scene(folder / "landing.h5", has_lander=True) if has_scenes else None,
         scores=read_scores(folder / "scores.json"),
         samples=read_samples(folder / "samples.h5"),
         latitude=latitude,
         longitude=longitude,
         body_vertices=read_vertices(folder / "body.obj"),
     )
+
+
+def _refuse_without(folder: Path, needed: tuple[str, ...]) -> None:
+    missing = [name for name in needed if not (folder / name).is_file()]
+    if missing:
+        raise ValueError(
+            f"{folder} lacks {', '.join(missing)}, so there is no report yet; run the study to its end first"
+        )
 
 
 def read_scores(path: Path) -> dict[str, dict[str, Score]]:

@@ -21,7 +21,9 @@ STATUS_WORDS = {
 def input_words(name: str) -> str:
     """An input in words, without unit: "restitution of the grains"."""
     section, _, field = name.partition(".")
-    words = FIELD_WORDS.get(field, field.removesuffix("_deg").replace("_", " ").replace(".", " "))
+    words = FIELD_WORDS.get(
+        field, field.removeprefix("inputs.").removesuffix("_deg").replace("_", " ").replace(".", " ")
+    )
     return words + {"grain": " of the grains", "lander": " of the lander", "impact": " at impact"}.get(section, "")
 
 
@@ -65,6 +67,8 @@ def body_name(data: Results) -> str:
 
 def bed(data: Results) -> str:
     """Figure 1."""
+    if data.bed is None:
+        return f"The touchdowns were made by a program of the study's author: {data.study['solver']['command']}"
     study, first = data.study["bed"], data.results["beds"][0]
     width = " x ".join(f"{length:g}" for length in study["width"])
     return (
@@ -80,6 +84,8 @@ def bed(data: Results) -> str:
 
 def landing(data: Results) -> str:
     """Figure 2."""
+    if data.landing is None:
+        return "The pictures of a touchdown are that program's own."
     attributes, time = data.landing.attributes, data.landing.time
     status = str(attributes.get("status", ""))
     return (

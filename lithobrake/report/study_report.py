@@ -71,7 +71,9 @@ def _png(figure: "Figure") -> bytes:
     return memory.getvalue()
 
 
-def _bed(data: Results) -> "Figure":
+def _bed(data: Results) -> "Figure | None":
+    if data.bed is None:
+        return None
     scene, first = data.bed, data.results["beds"][0]
     width = tuple(data.study["bed"]["width"])
     return bed_figure(
@@ -79,7 +81,9 @@ def _bed(data: Results) -> "Figure":
     )
 
 
-def _landing(data: Results) -> "Figure":
+def _landing(data: Results) -> "Figure | None":
+    if data.landing is None:
+        return None
     scene = data.landing
     return landing_figure(
         scene.bodies, scene.time, scene.position, scene.orientation, tuple(data.study["bed"]["width"])

@@ -81,7 +81,7 @@ def tables(data: Results) -> list[Table]:
     return [
         _inputs(data),
         _runs(data),
-        _beds(data),
+        *([_beds(data)] if data.results["beds"] else []),
         _scores(data),
         _sobol(data),
         _outputs(data),

@@ -1,0 +1,126 @@
+"""A model that is a program: a folder for each run, `inputs.json` in it, the program, and `outputs.json` back."""
+
+import contextlib
+import json
+import math
+import shlex
+import shutil
+import subprocess
+import tempfile
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from hashlib import file_digest
+from pathlib import Path
+from typing import Any
+
+from lithobrake.campaign.identity import run_key
+
+
+@dataclass(frozen=True)
+class Command:
+    """A program as the model of a campaign.
+
+    command: the words of a command line; no shell reads it, and a word that names a file becomes its absolute path.
+    folder: takes a folder for each run, in which the program is started. required: outputs without which a run has
+    failed.
+
+    The program reads `inputs.json`: {"inputs": numbers by name, "seed": whole number}, and writes `outputs.json`: its
+    outputs by name, or {"outcome": how the run ended, "outputs": numbers by name, "draws": what it drew by chance}.
+    What it prints goes to `log.txt`.
+    """
+
+    command: str
+    folder: Path
+    required: tuple[str, ...] = ()
+
+    def __call__(self, inputs: dict[str, float], seed: int) -> dict[str, Any]:
+        """Make one run.
+
+        Raises RuntimeError for an exit code other than 0, ValueError for outputs that are missing or not finite.
+        """
+        answer = self.ask({"inputs": inputs, "seed": seed})
+        lacking = [name for name in self.required if name not in answer["outputs"]]
+        if lacking:
+            raise ValueError(f"outputs.json lacks {', '.join(lacking)}; the program has to write all that is required")
+        return answer
+
+    def ask(self, question: Mapping[str, Any]) -> dict[str, Any]:
+        """Give a program what it asks for in `inputs.json`, and return what it wrote."""
+        with self._run_folder(run_key(question["inputs"], question["seed"], 0, {})[:16]) as folder:
+            text = json.dumps(question, indent=2, allow_nan=False)
+            (folder / "inputs.json").write_text(text + "\n", encoding="utf-8")
+            with (folder / "log.txt").open("wb") as log:
+                done = subprocess.run(
+                    self.words(), cwd=folder, stdin=subprocess.DEVNULL, stdout=log, stderr=log, check=False
+                )
+            if done.returncode:
+                lines = (folder / "log.txt").read_text(encoding="utf-8", errors="replace").split("\n")
+                last = next((line.strip() for line in reversed(lines) if line.strip()), "it printed nothing")
+                raise RuntimeError(f"the program ended with {_how(done.returncode)}; its last words: {last[-200:]}")
+            return _answer(folder / "outputs.json")
+
+    def words(self) -> list[str]:
+        """The words of the command, files by their absolute paths."""
+        return absolute_words(self.command, Path())
+
+    def identity(self) -> list[str]:
+        """The words of the command, a hash of its content for each that names a file: what decides the results.
+
+        It belongs into the context of a campaign, so that runs of a changed program are other runs.
+        """
+        return [_content_hash(Path(word)) if Path(word).is_file() else word for word in self.words()]
+
+    @contextlib.contextmanager
+    def _run_folder(self, name: str) -> Iterator[Path]:
+        """A fresh folder; at the end it gets its name, and takes the place of an earlier try.
+
+        A program that outlived its worker may still write into the folder of that try, so no try shares one.
+        """
+        self.folder.mkdir(parents=True, exist_ok=True)
+        for left_over in self.folder.glob(f"{name}.*"):
+            shutil.rmtree(left_over, ignore_errors=True)
+        draft = Path(tempfile.mkdtemp(prefix=f"{name}.", dir=self.folder))
+        try:
+            yield draft
+        finally:
+            final = self.folder / name
+            if final.exists():
+                shutil.rmtree(final)
+            draft.rename(final)
+
+
+def absolute_words(command: str, folder: Path) -> list[str]:
+    """The words of a command, those that name a file in or from the folder by their absolute paths.
+
+    Raises ValueError for a command whose quotes do not match.
+    """
+    return [str((folder / word).resolve()) if (folder / word).is_file() else word for word in shlex.split(command)]
+
+
+def _content_hash(path: Path) -> str:
+    with path.open("rb") as file:
+        return file_digest(file, "sha256").hexdigest()
+
+
+def _how(code: int) -> str:
+    return f"exit code {code}" if code > 0 else f"signal {-code}"
+
+
+def _answer(path: Path) -> dict[str, Any]:
+    """What a program wrote. Raises ValueError when there is nothing, no JSON object, or a value that is not finite."""
+    if not path.is_file():
+        raise ValueError("the program wrote no outputs.json; it has to write one into the folder that it is started in")
+    try:
+        content = json.loads(path.read_text(encoding="utf-8"))
+    except ValueError as error:
+        raise ValueError(f"outputs.json is not JSON ({error}); the program has to write one JSON object") from error
+    if not isinstance(content, dict) or not isinstance(content.get("outputs", {}), dict):
+        raise ValueError("outputs.json is no JSON object of numbers by name; mend what the program writes")
+    answer = content if "outputs" in content or "outcome" in content else {"outputs": content}
+    outputs = answer.setdefault("outputs", {})
+    for name, value in outputs.items():
+        if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+            raise ValueError(
+                f"outputs.json has {value!r} for {name}; allowed: a finite number; leave out what has none"
+            )
+    return answer

@@ -1,0 +1,67 @@
+"""A program of the user's own that makes the touchdowns: what it is told, and what it has to answer."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from lithobrake import __version__
+from lithobrake.campaign import Command
+from lithobrake.pipeline.folder import content_hash
+from lithobrake.study import OUTPUTS, Study
+
+# How a touchdown may end; one that is clear has outputs.
+OUTCOMES = ("clear", "captured", "left_sideways", "time_limit")
+
+
+@dataclass(frozen=True)
+class SolverModel:
+    """Touchdowns by a program; setting: what it is told beside the values of a run."""
+
+    command: Command
+    setting: Mapping[str, Any]
+
+    def __call__(self, values: dict[str, float], seed: int) -> dict[str, Any]:
+        """Make one touchdown. Raises ValueError for an outcome or outputs that a study cannot use."""
+        answer = self.command.ask({"inputs": values, "seed": seed, "setting": self.setting})
+        outcome, outputs = answer.get("outcome", "clear"), completed(answer["outputs"])
+        if outcome not in OUTCOMES:
+            raise ValueError(f"outputs.json has the outcome {outcome!r}; allowed: {', '.join(OUTCOMES)}")
+        lacking = [name for name in OUTPUTS if name not in outputs]
+        if outcome == "clear" and lacking:
+            raise ValueError(f"outputs.json lacks {', '.join(lacking)}; a lander that leaves has all of them")
+        return {"outcome": outcome, "outputs": outputs, "draws": answer.get("draws", {})}
+
+
+def completed(outputs: Mapping[str, float]) -> dict[str, float]:
+    """The outputs with speed [m/s] and elevation [rad], where only the components of the velocity were given."""
+    found = {name: float(value) for name, value in outputs.items()}
+    x, y, z = (found.get(f"velocity_out_{axis}", math.nan) for axis in "xyz")
+    if math.isfinite(x + y + z):
+        found.setdefault("speed_out", math.hypot(x, y, z))
+        found.setdefault("elevation_out", math.atan2(z, math.hypot(x, y)))
+    return found
+
+
+def solver_command(study: Study, folder: Path) -> Command:
+    """The program of a study, with its runs in a folder of the study."""
+    return Command(str(study.solver.command), folder / "solver")
+
+
+def solver_setting(study: Study) -> dict[str, Any]:
+    """What a program is told beside the values of a run, as it stands in the study file."""
+    return {
+        "bed": study.bed.model_dump(exclude={"bed_count"}),
+        "lander": study.lander.model_dump(include={"shape", "edges", "inertia", "file"}),
+        "contact": study.contact.model_dump(),
+        "time_limit": study.landing.time_limit,
+    }
+
+
+def solver_reads(study: Study) -> dict[str, Any]:
+    """What a touchdown by a program depends on beside its values: the program's files, and what it is told."""
+    setting = solver_setting(study)
+    # A mesh counts with its content, wherever it lies.
+    setting["lander"]["file"] = None if study.lander.file is None else content_hash(Path(study.lander.file))
+    return {"solver": solver_command(study, Path()).identity(), "setting": setting, "version": __version__}

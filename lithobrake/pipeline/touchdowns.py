@@ -1,0 +1,63 @@
+"""Touchdowns of a study as a campaign: which model makes them, from which values, and what was drawn by chance."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from lithobrake.campaign import Ledger, Runs, Tally, run_seed
+from lithobrake.campaign import run as run_campaign
+from lithobrake.pipeline.job import Job
+from lithobrake.pipeline.landings import TouchdownModel, draw, engine_hash, medians
+from lithobrake.pipeline.solver import SolverModel, solver_command, solver_setting
+from lithobrake.pipeline.surface import bed_files, touchdown_reads
+from lithobrake.study import OUTPUTS, Study
+
+
+def touchdowns(job: Job, names: Sequence[str], x: np.ndarray, title: str) -> Runs:
+    """Make the touchdowns at the rows of x, shape [run_count, len(names)]; those that the ledger has are read from it.
+
+    What a run draws is drawn here and counts among its inputs, so that a run depends on nothing else: another bed, or
+    a wider region, leaves every run as it was whose draws remain.
+    """
+    study = job.study
+    rows = [_drawn(study, names, row) for row in x.tolist()]
+
+    def show(state: Tally) -> None:
+        job.progress(state.ended, state.total, title, "\n".join([state.sentence(), *state.spread_lines(OUTPUTS)]))
+
+    with Ledger(job.folder / "runs.sqlite") as ledger:
+        return run_campaign(
+            _model(job),
+            np.array([list(row.values()) for row in rows]),
+            names=list(rows[0]),
+            context=touchdown_reads(study),
+            ledger=ledger,
+            seed=study.seed,
+            executor=job.executor,
+            retry_count=study.campaign.retry_count,
+            log_folder=job.folder.path.absolute() / "logs" if job.keeps_logs else None,
+            progress=show,
+        )
+
+
+def drawn_reads(study: Study) -> dict[str, Any]:
+    """What the draws of a run depend on, beside its seed."""
+    return {
+        "bed_count": study.bed.bed_count,
+        "azimuth": "random" if study.impact.azimuth_deg == "random" else "fixed",
+        **study.impact.model_dump(include={"region", "orientation"}),
+    }
+
+
+def _drawn(study: Study, names: Sequence[str], row: Sequence[float]) -> dict[str, float]:
+    values = medians(study) | dict(zip(names, row, strict=True))
+    return draw(study, values, run_seed(values, study.seed, 0))
+
+
+def _model(job: Job) -> TouchdownModel | SolverModel:
+    # Workers may have another working directory.
+    folder = job.folder.path.absolute()
+    if job.study.solver.command:
+        return SolverModel(solver_command(job.study, folder), solver_setting(job.study))
+    return TouchdownModel(job.study, tuple(folder / name for name in bed_files(job.study)), engine_hash())

@@ -1,0 +1,141 @@
+"""The examples of a solver of one's own, as a user starts them, and what a study does with its answers."""
+
+import csv
+import io
+import json
+import math
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from lithobrake import study_file
+from lithobrake.campaign import read_records
+from lithobrake.pipeline.solver import completed, solver_reads
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+
+
+def lithobrake(*arguments: object) -> "subprocess.CompletedProcess[str]":
+    command = [sys.executable, "-m", "lithobrake", *map(str, arguments)]
+    return subprocess.run(command, capture_output=True, text=True, check=False, timeout=600)
+
+
+@pytest.fixture(scope="module")
+def plate(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A finished study of the ball on a plate."""
+    out = tmp_path_factory.mktemp("plate") / "out"
+    ended = lithobrake("run", EXAMPLES / "ball_on_plate.toml", "--out", out, "--workers", 2)
+    assert ended.returncode == 0, ended.stderr
+    return out
+
+
+def test_a_study_with_a_program_goes_to_its_report(plate: Path) -> None:
+    results = json.loads((plate / "summary.json").read_text())["results"]
+    assert results["beds"] == []
+    assert results["designs"]["test_all"]["outcomes"] == {"clear": 10}
+    assert results["scores"]["test_all"]["speed_out"]["q2"] > 0.9
+    assert "solver.inputs.plate_tilt_deg" in results["screening"]["inputs"]
+    page = (plate / "report" / "index.html").read_text()
+    assert "The touchdowns were made by a program of the study&#x27;s author: python3 ball_on_plate.py" in page
+
+
+def test_the_runs_are_told_from_another_terminal(plate: Path) -> None:
+    records = read_records(plate / "runs.sqlite")
+    said = lithobrake("status", plate).stdout
+    assert f"{len(records)} runs: {len(records)} done, 0 running, 0 failed" in said
+    assert f"outcomes: {len(records)} clear" in said
+    assert "speed_out" in said
+    rows = list(csv.DictReader(io.StringIO(lithobrake("runs", plate, "--csv").stdout)))
+    assert [row["key"] for row in rows] == [entry.key for entry in records]
+    assert float(rows[0]["input:impact.speed"]) == 0.15
+    assert len(lithobrake("runs", plate).stdout.splitlines()) == len(records)
+
+
+def test_a_higher_order_and_more_test_runs_reuse_what_is_still_valid_and_say_so(plate: Path, tmp_path: Path) -> None:
+    text = (EXAMPLES / "ball_on_plate.toml").read_text().replace("ball_on_plate.py", str(EXAMPLES / "ball_on_plate.py"))
+    more = text.replace("screening_level = 2", "screening_level = 3").replace("test_count = 10", "test_count = 12")
+    (tmp_path / "more.toml").write_text(more)
+    before = len(read_records(plate / "runs.sqlite"))
+    ended = lithobrake("test", tmp_path / "more.toml", "--out", plate, "--workers", 2)
+    assert ended.returncode == 0, ended.stderr
+    said = " ".join(ended.stderr.split())
+    # 41 nodes of the finer grid are those of the coarser one, and 44 more those of the refined design.
+    assert "screening: 85 of 137 runs were known and are reused" in said
+    assert "refined: 69 of 69 runs were known and are reused" in said
+    assert "test all: 10 of 12 runs were known and are reused" in said
+    assert len(read_records(plate / "runs.sqlite")) == before + 52 + 2 + 2
+
+
+def test_the_function_gives_what_the_program_gives(plate: Path, tmp_path: Path) -> None:
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join([str(EXAMPLES.parent), os.environ.get("PYTHONPATH", "")])}
+    script = [sys.executable, str(EXAMPLES / "ball_on_plate_campaign.py"), str(tmp_path)]
+    first, second = (
+        subprocess.run(script, capture_output=True, text=True, check=True, env=environment).stdout for _ in range(2)
+    )
+    assert first.startswith("69 runs, 0 of them known before\n")
+    assert second.startswith("69 runs, 69 of them known before\n")
+    assert first.split("\n")[1:] == second.split("\n")[1:]
+    centre = {"incidence_deg": 35.0, "restitution": 0.6, "friction": 0.225}
+    (here,) = (
+        entry.outputs
+        for entry in read_records(tmp_path / "runs.sqlite")
+        if all(math.isclose(entry.inputs[name], value) for name, value in centre.items())
+    )
+    (there,) = (
+        entry.outputs
+        for entry in read_records(plate / "runs.sqlite")
+        if math.isclose(entry.inputs["impact.incidence_deg"], 35.0)
+        and math.isclose(entry.inputs["lander.restitution"], 0.6)
+        and math.isclose(entry.inputs["lander.friction"], 0.225)
+        and entry.inputs["solver.inputs.plate_tilt_deg"] == 0.0
+    )
+    assert {name: there[name] for name in here} == here
+
+
+def test_a_frictionless_elastic_ball_is_thrown_back_as_light_from_a_mirror() -> None:
+    code = f"import sys; sys.path.insert(0, {str(EXAMPLES)!r}); from ball_on_plate import bounce; import json; "
+    code += "print(json.dumps(bounce(2.0, 0.5, 1.0, 0.0, 0.05, 0.0, 0.1)))"
+    out = json.loads(subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout)
+    # The mirror is tilted by .1: the ray, .5 from the vertical, comes back .5 - 2 x .1 from it.
+    assert out["velocity_out_x"] == pytest.approx(2 * math.sin(0.3), rel=1e-14)
+    assert out["velocity_out_z"] == pytest.approx(2 * math.cos(0.3), rel=1e-14)
+    assert out["spin_out"] == 0.0
+
+
+def test_speed_and_elevation_follow_from_the_components() -> None:
+    found = completed({"velocity_out_x": 3.0, "velocity_out_y": 4.0, "velocity_out_z": 5.0, "spin_out": 1.0})
+    assert found["speed_out"] == pytest.approx(math.sqrt(50))
+    assert found["elevation_out"] == pytest.approx(math.pi / 4)
+
+
+def test_the_place_of_a_study_does_not_name_its_runs(tmp_path: Path) -> None:
+    for name in ("ball_on_plate.toml", "ball_on_plate.py"):
+        (tmp_path / name).write_text((EXAMPLES / name).read_text())
+    here, there = (study_file.read(folder / "ball_on_plate.toml") for folder in (EXAMPLES, tmp_path))
+    assert solver_reads(here) == solver_reads(there)
+    (tmp_path / "ball_on_plate.py").write_text("print()")
+    assert solver_reads(here) != solver_reads(there)
+
+
+@pytest.mark.parametrize(
+    ("command", "said"),
+    [
+        ("no-such-program x", 'solver.command begins with "no-such-program", which is no program here; give its path'),
+        ("python3 'x", "close every quotation mark"),
+    ],
+)
+def test_a_command_that_cannot_be_started_is_refused(command: str, said: str, tmp_path: Path) -> None:
+    text = (EXAMPLES / "ball_on_plate.toml").read_text().replace("python3 ball_on_plate.py", command)
+    (tmp_path / "study.toml").write_text(text)
+    with pytest.raises(study_file.StudyError, match=said):
+        study_file.read(tmp_path / "study.toml")
+
+
+def test_inputs_without_a_command_are_refused(tmp_path: Path) -> None:
+    text = (EXAMPLES / "ball_on_plate.toml").read_text().replace("command = ", "# command = ")
+    (tmp_path / "study.toml").write_text(text)
+    with pytest.raises(study_file.StudyError, match=r"solver\.command is missing"):
+        study_file.read(tmp_path / "study.toml")

@@ -1,0 +1,162 @@
+"""Kill -9 of the coordinator, of a worker, of both, at 20 random moments: the study ends with the same bits."""
+
+import json
+import os
+import random
+import signal
+import sqlite3
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from lithobrake import study_file
+from lithobrake.atomic import lock_holder
+from lithobrake.pipeline import STAGES
+
+STUDY = """
+[bed]
+grain_count = 12
+width = [0.3, 0.3]
+diameter = { distribution = "constant", value = 0.08 }
+cloud_point_count = 10
+pour_gravity = 0.1
+[grain]
+density = 2500.0
+young_modulus = 1e6
+poisson_ratio = 0.25
+restitution = { distribution = "uniform", lower = 0.5, upper = 0.8 }
+friction = { distribution = "uniform", lower = 0.5, upper = 0.9 }
+[lander]
+shape = "sphere"
+diameter = 0.1
+mass = 0.1
+restitution = 0.95
+[impact]
+speed = 0.4
+incidence_deg = 5.0
+[surface]
+gravity = 1e-4
+[contact]
+pair_rule = "mean"
+steps_per_contact = 20.0
+[campaign]
+retry_count = 20
+[design]
+screening_level = 2
+screening_degree = 1
+refined_level = 2
+refined_degree = 1
+kept_outputs = ["speed_out"]
+test_count = 6
+[monte_carlo]
+sample_count = 500
+[flight]
+flight_count = 10
+duration = 20000.0
+"""
+# Of each run, what it follows from and what came of it; not where, when and how fast it was made, or how often tried.
+DETERMINED = "key, status, outcome, inputs, draws, outputs, seed, replicate, reason, version"
+RESULTS = ("beds/bed_0.h5", "screening.json", "refined.json", "scores.json", "samples.h5", "flights.csv", "body.obj")
+# Stage at which to kill, 0 = before the first; every stage is hit, those in which much is made several times.
+MOMENTS = (0, 0, 1, 1, 1, 2, 3, 3, 3, 3, 3, 4, 5, 5, 5, 6, 7, 8, 9, 9)
+VICTIMS = ("coordinator", "worker", "both")
+
+pytestmark = pytest.mark.skipif(not Path("/proc").is_dir(), reason="the processes are found in /proc (Linux)")
+
+
+def start(study: Path, out: Path, worker_count: int = 1) -> "subprocess.Popen[bytes]":
+    command = [sys.executable, "-m", "lithobrake", "run", str(study), "--out", str(out), "--workers", str(worker_count)]
+    with (study.parent / "said.txt").open("wb") as said:
+        return subprocess.Popen(command, stdout=said, stderr=said)
+
+
+def end(study: Path, out: Path, worker_count: int = 1) -> None:
+    """Run a study to its end, undisturbed."""
+    assert start(study, out, worker_count).wait(timeout=300) == 0, (study.parent / "said.txt").read_text()
+
+
+def workers(coordinator: int) -> list[int]:
+    """The processes that the coordinator has started to make runs."""
+    found = []
+    for path in Path("/proc").glob("[0-9]*"):
+        try:
+            parent = int((path / "stat").read_text().rpartition(")")[2].split()[1])
+            if parent == coordinator and "spawn_main" in (path / "cmdline").read_text():
+                found.append(int(path.name))
+        except (FileNotFoundError, ProcessLookupError):
+            continue
+    return found
+
+
+def wait_for_stage(process: "subprocess.Popen[bytes]", out: Path, number: int) -> None:
+    """Wait until the study has come to a stage, or has ended."""
+    while process.poll() is None:
+        holder = lock_holder(out / ".lock")
+        if number == 0 or (holder is not None and holder.get("number", 0) >= number):
+            return
+        time.sleep(0.01)
+
+
+def is_alive(process: int) -> bool:
+    try:
+        return Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except (FileNotFoundError, ProcessLookupError):
+        return False
+
+
+def kill(process: "subprocess.Popen[bytes]", victim: str, chance: random.Random) -> None:
+    """Kill by the signal that nobody can catch; a coordinator that is killed takes its workers along."""
+    others = workers(process.pid)
+    if victim == "worker" and others:
+        os.kill(chance.choice(others), signal.SIGKILL)
+        return
+    if victim == "both" and others:
+        os.kill(chance.choice(others), signal.SIGKILL)
+    process.kill()
+    process.wait()
+    limit = time.monotonic() + 30
+    while any(is_alive(other) for other in others):
+        assert time.monotonic() < limit, "workers outlive their coordinator"
+        time.sleep(0.01)
+
+
+def ledger(out: Path) -> list[tuple[Any, ...]]:
+    with sqlite3.connect(out / "runs.sqlite") as database:
+        rows = database.execute(f"SELECT {DETERMINED} FROM runs ORDER BY key").fetchall()
+    database.close()
+    return rows
+
+
+def test_a_study_killed_at_20_random_moments_ends_with_the_same_bits(tmp_path: Path) -> None:
+    study, calm, killed = tmp_path / "few.toml", tmp_path / "calm", tmp_path / "killed"
+    study.write_text(STUDY)
+    end(study, calm, worker_count=2)
+    durations = [0.6, *json.loads((calm / "keys.json").read_text())["wall_s"].values()]
+    files = [stage.files(study_file.read(study)) for stage in STAGES]
+    chance, kills, process = random.Random(6), 0, start(study, killed)
+    while kills < len(MOMENTS):
+        stage = MOMENTS[kills]
+        wait_for_stage(process, killed, stage)
+        time.sleep(chance.random() * durations[stage])
+        if process.poll() is None:
+            kill(process, VICTIMS[kills % len(VICTIMS)], chance)
+            kills += 1
+        else:
+            # It came to its end before its time: something is taken away that it has to make again.
+            for name in files[stage - 1]:
+                (killed / name).unlink(missing_ok=True)
+        if process.poll() is not None:
+            process = start(study, killed)
+    process.kill()
+    process.wait()
+    end(study, killed)
+    assert ledger(killed) == ledger(calm)
+    for name in RESULTS:
+        assert (killed / name).read_bytes() == (calm / name).read_bytes(), name
+    summaries = [json.loads((out / "summary.json").read_text()) for out in (killed, calm)]
+    assert summaries[0]["results"] == summaries[1]["results"]
+    assert summaries[0]["study"] == summaries[1]["study"]
