@@ -20,6 +20,12 @@ StudyPath = Annotated[Path, typer.Argument(metavar="STUDY.toml", help="The study
 OutPath = Annotated[
     Path | None, typer.Option("--out", metavar="DIR", help="Folder of the study; absent: runs/<study name>.")
 ]
+ExecutorName = Annotated[
+    str, typer.Option("--executor", metavar="local|dask", help="Where runs are made: here, or on a Dask cluster.")
+]
+Scheduler = Annotated[
+    str | None, typer.Option("--scheduler", metavar="tcp://HOST:PORT", help="Address of the Dask scheduler.")
+]
 Logs = Annotated[bool, typer.Option("--logs", help="Keep a log of each run, in DIR/logs.")]
 Workers = Annotated[int | None, typer.Option("--workers", min=1, metavar="N", help="Processes; absent: all cores.")]
 StudyDirectory = Annotated[Path, typer.Argument(metavar="DIR", help="The folder of a study.", show_default=False)]
@@ -45,17 +51,31 @@ def new(name: Annotated[str, typer.Argument(metavar="NAME", help="Name of the st
 
 
 @app.command()
-def run(study: StudyPath, out: OutPath = None, workers: Workers = None, logs: Logs = False) -> None:
+def run(
+    study: StudyPath,
+    out: OutPath = None,
+    workers: Workers = None,
+    executor: ExecutorName = "local",
+    scheduler: Scheduler = None,
+    logs: Logs = False,
+) -> None:
     """Run a study from its file to its report; what its folder already has is kept."""
-    _make(study, out, "report", workers, logs)
+    _make(study, out, "report", workers, _scheduler(executor, scheduler), logs)
     _print_results(out or _default_folder(study))
 
 
 def _stage_command(name: str, what: str, until: str | None = None) -> None:
     """Add the command that runs a study up to a stage."""
 
-    def command(study: StudyPath, out: OutPath = None, workers: Workers = None, logs: Logs = False) -> None:
-        _make(study, out, until or name, workers, logs)
+    def command(
+        study: StudyPath,
+        out: OutPath = None,
+        workers: Workers = None,
+        executor: ExecutorName = "local",
+        scheduler: Scheduler = None,
+        logs: Logs = False,
+    ) -> None:
+        _make(study, out, until or name, workers, _scheduler(executor, scheduler), logs)
         print(f"Done: {out or _default_folder(study)}")
 
     app.command(name, help=f"{what} What comes before is made too, where it is missing.")(command)
@@ -124,7 +144,16 @@ def _default_folder(study: Path) -> Path:
     return Path("runs") / study.stem
 
 
-def _make(study: Path, out: Path | None, until: str, workers: int | None, logs: bool) -> None:
+def _scheduler(executor: str, scheduler: str | None) -> str | None:
+    """The address of the Dask scheduler, or None for runs made here."""
+    if executor not in ("local", "dask"):
+        _leave(f"--executor is {executor}; allowed: local, dask", BAD_INPUT)
+    if (executor == "dask") != (scheduler is not None):
+        _leave("--executor dask and --scheduler tcp://HOST:PORT go together; give both, or neither", BAD_INPUT)
+    return scheduler
+
+
+def _make(study: Path, out: Path | None, until: str, workers: int | None, scheduler: str | None, logs: bool) -> None:
     """Make the files of a study up to a stage, with two lines of progress."""
     # The bits of a least-squares fit depend on the threads of the linear algebra, which reads this when it is loaded.
     os.environ.update(OPENBLAS_NUM_THREADS="1", MKL_NUM_THREADS="1")
@@ -137,6 +166,7 @@ def _make(study: Path, out: Path | None, until: str, workers: int | None, logs: 
                 study,
                 out or _default_folder(study),
                 worker_count=workers,
+                scheduler=scheduler,
                 until=until,
                 begin=shown.begin,
                 progress=shown.progress,

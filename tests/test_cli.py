@@ -16,7 +16,7 @@ RUNNER = CliRunner()
 def test_help_names_the_commands() -> None:
     shown = RUNNER.invoke(app, ["--help"])
     assert shown.exit_code == 0
-    for name in ("new", "run", "bed", "screen", "refine", "test", "sample", "fly", "report", "view"):
+    for name in ("new", "run", "status", "runs", "bed", "screen", "refine", "test", "sample", "fly", "report", "view"):
         assert f" {name} " in shown.stdout
 
 
@@ -80,3 +80,20 @@ def test_a_read_only_folder_is_one_sentence(tmp_path: Path, monkeypatch: pytest.
 @pytest.mark.parametrize("command", ["report", "view"])
 def test_a_folder_without_results_says_how_to_make_them(command: str, tmp_path: Path) -> None:
     assert "lithobrake run STUDY.toml" in refused([command, str(tmp_path)])
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (["--executor", "dask"], "--executor dask and --scheduler tcp://HOST:PORT go together"),
+        (["--scheduler", "tcp://127.0.0.1:9"], "--executor dask and --scheduler tcp://HOST:PORT go together"),
+        (["--executor", "mpi"], "--executor is mpi; allowed: local, dask"),
+    ],
+)
+def test_an_executor_that_does_not_exist_is_refused(options: list[str], said: str) -> None:
+    assert said in refused(["run", "study.toml", *options])
+
+
+@pytest.mark.parametrize("command", ["status", "runs"])
+def test_a_folder_that_is_no_study_is_one_sentence(command: str, tmp_path: Path) -> None:
+    assert str(tmp_path) in refused([command, str(tmp_path)])

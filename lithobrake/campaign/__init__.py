@@ -1,5 +1,6 @@
 """Many runs of any model: each is computed once, kept in a ledger the moment it ends, and never lost."""
 
+from lithobrake.campaign.cluster import DaskExecutor
 from lithobrake.campaign.command import Command, absolute_words
 from lithobrake.campaign.identity import run_key, run_seed
 from lithobrake.campaign.ledger import Ledger
@@ -12,6 +13,7 @@ from lithobrake.campaign.tally import Tally, ledger_tally
 
 __all__ = [
     "Command",
+    "DaskExecutor",
     "Ledger",
     "Limits",
     "LocalExecutor",

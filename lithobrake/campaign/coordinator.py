@@ -4,7 +4,7 @@ import queue
 import time
 from collections import deque
 from collections.abc import Callable, Mapping
-from concurrent.futures import BrokenExecutor, Executor, Future
+from concurrent.futures import CancelledError, Executor, Future
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -105,18 +105,18 @@ class Coordinator:
 
 
 def _result(future: "Future[Any]") -> Mapping[str, Any]:
-    """How a run has ended. Raises OSError when the executor has dropped it."""
-    if future.cancelled():
-        raise ConnectionError(
-            "the executor has dropped its runs (is its scheduler still there?); every run that had ended is kept: "
-            "start it again and give the same command"
-        )
-    error = future.exception()
+    """How a run has ended.
+
+    Raises ConnectionError when the executor takes no more runs, or cannot bring this one to a worker: what a run itself
+    does wrong comes back as its result.
+    """
+    error = CancelledError("it was cancelled") if future.cancelled() else future.exception()
     if error is None:
         answer: Mapping[str, Any] = future.result()
         return answer
-    # A pool that breaks takes no more runs; the campaign cannot go on with it.
-    if isinstance(error, BrokenExecutor):
-        raise error
-    said = str(error) if isinstance(error, WorkerDiedError) else f"{type(error).__name__}: {error}"
-    return {"status": "failed", "reason": said}
+    if isinstance(error, WorkerDiedError):
+        return {"status": "failed", "reason": str(error)}
+    raise ConnectionError(
+        f"the executor cannot make the runs ({type(error).__name__}: {error}); every run that had ended is kept: see "
+        "that its workers are there and have the same code, and give the same command again"
+    ) from error

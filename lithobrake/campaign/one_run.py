@@ -28,7 +28,7 @@ def perform(model: Model, inputs: dict[str, float], seed: int, log: Path | None 
         try:
             result = _checked(model(inputs, seed))
         # Whatever a user's model raises is the reason of that run's failure, and no reason to end the campaign.
-        except Exception as error:
+        except (Exception, SystemExit) as error:
             result = {"status": "failed", "reason": f"{type(error).__name__}: {error}"}
             if log is not None:
                 traceback.print_exc()

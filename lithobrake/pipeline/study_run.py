@@ -2,11 +2,12 @@
 
 import math
 from collections.abc import Callable
+from concurrent.futures import Executor
 from pathlib import Path
 
 from lithobrake import study_file
 from lithobrake.atomic import atomic_path
-from lithobrake.campaign import Limits, LocalExecutor
+from lithobrake.campaign import DaskExecutor, Limits, LocalExecutor
 from lithobrake.pipeline.folder import StudyFolder
 from lithobrake.pipeline.job import Job, Progress
 from lithobrake.pipeline.stages import make
@@ -18,6 +19,7 @@ def run_study(
     out: Path,
     *,
     worker_count: int | None = None,
+    scheduler: str | None = None,
     until: str = "report",
     begin: Callable[[str, int, int], None] = lambda title, number, count: None,
     progress: Progress = lambda done, total, what, detail="": None,
@@ -26,13 +28,14 @@ def run_study(
 ) -> None:
     """Make what a study file asks for, up to and with a stage; what the folder already has is kept.
 
-    begin(title, number, count) is called as each stage begins, progress(done, total, what, detail) within it, say with
-    a sentence that the user should read. keeps_logs: each run leaves a log in the folder.
+    worker_count: processes here (None: one for each core); scheduler: address of a Dask scheduler, whose workers make
+    the runs instead. begin(title, number, count) is called as each stage begins, progress(done, total, what, detail)
+    within it, say with a sentence that the user should read. keeps_logs: each run leaves a log in the folder.
     Raises ValueError for a study file that is refused, a folder that cannot be written, too few runs with outputs.
     """
     study, tables = study_file.read(path), study_file.load(path)
     folder = StudyFolder(out)
-    with folder.alone() as note, LocalExecutor(worker_count, run_limits(study)) as executor:
+    with folder.alone() as note, _executor(study, worker_count, scheduler) as executor:
         with atomic_path(folder / "study.toml") as draft:
             draft.write_bytes(path.read_bytes())
 
@@ -48,7 +51,6 @@ def run_study(
             raise
 
 
-def run_limits(study: Study) -> Limits:
-    """What one run may take."""
-    section = study.campaign
-    return Limits(section.wall_limit or math.inf, section.memory_limit or math.inf)
+def _executor(study: Study, worker_count: int | None, scheduler: str | None) -> Executor:
+    limits = Limits(study.campaign.wall_limit or math.inf, study.campaign.memory_limit or math.inf)
+    return DaskExecutor(scheduler, limits) if scheduler else LocalExecutor(worker_count, limits)

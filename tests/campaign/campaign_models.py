@@ -77,3 +77,16 @@ def sleeps_a_little(inputs: dict[str, float], seed: int) -> dict[str, Any]:
     """A model that takes long enough to be seen."""
     time.sleep(0.8)
     return parabola(inputs, seed)
+
+
+def sleeps_a_moment(inputs: dict[str, float], seed: int) -> dict[str, Any]:
+    """A model that takes long enough for something to happen meanwhile."""
+    time.sleep(0.05)
+    return parabola(inputs, seed)
+
+
+def sleeps_at_ten(inputs: dict[str, float], seed: int) -> dict[str, Any]:
+    """A model that does not end at one point."""
+    if inputs["a"] == 10.0:
+        time.sleep(600)
+    return parabola(inputs, seed)

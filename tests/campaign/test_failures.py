@@ -1,5 +1,7 @@
 """Runs that fail: recorded with their reason, tried again as configured, counted, and looked at for holes."""
 
+import importlib.util
+import sys
 import time
 from pathlib import Path
 from typing import Any
@@ -8,7 +10,7 @@ import campaign_models as models
 import numpy as np
 import pytest
 
-from lithobrake.campaign import Ledger, Limits, LocalExecutor, Runs, missing, run
+from lithobrake.campaign import Ledger, Limits, LocalExecutor, Runs, missing, read_records, run
 
 X = np.array([[1.0, 0.5], [2.0, 0.5], [3.0, 0.5], [4.0, 0.5]])
 
@@ -116,3 +118,15 @@ def test_chance_alone_seldom_looks_like_a_corner() -> None:
             refused += 1
     # The chance is at most .01 in each of the 300; more than 9 would itself have a chance below .002.
     assert refused <= 9
+
+
+def test_a_model_that_no_worker_can_import_ends_the_campaign_and_fails_no_run(tmp_path: Path) -> None:
+    (tmp_path / "passing.py").write_text("def model(inputs, seed):\n    return {}\n")
+    spec = importlib.util.spec_from_file_location("passing", tmp_path / "passing.py")
+    assert spec is not None
+    assert spec.loader is not None
+    module = sys.modules["passing"] = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    with pytest.raises(ConnectionError, match="ModuleNotFoundError: No module named 'passing'"):
+        campaign(tmp_path, module.model)
+    assert {entry.status for entry in read_records(tmp_path / "runs.sqlite")} == {"queued"}

@@ -1,0 +1,100 @@
+"""Runs on a Dask cluster that is there already, behind the interface of concurrent.futures."""
+
+import multiprocessing
+import time
+from collections.abc import Callable
+from concurrent.futures import BrokenExecutor, Executor, Future
+from functools import cache
+from typing import TYPE_CHECKING, Any
+
+from lithobrake.campaign.limits import Limits
+from lithobrake.campaign.local import LocalExecutor, WorkerDiedError, available_cores
+
+if TYPE_CHECKING:
+    import distributed
+
+# How long to look for the scheduler, and how often the size of the cluster is asked for [s].
+_PATIENCE, _LOOK = 10.0, 5.0
+# Calls are handed out for so many workers at least: a cluster that is still empty will grow.
+_FEWEST = 16
+
+
+class DaskExecutor(Executor):
+    """The workers of a Dask cluster. A call whose worker is lost goes to another one."""
+
+    def __init__(self, scheduler: str, limits: Limits | None = None) -> None:
+        """Connect to a scheduler (`tcp://host:port`); limits are those of one call.
+
+        Raises ValueError when Dask is not installed or no scheduler answers.
+        """
+        try:
+            from distributed import Client
+        except ImportError as error:
+            raise ValueError("the executor dask needs Dask; install it with: pip install lithobrake[dask]") from error
+        try:
+            self._client = Client(scheduler, timeout=_PATIENCE, set_as_default=False)
+        except (OSError, ValueError) as error:
+            raise ValueError(
+                f"no Dask scheduler answers at {scheduler} ({error}); start one with: dask scheduler"
+            ) from error
+        self._scheduler, self._limits = scheduler, limits or Limits()
+        self._flying: dict[distributed.Future[Any], Future[Any]] = {}
+        self._thread_count, self._asked = 0, -_LOOK
+
+    @property
+    def worker_count(self) -> int:
+        """Calls that the cluster makes at once, as it was a few seconds ago."""
+        if time.monotonic() > self._asked + _LOOK:
+            self._asked, self._thread_count = time.monotonic(), sum(self._client.nthreads().values())
+        return max(self._thread_count, _FEWEST)
+
+    def submit(self, function: Callable[..., Any], /, *args: Any, **kwargs: Any) -> "Future[Any]":
+        """Send a call to the scheduler; it counts as running from then on."""
+        if self._limits != Limits():
+            function, args = limited, (self._limits, function, *args)
+        # Impure: a call that is made a second time must not get the answer to the first.
+        there, here = self._client.submit(function, *args, **kwargs, pure=False), Future[Any]()
+        here.set_running_or_notify_cancel()
+        self._flying[there] = here
+        there.add_done_callback(self._pass_on)
+        return here
+
+    def _pass_on(self, there: "distributed.Future[Any]") -> None:
+        """Hand the answer of the cluster to whoever waits for it; Dask calls this in a thread of its own."""
+        here = self._flying.pop(there)
+        try:
+            if there.status == "finished":
+                here.set_result(there.result())
+            elif there.status == "error":
+                here.set_exception(_reason(there.exception()))
+            else:
+                raise BrokenExecutor(f"the Dask scheduler at {self._scheduler} has dropped a call ({there.status})")
+        # Whoever waits for the answer has to hear that it does not come, whatever went wrong on the way.
+        except BaseException as error:
+            here.set_exception(error)
+
+    def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
+        """Leave the cluster; with cancel_futures, calls that have not begun are taken back."""
+        if cancel_futures and self._client.status == "running":
+            self._client.cancel(list(self._flying))
+        self._client.close()
+
+
+def _reason(error: BaseException) -> BaseException:
+    from distributed import KilledWorker
+
+    if isinstance(error, KilledWorker):
+        return WorkerDiedError("its worker was lost, and so were those that it was given to afterwards")
+    return error
+
+
+def limited(limits: Limits, function: Callable[..., Any], *args: Any, **kwargs: Any) -> Any:
+    """Make a call in a process of its own beside the worker's, which can be ended when it goes over its limits."""
+    return _beside(limits).submit(function, *args, **kwargs).result()
+
+
+@cache
+def _beside(limits: Limits) -> LocalExecutor:
+    # Dask starts its workers as daemons, which may have no children; these end with their parent by themselves.
+    multiprocessing.current_process().daemon = False
+    return LocalExecutor(available_cores(), limits)
