@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 
 from lithobrake.chaos.germ import Distribution
 from lithobrake.chaos.polynomials import Array, Recurrence
-from lithobrake.chaos.terms import Indices
+from lithobrake.chaos.terms import Indices, multi_index_set
 
 # Limits computed by a user in another order of operations may differ from ours in the last digits.
 ROUNDING = 1e-12
@@ -75,13 +75,14 @@ def basis_matrix(inputs: Mapping[str, Distribution], indices: Indices, points: A
 
 
 def condition_number(
-    inputs: Mapping[str, Distribution], x: ArrayLike, indices: Indices, *, weights: ArrayLike | None = None
+    inputs: Mapping[str, Distribution], x: ArrayLike, indices: Indices | int, *, weights: ArrayLike | None = None
 ) -> float:
     """Ratio of the largest to the smallest singular value of the basis at a design; infinite if rank deficient.
 
-    weights: least-squares weights of the points [count] or None.
+    indices: terms [term_count, input_count], or a total degree. weights: least-squares weights of the points [count].
     """
-    matrix = basis_matrix(inputs, indices, points_of(inputs, x))
+    terms = indices if isinstance(indices, np.ndarray) else multi_index_set(len(inputs), indices)
+    matrix = basis_matrix(inputs, terms, points_of(inputs, x))
     if weights is not None:
         matrix = matrix * np.sqrt(np.asarray(weights, dtype=float))[:, None]
     if matrix.shape[0] < matrix.shape[1]:

@@ -97,8 +97,12 @@ def read(kind: str, build: Callable[[dict[str, Any]], Kept], path: str | os.Path
     if not isinstance(content, dict) or content.get("format") != kind:
         raise ValueError(f"{name} is not a {kind}: give a file that save wrote")
     version = content.get("format_version")
-    if not isinstance(version, int) or not 1 <= version <= FORMAT_VERSION:
-        raise ValueError(f"{name} has format_version {version}, but 1 to {FORMAT_VERSION} can be read here")
+    if type(version) is not int or not 1 <= version <= FORMAT_VERSION:
+        author = content.get("written_by", "an unknown version")
+        raise ValueError(
+            f"{name} has format_version {version!r} ({author}), but this version reads 1 to {FORMAT_VERSION}: "
+            "install the version that wrote it, or a later one"
+        )
     try:
         return build(content)
     except (KeyError, TypeError, ValueError) as error:
