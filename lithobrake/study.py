@@ -5,7 +5,7 @@ A `MaybeUncertain` key takes a number, or a table with a distribution. `lithobra
 
 from typing import Annotated, Literal, get_args
 
-from pydantic import BaseModel, Field
+from pydantic import BaseModel, Field, Strict
 
 from lithobrake.quantity import MaybeUncertain, Number, Numbers, Scalar, Uncertain, Whole
 from lithobrake.study_campaign import CampaignSection, Section, SolverSection
@@ -187,8 +187,9 @@ class ImpactSection(Section):
 class SurfaceSection(Section):
     """The constant acceleration during the touchdown."""
 
-    gravity: Annotated[Scalar, MaybeUncertain("m/s2")] = Field(examples=["5e-5"])
-    """Acceleration toward the surface; negative points outward, as it may near the equator of a fast rotator."""
+    gravity: Annotated[Scalar | str, MaybeUncertain("m/s2", word="site")] = Field(examples=["5e-5"])
+    """Acceleration toward the surface; negative points outward, as it may near the equator of a fast rotator. "site":
+    that of gravity and rotation together at the site of the section [site]."""
     slope_deg: Annotated[Scalar, MaybeUncertain("deg", at_least=0, below=90)] = 0.0
     """Angle by which the surface is tilted against the acceleration."""
     slope_azimuth_deg: Angle = 0.0
@@ -241,11 +242,19 @@ class MonteCarloSection(Section):
     """How many samples."""
 
 
+BUILT_IN_BODIES = ("didymos", "dimorphos")
+
+
 class SiteSection(Section):
     """Where on which body the lander touches down. Uncertain values here vary in the Monte Carlo only."""
 
     body: str = "didymos"
-    """"didymos" (built in) or a closed mesh (OBJ, metres); the path counts from the study file."""
+    """"didymos" or "dimorphos" (built in), or a closed mesh (OBJ, STL or PDS plates, metres); the path counts from the
+    study file."""
+    partner: Annotated[bool, Strict()] = True
+    """Whether the partner of a built-in body attracts and may be hit; false: the body is alone, as in the paper."""
+    partner_longitude_deg: Angle | None = None
+    """East longitude over which the partner stands when the lander leaves; absent: not known, drawn over the circle."""
     mass: Annotated[Scalar, MaybeUncertain("kg", above=0)] | None = None
     """Mass of the body; absent: that of the built-in body."""
     spin_period: Annotated[Scalar, MaybeUncertain("s", above=0)] | None = None
@@ -256,6 +265,10 @@ class SiteSection(Section):
     """Longitude, east."""
     heading_deg: Angle = 0.0
     """Direction of the incoming horizontal velocity, from north toward east."""
+    north_error: Annotated[Scalar, MaybeUncertain("m")] = 0.0
+    """How far the delivery misses the site along the ground, toward north."""
+    east_error: Annotated[Scalar, MaybeUncertain("m")] = 0.0
+    """The same toward east."""
 
 
 class FlightSection(Section):
@@ -265,8 +278,9 @@ class FlightSection(Section):
     """Longest flight."""
     flight_count: Annotated[int, Whole("", at_least=1)] | None = Field(default=None, examples=["1000"])
     """How many samples fly (the first ones that leave the surface); absent: all."""
-    gravity: Literal["exact", "table"] = "exact"
-    """Gravity of the polyhedron, in closed form or from a table that is built once for a shape."""
+    gravity: Literal["exact", "table"] = "table"
+    """Gravity of the polyhedron: summed over its facets, or from a table that is built once for a shape, whose error is
+    told; the table is some 30 times faster."""
 
 
 class Study(Section):

@@ -13,7 +13,7 @@ from pydantic import BaseModel, ValidationError
 
 from lithobrake.campaign import absolute_words
 from lithobrake.quantity import Scalar, Uncertain, uncertain
-from lithobrake.study import Study
+from lithobrake.study import BUILT_IN_BODIES, Study
 from lithobrake.wording import sentences
 
 # A bed narrower than this many lander diameters would hold the lander between its walls.
@@ -58,10 +58,27 @@ def check(tables: Mapping[str, Any], folder: Path, name: str = "study.toml") -> 
         study = Study.model_validate(_absolute(tables, folder))
     except ValidationError as error:
         raise StudyError([f"{name}: {text}" for text in sentences(error.errors(), known_keys())]) from error
-    problems = [f"{name}: {text}" for text in _problems(study)]
+    study, problems = _with_site_gravity(study)
+    problems = [f"{name}: {text}" for text in (*problems, *_problems(study))]
     if problems:
         raise StudyError(problems)
     return study
+
+
+def _with_site_gravity(study: Study) -> tuple[Study, list[str]]:
+    """The study with the acceleration at its site where it asks for that, and what stands in the way."""
+    if study.surface.gravity != "site":
+        return study, []
+    from lithobrake.site import with_site_gravity
+
+    # A stand-in, so that the other checks can go on.
+    stand_in = study.model_copy(update={"surface": study.surface.model_copy(update={"gravity": 1.0})})
+    if list(_site_problems(study)):
+        return stand_in, []
+    try:
+        return with_site_gravity(study), []
+    except ValueError as error:
+        return stand_in, [f"surface.gravity: {error}"]
 
 
 def known_keys() -> dict[str, tuple[str, ...]]:
@@ -86,7 +103,7 @@ def _absolute(tables: Mapping[str, Any], folder: Path) -> dict[str, Any]:
     result = {key: dict(value) if isinstance(value, Mapping) else value for key, value in tables.items()}
     for section, key in (("lander", "file"), ("site", "body")):
         table = result.get(section)
-        if isinstance(table, dict) and isinstance(table.get(key), str) and table[key] != "didymos":
+        if isinstance(table, dict) and isinstance(table.get(key), str) and table[key] not in BUILT_IN_BODIES:
             table[key] = str(folder / table[key])
     solver = result.get("solver")
     if isinstance(solver, dict) and isinstance(solver.get("command"), str):
@@ -103,14 +120,20 @@ def _problems(study: Study) -> Iterator[str]:
     yield from _place_problems(study)
     yield from _design_problems(study)
     yield from _solver_problems(study)
-    if study.bed.settle_gravity is None and _reach(study.surface.gravity)[0] <= 0:
+    gravity = study.surface.gravity
+    if study.bed.settle_gravity is None and not isinstance(gravity, str) and _reach(gravity)[0] <= 0:
         yield (
             "surface.gravity reaches zero or points outward, and no bed settles under that; "
             "give bed.settle_gravity an inward value, say 2e-5 m/s2 (the touchdown keeps surface.gravity)"
         )
-    if study.site.body != "didymos":
+    yield from _site_problems(study)
+
+
+def _site_problems(study: Study) -> Iterator[str]:
+    if study.site.body not in BUILT_IN_BODIES:
         if not Path(study.site.body).is_file():
-            yield f'site.body is "{study.site.body}"; allowed: "didymos" or the path of a mesh; no such file'
+            names = ", ".join(f'"{name}"' for name in BUILT_IN_BODIES)
+            yield f'site.body is "{study.site.body}"; allowed: {names} or the path of a mesh; no such file'
         for key in ("mass", "spin_period"):
             if getattr(study.site, key) is None:
                 yield f"site.{key} is missing; a body read from a mesh needs its {key.replace('_', ' ')}"

@@ -1,5 +1,7 @@
 """The pipeline: what depends on what, how runs are drawn, which inputs are kept, and a whole tiny study."""
 
+import math
+import re
 import tomllib
 from pathlib import Path
 from typing import Any
@@ -11,10 +13,11 @@ from lithobrake import study_file
 from lithobrake.chaos import Uniform, fit, smolyak
 from lithobrake.pipeline import STAGES, StudyFolder, stage_keys
 from lithobrake.pipeline.expansions import design_inputs, kept_inputs, points
-from lithobrake.pipeline.flights import starts
+from lithobrake.pipeline.flights import COLUMNS, partner_time, starts
 from lithobrake.pipeline.landings import ORIENTATION, PLACE, acceleration, draw, medians
 from lithobrake.pipeline.samples import Samples
 from lithobrake.pipeline.summary import shares, study_tables
+from lithobrake.site import frames, push_at_site, site_body, site_medians, site_warning
 from lithobrake.study import OUTPUTS, Study
 from lithobrake.study_template import template
 
@@ -41,6 +44,8 @@ REMADE = [
     ({"monte_carlo": {"sample_count": 200}}, "sample"),
     ({"site": {"heading_deg": 10.0}}, "fly"),
     ({"flight": {"flight_count": 7}}, "fly"),
+    ({"site": {"partner": False}}, "fly"),
+    ({"site": {"east_error": 10.0}}, "fly"),
 ]
 
 
@@ -193,3 +198,49 @@ def test_the_study_in_the_summary_reads_back_as_the_same_study() -> None:
         for key, value in tables.items()
     }
     assert study_file.check(without_absent, Path()) == study
+
+
+def test_every_column_of_the_flights_is_documented() -> None:
+    text = (Path(__file__).parents[1] / "docs" / "flights.md").read_text(encoding="utf-8")
+    rows = [line.split("|")[1] for line in text.splitlines() if line.startswith("| `")]
+    assert [name for row in rows for name in re.findall(r"`(\w+)`", row)] == list(COLUMNS)
+
+
+def test_the_partner_stands_where_the_sample_says() -> None:
+    study = changed(site={"partner_longitude_deg": 77.0, "spin_period": 8000.0})
+    site = starts(study, made_samples([False], [False])).site
+    body = site_body(study)
+    time = partner_time(body, site)
+    angle = body.orbit.angle + body.orbit.rate * time[0]
+    assert math.degrees(angle) % 360.0 == pytest.approx(77.0)
+    open_ended = starts(changed(), made_samples([False] * 40, [False] * 40)).site["partner_longitude_deg"]
+    assert np.ptp(open_ended) > 180.0
+    assert site_body(changed(site={"partner": False})).partner is None
+
+
+def test_the_delivery_error_moves_the_start_along_the_ground() -> None:
+    study = changed(site={"latitude_deg": 20.0, "longitude_deg": 10.0, "north_error": 30.0, "east_error": -40.0})
+    body = site_body(study)
+    aim, axes = body.local_frame(20.0, 10.0)
+    origin, _ = frames(body, {key: np.array([value]) for key, value in site_medians(study).items()})
+    moved = axes @ (origin[0] - aim)
+    # The ground is not plane: it falls off by some metres over 50 m.
+    assert moved[:2] == pytest.approx([30.0, 40.0], abs=3.0)
+    assert abs(body.shape.height(origin[0])) < 1e-9
+
+
+def test_the_acceleration_of_the_site_is_offered_to_the_touchdown() -> None:
+    """At the published site the ground pushes outwards; near a pole it holds, and there is nothing to warn of."""
+    site = {"surface": {"gravity": "site"}, "bed": {"settle_gravity": 2e-5}}
+    equator = changed(**site, site={"latitude_deg": 0.0, "longitude_deg": 0.0})
+    assert equator.surface.gravity == pytest.approx(-push_at_site(equator)[2])
+    assert equator.surface.gravity < 0.0
+    assert "push outwards" in site_warning(equator)
+    pole = changed(**site, site={"latitude_deg": 80.0})
+    assert 1.8e-4 < pole.surface.gravity < 2.6e-4
+    assert site_warning(pole) is None
+    assert medians(pole)["surface.gravity"] == pole.surface.gravity
+    with pytest.raises(study_file.StudyError, match="settle_gravity"):
+        changed(surface={"gravity": "site"}, site={"latitude_deg": 0.0})
+    with pytest.raises(study_file.StudyError, match="no such file"):
+        changed(surface={"gravity": "site"}, site={"body": "absent.obj"})

@@ -52,6 +52,7 @@ sample_count = 500
 [site]
 mass = { distribution = "uniform", lower = 5.0e11, upper = 5.6e11 }
 [flight]
+gravity = "exact"
 flight_count = 10
 duration = 20000.0
 """

@@ -2,9 +2,7 @@
 
 import csv
 from collections.abc import Iterator
-from concurrent.futures import as_completed
-from dataclasses import dataclass
-from functools import lru_cache
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,22 +13,20 @@ from lithobrake.pipeline.folder import StudyFolder, content_hash
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.samples import Samples, sampling_seed
 from lithobrake.quantity import uncertain
-from lithobrake.study import Study
+from lithobrake.site import SITE_KEYS, frames, site_body, site_medians, site_values, site_warning
+from lithobrake.study import BUILT_IN_BODIES, Study
 
 if TYPE_CHECKING:
-    from lithobrake.smallbody import Body
+    from lithobrake.smallbody import Body, Flights
 
-# Flights handed to a worker at once: enough to fill its lanes, few enough that progress is seen.
-FLIGHTS_PER_CALL = 64
-SITE_KEYS = ("latitude_deg", "longitude_deg", "heading_deg", "mass", "spin_period")
-# sample: row in samples.h5. start_*: right after the bounce, relative to the turning ground; velocity_*: the same in
-# the local frame (x along the incoming horizontal velocity, z outward) [m/s]. site_*: where and on which body.
-# status: impact, flying, escaped. time_s: length of the flight. latitude, longitude, impact_speed (relative to the
-# ground): of the impact, empty where there is none.
+# Flights of which the Jacobi constant is looked at.
+CHECKED = 200
+QUANTILES = (0.05, 0.5, 0.95)
+# docs/flights.md says what each is.
 COLUMNS = (
     "sample", "start_speed", "start_elevation_deg", "velocity_x", "velocity_y", "velocity_z",
     *(f"site_{key}" for key in SITE_KEYS),
-    "status", "time_s", "latitude_deg", "longitude_deg", "impact_speed",
+    "status", "time_s", "latitude_deg", "longitude_deg", "impact_speed", "impact_incidence_deg",
 )  # fmt: skip
 
 
@@ -43,50 +39,14 @@ class Starts:
     site: dict[str, np.ndarray]
 
 
-def site_body(study: Study) -> "Body":
-    """The body of the study with its shape, at the medians of its mass and spin period."""
-    values = site_medians(study)
-    return body_with(study.site.body, values["mass"], values["spin_period"])
-
-
-def site_medians(study: Study) -> dict[str, float]:
-    """Latitude, longitude, heading [deg], mass [kg] and spin period [s] of the site, uncertain ones at their median."""
-    from lithobrake.quantity import median
-
-    given = {name.removeprefix("site."): median(value) for name, value in study.site_values().items()}
-    if "mass" not in given or "spin_period" not in given:
-        built_in = _built_in()
-        given = {"mass": built_in.mass, "spin_period": built_in.spin_period} | given
-    return {key: given[key] for key in SITE_KEYS}
-
-
-def body_with(source: str, mass: float, spin_period: float) -> "Body":
-    """A body from its name or mesh, with this mass [kg] and spin period [s]."""
-    from lithobrake.smallbody import Body, Shape
-
-    shape = _built_in().shape if source == "didymos" else _read_shape(Shape, Path(source))
-    return Body(shape, mass=mass, spin_period=spin_period)
-
-
-@lru_cache(maxsize=1)
-def _built_in() -> "Body":
-    from lithobrake.smallbody import didymos
-
-    return didymos()
-
-
-@lru_cache(maxsize=1)
-def _read_shape(kind: Any, path: Path) -> Any:
-    return kind.read(path)
-
-
 def flight_reads(study: Study) -> dict[str, Any]:
     """What the flights depend on beside the samples."""
-    built_in = study.site.body == "didymos"
-    body = "didymos" if built_in else content_hash(Path(study.site.body))
+    built_in = study.site.body in BUILT_IN_BODIES
+    body = study.site.body if built_in else content_hash(Path(study.site.body))
     return study.flight.model_dump() | {
         "seed": study.seed,
         "body": body,
+        "partner": study.site.partner,
         "site": {name: str(value) for name, value in study.site_values().items()},
     }
 
@@ -98,7 +58,8 @@ def starts(study: Study, samples: Samples) -> Starts:
     rows = np.flatnonzero(~samples.stays)[: study.flight.flight_count]
     velocity = np.column_stack([samples.output(f"velocity_out_{axis}") for axis in "xyz"])[rows]
     site = {key: np.full(len(rows), value) for key, value in site_medians(study).items()}
-    drawn = {name: value.to_chaos() for name, value in uncertain(study.site_values()).items()}
+    values = {f"site.{key}": value for key, value in site_values(study).items()}
+    drawn = {name: value.to_chaos() for name, value in uncertain(values).items()}
     table = sample_inputs(drawn, len(samples.stays), sampling_seed(study, "site"))[rows]
     for index, name in enumerate(drawn):
         site[name.removeprefix("site.")] = table[:, index]
@@ -106,26 +67,73 @@ def starts(study: Study, samples: Samples) -> Starts:
 
 
 def fly_samples(job: Job) -> None:
-    """Fly the samples that leave, on all workers, and write flights.csv in the order of the samples."""
-    start = starts(job.study, Samples.load(job.folder))
-    body = site_body(job.study)
-    if job.study.flight.gravity == "table":
-        # Built here and kept on disk, it is read by all workers in place of being built by each.
-        body.shape.tabled_gravity  # noqa: B018
-    blocks = list(_blocks(job.study, start))
-    futures = {job.executor.submit(fly_block, *block): index for index, block in enumerate(blocks)}
-    ends: list[dict[str, np.ndarray]] = [{} for _ in blocks]
-    done = 0
-    job.progress(done, len(start.sample), "flights")
-    for future in as_completed(futures):
-        ends[futures[future]] = future.result()
-        done += len(ends[futures[future]]["time_s"])
-        job.progress(done, len(start.sample), "flights")
+    """Fly the samples that leave and write flights.csv in the order of the samples, and what the flights took."""
+    study, body = job.study, site_body(job.study)
+    start = starts(study, Samples.load(job.folder))
+    if study.flight.gravity == "table":
+        job.progress(0, 1, "gravity table")
+        error = body.shape.table_error
+        job.say(
+            f"Gravity table: {error.median:.1e} of the surface gravity off the facets' sum in the median, "
+            f"{error.p95:.1e} at the 95th percentile of {error.point_count} points."
+        )
+    warning = site_warning(study)
+    if warning:
+        job.say(warning)
+    flown = fly_starts(body, start, study, job)
+    job.folder.write_json("flights.json", _checks(body, start, study, job))
     _write_shape(body, job.folder)
     with atomic_path(job.folder / "flights.csv") as draft, draft.open("w", newline="", encoding="utf-8") as file:
         table = csv.writer(file)
         table.writerow(COLUMNS)
-        table.writerows(_rows(start, ends))
+        table.writerows(_rows(start, flown))
+
+
+def fly_starts(body: "Body", start: Starts, study: Study, job: Job) -> "Flights":
+    """Fly on as many threads as the study has workers; the result does not depend on their number."""
+    from lithobrake.smallbody import fly
+
+    count = len(start.sample)
+    origin, axes = frames(body, start.site) if count else (np.empty((0, 3)), np.empty((0, 3, 3)))
+    return fly(
+        body,
+        origin,
+        np.einsum("nij,ni->nj", axes, start.velocity),
+        study.flight.duration,
+        gravity=study.flight.gravity,
+        start_time=partner_time(body, start.site),
+        mass=start.site["mass"],
+        spin_period=start.site["spin_period"],
+        threads=getattr(job.executor, "worker_count", None),
+        progress=lambda share: job.progress(round(share * count), count, "flights"),
+    )
+
+
+def _checks(body: "Body", start: Starts, study: Study, job: Job) -> dict[str, Any]:
+    """How exact the flights are: the table's error, and the drift of the Jacobi constant of the first flights.
+
+    With a partner there is no such constant, so these flights are made once more without it.
+    """
+    part = Starts(start.sample[:CHECKED], start.velocity[:CHECKED], {k: v[:CHECKED] for k, v in start.site.items()})
+    drift = np.abs(fly_starts(replace(body, partner=None), part, study, job).jacobi_drift)
+    table = study.flight.gravity == "table"
+    return {
+        "gravity": study.flight.gravity,
+        "gravity_table_error": dict(body.shape.table_error._asdict()) if table else None,
+        "jacobi_flight_count": len(drift),
+        "jacobi_drift_median_m2_s2": float(np.median(drift)) if len(drift) else None,
+        "jacobi_drift_largest_m2_s2": float(drift.max()) if len(drift) else None,
+    }
+
+
+def partner_time(body: "Body", site: dict[str, np.ndarray]) -> np.ndarray:
+    """Times [s] at which the partner stands over the longitudes of the samples; 0 where it does not move or is none."""
+    longitude = np.radians(site["partner_longitude_deg"])
+    if body.partner is None:
+        return np.zeros_like(longitude)
+    rate = 2.0 * np.pi * (1.0 / body.partner.period - 1.0 / site["spin_period"])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.where(rate == 0.0, 0.0, (longitude - body.orbit.angle) / rate)
 
 
 def _write_shape(body: "Body", folder: StudyFolder) -> None:
@@ -136,51 +144,25 @@ def _write_shape(body: "Body", folder: StudyFolder) -> None:
         draft.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
-def _blocks(study: Study, start: Starts) -> Iterator[tuple[Any, ...]]:
-    """Arguments of fly_block; the cut into blocks depends on the study only, never on the number of workers."""
-    for first in range(0, len(start.sample), FLIGHTS_PER_CALL):
-        part = slice(first, first + FLIGHTS_PER_CALL)
-        site = {key: column[part] for key, column in start.site.items()}
-        yield study.site.body, site, start.velocity[part], study.flight.duration, study.flight.gravity
-
-
-def fly_block(
-    source: str, site: dict[str, np.ndarray], velocity: np.ndarray, duration: float, gravity: str
-) -> dict[str, np.ndarray]:
-    """Fly some samples; velocity in the local frame of each site [m/s], shape [flight_count, 3].
-
-    Gives status, time_s [s], latitude_deg, longitude_deg and impact_speed [m/s] of each, shape [flight_count].
-    """
-    from lithobrake.smallbody import fly
-
-    table = np.column_stack([site[key] for key in SITE_KEYS])
-    position, direction = np.empty((len(table), 3)), np.empty((len(table), 3))
-    kinds = {"status": "U8", "time_s": float, "latitude_deg": float, "longitude_deg": float, "impact_speed": float}
-    result = {name: np.empty(len(table), dtype=kind) for name, kind in kinds.items()}
-    # Each different body flies its own samples; where the body is certain, there is one.
-    for mass, spin_period in np.unique(table[:, 3:], axis=0):
-        body = body_with(source, float(mass), float(spin_period))
-        own = np.flatnonzero((table[:, 3] == mass) & (table[:, 4] == spin_period))
-        for row in own:
-            position[row], axes = body.local_frame(*table[row, :3].tolist())
-            direction[row] = velocity[row] @ axes
-        flown = fly(body, position[own], direction[own], duration, gravity=gravity, threads=1)
-        result["status"][own], result["time_s"][own] = flown.status, flown.time
-        result["latitude_deg"][own], result["longitude_deg"][own] = flown.latitude, flown.longitude
-        result["impact_speed"][own] = flown.impact_speed
-    return result
-
-
-def _rows(start: Starts, ends: list[dict[str, np.ndarray]]) -> Iterator[list[Any]]:
-    end = {name: np.concatenate([block[name] for block in ends]) for name in (ends[0] if ends else ())}
+def _rows(start: Starts, flown: "Flights") -> Iterator[list[Any]]:
     speed = np.linalg.norm(start.velocity, axis=1)
+    elevation = np.degrees(np.arcsin(start.velocity[:, 2] / speed))
+    before = np.column_stack([speed, elevation, start.velocity, *(start.site[key] for key in SITE_KEYS)]).tolist()
+    after = np.column_stack([flown.latitude, flown.longitude, flown.impact_speed, np.degrees(flown.incidence)]).tolist()
+    down = flown.facet >= 0
     for row, sample in enumerate(start.sample.tolist()):
-        elevation = float(np.degrees(np.arcsin(start.velocity[row, 2] / speed[row])))
-        before = [sample, float(speed[row]), elevation, *start.velocity[row].tolist()]
-        site = [float(start.site[key][row]) for key in SITE_KEYS]
-        hit = end["status"][row] == "impact"
-        where = [float(end[name][row]) if hit else "" for name in ("latitude_deg", "longitude_deg", "impact_speed")]
-        yield [*before, *site, str(end["status"][row]), float(end["time_s"][row]), *where]
+        end = after[row] if down[row] else [""] * 4
+        yield [sample, *before[row], str(flown.status[row]), float(flown.time[row]), *end]
+
+
+def flight_numbers(flights: list[dict[str, str]]) -> dict[str, Any]:
+    """Median and the middle nine tenths of time of flight, speed and incidence of the impacts on the body."""
+    down = [row for row in flights if row["status"] == "impact"]
+    table: dict[str, Any] = {}
+    for name in ("time_s", "impact_speed", "impact_incidence_deg") if down else ():
+        values = np.array([float(row[name]) for row in down])
+        table[name] = {f"quantile_{level:g}": float(np.quantile(values, level)) for level in QUANTILES}
+    return table
 
 
 def read_flights(folder: StudyFolder) -> list[dict[str, str]]:

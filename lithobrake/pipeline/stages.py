@@ -58,9 +58,11 @@ def _write_report(job: Job) -> None:
     write_report(job.folder.path)
 
 
-FIT, FLY = ("pipeline", "chaos", "analysis"), ("pipeline", "smallbody")
+FIT, FLY = ("pipeline", "chaos", "analysis"), ("pipeline", "smallbody", "site.py")
 _REFINED = _design("refined_level", "refined_degree", "kept_share", "kept_outputs")
 _TEST = _design("test_count")
+
+FLIGHT_FILES = ("flights.csv", "flights.json", "body.obj")
 
 STAGES = (
     Stage("bed", "bed", bed_files, bed_reads, (), (), pour_beds),
@@ -69,7 +71,9 @@ STAGES = (
     Stage("refine", "refinement", _files("refined.json"), _REFINED, ("screen",), FIT, fit_refined),
     Stage("test", "test runs", _files("scores.json"), _TEST, ("screen", "refine"), FIT, score_all),
     Stage("sample", "samples", _files("samples.h5"), _sample, ("refine", "test"), FIT, draw_samples),
-    Stage("fly", "flights", _files("flights.csv", "body.obj"), flight_reads, ("sample",), FLY, fly_samples),
+    Stage(
+        "fly", "flights", _files("flights.csv", "flights.json", "body.obj"), flight_reads, ("sample",), FLY, fly_samples
+    ),
     Stage("summary", "summary", _files("summary.json"), study_tables, ("landing", "fly"), FIT, write_summary),
     Stage("report", "report", _files("report/index.html"), _nothing, ("summary",), ("report",), _write_report),
 )

@@ -10,11 +10,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from lithobrake.pipeline.expansions import DESIGNS, DesignRuns, design_runs, kept_inputs
-from lithobrake.pipeline.flights import read_flights, site_body, site_medians
+from lithobrake.pipeline.flights import flight_numbers, read_flights
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.samples import Samples
 from lithobrake.pipeline.surface import bed_files
-from lithobrake.study import Study
+from lithobrake.site import push_at_site, site_body, site_medians, site_warning
+from lithobrake.study import BUILT_IN_BODIES, Study
 
 if TYPE_CHECKING:
     from lithobrake.chaos import Surrogate
@@ -34,7 +35,7 @@ def write_summary(job: Job) -> None:
     screening, refined = load(job.folder / "screening.json"), load(job.folder / "refined.json")
     runs = {design: design_runs(job, design, refined.input_names) for design in DESIGNS}
     samples, scores = Samples.load(job.folder), job.folder.read_json("scores.json")
-    kept = kept_inputs(job.study, screening)
+    kept, flights = kept_inputs(job.study, screening), read_flights(job.folder)
     results = {
         "units": UNITS,
         "beds": [_bed(job, name) for name in bed_files(job.study)],
@@ -54,7 +55,8 @@ def write_summary(job: Job) -> None:
         },
         "monte_carlo": _monte_carlo(samples),
         "site": _site(job.study),
-        "shares": shares(samples, read_flights(job.folder)),
+        "shares": shares(samples, flights),
+        "flights": flight_numbers(flights) | job.folder.read_json("flights.json"),
     }
     results["headline"] = headline(results)
     job.folder.write_json(
@@ -169,19 +171,22 @@ def _monte_carlo(samples: Samples) -> dict[str, Any]:
 
 def _site(study: Study) -> dict[str, Any]:
     """The body at the medians, and the acceleration of a point at rest on the ground at the site."""
-    body, site = site_body(study), site_medians(study)
-    origin, axes = body.local_frame(site["latitude_deg"], site["longitude_deg"], site["heading_deg"])
-    effective = axes @ body.effective_acceleration(origin[None, :])[0]
-    extents = np.ptp(body.shape.vertices, axis=0)
+    body, site, effective = site_body(study), site_medians(study), push_at_site(study)
+    built_in = study.site.body in BUILT_IN_BODIES
+    partner = None if body.partner is None else body.partner.body.name
     return {
-        "body": study.site.body if study.site.body == "didymos" else "mesh",
+        "body": study.site.body if built_in else "mesh",
         "mass_kg": body.mass,
         "spin_period_s": body.spin_period,
-        "extents_m": extents.tolist(),
+        "extents_m": np.ptp(body.shape.vertices, axis=0).tolist(),
         "facet_count": len(body.shape.faces),
+        "centroid_m": body.shape.centroid.tolist(),
+        "partner": partner,
+        "partner_distance_m": None if partner is None else float(body.orbit.distance),
         **{key: site[key] for key in ("latitude_deg", "longitude_deg", "heading_deg")},
         "effective_acceleration_outward": float(effective[2]),
         "effective_acceleration_along_heading": float(effective[0]),
+        "warning": site_warning(study),
     }
 
 
@@ -199,7 +204,7 @@ def shares(samples: Samples, flights: list[dict[str, str]]) -> dict[str, Any]:
     captured, stays = samples.captured[:total], samples.stays[:total]
     counts = {"captured": int(captured.sum()), "no_outward_velocity": int((stays & ~captured).sum())}
     statuses = [row["status"] for row in flights]
-    counts |= {status: statuses.count(status) for status in ("impact", "flying", "escaped")}
+    counts |= {status: statuses.count(status) for status in ("impact", "flying", "escaped", "partner")}
     counts["remains"] = counts["captured"] + counts["no_outward_velocity"] + counts["impact"]
     table: dict[str, Any] = {"sample_count": total, "flight_count": len(flights)}
     for name, count in counts.items():

@@ -20,7 +20,7 @@ from lithobrake.report.results import Results, read_results
 from lithobrake.report.scatter_figure import scatter_figure
 from lithobrake.report.sentences import hours
 from lithobrake.report.sobol_figure import sobol_figure
-from lithobrake.report.tables import FATE_WORDS, provenance, tables, tiles
+from lithobrake.report.tables import fates, provenance, tables, tiles
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -130,7 +130,7 @@ def _map(data: Results) -> "Figure":
     table, site, limit = data.results["shares"], data.results["site"], hours(data.study["flight"]["duration"])
     shares = [
         Share(words.format(hours=limit), table[key]["share"], table[key]["lower"], table[key]["upper"])
-        for key, words in FATE_WORDS.items()
+        for key, words in fates(data).items()
         if key != "remains"
     ]
     where = (site["latitude_deg"], site["longitude_deg"])

@@ -33,10 +33,16 @@ FATE_WORDS = {
     "impact": "down again within {hours}",
     "flying": "still flying after {hours}",
     "escaped": "escaped",
+    "partner": "on the partner within {hours}",
     "captured": "captured",
     "no_outward_velocity": "no outward velocity",
     "remains": "captured, no outward velocity, or down again within {hours}",
 }
+
+
+def fates(data: Results) -> dict[str, str]:
+    """What may become of a sample, in words; the partner is left out where there is none."""
+    return {key: words for key, words in FATE_WORDS.items() if key != "partner" or data.results["site"].get("partner")}
 
 
 def tiles(data: Results) -> list[Tile]:
@@ -199,7 +205,7 @@ def _fates(data: Results) -> Table:
             str(shares[key]["count"]),
             *(percent(shares[key][end], 2) for end in ("share", "lower", "upper")),
         ]
-        for key, words in FATE_WORDS.items()
+        for key, words in fates(data).items()
     ]
     note = f"Shares of {shares['sample_count']} samples; {shares['flight_count']} of them were flown."
     return Table("After the first bounce", columns, rows, note, frozenset(columns[1:]))

@@ -114,28 +114,30 @@ class Body:
         return constant
 
     def local_frame(
-        self, latitude_deg: float, longitude_deg: float, heading_deg: float = 0.0
+        self, latitude_deg: ArrayLike, longitude_deg: ArrayLike, heading_deg: ArrayLike = 0.0
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Origin on the surface [m], shape [3], and axes in its rows, shape [3, 3], all body-fixed.
+        """Origins on the surface [m], shape [..., 3], and axes in rows, shape [..., 3, 3], all body-fixed.
 
         z is the outward normal of the facet, x lies in the facet at heading_deg from north, clockwise seen from outside
         as on a compass (90 is east), and y = z cross x. North is the direction of growing latitude laid into the facet,
         at a pole along the meridian of longitude_deg.
         """
-        points, facets = self.shape.locate(latitude_deg, longitude_deg)
-        up = self.shape.normals[int(facets)]
-        latitude, longitude = math.radians(latitude_deg), math.radians(longitude_deg)
-        meridian = np.array(
-            [-math.sin(latitude) * math.cos(longitude), -math.sin(latitude) * math.sin(longitude), math.cos(latitude)]
-        )
-        north = meridian - (meridian @ up) * up
-        length = float(np.linalg.norm(north))
-        if length < 1e-9:
+        degrees = np.broadcast_arrays(latitude_deg, longitude_deg, heading_deg)
+        points, facets = self.shape.locate(degrees[0], degrees[1])
+        up = self.shape.normals[facets]
+        latitudes, longitudes, headings = (np.radians(angle) for angle in degrees)
+        c, s = np.cos(longitudes), np.sin(longitudes)
+        meridian = np.stack([-np.sin(latitudes) * c, -np.sin(latitudes) * s, np.cos(latitudes)], axis=-1)
+        north = meridian - (meridian * up).sum(axis=-1, keepdims=True) * up
+        length = np.linalg.norm(north, axis=-1, keepdims=True)
+        if (length < 1e-9).any():
+            first = np.flatnonzero(length.reshape(-1) < 1e-9)[0]
+            latitude, longitude = (float(angle.reshape(-1)[first]) for angle in degrees[:2])
             raise ValueError(
-                f"{self.name}: the facet at latitude_deg {latitude_deg}, longitude_deg {longitude_deg} faces along the "
+                f"{self.name}: the facet at latitude_deg {latitude}, longitude_deg {longitude} faces along the "
                 "meridian, so north has no direction on it; choose a site beside it."
             )
         north /= length
-        heading = math.radians(heading_deg)
-        ahead = math.cos(heading) * north + math.sin(heading) * np.cross(north, up)
-        return points, np.stack([ahead, np.cross(up, ahead), up])
+        turn = headings[..., None]
+        ahead = np.cos(turn) * north + np.sin(turn) * np.cross(north, up)
+        return points, np.stack([ahead, np.cross(up, ahead), up], axis=-2)

@@ -89,7 +89,7 @@ def fly(
         starts = _into_turning_frame(starts, worlds[:, SPIN], begin)
     orbit = Orbit(*worlds[:, ORBIT : ORBIT + 8].T)
     phase, grounds = _phases(body, starts, orbit, begin)
-    sources = [_field(body, gravity), _field(body if body.partner is None else body.partner.body, gravity)]
+    sources = _sources(body, gravity)
     status, time, final = np.zeros(count, dtype=np.int64), np.zeros(count), np.zeros((count, 6))
     facet, steps = np.full(count, -1), np.zeros(count, dtype=np.int64)
 
@@ -106,9 +106,16 @@ def fly(
     return Flights(body, begins, STATUSES[status], time, final[:, :3], final[:, 3:], facet, steps)
 
 
-def _field(body: Body, gravity: str) -> tuple[Any, ...]:
-    """What attraction.attract reads of a body."""
-    return body.shape.gravity if gravity == "exact" else body.shape.tabled_gravity
+def _sources(body: Body, gravity: str) -> list[tuple[Any, ...]]:
+    """What attraction.attract reads of the body and of its partner; without one the body stands in, and is not asked.
+
+    Kernels take both as one type, so a partner's table may be coarser but is a table too.
+    """
+    own = body.shape.gravity if gravity == "exact" else body.shape.tabled_gravity
+    if body.partner is None:
+        return [own, own]
+    other = body.partner.body.shape
+    return [own, other.gravity if gravity == "exact" else other.distant_gravity]
 
 
 def _worlds(

@@ -19,7 +19,7 @@ from lithobrake.smallbody.grid import Grid
 from lithobrake.smallbody.multipole import Multipole
 from lithobrake.smallbody.nearest import near_heights, pseudonormals
 from lithobrake.smallbody.polyhedron import Polyhedron
-from lithobrake.smallbody.table import CORE, LEVELS, MARGIN, RIM, GravityTable, point_mass, spline_coefficients
+from lithobrake.smallbody.table import CORE, MARGIN, RIM, GravityTable, point_mass, spline_coefficients
 
 SKIN = 6  # cells below the surface over which the continued field goes over into the one inside
 PIECE = 8192  # points that a thread takes at a time
@@ -36,15 +36,24 @@ class TableError(NamedTuple):
     point_count: int
 
 
-def table_of(polyhedron: Polyhedron, multipole: Multipole, volume: float) -> tuple[GravityTable, TableError]:
-    """The table of a shape and its error, from disk where it was built before; the name there is a hash of the mesh."""
-    digest = hashlib.sha256(polyhedron.vertices.tobytes() + polyhedron.facet_corners.tobytes()).hexdigest()[:24]
+Levels = tuple[tuple[float, float], ...]
+
+
+def table_of(
+    polyhedron: Polyhedron, multipole: Multipole, volume: float, levels: Levels
+) -> tuple[GravityTable, TableError]:
+    """The table of a shape and its error, from disk where it was built before; the name there is a hash of the mesh.
+
+    levels: cells and reach of each grid (see table.LEVELS).
+    """
+    mesh = polyhedron.vertices.tobytes() + polyhedron.facet_corners.tobytes()
+    digest = hashlib.sha256(repr(levels).encode() + mesh).hexdigest()[:24]
     path = cache_folder("smallbody") / f"gravity-{digest}.npz"
     if path.is_file():
         with np.load(path) as stored:
             table = GravityTable(*(_plain(stored[field.name]) for field in fields(GravityTable)))
             return table, TableError(*stored["error"].tolist())
-    table = _build(polyhedron, multipole, volume)
+    table = _build(polyhedron, multipole, volume, levels)
     error = _measure(table, polyhedron, multipole)
     _store(path, table, error)
     log.info(
@@ -65,7 +74,7 @@ def _store(path: Path, table: GravityTable, error: TableError) -> None:
         np.savez(file, error=np.array(error, dtype=np.float64), **arrays)
 
 
-def _build(polyhedron: Polyhedron, multipole: Multipole, volume: float) -> GravityTable:
+def _build(polyhedron: Polyhedron, multipole: Multipole, volume: float, levels: Levels) -> GravityTable:
     """Sample each grid with the facets' sums or the series, continue below the surface, turn into splines."""
     # From two radii on the series is off by 1e-7 or less, far below what the splines lose, and ten times faster.
     closer = replace(multipole, nearest=min(multipole.nearest, 2.0 * multipole.radius))
@@ -77,7 +86,7 @@ def _build(polyhedron: Polyhedron, multipole: Multipole, volume: float) -> Gravi
     sizes: list[NDArray[np.int64]] = []
     values: list[NDArray[np.float64]] = []
     served: tuple[NDArray[np.float64], NDArray[np.float64]] | None = None
-    for share, reach in LEVELS:
+    for share, reach in levels:
         edge = share * multipole.radius
         if served is None:
             first, last = lower - MARGIN * edge, upper + MARGIN * edge
