@@ -23,29 +23,28 @@ APART, CLOSE, CROSSING = 0, 1, 2
 
 
 class Search(NamedTuple):
-    """Scratch: a simplex while it is sought, a core in another body's frame, the points of a contact."""
+    """Scratch: a simplex while it is sought, the points of a contact."""
 
     on_first: Floats  # [4, 3]
     on_second: Floats  # [4, 3]
     difference: Floats  # [4, 3]
     names: Integers  # [4, 2]
     weight: Floats  # [4]
-    turned: Floats  # [edge_count_max + vertex_count_max, 12]
     relative: Floats  # [1, 3, 3]
     point: Floats  # [point_max, 3], of a patch
     normal: Floats  # [point_max, 3], from first to second
+    couple: Floats  # [point_max, 3], of sunk edges, see sunk.note_pair
     depth: Floats  # [point_max], overlap at the point
-    weight_of_point: Floats  # [point_max]
+    family: Integers  # [point_max]
     share: Floats  # [point_max], derivative of the patch's overlap by that of the point
 
 
-def search_for(vertex_count_max: int, edge_count_max: int, point_max: int) -> Search:
-    """Return scratch large enough for cores and patches of these sizes."""
+def search_for(point_max: int) -> Search:
+    """Return scratch large enough for patches of this size."""
     return Search(
         np.zeros((4, 3)), np.zeros((4, 3)), np.zeros((4, 3)), np.zeros((4, 2), dtype=np.int64), np.zeros(4),
-        np.zeros((edge_count_max + vertex_count_max, 12)), np.zeros((1, 3, 3)),
-        np.zeros((point_max, 3)), np.zeros((point_max, 3)),
-        np.zeros(point_max), np.zeros(point_max), np.zeros(point_max),
+        np.zeros((1, 3, 3)), np.zeros((point_max, 3)), np.zeros((point_max, 3)), np.zeros((point_max, 3)),
+        np.zeros(point_max), np.zeros(point_max, dtype=np.int64), np.zeros(point_max),
     )  # fmt: skip
 
 

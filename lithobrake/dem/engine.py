@@ -74,8 +74,12 @@ class Engine:
         return steps, DONE
 
     def _scratch(self) -> Search:
-        vertex_max, edge_max = (int(np.diff(start).max()) for start in (self.cores.vertex_start, self.cores.edge_start))
-        return search_for(vertex_max, edge_max, max(vertex_max, self.pairs.term.shape[1]))
+        shape = self.bodies.shape
+        vertices, edges = (
+            np.sort(np.diff(start)[shape])[-2:] for start in (self.cores.vertex_start, self.cores.edge_start)
+        )
+        # All corners and all pairs of edges of the two largest bodies, should they cross, and a list's worth beside.
+        return search_for(int(vertices.sum() + 2 * edges.prod()) + self.pairs.term.shape[1])
 
     def _list_neighbours(self) -> None:
         first, second = neighbours(self.bodies, self.planes, self.skin)

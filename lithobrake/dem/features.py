@@ -45,16 +45,20 @@ def stands_above(cores: Cores, shape: int, face: int, point: Vector) -> tuple[fl
 
 @large_kernel
 def point_to_core(cores: Cores, shape: int, point: Vector, farthest: float) -> tuple[float, Vector, bool, int]:
-    """Return the signed distance of a point of the body frame to a core with faces, the outward unit normal at the
-    closest point of its surface, whether it is nearer than `farthest` (if not, the rest is void), and the face where
-    that point lies (-1: on an edge).
+    """Return the signed distance of a point of the body frame to a core with faces, its gradient, whether it is nearer
+    than `farthest` (if not, the rest is void), and the face where the closest point of the surface lies (-1: an edge).
+
+    The gradient is the outward unit normal there; inside, see `below_faces`.
     """
     face, height = face_below(cores, shape, point, farthest)
     start = cores.face_start[shape]
     if face < 0:
         return height, point, False, -1
     normal = row(cores.normal, face)
-    if height <= 0.0 or on_core(cores, shape, minus(point, scaled(height, normal)), face):
+    if height < 0.0:
+        height, normal = below_faces(cores, shape, point, height)
+        return height, normal, True, face - start
+    if height == 0.0 or on_core(cores, shape, minus(point, scaled(height, normal)), face):
         return height, normal, True, face - start
     nearest, square = point_to_edges(cores, shape, point)
     distance, found = square**0.5, -1
@@ -65,6 +69,24 @@ def point_to_core(cores: Cores, shape: int, point: Vector, farthest: float) -> t
         if 0.0 < height < distance and on_core(cores, shape, minus(point, scaled(height, other)), face):
             normal, distance, found = other, height, face - start
     return distance, normal, distance < farthest, found
+
+
+@kernel
+def below_faces(cores: Cores, shape: int, point: Vector, highest: float) -> tuple[float, Vector]:
+    """Return the smooth signed distance of a point inside a core, and its gradient.
+
+    1/d^8 = sum of 1/d_f^8 over the depths d_f below the faces (`highest`: minus the least of them): the depth below a
+    face near that face, and without a kink where one face becomes nearer than another.
+    """
+    total, gradient = 0.0, (0.0, 0.0, 0.0)
+    for face in range(cores.face_start[shape], cores.face_start[shape + 1]):
+        normal = row(cores.normal, face)
+        ratio = highest / (dot(normal, point) - cores.offset[face])
+        fourth = ratio * ratio * ratio * ratio
+        total += fourth * fourth
+        gradient = plus(gradient, scaled(fourth * fourth * ratio, normal))
+    root = ((total**0.5) ** 0.5) ** 0.5
+    return highest / root, scaled(1.0 / (total * root), gradient)
 
 
 @kernel
@@ -92,13 +114,24 @@ def point_to_edges(cores: Cores, shape: int, point: Vector) -> tuple[Vector, flo
 
 @kernel
 def edge_to_edge(a: Vector, along_a: Vector, b: Vector, along_b: Vector) -> tuple[Vector, Vector]:
-    """Return the closest points of two edges that begin at a and b; parallel ones meet amid their overlap."""
+    """Return the closest points of two edges that begin at a and b."""
+    share, other, _ = closest_shares(a, along_a, b, along_b)
+    return plus(a, scaled(share, along_a)), plus(b, scaled(other, along_b))
+
+
+@kernel
+def closest_shares(a: Vector, along_a: Vector, b: Vector, along_b: Vector) -> tuple[float, float, bool]:
+    """Return where on two edges (0 at the begin, 1 at the end) they are closest, and whether they are parallel.
+
+    Parallel ones meet amid their overlap.
+    """
     between = minus(b, a)
     aa, bb, ab = dot(along_a, along_a), dot(along_b, along_b), dot(along_a, along_b)
     ad, bd = dot(along_a, between), dot(along_b, between)
     turn = cross(along_a, along_b)
     determinant = dot(turn, turn)
-    if determinant > PARALLEL * aa * bb:
+    parallel = determinant <= PARALLEL * aa * bb
+    if not parallel:
         share = min(max((ad * bb - bd * ab) / determinant, 0.0), 1.0)
     else:
         near, far = ad / aa, (ad + ab) / aa
@@ -106,7 +139,7 @@ def edge_to_edge(a: Vector, along_a: Vector, b: Vector, along_b: Vector) -> tupl
         share = min(max(0.5 * (low + high), 0.0), 1.0)
     other = min(max((share * ab - bd) / bb, 0.0), 1.0)
     share = min(max((other * ab + ad) / aa, 0.0), 1.0)
-    return plus(a, scaled(share, along_a)), plus(b, scaled(other, along_b))
+    return share, other, parallel
 
 
 @kernel
@@ -126,3 +159,13 @@ def edge_of(cores: Cores, shape: int, edge: int) -> tuple[Vector, Vector]:
     """Return begin and direction (not of unit length) of an edge, in the body frame."""
     k = cores.edge_start[shape] + edge
     return row(cores.edge_begin, k), row(cores.edge_along, k)
+
+
+@kernel
+def lowest_height(cores: Cores, shape: int, direction: Vector) -> float:
+    """Return the smallest height of a core's vertices along a direction of the body frame."""
+    start = cores.vertex_start[shape]
+    lowest = dot(row(cores.vertex, start), direction)
+    for k in range(start + 1, cores.vertex_start[shape + 1]):
+        lowest = min(lowest, dot(row(cores.vertex, k), direction))
+    return lowest

@@ -6,13 +6,12 @@ that makes up for it, see material.restitution_of.
 
 from typing import NamedTuple
 
-import numpy as np
-
 from lithobrake.compiled import kernel
 from lithobrake.dem.arrays import Bodies, Cores, Floats, Laws, Pairs, Planes
 from lithobrake.dem.couples import let_go, resist_rolling, resist_twisting
 from lithobrake.dem.distance import Search
-from lithobrake.dem.patch import spin_radii, spread, touch_bodies, touch_plane
+from lithobrake.dem.patch import touch_bodies, touch_plane
+from lithobrake.dem.shares import EDGES_SUNK, spin_radii, spread
 from lithobrake.dem.spring import across, hold, stored, turned_spring
 from lithobrake.dem.vectors import Vector, add, cross, dot, minus, plus, put, row, scaled, times
 
@@ -104,6 +103,14 @@ def push(bodies: Bodies, first: int, second: int, point: Vector, force: Vector) 
 
 
 @kernel
+def turn(bodies: Bodies, first: int, second: int, couple: Vector) -> None:
+    """Apply a couple to the second body, and its opposite to the first."""
+    add(bodies.torque, first, -1.0, couple)
+    if second >= 0:
+        add(bodies.torque, second, 1.0, couple)
+
+
+@kernel
 def repel(share: float, elastic: float, dashpot: float, speed: float, step: Step, totals: Floats) -> float:
     """Return the repulsion at a point of a patch, which never pulls, and book what its dashpot takes."""
     force = share * max(0.0, elastic - dashpot * speed)
@@ -121,7 +128,7 @@ def press(
     Returns the repulsion and the whole force along the normal, and what is left to apply at the centre: all of it,
     where the patch is one point.
     """
-    if count == 1:
+    if count == 1 and search.family[0] != EDGES_SUNK:
         repulsion = repel(search.share[0], elastic, dashpot, dot(meeting.now, normal), step, totals)
         total = repulsion - search.share[0] * cohesion
         return repulsion, total, total
@@ -133,11 +140,17 @@ def press(
         if second >= 0:
             other_arm = minus(point, row(bodies.position, second))
             now = plus(now, point_velocity(bodies.velocity_predicted, bodies.spin_predicted, second, other_arm))
-        force = repel(search.share[k], elastic, dashpot, dot(now, outward), step, totals)
+        speed = dot(now, outward)
+        if search.family[k] == EDGES_SUNK:
+            turning = minus(row(bodies.spin_predicted, second), row(bodies.spin_predicted, first))
+            speed += dot(turning, row(search.couple, k))
+        force = repel(search.share[k], elastic, dashpot, speed, step, totals)
         along = dot(outward, normal)
         repulsion += force * along
         force -= search.share[k] * cohesion
         push(bodies, first, second, point, scaled(force, outward))
+        if search.family[k] == EDGES_SUNK:
+            turn(bodies, first, second, scaled(force, row(search.couple, k)))
         total += force * along
     return repulsion, total, 0.0
 
@@ -177,14 +190,6 @@ def part(pairs: Pairs, pair: int, totals: Floats) -> None:
 
 
 @kernel
-def turn(bodies: Bodies, first: int, second: int, couple: Vector) -> None:
-    """Apply a couple to the second body, and its opposite to the first."""
-    add(bodies.torque, first, -1.0, couple)
-    if second >= 0:
-        add(bodies.torque, second, 1.0, couple)
-
-
-@kernel
 def act(
     pair: int, bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, laws: Laws, step: Step, search: Search,
     totals: Floats,
@@ -196,14 +201,13 @@ def act(
         part(pairs, pair, totals)
         return
     if is_body:
-        count = touch_bodies(pair, bodies, cores, pairs, search)
-        rounding = cores.rounding[bodies.shape[first]] + cores.rounding[bodies.shape[second]]
+        count, sunk, slope = touch_bodies(pair, bodies, cores, pairs, search)
     else:
-        count, rounding = touch_plane(pair, bodies, cores, planes, pairs, search), np.inf
+        count, sunk, slope = touch_plane(pair, bodies, cores, planes, pairs, search), 0.0, 0.0
     if count == 0:
         part(pairs, pair, totals)
         return
-    overlap, point, normal = spread(search, count, rounding)
+    overlap, point, normal = spread(search, count, sunk, slope)
     meeting = meet(bodies, first, second, point, normal, step.paper_mass)
     here, there = bodies.material[first], bodies.material[second] if is_body else planes.material[-1 - second]
     damping_ratio = laws.damping_ratio[here, there]

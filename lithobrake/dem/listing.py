@@ -6,16 +6,16 @@ nothing. So it makes no difference to any bit when, or how often, the names are 
 
 from lithobrake.compiled import kernel, large_kernel
 from lithobrake.dem.arrays import Bodies, Cores, Pairs, Planes
-from lithobrake.dem.crossing import way_out
 from lithobrake.dem.distance import APART, CROSSING, Search, approach, weighted
-from lithobrake.dem.features import edge_of, edge_to_edge, point_to_core, write_relative
+from lithobrake.dem.features import edge_of, edge_to_edge, lowest_height, point_to_core, write_relative
+from lithobrake.dem.shares import SINK_TO
 from lithobrake.dem.vectors import Vector, dot, minus, plus, row, scaled, times, transposed_times
 
 # Kinds of features: a corner of the first on the second, of the second on the first (i, and one more than the number of
 # the face below it, or 0), two edges (i and j), two spheres.
 CORNER_OF_FIRST, CORNER_OF_SECOND, EDGES, SPHERES = 0, 1, 2, 3
 KIND, PLACE = 1 << 40, 1 << 20
-# In `term_count`: the cores cross, and the deepest point alone carries.
+# In `term_count`: the cores cross, and all their features are looked at.
 DEEP = -1
 # The margin is this part of the rounding radii, which themselves count for at most this part of the contact radii.
 MARGIN_OF_ROUNDING, ROUNDING_OF_RADIUS = 0.1, 0.04
@@ -103,24 +103,21 @@ def list_bodies(pair: int, bodies: Bodies, cores: Cores, pairs: Pairs, margin: f
     found, count, bound = approach(search, cores, shapes, bodies.rotation, members, apart, reach + margin)
     if found == APART:
         return bound - reach
-    if found == CROSSING:
-        distance, normal, _, _ = way_out(search, cores, shapes, bodies.rotation, members, apart)
-    else:
-        between = minus(
-            weighted(search.on_second, search.weight, count), weighted(search.on_first, search.weight, count)
-        )
-        distance = dot(between, between) ** 0.5
-        normal = scaled(1.0 / distance, between)
     hulls = not (is_point(cores, shapes[0]) or is_point(cores, shapes[1]))
     if found == CROSSING and hulls:
+        # Until they are this far apart again, the listed features and all of them come to the same (patch.py).
         pairs.term_count[pair] = DEEP
-        return 0.0
+        return (1.0 - SINK_TO) * reach
     write_relative(bodies.rotation, first, second, search.relative)
     there = transposed_times(bodies.rotation, first, apart)
-    normal = transposed_times(bodies.rotation, first, normal)
     list_corners(pair, pairs, cores, shapes, search, there, reach + margin)
+    if not hulls:
+        return margin
+    between = minus(weighted(search.on_second, search.weight, count), weighted(search.on_first, search.weight, count))
+    distance = dot(between, between) ** 0.5
+    normal = transposed_times(bodies.rotation, first, scaled(1.0 / distance, between))
     list_edges(pair, pairs, cores, shapes, search, there, normal, reach + margin, distance)
-    return min(margin, distance) if hulls else margin
+    return min(margin, distance)
 
 
 @kernel
@@ -176,13 +173,3 @@ def list_edges(
             between = minus(hither, here)
             if dot(between, between) < farthest * farthest:
                 note_term(pairs, pair, EDGES, i, j)
-
-
-@kernel
-def lowest_height(cores: Cores, shape: int, direction: Vector) -> float:
-    """Return the smallest height of a core's vertices along a direction of the body frame."""
-    start = cores.vertex_start[shape]
-    lowest = dot(row(cores.vertex, start), direction)
-    for k in range(start + 1, cores.vertex_start[shape + 1]):
-        lowest = min(lowest, dot(row(cores.vertex, k), direction))
-    return lowest

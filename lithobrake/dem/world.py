@@ -331,6 +331,11 @@ class World:
         """Sum of the contact forces on each body [N], shape [body_count, 3]."""
         return self._assembled().bodies.force.copy()
 
+    @property
+    def contact_torque(self) -> Floats:
+        """Sum of the torques of the contacts on each body about its centroid [N m], world frame, [body_count, 3]."""
+        return self._assembled().bodies.torque.copy()
+
     def contacts(self) -> NDArray[Any]:
         """Return the contacts (overlap > 0): structured array, see DESIGN of the fields below.
 

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from lithobrake.dem import Box, ConvexHull, Material, Sphere, World
 
@@ -143,29 +144,62 @@ def elastic(first, second, place, turn):
     stuff = material(1.0, 0.0, 1e7)
     world.add_body(first, stuff, (0, 0, 0))
     world.add_body(second, stuff, place, orientation=turn)
-    return world.energy()["elastic"], world.contact_force[1]
+    return world.energy()["elastic"], np.concatenate([world.contact_force[1], world.contact_torque[1]])
 
 
-@pytest.mark.parametrize("seed", range(8))
-def test_force_of_hulls_is_the_gradient_of_their_energy(seed):
-    generator = np.random.default_rng(seed)
-    first, second = (ConvexHull(generator.normal(size=(14, 3)) * 0.05) for _ in range(2))
-    turn = generator.normal(size=4)
-    direction = generator.normal(size=3)
-    direction /= np.linalg.norm(direction)
+def turned_by(turn, rotation):
+    """A quaternion after a small rotation (vector of the angle) in the world frame."""
+    half = Rotation.from_rotvec(rotation) * Rotation.from_quat(turn, scalar_first=True)
+    return half.as_quat(scalar_first=True)
+
+
+def gradient_error(first, second, place, turn):
+    """Largest difference of force and torque from the energy's slope (central differences), over the largest force."""
+    found = elastic(first, second, place, turn)[1]
+    step, slope = 1e-8, []
+    for e in np.eye(3):
+        there = (elastic(first, second, place + s * step * e, turn)[0] for s in (-1, 1))
+        slope.append((next(there) - next(there)) / (2 * step))
+    for e in np.eye(3):
+        there = (elastic(first, second, place, turned_by(turn, s * 10 * step * e))[0] for s in (-1, 1))
+        slope.append((next(there) - next(there)) / (20 * step))
+    error = np.abs(found - slope)
+    arm = np.cbrt(second.volume)
+    return max(error[:3].max(), error[3:].max() / arm) / np.linalg.norm(found[:3])
+
+
+def touching(first, second, direction, turn):
+    """The farthest place along a direction at which two bodies touch."""
     near, far = 0.0, 1.0
     for _ in range(50):
         middle = 0.5 * (near + far)
         near, far = (middle, far) if elastic(first, second, middle * direction, turn)[0] > 0.0 else (near, middle)
-    place = (near - 0.1 * first.rounding) * direction
-    force = elastic(first, second, place, turn)[1]
-    step = 1e-8
-    slope = [
-        (elastic(first, second, place - step * e, turn)[0] - elastic(first, second, place + step * e, turn)[0])
-        / (2 * step)
-        for e in np.eye(3)
-    ]
-    assert np.allclose(force, slope, atol=1e-5 * np.linalg.norm(force))
+    return near * direction
+
+
+@pytest.mark.parametrize("depth", [0.1, 0.6, 0.8, 1.0, 1.5, 4.0])
+@pytest.mark.parametrize("seed", range(4))
+def test_force_and_torque_of_hulls_are_the_gradient_of_their_energy(seed, depth):
+    """At any depth (over the sum of the rounding radii), cores apart and crossing."""
+    generator = np.random.default_rng(seed)
+    first, second = (ConvexHull(generator.normal(size=(14, 3)) * 0.05) for _ in range(2))
+    turn = generator.normal(size=4)
+    turn /= np.linalg.norm(turn)
+    direction = generator.normal(size=3)
+    direction /= np.linalg.norm(direction)
+    place = touching(first, second, direction, turn) - depth * (first.rounding + second.rounding) * direction
+    assert gradient_error(first, second, place, turn) < 1e-5
+
+
+@pytest.mark.parametrize("depth", [0.1, 0.6, 0.8, 1.0, 1.5, 4.0])
+@pytest.mark.parametrize("tilt", [1e-2, 1e-5])
+def test_force_and_torque_of_faces_are_the_gradient_of_their_energy(tilt, depth):
+    """Two boxes face on face, yawed, overlapping in part, all but parallel."""
+    first, second = Box((0.1, 0.1, 0.1)), Box((0.08, 0.12, 0.1))
+    turn = (Rotation.from_rotvec((tilt, 0.7 * tilt, 0.0)) * Rotation.from_rotvec((0, 0, 0.4))).as_quat(scalar_first=True)
+    place = touching(first, second, np.array([0.0, 0.0, 1.0]), turn)
+    place = place + (0.03, 0.02, -depth * (first.rounding + second.rounding))
+    assert gradient_error(first, second, place, turn) < 1e-5
 
 
 def test_sphere_presses_on_a_face_as_on_a_plane():
@@ -207,7 +241,7 @@ def largest_jumps(path, steps):
         world = World(time_step=1e-9)
         world.add_body(first, material(1.0, 0.0, 1e7), (0, 0, 0))
         world.add_body(second, material(1.0, 0.0, 1e7), place, orientation=turn)
-        found.append(np.concatenate([world.contact_force[1], world._assembled().bodies.torque[1] / 0.05]))
+        found.append(np.concatenate([world.contact_force[1], world.contact_torque[1] / 0.05]))
     assert np.abs(found).max() > 0.0
     return np.abs(np.diff(found, axis=0)).max()
 
