@@ -30,6 +30,7 @@ class Search(NamedTuple):
     difference: Floats  # [4, 3]
     names: Integers  # [4, 2]
     weight: Floats  # [4]
+    turned: Floats  # [edge_count_max + vertex_count_max, 12], a core in the other's frame
     relative: Floats  # [1, 3, 3]
     point: Floats  # [point_max, 3], of a patch
     normal: Floats  # [point_max, 3], from first to second
@@ -39,11 +40,12 @@ class Search(NamedTuple):
     share: Floats  # [point_max], derivative of the patch's overlap by that of the point
 
 
-def search_for(point_max: int) -> Search:
-    """Return scratch large enough for patches of this size."""
+def search_for(feature_max: int, point_max: int) -> Search:
+    """Return scratch large enough for the corners and edges of a core, and the points of a patch."""
     return Search(
         np.zeros((4, 3)), np.zeros((4, 3)), np.zeros((4, 3)), np.zeros((4, 2), dtype=np.int64), np.zeros(4),
-        np.zeros((1, 3, 3)), np.zeros((point_max, 3)), np.zeros((point_max, 3)), np.zeros((point_max, 3)),
+        np.zeros((feature_max, 12)), np.zeros((1, 3, 3)),
+        np.zeros((point_max, 3)), np.zeros((point_max, 3)), np.zeros((point_max, 3)),
         np.zeros(point_max), np.zeros(point_max, dtype=np.int64), np.zeros(point_max),
     )  # fmt: skip
 

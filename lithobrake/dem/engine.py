@@ -79,7 +79,8 @@ class Engine:
             np.sort(np.diff(start)[shape])[-2:] for start in (self.cores.vertex_start, self.cores.edge_start)
         )
         # All corners and all pairs of edges of the two largest bodies, should they cross, and a list's worth beside.
-        return search_for(int(vertices.sum() + 2 * edges.prod()) + self.pairs.term.shape[1])
+        points = 1 + int(vertices.sum() + 2 * edges.prod()) + self.pairs.term.shape[1]
+        return search_for(int(vertices.max() + edges.max()), points)
 
     def _list_neighbours(self) -> None:
         first, second = neighbours(self.bodies, self.planes, self.skin)

@@ -61,6 +61,8 @@ def point_to_core(cores: Cores, shape: int, point: Vector, farthest: float) -> t
     if height == 0.0 or on_core(cores, shape, minus(point, scaled(height, normal)), face):
         return height, normal, True, face - start
     nearest, square = point_to_edges(cores, shape, point)
+    if square == 0.0:
+        return 0.0, normal, True, -1
     distance, found = square**0.5, -1
     normal = scaled(1.0 / distance, minus(point, nearest))
     for face in range(cores.face_start[shape], cores.face_start[shape + 1]):

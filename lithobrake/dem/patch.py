@@ -6,10 +6,11 @@ that cross go on so: the distance of a corner changes its sign, and pairs of edg
 
 from lithobrake.compiled import kernel, large_kernel
 from lithobrake.dem.arrays import Bodies, Cores, Pairs, Planes
-from lithobrake.dem.distance import Search
+from lithobrake.dem.crossing import way_out
+from lithobrake.dem.distance import CROSSING, Search, approach
 from lithobrake.dem.features import edge_of, edge_to_edge, point_to_core, stands_above, write_relative
 from lithobrake.dem.listing import CORNER_OF_FIRST, CORNER_OF_SECOND, DEEP, KIND, PLACE, SPHERES
-from lithobrake.dem.shares import CORNER, EDGES_APART, SINK_FROM, note_point, sinking
+from lithobrake.dem.shares import CORNER, EDGES_APART, SINK_FROM, WAY_OUT, note_point, sinking
 from lithobrake.dem.sunk import note_sunk_edges
 from lithobrake.dem.vectors import Vector, dot, minus, plus, put, row, scaled, times, transposed_times
 
@@ -44,7 +45,8 @@ def touch_bodies(pair: int, bodies: Bodies, cores: Cores, pairs: Pairs, search: 
     shapes = (bodies.shape[first], bodies.shape[second])
     write_relative(bodies.rotation, first, second, search.relative)
     there = transposed_times(bodies.rotation, first, apart)
-    if pairs.term_count[pair] == DEEP:
+    crossing = pairs.term_count[pair] == DEEP
+    if crossing:
         count, sunk, slope = note_all_corners(search, bodies, cores, first, second, there), 1.0, 0.0
     else:
         count, sunk, slope = note_listed(search, pairs, pair, bodies, cores, there)
@@ -54,7 +56,29 @@ def touch_bodies(pair: int, bodies: Bodies, cores: Cores, pairs: Pairs, search: 
             put(search.point, k, plus(row(bodies.position, first), times(bodies.rotation, first, row(search.point, k))))
             put(search.normal, k, times(bodies.rotation, first, row(search.normal, k)))
             put(search.couple, k, times(bodies.rotation, first, row(search.couple, k)))
+    if crossing:
+        count = note_way_out(search, count, bodies, cores, first, second, apart)
     return count, sunk, slope
+
+
+@large_kernel
+def note_way_out(
+    search: Search, count: int, bodies: Bodies, cores: Cores, first: int, second: int, apart: Vector
+) -> int:
+    """Add the point at the shortest way out, if the cores still cross; return the number of points.
+
+    Its overlap is the depth of the cores alone. It keeps two flat bars apart of which no corner lies in the other: the
+    points at which their edges meet stay on the sides of both, however deep they are.
+    """
+    shapes, members = (bodies.shape[first], bodies.shape[second]), (first, second)
+    found, _, _ = approach(search, cores, shapes, bodies.rotation, members, apart, 0.0)
+    if found != CROSSING:
+        return count
+    distance, normal, on_first, on_second = way_out(search, cores, shapes, bodies.rotation, members, apart)
+    half_difference = 0.5 * (cores.rounding[shapes[0]] - cores.rounding[shapes[1]])
+    middle = plus(scaled(0.5, plus(on_first, on_second)), scaled(half_difference, normal))
+    point = plus(row(bodies.position, first), middle)
+    return note_point(search, count, WAY_OUT, -distance, point, normal)
 
 
 @kernel

@@ -9,8 +9,9 @@ from lithobrake.compiled import kernel
 from lithobrake.dem.distance import Search
 from lithobrake.dem.vectors import Vector, dot, minus, plus, put, row, scaled
 
-# Families of points: corners, pairs of edges apart, pairs of edges that may cross (sunk.py).
-CORNER, EDGES_APART, EDGES_SUNK = 0, 1, 2
+# Families of points: corners, pairs of edges apart, pairs of edges that may cross (sunk.py), and the shortest way out
+# of cores that cross.
+CORNER, EDGES_APART, EDGES_SUNK, WAY_OUT = 0, 1, 2, 3
 # Weight of a pair of edges beside a corner: where an edge ends, all edges of that corner meet the same place.
 EDGE_WEIGHT = 0.25
 # Between these parts of the rounding, edges apart pass into sunk ones; the cores themselves stay apart till 1.
@@ -41,7 +42,7 @@ def sinking(progress: float) -> tuple[float, float]:
 
 @kernel
 def deepest_apart(search: Search, count: int) -> int:
-    """Return the deepest point of a patch that is no sunk pair of edges; the first point where there is no other."""
+    """Return the deepest point of a patch of cores that do not cross; it is no sunk pair of edges."""
     top = 0
     for k in range(1, count):
         if search.family[k] != EDGES_SUNK and search.depth[k] > search.depth[top]:
@@ -54,29 +55,31 @@ def spread(search: Search, count: int, sunk: float, slope: float) -> tuple[float
     """Combine the overlaps of a patch into one, and write the share of each point in the force.
 
     D^8 = sum of d^8 over the corners + 1/4 (1 - sunk) sum of d^8 over edges apart + 1/4 sunk sum of d^8 over sunk
-    edges, with `sunk` a function of the deepest overlap and `slope` [1/m] its derivative. One corner is Hertz exactly,
-    four or eight equal ones are 1.5 or 1.9 times as stiff. Returns D [m], the centre of pressure, and the unit normal
-    of the whole force.
+    edges + 1/4 d^8 of the way out, with `sunk` a function of the deepest overlap and `slope` [1/m] its derivative. One
+    corner is Hertz exactly, four or eight equal ones are 1.5 or 1.9 times as stiff. Returns D [m], the centre of
+    pressure, and the unit normal of the whole force.
     """
     if count == 1 and search.family[0] == CORNER:
         search.share[0] = 1.0
         return search.depth[0], row(search.point, 0), row(search.normal, 0)
-    deepest, total, passing = 0.0, 0.0, 0.0
+    deepest, corners, apart, below = 0.0, 0.0, 0.0, 0.0
     for k in range(count):
         deepest = max(deepest, search.depth[k])
     for k in range(count):
         ratio = search.depth[k] / deepest
         fourth = ratio * ratio * ratio * ratio
         weight, family = 1.0, search.family[k]
-        if family == EDGES_APART:
+        if family == CORNER:
+            corners += fourth * fourth
+        elif family == EDGES_APART:
             weight = EDGE_WEIGHT * (1.0 - sunk)
-            passing -= EDGE_WEIGHT * fourth * fourth
-        elif family == EDGES_SUNK:
-            # Each pair of edges gives two points.
-            weight = 0.5 * EDGE_WEIGHT * sunk
-            passing += 0.5 * EDGE_WEIGHT * fourth * fourth
+            apart += EDGE_WEIGHT * fourth * fourth
+        else:
+            # Each pair of sunk edges gives two points.
+            weight = EDGE_WEIGHT * (0.5 * sunk if family == EDGES_SUNK else 1.0)
+            below += (0.5 if family == EDGES_SUNK else 1.0) * EDGE_WEIGHT * fourth * fourth
         search.share[k] = weight * fourth * ratio * ratio * ratio
-        total += weight * fourth * fourth
+    total = corners + (1.0 - sunk) * apart + sunk * below
     root = ((total**0.5) ** 0.5) ** 0.5
     centre, force, weight = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), 0.0
     for k in range(count):
@@ -86,9 +89,11 @@ def spread(search: Search, count: int, sunk: float, slope: float) -> tuple[float
         weight += search.share[k]
     if slope > 0.0:
         # As the patch deepens, edges apart pass into sunk ones: that too changes the energy.
-        search.share[deepest_apart(search, count)] += 0.125 * passing * slope * deepest * root / total
+        search.share[deepest_apart(search, count)] += 0.125 * (below - apart) * slope * deepest * root / total
     size = dot(force, force) ** 0.5
-    return deepest * root, scaled(1.0 / weight, centre), scaled(1.0 / size, force)
+    # Forces of all directions that cancel: every normal is as good as another.
+    normal = scaled(1.0 / size, force) if size > 0.0 else (0.0, 0.0, 1.0)
+    return deepest * root, scaled(1.0 / weight, centre), normal
 
 
 @kernel

@@ -25,7 +25,7 @@ def signed_distance(first, second):
 @pytest.mark.parametrize("stretch", [1.0, 1e-3])
 def test_distance_of_random_pairs(stretch):
     generator = np.random.default_rng(4)
-    search = search_for(16)
+    search = search_for(120, 16)
     seen = {}
     for trial in range(150):
         first = ConvexHull(generator.normal(size=(14, 3)) * [0.05, 0.05, 0.05 * stretch])

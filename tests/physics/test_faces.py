@@ -196,7 +196,9 @@ def test_force_and_torque_of_hulls_are_the_gradient_of_their_energy(seed, depth)
 def test_force_and_torque_of_faces_are_the_gradient_of_their_energy(tilt, depth):
     """Two boxes face on face, yawed, overlapping in part, all but parallel."""
     first, second = Box((0.1, 0.1, 0.1)), Box((0.08, 0.12, 0.1))
-    turn = (Rotation.from_rotvec((tilt, 0.7 * tilt, 0.0)) * Rotation.from_rotvec((0, 0, 0.4))).as_quat(scalar_first=True)
+    turn = (Rotation.from_rotvec((tilt, 0.7 * tilt, 0.0)) * Rotation.from_rotvec((0, 0, 0.4))).as_quat(
+        scalar_first=True
+    )
     place = touching(first, second, np.array([0.0, 0.0, 1.0]), turn)
     place = place + (0.03, 0.02, -depth * (first.rounding + second.rounding))
     assert gradient_error(first, second, place, turn) < 1e-5
