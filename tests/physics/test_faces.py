@@ -200,7 +200,7 @@ def test_force_and_torque_of_faces_are_the_gradient_of_their_energy(tilt, depth)
         scalar_first=True
     )
     place = touching(first, second, np.array([0.0, 0.0, 1.0]), turn)
-    place = place + (0.03, 0.02, -depth * (first.rounding + second.rounding))
+    place += np.array([0.03, 0.02, -depth * (first.rounding + second.rounding)])
     assert gradient_error(first, second, place, turn) < 1e-5
 
 
