@@ -1,14 +1,11 @@
 """Runs on a Dask cluster that is there already, behind the interface of concurrent.futures."""
 
-import multiprocessing
 import time
 from collections.abc import Callable
 from concurrent.futures import BrokenExecutor, Executor, Future
-from functools import cache
 from typing import TYPE_CHECKING, Any
 
-from lithobrake.campaign.limits import Limits
-from lithobrake.campaign.local import LocalExecutor, WorkerDiedError, available_cores
+from lithobrake.campaign.local import WorkerDiedError
 
 if TYPE_CHECKING:
     import distributed
@@ -22,8 +19,8 @@ _FEWEST = 16
 class DaskExecutor(Executor):
     """The workers of a Dask cluster. A call whose worker is lost goes to another one."""
 
-    def __init__(self, scheduler: str, limits: Limits | None = None) -> None:
-        """Connect to a scheduler (`tcp://host:port`); limits are those of one call.
+    def __init__(self, scheduler: str) -> None:
+        """Connect to a scheduler (`tcp://host:port`).
 
         Raises ValueError when Dask is not installed or no scheduler answers.
         """
@@ -37,12 +34,12 @@ class DaskExecutor(Executor):
             raise ValueError(
                 f"no Dask scheduler answers at {scheduler} ({error}); start one with: dask scheduler"
             ) from error
-        self._scheduler, self._limits = scheduler, limits or Limits()
+        self._scheduler = scheduler
         self._flying: dict[distributed.Future[Any], Future[Any]] = {}
         self._thread_count, self._asked = 0, -_LOOK
 
     @property
-    def worker_count(self) -> int:
+    def capacity(self) -> int:
         """Calls that the cluster makes at once, as it was a few seconds ago."""
         if time.monotonic() > self._asked + _LOOK:
             self._asked, self._thread_count = time.monotonic(), sum(self._client.nthreads().values())
@@ -50,8 +47,6 @@ class DaskExecutor(Executor):
 
     def submit(self, function: Callable[..., Any], /, *args: Any, **kwargs: Any) -> "Future[Any]":
         """Send a call to the scheduler; it counts as running from then on."""
-        if self._limits != Limits():
-            function, args = limited, (self._limits, function, *args)
         # Impure: a call that is made a second time must not get the answer to the first.
         there, here = self._client.submit(function, *args, **kwargs, pure=False), Future[Any]()
         here.set_running_or_notify_cancel()
@@ -86,15 +81,3 @@ def _reason(error: BaseException) -> BaseException:
     if isinstance(error, KilledWorker):
         return WorkerDiedError("its worker was lost, and so were those that it was given to afterwards")
     return error
-
-
-def limited(limits: Limits, function: Callable[..., Any], *args: Any, **kwargs: Any) -> Any:
-    """Make a call in a process of its own beside the worker's, which can be ended when it goes over its limits."""
-    return _beside(limits).submit(function, *args, **kwargs).result()
-
-
-@cache
-def _beside(limits: Limits) -> LocalExecutor:
-    # Dask starts its workers as daemons, which may have no children; these end with their parent by themselves.
-    multiprocessing.current_process().daemon = False
-    return LocalExecutor(available_cores(), limits)

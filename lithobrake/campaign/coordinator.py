@@ -9,7 +9,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from lithobrake.campaign.beside import submit_limited
 from lithobrake.campaign.ledger import Ledger
+from lithobrake.campaign.limits import Limits
 from lithobrake.campaign.local import WorkerDiedError
 from lithobrake.campaign.one_run import Model, perform
 from lithobrake.campaign.tally import Tally
@@ -40,6 +42,7 @@ class Coordinator:
     executor: Executor
     jobs: dict[str, Job]
     state: Tally
+    limits: Limits
     retry_count: int
     tried: dict[str, int]
     progress: Callable[[Tally], None]
@@ -68,11 +71,11 @@ class Coordinator:
             raise
 
     def _hand_out(self) -> None:
-        window = _AHEAD * getattr(self.executor, "worker_count", _UNKNOWN_COUNT)
+        window = _AHEAD * getattr(self.executor, "capacity", _UNKNOWN_COUNT)
         while self.waiting and len(self.flying) < window:
             key = self.waiting.popleft()
             job = self.jobs[key]
-            future = self.executor.submit(perform, job.model, job.inputs, job.seed, job.log)
+            future = submit_limited(self.executor, self.limits, perform, job.model, job.inputs, job.seed, job.log)
             self.flying[future] = key
             self._unmarked.append(future)
             future.add_done_callback(self._ended.put)

@@ -5,6 +5,7 @@ single call. Here each process has a pipe of its own: the call of a dead one is 
 """
 
 import contextlib
+import math
 import os
 import pickle
 import threading
@@ -16,13 +17,13 @@ from multiprocessing.connection import Pipe, wait
 from typing import Any
 
 from lithobrake.campaign.limits import Limits, memory_by_session
-from lithobrake.campaign.worker import BEGUN, Worker
+from lithobrake.campaign.worker import BEGUN, Call, Worker
 
 # How often running calls are looked at when they have limits [s].
 _LOOK = 0.2
 
 
-class WorkerDiedError(RuntimeError):
+class WorkerDiedError(ChildProcessError):
     """The process of a call died, or was ended because the call went over its limits; the message says which."""
 
 
@@ -33,24 +34,34 @@ class LocalExecutor(Executor):
     it ends.
     """
 
-    def __init__(self, worker_count: int | None = None, limits: Limits | None = None) -> None:
+    def __init__(self, worker_count: int | None = None) -> None:
         """Prepare `worker_count` processes (None: one for each core); they start when there is work for them."""
         self.worker_count = worker_count or available_cores()
-        self.limits = limits or Limits()
-        self._waiting: deque[tuple[Future[Any], bytes]] = deque()
+        self._waiting: deque[Call] = deque()
         self._workers: list[Worker] = []
         self._ear, self._bell = Pipe(duplex=False)
         self._lock = threading.Lock()
         self._thread: threading.Thread | None = None
         self._closing = False
 
+    @property
+    def capacity(self) -> int:
+        """Calls that are made at once."""
+        return self.worker_count
+
     def submit(self, function: Callable[..., Any], /, *args: Any, **kwargs: Any) -> "Future[Any]":
         """Queue a call; it is pickled here and now."""
+        return self.submit_limited(Limits(), function, *args, **kwargs)
+
+    def submit_limited(
+        self, limits: Limits, function: Callable[..., Any], /, *args: Any, **kwargs: Any
+    ) -> "Future[Any]":
+        """Queue a call whose process is ended when it goes over its limits; the future then has a WorkerDiedError."""
         call, future = pickle.dumps((function, args, kwargs)), Future[Any]()
         with self._lock:
             if self._closing:
                 raise RuntimeError("this LocalExecutor is shut down; make another one")
-            self._waiting.append((future, call))
+            self._waiting.append(Call(future, call, limits))
             if self._thread is None:
                 self._thread = threading.Thread(target=self._serve, name="local executor", daemon=True)
                 self._thread.start()
@@ -61,7 +72,7 @@ class LocalExecutor(Executor):
         """Take no more calls; with cancel_futures, those that wait are cancelled and those under way are ended."""
         with self._lock:
             self._closing = True
-            given_up = [future for future, _ in self._waiting] if cancel_futures else []
+            given_up = [call.future for call in self._waiting] if cancel_futures else []
             if cancel_futures:
                 self._waiting.clear()
         for future in given_up:
@@ -78,12 +89,12 @@ class LocalExecutor(Executor):
 
     def _serve(self) -> None:
         """Hand out calls and collect answers until the executor is shut down and nothing is left to do."""
-        has_limits = self.limits != Limits()
         try:
             while self._hand_out():
-                busy = [worker for worker in self._workers if worker.future]
+                busy = [worker for worker in self._workers if worker.call]
+                has_limits = any(worker.call.limits != Limits() for worker in busy if worker.call)
                 pipes = [self._ear, *(worker.connection for worker in busy)]
-                ready = wait(pipes, timeout=_LOOK if has_limits and busy else None)
+                ready = wait(pipes, timeout=_LOOK if has_limits else None)
                 if self._ear in ready:
                     self._ear.recv_bytes()
                 for worker in busy:
@@ -101,21 +112,21 @@ class LocalExecutor(Executor):
         """Give waiting calls to idle processes, starting processes as needed; False when all is done and closed."""
         while True:
             with self._lock:
-                idle = next((worker for worker in self._workers if worker.future is None), None)
+                idle = next((worker for worker in self._workers if worker.call is None), None)
                 if not self._waiting or (idle is None and len(self._workers) >= self.worker_count):
-                    busy = any(worker.future for worker in self._workers)
+                    busy = any(worker.call for worker in self._workers)
                     return bool(self._waiting) or busy or not self._closing
-                future, call = self._waiting.popleft()
-            if not (future.running() or future.set_running_or_notify_cancel()):
+                call = self._waiting.popleft()
+            if not (call.future.running() or call.future.set_running_or_notify_cancel()):
                 continue
             if idle is None:
                 idle = Worker()
                 self._workers.append(idle)
-            if not idle.take(future, call):
+            if not idle.take(call):
                 # It died while it had nothing to do; the call has not begun, so another process takes it.
                 self._remove(idle)
                 with self._lock:
-                    self._waiting.appendleft((future, call))
+                    self._waiting.appendleft(call)
 
     def _hear(self, worker: Worker) -> None:
         """Take in what a process says: that it has begun, or how its call ended."""
@@ -127,19 +138,19 @@ class LocalExecutor(Executor):
         if said == BEGUN:
             worker.begun = time.monotonic()
             return
-        future, worker.future = worker.future, None
+        call, worker.call = worker.call, None
         # The next call goes out before anybody is told of this one, so that the process need not wait.
         self._hand_out()
         fine, answer = pickle.loads(said)
-        if future and fine:
-            future.set_result(answer)
-        elif future:
-            future.set_exception(answer)
+        if call and fine:
+            call.future.set_result(answer)
+        elif call:
+            call.future.set_exception(answer)
 
     def _lose(self, worker: Worker, reason: str) -> None:
         self._remove(worker)
-        if worker.future is not None:
-            worker.future.set_exception(WorkerDiedError(reason.format(ended=worker.ended())))
+        if worker.call is not None:
+            worker.call.future.set_exception(WorkerDiedError(reason.format(ended=worker.ended())))
 
     def _remove(self, worker: Worker) -> None:
         worker.kill()
@@ -148,17 +159,18 @@ class LocalExecutor(Executor):
     def _give_up(self, error: BaseException) -> None:
         with self._lock:
             self._closing = True
-            futures = [future for future, _ in self._waiting]
-        futures += [worker.future for worker in self._workers if worker.future]
-        for future in futures:
+            calls = list(self._waiting)
+        calls += [worker.call for worker in self._workers if worker.call]
+        for future in [call.future for call in calls]:
             if not future.done() and (future.running() or future.set_running_or_notify_cancel()):
                 future.set_exception(error)
 
     def _end_those_over_their_limits(self) -> None:
-        memory = memory_by_session() if self.limits.memory_bytes < float("inf") else {}
-        for worker in [worker for worker in self._workers if worker.future and worker.begun]:
-            wall_s = time.monotonic() - (worker.begun or 0.0)
-            reason = self.limits.exceeded(wall_s, memory.get(worker.number, 0))
+        begun = [(worker, worker.call.limits, worker.begun) for worker in self._workers if worker.call and worker.begun]
+        measured = any(limits.memory_bytes < math.inf for _, limits, _ in begun)
+        memory = memory_by_session() if measured else {}
+        for worker, limits, since in begun:
+            reason = limits.exceeded(time.monotonic() - since, memory.get(worker.number, 0))
             if reason:
                 self._lose(worker, reason)
 

@@ -13,6 +13,7 @@ import numpy as np
 from lithobrake.campaign.coordinator import Coordinator, Job
 from lithobrake.campaign.identity import run_key, run_seed
 from lithobrake.campaign.ledger import Ledger
+from lithobrake.campaign.limits import Limits
 from lithobrake.campaign.local import LocalExecutor
 from lithobrake.campaign.one_run import Model
 from lithobrake.campaign.record import Record
@@ -53,6 +54,7 @@ def run(
     seed: int = 0,
     replicate: int = 0,
     executor: Executor | None = None,
+    limits: Limits | None = None,
     retry_count: int = 0,
     log_folder: Path | None = None,
     progress: Callable[[Tally], None] | None = None,
@@ -61,7 +63,8 @@ def run(
 
     x: inputs, shape [run_count, len(names)]. fixed: inputs that are the same in all rows. context: whatever else the
     results depend on, as JSON values; "version" stands in the ledger. executor: with the interface of
-    concurrent.futures (None: the cores of this machine). retry_count: how often a failed run is tried again.
+    concurrent.futures (None: the cores of this machine). limits: of one run. retry_count: how often a failed run is
+    tried again. progress: called as the campaign goes on.
     A run that raises, or whose process dies, is recorded as failed with its reason, and the campaign goes on.
     """
     rows = _inputs_of(x, names, fixed or {})
@@ -76,8 +79,9 @@ def run(
     entries = [(key, job.inputs, job.seed, replicate) for key, job in jobs.items()]
     ledger.queue(entries, version=str((context or {}).get("version", "")))
     tried = {key: found[key].attempts for key in jobs if key in found}
+    state = _state(keys, known)
     with _given_or_own(executor) as workers:
-        Coordinator(ledger, workers, jobs, _state(keys, known), retry_count, tried, progress or _silent).compute()
+        Coordinator(ledger, workers, jobs, state, limits or Limits(), retry_count, tried, progress or _silent).compute()
     records = ledger.find(keys)
     return Runs([records[key] for key in keys], reused_count=len(known))
 

@@ -8,8 +8,11 @@ import signal
 import threading
 from collections.abc import Iterator
 from concurrent.futures import Future
+from dataclasses import dataclass
 from multiprocessing.connection import Connection, wait
 from typing import Any
+
+from lithobrake.campaign.limits import Limits
 
 # One run fills one core; a numerical library that starts threads of its own would only slow the others down.
 _THREAD_COUNTS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
@@ -17,10 +20,19 @@ _THREAD_COUNTS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", 
 BEGUN = b"begun"
 
 
+@dataclass(frozen=True)
+class Call:
+    """A pickled call, who waits for its answer, and what it may take."""
+
+    future: "Future[Any]"
+    content: bytes
+    limits: Limits
+
+
 class Worker:
     """A process, as its coordinator sees it.
 
-    future: of the call that it is at, or None. begun: when it began with that call, on the monotonic clock [s].
+    call: that it is at, or None. begun: when it began with it, on the monotonic clock [s].
     """
 
     def __init__(self) -> None:
@@ -34,16 +46,16 @@ class Worker:
         # With the only other end in the process itself, the pipe closes when the process dies.
         other_end.close()
         self.number = int(self._process.pid or 0)
-        self.future: Future[Any] | None = None
+        self.call: Call | None = None
         self.begun: float | None = None
 
-    def take(self, future: "Future[Any]", call: bytes) -> bool:
+    def take(self, call: Call) -> bool:
         """Send a call; False when the process is dead."""
         try:
-            self.connection.send_bytes(call)
+            self.connection.send_bytes(call.content)
         except OSError:
             return False
-        self.future, self.begun = future, None
+        self.call, self.begun = call, None
         return True
 
     def kill(self) -> None:

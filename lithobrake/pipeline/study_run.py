@@ -1,17 +1,14 @@
 """Running a study file in a folder."""
 
-import math
 from collections.abc import Callable
-from concurrent.futures import Executor
 from pathlib import Path
 
 from lithobrake import study_file
 from lithobrake.atomic import atomic_path
-from lithobrake.campaign import DaskExecutor, Limits, LocalExecutor
+from lithobrake.campaign import DaskExecutor, LocalExecutor
 from lithobrake.pipeline.folder import StudyFolder
 from lithobrake.pipeline.job import Job, Progress
 from lithobrake.pipeline.stages import make
-from lithobrake.study import Study
 
 
 def run_study(
@@ -35,7 +32,7 @@ def run_study(
     """
     study, tables = study_file.read(path), study_file.load(path)
     folder = StudyFolder(out)
-    with folder.alone() as note, _executor(study, worker_count, scheduler) as executor:
+    with folder.alone() as note, DaskExecutor(scheduler) if scheduler else LocalExecutor(worker_count) as executor:
         with atomic_path(folder / "study.toml") as draft:
             draft.write_bytes(path.read_bytes())
 
@@ -49,8 +46,3 @@ def run_study(
             # What is under way would be waited for otherwise; every finished run is in the ledger already.
             executor.shutdown(cancel_futures=True)
             raise
-
-
-def _executor(study: Study, worker_count: int | None, scheduler: str | None) -> Executor:
-    limits = Limits(study.campaign.wall_limit or math.inf, study.campaign.memory_limit or math.inf)
-    return DaskExecutor(scheduler, limits) if scheduler else LocalExecutor(worker_count, limits)

@@ -1,11 +1,12 @@
 """Touchdowns of a study as a campaign: which model makes them, from which values, and what was drawn by chance."""
 
+import math
 from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
-from lithobrake.campaign import Ledger, Runs, Tally, run_seed
+from lithobrake.campaign import Ledger, Limits, Runs, Tally, run_seed
 from lithobrake.campaign import run as run_campaign
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.landings import TouchdownModel, draw, engine_hash, medians
@@ -35,6 +36,7 @@ def touchdowns(job: Job, names: Sequence[str], x: np.ndarray, title: str) -> Run
             ledger=ledger,
             seed=study.seed,
             executor=job.executor,
+            limits=Limits(study.campaign.wall_limit or math.inf, study.campaign.memory_limit or math.inf),
             retry_count=study.campaign.retry_count,
             log_folder=job.folder.path.absolute() / "logs" if job.keeps_logs else None,
             progress=show,

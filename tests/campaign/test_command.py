@@ -29,8 +29,16 @@ def campaign(folder: Path, do: str, limits: Limits | None = None) -> Runs:
     program = folder / "program.py"
     program.write_text(PROGRAM.replace("DO", do))
     model = Command(shlex.join([sys.executable, str(program)]), folder / "solver", required=("height",))
-    with Ledger(folder / "runs.sqlite") as ledger, LocalExecutor(2, limits) as executor:
-        return run(model, X, names=("a",), ledger=ledger, executor=executor, context={"solver": model.identity()})
+    with Ledger(folder / "runs.sqlite") as ledger, LocalExecutor(2) as executor:
+        return run(
+            model,
+            X,
+            names=("a",),
+            ledger=ledger,
+            executor=executor,
+            context={"solver": model.identity()},
+            limits=limits,
+        )
 
 
 FAILURES = [

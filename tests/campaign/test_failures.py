@@ -10,14 +10,22 @@ import campaign_models as models
 import numpy as np
 import pytest
 
-from lithobrake.campaign import Ledger, Limits, LocalExecutor, Runs, missing, read_records, run
+from lithobrake.campaign import (
+    Ledger,
+    Limits,
+    LocalExecutor,
+    Runs,
+    missing,
+    read_records,
+    run,
+)
 
 X = np.array([[1.0, 0.5], [2.0, 0.5], [3.0, 0.5], [4.0, 0.5]])
 
 
 def campaign(path: Path, model: Any, limits: Limits | None = None, **options: Any) -> Runs:
-    with Ledger(path / "runs.sqlite") as ledger, LocalExecutor(2, limits) as executor:
-        return run(model, X, names=("a", "b"), ledger=ledger, executor=executor, **options)
+    with Ledger(path / "runs.sqlite") as ledger, LocalExecutor(2) as executor:
+        return run(model, X, names=("a", "b"), ledger=ledger, executor=executor, limits=limits, **options)
 
 
 def test_a_run_over_its_wall_limit_is_ended_and_the_others_go_on(tmp_path: Path) -> None:
