@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lithobrake.smallbody import attraction
+from lithobrake.smallbody.gradient import gradient
 from lithobrake.smallbody.partner import Orbit, Partner
 from lithobrake.smallbody.shape import Shape
 
@@ -66,10 +67,14 @@ class Body:
         """Angular velocity about +z [rad/s]."""
         return 2.0 * math.pi / self.spin_period
 
-    def _field(self, points: ArrayLike) -> NDArray[np.float64]:
+    def _checked(self, points: ArrayLike) -> NDArray[np.float64]:
         p = np.asarray(points, dtype=np.float64)
         if p.shape[-1:] != (3,):
             raise ValueError(f"{self.name}: points have shape {p.shape}; the last axis must hold x, y, z.")
+        return p
+
+    def _field(self, points: ArrayLike) -> NDArray[np.float64]:
+        p = self._checked(points)
         field = attraction.field(p.reshape(-1, 3), self.shape.gravity) * (GRAVITATIONAL_CONSTANT * self.density)
         return field.reshape(*p.shape[:-1], 5)
 
@@ -86,6 +91,15 @@ class Body:
         """Laplacian of the potential [1/s2]: -4 pi G density inside, half of it on a facet, 0 outside."""
         laplacian: NDArray[np.float64] = -self._field(points)[..., 4]
         return laplacian
+
+    def gradient(self, points: ArrayLike) -> NDArray[np.float64]:
+        """Derivatives of the acceleration by place [1/s2], shape [..., 3, 3], at body-fixed points [m], [..., 3].
+
+        Symmetric; its trace is the Laplacian. On an edge of the shape, where it has no limit, it is large and finite.
+        """
+        p = self._checked(points)
+        sums = gradient(p.reshape(-1, 3), self.shape.polyhedron, self.shape.multipole)
+        return (sums * (GRAVITATIONAL_CONSTANT * self.density)).reshape(*p.shape, 3)
 
     def effective_acceleration(self, points: ArrayLike) -> NDArray[np.float64]:
         """Gravity and centrifugal acceleration [m/s2] of a point at rest in the body-fixed frame, shape [..., 3]."""

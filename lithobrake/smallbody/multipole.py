@@ -16,8 +16,8 @@ from lithobrake.compiled import compiled
 from lithobrake.smallbody.lanes import LANES
 from lithobrake.smallbody.polyhedron import DEPTH, PULL_X, PULL_Y, PULL_Z, Polyhedron
 
-DEGREE = 16
-LARGEST_ERROR = 1e-9  # of the acceleration, at the radius from which the series is used
+DEGREE = 20
+LARGEST_ERROR = 2e-11  # of the acceleration, at the radius from which the series is used
 RADII = (1.15, 1.3, 1.5, 1.75, 2.0, 2.5, 3.0, 4.0, 6.0)  # tried as that radius, in radii of the body
 # Rows of scratch: position over the body's radius and 1/r**2, then harmonic of order m, the last two of rising degree.
 _X, _Y, _Z, _W, _DIAGONAL, _NEW, _OLD = 0, 1, 2, 3, 4, 6, 8
