@@ -158,7 +158,8 @@ class MaybeUncertain(Number):
         kind = given.pop("distribution", None)
         if kind not in DISTRIBUTIONS:
             names = ", ".join(DISTRIBUTIONS)
-            raise refuse(table, self, f"give it a distribution out of {names}{closest(kind, DISTRIBUTIONS)}")
+            remedy = f"give it a distribution out of {names}{closest(kind, DISTRIBUTIONS)}"
+            raise refuse(table, self, f"{remedy}; discrete choices are not supported: make one study for each")
         needed = DISTRIBUTIONS[kind]
         if set(given) != set(needed) or not all(map(is_number, given.values())):
             raise refuse(table, self, f"{kind} takes exactly the numbers {', '.join(needed)}")

@@ -3,12 +3,14 @@
 A `MaybeUncertain` key takes a number, or a table with a distribution. `lithobrake new` writes these very lines.
 """
 
-from typing import Annotated, Literal, get_args
+from typing import Annotated, Literal
 
 from pydantic import BaseModel, Field, Strict
 
 from lithobrake.quantity import MaybeUncertain, Number, Numbers, Scalar, Uncertain, Whole
 from lithobrake.study_campaign import CampaignSection, Section, SolverSection
+from lithobrake.study_design import OUTPUTS as OUTPUTS
+from lithobrake.study_design import DesignSection, MonteCarloSection
 
 Metres = Annotated[float, Number("m", above=0)]
 Interval = Annotated[tuple[float, float], Numbers("m", count=2, ascending=True)]
@@ -22,9 +24,6 @@ Cohesion = Annotated[Scalar, MaybeUncertain("N", at_least=0)]
 SurfaceEnergy = Annotated[Scalar, MaybeUncertain("J/m2", at_least=0)]
 Angle = Annotated[Scalar, MaybeUncertain("deg", at_least=-360, at_most=360)]
 Spin = Annotated[Scalar, MaybeUncertain("rad/s")]
-
-OutputName = Literal["speed_out", "elevation_out", "spin_out", "velocity_out_x", "velocity_out_y", "velocity_out_z"]
-OUTPUTS: tuple[OutputName, ...] = get_args(OutputName)
 
 
 class Constant(Section):
@@ -214,32 +213,6 @@ class LandingSection(Section):
 
     time_limit: Annotated[float, Number("s", above=0)] = 60.0
     """Longest simulated time of one touchdown."""
-
-
-class DesignSection(Section):
-    """Which runs are made, and what is fitted to them: all inputs first, then those that matter at higher order."""
-
-    screening_level: Annotated[int, Whole("", at_least=1, at_most=8)] = Field(default=3, examples=["2"])
-    """Level of the Smolyak grid over all uncertain inputs."""
-    screening_degree: Annotated[int, Whole("", at_least=1, at_most=15)] = Field(default=3, examples=["2"])
-    """Total degree of the expansion in all uncertain inputs."""
-    refined_level: Annotated[int, Whole("", at_least=1, at_most=8)] = Field(default=5, examples=["3"])
-    """Level of the Smolyak grid over the kept inputs; the others stay at their median."""
-    refined_degree: Annotated[int, Whole("", at_least=1, at_most=15)] = Field(default=5, examples=["3"])
-    """Total degree of the expansion in the kept inputs."""
-    kept_share: Annotated[float, Number("", above=0, at_most=1)] = 0.9
-    """Share of the explained variance of every output of kept_outputs that the kept inputs must reach together."""
-    kept_outputs: Annotated[tuple[OutputName, ...], Field(min_length=1)] = OUTPUTS
-    """Outputs that decide which inputs are kept."""
-    test_count: Annotated[int, Whole("", at_least=2, at_most=100_000)] = Field(default=40, examples=["10"])
-    """Fresh random runs in each of the two test sets (kept inputs vary; all inputs vary)."""
-
-
-class MonteCarloSection(Section):
-    """Samples of the refined expansion."""
-
-    sample_count: Annotated[int, Whole("", at_least=100, at_most=100_000_000)] = 100_000
-    """How many samples."""
 
 
 BUILT_IN_BODIES = ("didymos", "dimorphos")

@@ -220,17 +220,52 @@ def _design_problems(study: Study) -> Iterator[str]:
             'such as young_modulus = { distribution = "log_uniform", lower = 1e6, upper = 1e8 }'
         )
         return
+    yield from _unbounded_problems(study)
+    yield from _replicate_problems(study)
     design = study.design
     for stage, counts in (("screening", [input_count]), ("refined", range(1, input_count + 1))):
         level, degree = getattr(design, f"{stage}_level"), getattr(design, f"{stage}_degree")
+        point_count, smolyak = getattr(design, f"{stage}_count"), design.method == "smolyak"
+        key = f"design.{stage}_{'level' if smolyak else 'count'}"
+        if smolyak == (point_count is not None):
+            yield (
+                f"design.{stage}_count {'does not go with' if smolyak else 'is missing; it is needed by'} "
+                f'design.method = "{design.method}"; allowed: "smolyak" takes levels, every other method counts'
+            )
+            continue
         for count in counts:
-            node_count, terms = smolyak_count(count, level), term_count(count, degree)
-            if node_count < terms:
+            found = smolyak_count(count, level) if smolyak else int(point_count or 0)
+            terms = term_count(count, degree)
+            if found < terms and (design.fit == "ols" or design.method == "fekete"):
+                where = f"{found} nodes of level {level}" if smolyak else f"{found} points of {key}"
                 yield (
                     f"design.{stage}_degree is {degree}; with {count} inputs it has {terms} terms, more than the "
-                    f"{node_count} nodes of level {level}; lower the degree or raise design.{stage}_level"
+                    f"{where}; lower the degree or raise {key}"
                 )
                 break
+
+
+def _unbounded_problems(study: Study) -> Iterator[str]:
+    """Inputs that have no end, on a grid that puts nodes at the ends."""
+    if study.design.method != "smolyak":
+        return
+    for name, value in uncertain(study.touchdown_values()).items():
+        if not all(map(math.isfinite, _reach(value))):
+            yield (
+                f'{name} is {value.distribution}, which has no end, and design.method = "smolyak" puts runs at the '
+                "ends; give it two limits (truncated_normal, log_uniform, uniform, beta), or take another design.method"
+            )
+
+
+def _replicate_problems(study: Study) -> Iterator[str]:
+    """Runs that would be made several times to the same end."""
+    impact, count = study.impact, study.design.replicate_count
+    drawn = study.bed.bed_count > 1 or impact.region or "random" in (impact.azimuth_deg, impact.orientation)
+    if count > 1 and not drawn and not study.solver.command:
+        yield (
+            f"design.replicate_count is {count}, but runs draw nothing by chance, so all {count} would be equal; "
+            'give them something to draw (bed.bed_count, impact.region, azimuth_deg or orientation "random") or write 1'
+        )
 
 
 def _solver_problems(study: Study) -> Iterator[str]:

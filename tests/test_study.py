@@ -84,6 +84,21 @@ REFUSED = [
     ("bed.diameter", table("constant", value=0.1, upper=3.0), ["bed.diameter.upper is not a known key"]),
     ("contact.pair_rule", "smalest", ["did you mean smaller?"]),
     ("design.screening_degree", 9, ["design.screening_degree is 9", "2002 terms", "61 nodes"]),
+    ("design.method", "sobol", ["did you mean sobol_sequence?"]),
+    ("design.method", "latin_hypercube", ["design.screening_count is missing", "design.refined_count is missing"]),
+    ("design.refined_count", 50, ["design.refined_count does not go with", '"smolyak" takes levels']),
+    ("design.replicate_count", 2, ["draw nothing by chance", "impact.region"]),
+    ("design.replicate_count", 0, ["at least 1 and at most 1000"]),
+    ("design.fit", "least squares", ["allowed: ols, lars, omp, gaussian_process or best"]),
+    ("monte_carlo.scatter", "yes", ['monte_carlo.scatter is "yes"; it must be a valid boolean']),
+    ("grain.friction", table("choice", values=[0.3, 0.9]), ["discrete choices are not supported"]),
+    (
+        "grain.young_modulus",
+        table("log_normal", mean=16.0, std=1.0),
+        ["which has no end", "log_uniform", "design.method"],
+    ),
+    ("grain.friction", table("exponential", rate=2.0), ["grain.friction is exponential, which has no end"]),
+    ("impact.spin_x", table("normal", mean=0.0, std=0.1), ["impact.spin_x is normal, which has no end"]),
     ("site.body", "no_such.obj", ["no such file"]),
     ("surface.gravity", -1e-5, ["bed.settle_gravity"]),
     ("lander.diameter", 0.2, ["does not go with this shape"]),
@@ -99,9 +114,16 @@ def test_a_wrong_key_is_named_with_its_value_and_range(key: str, value: Any, wor
         assert word in said
 
 
+SOBOL = {"design.method": "sobol_sequence", "design.screening_count": 100, "design.refined_count": 100}
 ACCEPTED = [
-    {"grain.friction": table("exponential", rate=2.0)},
-    {"lander.mass": table("log_normal", mean=1.0, std=0.1)},
+    {"grain.friction": table("exponential", rate=2.0), **SOBOL},
+    {"lander.mass": table("log_normal", mean=1.0, std=0.1), **SOBOL, "design.method": "fekete"},
+    {
+        "site.latitude_deg": table("uniform", lower=-10.0, upper=10.0),
+        "site.mass": table("gamma", shape=9.0, scale=6e10),
+    },
+    {"design.replicate_count": 3, "impact.orientation": "random"},
+    {"design.replicate_count": 2, "bed.bed_count": 2, "design.fit": "best", "monte_carlo.scatter": True},
     {"grain.restitution": 1.0},
     {"impact.incidence_deg": table("truncated_normal", mean=30.0, std=5.0, lower=10.0, upper=50.0)},
     {"impact.azimuth_deg": "random", "impact.orientation": "random"},
@@ -113,6 +135,13 @@ ACCEPTED = [
 @pytest.mark.parametrize("changes", ACCEPTED)
 def test_what_is_within_its_limits_is_accepted(changes: dict[str, Any]) -> None:
     assert problems(changes) == []
+
+
+def test_counts_must_reach_the_terms_of_least_squares_only() -> None:
+    few = {**SOBOL, "design.screening_count": 20}
+    (said,) = problems(few)
+    assert "it has 21 terms, more than the 20 points of design.screening_count; lower the degree or raise" in said
+    assert problems({**few, "design.fit": "omp"}) == []
 
 
 def test_all_problems_are_said_at_once() -> None:

@@ -23,7 +23,7 @@ from lithobrake.chaos.optimal import christoffel, christoffel_weights, d_optimal
 from lithobrake.chaos.resampling import score_intervals, sobol_intervals
 from lithobrake.chaos.scores import absolute_percentage_error
 from lithobrake.chaos.sparse_grid import smolyak, smolyak_count
-from lithobrake.chaos.stochastic import StochasticSurrogate, fit_stochastic, load_stochastic
+from lithobrake.chaos.stochastic import StochasticSurrogate, fit_stochastic, joint_scatter, load_stochastic
 from lithobrake.chaos.storage import load
 from lithobrake.chaos.surrogate import Surrogate
 from lithobrake.chaos.terms import multi_index_set, term_count
@@ -56,6 +56,7 @@ __all__ = [
     "fit_dependent",
     "fit_stochastic",
     "gradient",
+    "joint_scatter",
     "latin_hypercube",
     "load",
     "load_dependent",

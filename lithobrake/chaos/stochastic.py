@@ -12,7 +12,7 @@ from scipy import special
 from lithobrake.chaos.automatic import PROCESS_FROM, PROCESS_LIMIT
 from lithobrake.chaos.fitting import fit
 from lithobrake.chaos.germ import Distribution
-from lithobrake.chaos.noise import replicates
+from lithobrake.chaos.noise import equal_rows, replicates
 from lithobrake.chaos.polynomials import Array
 from lithobrake.chaos.storage import content_of, read, surrogate_of, write
 from lithobrake.chaos.surrogate import Surrogate
@@ -86,3 +86,28 @@ def fit_stochastic(
     spread = fit(inputs, pooled.points[usable], logarithm, method=method, output_names=names)
     mean.one_dimensional = spread.one_dimensional = training.one_dimensional
     return StochasticSurrogate(mean, spread, pooled.correlation)
+
+
+def joint_scatter(surrogate: Surrogate, x: ArrayLike, y: ArrayLike) -> Array:
+    """Scatter of runs x, y, one row for each run that tells of it, [row_count, output_count], to be drawn from jointly.
+
+    With runs of equal inputs these are their deviations from their means, widened to the spread of single runs; else
+    the residuals of the expansion, brought to the scatter that its report knows (the nugget of a process) or, without
+    one, to its expected error, which then also holds what the expansion does not follow. Rows of y that are all NaN
+    are left out.
+    """
+    training = checked_training(surrogate.inputs, x, y, output_names=surrogate.output_names)
+    group = equal_rows(training.x)
+    sizes = np.bincount(group).astype(float)
+    several = sizes[group] > 1.0
+    if several.any():
+        means = np.stack([np.bincount(group, weights=column) / sizes for column in training.y.T], axis=1)
+        widened = np.sqrt(sizes / np.maximum(sizes - 1.0, 1.0))
+        return ((training.y - means[group]) * widened[group][:, None])[several]
+    residuals = training.y - surrogate.evaluated(training.x)
+    residuals -= residuals.mean(axis=0)
+    own = residuals.std(axis=0)
+    entries = [surrogate.report.get("outputs", {}).get(name, {}) for name in surrogate.output_names]
+    known = [entry.get("noise_std") or entry.get("rmse_estimate") for entry in entries]
+    wanted = np.array([size if one is None else one for one, size in zip(known, own, strict=True)])
+    return residuals * np.divide(wanted, own, out=np.zeros_like(own), where=own > 0.0)

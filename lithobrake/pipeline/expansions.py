@@ -81,23 +81,45 @@ def kept_inputs(study: Study, screening: "Surrogate") -> tuple[str, ...]:
 def points(study: Study, design: str, kept: Sequence[str]) -> np.ndarray:
     """The points of a design, shape [point_count, input_count]; inputs that do not vary are at their median."""
     from lithobrake.analysis import sample_inputs
-    from lithobrake.chaos import smolyak
 
     inputs = design_inputs(study)
     varied = inputs if design in ("screening", "test_all") else {name: inputs[name] for name in kept}
+    seed = int(json_hash([study.seed, design])[:12], 16)
     if design.startswith("test"):
-        x = sample_inputs(varied, study.design.test_count, seed=int(json_hash([study.seed, design])[:12], 16))
+        x = sample_inputs(varied, study.design.test_count, seed=seed)
     else:
-        x = smolyak(varied, level=getattr(study.design, f"{design}_level"))
+        x = _training_points(study, design, varied, seed)
     full = np.tile([distribution.median for distribution in inputs.values()], (len(x), 1))
     full[:, [list(inputs).index(name) for name in varied]] = x
     return full
 
 
+def _training_points(study: Study, design: str, varied: "dict[str, Distribution]", seed: int) -> np.ndarray:
+    """The points of a design to which an expansion is fitted, [point_count, len(varied)]."""
+    from lithobrake.chaos import fekete, latin_hypercube, smolyak, sobol_sequence
+
+    section = study.design
+    if section.method == "smolyak":
+        return smolyak(varied, level=getattr(section, f"{design}_level"))
+    count = getattr(section, f"{design}_count")
+    if section.method == "fekete":
+        return fekete(varied, count, seed, degree=getattr(section, f"{design}_degree"))
+    return (sobol_sequence if section.method == "sobol_sequence" else latin_hypercube)(varied, count, seed)
+
+
+def replicate_count(study: Study, design: str) -> int:
+    """Runs at every point of a design; the test sets have one."""
+    return 1 if design.startswith("test") else study.design.replicate_count
+
+
 def design_runs(job: Job, design: str, kept: Sequence[str] = ()) -> DesignRuns:
-    """Make the runs of a design; those that the ledger has are read from it."""
+    """Make the runs of a design, all points once, then again if asked; those that the ledger has are read from it."""
     inputs, x = tuple(design_inputs(job.study)), points(job.study, design, kept)
-    return DesignRuns(inputs, x, touchdowns(job, inputs, x, f"{design.replace('_', ' ')} runs"))
+    count, title = replicate_count(job.study, design), f"{design.replace('_', ' ')} runs"
+    titles = [f"{title}, {number} of {count} times" if count > 1 else title for number in range(1, count + 1)]
+    runs = [touchdowns(job, inputs, x, words, replicate) for replicate, words in enumerate(titles)]
+    records = [record for one in runs for record in one.records]
+    return DesignRuns(inputs, np.tile(x, (count, 1)), Runs(records, sum(one.reused_count for one in runs)))
 
 
 def account(job: Job, design: str, runs: DesignRuns) -> None:
@@ -128,22 +150,25 @@ def fit_refined(job: Job) -> None:
 
 
 def _fit(study: Study, design: str, runs: DesignRuns, names: Sequence[str]) -> "Surrogate":
-    """Least squares on the runs that have outputs. Raises ValueError, with the outcomes, when they are too few."""
+    """The expansion of the runs that have outputs. Raises ValueError, with the outcomes, when they are too few."""
     from lithobrake.chaos import fit, term_count
 
     degree, found = getattr(study.design, f"{design}_degree"), int(runs.has_outputs.sum())
-    terms = term_count(len(names), degree)
+    least_squares = study.design.fit == "ols"
+    terms = term_count(len(names), degree) if least_squares else 1
     if found < terms:
         counts = ", ".join(f"{count} {name}" for name, count in runs.outcome_counts().items())
         reason = next((f"; the first failure: {record.reason}" for record in runs.runs.records if record.reason), "")
+        measure = "level" if study.design.method == "smolyak" else "count"
         raise ValueError(
-            f"of {len(runs.x)} {design} runs {found} have outputs ({counts}), fewer than the {terms} terms of degree "
-            f"{degree}; raise design.{design}_level, lower design.{design}_degree, or choose an impact that rebounds"
+            f"of {len(runs.x)} {design} runs {found} have outputs ({counts}), fewer than the {terms} terms that are "
+            f"fitted; raise design.{design}_{measure}, lower design.{design}_degree, or choose an impact that rebounds"
             f"{reason}"
         )
     inputs = design_inputs(study)
     chosen = {name: inputs[name] for name in names}
-    return fit(chosen, runs.columns(names), runs.y, degree=degree, method="ols", output_names=OUTPUTS)
+    method = None if study.design.fit == "best" else study.design.fit
+    return fit(chosen, runs.columns(names), runs.y, degree if least_squares else None, method, output_names=OUTPUTS)
 
 
 def score_all(job: Job) -> None:

@@ -25,7 +25,7 @@ class Samples:
 
     inputs [sample_count, input_count], in the file's units; outputs [sample_count, output_count], SI, in the local
     frame; captured [sample_count]: by the draw of the capture probability; stays [sample_count]: captured, or without
-    outward velocity.
+    outward velocity; without_scatter: the outputs of the expansion alone, where scatter was added, else None.
     """
 
     input_names: list[str]
@@ -35,6 +35,7 @@ class Samples:
     capture_probability: np.ndarray
     captured: np.ndarray
     stays: np.ndarray
+    without_scatter: np.ndarray | None = None
 
     def output(self, name: str) -> np.ndarray:
         """One output, shape [sample_count]."""
@@ -47,6 +48,8 @@ class Samples:
         with atomic_path(folder / "samples.h5") as draft, h5py.File(draft, "w") as file:
             for name in ("inputs", "outputs", "capture_probability", "captured", "stays"):
                 file.create_dataset(name, data=getattr(self, name))
+            if self.without_scatter is not None:
+                file.create_dataset("without_scatter", data=self.without_scatter)
             file.attrs["format_version"] = FORMAT_VERSION
             file.attrs["input_names"], file.attrs["output_names"] = self.input_names, self.output_names
 
@@ -73,16 +76,29 @@ def draw_samples(job: Job) -> None:
     study, inputs = job.study, design_inputs(job.study)
     refined = load(job.folder / "refined.json")
     x = sample_inputs(inputs, study.monte_carlo.sample_count, sampling_seed(study, "samples"))
-    outputs = _evaluate(refined, x[:, [list(inputs).index(name) for name in refined.input_names]], job)
+    smooth = _evaluate(refined, x[:, [list(inputs).index(name) for name in refined.input_names]], job)
     runs = [design_runs(job, design, refined.input_names) for design in DESIGNS]
     seen, captured = capture_runs(runs)
     probability = CaptureModel(inputs, seen, captured).probability(x)
     draws = np.random.Generator(np.random.PCG64(sampling_seed(study, "capture"))).random(len(x))
-    is_captured = draws < probability
+    is_captured, outputs, without_scatter = draws < probability, smooth, None
+    if study.monte_carlo.scatter:
+        outputs = smooth + _scatter(study, refined, runs[DESIGNS.index("refined")], len(x))
+        without_scatter = smooth
     outward = outputs[:, refined.output_names.index("velocity_out_z")] > 0
-    Samples(list(inputs), refined.output_names, x, outputs, probability, is_captured, is_captured | ~outward).save(
+    stays = is_captured | ~outward
+    Samples(list(inputs), refined.output_names, x, outputs, probability, is_captured, stays, without_scatter).save(
         job.folder
     )
+
+
+def _scatter(study: Study, refined: "Surrogate", runs: DesignRuns, count: int) -> np.ndarray:
+    """Scatter from run to run for each sample, drawn jointly for all outputs, [count, output_count]."""
+    from lithobrake.chaos import joint_scatter
+
+    rows = joint_scatter(refined, runs.columns(refined.input_names), runs.y)
+    generator = np.random.Generator(np.random.PCG64(sampling_seed(study, "scatter")))
+    return rows[generator.integers(len(rows), size=count)]
 
 
 def capture_runs(designs: list[DesignRuns]) -> tuple[np.ndarray, np.ndarray]:

@@ -41,11 +41,11 @@ def _files(*names: str) -> Callable[[Study], list[str]]:
 
 
 def _screening(study: Study) -> Any:
-    return [design_reads(study), study.seed, *_design("screening_level", "screening_degree")(study)]
+    return [design_reads(study), study.seed, *_design(*_SCREENING)(study)]
 
 
 def _sample(study: Study) -> Any:
-    return study.monte_carlo.sample_count
+    return study.monte_carlo.model_dump()
 
 
 def _nothing(study: Study) -> Any:
@@ -59,7 +59,8 @@ def _write_report(job: Job) -> None:
 
 
 FIT, FLY = ("pipeline", "chaos", "analysis"), ("pipeline", "smallbody", "site.py")
-_REFINED = _design("refined_level", "refined_degree", "kept_share", "kept_outputs")
+_SCREENING = ("method", "fit", "replicate_count", "screening_level", "screening_count", "screening_degree")
+_REFINED = _design("refined_level", "refined_count", "refined_degree", "kept_share", "kept_outputs")
 _TEST = _design("test_count")
 
 FLIGHT_FILES = ("flights.csv", "flights.json", "body.obj")

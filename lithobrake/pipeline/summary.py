@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from lithobrake.pipeline.expansions import DESIGNS, DesignRuns, design_runs, kept_inputs
+from lithobrake.pipeline.expansions import DESIGNS, DesignRuns, design_runs, kept_inputs, replicate_count
 from lithobrake.pipeline.flights import flight_numbers, read_flights
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.samples import Samples
@@ -40,7 +40,7 @@ def write_summary(job: Job) -> None:
         "units": UNITS,
         "beds": [_bed(job, name) for name in bed_files(job.study)],
         "node_counts": _node_counts(job.study, len(screening.input_names)),
-        "designs": {design: _design(runs[design]) for design in DESIGNS},
+        "designs": {design: _design(runs[design], replicate_count(job.study, design)) for design in DESIGNS},
         "outputs_of_runs": _outputs_of_runs(runs),
         "screening": _expansion(screening),
         "refined": _expansion(refined),
@@ -117,9 +117,14 @@ def _node_counts(study: Study, input_count: int) -> dict[str, Any]:
     return {"input_counts": counts, "levels": levels, **table}
 
 
-def _design(design: DesignRuns) -> dict[str, Any]:
-    known = design.has_outputs
-    return {"run_count": len(design.x), "with_outputs": int(known.sum()), "outcomes": design.outcome_counts()}
+def _design(design: DesignRuns, replicate_count: int) -> dict[str, Any]:
+    return {
+        "point_count": len(design.x) // replicate_count,
+        "replicate_count": replicate_count,
+        "run_count": len(design.x),
+        "with_outputs": int(design.has_outputs.sum()),
+        "outcomes": design.outcome_counts(),
+    }
 
 
 def _outputs_of_runs(runs: dict[str, DesignRuns]) -> dict[str, Any]:
@@ -147,11 +152,19 @@ def _expansion(surrogate: "Surrogate") -> dict[str, Any]:
     return {
         "inputs": inputs,
         "term_count": len(surrogate.multi_indices),
+        "degree": surrogate.degree,
+        "fits": {name: _fit(entry) for name, entry in surrogate.report["outputs"].items()},
         "mean": _by_output(surrogate, np.asarray(surrogate.mean)),
         "std": _by_output(surrogate, np.sqrt(np.asarray(surrogate.variance))),
         "sobol_first": by_output(first),
         "sobol_total": by_output(total),
     }
+
+
+def _fit(entry: dict[str, Any]) -> dict[str, Any]:
+    """How one output was fitted, the error expected at a new run and the scatter between equal runs, SI."""
+    keys = ("method", "term_count", "condition_number", "rmse_estimate", "rrmse_estimate", "noise_std", "noise_from")
+    return {key: entry.get(key) for key in keys}
 
 
 def _by_output(surrogate: "Surrogate", values: np.ndarray) -> dict[str, float]:

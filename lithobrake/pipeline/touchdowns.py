@@ -15,14 +15,16 @@ from lithobrake.pipeline.surface import bed_files, touchdown_reads
 from lithobrake.study import OUTPUTS, Study
 
 
-def touchdowns(job: Job, names: Sequence[str], x: np.ndarray, title: str) -> Runs:
+def touchdowns(job: Job, names: Sequence[str], x: np.ndarray, title: str, replicate: int = 0) -> Runs:
     """Make the touchdowns at the rows of x, shape [run_count, len(names)]; those that the ledger has are read from it.
+
+    replicate: another number gives the same rows other draws.
 
     What a run draws is drawn here and counts among its inputs, so that a run depends on nothing else: another bed, or
     a wider region, leaves every run as it was whose draws remain.
     """
     study = job.study
-    rows = [_drawn(study, names, row) for row in x.tolist()]
+    rows = [_drawn(study, names, row, replicate) for row in x.tolist()]
 
     def show(state: Tally) -> None:
         job.progress(state.ended, state.total, title, "\n".join([state.sentence(), *state.spread_lines(OUTPUTS)]))
@@ -35,6 +37,7 @@ def touchdowns(job: Job, names: Sequence[str], x: np.ndarray, title: str) -> Run
             context=touchdown_reads(study),
             ledger=ledger,
             seed=study.seed,
+            replicate=replicate,
             executor=job.executor,
             limits=Limits(study.campaign.wall_limit or math.inf, study.campaign.memory_limit or math.inf),
             retry_count=study.campaign.retry_count,
@@ -52,9 +55,9 @@ def drawn_reads(study: Study) -> dict[str, Any]:
     }
 
 
-def _drawn(study: Study, names: Sequence[str], row: Sequence[float]) -> dict[str, float]:
+def _drawn(study: Study, names: Sequence[str], row: Sequence[float], replicate: int) -> dict[str, float]:
     values = medians(study) | dict(zip(names, row, strict=True))
-    return draw(study, values, run_seed(values, study.seed, 0))
+    return draw(study, values, run_seed(values, study.seed, replicate))
 
 
 def _model(job: Job) -> TouchdownModel | SolverModel:

@@ -22,12 +22,13 @@ RING: dict[str, Any] = {"markerfacecolor": "none", "markeredgecolor": SITE, "mar
 
 @dataclass(frozen=True)
 class Design:
-    """A design of this study, to be marked in the figure."""
+    """A design of this study, to be marked in the figure; measure: whether it has a level or only a degree."""
 
     name: str
     input_count: int
     level: int
     node_count: int
+    measure: str = "level"
 
 
 def count_figure(
@@ -82,6 +83,7 @@ def _legend(figure: Figure, designs: Sequence[Design]) -> None:
     ]
     for design, (marker, size) in zip(designs, MARKERS, strict=False):
         plural = "s" if design.input_count > 1 else ""
-        words = f"{design.name}: {design.input_count} input{plural}, level {design.level}, {design.node_count} runs"
+        place = f"{design.measure} {design.level}"
+        words = f"{design.name}: {design.input_count} input{plural}, {place}, {design.node_count} runs"
         handles.append(Line2D([], [], marker=marker, markersize=size, linestyle="none", label=words, **RING))
     figure.legend(handles=handles, loc="lower center", ncols=4, columnspacing=1.6)

@@ -10,6 +10,12 @@ from lithobrake.report.scatter_figure import DRAWN_COUNT
 
 PLAIN_SYMBOLS = {"speed_out": "V+", "elevation_out": "theta+", "spin_out": "omega+"}
 FIELD_WORDS = {"young_modulus": "Young's modulus", "poisson_ratio": "Poisson's ratio"}
+METHOD_WORDS = {
+    "smolyak": "on the Smolyak grid",
+    "sobol_sequence": "of a Sobol sequence",
+    "latin_hypercube": "of a Latin hypercube",
+    "fekete": "at approximate Fekete points",
+}
 STATUS_WORDS = {
     "clear": "leaves the surface",
     "captured": "is captured",
@@ -99,15 +105,25 @@ def landing(data: Results) -> str:
 
 def counts(data: Results) -> str:
     """Figure 3."""
-    table, design = data.results["node_counts"], data.study["design"]
+    table, design, designs = data.results["node_counts"], data.study["design"], data.results["designs"]
     level, inputs = design["screening_level"], len(data.results["screening"]["inputs"])
-    sparse = data.results["designs"]["screening"]["run_count"]
-    words = f"The screening of {inputs} inputs at level {level} takes {sparse} runs on the Smolyak grid"
-    if inputs in table["input_counts"] and level in table["levels"]:
+    grid = design["method"] == "smolyak"
+    place = f"at level {level}" if grid else f"of degree {design['screening_degree']}"
+    words = (
+        f"The screening of {inputs} inputs {place} takes {_runs(designs['screening'])} {METHOD_WORDS[design['method']]}"
+    )
+    if grid and inputs in table["input_counts"] and level in table["levels"]:
         full = table["tensor"][table["input_counts"].index(inputs)][table["levels"].index(level)]
         words += f", against {_thousands(full)} on the full tensor grid"
-    kept, runs = len(data.results["kept_inputs"]), data.results["designs"]["refined"]["run_count"]
-    return f"{words}; the refined design in the {kept} kept inputs at level {design['refined_level']} takes {runs}."
+    place = f"at level {design['refined_level']}" if grid else f"of degree {design['refined_degree']}"
+    kept = len(data.results["kept_inputs"])
+    return f"{words}; the refined design in the {kept} kept inputs {place} takes {_runs(designs['refined'])}."
+
+
+def _runs(design: dict[str, int]) -> str:
+    """How many runs a design takes, and how they come about."""
+    count, points = design["replicate_count"], design["point_count"]
+    return f"{design['run_count']} runs" + (f" ({points} points, {count} times each)" if count > 1 else "")
 
 
 def sobol(data: Results) -> str:

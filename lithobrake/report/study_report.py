@@ -92,8 +92,15 @@ def _landing(data: Results) -> "Figure | None":
 
 def _counts(data: Results) -> "Figure":
     table, results, design = data.results["node_counts"], data.results, data.study["design"]
+    measure = "level" if design["method"] == "smolyak" else "degree"
     designs = [
-        Design(name, len(results[name]["inputs"]), design[f"{name}_level"], results["designs"][name]["run_count"])
+        Design(
+            name,
+            len(results[name]["inputs"]),
+            design[f"{name}_{measure}"],
+            results["designs"][name]["run_count"],
+            measure,
+        )
         for name in ("screening", "refined")
     ]
     tensor, smolyak = np.array(table["tensor"], dtype=float), np.array(table["smolyak"], dtype=float)

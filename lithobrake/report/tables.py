@@ -88,6 +88,7 @@ def tables(data: Results) -> list[Table]:
         _inputs(data),
         _runs(data),
         *([_beds(data)] if data.results["beds"] else []),
+        _fits(data),
         _scores(data),
         _sobol(data),
         _outputs(data),
@@ -137,6 +138,40 @@ def _beds(data: Results) -> Table:
     keys = ("solid_fraction", "coordination_number", "surface_height_m", "mean_diameter_m")
     rows = [[str(index), *(_cell(bed[key]) for key in keys)] for index, bed in enumerate(data.results["beds"])]
     return Table("Beds", columns, rows, numbers=frozenset(columns[1:]))
+
+
+def _fits(data: Results) -> Table:
+    columns = [
+        "expansion",
+        "output",
+        "unit",
+        "method",
+        "terms",
+        "condition number",
+        "expected error",
+        "scatter between equal runs",
+    ]
+    rows = []
+    for stage in ("screening", "refined"):
+        for row, (name, fit) in enumerate(data.results[stage]["fits"].items()):
+            shown = output(name)
+            rows.append(
+                [
+                    stage if row == 0 else "",
+                    OUTPUT_WORDS.get(name, name),
+                    shown.unit,
+                    fit["method"].replace("_", " "),
+                    str(fit["term_count"]),
+                    "-" if fit["condition_number"] is None else f"{fit['condition_number']:.3g}",
+                    _cell(fit["rmse_estimate"] * shown.factor),
+                    "not known" if fit["noise_std"] is None else _cell(fit["noise_std"] * shown.factor),
+                ]
+            )
+    note = (
+        "Expected error: at a new run, by cross-validation, scatter included; no expansion comes below the scatter, "
+        "which is known from points that were run several times, or from the nugget of a Gaussian process."
+    )
+    return Table("How the expansions were fitted", columns, rows, note, frozenset(columns[4:]))
 
 
 def _scores(data: Results) -> Table:

@@ -83,7 +83,16 @@ def made_up_summary(scores: dict[str, dict[str, dict[str, object]]]) -> dict[str
     spread = dict.fromkeys(OUTPUTS, 0.02)
     quantiles = {"quantile_0.05": 0.08, "quantile_0.5": 0.1, "quantile_0.95": 0.12}
     share = {"count": 200, "share": 0.5, "lower": 0.45, "upper": 0.55}
-    expansion = {"term_count": 10, "mean": spread, "std": spread, "sobol_first": sobol, "sobol_total": sobol}
+    fit = {"method": "ols", "term_count": 10, "condition_number": 5.3, "rmse_estimate": 0.01, "noise_std": None}
+    fits = dict.fromkeys(OUTPUTS, fit)
+    expansion = {
+        "term_count": 10,
+        "fits": fits,
+        "mean": spread,
+        "std": spread,
+        "sobol_first": sobol,
+        "sobol_total": sobol,
+    }
     levels = np.arange(1, 4)
     uniform = {"distribution": "uniform", "lower": 0.3, "upper": 0.9}
     return {
@@ -97,7 +106,7 @@ def made_up_summary(scores: dict[str, dict[str, dict[str, object]]]) -> dict[str
                 "restitution": uniform,
                 "friction": uniform,
             },
-            "design": {"screening_level": 2, "refined_level": 3, "kept_outputs": OUTPUTS},
+            "design": {"method": "smolyak", "screening_level": 2, "refined_level": 3, "kept_outputs": OUTPUTS},
             "flight": {"duration": 43200.0},
             "site": {"body": "didymos"},
         },
@@ -114,7 +123,13 @@ def made_up_summary(scores: dict[str, dict[str, dict[str, object]]]) -> dict[str
                 }
             ],
             "designs": {
-                name: {"run_count": 25, "with_outputs": 24, "outcomes": {"captured": 1, "clear": 24}}
+                name: {
+                    "point_count": 25,
+                    "replicate_count": 1,
+                    "run_count": 25,
+                    "with_outputs": 24,
+                    "outcomes": {"captured": 1, "clear": 24},
+                }
                 for name in ("screening", "refined", "test_kept", "test_all")
             },
             "outputs_of_runs": {"penetration": {"median": 0.01, "smallest": 0.0, "largest": 0.02, "unit": "m"}},

@@ -1,0 +1,145 @@
+"""Designs other than the sparse grid, points that are run several times, and scatter in the samples."""
+
+import json
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+import pytest
+
+from lithobrake import study_file
+from lithobrake.pipeline import stage_keys
+from lithobrake.pipeline.expansions import points
+from lithobrake.study import OUTPUTS, Study
+from lithobrake.study_template import template
+
+# Two of the outputs scatter together, by a tenth of a millimetre a second along x and twice that upward.
+SCATTER = 1e-4
+PROGRAM = f"""
+import json, random
+from pathlib import Path
+question = json.loads(Path("inputs.json").read_text())
+values, chance = question["inputs"], random.Random(question["seed"]).gauss(0, {SCATTER})
+x = 0.1 * values["impact.speed"] + 0.01 * values["lander.friction"] + chance
+z = 0.3 * values["impact.speed"] * values["lander.restitution"] + 2 * chance
+outputs = {{"velocity_out_x": x, "velocity_out_y": 0.0, "velocity_out_z": z, "spin_out": values["lander.friction"]}}
+Path("outputs.json").write_text(json.dumps({{"outputs": outputs}}))
+"""
+STUDY = """
+[solver]
+command = "{python} program.py"
+[lander]
+shape = "sphere"
+diameter = 0.1
+mass = 1.0
+restitution = {{ distribution = "uniform", lower = 0.4, upper = 0.8 }}
+friction = {{ distribution = "log_normal", mean = -1.0, std = 0.1 }}
+[impact]
+speed = {{ distribution = "uniform", lower = 0.1, upper = 0.2 }}
+incidence_deg = 30.0
+[surface]
+gravity = 5e-5
+[bed]
+grain_count = 100
+width = [0.6, 0.6]
+diameter = {{ distribution = "constant", value = 0.08 }}
+[grain]
+density = 2500.0
+young_modulus = 1e7
+poisson_ratio = 0.25
+restitution = 0.5
+friction = 0.5
+[design]
+method = "sobol_sequence"
+screening_count = 20
+screening_degree = 2
+refined_count = 12
+refined_degree = 2
+replicate_count = 2
+kept_outputs = ["speed_out"]
+test_count = 8
+[monte_carlo]
+sample_count = 20_000
+scatter = true
+[flight]
+flight_count = 10
+duration = 3600.0
+"""
+
+
+def changed(**design: Any) -> Study:
+    """The template with another design."""
+    tables = tomllib.loads(template())
+    tables["design"].update(design)
+    return study_file.check(tables, Path())
+
+
+@pytest.mark.parametrize("method", ["sobol_sequence", "latin_hypercube", "fekete"])
+def test_designs_by_count_vary_what_they_should(method: str) -> None:
+    study = changed(method=method, screening_count=60, refined_count=70)
+    kept = ["grain.friction", "grain.restitution"]
+    screening, refined = points(study, "screening", ()), points(study, "refined", kept)
+    assert (len(screening), len(refined)) == (60, 70)
+    assert (np.ptp(screening, axis=0) > 0.0).all()
+    assert (np.ptp(refined, axis=0) > 0.0).tolist() == [False, False, True, True, False]
+    assert np.array_equal(screening, points(study, "screening", ()))
+
+
+def test_a_larger_sobol_sequence_keeps_the_points_of_a_smaller_one() -> None:
+    few, many = (changed(method="sobol_sequence", screening_count=n, refined_count=60) for n in (50, 70))
+    assert np.array_equal(points(few, "screening", ()), points(many, "screening", ())[:50])
+
+
+def test_another_number_of_runs_a_point_makes_again_from_the_screening_on() -> None:
+    tables = tomllib.loads(template())
+    tables["impact"]["orientation"] = "random"
+    before = stage_keys(study_file.check(tables, Path()))
+    tables["design"]["replicate_count"] = 3
+    after = stage_keys(study_file.check(tables, Path()))
+    assert [name for name in before if before[name] == after[name]] == ["bed", "landing"]
+
+
+@pytest.fixture(scope="module")
+def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A finished study of a program that scatters."""
+    folder = tmp_path_factory.mktemp("scatter")
+    (folder / "program.py").write_text(PROGRAM)
+    (folder / "study.toml").write_text(STUDY.format(python=sys.executable))
+    command = [sys.executable, "-m", "lithobrake", "run", folder / "study.toml", "--out", folder / "out"]
+    ended = subprocess.run([*map(str, command), "--workers", "2"], capture_output=True, text=True, timeout=600)
+    assert ended.returncode == 0, ended.stderr
+    return folder / "out"
+
+
+def test_points_run_twice_tell_the_scatter(out: Path) -> None:
+    results = json.loads((out / "summary.json").read_text())["results"]
+    screening = results["designs"]["screening"]
+    assert (screening["point_count"], screening["replicate_count"], screening["run_count"]) == (20, 2, 40)
+    assert results["designs"]["test_all"]["run_count"] == 8
+    fit = results["screening"]["fits"]["velocity_out_z"]
+    # Twenty pairs: the estimate has a standard deviation of 16 %.
+    assert fit["noise_std"] == pytest.approx(2.0 * SCATTER, rel=0.5)
+    assert fit["noise_from"] == "repeated points, 20 degrees of freedom"
+    assert fit["condition_number"] < 20.0
+    # The quadratic is exact: all that is expected at a new run is scatter, its own and, through ten terms from twenty
+    # points, that of the fit.
+    assert 0.8 < fit["rmse_estimate"] / fit["noise_std"] < 4.0
+    page = (out / "report" / "index.html").read_text()
+    assert "takes 40 runs (20 points, 2 times each) of a Sobol sequence" in page
+    assert "scatter between equal runs" in page
+
+
+def test_samples_have_the_scatter_and_are_kept_without_it(out: Path) -> None:
+    with h5py.File(out / "samples.h5") as file:
+        scatter = file["outputs"][:] - file["without_scatter"][:]
+        x, z = (file["outputs"].shape[1] - 3 + axis for axis in (0, 2))
+        assert list(file.attrs["output_names"]) == list(OUTPUTS)
+        assert np.array_equal(file["stays"][:], file["captured"][:] | (file["outputs"][:, z] <= 0.0))
+    assert scatter[:, z].std() == pytest.approx(2.0 * SCATTER, rel=0.6)
+    # Drawn jointly: upward is always twice along x.
+    assert np.allclose(scatter[:, z], 2.0 * scatter[:, x], atol=1e-12)
+    assert np.abs(scatter[:, x + 1]).max() == 0.0
