@@ -1,6 +1,8 @@
 """The command line. Everything heavy is imported inside the command that needs it, so that --help answers at once."""
 
+import errno
 import os
+import shlex
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -36,7 +38,7 @@ BAD_INPUT, INTERRUPTED = 2, 130
 @app.command()
 def new(name: Annotated[str, typer.Argument(metavar="NAME", help="Name of the study.", show_default=False)]) -> None:
     """Write a commented study file, NAME.toml."""
-    with _one_sentence("lithobrake new NAME with another name"):
+    with _one_sentence():
         from lithobrake.study_template import template
 
         path = Path(name if name.endswith(".toml") else f"{name}.toml")
@@ -92,7 +94,7 @@ _stage_command("fly", "Fly the samples that leave the surface.")
 @app.command()
 def report(folder: StudyDirectory) -> None:
     """Write the report of a study again."""
-    with _one_sentence(f"lithobrake report {folder}"):
+    with _one_sentence():
         if not (folder / "summary.json").is_file():
             raise ValueError(f"{folder} has no summary.json; make it with: lithobrake run STUDY.toml --out {folder}")
         from lithobrake.report import write_report
@@ -104,10 +106,11 @@ def report(folder: StudyDirectory) -> None:
 @app.command()
 def status(folder: StudyDirectory) -> None:
     """Say where a study is; from any terminal, also while it runs."""
-    with _one_sentence(f"lithobrake status {folder}"):
+    with _one_sentence():
         from lithobrake.pipeline import study_status
 
-        print("\n".join(study_status(folder)))
+        lines = study_status(folder)
+    print("\n".join(lines))
 
 
 @app.command()
@@ -115,22 +118,23 @@ def runs(
     folder: StudyDirectory, csv: Annotated[bool, typer.Option("--csv", help="Every column, as CSV.")] = False
 ) -> None:
     """List the runs of a study."""
-    with _one_sentence(f"lithobrake runs {folder}"):
+    with _one_sentence():
         from lithobrake.campaign import read_records, write_csv
 
         records = read_records(folder / "runs.sqlite")
-        if csv:
-            write_csv(records, sys.stdout)
-            return
-        for entry in records:
-            wall = "" if entry.wall_s is None else f"{entry.wall_s:.4g} s"
-            print(f"{entry.key[:12]}  {entry.status:<8} {wall:>10}  {entry.outcome or entry.reason or ''}")
+    # A reader that has enough (`| head`) closes the pipe, which is nobody's mistake: so this stands outside.
+    if csv:
+        write_csv(records, sys.stdout)
+        return
+    for entry in records:
+        wall = "" if entry.wall_s is None else f"{entry.wall_s:.4g} s"
+        print(f"{entry.key[:12]}  {entry.status:<8} {wall:>10}  {entry.outcome or entry.reason or ''}")
 
 
 @app.command()
 def view(folder: StudyDirectory) -> None:
     """Open the report of a study in the browser."""
-    with _one_sentence(f"lithobrake view {folder}"):
+    with _one_sentence():
         page = (folder / "report" / "index.html").resolve()
         if not page.is_file():
             raise ValueError(f"{folder} has no report; make it with: lithobrake run STUDY.toml --out {folder}")
@@ -157,7 +161,7 @@ def _make(study: Path, out: Path | None, until: str, workers: int | None, schedu
     """Make the files of a study up to a stage, with two lines of progress."""
     # The bits of a least-squares fit depend on the threads of the linear algebra, which reads this when it is loaded.
     os.environ.update(OPENBLAS_NUM_THREADS="1", MKL_NUM_THREADS="1")
-    with _one_sentence(" ".join(sys.argv[1:])):
+    with _one_sentence():
         from lithobrake.pipeline import run_study
         from lithobrake.progress import StudyProgress
 
@@ -186,17 +190,17 @@ def _print_results(folder: Path) -> None:
 
 
 @contextmanager
-def _one_sentence(command: str) -> Iterator[None]:
+def _one_sentence() -> Iterator[None]:
     """Turn what a user can mend into its sentence and exit code 2, and Ctrl-C into exit code 130."""
     try:
         yield
     except (ValueError, FloatingPointError, OSError) as error:
-        _leave(str(error), BAD_INPUT)
+        full = isinstance(error, OSError) and error.errno in (errno.ENOSPC, errno.EDQUOT)
+        remedy = "; all that was finished is kept: make room on the disk, and give the same command again"
+        _leave(f"{error}{remedy if full else ''}", BAD_INPUT)
     except KeyboardInterrupt:
-        _leave(
-            f"Stopped. Every finished run is kept; the same command goes on from there: lithobrake {command}",
-            INTERRUPTED,
-        )
+        command = shlex.join(["lithobrake", *sys.argv[1:]])
+        _leave(f"Stopped. Every finished run is kept; the same command goes on from there: {command}", INTERRUPTED)
 
 
 def _leave(sentence: str, code: int) -> NoReturn:

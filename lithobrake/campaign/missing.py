@@ -26,12 +26,13 @@ def missing(x: np.ndarray, reasons: Sequence[str | None], names: Sequence[str], 
     common = Counter(reason for reason in reasons if reason).most_common(3)
     said = "; ".join(f"{number} times: {reason}" for reason, number in common)
     sentence = f"{count} of {total} runs have failed ({said})"
-    if count > largest_share * total:
-        raise ValueError(
-            f"{sentence}; allowed: at most {100 * largest_share:g} %; remove what makes them fail, try them again "
-            "(campaign.retry_count), or allow more (campaign.failed_share)"
-        )
     corner = _corner(x, failed, names)
+    if count > largest_share * total:
+        place = "" if corner is None else f", {corner[0]} of them where {corner[1]}"
+        raise ValueError(
+            f"{sentence}{place}; allowed: at most {100 * largest_share:g} %; remove what makes them fail, try them "
+            "again (campaign.retry_count), or allow more (campaign.failed_share)"
+        )
     if corner:
         inside, where = corner
         raise ValueError(

@@ -78,8 +78,7 @@ def run(
     }
     entries = [(key, job.inputs, job.seed, replicate) for key, job in jobs.items()]
     ledger.queue(entries, version=str((context or {}).get("version", "")))
-    tried = {key: found[key].attempts for key in jobs if key in found}
-    state = _state(keys, known)
+    state, tried = _state(keys, known), {key: found[key].attempts for key in jobs if key in found}
     with _given_or_own(executor) as workers:
         Coordinator(ledger, workers, jobs, state, limits or Limits(), retry_count, tried, progress or _silent).compute()
     records = ledger.find(keys)

@@ -103,11 +103,14 @@ def duration(seconds: float) -> str:
 
 
 def ledger_tally(records: Iterable[Record], began: str | None = None) -> Tally:
-    """Where a ledger stands, with the rate of the campaign that began at a moment (ISO, UTC) and is still at work."""
+    """Where a ledger stands, with the rate of the campaign that began at a moment (ISO, UTC) and is still at work.
+
+    began: None when nobody is at work; what is marked as running was then stopped, and counts among what is to be made.
+    """
     result = Tally(0)
     for entry in records:
         result.total += 1
-        result.running += entry.status == "running"
+        result.running += began is not None and entry.status == "running"
         if entry.status in ("done", "failed"):
             result.add(entry.status, entry.outputs)
             result.reused += began is not None and (entry.ended or "") < began

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from lithobrake.atomic import lock_holder
-from lithobrake.campaign import Ledger, LocalExecutor, Tally, ledger_tally, read_records, run, write_csv
+from lithobrake.campaign import Ledger, LocalExecutor, Tally, campaign_began, ledger_tally, read_records, run, write_csv
 from lithobrake.campaign.record import lock_path
 
 X = np.array([[1.0, 0.5], [2.0, 0.5], [3.0, 0.5]])
@@ -122,6 +122,33 @@ def test_what_a_tally_tells(tmp_path: Path) -> None:
     assert state.spreads["height"].std == pytest.approx(np.std([1.5, 9.5], ddof=1))
     assert state.time_left == 0.0
     assert state.sentence().startswith("3 runs: 2 done, 0 running, 1 failed, ")
+
+
+def test_runs_that_were_under_way_when_their_coordinator_died_count_as_running_no_more(tmp_path: Path) -> None:
+    with Ledger(tmp_path / "runs.sqlite") as ledger:
+        ledger.queue([("first", {"a": 1.0}, 1, 0), ("second", {"a": 2.0}, 1, 0)], "7")
+        ledger.start(["first"])
+        assert ledger_tally(read_records(ledger.path), campaign_began(ledger.path)).running == 1
+    assert campaign_began(ledger.path) is None
+    assert ledger_tally(read_records(ledger.path), None).running == 0
+
+
+def test_a_ledger_that_another_program_holds_is_one_sentence_and_goes_on_when_it_is_free(tmp_path: Path) -> None:
+    path = tmp_path / "runs.sqlite"
+    said = r"runs\.sqlite cannot be written \(database is locked\).*end what holds the file"
+    with Ledger(path) as ledger, LocalExecutor(1) as executor:
+        shell = sqlite3.connect(path, isolation_level=None)
+
+        def hold(state: Tally) -> None:
+            if state.done == 1 and not shell.in_transaction:
+                shell.execute("BEGIN IMMEDIATE")
+
+        with pytest.raises(OSError, match=said):
+            run(models.sleeps_a_little, X, names=("a", "b"), ledger=ledger, executor=executor, progress=hold)
+        shell.close()
+        runs = run(models.sleeps_a_little, X, names=("a", "b"), ledger=ledger, executor=executor)
+    assert runs.reused_count >= 1
+    assert runs.outcomes == ["clear"] * 3
 
 
 FULL_DISK = """

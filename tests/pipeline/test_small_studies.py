@@ -1,0 +1,199 @@
+"""Small studies with the ball on the plate: what is reused when a study grows, what is said when something is wrong."""
+
+import os
+import signal
+import sqlite3
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from lithobrake.campaign import Record, read_records
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+FRICTION = 'friction = { distribution = "uniform", lower = 0.05, upper = 0.4 }'
+FEW_RUNS = {
+    "screening_level = 2": "screening_level = 1",
+    "screening_degree = 2": "screening_degree = 1",
+    "refined_level = 3": "refined_level = 1",
+    "refined_degree = 3": "refined_degree = 1",
+    "test_count = 10": "test_count = 6",
+}
+
+
+def write_study(folder: Path, changes: dict[str, str], program: Path = EXAMPLES / "ball_on_plate.py") -> Path:
+    """The example's study with few runs and these changes of its text."""
+    text = (EXAMPLES / "ball_on_plate.toml").read_text()
+    for old, new in (FEW_RUNS | {"python3 ball_on_plate.py": f"{sys.executable} {program}"} | changes).items():
+        assert old in text
+        text = text.replace(old, new)
+    (folder / "study.toml").write_text(text)
+    return folder / "study.toml"
+
+
+def lithobrake(*arguments: object) -> "subprocess.CompletedProcess[str]":
+    command = [sys.executable, "-m", "lithobrake", *map(str, arguments)]
+    return subprocess.run(command, capture_output=True, text=True, check=False, timeout=600)
+
+
+def said_by(*arguments: object, code: int = 0) -> str:
+    """What a command says on standard error, its lines joined."""
+    ended = lithobrake(*arguments)
+    assert ended.returncode == code, ended.stderr
+    assert "Traceback" not in ended.stderr
+    return " ".join(ended.stderr.split())
+
+
+def what_came(records: list[Record]) -> dict[str, tuple[object, ...]]:
+    """Of each run by its key, what it follows from and what came of it; and when it was made."""
+    return {entry.key: (entry.inputs, entry.seed, entry.outcome, entry.outputs, entry.ended) for entry in records}
+
+
+@pytest.fixture(scope="module")
+def fixed(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A study up to its test runs, in which the friction is a number."""
+    folder = tmp_path_factory.mktemp("fixed")
+    said = said_by("test", write_study(folder, {FRICTION: "friction = 0.225"}), "--out", folder / "out")
+    assert "screening" in said
+    assert "reused" not in said.partition("refine")[0]
+    return folder / "out"
+
+
+def test_an_input_that_becomes_uncertain_reuses_the_runs_at_its_median_and_says_so(fixed: Path, tmp_path: Path) -> None:
+    before = what_came(read_records(fixed / "runs.sqlite"))
+    said = said_by("screen", write_study(tmp_path, {}), "--out", fixed, "--workers", 1)
+    # Three inputs have 7 nodes, four have 9: the two new ones are the ends of the friction.
+    assert "screening: 7 of 9 runs were known and are reused" in said
+    after = what_came(read_records(fixed / "runs.sqlite"))
+    assert len(after) == len(before) + 2
+    assert {key: after[key] for key in before} == before
+
+
+def test_one_more_bed_reuses_the_runs_that_stay_on_theirs_and_says_so(fixed: Path, tmp_path: Path) -> None:
+    before = what_came(read_records(fixed / "runs.sqlite"))
+    changes = {FRICTION: "friction = 0.225", "grain_count = 100": "grain_count = 100\nbed_count = 2"}
+    said = said_by("screen", write_study(tmp_path, changes), "--out", fixed, "--workers", 1)
+    after = what_came(read_records(fixed / "runs.sqlite"))
+    moved = [entry for entry in read_records(fixed / "runs.sqlite") if entry.inputs["bed"] == 1.0]
+    assert 0 < len(moved) < 7
+    assert f"screening: {7 - len(moved)} of 7 runs were known and are reused" in said
+    assert {key: after[key] for key in before} == before
+
+
+FAILS_ABOVE = """
+import json, runpy, sys
+if json.load(open("inputs.json"))["inputs"]["lander.restitution"] > 0.65:
+    sys.exit("the ball broke")
+runpy.run_path(PROGRAM, run_name="__main__")
+"""
+
+
+@pytest.mark.parametrize(
+    ("share", "said"),
+    [
+        ("0.02", "of 41 runs have failed (8 times: RuntimeError: the program ended with exit code 1; its last words: "
+                 "the ball broke), 8 of them where lander.restitution > 0.6; allowed: at most 2 %"),
+        ("0.5", "8 of them lie where lander.restitution > 0.6, so what is fitted without them knows nothing there"),
+    ],
+)  # fmt: skip
+def test_runs_that_fail_in_a_corner_are_not_fitted_around(share: str, said: str, tmp_path: Path) -> None:
+    (tmp_path / "breaks.py").write_text(FAILS_ABOVE.replace("PROGRAM", repr(str(EXAMPLES / "ball_on_plate.py"))))
+    changes = {
+        "screening_level = 1": "screening_level = 2",
+        "failed_share = 0.02": f"failed_share = {share}\nretry_count = 0",
+    }
+    study = write_study(tmp_path, changes, tmp_path / "breaks.py")
+    assert said in said_by("screen", study, "--out", tmp_path / "out", code=2)
+    assert not (tmp_path / "out" / "screening.json").exists()
+
+
+def test_a_second_coordinator_is_refused_while_the_first_goes_on(tmp_path: Path) -> None:
+    study = write_study(tmp_path, {})
+    command = [sys.executable, "-m", "lithobrake", "screen", str(study), "--out", str(tmp_path / "out")]
+    with subprocess.Popen(command, stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL) as first:
+        while not (tmp_path / "out" / "study.toml").is_file():
+            time.sleep(0.01)
+        os.kill(first.pid, signal.SIGSTOP)
+        said = said_by("screen", study, "--out", tmp_path / "out", code=2)
+        os.kill(first.pid, signal.SIGCONT)
+    assert f"another lithobrake is at work in {tmp_path / 'out'} (process {first.pid} on " in said
+    assert first.returncode == 0
+    assert len(read_records(tmp_path / "out" / "runs.sqlite")) == 9
+
+
+@pytest.fixture
+def small_disk(tmp_path: Path) -> Iterator[Path]:
+    """A file system of 100 kB."""
+    disk = tmp_path / "disk"
+    disk.mkdir()
+    mount = ["mount", "-t", "tmpfs", "-o", "size=100k", "tmpfs", str(disk)]
+    try:
+        done = subprocess.run(mount, capture_output=True, text=True, check=False)
+    except FileNotFoundError:
+        pytest.skip("there is no mount command, so no small file system")
+    if done.returncode:
+        pytest.skip(f"only an administrator may make a small file system ({done.stderr.strip()})")
+    yield disk
+    subprocess.run(["umount", str(disk)], check=True)
+
+
+def test_a_disk_that_fills_up_is_one_sentence_and_the_study_goes_on_when_there_is_room(
+    fixed: Path, small_disk: Path, tmp_path: Path
+) -> None:
+    study = write_study(tmp_path, {FRICTION: "friction = 0.225"})
+    said = said_by("test", study, "--out", small_disk / "out", "--workers", 1, code=2)
+    assert "make room" in said
+    with sqlite3.connect(small_disk / "out" / "runs.sqlite") as database:
+        assert database.execute("PRAGMA integrity_check").fetchone() == ("ok",)
+    database.close()
+    subprocess.run(["mount", "-o", "remount,size=20m", str(small_disk)], check=True)
+    said_by("test", study, "--out", small_disk / "out", "--workers", 1)
+    again, before = (what_came(read_records(out / "runs.sqlite")) for out in (small_disk / "out", fixed))
+    assert {key: entry[:4] for key, entry in again.items()} == {key: before[key][:4] for key in again}
+
+
+AS_NOBODY = """
+import os, sys
+from pathlib import Path
+from lithobrake.campaign import Ledger, read_records
+from lithobrake.pipeline import study_status
+from lithobrake.pipeline.folder import StudyFolder
+
+out = Path(sys.argv[1])
+out.chmod(0o555)
+if os.geteuid() == 0:
+    os.seteuid(65534)
+for open_folder in (lambda: StudyFolder(out), lambda: Ledger(out / "runs.sqlite")):
+    try:
+        open_folder()
+    except ValueError as error:
+        print(error)
+print(len(read_records(out / "runs.sqlite")))
+print(*study_status(out), sep="\\n")
+"""
+
+
+@pytest.mark.skipif(os.name != "posix", reason="folders have an owner and modes on POSIX only")
+def test_a_folder_that_may_only_be_read_is_refused_in_one_sentence_and_its_runs_are_read(tmp_path: Path) -> None:
+    # Nobody may enter the folders of these tests, so this one lies beside them.
+    with tempfile.TemporaryDirectory() as name:
+        out = Path(name) / "out"
+        os.chmod(name, 0o755)
+        said_by("screen", write_study(tmp_path, {FRICTION: "friction = 0.225"}), "--out", out, "--workers", 1)
+        before = {path: path.read_bytes() for path in out.rglob("*") if path.is_file()}
+        command = [sys.executable, "-c", AS_NOBODY, str(out)]
+        said = subprocess.run(command, capture_output=True, text=True, check=True).stdout.splitlines()
+        assert said[0].startswith(f"{out} cannot be written (")
+        assert said[0].endswith("choose another folder with --out")
+        assert said[1].startswith(f"{out / 'runs.sqlite'} cannot be used as a ledger (")
+        assert said[2:5] == [
+            "7",
+            f"{out}: nobody is at work; there is no report yet",
+            "7 runs: 7 done, 0 running, 0 failed",
+        ]
+        assert {path: path.read_bytes() for path in out.rglob("*") if path.is_file()} == before
+        out.chmod(0o755)
