@@ -1,4 +1,4 @@
-"""Skewness and kurtosis of an expansion: exact where a full grid of Gauss nodes is affordable, else by sampling."""
+"""Skewness and kurtosis of an expansion: exact by products of terms or Gauss nodes, by sampling beyond."""
 
 from typing import Any
 
@@ -6,26 +6,37 @@ import numpy as np
 
 from lithobrake.chaos.design import sobol_sequence
 from lithobrake.chaos.polynomials import Array
+from lithobrake.chaos.products import central_moments, product_count
 from lithobrake.chaos.surrogate import Surrogate
 from lithobrake.chaos.threads import one_thread
 
-# Nodes times outputs of the full grid beyond which sampling takes over: seconds of work.
+# Nodes times outputs of the full grid, and shares of products, beyond which sampling takes over: seconds of work.
 NODE_LIMIT = 30_000_000
+PRODUCT_LIMIT = 20_000_000
+# A share of a product costs about as much as so many nodes.
+NODES_PER_PRODUCT = 50
 
 
 @one_thread()
 def shape_moments(surrogate: Surrogate, *, count: int = 100_000, seed: int = 0) -> dict[str, Any]:
     """Skewness and kurtosis (3 for a normal) of each output, [output_count] or numbers; 0 where nothing varies.
 
-    "exact" says whether they are: a fourth power of degree 4 d is integrated without error by 2 d + 1 Gauss nodes of
-    each input. Where that grid has more than thirty million nodes, `count` points of a scrambled Sobol sequence stand
-    in for it.
+    "exact" says whether they are. Two ways are, and the cheaper is taken: the square of the expansion written as an
+    expansion, and a full grid of Gauss nodes, of which 2 d + 1 an input integrate a fourth power without error. Beyond
+    twenty million shares of products and thirty million nodes, `count` points of a scrambled Sobol sequence stand in.
     Source: Xiu, 2010, "Numerical Methods for Stochastic Computations", section 5.3 (moments from an expansion).
     """
     degrees = surrogate.multi_indices.max(axis=0)
     rules = [entry.gauss(2 * int(d) + 1) for entry, d in zip(surrogate.inputs.values(), degrees, strict=True) if d > 0]
-    exact = np.prod([float(len(nodes)) for nodes, _ in rules]) * len(surrogate.output_names) <= NODE_LIMIT
-    third, fourth = _by_grid(surrogate, rules) if exact else _by_sampling(surrogate, count, seed)
+    nodes = float(np.prod([float(len(one)) for one, _ in rules])) * len(surrogate.output_names)
+    products = product_count(surrogate)
+    exact = nodes <= NODE_LIMIT or products <= PRODUCT_LIMIT
+    if not exact:
+        third, fourth = _by_sampling(surrogate, count, seed)
+    elif products <= PRODUCT_LIMIT and NODES_PER_PRODUCT * products < nodes:
+        third, fourth = central_moments(surrogate)
+    else:
+        third, fourth = _by_grid(surrogate, rules)
     variance = np.atleast_1d(surrogate.variance)
     scale = np.where(variance > 0.0, variance, 1.0)
     return {

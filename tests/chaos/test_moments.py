@@ -12,13 +12,17 @@ from lithobrake.chaos import (
     LogNormal,
     LogUniform,
     Normal,
+    Surrogate,
     TruncatedNormal,
     Uniform,
     fit,
     latin_hypercube,
+    multi_index_set,
     shape_moments,
     sobol_sequence,
 )
+from lithobrake.chaos.moments import _by_grid as moments_by_grid
+from lithobrake.chaos.products import central_moments
 
 
 def test_sum_of_independent_inputs_adds_cumulants():
@@ -70,14 +74,49 @@ def test_squares_and_logarithms_with_several_outputs():
     assert surrogate.kurtosis[4] == pytest.approx(fourth / variance**2, rel=1e-9)
 
 
-def test_sampling_takes_over_where_the_grid_is_too_large():
+def test_many_inputs_stay_exact_by_products_of_terms():
     inputs = {f"x{k}": Uniform(0.0, 1.0) for k in range(12)}
     x = sobol_sequence(inputs, 200)
     surrogate = fit(inputs, x, (x[:, :3] ** 2).sum(axis=1) + x[:, 3:].sum(axis=1), degree=2)
-    shape = shape_moments(surrogate, count=200_000)
-    assert not shape["exact"]
-    # Variance and third cumulant of u**2 are 4/45 and 16/945; nine uniforms add 9/12.
+    shape = shape_moments(surrogate)
+    assert shape["exact"]
+    # Variance, third and fourth cumulant of u**2 are 4/45, 16/945 and the bracket; nine uniforms add 9/12, 0, -9/120.
     variance = 3.0 * 4.0 / 45.0 + 9.0 / 12.0
-    assert shape["skewness"] == pytest.approx(3.0 * 16.0 / 945.0 / variance**1.5, abs=0.01)
+    assert shape["skewness"] == pytest.approx(3.0 * 16.0 / 945.0 / variance**1.5, rel=1e-9)
     excess = 3.0 * (1.0 / 9.0 - 4.0 / 21.0 + 6.0 / 45.0 - 3.0 / 81.0 - 3.0 * (4.0 / 45.0) ** 2) - 9.0 / 120.0
-    assert shape["kurtosis"] == pytest.approx(3.0 + excess / variance**2, abs=0.02)
+    assert shape["kurtosis"] == pytest.approx(3.0 + excess / variance**2, rel=1e-9)
+
+
+def test_products_and_gauss_nodes_agree_in_every_family():
+    inputs = {
+        "n": Normal(0.0, 1.0),
+        "g": Gamma(2.5, 0.4),
+        "b": Beta(2.0, 5.0),
+        "t": TruncatedNormal(0.0, 1.0, -1.0, 2.0),
+        "idle": Uniform(0.0, 1.0),
+        "m": Empirical(np.random.default_rng(1).normal(size=80)),
+    }
+    indices = multi_index_set(6, 4, max_degrees=[4, 3, 4, 2, 0, 4])
+    coefficients = np.random.default_rng(0).normal(size=(len(indices), 2)) / (1.0 + indices.sum(axis=1))[:, None] ** 2
+    surrogate = Surrogate(inputs, indices, coefficients, output_names=["p", "q"], one_dimensional=False)
+    degrees = indices.max(axis=0)
+    rules = [entry.gauss(2 * int(d) + 1) for entry, d in zip(inputs.values(), degrees, strict=True) if d > 0]
+    for products, nodes in zip(central_moments(surrogate), moments_by_grid(surrogate, rules), strict=True):
+        assert np.allclose(products, nodes, rtol=1e-10)
+
+
+def test_a_constant_has_no_shape():
+    surrogate = fit({"a": Uniform(0.0, 1.0)}, [0.1, 0.5, 0.9], [2.0, 2.0, 2.0], degree=1)
+    assert central_moments(surrogate)[0].tolist() == [0.0]
+    assert (surrogate.skewness, surrogate.kurtosis) == (0.0, 0.0)
+
+
+def test_sampling_takes_over_where_neither_is_affordable(monkeypatch):
+    monkeypatch.setattr("lithobrake.chaos.moments.PRODUCT_LIMIT", 10)
+    monkeypatch.setattr("lithobrake.chaos.moments.NODE_LIMIT", 10)
+    inputs = {"a": Exponential(1.0), "b": Exponential(1.0)}
+    x = sobol_sequence(inputs, 40)
+    shape = shape_moments(fit(inputs, x, x.sum(axis=1), degree=2), count=200_000)
+    assert not shape["exact"]
+    assert shape["skewness"] == pytest.approx(np.sqrt(2.0), abs=0.02)
+    assert shape["kurtosis"] == pytest.approx(6.0, abs=0.2)
