@@ -42,8 +42,8 @@ def write_summary(job: Job) -> None:
         "node_counts": _node_counts(job.study, len(screening.input_names)),
         "designs": {design: _design(runs[design], replicate_count(job.study, design)) for design in DESIGNS},
         "outputs_of_runs": _outputs_of_runs(runs),
-        "screening": _expansion(screening),
-        "refined": _expansion(refined),
+        "screening": _expansion(screening, runs["screening"]),
+        "refined": _expansion(refined, runs["refined"]),
         "kept_inputs": list(kept),
         "kept_share": _by_output(screening, np.asarray(screening.sobol_group(kept))),
         "scores": {
@@ -141,12 +141,16 @@ def _outputs_of_runs(runs: dict[str, DesignRuns]) -> dict[str, Any]:
     return table
 
 
-def _expansion(surrogate: "Surrogate") -> dict[str, Any]:
+def _expansion(surrogate: "Surrogate", runs: DesignRuns) -> dict[str, Any]:
+    """What an expansion says, with 95 % intervals [lower, upper] of its Sobol indices from the runs behind it."""
+    from lithobrake.chaos import sobol_intervals
+
     inputs = surrogate.input_names
     first, total = np.asarray(surrogate.sobol_first), np.asarray(surrogate.sobol_total)
+    intervals = sobol_intervals(surrogate, runs.columns(inputs), runs.y)
 
-    def by_output(table: np.ndarray) -> dict[str, dict[str, float]]:
-        columns = zip(surrogate.output_names, table.T.tolist(), strict=True)
+    def by_output(table: np.ndarray) -> dict[str, dict[str, Any]]:
+        columns = zip(surrogate.output_names, np.moveaxis(table, 1, 0).tolist(), strict=True)
         return {output: dict(zip(inputs, column, strict=True)) for output, column in columns}
 
     return {
@@ -158,6 +162,8 @@ def _expansion(surrogate: "Surrogate") -> dict[str, Any]:
         "std": _by_output(surrogate, np.sqrt(np.asarray(surrogate.variance))),
         "sobol_first": by_output(first),
         "sobol_total": by_output(total),
+        "sobol_first_interval": by_output(np.moveaxis(intervals["first"], 0, -1)),
+        "sobol_total_interval": by_output(np.moveaxis(intervals["total"], 0, -1)),
     }
 
 

@@ -185,14 +185,17 @@ def _scores(data: Results) -> Table:
                     STAGE_WORDS.get(stage, stage) if row == 0 else "",
                     OUTPUT_WORDS.get(name, name),
                     shown.unit,
-                    _or_none(score["mape"]),
-                    _or_none(score["q2"]),
+                    _with_interval(score, "mape"),
+                    _with_interval(score, "q2"),
                     _cell(score["rmse"] * shown.factor),
                     _cell(score["std"] * shown.factor),
                     _or_none(score["rrmse"]),
                 ]
             )
-    note = "Q2: explained share of the variance. A MAPE is small wherever an output hardly varies, so read it with Q2."
+    note = (
+        "Q2: explained share of the variance. A MAPE is small wherever an output hardly varies, so read it with Q2. "
+        "In brackets, for fresh runs: 95 % interval, by drawing the runs anew."
+    )
     return Table("Errors of the expansions", columns, rows, note, frozenset(columns[3:]))
 
 
@@ -203,11 +206,14 @@ def _sobol(data: Results) -> Table:
     rows = [
         [
             input_words(key),
-            *(f"{table[kind][name][key]:.3f}" for kind in ("sobol_first", "sobol_total") for name in PAPER_OUTPUTS),
+            *(_index(table, kind, name, key) for kind in ("sobol_first", "sobol_total") for name in PAPER_OUTPUTS),
         ]
         for key in table["inputs"]
     ]
-    note = "From the screening expansion. First: alone. Total: with all interactions."
+    note = (
+        "From the screening expansion. First: alone. Total: with all interactions. In brackets: 95 % interval, by "
+        "drawing the residuals of the runs anew."
+    )
     return Table("Sobol indices", columns, rows, note, frozenset(columns[1:]))
 
 
@@ -248,6 +254,19 @@ def _fates(data: Results) -> Table:
 
 def _site(data: Results) -> Table:
     return Table("Site and body", ["name", "value"], flat(data.results["site"]), "m, kg, s, m/s2; degrees where named.")
+
+
+def _index(table: Mapping[str, Any], kind: str, name: str, key: str) -> str:
+    """One Sobol index with its interval."""
+    low, high = table[f"{kind}_interval"][name][key]
+    return f"{table[kind][name][key]:.2f} ({low:.2f} to {high:.2f})"
+
+
+def _with_interval(score: Mapping[str, Any], key: str) -> str:
+    """A score, with its interval where there is one."""
+    low, high = score.get(f"{key}_interval") or (None, None)
+    words = _or_none(score[key])
+    return words if low is None or high is None else f"{words} ({number(low, 2)} to {number(high, 2)})"
 
 
 def _or_none(value: float | None) -> str:

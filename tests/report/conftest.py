@@ -75,11 +75,13 @@ def made_up_scores() -> dict[str, dict[str, dict[str, object]]]:
     ape = [0.5, 1.0, 1.5, 3.0]
     score = {"mape": 1.5, "q2": 0.8, "rrmse": 0.45, "rmse": 0.01, "std": 0.022, "ape": ape}
     stages = ("screening", "refined", "test_kept", "test_all", "test_screening")
-    return {stage: {name: dict(score) for name in OUTPUTS} for stage in stages}
+    fresh = score | {"mape_interval": [1.1, 2.2], "q2_interval": [0.7, 0.85]}
+    return {stage: {name: fresh if stage.startswith("test") else score for name in OUTPUTS} for stage in stages}
 
 
 def made_up_summary(scores: dict[str, dict[str, dict[str, object]]]) -> dict[str, object]:
     sobol = {name: dict(zip(INPUTS, (0.1, 0.5, 0.3), strict=True)) for name in OUTPUTS}
+    sobol_interval = {name: {key: [0.9 * one, 1.1 * one] for key, one in row.items()} for name, row in sobol.items()}
     spread = dict.fromkeys(OUTPUTS, 0.02)
     quantiles = {"quantile_0.05": 0.08, "quantile_0.5": 0.1, "quantile_0.95": 0.12}
     share = {"count": 200, "share": 0.5, "lower": 0.45, "upper": 0.55}
@@ -92,6 +94,8 @@ def made_up_summary(scores: dict[str, dict[str, dict[str, object]]]) -> dict[str
         "std": spread,
         "sobol_first": sobol,
         "sobol_total": sobol,
+        "sobol_first_interval": sobol_interval,
+        "sobol_total_interval": sobol_interval,
     }
     levels = np.arange(1, 4)
     uniform = {"distribution": "uniform", "lower": 0.3, "upper": 0.9}

@@ -54,6 +54,11 @@ def test_every_mape_stands_beside_q2_rmse_and_spread(report: str) -> None:
     head = table[: table.index("</tr>")]
     for column in ("MAPE [%]", "Q2", "RMSE", "spread (std)"):
         assert column in head
+    assert "0.800 (0.7 to 0.85)" in table
+
+
+def test_every_sobol_index_has_its_interval(report: str) -> None:
+    assert "0.50 (0.45 to 0.55)" in report[report.index("<h3>Sobol indices") :]
 
 
 def test_provenance_stands_at_the_end(report: str) -> None:
