@@ -19,12 +19,14 @@ class Impacts:
     incidence   angle of the velocity from the inward normal [rad], [count]
     spin        angular velocity [rad/s], [count, 3]
     push        gravity and centrifugal acceleration along the outward normal [m/s2], [count]; below 0 it holds a lander
+    lander      which of the landers each is, counted as they were given to `hop`, [count]
     """
 
     speed: NDArray[np.float64]
     incidence: NDArray[np.float64]
     spin: NDArray[np.float64]
     push: NDArray[np.float64]
+    lander: NDArray[np.int64]
 
 
 @dataclass(frozen=True)

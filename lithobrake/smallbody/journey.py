@@ -27,6 +27,8 @@ class Journeys:
     spin           angular velocity at the end, body-fixed axes [rad/s], [count, 3]
     bounce_count   impacts after which the lander went on
     path_length    sum of the straight lines between starts and ends of the flights [m]
+    impact_speed   at the last impact, against the ground [m/s]; nan where there was none
+    incidence      there, of the velocity from the inward normal [rad]; nan likewise
     """
 
     body: Body
@@ -36,6 +38,8 @@ class Journeys:
     spin: NDArray[np.float64]
     bounce_count: NDArray[np.int64]
     path_length: NDArray[np.float64]
+    impact_speed: NDArray[np.float64]
+    incidence: NDArray[np.float64]
 
     @cached_property
     def latitude(self) -> NDArray[np.float64]:
@@ -106,7 +110,7 @@ def hop(
             progress(1.0 - len(going) / len(start))
         if not len(going):
             break
-    return Journeys(body, state.status, state.time, state.position, state.spin, state.bounce_count, state.path_length)
+    return state.journeys()
 
 
 @dataclass
@@ -123,11 +127,19 @@ class _State:
     status: NDArray[Any] = field(init=False)
     bounce_count: NDArray[np.int64] = field(init=False)
     path_length: NDArray[np.float64] = field(init=False)
+    impact_speed: NDArray[np.float64] = field(init=False)
+    incidence: NDArray[np.float64] = field(init=False)
 
     def __post_init__(self) -> None:
         count = len(self.position)
         self.spin, self.time, self.path_length = np.zeros((count, 3)), np.zeros(count), np.zeros(count)
         self.status, self.bounce_count = np.full(count, "flying", dtype="<U8"), np.zeros(count, dtype=np.int64)
+        self.impact_speed, self.incidence = np.full(count, np.nan), np.full(count, np.nan)
+
+    def journeys(self) -> Journeys:
+        """What has become of the landers."""
+        names = ("status", "time", "position", "spin", "bounce_count", "path_length", "impact_speed", "incidence")
+        return Journeys(self.body, *(getattr(self, name) for name in names))
 
     def advance(self, going: NDArray[np.int64], flights: Flights) -> None:
         """Take the ends of the flights of the landers `going`."""
@@ -135,6 +147,8 @@ class _State:
         self.position[going], self.velocity[going] = flights.position, flights.velocity
         self.time[going] += flights.time
         self.status[going] = np.where(flights.status == "impact", "flying", flights.status)
+        hit = flights.facet >= 0
+        self.impact_speed[going[hit]], self.incidence[going[hit]] = flights.impact_speed[hit], flights.incidence[hit]
         # The body turns on while a spin stays among the stars.
         turn = 2.0 * np.pi / self.spin_period[going] * flights.time
         c, s = np.cos(turn), np.sin(turn)
@@ -156,11 +170,10 @@ class _State:
         up = self.body.shape.normals[facet]
         velocity = self.velocity[going]
         axes = impact_frame(velocity, up)
-        speed = np.linalg.norm(velocity, axis=1)
-        incidence = np.arccos(np.clip(-np.einsum("ni,ni->n", velocity, up) / speed, -1.0, 1.0))
+        speed, incidence = self.impact_speed[going], self.incidence[going]
         push = np.einsum("ni,ni->n", self._push(going), up)
         local_spin = np.einsum("nij,nj->ni", axes, self.spin[going])
-        result = bounce(Impacts(speed, incidence, local_spin, push), random)
+        result = bounce(Impacts(speed, incidence, local_spin, push, going), random)
         stays = result.captured & ~result.outside
         self.status[going[result.outside]] = "outside"
         self.status[going[stays]] = np.where(push[stays] < 0.0, "settled", "lofted")

@@ -17,7 +17,7 @@ def plain() -> Body:
 
 
 def impacts(speed: float, incidence: float, push: float = -1e-4) -> Impacts:
-    return Impacts(np.array([speed]), np.array([incidence]), np.zeros((1, 3)), np.array([push]))
+    return Impacts(np.array([speed]), np.array([incidence]), np.zeros((1, 3)), np.array([push]), np.arange(1))
 
 
 def test_hard_surface_limits_the_tangential_impulse_by_friction():
@@ -87,3 +87,23 @@ def test_the_frame_of_an_impact_and_the_spin_are_carried(plain):
     assert end.spin[0] == pytest.approx([0.0, 0.0, 0.5])
     again = hop(plain, start, [0.01, 0.0, 0.01], aside, 1e5, gravity="exact", bounce_limit=1)
     assert np.array_equal(again.position, end.position)
+
+
+def test_a_bounce_is_told_which_lander_it_is(plain):
+    """The second of three lands and stays; the others bounce once more, and each keeps the last impact it had."""
+    seen = []
+
+    def only_the_second_stays(hit: Impacts, random: np.random.Generator) -> Rebounds:
+        seen.append(hit.lander.tolist())
+        up = np.stack([0.0 * hit.speed, 0.0 * hit.speed, 0.5 * hit.speed], axis=1)
+        return Rebounds(up, hit.spin, hit.lander == 1, np.zeros(len(hit.speed), dtype=bool))
+
+    start, up = np.array([[3.0, 2.0, 100.0], [-3.0, 1.0, 100.0], [0.0, 4.0, 100.0]]), np.array([0.0, 0.0, 4e-3])
+    end = hop(plain, start, np.tile(up, (3, 1)), only_the_second_stays, 1e5, gravity="exact", bounce_limit=1)
+    assert seen == [[0, 1, 2]]
+    assert end.status.tolist() == ["bouncing", "settled", "bouncing"]
+    assert end.impact_speed == pytest.approx([2e-3, 4e-3, 2e-3], rel=5e-3)
+    assert (end.incidence < 0.1).all()
+    away = hop(plain, start[0], 250.0 * up, only_the_second_stays, 1e5, gravity="exact")
+    assert away.status[0] == "escaped"
+    assert np.isnan(away.impact_speed[0])
