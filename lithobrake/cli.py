@@ -89,6 +89,7 @@ _stage_command("refine", "Run the refined design and fit the inputs that matter.
 _stage_command("test", "Make the test runs and score the expansions.")
 _stage_command("sample", "Sample the refined expansion.")
 _stage_command("fly", "Fly the samples that leave the surface.")
+_stage_command("rest", "Follow samples from bounce to bounce until they rest.")
 
 
 @app.command()

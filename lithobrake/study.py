@@ -5,12 +5,14 @@ A `MaybeUncertain` key takes a number, or a table with a distribution. `lithobra
 
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, Field, Strict
+from pydantic import BaseModel, Field
 
 from lithobrake.quantity import MaybeUncertain, Number, Numbers, Scalar, Uncertain, Whole
 from lithobrake.study_campaign import CampaignSection, Section, SolverSection
 from lithobrake.study_design import OUTPUTS as OUTPUTS
 from lithobrake.study_design import DesignSection, MonteCarloSection
+from lithobrake.study_flight import BUILT_IN_BODIES as BUILT_IN_BODIES
+from lithobrake.study_flight import Angle, FlightSection, RestSection, SiteSection
 
 Metres = Annotated[float, Number("m", above=0)]
 Interval = Annotated[tuple[float, float], Numbers("m", count=2, ascending=True)]
@@ -22,7 +24,6 @@ Restitution = Annotated[Scalar, MaybeUncertain("", above=0, at_most=1)]
 Friction = Annotated[Scalar, MaybeUncertain("", at_least=0)]
 Cohesion = Annotated[Scalar, MaybeUncertain("N", at_least=0)]
 SurfaceEnergy = Annotated[Scalar, MaybeUncertain("J/m2", at_least=0)]
-Angle = Annotated[Scalar, MaybeUncertain("deg", at_least=-360, at_most=360)]
 Spin = Annotated[Scalar, MaybeUncertain("rad/s")]
 
 
@@ -215,47 +216,6 @@ class LandingSection(Section):
     """Longest simulated time of one touchdown."""
 
 
-BUILT_IN_BODIES = ("didymos", "dimorphos")
-
-
-class SiteSection(Section):
-    """Where on which body the lander touches down. Uncertain values here vary in the Monte Carlo only."""
-
-    body: str = "didymos"
-    """"didymos" or "dimorphos" (built in), or a closed mesh (OBJ, STL or PDS plates, metres); the path counts from the
-    study file."""
-    partner: Annotated[bool, Strict()] = True
-    """Whether the partner of a built-in body attracts and may be hit; false: the body is alone, as in the paper."""
-    partner_longitude_deg: Angle | None = None
-    """East longitude over which the partner stands when the lander leaves; absent: not known, drawn over the circle."""
-    mass: Annotated[Scalar, MaybeUncertain("kg", above=0)] | None = None
-    """Mass of the body; absent: that of the built-in body."""
-    spin_period: Annotated[Scalar, MaybeUncertain("s", above=0)] | None = None
-    """Spin period of the body; absent: that of the built-in body."""
-    latitude_deg: Annotated[Scalar, MaybeUncertain("deg", at_least=-90, at_most=90)] = 0.0
-    """Latitude, planetocentric."""
-    longitude_deg: Angle = 0.0
-    """Longitude, east."""
-    heading_deg: Angle = 0.0
-    """Direction of the incoming horizontal velocity, from north toward east."""
-    north_error: Annotated[Scalar, MaybeUncertain("m")] = 0.0
-    """How far the delivery misses the site along the ground, toward north."""
-    east_error: Annotated[Scalar, MaybeUncertain("m")] = 0.0
-    """The same toward east."""
-
-
-class FlightSection(Section):
-    """The flight from the bounce to the next impact."""
-
-    duration: Annotated[float, Number("s", above=0)] = 43_200.0
-    """Longest flight."""
-    flight_count: Annotated[int, Whole("", at_least=1)] | None = Field(default=None, examples=["1000"])
-    """How many samples fly (the first ones that leave the surface); absent: all."""
-    gravity: Literal["exact", "table"] = "table"
-    """Gravity of the polyhedron: summed over its facets, or from a table that is built once for a shape, whose error is
-    told; the table is some 30 times faster."""
-
-
 class Study(Section):
     """A landing study."""
 
@@ -276,6 +236,7 @@ class Study(Section):
     monte_carlo: MonteCarloSection = MonteCarloSection()
     site: SiteSection = SiteSection()
     flight: FlightSection = FlightSection()
+    rest: RestSection = RestSection()
 
     def touchdown_values(self) -> dict[str, Scalar]:
         """Every scalar that the touchdown reads, by dotted key, in the units of the file; absent ones are left out."""

@@ -11,12 +11,13 @@ import pytest
 
 from lithobrake import study_file
 from lithobrake.chaos import Uniform, fit, smolyak
-from lithobrake.pipeline import STAGES, StudyFolder, stage_keys
+from lithobrake.pipeline import STAGES, StudyFolder, rest, stage_keys
 from lithobrake.pipeline.expansions import design_inputs, kept_inputs, points
+from lithobrake.pipeline.fates import shares
 from lithobrake.pipeline.flights import COLUMNS, partner_time, starts
 from lithobrake.pipeline.landings import ORIENTATION, PLACE, acceleration, draw, medians
 from lithobrake.pipeline.samples import Samples
-from lithobrake.pipeline.summary import shares, study_tables
+from lithobrake.pipeline.summary import study_tables
 from lithobrake.site import frames, push_at_site, site_body, site_medians, site_warning
 from lithobrake.study import OUTPUTS, Study
 from lithobrake.study_template import template
@@ -49,6 +50,7 @@ REMADE = [
     ({"flight": {"flight_count": 7}}, "fly"),
     ({"site": {"partner": False}}, "fly"),
     ({"site": {"east_error": 10.0}}, "fly"),
+    ({"rest": {"friction": 0.5}}, "rest"),
 ]
 
 
@@ -206,7 +208,8 @@ def test_the_study_in_the_summary_reads_back_as_the_same_study() -> None:
 def test_every_column_of_the_flights_is_documented() -> None:
     text = (Path(__file__).parents[1] / "docs" / "flights.md").read_text(encoding="utf-8")
     rows = [line.split("|")[1] for line in text.splitlines() if line.startswith("| `")]
-    assert [name for row in rows for name in re.findall(r"`(\w+)`", row)] == list(COLUMNS)
+    named = [name for row in rows for name in re.findall(r"`(\w+)`", row)]
+    assert named == [*COLUMNS, *rest.COLUMNS]
 
 
 def test_the_partner_stands_where_the_sample_says() -> None:

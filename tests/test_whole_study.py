@@ -55,10 +55,13 @@ mass = { distribution = "uniform", lower = 5.0e11, upper = 5.6e11 }
 gravity = "exact"
 flight_count = 10
 duration = 20000.0
+[rest]
+count = 20
+duration = 20000.0
 """
 FILES = (
     "study.toml", "beds/bed_0.h5", "landing.h5", "runs.sqlite", "screening.json", "refined.json", "scores.json",
-    "samples.h5", "flights.csv", "summary.json", "report/index.html",
+    "samples.h5", "flights.csv", "rest.csv", "summary.json", "report/index.html",
 )  # fmt: skip
 
 

@@ -1,7 +1,7 @@
 """The flights of the samples that leave the surface, from the site to the next impact."""
 
 import csv
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -26,7 +26,7 @@ QUANTILES = (0.05, 0.5, 0.95)
 COLUMNS = (
     "sample", "start_speed", "start_elevation_deg", "velocity_x", "velocity_y", "velocity_z",
     *(f"site_{key}" for key in SITE_KEYS),
-    "status", "time_s", "latitude_deg", "longitude_deg", "impact_speed", "impact_incidence_deg",
+    "status", "time_s", "latitude_deg", "longitude_deg", "facet", "impact_speed", "impact_incidence_deg",
 )  # fmt: skip
 
 
@@ -53,23 +53,33 @@ def flight_reads(study: Study) -> dict[str, Any]:
 
 def starts(study: Study, samples: Samples) -> Starts:
     """The first samples that leave the surface, as many as the study flies, each with its own site."""
-    from lithobrake.analysis import sample_inputs
-
     rows = np.flatnonzero(~samples.stays)[: study.flight.flight_count]
     velocity = np.column_stack([samples.output(f"velocity_out_{axis}") for axis in "xyz"])[rows]
-    site = {key: np.full(len(rows), value) for key, value in site_medians(study).items()}
-    values = {f"site.{key}": value for key, value in site_values(study).items()}
-    drawn = {name: value.to_chaos() for name, value in uncertain(values).items()}
-    table = sample_inputs(drawn, len(samples.stays), sampling_seed(study, "site"))[rows]
-    for index, name in enumerate(drawn):
-        site[name.removeprefix("site.")] = table[:, index]
+    site = {key: values[rows] for key, values in sample_sites(study, len(samples.stays)).items()}
     return Starts(rows, velocity, site)
 
 
+def sample_sites(study: Study, count: int) -> dict[str, np.ndarray]:
+    """The site of each sample by the keys of SITE_KEYS, each of shape [count]; a larger count changes no earlier one"""
+    from lithobrake.analysis import sample_inputs
+
+    site = {key: np.full(count, value) for key, value in site_medians(study).items()}
+    values = {f"site.{key}": value for key, value in site_values(study).items()}
+    drawn = {name: value.to_chaos() for name, value in uncertain(values).items()}
+    table = sample_inputs(drawn, count, sampling_seed(study, "site"))
+    for index, name in enumerate(drawn):
+        site[name.removeprefix("site.")] = table[:, index]
+    return site
+
+
 def fly_samples(job: Job) -> None:
-    """Fly the samples that leave and write flights.csv in the order of the samples, and what the flights took."""
-    study, body = job.study, site_body(job.study)
-    start = starts(study, Samples.load(job.folder))
+    """Fly the samples that leave and write flights.csv in the order of the samples, and what the flights took.
+
+    Where samples have the scatter from run to run, flights_without_scatter.csv has the flights of the expansion alone;
+    else it is empty.
+    """
+    study, body, samples = job.study, site_body(job.study), Samples.load(job.folder)
+    start = starts(study, samples)
     if study.flight.gravity == "table":
         job.progress(0, 1, "gravity table")
         error = body.shape.table_error
@@ -80,13 +90,22 @@ def fly_samples(job: Job) -> None:
     warning = site_warning(study)
     if warning:
         job.say(warning)
-    flown = fly_starts(body, start, study, job)
     job.folder.write_json("flights.json", _checks(body, start, study, job))
     _write_shape(body, job.folder)
-    with atomic_path(job.folder / "flights.csv") as draft, draft.open("w", newline="", encoding="utf-8") as file:
+    write_table(job.folder, "flights.csv", COLUMNS, _rows(start, fly_starts(body, start, study, job)))
+    alone: Iterable[list[Any]] = ()
+    if samples.without_scatter is not None:
+        start = starts(study, samples.expansion_alone())
+        alone = _rows(start, fly_starts(body, start, study, job))
+    write_table(job.folder, "flights_without_scatter.csv", COLUMNS, alone)
+
+
+def write_table(folder: StudyFolder, name: str, columns: Sequence[str], rows: Iterable[list[Any]]) -> None:
+    """Write a CSV file of the folder."""
+    with atomic_path(folder / name) as draft, draft.open("w", newline="", encoding="utf-8") as file:
         table = csv.writer(file)
-        table.writerow(COLUMNS)
-        table.writerows(_rows(start, flown))
+        table.writerow(columns)
+        table.writerows(rows)
 
 
 def fly_starts(body: "Body", start: Starts, study: Study, job: Job) -> "Flights":
@@ -151,8 +170,11 @@ def _rows(start: Starts, flown: "Flights") -> Iterator[list[Any]]:
     after = np.column_stack([flown.latitude, flown.longitude, flown.impact_speed, np.degrees(flown.incidence)]).tolist()
     down = flown.facet >= 0
     for row, sample in enumerate(start.sample.tolist()):
-        end = after[row] if down[row] else [""] * 4
-        yield [sample, *before[row], str(flown.status[row]), float(flown.time[row]), *end]
+        latitude, longitude, speed_there, incidence = after[row] if down[row] else [""] * 4
+        # The partner's facets are not those of body.obj.
+        facet = int(flown.facet[row]) if flown.status[row] == "impact" else ""
+        end = [str(flown.status[row]), float(flown.time[row]), latitude, longitude, facet, speed_there, incidence]
+        yield [sample, *before[row], *end]
 
 
 def flight_numbers(flights: list[dict[str, str]]) -> dict[str, Any]:
@@ -165,7 +187,7 @@ def flight_numbers(flights: list[dict[str, str]]) -> dict[str, Any]:
     return table
 
 
-def read_flights(folder: StudyFolder) -> list[dict[str, str]]:
-    """The rows of flights.csv by column."""
-    with (folder / "flights.csv").open(newline="", encoding="utf-8") as file:
+def read_table(folder: StudyFolder, name: str) -> list[dict[str, str]]:
+    """The rows of a CSV file of the folder by column."""
+    with (folder / name).open(newline="", encoding="utf-8") as file:
         return list(csv.DictReader(file))

@@ -1,6 +1,6 @@
 """Monte Carlo on the refined expansion: what leaves the surface, how fast and where to, and what stays."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,6 +12,7 @@ from lithobrake.pipeline.job import Job
 from lithobrake.study import Study
 
 if TYPE_CHECKING:
+    from lithobrake.analysis import CaptureModel
     from lithobrake.chaos import Surrogate
 
 FORMAT_VERSION = 1
@@ -40,6 +41,14 @@ class Samples:
     def output(self, name: str) -> np.ndarray:
         """One output, shape [sample_count]."""
         return self.outputs[:, self.output_names.index(name)]
+
+    def expansion_alone(self) -> "Samples":
+        """The samples without the scatter from run to run; themselves where none was added."""
+        if self.without_scatter is None:
+            return self
+        outward = self.without_scatter[:, self.output_names.index("velocity_out_z")] > 0
+        stays = self.captured | ~outward
+        return replace(self, outputs=self.without_scatter, stays=stays, without_scatter=None)
 
     def save(self, folder: StudyFolder) -> None:
         """Write samples.h5."""
@@ -70,20 +79,20 @@ def sampling_seed(study: Study, purpose: str) -> int:
 
 def draw_samples(job: Job) -> None:
     """Sample all inputs, evaluate the expansion, and decide for each sample whether the lander stays."""
-    from lithobrake.analysis import CaptureModel, sample_inputs
+    from lithobrake.analysis import sample_inputs
     from lithobrake.chaos import load
 
     study, inputs = job.study, design_inputs(job.study)
     refined = load(job.folder / "refined.json")
     x = sample_inputs(inputs, study.monte_carlo.sample_count, sampling_seed(study, "samples"))
     smooth = _evaluate(refined, x[:, [list(inputs).index(name) for name in refined.input_names]], job)
-    runs = [design_runs(job, design, refined.input_names) for design in DESIGNS]
-    seen, captured = capture_runs(runs)
-    probability = CaptureModel(inputs, seen, captured).probability(x)
+    probability = capture_model(job, refined).probability(x)
     draws = np.random.Generator(np.random.PCG64(sampling_seed(study, "capture"))).random(len(x))
     is_captured, outputs, without_scatter = draws < probability, smooth, None
     if study.monte_carlo.scatter:
-        outputs = smooth + _scatter(study, refined, runs[DESIGNS.index("refined")], len(x))
+        rows = scatter_rows(refined, design_runs(job, "refined", refined.input_names))
+        generator = np.random.Generator(np.random.PCG64(sampling_seed(study, "scatter")))
+        outputs = smooth + rows[generator.integers(len(rows), size=len(x))]
         without_scatter = smooth
     outward = outputs[:, refined.output_names.index("velocity_out_z")] > 0
     stays = is_captured | ~outward
@@ -92,13 +101,22 @@ def draw_samples(job: Job) -> None:
     )
 
 
-def _scatter(study: Study, refined: "Surrogate", runs: DesignRuns, count: int) -> np.ndarray:
-    """Scatter from run to run for each sample, drawn jointly for all outputs, [count, output_count]."""
+def scatter_rows(refined: "Surrogate", runs: DesignRuns) -> np.ndarray:
+    """Scatter from run to run, a row for each run that tells of it, [row_count, output_count]; drawn from as they are.
+
+    runs: of the refined design.
+    """
     from lithobrake.chaos import joint_scatter
 
-    rows = joint_scatter(refined, runs.columns(refined.input_names), runs.y)
-    generator = np.random.Generator(np.random.PCG64(sampling_seed(study, "scatter")))
-    return rows[generator.integers(len(rows), size=count)]
+    return joint_scatter(refined, runs.columns(refined.input_names), runs.y)
+
+
+def capture_model(job: Job, refined: "Surrogate") -> "CaptureModel":
+    """The chance of capture, learnt from all runs of the study."""
+    from lithobrake.analysis import CaptureModel
+
+    runs = [design_runs(job, design, refined.input_names) for design in DESIGNS]
+    return CaptureModel(design_inputs(job.study), *capture_runs(runs))
 
 
 def capture_runs(designs: list[DesignRuns]) -> tuple[np.ndarray, np.ndarray]:

@@ -9,6 +9,7 @@ from lithobrake.pipeline.expansions import design_reads, fit_refined, fit_screen
 from lithobrake.pipeline.flights import flight_reads, fly_samples
 from lithobrake.pipeline.folder import json_hash, source_hash
 from lithobrake.pipeline.job import Job
+from lithobrake.pipeline.rest import follow_samples, rest_reads
 from lithobrake.pipeline.samples import draw_samples
 from lithobrake.pipeline.summary import study_tables, write_summary
 from lithobrake.pipeline.surface import bed_files, bed_reads, land_once, landing_files, landing_reads, pour_beds
@@ -63,7 +64,7 @@ _SCREENING = ("method", "fit", "replicate_count", "screening_level", "screening_
 _REFINED = _design("refined_level", "refined_count", "refined_degree", "kept_share", "kept_outputs")
 _TEST = _design("test_count")
 
-FLIGHT_FILES = ("flights.csv", "flights.json", "body.obj")
+FLIGHT_FILES = ("flights.csv", "flights_without_scatter.csv", "flights.json", "body.obj")
 
 STAGES = (
     Stage("bed", "bed", bed_files, bed_reads, (), (), pour_beds),
@@ -72,10 +73,9 @@ STAGES = (
     Stage("refine", "refinement", _files("refined.json"), _REFINED, ("screen",), FIT, fit_refined),
     Stage("test", "test runs", _files("scores.json"), _TEST, ("screen", "refine"), FIT, score_all),
     Stage("sample", "samples", _files("samples.h5"), _sample, ("refine", "test"), FIT, draw_samples),
-    Stage(
-        "fly", "flights", _files("flights.csv", "flights.json", "body.obj"), flight_reads, ("sample",), FLY, fly_samples
-    ),
-    Stage("summary", "summary", _files("summary.json"), study_tables, ("landing", "fly"), FIT, write_summary),
+    Stage("fly", "flights", _files(*FLIGHT_FILES), flight_reads, ("sample",), FLY, fly_samples),
+    Stage("rest", "bounces until rest", _files("rest.csv", "rest.json"), rest_reads, ("fly",), FLY, follow_samples),
+    Stage("summary", "summary", _files("summary.json"), study_tables, ("landing", "rest"), FIT, write_summary),
     Stage("report", "report", _files("report/index.html"), _nothing, ("summary",), ("report",), _write_report),
 )
 

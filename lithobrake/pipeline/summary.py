@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from lithobrake.pipeline.expansions import DESIGNS, DesignRuns, design_runs, kept_inputs, replicate_count
-from lithobrake.pipeline.flights import flight_numbers, read_flights
+from lithobrake.pipeline.fates import landing_results
+from lithobrake.pipeline.flights import read_table
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.samples import Samples
 from lithobrake.pipeline.surface import bed_files
@@ -35,7 +36,7 @@ def write_summary(job: Job) -> None:
     screening, refined = load(job.folder / "screening.json"), load(job.folder / "refined.json")
     runs = {design: design_runs(job, design, refined.input_names) for design in DESIGNS}
     samples, scores = Samples.load(job.folder), job.folder.read_json("scores.json")
-    kept, flights = kept_inputs(job.study, screening), read_flights(job.folder)
+    kept, flights = kept_inputs(job.study, screening), read_table(job.folder, "flights.csv")
     results = {
         "units": UNITS,
         "beds": [_bed(job, name) for name in bed_files(job.study)],
@@ -55,8 +56,7 @@ def write_summary(job: Job) -> None:
         },
         "monte_carlo": _monte_carlo(samples),
         "site": _site(job.study),
-        "shares": shares(samples, flights),
-        "flights": flight_numbers(flights) | job.folder.read_json("flights.json"),
+        **landing_results(job, samples, flights),
     }
     results["headline"] = headline(results)
     job.folder.write_json(
@@ -207,29 +207,6 @@ def _site(study: Study) -> dict[str, Any]:
         "effective_acceleration_along_heading": float(effective[0]),
         "warning": site_warning(study),
     }
-
-
-def shares(samples: Samples, flights: list[dict[str, str]]) -> dict[str, Any]:
-    """What became of the samples, as shares of all that were looked at, with their 95 % intervals.
-
-    When not all leaving samples flew, only the samples up to the last that flew are looked at: they are a random part
-    of all, so each share is a plain binomial one. `remains` = captured, no outward velocity, or down again in time.
-    """
-    from lithobrake.analysis import wilson_interval
-
-    total = len(samples.stays)
-    if len(flights) < int((~samples.stays).sum()):
-        total = int(flights[-1]["sample"]) + 1
-    captured, stays = samples.captured[:total], samples.stays[:total]
-    counts = {"captured": int(captured.sum()), "no_outward_velocity": int((stays & ~captured).sum())}
-    statuses = [row["status"] for row in flights]
-    counts |= {status: statuses.count(status) for status in ("impact", "flying", "escaped", "partner")}
-    counts["remains"] = counts["captured"] + counts["no_outward_velocity"] + counts["impact"]
-    table: dict[str, Any] = {"sample_count": total, "flight_count": len(flights)}
-    for name, count in counts.items():
-        lower, upper = wilson_interval(count, total)
-        table[name] = {"count": count, "share": count / total, "lower": lower, "upper": upper}
-    return table
 
 
 def headline(results: dict[str, Any]) -> list[str]:

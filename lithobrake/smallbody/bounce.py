@@ -55,7 +55,8 @@ class HardSurface:
     The normal velocity v becomes -normal_restitution v. The horizontal one becomes tangential_restitution times itself,
     unless that takes more than friction times the normal impulse. A lander whose rebound rises less than rest_height
     [m] under the local push is captured; where the push points outwards none is. Keep that height above a millimetre:
-    flights are not told from rest below a millionth of the body's radius. Spin is kept: a point has none to change.
+    flights are not told from rest below a millionth of the body's radius. How far it would still slide, its horizontal
+    velocity squared over twice friction times push, is not followed. Spin is kept: a point has none to change.
 
     Source: Tardivel, Scheeres, Michel, Van wal and Sanchez (2014), Contact motion on surface of asteroid, Journal of
     Spacecraft and Rockets 51, 1857-1871: an impact as normal restitution and Coulomb friction.

@@ -13,6 +13,8 @@ from lithobrake.smallbody.bounce import Bounce, Impacts
 from lithobrake.smallbody.flight import fly
 from lithobrake.smallbody.flights import Flights
 
+GRAZE = 1e-5  # cosine of the incidence below which a lander does not hit the ground but slides along it
+
 
 @dataclass(frozen=True)
 class Journeys:
@@ -20,7 +22,8 @@ class Journeys:
 
     status         "settled": captured where the ground holds it; "lofted": captured where gravity and rotation together
                    push outwards; "flying": the time was over; "escaped"; "partner": on the partner, where no bounce is
-                   followed; "outside": an impact that the bounce does not know; "bouncing": bounce_limit was reached
+                   followed; "outside": an impact that the bounce does not know; "sliding": it moves along the ground,
+                   which is not followed; "bouncing": bounce_limit was reached
     time           from the start to the end [s]; of a settled lander, to rest
     position       at the end, body-fixed [m], [count, 3]
     latitude       planetocentric [deg], longitude east in (-180, 180] [deg], of that position
@@ -98,8 +101,10 @@ def hop(
             threads=threads,
         )
         state.advance(going, flights)
-        going = going[flights.status == "impact"]
-        facet = flights.facet[flights.status == "impact"]
+        slides = (flights.status == "impact") & (np.cos(flights.incidence) < GRAZE)
+        state.status[going[slides]] = "sliding"
+        bounces = (flights.status == "impact") & ~slides
+        going, facet = going[bounces], flights.facet[bounces]
         if number < bounce_limit and len(going):
             going = state.rebound(going, facet, bounce, np.random.default_rng([seed, number]))
             going = going[state.time[going] < duration]

@@ -38,6 +38,9 @@ def test_a_study_with_a_program_goes_to_its_report(plate: Path) -> None:
     assert results["designs"]["test_all"]["outcomes"] == {"clear": 10}
     assert results["scores"]["test_all"]["speed_out"]["q2"] > 0.9
     assert "solver.inputs.plate_tilt_deg" in results["screening"]["inputs"]
+    assert results["rest"]["soil"] is None
+    assert "impact.speed is no uncertain input" in results["rest"]["why_no_soil"]
+    assert results["rest"]["hard"]["sample_count"] == 200
     page = (plate / "report" / "index.html").read_text()
     assert "The touchdowns were made by a program of the study&#x27;s author: python3 ball_on_plate.py" in page
 

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from lithobrake.smallbody import Body, HardSurface, Impacts, Rebounds, Shape, hop
+from lithobrake.smallbody import Body, HardSurface, Impacts, Rebounds, Shape, didymos, hop
 
 from .meshes import CUBE_FACES, cube_vertices
 
@@ -107,3 +107,14 @@ def test_a_bounce_is_told_which_lander_it_is(plain):
     away = hop(plain, start[0], 250.0 * up, only_the_second_stays, 1e5, gravity="exact")
     assert away.status[0] == "escaped"
     assert np.isnan(away.impact_speed[0])
+
+
+def test_a_lander_that_only_its_own_motion_holds_down_slides():
+    """Westward along the equator of Didymos it stays down, though the ground there throws off what lies on it."""
+    body = didymos(partner=False)
+    origin, axes = body.local_frame(0.0, 0.0, 270.0)
+    assert axes[2] @ body.effective_acceleration(origin) > 0.0
+    end = hop(body, origin, 0.15 * axes[0], HardSurface(0.6), 1e5, gravity="exact")
+    assert end.status[0] == "sliding"
+    assert 5 < end.bounce_count[0] < 100
+    assert -90.0 < end.longitude[0] < 0.0

@@ -1,0 +1,152 @@
+"""From bounce to bounce until the landers rest: on the soil, and on hard ground beside it."""
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from lithobrake.pipeline.flights import partner_time, sample_sites, write_table
+from lithobrake.pipeline.job import Job
+from lithobrake.pipeline.samples import Samples, sampling_seed
+from lithobrake.pipeline.soil import rolling_spin, soil_bounce, trained_ranges, why_no_soil
+from lithobrake.quantity import median
+from lithobrake.site import frames, site_body
+from lithobrake.study import Study
+
+if TYPE_CHECKING:
+    from lithobrake.smallbody import Body, Bounce, HardSurface, Rebounds
+
+# docs/flights.md says what each is.
+COLUMNS = (
+    "ground", "sample", "status", "time_s", "latitude_deg", "longitude_deg", "rebounds", "path_length",
+    "impact_speed", "impact_incidence_deg",
+)  # fmt: skip
+# Statuses of landers that lie on, or have just touched, the ground of the body.
+DOWN = ("settled", "lofted", "outside", "sliding", "bouncing")
+
+
+def rest_reads(study: Study) -> dict[str, Any]:
+    """What the journeys depend on beside samples and flights."""
+    return study.rest.model_dump()
+
+
+def follow_samples(job: Job) -> None:
+    """Follow the first samples from bounce to bounce and write rest.csv and rest.json."""
+    study, why = job.study, why_no_soil(job.study)
+    rows: list[list[Any]] = []
+    if study.rest.count:
+        sites = Sites.of(job)
+        if why is None:
+            rows += sites.follow(job, "soil", *_on_soil(job, sites.samples))
+        else:
+            job.say(f"Bounce after bounce on hard ground only: {why}.")
+        rows += sites.follow(job, "hard", *_on_hard_ground(study, sites))
+    write_table(job.folder, "rest.csv", COLUMNS, rows)
+    ranges = {name: list(ends) for name, ends in trained_ranges(study).items()}
+    job.folder.write_json("rest.json", {"why_no_soil": why, "trained_ranges": ranges})
+
+
+def first_samples(samples: Samples, count: int) -> Samples:
+    """The first samples, which are as random as all."""
+    names = ("inputs", "outputs", "capture_probability", "captured", "stays")
+    return replace(samples, without_scatter=None, **{name: getattr(samples, name)[:count] for name in names})
+
+
+def touchdown_values(study: Study, samples: Samples, name: str) -> np.ndarray:
+    """One touchdown value of each sample, drawn or fixed, in the file's units, shape [sample_count]."""
+    if name in samples.input_names:
+        drawn: np.ndarray = samples.inputs[:, samples.input_names.index(name)]
+        return drawn
+    return np.full(len(samples.stays), median(study.touchdown_values()[name]))
+
+
+def hard_surface(study: Study) -> "HardSurface":
+    """The hard ground of a study."""
+    from lithobrake.smallbody import HardSurface
+
+    return HardSurface(**study.rest.model_dump(exclude={"count", "duration"}))
+
+
+def _on_soil(job: Job, samples: Samples) -> tuple["Rebounds", "Bounce"]:
+    """What the samples say of the first impact, and what the soil says of those that follow."""
+    from lithobrake.smallbody import Rebounds
+
+    velocity = np.column_stack([samples.output(f"velocity_out_{axis}") for axis in "xyz"])
+    spin = rolling_spin(velocity, np.maximum(samples.output("spin_out"), 0.0))
+    leaving = ~samples.stays
+    inputs = {name: samples.inputs[leaving, index] for index, name in enumerate(samples.input_names)}
+    return Rebounds(velocity, spin, samples.stays, np.zeros(len(spin), dtype=bool)), soil_bounce(job, inputs)
+
+
+def _on_hard_ground(study: Study, sites: "Sites") -> tuple["Rebounds", "Bounce"]:
+    """What hard ground says of the first impact, and of all that follow."""
+    from lithobrake.smallbody import Impacts
+
+    bounce, samples = hard_surface(study), sites.samples
+    speed, incidence_deg, *spin = (
+        touchdown_values(study, samples, f"impact.{name}")
+        for name in ("speed", "incidence_deg", "spin_x", "spin_y", "spin_z")
+    )
+    lander = np.arange(len(samples.stays))
+    first = Impacts(speed, np.radians(incidence_deg), np.column_stack(spin), sites.push, lander)
+    # Hard ground has no scatter, so no random number is drawn.
+    return bounce(first, np.random.default_rng(0)), bounce
+
+
+@dataclass(frozen=True)
+class Sites:
+    """Where each of the first samples touches down, all arrays [sample_count, ...].
+
+    origin [m] and axes, in rows, of the local frames, body-fixed; push: gravity and rotation together along the outward
+    normal [m/s2]; site: the numbers of SITE_KEYS.
+    """
+
+    body: "Body"
+    samples: Samples
+    site: dict[str, np.ndarray]
+    origin: np.ndarray
+    axes: np.ndarray
+    push: np.ndarray
+
+    @classmethod
+    def of(cls, job: Job) -> "Sites":
+        """Those of a study with samples."""
+        body, samples = site_body(job.study), first_samples(Samples.load(job.folder), job.study.rest.count)
+        site = sample_sites(job.study, len(samples.stays))
+        origin, axes = frames(body, site)
+        spin_rate = 2.0 * np.pi / site["spin_period"]
+        push = body.acceleration(origin) * (site["mass"] / body.mass)[:, None]
+        push += (spin_rate**2)[:, None] * origin * np.array([1.0, 1.0, 0.0])
+        return cls(body, samples, site, origin, axes, np.einsum("ni,ni->n", push, axes[:, 2]))
+
+    def follow(self, job: Job, ground: str, first: "Rebounds", bounce: "Bounce") -> list[list[Any]]:
+        """A row of rest.csv for each sample, in their order: from how it leaves the first impact to where it ends."""
+        from lithobrake.smallbody import hop
+
+        going = np.flatnonzero(~first.captured)
+        site = {key: values[going] for key, values in self.site.items()}
+        velocity, spin = (np.einsum("nij,ni->nj", self.axes[going], v[going]) for v in (first.velocity, first.spin))
+        ends = hop(
+            *(self.body, self.origin[going], velocity, bounce, job.study.rest.duration),
+            spin=spin,
+            start_time=partner_time(self.body, site),
+            mass=site["mass"],
+            spin_period=site["spin_period"],
+            gravity=job.study.flight.gravity,
+            seed=sampling_seed(job.study, f"rest on {ground} ground"),
+            threads=getattr(job.executor, "worker_count", None),
+            progress=lambda share: job.progress(round(share * len(going)), len(going), f"bounces, {ground} ground"),
+        )
+        latitude, longitude = self.body.shape.latitude_longitude(self.origin)
+        rows = [
+            [ground, sample, "settled" if push < 0.0 else "lofted", 0.0, *place, 0, 0.0, "", ""]
+            for sample, (push, *place) in enumerate(np.column_stack([self.push, latitude, longitude]).tolist())
+        ]
+        for row, sample in enumerate(going.tolist()):
+            status, speed = str(ends.status[row]), float(ends.impact_speed[row])
+            place = [float(ends.latitude[row]), float(ends.longitude[row])] if status in DOWN else ["", ""]
+            last = ["", ""] if np.isnan(speed) else [speed, float(np.degrees(ends.incidence[row]))]
+            # The journey began with the first rebound, which is counted here.
+            rebounds, path = int(ends.bounce_count[row]) + 1, float(ends.path_length[row])
+            rows[sample] = [ground, sample, status, float(ends.time[row]), *place, rebounds, path, *last]
+        return rows

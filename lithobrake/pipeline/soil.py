@@ -1,0 +1,115 @@
+"""The soil as a bounce of flights that go on: the refined expansion, asked again at every impact."""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from lithobrake.pipeline.expansions import design_inputs, design_runs, points
+from lithobrake.pipeline.job import Job
+from lithobrake.pipeline.samples import capture_model, scatter_rows
+from lithobrake.study import Study
+
+if TYPE_CHECKING:
+    from lithobrake.analysis import CaptureModel
+    from lithobrake.chaos import Surrogate
+    from lithobrake.smallbody import Impacts, Rebounds
+
+# Without these two among the uncertain inputs the expansion says nothing about an impact that differs from the first.
+NEEDED = ("impact.speed", "impact.incidence_deg")
+SPIN = ("impact.spin_x", "impact.spin_y", "impact.spin_z")
+
+
+def why_no_soil(study: Study) -> str | None:
+    """Why the soil cannot be asked about the impacts after the first; None where it can."""
+    absent = [name for name in NEEDED if name not in design_inputs(study)]
+    if not absent:
+        return None
+    return (
+        f"{' and '.join(absent)} {'is' if len(absent) == 1 else 'are'} no uncertain input, so the expansion does not "
+        "know the impacts after the first; give it a distribution that reaches over the impacts to come"
+    )
+
+
+def trained_ranges(study: Study) -> dict[str, tuple[float, float]]:
+    """Smallest and largest value of each input in the screening runs, in the file's units, by dotted key."""
+    x = points(study, "screening", ())
+    columns = zip(design_inputs(study), x.min(axis=0).tolist(), x.max(axis=0).tolist(), strict=True)
+    return {name: (lower, upper) for name, lower, upper in columns}
+
+
+@dataclass(frozen=True)
+class SoilBounce:
+    """The refined expansion as a bounce of smallbody.hop.
+
+    inputs    of each lander, by dotted key in the file's units, each of shape [lander_count]: the soil that a lander
+              has met at first is the soil that it meets again
+    ranges    of the runs; an impact outside them is not answered
+    scatter   rows to draw from, [row_count, output_count], of impacts at scatter_speed [m/s]; without rows: none.
+              They are drawn in proportion to the impact speed, or a slow impact could throw a lander up
+
+    Of speed, incidence, spin and the push of gravity and rotation at an impact those enter that are inputs of the
+    study; the others stay as the study has them. The expansion gives the size of the outgoing spin; its axis is taken
+    as that of rolling along the outgoing velocity.
+    """
+
+    surrogate: "Surrogate"
+    capture: "CaptureModel"
+    inputs: dict[str, np.ndarray]
+    ranges: dict[str, tuple[float, float]]
+    scatter: np.ndarray
+    scatter_speed: float
+
+    def __call__(self, impacts: "Impacts", random: np.random.Generator) -> "Rebounds":
+        """Answer each impact with the outputs of the expansion, a draw of its scatter and a draw of capture."""
+        from lithobrake.smallbody import Rebounds
+
+        x, outside = self._inputs_at(impacts)
+        columns = [list(self.inputs).index(name) for name in self.surrogate.input_names]
+        outputs = np.asarray(self.surrogate(x[:, columns]))
+        if len(self.scatter):
+            rows = self.scatter[random.integers(len(self.scatter), size=len(x))]
+            outputs = outputs + rows * (impacts.speed / self.scatter_speed)[:, None]
+        names = self.surrogate.output_names
+        velocity = outputs[:, [names.index(f"velocity_out_{axis}") for axis in "xyz"]]
+        captured = (random.random(len(x)) < self.capture.probability(x)) | ~(velocity[:, 2] > 0.0)
+        spin = rolling_spin(velocity, np.maximum(outputs[:, names.index("spin_out")], 0.0))
+        return Rebounds(velocity, spin, captured, outside)
+
+    def _inputs_at(self, impacts: "Impacts") -> tuple[np.ndarray, np.ndarray]:
+        """All inputs at the impacts, [count, input_count], and which of these are outside the runs, [count].
+
+        Those outside have the inputs of the first impact in place of theirs.
+        """
+        felt = {"impact.speed": impacts.speed, "impact.incidence_deg": np.degrees(impacts.incidence)}
+        felt |= dict(zip(SPIN, impacts.spin.T, strict=True)) | {"surface.gravity": -impacts.push}
+        x = np.column_stack([values[impacts.lander] for values in self.inputs.values()])
+        outside = np.zeros(len(x), dtype=bool)
+        for index, name in enumerate(self.inputs):
+            if name in felt:
+                lower, upper = self.ranges[name]
+                known = (felt[name] >= lower) & (felt[name] <= upper)
+                x[known, index] = felt[name][known]
+                outside |= ~known
+        return x, outside
+
+
+def rolling_spin(velocity: np.ndarray, size: np.ndarray) -> np.ndarray:
+    """Angular velocity [rad/s] of a size, shape [count], about the axis of rolling along velocities [count, 3]."""
+    across = np.column_stack([-velocity[:, 1], velocity[:, 0], np.zeros(len(velocity))])
+    length = np.linalg.norm(across, axis=1, keepdims=True)
+    # Straight up there is no direction to roll in; any level axis will do.
+    axis = np.where(length > 0.0, across / np.where(length > 0.0, length, 1.0), np.array([0.0, 1.0, 0.0]))
+    spin: np.ndarray = axis * size[:, None]
+    return spin
+
+
+def soil_bounce(job: Job, inputs: dict[str, np.ndarray]) -> SoilBounce:
+    """The bounce of a study for landers with these inputs, each of shape [lander_count]."""
+    from lithobrake.chaos import load
+
+    study, refined = job.study, load(job.folder / "refined.json")
+    runs = design_runs(job, "refined", refined.input_names)
+    rows = scatter_rows(refined, runs) if study.monte_carlo.scatter else np.empty((0, len(refined.output_names)))
+    speed = float(np.sqrt(np.mean(runs.columns(["impact.speed"])[runs.has_outputs] ** 2)))
+    return SoilBounce(refined, capture_model(job, refined), inputs, trained_ranges(study), rows, speed)

@@ -1,0 +1,138 @@
+"""Bounce after bounce of a study: what the soil answers to later impacts, and where samples end."""
+
+import math
+import tomllib
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from lithobrake import study_file
+from lithobrake.analysis import CaptureModel
+from lithobrake.chaos import Uniform, fit, smolyak
+from lithobrake.pipeline import Job, StudyFolder
+from lithobrake.pipeline.fates import ENDS, landing_results, proportion
+from lithobrake.pipeline.flights import COLUMNS, read_table, write_table
+from lithobrake.pipeline.rest import follow_samples
+from lithobrake.pipeline.samples import Samples
+from lithobrake.pipeline.soil import SoilBounce, rolling_spin, trained_ranges, why_no_soil
+from lithobrake.smallbody import Impacts
+from lithobrake.study import OUTPUTS, Study
+from lithobrake.study_template import template
+
+INPUTS = {
+    "grain.friction": Uniform(0.2, 0.8),
+    "impact.speed": Uniform(0.0, 0.4),
+    "impact.incidence_deg": Uniform(0.0, 80.0),
+}
+RANGES = {"grain.friction": (0.2, 0.8), "impact.speed": (0.0, 0.4), "impact.incidence_deg": (0.0, 80.0)}
+
+
+def rebound(x: np.ndarray) -> np.ndarray:
+    """Outputs [count, 6] that are polynomials of the inputs: half the speed straight up, friction of it sideways."""
+    friction, speed, incidence = x.T
+    nothing = np.zeros_like(speed)
+    return np.column_stack([nothing, nothing, 2.0 * speed, incidence * speed / 80.0, -friction * speed, 0.5 * speed])
+
+
+def bounce(friction: list[float], scatter: np.ndarray, captured: bool = False) -> SoilBounce:
+    """A soil that is exactly as `rebound` says."""
+    x = smolyak(INPUTS, level=2)
+    surrogate = fit(INPUTS, x, rebound(x), degree=2, method="ols", output_names=OUTPUTS)
+    capture = CaptureModel(INPUTS, x, np.full(len(x), captured))
+    values = np.array(friction)
+    inputs = {name: values if name == "grain.friction" else np.full(len(values), 0.3) for name in INPUTS}
+    return SoilBounce(surrogate, capture, inputs, RANGES, scatter, 0.2)
+
+
+def impacts(speed: list[float], incidence_deg: list[float], lander: list[int]) -> Impacts:
+    count = len(speed)
+    degrees = np.radians(incidence_deg)
+    return Impacts(np.array(speed), degrees, np.zeros((count, 3)), np.full(count, -1e-5), np.array(lander))
+
+
+def test_the_expansion_answers_with_the_soil_of_the_lander_and_the_impact_that_came() -> None:
+    soil = bounce([0.2, 0.5, 0.7], np.empty((0, 6)))
+    found = soil(impacts([0.1, 0.3], [40.0, 20.0], [2, 0]), np.random.default_rng(0))
+    assert found.velocity == pytest.approx(np.array([[0.05, -0.07, 0.05], [0.075, -0.06, 0.15]]), abs=1e-12)
+    assert np.linalg.norm(found.spin, axis=1) == pytest.approx([0.2, 0.6])
+    # The lowest point of a rolling ball is at rest: spin cross (0, 0, -1) runs against the horizontal velocity.
+    backwards = np.cross(found.spin, [0.0, 0.0, -1.0])[:, :2]
+    assert np.einsum("ni,ni->n", backwards, found.velocity[:, :2]) == pytest.approx(
+        -np.linalg.norm(found.spin, axis=1) * np.linalg.norm(found.velocity[:, :2], axis=1)
+    )
+    assert not found.captured.any()
+    assert not found.outside.any()
+
+
+def test_what_the_runs_do_not_reach_is_not_answered() -> None:
+    soil = bounce([0.5], np.empty((0, 6)))
+    found = soil(impacts([0.3, 0.41, 0.3, 0.3], [79.9, 10.0, 80.1, 10.0], [0] * 4), np.random.default_rng(0))
+    assert found.outside.tolist() == [False, True, True, False]
+    limited = replace(soil, ranges=RANGES | {"impact.speed": (0.1, 0.2)})
+    found = limited(impacts([0.05, 0.15], [10.0, 10.0], [0, 0]), np.random.default_rng(0))
+    assert found.outside.tolist() == [True, False]
+
+
+def test_scatter_is_drawn_anew_in_proportion_to_the_speed_and_capture_with_its_chance() -> None:
+    rows = np.zeros((2, 6))
+    rows[:, OUTPUTS.index("velocity_out_x")] = [0.02, -0.02]
+    soil = bounce([0.5], rows)
+    fast = soil(impacts([0.4] * 200, [0.0] * 200, [0] * 200), np.random.default_rng(1)).velocity[:, 0]
+    slow = soil(impacts([0.1] * 200, [0.0] * 200, [0] * 200), np.random.default_rng(1)).velocity[:, 0]
+    assert sorted(set(np.round(fast, 9))) == [-0.04, 0.04]
+    assert slow == pytest.approx(fast / 4.0)
+    assert 60 < (fast > 0.0).sum() < 140
+    assert bounce([0.5], rows, captured=True)(impacts([0.4], [0.0], [0]), np.random.default_rng(1)).captured.all()
+
+
+def test_a_spin_straight_up_has_a_level_axis() -> None:
+    assert rolling_spin(np.array([[0.0, 0.0, 1.0]]), np.array([2.0])).tolist() == [[0.0, 2.0, 0.0]]
+
+
+def changed(**sections: dict[str, Any]) -> Study:
+    tables = tomllib.loads(template())
+    for section, keys in sections.items():
+        tables.setdefault(section, {}).update(keys)
+    return study_file.check(tables, Path())
+
+
+def test_the_soil_is_asked_where_speed_and_incidence_are_uncertain() -> None:
+    speed = {"distribution": "uniform", "lower": 0.05, "upper": 0.4}
+    assert "impact.speed and impact.incidence_deg are no uncertain input" in str(why_no_soil(changed()))
+    assert "impact.incidence_deg is no uncertain" in str(why_no_soil(changed(impact={"speed": speed})))
+    both = changed(impact={"speed": speed, "incidence_deg": {"distribution": "uniform", "lower": 0.0, "upper": 70.0}})
+    assert why_no_soil(both) is None
+    assert trained_ranges(both)["impact.speed"] == pytest.approx((0.05, 0.4))
+
+
+def test_hard_ground_is_followed_from_the_first_impact_and_the_summary_adds_up(tmp_path: Path) -> None:
+    """Near a pole, at a fixed speed: only hard ground can be followed, and nothing ends without a name."""
+    site = {"latitude_deg": 75.0, "partner": False}
+    study = changed(site=site, rest={"count": 60}, impact={"speed": 0.1}, flight={"gravity": "exact"})
+    folder = StudyFolder(tmp_path / "out")
+    stays = np.ones(100, dtype=bool)
+    outputs = np.tile([0.05, 1.0, 0.5, 0.03, 0.0, 0.04], (100, 1))
+    Samples([], list(OUTPUTS), np.zeros((100, 0)), outputs, np.zeros(100), stays, stays).save(folder)
+    said: list[str] = []
+    with ThreadPoolExecutor(1) as executor:
+        job = Job(study, {}, folder, executor, lambda *_: None, said.append)
+        follow_samples(job)
+        write_table(folder, "flights.csv", COLUMNS, [])
+        folder.write_json("flights.json", {})
+        table = landing_results(job, Samples.load(folder), [])["rest"]
+    assert "on hard ground only: impact.speed and" in said[0]
+    assert table["soil"] is None
+    assert table["hard"]["sample_count"] == 60
+    assert sum(table["hard"][name]["count"] for name in ENDS) == 60
+    assert table["hard"]["settled"] == proportion(60, 60)
+    rows = read_table(folder, "rest.csv")
+    assert [row["sample"] for row in rows] == [str(sample) for sample in range(60)]
+    # Every sample has the same first impact, and hard ground no scatter.
+    assert {tuple(row.items())[2:] for row in rows} == {tuple(rows[0].items())[2:]}
+    down, along = 0.1 * math.cos(math.radians(30.0)), 0.1 * math.sin(math.radians(30.0))
+    hop = 2.0 * 0.6 * down / 2.3e-4 * max(0.8 * along, along - 0.6 * 1.6 * down)
+    assert 0.5 * hop < float(rows[0]["path_length"]) < 3.0 * hop
