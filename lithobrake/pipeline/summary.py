@@ -203,6 +203,7 @@ def _site(study: Study) -> dict[str, Any]:
         "partner": partner,
         "partner_distance_m": None if partner is None else float(body.orbit.distance),
         **{key: site[key] for key in ("latitude_deg", "longitude_deg", "heading_deg")},
+        "place_m": body.shape.surface_point(site["latitude_deg"], site["longitude_deg"]).tolist(),
         "effective_acceleration_outward": float(effective[2]),
         "effective_acceleration_along_heading": float(effective[0]),
         "warning": site_warning(study),

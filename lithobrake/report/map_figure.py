@@ -1,5 +1,6 @@
 """Figure 7: where the lander comes down after the first bounce, and in how many cases it does."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,6 +13,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import LinearNDInterpolator
 
 from lithobrake.report.density import WHOLE, Window, close_window, draw_density, near
+from lithobrake.report.ellipse_line import draw_ellipses
 from lithobrake.report.look import INK, INPUT_COLOURS, INTERACTIONS, QUIET, SITE, TEST
 
 Array = NDArray[np.float64]
@@ -33,16 +35,18 @@ def map_figure(
     site: tuple[float, float],
     shares: list[Share],
     vertices: Array | None = None,
+    ellipses: Mapping[str, Any] | None = None,
 ) -> Figure:
     """Draw the density of impacts on a map, and the shares of what became of the samples.
 
     latitude, longitude: of the impacts [deg], shape [impact]; site: latitude and longitude [deg];
-    vertices: of the body [m], shape [vertex, 3], for the relief under the map; absent: a plain map.
+    vertices: of the body [m], shape [vertex, 3], for the relief under the map; absent: a plain map; ellipses: of the
+    summary, or None.
     """
     figure = Figure(figsize=(9.2, 5.9))
     axes = figure.add_axes((0.06, 0.335, 0.84, 0.645))
     if vertices is not None:
-        _relief(axes, vertices)
+        draw_relief(axes, vertices)
     _mark_site(axes, site)
     axes.set_xlim(-180, 180)
     axes.set_ylim(-90, 90)
@@ -51,8 +55,8 @@ def map_figure(
     axes.set_yticks(range(-90, 91, 30))
     axes.set_xlabel("longitude, east [deg]")
     axes.set_ylabel("latitude [deg]")
-    _impacts(figure, axes, latitude, longitude, site)
-    _shares(figure.add_axes((0.2, 0.095, 0.7, 0.15)), shares)
+    _impacts(figure, axes, latitude, longitude, site, ellipses)
+    draw_shares(figure.add_axes((0.2, 0.095, 0.7, 0.15)), shares, "share of all samples [%], with 95 % interval")
     return figure
 
 
@@ -78,15 +82,25 @@ def inset_left(site: tuple[float, float]) -> bool:
     return bool(near(np.array([site[1]]), 0.0)[0] > 0)
 
 
-def _impacts(figure: Figure, axes: Axes, latitude: Array, longitude: Array, site: tuple[float, float]) -> None:
+def _impacts(
+    figure: Figure,
+    axes: Axes,
+    latitude: Array,
+    longitude: Array,
+    site: tuple[float, float],
+    ellipses: Mapping[str, Any] | None,
+) -> None:
     """Draw the impacts, in a close view beside the site where on the whole map they would lie under its mark."""
     if not len(latitude):
         axes.text(0, -50, "no impact among the flights", ha="center", fontsize=11, color=QUIET)
         return
     drawn, words = draw_density(axes, latitude, longitude, WHOLE, 11.0)
     window = close_window(latitude, longitude, site)
-    if window is not None:
-        drawn, words = _close_view(axes, latitude, longitude, site, window)
+    if window is None:
+        draw_ellipses(axes, ellipses, WHOLE)
+    else:
+        drawn, words, view = _close_view(axes, latitude, longitude, site, window)
+        draw_ellipses(view, ellipses, window)
     bar = figure.colorbar(drawn, cax=figure.add_axes((0.915, 0.36, 0.014, 0.57)), format="%g")
     bar.set_label(words)
     outline: Any = bar.outline
@@ -95,7 +109,7 @@ def _impacts(figure: Figure, axes: Axes, latitude: Array, longitude: Array, site
 
 def _close_view(
     axes: Axes, latitude: Array, longitude: Array, site: tuple[float, float], window: Window
-) -> tuple[Any, str]:
+) -> tuple[Any, str, Axes]:
     """Draw the impacts around the site enlarged, on the side of the map where the site is not."""
     left = 0.045 if inset_left(site) else 0.615
     frame = Rectangle((left - 0.03, 0.07), 0.4, 0.88, transform=axes.transAxes, color="white", alpha=0.94, zorder=7)
@@ -112,10 +126,10 @@ def _close_view(
     view.grid(visible=True)
     for spine in view.spines.values():
         spine.set_visible(True)
-    return drawn, words
+    return drawn, words, view
 
 
-def _relief(axes: Axes, vertices: Array) -> None:
+def draw_relief(axes: Axes, vertices: Array) -> None:
     """Shade the body's height over latitude and longitude by a light from the north-west."""
     radius = np.linalg.norm(vertices, axis=1)
     latitude = np.degrees(np.arcsin(vertices[:, 2] / radius))
@@ -144,8 +158,8 @@ def _relief(axes: Axes, vertices: Array) -> None:
     )
 
 
-def _shares(axes: Axes, shares: list[Share]) -> None:
-    """One bar a fate, with its interval and its figure in per cent."""
+def draw_shares(axes: Axes, shares: list[Share], words: str, room: float = 25.0) -> None:
+    """One bar a fate, with its interval and its figure in per cent; `room` [%] to the right of 100 % holds the text."""
     colours = (INPUT_COLOURS[0], INPUT_COLOURS[5], TEST, QUIET, INTERACTIONS)
     place = np.arange(len(shares))[::-1]
     for y, share, colour in zip(place, shares, colours * 3, strict=False):
@@ -154,8 +168,8 @@ def _shares(axes: Axes, shares: list[Share]) -> None:
         text = f"{100 * share.value:.2f} %   [{100 * share.lower:.2f}, {100 * share.upper:.2f}]"
         axes.text(100 * share.upper + 1, y, text, va="center", fontsize=8)
     axes.set_yticks(place, [share.name for share in shares])
-    axes.set_xlim(0, 125)
+    axes.set_xlim(0, 100 + room)
     axes.set_xticks(range(0, 101, 20))
-    axes.set_xlabel("share of all samples [%], with 95 % interval")
+    axes.set_xlabel(words)
     axes.spines["left"].set_visible(False)
     axes.tick_params(axis="y", length=0)

@@ -2,6 +2,7 @@
 
 import csv
 import json
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -13,6 +14,7 @@ from lithobrake.report.error_figure import Score
 from lithobrake.report.scene import Scene, read_scene
 
 Array = NDArray[np.float64]
+FILES = ("summary.json", "scores.json", "samples.h5", "flights.csv", "rest.csv", "body.obj", "study.toml")
 
 
 @dataclass(frozen=True)
@@ -29,8 +31,9 @@ class Results:
     """All that the page shows.
 
     study, results, provenance: the three tables of summary.json; scores: stage, output, score;
-    latitude, longitude: of the impacts [deg], shape [impact]; body_vertices: of the body [m], or None. bed and landing
-    are None where a solver of the user's own made the touchdowns.
+    latitude, longitude: of the impacts [deg], shape [impact], and facet, the one of the body that was hit;
+    body_vertices of the body [m] and its body_faces, counted from 0; rest: latitude and longitude [deg] of the landers
+    that rest, by ground. bed and landing are None where a solver of the user's own made the touchdowns.
     """
 
     study: dict[str, Any]
@@ -43,17 +46,26 @@ class Results:
     samples: Samples
     latitude: Array
     longitude: Array
-    body_vertices: Array | None
+    facet: NDArray[np.int64]
+    body_vertices: Array
+    body_faces: NDArray[np.int64]
+    rest: dict[str, tuple[Array, Array]]
 
 
 def read_results(folder: Path) -> Results:
     """Read a study's folder. Raises ValueError that names the file when one is missing."""
-    _refuse_without(folder, ("summary.json", "scores.json", "samples.h5", "flights.csv", "study.toml"))
+    _refuse_without(folder, FILES)
     summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
     has_scenes = not summary["study"].get("solver", {}).get("command")
     if has_scenes:
         _refuse_without(folder, ("landing.h5", "beds/bed_0.h5"))
-    latitude, longitude = read_impacts(folder / "flights.csv")
+    impacts = read_columns(folder / "flights.csv", {"status": "impact"}, "latitude_deg", "longitude_deg", "facet")
+    places = ("latitude_deg", "longitude_deg")
+    rest = {
+        ground: read_columns(folder / "rest.csv", {"ground": ground, "status": "settled"}, *places)
+        for ground in ("soil", "hard")
+    }
+    vertices, faces = read_body(folder / "body.obj")
     return Results(
         study=summary["study"],
         results=summary["results"],
@@ -63,9 +75,12 @@ def read_results(folder: Path) -> Results:
         landing=read_scene(folder / "landing.h5", has_lander=True) if has_scenes else None,
         scores=read_scores(folder / "scores.json"),
         samples=read_samples(folder / "samples.h5"),
-        latitude=latitude,
-        longitude=longitude,
-        body_vertices=read_vertices(folder / "body.obj"),
+        latitude=impacts[0],
+        longitude=impacts[1],
+        facet=impacts[2].astype(np.int64),
+        body_vertices=vertices,
+        body_faces=faces,
+        rest={ground: (columns[0], columns[1]) for ground, columns in rest.items()},
     )
 
 
@@ -110,19 +125,15 @@ def read_samples(path: Path) -> Samples:
     )
 
 
-def read_impacts(path: Path) -> tuple[Array, Array]:
-    """Latitude and longitude [deg] of the flights that ended in an impact, shape [impact] each."""
+def read_columns(path: Path, wanted: Mapping[str, str], *names: str) -> list[Array]:
+    """Columns of numbers of a CSV file, of the rows that have the wanted words, shape [row] each."""
     with path.open(newline="", encoding="utf-8") as file:
-        rows = [row for row in csv.DictReader(file) if row["status"] == "impact"]
-    return (
-        np.array([float(row["latitude_deg"]) for row in rows]),
-        np.array([float(row["longitude_deg"]) for row in rows]),
-    )
+        rows = [row for row in csv.DictReader(file) if all(row[key] == word for key, word in wanted.items())]
+    return [np.array([float(row[name]) for row in rows]) for name in names]
 
 
-def read_vertices(path: Path) -> Array | None:
-    """Vertices of the body [m], shape [vertex, 3], or None when the study keeps no shape."""
-    if not path.is_file():
-        return None
-    lines = path.read_text(encoding="utf-8").splitlines()
-    return np.array([[float(word) for word in line.split()[1:4]] for line in lines if line.startswith("v ")])
+def read_body(path: Path) -> tuple[Array, NDArray[np.int64]]:
+    """Vertices of the body [m], shape [vertex, 3], and its faces, counted from 0, shape [face, 3]."""
+    lines = [line.split() for line in path.read_text(encoding="utf-8").splitlines()]
+    vertices = np.array([[float(word) for word in words[1:4]] for words in lines if words[0] == "v"])
+    return vertices, np.array([[int(word) - 1 for word in words[1:4]] for words in lines if words[0] == "f"])

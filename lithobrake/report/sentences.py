@@ -194,6 +194,35 @@ def landing_map(data: Results) -> str:
     )
 
 
+def body(data: Results) -> str:
+    """Figure 8."""
+    if not len(data.facet):
+        return "No flight comes down on the body, so there is nothing to show on it."
+    shared = f"{_thousands(len(data.facet))} impacts on the shape that the flights used"
+    ellipse = data.results["ellipses"]
+    if ellipse is None:
+        return f"{shared}; they lie too far around the body, or are too few, to have a landing ellipse."
+    long, short = next(entry["semi_axes_m"] for entry in ellipse["shares"] if entry["share"] > 0.9)
+    return (
+        f"{shared}; an ellipse of {number(long)} by {number(short)} m (semi-axes) about latitude "
+        f"{ellipse['latitude_deg']:.1f} deg, longitude {ellipse['longitude_deg']:.1f} deg holds 95 % of them."
+    )
+
+
+def rest(data: Results) -> str:
+    """Figure 9."""
+    table = data.results["rest"]
+    soil, hard = table["soil"], table["hard"]
+    if hard is None:
+        return "No sample was followed beyond its next impact (rest.count is 0)."
+    limit = hours(data.study["rest"]["duration"])
+    words = f"Followed from bounce to bounce for up to {limit}, on hard ground {interval(hard['settled'])} come to rest"
+    if soil is None:
+        return f"{words}; on the soil it is not known: {table['why_no_soil']}."
+    outside = percent(soil["outside"]["share"])
+    return f"{words}, on the soil {interval(soil['settled'])}, where {outside} meet the ground as none of the runs did."
+
+
 def _thousands(count: int) -> str:
     return f"{count:,}".replace(",", " ")
 

@@ -1,4 +1,4 @@
-"""The report of a study: seven figures, tables and provenance on one page, and the figures beside it as PNG files."""
+"""The report of a study: figures, tables and provenance on one page, and the figures beside it as PNG files."""
 
 import io
 from collections.abc import Callable
@@ -10,20 +10,35 @@ import numpy as np
 from lithobrake.atomic import atomic_path
 from lithobrake.report import sentences
 from lithobrake.report.bed_figure import bed_figure
+from lithobrake.report.body_figure import body_figure
 from lithobrake.report.count_figure import Design, count_figure
 from lithobrake.report.error_figure import error_figure
 from lithobrake.report.landing_figure import landing_figure
+from lithobrake.report.landing_tables import GROUND_WORDS, fates, followed
 from lithobrake.report.look import PAPER_OUTPUTS, figure_style
 from lithobrake.report.map_figure import Share, map_figure
 from lithobrake.report.page import Panel, page
+from lithobrake.report.rest_figure import RestMap, rest_figure
 from lithobrake.report.results import Results, read_results
 from lithobrake.report.scatter_figure import scatter_figure
 from lithobrake.report.sentences import hours
 from lithobrake.report.sobol_figure import sobol_figure
-from lithobrake.report.tables import fates, provenance, tables, tiles
+from lithobrake.report.tables import provenance, tables, tiles
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+# What may become of a lander after all bounces, as short as it has to be beside a bar.
+SHORT_END_WORDS = {
+    "settled": "at rest",
+    "lofted": "lifted off again",
+    "outside": "outside the runs",
+    "sliding": "sliding",
+    "bouncing": "still bouncing",
+    "flying": "not at rest, {hours}",
+    "escaped": "escaped",
+    "partner": "on the partner",
+}
 
 
 def write_report(folder: Path) -> Path:
@@ -61,6 +76,8 @@ def _figures(data: Results) -> list[tuple[str, str, str, Callable[[], "Figure | 
         ("errors", "How good the expansion is", sentences.errors(data), lambda: _errors(data)),
         ("outputs", "What may come out", sentences.scatter(data, colour), lambda: _outputs(data, colour)),
         ("map", "Where the lander comes down", sentences.landing_map(data), lambda: _map(data)),
+        ("body", "The same on the body", sentences.body(data), lambda: _body(data)),
+        ("rest", "Where it rests", sentences.rest(data), lambda: _rest(data)),
     ]
 
 
@@ -141,4 +158,28 @@ def _map(data: Results) -> "Figure":
         if key != "remains"
     ]
     where = (site["latitude_deg"], site["longitude_deg"])
-    return map_figure(data.latitude, data.longitude, where, shares, data.body_vertices)
+    return map_figure(data.latitude, data.longitude, where, shares, data.body_vertices, data.results["ellipses"])
+
+
+def _body(data: Results) -> "Figure | None":
+    if not len(data.facet):
+        return None
+    return body_figure(data.body_vertices, data.body_faces, data.facet, np.array(data.results["site"]["place_m"]))
+
+
+def _rest(data: Results) -> "Figure | None":
+    found, site, limit = followed(data), data.results["site"], hours(data.study["rest"]["duration"])
+    if not found:
+        return None
+    maps = []
+    for ground, (latitude, longitude) in data.rest.items():
+        table = found.get(ground)
+        shares = [
+            Share(words.format(hours=limit), *(table[key][end] for end in ("share", "lower", "upper")))
+            for key, words in SHORT_END_WORDS.items()
+            if table and table[key]["count"]
+        ]
+        absent = None if table else f"Not asked: {data.results['rest']['why_no_soil']}."
+        ellipses = table["ellipses"] if table else None
+        maps.append(RestMap(f"On {GROUND_WORDS[ground]}", latitude, longitude, ellipses, shares, absent))
+    return rest_figure(maps, (site["latitude_deg"], site["longitude_deg"]), data.body_vertices)

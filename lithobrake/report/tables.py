@@ -1,12 +1,13 @@
 """The tables of the page, from the numbers of the files."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
+from lithobrake.report.landing_tables import landing_tables
 from lithobrake.report.look import PAPER_OUTPUTS, output
 from lithobrake.report.page import Table, Tile, flat, number, show
 from lithobrake.report.results import Results
-from lithobrake.report.sentences import hours, input_words, percent
+from lithobrake.report.sentences import hours, input_words
 
 OUTPUT_WORDS = {
     "speed_out": "outgoing speed V+",
@@ -29,20 +30,6 @@ DESIGN_WORDS = {
     "test_kept": "test, kept inputs vary",
     "test_all": "test, all inputs vary",
 }
-FATE_WORDS = {
-    "impact": "down again within {hours}",
-    "flying": "still flying after {hours}",
-    "escaped": "escaped",
-    "partner": "on the partner within {hours}",
-    "captured": "captured",
-    "no_outward_velocity": "no outward velocity",
-    "remains": "captured, no outward velocity, or down again within {hours}",
-}
-
-
-def fates(data: Results) -> dict[str, str]:
-    """What may become of a sample, in words; the partner is left out where there is none."""
-    return {key: words for key, words in FATE_WORDS.items() if key != "partner" or data.results["site"].get("partner")}
 
 
 def tiles(data: Results) -> list[Tile]:
@@ -93,8 +80,7 @@ def tables(data: Results) -> list[Table]:
         _sobol(data),
         _outputs(data),
         _touchdowns(data),
-        _fates(data),
-        _site(data),
+        *landing_tables(data),
     ]
 
 
@@ -234,26 +220,6 @@ def _touchdowns(data: Results) -> Table:
     ]
     columns = ["quantity", "unit", "smallest", "median", "largest"]
     return Table("What else the touchdowns gave", columns, rows, "Over all distinct runs.", frozenset(columns[2:]))
-
-
-def _fates(data: Results) -> Table:
-    shares: Mapping[str, Any] = data.results["shares"]
-    limit = hours(data.study["flight"]["duration"])
-    columns = ["what became of the sample", "samples", "share", "95 % from", "to"]
-    rows: Sequence[Sequence[str]] = [
-        [
-            words.format(hours=limit),
-            str(shares[key]["count"]),
-            *(percent(shares[key][end], 2) for end in ("share", "lower", "upper")),
-        ]
-        for key, words in fates(data).items()
-    ]
-    note = f"Shares of {shares['sample_count']} samples; {shares['flight_count']} of them were flown."
-    return Table("After the first bounce", columns, rows, note, frozenset(columns[1:]))
-
-
-def _site(data: Results) -> Table:
-    return Table("Site and body", ["name", "value"], flat(data.results["site"]), "m, kg, s, m/s2; degrees where named.")
 
 
 def _index(table: Mapping[str, Any], kind: str, name: str, key: str) -> str:

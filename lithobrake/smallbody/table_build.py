@@ -52,7 +52,8 @@ def table_of(
     if path.is_file():
         with np.load(path) as stored:
             table = GravityTable(*(_plain(stored[field.name]) for field in fields(GravityTable)))
-            return table, TableError(*stored["error"].tolist())
+            median, p95, largest, count = stored["error"].tolist()
+            return table, TableError(median, p95, largest, int(count))
     table = _build(polyhedron, multipole, volume, levels)
     error = _measure(table, polyhedron, multipole)
     _store(path, table, error)

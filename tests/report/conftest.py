@@ -25,6 +25,8 @@ def study_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     write_bodies(folder / "landing.h5", 13, landing)
     write_samples(folder / "samples.h5")
     write_flights(folder / "flights.csv")
+    write_rest(folder / "rest.csv")
+    write_octahedron(folder / "body.obj")
     scores = made_up_scores()
     (folder / "scores.json").write_text(json.dumps(scores), encoding="utf-8")
     (folder / "summary.json").write_text(json.dumps(made_up_summary(scores)), encoding="utf-8")
@@ -63,12 +65,33 @@ def write_samples(path: Path) -> None:
 def write_flights(path: Path) -> None:
     with path.open("w", newline="", encoding="utf-8") as file:
         table = csv.writer(file)
-        table.writerow(["sample", "status", "time_s", "latitude_deg", "longitude_deg", "impact_speed"])
+        table.writerow(["sample", "status", "time_s", "latitude_deg", "longitude_deg", "facet", "impact_speed"])
         for index in range(100):
             if index % 4:
-                table.writerow([index, "impact", 100.0 + index, 0.3 * index - 15, 2.0 * index - 100, 0.05])
+                table.writerow([index, "impact", 100.0 + index, 0.3 * index - 15, 2.0 * index - 100, index % 3, 0.05])
             else:
-                table.writerow([index, "escaped" if index % 8 else "flying", 43200.0, "", "", ""])
+                table.writerow([index, "escaped" if index % 8 else "flying", 43200.0, "", "", "", ""])
+
+
+def write_rest(path: Path) -> None:
+    """Landers that were followed on hard ground only."""
+    with path.open("w", newline="", encoding="utf-8") as file:
+        table = csv.writer(file)
+        table.writerow(["ground", "sample", "status", "latitude_deg", "longitude_deg"])
+        for index in range(50):
+            place = [0.1 * index, 5.0 + 0.2 * index] if index % 5 else ["", ""]
+            table.writerow(["hard", index, "settled" if index % 5 else "escaped", *place])
+
+
+def write_octahedron(path: Path) -> None:
+    """A body of eight facets."""
+    lines = [f"v {x} {y} {z}" for x, y, z in (1e4 * OCTAHEDRON).tolist()]
+    corners = 1e4 * OCTAHEDRON[OCTAHEDRON_FACES]
+    outward = np.einsum(
+        "fi,fi->f", np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), corners[:, 0]
+    )
+    faces = np.where((outward > 0)[:, None], OCTAHEDRON_FACES, OCTAHEDRON_FACES[:, ::-1])
+    path.write_text("\n".join(lines + [f"f {a} {b} {c}" for a, b, c in (faces + 1).tolist()]) + "\n", encoding="utf-8")
 
 
 def made_up_scores() -> dict[str, dict[str, dict[str, object]]]:
@@ -98,6 +121,18 @@ def made_up_summary(scores: dict[str, dict[str, dict[str, object]]]) -> dict[str
         "sobol_total_interval": sobol_interval,
     }
     levels = np.arange(1, 4)
+    ellipses = {
+        "latitude_deg": 1.0,
+        "longitude_deg": 10.0,
+        "heading_deg": 30.0,
+        "shares": [
+            {"share": share, "semi_axes_deg": [long, 2.0], "semi_axes_m": [7.4 * long, 15.0]}
+            for share, long in ((0.5, 8.0), (0.95, 20.0))
+        ],
+    }
+    none = {"count": 0, "share": 0.0, "lower": 0.0, "upper": 0.01}
+    ends = ("lofted", "outside", "outside_too_slow", "sliding", "bouncing", "flying", "partner")
+    hard = {"sample_count": 50, **dict.fromkeys(ends, none), "settled": share, "escaped": share, "ellipses": ellipses}
     uniform = {"distribution": "uniform", "lower": 0.3, "upper": 0.9}
     return {
         "format_version": 1,
@@ -112,6 +147,14 @@ def made_up_summary(scores: dict[str, dict[str, dict[str, object]]]) -> dict[str
             },
             "design": {"method": "smolyak", "screening_level": 2, "refined_level": 3, "kept_outputs": OUTPUTS},
             "flight": {"duration": 43200.0},
+            "rest": {
+                "count": 50,
+                "duration": 86400.0,
+                "normal_restitution": 0.6,
+                "tangential_restitution": 0.8,
+                "friction": 0.5,
+                "rest_height": 0.01,
+            },
             "site": {"body": "didymos"},
         },
         "results": {
@@ -162,6 +205,7 @@ def made_up_summary(scores: dict[str, dict[str, dict[str, object]]]) -> dict[str
                 "latitude_deg": 0.0,
                 "longitude_deg": 0.0,
                 "heading_deg": 90.0,
+                "place_m": [425.0, 0.0, 0.0],
                 "effective_acceleration_outward": 1.1e-5,
                 "effective_acceleration_along_heading": 0.0,
             },
@@ -169,6 +213,15 @@ def made_up_summary(scores: dict[str, dict[str, dict[str, object]]]) -> dict[str
                 "sample_count": 400,
                 "flight_count": 100,
                 **dict.fromkeys(("captured", "no_outward_velocity", "impact", "flying", "escaped", "remains"), share),
+            },
+            "flights": {"gravity_table_error": None, "jacobi_drift_largest_m2_s2": None, "time_s": quantiles},
+            "ellipses": ellipses,
+            "without_scatter": None,
+            "rest": {
+                "why_no_soil": "impact.speed is no uncertain input",
+                "trained_ranges": {},
+                "soil": None,
+                "hard": hard | {"time_s": quantiles},
             },
         },
         "provenance": {"host": "somewhere", "packages": {"numpy": "2.0"}, "wall_s": {"bed": 12.5}},

@@ -7,16 +7,25 @@ import pytest
 from matplotlib.figure import Figure
 
 from lithobrake.report.bed_figure import bed_figure, three_moments
+from lithobrake.report.body_figure import body_figure, colour_ends, facet_density
 from lithobrake.report.count_figure import Design, count_figure
 from lithobrake.report.density import WHOLE, close_window, draw_density, neighbour_count
+from lithobrake.report.ellipse_line import outline
 from lithobrake.report.error_figure import Score, error_figure
 from lithobrake.report.hulls import Body
 from lithobrake.report.landing_figure import instants, landing_figure
 from lithobrake.report.look import PAPER_OUTPUTS, figure_style, input_label
 from lithobrake.report.map_figure import Share, map_figure
+from lithobrake.report.rest_figure import RestMap, rest_figure
 from lithobrake.report.scatter_figure import scatter_figure
 from lithobrake.report.sobol_figure import sobol_figure
 
+ELLIPSES = {
+    "latitude_deg": 10.0,
+    "longitude_deg": 30.0,
+    "heading_deg": 20.0,
+    "shares": [{"share": 0.5, "semi_axes_deg": [2.0, 1.0]}, {"share": 0.95, "semi_axes_deg": [4.0, 2.0]}],
+}
 TETRAHEDRON = np.array([(1.0, 1.0, 1.0), (1.0, -1.0, -1.0), (-1.0, 1.0, -1.0), (-1.0, -1.0, 1.0)])
 FACES = np.array([(0, 1, 2), (0, 3, 1), (0, 2, 3), (1, 3, 2)])
 
@@ -170,8 +179,51 @@ def test_map_figure_shows_impacts_near_the_site_in_a_close_view() -> None:
     assert window.longitude == pytest.approx(179.0, abs=1.0)
     assert window.half < 5.0
     with figure_style():
-        figure = map_figure(latitude, longitude, (30.0, 179.0), [Share("impact", 1.0, 0.98, 1.0)])
+        figure = map_figure(latitude, longitude, (30.0, 179.0), [Share("impact", 1.0, 0.98, 1.0)], None, ELLIPSES)
     assert picture(figure)
+
+
+def test_an_ellipse_lies_as_far_from_its_middle_as_it_is_long() -> None:
+    latitude, longitude = outline(60.0, 170.0, 90.0, (10.0, 4.0))
+    places, middle = (
+        np.stack([np.cos(a) * np.cos(b), np.cos(a) * np.sin(b), np.sin(a)], axis=-1)
+        for a, b in (np.radians([latitude, longitude]), np.radians([60.0, 170.0]))
+    )
+    away = np.degrees(np.arccos(places @ middle))
+    assert (away.max(), away.min()) == pytest.approx((10.0, 4.0), abs=1e-3)
+    # Its longer axis heads east.
+    assert longitude[0] > 180.0
+    assert latitude[90] < 57.0 or latitude[90] > 63.0
+
+
+def test_density_on_the_body_counts_each_impact_over_the_area_around_it() -> None:
+    corners = 1e3 * TETRAHEDRON[FACES]
+    area = 2.0 * np.sqrt(3.0) * 1e6
+    density = facet_density(corners, np.array([2, 2, 2, 0]))
+    assert density * area / 1e4 == pytest.approx([1.0, 0.0, 3.0, 0.0])
+    assert colour_ends(density)[1] == density.max()
+    with figure_style():
+        figure = body_figure(1e3 * TETRAHEDRON, FACES, np.array([2, 2, 2, 0]), np.array([300.0, 300.0, 300.0]))
+    assert "from the south" in texts(figure)
+    assert picture(figure)
+
+
+def test_rest_figure_shows_both_grounds_over_one_window_or_says_why_not() -> None:
+    generator = np.random.default_rng(7)
+    latitude, longitude = 10 + generator.normal(size=50), 30 + generator.normal(size=50)
+    hard = RestMap("On hard ground", latitude, longitude, ELLIPSES, [Share("at rest", 0.9, 0.85, 0.95)])
+    soil = RestMap("On soil", latitude + 3.0, longitude, None, [Share("at rest", 0.5, 0.4, 0.6)])
+    with figure_style():
+        figure = rest_figure([soil, hard], (10.0, 30.0))
+        silent = rest_figure(
+            [RestMap("On soil", latitude[:0], latitude[:0], None, [], "not asked"), hard], (10.0, 30.0)
+        )
+    maps = [axes for axes in figure.axes if axes.get_title(loc="left").startswith("On ")]
+    assert maps[0].get_ylim() == maps[1].get_ylim()
+    assert "50.00 %   [40.00, 60.00]" in texts(figure)
+    assert "not asked" in texts(silent)
+    assert picture(figure)
+    assert picture(silent)
 
 
 def test_no_impact_is_lost_on_the_map_of_the_whole_body() -> None:

@@ -23,14 +23,14 @@ def report(study_folder: Path) -> str:
     return path.read_text(encoding="utf-8")
 
 
-def test_page_has_the_seven_figures_inside_and_nothing_outside(report: str) -> None:
-    assert len(re.findall(r'<img alt="[^"]+" src="data:image/png;base64,', report)) == 7
+def test_page_has_the_nine_figures_inside_and_nothing_outside(report: str) -> None:
+    assert len(re.findall(r'<img alt="[^"]+" src="data:image/png;base64,', report)) == 9
     assert not re.search(r"https?://", report)
 
 
 def test_figures_stand_beside_the_page_as_files(study_folder: Path, report: str) -> None:
     pictures = sorted(path.name for path in (study_folder / "report").glob("*.png"))
-    assert [name.split("_")[1] for name in pictures] == ["1", "2", "3", "4", "5", "6", "7"]
+    assert [name.split("_")[1] for name in pictures] == ["1", "2", "3", "4", "5", "6", "7", "8", "9"]
     assert not list((study_folder / "report").glob("*.part"))
 
 
@@ -45,6 +45,8 @@ def test_sentences_carry_the_numbers_of_the_summary(report: str) -> None:
         "Q2 = 0.80 of V+ (MAPE 1.5 %)",
         "400 samples",
         "pull 1.1 × 10⁻⁵ m/s2 outward",
+        "148 by 15 m (semi-axes) about latitude 1.0 deg, longitude 10.0 deg holds 95 % of them",
+        "on hard ground 50.0 % (95 % interval 45.0 to 55.0 %) come to rest; on the soil it is not known: impact.speed",
     ):
         assert words in report
 
@@ -84,12 +86,32 @@ def test_study_in_which_nothing_leaves_has_a_page_that_says_so(study_folder: Pat
     shutil.copytree(study_folder, folder)
     with h5py.File(folder / "samples.h5", "r+") as file:
         file["stays"][:] = True
-    (folder / "flights.csv").write_text("sample,status,latitude_deg,longitude_deg\n", encoding="utf-8")
+    (folder / "flights.csv").write_text("sample,status,latitude_deg,longitude_deg,facet\n", encoding="utf-8")
     summary = json.loads((folder / "summary.json").read_text())
     summary["results"]["monte_carlo"] |= {"leaving_count": 0, "outputs": {}}
     (folder / "summary.json").write_text(json.dumps(summary))
     text = write_report(folder).read_text(encoding="utf-8")
     assert "None of the 400 samples leaves the surface" in text
+    assert "No flight comes down on the body" in text
+
+
+def test_both_grounds_and_flights_without_scatter_stand_side_by_side(study_folder: Path, tmp_path: Path) -> None:
+    folder = tmp_path / "both"
+    shutil.copytree(study_folder, folder)
+    summary = json.loads((folder / "summary.json").read_text())
+    results = summary["results"]
+    results["rest"]["soil"] = results["rest"]["hard"] | {
+        "outside": {"count": 3, "share": 0.06, "lower": 0.02, "upper": 0.16}
+    }
+    results["without_scatter"] = {"shares": results["shares"], "flights": results["flights"], "ellipses": None}
+    (folder / "summary.json").write_text(json.dumps(summary))
+    text = write_report(folder).read_text(encoding="utf-8")
+    assert (
+        "on the soil 50.0 % (95 % interval 45.0 to 55.0 %), where 6.0 % meet the ground as none of the runs did" in text
+    )
+    assert '<th class="number">without scatter</th>' in text
+    assert "stopped at an impact outside the range of the runs" in text
+    assert "next impact, without scatter" in text
 
 
 def test_a_body_is_drawn_about_its_centroid(tmp_path: Path) -> None:

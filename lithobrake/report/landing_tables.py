@@ -1,0 +1,147 @@
+"""Tables of where the landers end."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from lithobrake.report.page import Table, flat, number
+from lithobrake.report.results import Results
+from lithobrake.report.sentences import hours, percent
+
+FATE_WORDS = {
+    "impact": "down again within {hours}",
+    "flying": "still flying after {hours}",
+    "escaped": "escaped",
+    "partner": "on the partner within {hours}",
+    "captured": "captured",
+    "no_outward_velocity": "no outward velocity",
+    "remains": "captured, no outward velocity, or down again within {hours}",
+}
+END_WORDS = {
+    "settled": "at rest",
+    "lofted": "captured, and lifted off again by the spin",
+    "outside": "stopped at an impact outside the range of the runs",
+    "outside_too_slow": "(of these: slower than any run)",
+    "sliding": "sliding along the ground",
+    "bouncing": "still bouncing after a thousand bounces",
+    "flying": "not at rest after {hours}",
+    "escaped": "escaped",
+    "partner": "on the partner",
+}
+GROUND_WORDS = {"soil": "soil", "hard": "hard ground"}
+QUANTILES = ("quantile_0.05", "quantile_0.5", "quantile_0.95")
+ENDS = ("share", "lower", "upper")
+
+
+def fates(data: Results) -> dict[str, str]:
+    """What may become of a sample, in words; the partner is left out where there is none."""
+    return {key: words for key, words in FATE_WORDS.items() if key != "partner" or data.results["site"].get("partner")}
+
+
+def landing_tables(data: Results) -> list[Table]:
+    """All of them, in the order of the journey."""
+    return [_fates(data), _flights(data), _ends(data), _journeys(data), _ellipses(data), _site(data)]
+
+
+def _fates(data: Results) -> Table:
+    shares, limit = data.results["shares"], hours(data.study["flight"]["duration"])
+    alone = data.results["without_scatter"]
+    columns = ["what became of the sample", "samples", "share", "95 % from", "to"]
+    columns += ["without scatter", "95 % from", "to"] if alone else []
+    rows = []
+    for key, words in fates(data).items():
+        row = [words.format(hours=limit), str(shares[key]["count"]), *(percent(shares[key][end], 2) for end in ENDS)]
+        rows.append(row + ([percent(alone["shares"][key][end], 2) for end in ENDS] if alone else []))
+    note = f"Shares of {shares['sample_count']} samples; {shares['flight_count']} of them were flown."
+    if alone:
+        note += (
+            " The first shares have the scatter from run to run; without it stand those of the expansion alone, of "
+            f"{alone['shares']['sample_count']} samples."
+        )
+    return Table("After the first bounce", columns, rows, note, frozenset(columns[1:]))
+
+
+def _flights(data: Results) -> Table:
+    """Times, speeds and incidences of the impacts, and how exact the flights are."""
+    flights, words = data.results["flights"], {"time_s": "time of flight [s]", "impact_speed": "impact speed [m/s]"}
+    words |= {"impact_incidence_deg": "incidence at the impact, from the normal [deg]"}
+    columns = ["flights that come down again", "5 %", "median", "95 %"]
+    rows = [[words[key], *(number(flights[key][level]) for level in QUANTILES)] for key in words if key in flights]
+    error, drift = flights.get("gravity_table_error"), flights.get("jacobi_drift_largest_m2_s2")
+    note = "Gravity is summed over the facets."
+    if error:
+        note = (
+            f"Gravity is read from a table, {number(error['median'], 2)} of the surface gravity off the sum over the "
+            f"facets in the median, {number(error['p95'], 2)} at the 95th percentile of {error['point_count']} points."
+        )
+    if drift is not None:
+        note += (
+            f" The Jacobi constant of {flights['jacobi_flight_count']} flights changes by {number(drift, 2)} m2/s2 at "
+            "most, without the partner."
+        )
+    return Table("The flights to the next impact", columns, rows, note, frozenset(columns[1:]))
+
+
+def followed(data: Results) -> dict[str, Mapping[str, Any]]:
+    """The grounds on which samples were followed, with what became of them."""
+    return {ground: data.results["rest"][ground] for ground in GROUND_WORDS if data.results["rest"][ground]}
+
+
+def _ends(data: Results) -> Table:
+    found, limit = followed(data), hours(data.study["rest"]["duration"])
+    columns = ["after all bounces"]
+    for ground in found:
+        columns += [GROUND_WORDS[ground], "95 % from", "to"]
+    rows = []
+    for key, words in END_WORDS.items():
+        if any(table[key]["count"] for table in found.values()):
+            shares = [percent(table[key][end], 2) for table in found.values() for end in ENDS]
+            rows.append([words.format(hours=limit), *shares])
+    counts = {table["sample_count"] for table in found.values()}
+    note = f"Shares of {counts.pop()} samples, followed from the first impact." if counts else "No sample was followed."
+    why = data.results["rest"]["why_no_soil"]
+    note += f" The soil could not be asked: {why}." if why and found else ""
+    return Table("From bounce to bounce", columns, rows, note, frozenset(columns[1:]))
+
+
+def _journeys(data: Results) -> Table:
+    columns = ["landers that rest", "ground", "5 %", "median", "95 %"]
+    words = {"time_s": "time to rest [s]", "rebounds": "rebounds", "path_length": "path [m]"}
+    rows = [
+        [words[key], GROUND_WORDS[ground], *(number(table[key][level]) for level in QUANTILES)]
+        for key in words
+        for ground, table in followed(data).items()
+        if key in table
+    ]
+    rest = data.study["rest"]
+    note = (
+        f"Hard ground: restitution {rest['normal_restitution']:g} along the normal, {rest['tangential_restitution']:g} "
+        f"along the ground, friction {rest['friction']:g}; at rest where a rebound rises less than "
+        f"{rest['rest_height']:g} m. The path is the sum of straight lines between impacts."
+    )
+    return Table("Journeys to rest", columns, rows, note, frozenset(columns[2:]))
+
+
+def _ellipses(data: Results) -> Table:
+    columns = ["places", "share inside", "latitude [deg]", "longitude [deg]", "semi-axes [m]", "heading [deg]"]
+    sets = {"next impact": data.results["ellipses"]}
+    if data.results["without_scatter"]:
+        sets["next impact, without scatter"] = data.results["without_scatter"]["ellipses"]
+    sets |= {f"at rest, {GROUND_WORDS[ground]}": table["ellipses"] for ground, table in followed(data).items()}
+    rows = []
+    for name, found in sets.items():
+        if not found:
+            rows.append([name, "none", "", "", "", ""])
+            continue
+        for entry in found["shares"]:
+            axes = " x ".join(number(axis) for axis in entry["semi_axes_m"])
+            middle = [f"{found[key]:.2f}" for key in ("latitude_deg", "longitude_deg")]
+            rows.append([name, percent(entry["share"], 0), *middle, axes, f"{found['heading_deg']:.1f}"])
+    note = (
+        "Each holds that share of the places, which need follow no law; the heading is that of the longer axis, from "
+        "north toward east. None: fewer than ten places, or places too far around the body to have a middle."
+    )
+    return Table("Landing ellipses", columns, rows, note, frozenset(columns[1:]))
+
+
+def _site(data: Results) -> Table:
+    return Table("Site and body", ["name", "value"], flat(data.results["site"]), "m, kg, s, m/s2; degrees where named.")

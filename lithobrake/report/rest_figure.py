@@ -1,0 +1,86 @@
+"""Where landers rest after bounce upon bounce: on the soil, and beside it on hard ground."""
+
+import textwrap
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from lithobrake.report.density import WHOLE, Window, close_window, draw_density, near
+from lithobrake.report.ellipse_line import draw_ellipses
+from lithobrake.report.look import QUIET, SITE
+from lithobrake.report.map_figure import Share, draw_relief, draw_shares
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class RestMap:
+    """One side of the figure: where landers rest [deg], shape [settled] both, the ellipses of the summary, and shares.
+
+    absent: why there is nothing to show, in place of all else.
+    """
+
+    title: str
+    latitude: Array
+    longitude: Array
+    ellipses: Mapping[str, Any] | None
+    shares: list[Share]
+    absent: str | None = None
+
+
+def rest_figure(maps: list[RestMap], site: tuple[float, float], vertices: Array | None = None) -> Figure:
+    """Draw the maps side by side, over one and the same part of the body, and what became of the landers below them.
+
+    site: latitude and longitude [deg]; vertices: of the body [m], shape [vertex, 3], for the relief; absent: plain.
+    """
+    figure = Figure(figsize=(9.2, 4.0))
+    together = [np.concatenate([getattr(one, name) for one in maps]) for name in ("latitude", "longitude")]
+    window = close_window(together[0], together[1], site) or WHOLE
+    for side, one in enumerate(maps):
+        axes = figure.add_axes((0.06 + 0.5 * side, 0.4, 0.345, 0.54))
+        axes.set_title(one.title)
+        if one.absent is not None:
+            axes.set_axis_off()
+            axes.text(0.0, 0.9, textwrap.fill(one.absent, 58), transform=axes.transAxes, va="top", color=QUIET)
+            continue
+        _map(figure, axes, one, site, window, vertices)
+        height = 0.05 * len(one.shares)
+        bars = figure.add_axes((0.135 + 0.5 * side, 0.32 - height, 0.345, height))
+        draw_shares(bars, one.shares, "share of landers [%], with 95 % interval", room=80.0)
+    return figure
+
+
+def _map(
+    figure: Figure, axes: Axes, one: RestMap, site: tuple[float, float], window: Window, vertices: Array | None
+) -> None:
+    """One map with its density, ellipses and site."""
+    if window is WHOLE and vertices is not None:
+        draw_relief(axes, vertices)
+    axes.set_xlim(window.longitude - window.half_longitude, window.longitude + window.half_longitude)
+    axes.set_ylim(window.latitude - window.half, window.latitude + window.half)
+    axes.set_aspect(window.half_longitude / window.half if window is not WHOLE else "equal")
+    axes.set_xlabel("longitude, east [deg]")
+    axes.set_ylabel("latitude [deg]")
+    if window is WHOLE:
+        axes.set_xticks(range(-180, 181, 90))
+        axes.set_yticks(range(-90, 91, 45))
+    else:
+        axes.locator_params(nbins=5)
+    middle = near(np.array([site[1]]), window.longitude)[0]
+    axes.plot(middle, site[0], marker="*", markersize=12, color=SITE, markeredgecolor="white", zorder=6)
+    if not len(one.latitude):
+        axes.text(0.5, 0.1, "no lander rests", transform=axes.transAxes, ha="center", color=QUIET)
+        return
+    drawn, words = draw_density(axes, one.latitude, one.longitude, window, 7.0)
+    draw_ellipses(axes, one.ellipses, window)
+    axes.apply_aspect()
+    box = axes.get_position()
+    bar = figure.colorbar(drawn, cax=figure.add_axes((box.x1 + 0.012, box.y0, 0.01, box.height)), format="%g")
+    bar.set_label(words.replace("impacts", "landers"))
+    outline: Any = bar.outline
+    outline.set_visible(False)
