@@ -7,78 +7,63 @@ edge pairs whose arcs on the sphere of normals intersect. Source: Gregorius, "Th
 from lithobrake.compiled import kernel, large_kernel
 from lithobrake.dem.arrays import Cores, Floats
 from lithobrake.dem.distance import Search
-from lithobrake.dem.features import write_relative
+from lithobrake.dem.features import lowest_height, write_relative
 from lithobrake.dem.vectors import Vector, cross, dot, minus, plus, put, row, scaled, times, transposed_times
 
-# Signed distance, unit normal from first to second, point on first, point on second.
-Witness = tuple[float, Vector, Vector, Vector]
+# Two edges at a smaller angle (squared) part nowhere farther, to rounding, than faces beside them.
+PARALLEL = 1e-24
+NO_NORMAL = (0.0, 0.0, 0.0)
+# Signed distance, unit normal from first to second.
+Way = tuple[float, Vector]
 
 
 @large_kernel
-def way_out(
+def shortest_way(
     search: Search, cores: Cores, shapes: tuple[int, int], rotation: Floats, bodies: tuple[int, int], apart: Vector
-) -> Witness:
-    """Return the witness of crossing cores, relative to the first body's centroid, in the world frame."""
+) -> Way:
+    """Return the largest gap of two cores over the normals of all faces and edge pairs, and its normal, in the first
+    body's frame. Where they cross, minus the gap is the shortest way out; no gap is larger than the distance.
+    """
     write_relative(rotation, bodies[0], bodies[1], search.relative)
     there = transposed_times(rotation, bodies[0], apart)
-    best = (-1.0, (0.0, 0.0, 1.0), (0.0, 0.0, 0.0), there)
-    best, found = through_first(search, cores, shapes, there, best, False)
-    best, found = through_second(search, cores, shapes, there, best, found)
-    if found:
-        best = through_edges(search, cores, shapes, there, best)
-    else:
+    best = (float("-inf"), (0.0, 0.0, 1.0))
+    best = through_first(search, cores, shapes, there, best)
+    best = through_second(search, cores, shapes, there, best)
+    if best[0] == float("-inf"):
         # Two points at one place: every way out is as good as another.
-        best = (0.0, (0.0, 0.0, 1.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
-    body = bodies[0]
-    return (best[0], times(rotation, body, best[1]), times(rotation, body, best[2]), times(rotation, body, best[3]))
+        return 0.0, best[1]
+    return through_edges(search, cores, shapes, there, best)
 
 
 @kernel
-def through_first(
-    search: Search, cores: Cores, shapes: tuple[int, int], there: Vector, best: Witness, found: bool
-) -> tuple[Witness, bool]:
+def through_first(search: Search, cores: Cores, shapes: tuple[int, int], there: Vector, best: Way) -> Way:
     """Try the faces of the first core."""
     start, end = cores.vertex_start[shapes[1]], cores.vertex_start[shapes[1] + 1]
     for k in range(start, end):
         put(search.turned, k - start, plus(times(search.relative, 0, row(cores.vertex, k)), there))
     for face in range(cores.face_start[shapes[0]], cores.face_start[shapes[0] + 1]):
         normal = row(cores.normal, face)
-        lowest, height = 0, dot(normal, row(search.turned, 0))
+        height = dot(normal, row(search.turned, 0))
         for k in range(1, end - start):
-            trial = dot(normal, row(search.turned, k))
-            if trial < height:
-                lowest, height = k, trial
-        distance = height - cores.offset[face]
-        if not found or distance > best[0]:
-            point = row(search.turned, lowest)
-            best, found = (distance, normal, minus(point, scaled(distance, normal)), point), True
-    return best, found
+            height = min(height, dot(normal, row(search.turned, k)))
+        if height - cores.offset[face] > best[0]:
+            best = (height - cores.offset[face], normal)
+    return best
 
 
 @kernel
-def through_second(
-    search: Search, cores: Cores, shapes: tuple[int, int], there: Vector, best: Witness, found: bool
-) -> tuple[Witness, bool]:
+def through_second(search: Search, cores: Cores, shapes: tuple[int, int], there: Vector, best: Way) -> Way:
     """Try the faces of the second core."""
-    start, end = cores.vertex_start[shapes[0]], cores.vertex_start[shapes[0] + 1]
     for face in range(cores.face_start[shapes[1]], cores.face_start[shapes[1] + 1]):
         inward = times(search.relative, 0, row(cores.normal, face))
-        offset = cores.offset[face] + dot(inward, there)
-        lowest, height = start, dot(inward, row(cores.vertex, start))
-        for k in range(start + 1, end):
-            trial = dot(inward, row(cores.vertex, k))
-            if trial < height:
-                lowest, height = k, trial
-        distance = height - offset
-        if not found or distance > best[0]:
-            point = row(cores.vertex, lowest)
-            best = (distance, scaled(-1.0, inward), point, minus(point, scaled(distance, inward)))
-            found = True
-    return best, found
+        distance = lowest_height(cores, shapes[0], inward) - cores.offset[face] - dot(inward, there)
+        if distance > best[0]:
+            best = (distance, scaled(-1.0, inward))
+    return best
 
 
 @kernel
-def through_edges(search: Search, cores: Cores, shapes: tuple[int, int], there: Vector, best: Witness) -> Witness:
+def through_edges(search: Search, cores: Cores, shapes: tuple[int, int], there: Vector, best: Way) -> Way:
     """Try the pairs of edges that make a face of the difference set."""
     turn_edges(search, cores, shapes[1], there)
     second_count = cores.edge_start[shapes[1] + 1] - cores.edge_start[shapes[1]]
@@ -95,17 +80,14 @@ def through_edges(search: Search, cores: Cores, shapes: tuple[int, int], there: 
             cross_left, cross_right = dot(left, other), dot(right, other)
             if side_left * side_right >= 0.0 or cross_left * cross_right >= 0.0 or cross_left * side_right <= 0.0:
                 continue
-            normal = cross(along, other)
-            square = dot(normal, normal)
-            if square == 0.0:
-                continue
-            outward = dot(normal, left) + dot(normal, right)
-            normal = scaled((1.0 if outward > 0.0 else -1.0) / square**0.5, normal)
-            between = minus(row(search.turned, k), begin)
-            distance = dot(between, normal)
-            if distance > best[0]:
-                here, there_on_line = closest_on_lines(begin, along, row(search.turned, k), other)
-                best = (distance, normal, here, there_on_line)
+            normal = normal_to_both(along, other)
+            if dot(normal, left) + dot(normal, right) < 0.0:
+                normal = scaled(-1.0, normal)
+            # Rounding takes some pairs of nearly parallel edges for a face: only the gap itself tells.
+            if normal != NO_NORMAL and dot(minus(row(search.turned, k), begin), normal) > best[0]:
+                distance = gap_along(search, cores, shapes, there, normal)
+                if distance > best[0]:
+                    best = (distance, normal)
     return best
 
 
@@ -126,12 +108,20 @@ def turn_edges(search: Search, cores: Cores, shape: int, there: Vector) -> None:
 
 
 @kernel
-def closest_on_lines(begin: Vector, along: Vector, other_begin: Vector, other: Vector) -> tuple[Vector, Vector]:
-    """Return the closest points of two lines that are not parallel."""
-    between = minus(other_begin, begin)
-    aa, ab, bb = dot(along, along), dot(along, other), dot(other, other)
-    ad, bd = dot(along, between), dot(other, between)
-    determinant = aa * bb - ab * ab
-    here = (ad * bb - bd * ab) / determinant
-    there = (ad * ab - bd * aa) / determinant
-    return plus(begin, scaled(here, along)), plus(other_begin, scaled(there, other))
+def normal_to_both(along: Vector, other: Vector) -> Vector:
+    """Return the unit normal of two edges, square to both to the last digits, or NO_NORMAL where they are parallel."""
+    normal = cross(along, other)
+    first_square, square = dot(along, along), dot(normal, normal)
+    if square <= PARALLEL * first_square * dot(other, other):
+        return NO_NORMAL
+    # Rounding tilts the product by its part of the angle between the edges, and a tilt counts by the length of an edge.
+    normal = minus(normal, scaled(dot(normal, other) / dot(other, other), other))
+    normal = minus(normal, scaled(dot(normal, along) / first_square, along))
+    return scaled(1.0 / dot(normal, normal) ** 0.5, normal)
+
+
+@kernel
+def gap_along(search: Search, cores: Cores, shapes: tuple[int, int], there: Vector, normal: Vector) -> float:
+    """Return how far all of the second core lies beyond all of the first along a unit vector of the first's frame."""
+    top = -lowest_height(cores, shapes[0], scaled(-1.0, normal))
+    return lowest_height(cores, shapes[1], transposed_times(search.relative, 0, normal)) + dot(there, normal) - top

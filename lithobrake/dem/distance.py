@@ -15,11 +15,13 @@ from lithobrake.dem.vectors import Vector, dot, minus, plus, put, row, scaled, t
 
 # Squared distance still to be gained, over the squared distance, at which the search ends.
 CONVERGED = 1e-14
+# Distance over the size of the pair that may still be gained where the search cannot go on.
+EXACT = 1e-13
 # Distance over the size of the pair below which cores are taken as touching.
 TOUCHING = 1e-13
 ITERATIONS = 100
 
-APART, CLOSE, CROSSING = 0, 1, 2
+APART, CLOSE, CROSSING, UNSURE = 0, 1, 2, 3
 
 
 class Search(NamedTuple):
@@ -30,6 +32,7 @@ class Search(NamedTuple):
     difference: Floats  # [4, 3]
     names: Integers  # [4, 2]
     weight: Floats  # [4]
+    steps: Integers  # [1], that the last search took
     turned: Floats  # [edge_count_max + vertex_count_max, 12], a core in the other's frame
     relative: Floats  # [1, 3, 3]
     point: Floats  # [point_max, 3], of a patch
@@ -44,7 +47,7 @@ def search_for(feature_max: int, point_max: int) -> Search:
     """Return scratch large enough for the corners and edges of a core, and the points of a patch."""
     return Search(
         np.zeros((4, 3)), np.zeros((4, 3)), np.zeros((4, 3)), np.zeros((4, 2), dtype=np.int64), np.zeros(4),
-        np.zeros((feature_max, 12)), np.zeros((1, 3, 3)),
+        np.zeros(1, dtype=np.int64), np.zeros((feature_max, 12)), np.zeros((1, 3, 3)),
         np.zeros((point_max, 3)), np.zeros((point_max, 3)), np.zeros((point_max, 3)),
         np.zeros(point_max), np.zeros(point_max, dtype=np.int64), np.zeros(point_max),
     )  # fmt: skip
@@ -107,45 +110,60 @@ def reduce_simplex(search: Search, count: int, closest_before: float) -> tuple[i
 
 
 @large_kernel
-def approach(
-    search: Search,
-    cores: Cores,
-    shapes: tuple[int, int],
-    rotation: Floats,
-    bodies: tuple[int, int],
-    apart: Vector,
+def descend(
+    search: Search, cores: Cores, shapes: tuple[int, int], rotation: Floats, bodies: tuple[int, int], apart: Vector,
     margin: float,
-) -> tuple[int, int, float]:
+) -> tuple[int, int, float]:  # fmt: skip
     """Search for the simplex of differences that carries the closest points of the cores.
 
-    Returns what was found (APART: farther than the margin; CLOSE: points in `search`; CROSSING), the number of corners,
-    and a lower bound of the distance where they are apart.
+    Returns what was found (APART: farther than the margin; CLOSE: points in `search`; CROSSING; UNSURE: rounding ended
+    the search without proof), the number of corners, and a lower bound of the distance where they are apart.
     """
     search.names[0, 0], search.names[0, 1] = 0, 0
     place(search, 0, cores, shapes, rotation, bodies, apart)
     count, _ = reduce_simplex(search, 1, -1.0)
-    for _ in range(ITERATIONS):
+    for step in range(ITERATIONS):
+        search.steps[0] = step + 1
         closest = weighted(search.difference, search.weight, count)
-        square = dot(closest, closest)
-        size = 0.0
-        for k in range(count):
-            size = max(size, dot(row(search.difference, k), row(search.difference, k)))
-        if count == 4 or square <= TOUCHING * TOUCHING * size:
+        square, size = dot(closest, closest), largest(search.difference, count)
+        if square <= TOUCHING * TOUCHING * size:
             return CROSSING, count, 0.0
+        if count == 4:
+            return UNSURE, count, 0.0
         backward = scaled(-1.0, closest)
-        name_first = support(cores, shapes[0], transposed_times(rotation, bodies[0], backward))
-        name_second = support(cores, shapes[1], transposed_times(rotation, bodies[1], closest))
-        for k in range(count):
-            if search.names[k, 0] == name_first and search.names[k, 1] == name_second:
-                return CLOSE, count, 0.0
-        search.names[count, 0], search.names[count, 1] = name_first, name_second
-        place(search, count, cores, shapes, rotation, bodies, apart)
-        bound = dot(closest, row(search.difference, count))
+        search.names[count, 0] = support(cores, shapes[0], transposed_times(rotation, bodies[0], backward))
+        search.names[count, 1] = support(cores, shapes[1], transposed_times(rotation, bodies[1], closest))
+        corner = corner_named(search, count)
+        if corner == count:
+            place(search, count, cores, shapes, rotation, bodies, apart)
+        bound = dot(closest, row(search.difference, corner))
         if bound > 0.0 and bound * bound > margin * margin * square:
             return APART, count, bound / square**0.5
         if square - bound <= CONVERGED * square:
             return CLOSE, count, 0.0
-        count, closer = reduce_simplex(search, count + 1, square)
+        closer = False
+        if corner == count:
+            count, closer = reduce_simplex(search, count + 1, square)
         if not closer:
-            return CLOSE, count, 0.0
-    return CLOSE, count, 0.0
+            # Rounding leaves no way to go on: what is missing yet counts by the size, as rounding does.
+            gain = (square - bound) / square**0.5
+            return CLOSE if gain <= EXACT * size**0.5 else UNSURE, count, 0.0
+    return UNSURE, count, 0.0
+
+
+@kernel
+def corner_named(search: Search, count: int) -> int:
+    """Return which corner has the same names as the one after the first `count`: that one, if no other has."""
+    for k in range(count):
+        if search.names[k, 0] == search.names[count, 0] and search.names[k, 1] == search.names[count, 1]:
+            return k
+    return count
+
+
+@kernel
+def largest(array: Floats, count: int) -> float:
+    """Return the largest square of the first `count` rows."""
+    square = 0.0
+    for k in range(count):
+        square = max(square, dot(row(array, k), row(array, k)))
+    return square

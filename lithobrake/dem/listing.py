@@ -6,7 +6,8 @@ nothing. So it makes no difference to any bit when, or how often, the names are 
 
 from lithobrake.compiled import kernel, large_kernel
 from lithobrake.dem.arrays import Bodies, Cores, Pairs, Planes
-from lithobrake.dem.distance import APART, CROSSING, Search, approach, weighted
+from lithobrake.dem.closest import approach
+from lithobrake.dem.distance import APART, CROSSING, Search, weighted
 from lithobrake.dem.features import edge_of, edge_to_edge, lowest_height, point_to_core, write_relative
 from lithobrake.dem.shares import SINK_TO
 from lithobrake.dem.vectors import Vector, dot, minus, plus, row, scaled, times, transposed_times
@@ -113,10 +114,10 @@ def list_bodies(pair: int, bodies: Bodies, cores: Cores, pairs: Pairs, margin: f
     list_corners(pair, pairs, cores, shapes, search, there, reach + margin)
     if not hulls:
         return margin
-    between = minus(weighted(search.on_second, search.weight, count), weighted(search.on_first, search.weight, count))
+    between = weighted(search.difference, search.weight, count)
     distance = dot(between, between) ** 0.5
-    normal = transposed_times(bodies.rotation, first, scaled(1.0 / distance, between))
-    list_edges(pair, pairs, cores, shapes, search, there, normal, reach + margin, distance)
+    normal = transposed_times(bodies.rotation, first, scaled(-1.0 / distance, between))
+    list_edges(pair, pairs, cores, shapes, search, there, normal, reach + margin)
     return min(margin, distance)
 
 
@@ -150,13 +151,14 @@ def list_corners(
 @large_kernel
 def list_edges(
     pair: int, pairs: Pairs, cores: Cores, shapes: tuple[int, int], search: Search, there: Vector, normal: Vector,
-    farthest: float, distance: float,
+    farthest: float,
 ) -> None:  # fmt: skip
     """List the pairs of edges that are nearer than `farthest`; far ones fall out by their depth behind the gap."""
-    band = farthest - distance
     turned = transposed_times(search.relative, 0, normal)
     top = -lowest_height(cores, shapes[0], scaled(-1.0, normal))
     bottom = lowest_height(cores, shapes[1], turned)
+    # The gap along the normal at hand: it is the distance, but for rounding where cores all but touch.
+    band = farthest - (bottom + dot(there, normal) - top)
     for i in range(cores.edge_start[shapes[0] + 1] - cores.edge_start[shapes[0]]):
         begin, along = edge_of(cores, shapes[0], i)
         height = dot(begin, normal)

@@ -6,8 +6,8 @@ that cross go on so: the distance of a corner changes its sign, and pairs of edg
 
 from lithobrake.compiled import kernel, large_kernel
 from lithobrake.dem.arrays import Bodies, Cores, Pairs, Planes
-from lithobrake.dem.crossing import way_out
-from lithobrake.dem.distance import CROSSING, Search, approach
+from lithobrake.dem.closest import approach, way_out
+from lithobrake.dem.distance import CROSSING, Search
 from lithobrake.dem.features import edge_of, edge_to_edge, point_to_core, stands_above, write_relative
 from lithobrake.dem.listing import CORNER_OF_FIRST, CORNER_OF_SECOND, DEEP, KIND, PLACE, SPHERES
 from lithobrake.dem.shares import CORNER, EDGES_APART, SINK_FROM, WAY_OUT, note_point, sinking

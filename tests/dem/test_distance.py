@@ -6,7 +6,8 @@ from scipy.spatial import ConvexHull as Quickhull
 
 from lithobrake.dem import Box, ConvexHull
 from lithobrake.dem.body import cores_of, rotation_matrices
-from lithobrake.dem.distance import CROSSING, approach, search_for, weighted
+from lithobrake.dem.closest import approach
+from lithobrake.dem.distance import CROSSING, search_for, weighted
 from lithobrake.dem.features import edge_to_edge, point_to_core
 from lithobrake.dem.simplex import triangle_weights
 

@@ -1,0 +1,171 @@
+"""What the narrow phase says of pairs: closest points, features named at another pose, gap over a plane."""
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numba
+import numpy as np
+from distance_pairs import Floats, Integers, Library, Poses, units
+
+from lithobrake.compiled import cache_folder
+from lithobrake.dem import Material
+from lithobrake.dem.arrays import Bodies, Cores, Pairs, Planes
+from lithobrake.dem.body import Body, bodies_of
+from lithobrake.dem.closest import approach, way_out
+from lithobrake.dem.distance import CROSSING, Search, search_for, weighted
+from lithobrake.dem.features import write_relative
+from lithobrake.dem.listing import DEEP, KIND, SPHERES, list_bodies, list_plane, margin_of
+from lithobrake.dem.neighbours import pairs_of
+from lithobrake.dem.patch import feature
+from lithobrake.dem.vectors import dot, minus, put, row, scaled, transposed_times
+
+ROCK = Material(young_modulus=1e7, poisson_ratio=0.25, restitution=0.5, friction=0.5, density=2500.0)
+# Names that the list of a pair has room for.
+NAMES = 20_000
+NO_ONE = np.zeros((1, 1), dtype=np.bool_)
+# Columns of an answer: signed distance [m], normal, point on first, point on second (from the first's centroid), steps.
+DISTANCE, NORMAL, FIRST, SECOND, STEPS = 0, slice(1, 4), slice(4, 7), slice(7, 10), 10
+
+
+def cached(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Compile a function, kept on disk beside the kernels it calls: that folder changes with their sources."""
+    outside = numba.config.CACHE_DIR
+    numba.config.CACHE_DIR = str(cache_folder("dem"))
+    try:
+        return numba.njit(function, cache=True, error_model="numpy")
+    finally:
+        numba.config.CACHE_DIR = outside
+
+
+def scratch(shapes: Library) -> Search:
+    """Return scratch for the largest pair."""
+    vertices, edges = (int(np.diff(s).max()) for s in (shapes.cores.vertex_start, shapes.cores.edge_start))
+    return search_for(vertices + edges, 1)
+
+
+def closest(shapes: Library, poses: Poses) -> Floats:
+    """Return signed distance, normal, points and number of steps for each pair, [pair_count, 11]."""
+    answer = np.zeros((len(poses.first), 11))
+    ask_closest(shapes.cores, poses.first, poses.second, poses.rotation, poses.position, scratch(shapes), answer)
+    return answer
+
+
+@cached
+def ask_closest(
+    cores: Cores, first: Integers, second: Integers, rotation: Floats, position: Floats, search: Search, answer: Floats
+) -> None:
+    """Search for closest points; of crossing cores, for the way out."""
+    for k in range(len(first)):
+        shapes, turned = (first[k], second[k]), rotation[k]
+        apart = minus(row(position[k], 1), row(position[k], 0))
+        found, count, _ = approach(search, cores, shapes, turned, (0, 1), apart, math.inf)
+        answer[k, STEPS] = search.steps[0]
+        if found == CROSSING:
+            distance, normal, here, there = way_out(search, cores, shapes, turned, (0, 1), apart)
+        else:
+            between = weighted(search.difference, search.weight, count)
+            distance = dot(between, between) ** 0.5
+            normal = scaled(-1.0 / distance, between)
+            here = weighted(search.on_first, search.weight, count)
+            there = weighted(search.on_second, search.weight, count)
+        answer[k, DISTANCE] = distance
+        put(answer[k : k + 1, NORMAL], 0, normal)
+        put(answer[k : k + 1, FIRST], 0, here)
+        put(answer[k : k + 1, SECOND], 0, there)
+
+
+def bodies_for(shapes: Library) -> Bodies:
+    """Return two bodies of every shape, so that a shape can meet itself; they lie wherever."""
+    bodies = [Body(shape, ROCK, 1.0, np.eye(3)) for shape in shapes.shapes * 2]
+    state = {name: np.zeros((len(bodies), 3)) for name in ("position", "velocity", "angular_momentum")}
+    state["quaternion"] = np.tile([1.0, 0.0, 0.0, 0.0], (len(bodies), 1))
+    return bodies_of(bodies, shapes.shapes, [ROCK], state)
+
+
+@cached
+def turn(rotation: Floats, axis: Floats, angle: float) -> None:
+    """Turn a rotation [3, 3] about an axis of the world."""
+    cosine, sine = math.cos(angle), math.sin(angle)
+    for k in range(3):
+        x, y, z = rotation[0, k], rotation[1, k], rotation[2, k]
+        along = (1.0 - cosine) * (axis[0] * x + axis[1] * y + axis[2] * z)
+        rotation[0, k] = cosine * x + sine * (axis[1] * z - axis[2] * y) + along * axis[0]
+        rotation[1, k] = cosine * y + sine * (axis[2] * x - axis[0] * z) + along * axis[1]
+        rotation[2, k] = cosine * z + sine * (axis[0] * y - axis[1] * x) + along * axis[2]
+
+
+def kept(shapes: Library, poses: Poses, generator: np.random.Generator) -> tuple[Floats, Floats]:
+    """Return the smallest distance [m] of the features that were named while the first body stood elsewhere, and the
+    distance up to which they are named. NaN: the names do not serve that long, or the cores crossed.
+    """
+    n = len(poses.first)
+    distance, reach = np.full(n, np.nan), np.zeros(n)
+    moves = np.column_stack([units(generator, n), units(generator, n), generator.random((n, 2))])
+    pair = pairs_of(np.zeros(1, dtype=np.int64), np.ones(1, dtype=np.int64), NAMES)
+    ask_kept(
+        shapes.cores, bodies_for(shapes), poses.first, poses.second, poses.rotation, poses.position, pair,
+        scratch(shapes), moves, distance, reach,
+    )  # fmt: skip
+    return distance, reach
+
+
+@cached
+def ask_kept(
+    cores: Cores, bodies: Bodies, first: Integers, second: Integers, rotation: Floats, position: Floats, pair: Pairs,
+    search: Search, moves: Floats, distance: Floats, reach: Floats,
+) -> None:  # fmt: skip
+    """List features with the first body moved, move it back, and measure them."""
+    for k in range(len(first)):
+        one, two = first[k], second[k] + len(cores.rounding)
+        pair.first[0], pair.second[0] = one, two
+        for body, side in ((one, 0), (two, 1)):
+            bodies.position[body], bodies.rotation[body] = position[k, side], rotation[k, side]
+        reach[k] = cores.rounding[first[k]] + cores.rounding[second[k]]
+        margin = margin_of(bodies, cores, one, two)
+        travel, part = margin * moves[k, 6], moves[k, 7]
+        bodies.position[one] += part * travel * moves[k, 0:3]
+        turn(bodies.rotation[one], moves[k, 3:6], (1.0 - part) * travel / bodies.bounding_radius[one])
+        serves = list_bodies(0, bodies, cores, pair, margin, search)
+        bodies.position[one], bodies.rotation[one] = position[k, 0], rotation[k, 0]
+        if pair.term_count[0] != DEEP and travel < serves:
+            distance[k] = nearest_named(cores, bodies, one, two, pair, search, reach[k])
+
+
+@cached
+def nearest_named(cores: Cores, bodies: Bodies, one: int, two: int, pair: Pairs, search: Search, reach: float) -> float:
+    """Return the smallest distance of the named features, at most `reach` [m]."""
+    apart = minus(row(bodies.position, two), row(bodies.position, one))
+    if pair.term_count[0] > 0 and pair.term[0, 0] // KIND == SPHERES:
+        return min(reach, dot(apart, apart) ** 0.5)
+    write_relative(bodies.rotation, one, two, search.relative)
+    there, smallest = transposed_times(bodies.rotation, one, apart), reach
+    for name in range(pair.term_count[0]):
+        shapes = (bodies.shape[one], bodies.shape[two])
+        smallest = min(smallest, feature(pair.term[0, name], cores, shapes, search, there, reach)[2])
+    return smallest
+
+
+def over_plane(shapes: Library, poses: Poses) -> Floats:
+    """Return how far the first body of each pair stands over a plane through the centroid of the second [m]."""
+    away = poses.position[:, 0] - poses.position[:, 1]
+    normal = away / np.linalg.norm(away, axis=1)[:, None]
+    gap = np.zeros(len(normal))
+    pair = pairs_of(np.zeros(1, dtype=np.int64), np.full(1, -1), NAMES)
+    ask_plane(
+        shapes.cores, bodies_for(shapes), poses.first, poses.rotation, poses.position, normal, pair, gap
+    )  # fmt: skip
+    return gap
+
+
+@cached
+def ask_plane(
+    cores: Cores, bodies: Bodies, first: Integers, rotation: Floats, position: Floats, normal: Floats, pair: Pairs,
+    gap: Floats,
+) -> None:  # fmt: skip
+    """Ask for gaps over planes."""
+    for k in range(len(first)):
+        pair.first[0] = first[k]
+        bodies.position[first[k]], bodies.rotation[first[k]] = position[k, 0], rotation[k, 0]
+        planes = Planes(normal[k : k + 1], np.array([np.dot(normal[k], position[k, 1])]), pair.first, NO_ONE)
+        gap[k] = list_plane(0, bodies, cores, planes, pair, math.inf)
