@@ -140,9 +140,8 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--shapes", type=int, default=100, help="of every kind")
     chosen = parser.parse_args()
-    print(
-        f"# python {' '.join(sys.argv)}; {time.strftime('%Y-%m-%d', time.gmtime())}, {platform.machine()}, {sys.platform},"
-    )
+    day = time.strftime("%Y-%m-%d", time.gmtime())
+    print(f"# python {' '.join(sys.argv)}; {day}, {platform.machine()}, {sys.platform},")
     print(f"# Python {platform.python_version()}, NumPy {np.__version__}, Numba {numba.__version__}, one thread")
     print(f"{'family':18}   pairs  overlap  not finite  distance   points   normal  steps: most  mean")
     start = time.process_time()
