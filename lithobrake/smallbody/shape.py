@@ -1,6 +1,7 @@
 """The surface of a small body."""
 
 import os
+import warnings
 from functools import cached_property
 from typing import Any
 
@@ -16,6 +17,8 @@ from lithobrake.smallbody.nearest import heights, pseudonormals
 from lithobrake.smallbody.polyhedron import Polyhedron
 from lithobrake.smallbody.table import LEVELS, GravityTable
 from lithobrake.smallbody.table_build import TableError, table_of
+
+OFF_CENTRE = 1e-3  # of the radius: how far the centre of mass may lie from the origin without a word
 
 
 class Shape:
@@ -43,9 +46,21 @@ class Shape:
 
     @classmethod
     def read(cls, path: str | os.PathLike[str], unit: str = "m") -> "Shape":
-        """Read an .obj, .stl or .tab (plate model) file whose lengths are in `unit` (m, km, cm, mm)."""
+        """Read an .obj, .stl or .tab (plate model) file whose lengths are in `unit` (m, km, cm, mm).
+
+        Warns where the centre of mass is off the origin by more than a thousandth of the radius; nothing is moved.
+        """
         vertices, faces = read_mesh(path, unit)
-        return cls(vertices, faces, name=os.fspath(path))
+        shape = cls(vertices, faces, name=os.fspath(path))
+        offset = float(np.linalg.norm(shape.centroid))
+        if offset > OFF_CENTRE * shape.radius:
+            place = ", ".join(f"{length:.4g}" for length in shape.centroid)
+            warnings.warn(
+                f"{shape.name}: the centre of mass lies at ({place}) m, {offset:.3g} m off the origin, about which the "
+                "body turns; nothing was moved. Move the vertices if that is not meant.",
+                stacklevel=2,
+            )
+        return shape
 
     @cached_property
     def polyhedron(self) -> Polyhedron:
@@ -117,12 +132,28 @@ class Shape:
         longitude = np.degrees(np.arctan2(p[..., 1], p[..., 0]))
         return latitude, np.where(longitude == -180.0, 180.0, longitude)
 
-    def surface_point(self, latitude_deg: ArrayLike, longitude_deg: ArrayLike) -> NDArray[np.float64]:
+    def latitude_longitude_height(
+        self, points: ArrayLike
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+        """As latitude_longitude, with the height [m] over surface_point along the radius, which it is the inverse of.
+
+        Raises ValueError as that does. The distance to the nearest point of the surface is `height`.
+        """
+        latitude, longitude = self.latitude_longitude(points)
+        ground = np.linalg.norm(self.surface_point(latitude, longitude), axis=-1)
+        return latitude, longitude, np.linalg.norm(np.asarray(points, dtype=np.float64), axis=-1) - ground
+
+    def surface_point(
+        self, latitude_deg: ArrayLike, longitude_deg: ArrayLike, height: ArrayLike = 0.0
+    ) -> NDArray[np.float64]:
         """Outermost point of the surface in a direction from the origin, body-fixed [m], shape [..., 3].
 
+        height   moves it along the radius [m]
         Raises ValueError where the direction does not meet the surface (the origin lies outside the body).
         """
-        return self.locate(latitude_deg, longitude_deg)[0]
+        ground = self.locate(latitude_deg, longitude_deg)[0]
+        share = np.asarray(height, dtype=np.float64) / np.linalg.norm(ground, axis=-1)
+        return ground + np.asarray(share)[..., None] * ground
 
     def locate(
         self, latitude_deg: ArrayLike, longitude_deg: ArrayLike

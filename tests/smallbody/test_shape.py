@@ -136,6 +136,30 @@ def test_latitude_and_longitude_both_ways():
         shape.surface_point(91.0, 0.0)
 
 
+def test_height_along_the_radius_both_ways(shapes):
+    shape = Shape.read(shapes / "eros_7624.obj")
+    latitude, longitude, height = (
+        np.array([-70.0, 3.0, 41.0]),
+        np.array([10.0, 180.0, -123.0]),
+        np.array([0.0, 9.0, 1e5]),
+    )
+    points = shape.surface_point(latitude, longitude, height)
+    back = shape.latitude_longitude_height(points)
+    for found, given in zip(back, (latitude, longitude, height), strict=True):
+        assert found == pytest.approx(given, abs=1e-7)
+    assert abs(shape.height(points[0])) < 1e-6
+    assert 0.0 < shape.height(points[1]) <= 9.0
+
+
+def test_a_centre_of_mass_off_the_origin_is_told_and_nothing_is_moved(tmp_path):
+    vertices = np.array([(0.0, 0.0, 0.0), (4.0, 0.0, 0.0), (0.0, 4.0, 0.0), (0.0, 0.0, 4.0)])
+    lines = [f"v {x} {y} {z}" for x, y, z in vertices] + ["f 1 3 2", "f 1 2 4", "f 1 4 3", "f 2 3 4"]
+    (tmp_path / "corner.obj").write_text("\n".join(lines))
+    with pytest.warns(UserWarning, match=r"centre of mass lies at \(1, 1, 1\) m, 1.73 m off the origin"):
+        shape = Shape.read(tmp_path / "corner.obj")
+    assert np.array_equal(shape.vertices, vertices)
+
+
 def test_height_and_inside_agree(shapes):
     shape = Shape.read(shapes / "itokawa_5430.obj")
     points = np.random.default_rng(1).normal(size=(500, 3)) * [150.0, 80.0, 70.0]
