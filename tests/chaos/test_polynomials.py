@@ -34,9 +34,12 @@ CASES = {
     "log_normal": (LogNormal(0.0, 2.0), special.roots_hermitenorm(60)),
     "gamma": (Gamma(2.5, 3.0), special.roots_genlaguerre(60, 1.5)),
     "gamma_steep": (Gamma(0.5, 3.0), special.roots_genlaguerre(60, -0.5)),
+    "gamma_narrow": (Gamma(50.0, 1.0), special.roots_genlaguerre(60, 49.0)),
     "exponential": (Exponential(0.2), special.roots_laguerre(60)),
     "beta": (Beta(2.0, 3.5, -1.0, 1.0), special.roots_jacobi(60, 2.5, 1.0)),
     "beta_arcsine": (Beta(0.5, 0.5), special.roots_jacobi(60, -0.5, -0.5)),
+    "beta_narrow": (Beta(50.0, 50.0), special.roots_jacobi(60, 49.0, 49.0)),
+    "beta_lopsided": (Beta(10.0, 0.7), special.roots_jacobi(60, -0.3, 9.0)),
     "beta_uniform": (Beta(1.0, 1.0), special.roots_legendre(60)),
 }
 
@@ -48,14 +51,30 @@ def test_classical_families_are_orthonormal_to_degree_20(name):
     assert gram_error(entry.recurrence(DEGREE).values(nodes), weights) < 1e-12
 
 
-@pytest.mark.parametrize("limits", [(-1.0, 2.0), (-3.0, 3.0), (0.5, 4.0), (-np.inf, np.inf), (-1.0, np.inf)])
+@pytest.mark.parametrize(
+    "limits",
+    [
+        (-1.0, 2.0),
+        (-3.0, 3.0),
+        (0.5, 4.0),
+        (-np.inf, np.inf),
+        (-1.0, np.inf),
+        (8.0, np.inf),
+        (20.0, 21.0),
+    ],
+)
 def test_truncated_normal_is_orthonormal_to_degree_20(limits):
     entry = TruncatedNormal(10.0, 2.0, *(10.0 + 2.0 * np.array(limits)))
-    # The weight times the squared polynomial is negligible beyond 22 standard deviations.
-    edges = np.linspace(*np.clip(limits, -22.0, 22.0), 16)[:, None]
+    # The weight times the squared polynomial is negligible 22 standard deviations from the mean and, further out, from
+    # the nearer limit.
+    low, high = limits[0], min(limits[1], max(limits[0], 0.0) + 22.0)
+    edges = np.linspace(max(low, -22.0), high, 46)[:, None]
     nodes, weights = special.roots_legendre(60)
     z = (0.5 * (edges[:-1] + edges[1:]) + 0.5 * (edges[1:] - edges[:-1]) * nodes).ravel()
-    nodes, weights = reference(entry.germ(10.0 + 2.0 * z), np.tile(weights, 15) * np.exp(-0.5 * z * z))
+    mode = min(max(0.0, low), high)
+    nodes, weights = reference(
+        entry.germ(10.0 + 2.0 * z), np.tile(weights, 45) * np.exp(-0.5 * (z - mode) * (z + mode))
+    )
     assert gram_error(entry.recurrence(DEGREE).values(nodes), weights) < 1e-12
 
 
