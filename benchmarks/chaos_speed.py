@@ -1,13 +1,15 @@
 """Time to build, evaluate and read an expansion of 56 terms, 3 inputs, 3 outputs from 441 runs, on one thread.
 
 Beside the package, with and without Numba, stand a plain vectorised NumPy reference and, where installed, openturns and
-chaospy. CPU time, the median of several repeats, and its ratio to the reference. The other libraries evaluate at most a
-million points. Usage: OMP_NUM_THREADS=1 python benchmarks/chaos_speed.py [--points 10000000]
+chaospy. CPU time: the median of several rounds, and the median over rounds of its ratio to the reference. In a round
+all take their turn, so that other work on the machine meets them alike. The other libraries evaluate a million points.
+Usage: OMP_NUM_THREADS=1 python benchmarks/chaos_speed.py [--points 10000000] [--rounds 5]
 """
 
 import argparse
 import time
 from collections.abc import Callable
+from dataclasses import dataclass
 from importlib.util import find_spec
 
 import numpy as np
@@ -17,18 +19,33 @@ from lithobrake.chaos import Surrogate, Uniform, evaluation, fit, multi_index_se
 INPUTS = {name: Uniform(-1.0, 1.0) for name in "abc"}
 DEGREE = 5
 OTHERS_POINTS = 1_000_000
-# Name, and CPU time to build [s], to evaluate one point [s], to read first and total indices [s].
-Row = tuple[str, float, float, float]
+Work = Callable[[], object]
+# Repeats within a round of building, evaluating, and reading first and total indices: the short ones often.
+REPEATS = (30, 1, 100)
 
 
-def seconds(work: Callable[[], object], repeats: int) -> float:
-    """Median CPU time of several calls [s]."""
-    times = []
-    for _ in range(repeats):
-        start = time.process_time()
-        work()
-        times.append(time.process_time() - start)
-    return float(np.median(times))
+@dataclass(frozen=True)
+class Contender:
+    """What is timed: to build, to evaluate at `point_count` points, and to read the indices."""
+
+    build: Work
+    evaluate: Work
+    read: Work
+    point_count: int
+
+
+def times(one: Contender) -> np.ndarray:
+    """CPU time [s] to build, to evaluate a point and to read, [3]; the median of the repeats of one round."""
+    result = []
+    for work, repeats in zip((one.build, one.evaluate, one.read), REPEATS, strict=True):
+        spent = []
+        # One call that takes long says enough.
+        while len(spent) < repeats and sum(spent) < 1.0:
+            start = time.process_time()
+            work()
+            spent.append(time.process_time() - start)
+        result.append(float(np.median(spent)))
+    return np.array(result) / [1.0, one.point_count, 1.0]
 
 
 def model(x: np.ndarray) -> np.ndarray:
@@ -45,7 +62,7 @@ def reference_matrix(x: np.ndarray, indices: np.ndarray) -> np.ndarray:
     return matrix
 
 
-def reference_row(x: np.ndarray, y: np.ndarray, points: np.ndarray) -> Row:
+def reference(x: np.ndarray, y: np.ndarray, points: np.ndarray) -> Contender:
     """Plain NumPy."""
     indices = multi_index_set(3, DEGREE)
 
@@ -64,10 +81,10 @@ def reference_row(x: np.ndarray, y: np.ndarray, points: np.ndarray) -> Row:
         active = (indices[1:] > 0).T
         return np.stack([active @ squares, (active & (active.sum(axis=0) == 1)) @ squares]) / squares.sum(axis=0)
 
-    return "NumPy reference", seconds(build, 200), seconds(evaluate, 5) / len(points), seconds(read, 500)
+    return Contender(build, evaluate, read, len(points))
 
 
-def own_row(x: np.ndarray, y: np.ndarray, points: np.ndarray) -> Row:
+def own(x: np.ndarray, y: np.ndarray, points: np.ndarray) -> Contender:
     """This package, as it is."""
     surrogate: Surrogate = fit(INPUTS, x, y, degree=DEGREE, method="ols")
     surrogate(points[:100_000])
@@ -78,33 +95,41 @@ def own_row(x: np.ndarray, y: np.ndarray, points: np.ndarray) -> Row:
     def build() -> Surrogate:
         return fit(INPUTS, x, y, degree=DEGREE, method="ols")
 
-    evaluate = seconds(lambda: surrogate(points), 5) / len(points)
-    return "lithobrake.chaos", seconds(build, 200), evaluate, seconds(read, 500)
+    return Contender(build, lambda: surrogate(points), read, len(points))
 
 
-def plain_row(x: np.ndarray, y: np.ndarray, points: np.ndarray) -> Row:
+def plain(x: np.ndarray, y: np.ndarray, points: np.ndarray) -> Contender:
     """This package where Numba is missing."""
-    compiled = evaluation.compiled_loop
-    evaluation.compiled_loop = lambda: None
-    try:
-        return "lithobrake.chaos without Numba", *own_row(x, y, points)[1:]
-    finally:
-        evaluation.compiled_loop = compiled
+    compiled = own(x, y, points)
+
+    def evaluate() -> object:
+        loop = evaluation.compiled_loop
+        evaluation.compiled_loop = lambda: None
+        try:
+            return compiled.evaluate()
+        finally:
+            evaluation.compiled_loop = loop
+
+    return Contender(compiled.build, evaluate, compiled.read, len(points))
 
 
-def chaospy_row(x: np.ndarray, y: np.ndarray, points: np.ndarray) -> Row:
+def with_chaospy(x: np.ndarray, y: np.ndarray, points: np.ndarray) -> Contender:
     """chaospy."""
     import chaospy
 
     joint = chaospy.J(*(chaospy.Uniform(-1.0, 1.0) for _ in range(3)))
     basis = chaospy.generate_expansion(DEGREE, joint, normed=True)
     model = chaospy.fit_regression(basis, x.T, y)
-    build = seconds(lambda: chaospy.fit_regression(basis, x.T, y), 3)
-    read = seconds(lambda: (chaospy.Sens_m(model, joint), chaospy.Sens_t(model, joint)), 1)
-    return "chaospy", build, seconds(lambda: model(*points.T), 3) / len(points), read
+    few = points[:OTHERS_POINTS]
+    return Contender(
+        lambda: chaospy.fit_regression(basis, x.T, y),
+        lambda: model(*few.T),
+        lambda: (chaospy.Sens_m(model, joint), chaospy.Sens_t(model, joint)),
+        len(few),
+    )
 
 
-def openturns_row(x: np.ndarray, y: np.ndarray, points: np.ndarray) -> Row:
+def with_openturns(x: np.ndarray, y: np.ndarray, points: np.ndarray) -> Contender:
     """openturns."""
     import openturns
 
@@ -112,7 +137,7 @@ def openturns_row(x: np.ndarray, y: np.ndarray, points: np.ndarray) -> Row:
     families = [openturns.LegendreFactory()] * 3
     basis = openturns.OrthogonalProductPolynomialFactory(families, openturns.LinearEnumerateFunction(3))
     strategy = openturns.FixedStrategy(basis, len(multi_index_set(3, DEGREE)))
-    inputs, outputs, many = (openturns.Sample(array) for array in (x, y, points))
+    inputs, outputs, many = (openturns.Sample(array) for array in (x, y, points[:OTHERS_POINTS]))
 
     def build() -> object:
         algorithm = openturns.FunctionalChaosAlgorithm(
@@ -129,36 +154,42 @@ def openturns_row(x: np.ndarray, y: np.ndarray, points: np.ndarray) -> Row:
         pairs = [(i, output) for i in range(3) for output in range(3)]
         return [f(i, output) for i, output in pairs for f in (indices.getSobolIndex, indices.getSobolTotalIndex)]
 
-    return "openturns", seconds(build, 5), seconds(lambda: function(many), 3) / len(points), seconds(read, 5)
+    return Contender(build, lambda: function(many), read, len(points[:OTHERS_POINTS]))
 
 
 def main() -> None:
     """Print the table."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--points", type=int, default=10_000_000)
+    parser.add_argument("--rounds", type=int, default=5)
     options = parser.parse_args()
     x = smolyak(INPUTS, level=5)
     y, points = model(x), np.ascontiguousarray(sobol_sequence(INPUTS, options.points))
-    rows = [row(x, y, points) for row in (reference_row, own_row, plain_row)]
-    rows += [row(x, y, points[:OTHERS_POINTS]) for name, row in OTHERS.items() if find_spec(name) is not None]
+    makers = {name: make for name, make in MAKERS.items() if name not in OTHERS or find_spec(name) is not None}
+    contenders = [make(x, y, points) for make in makers.values()]
+    rounds = np.array([[times(one) for one in contenders] for _ in range(options.rounds)])
+    medians, ratios = np.median(rounds, axis=0), np.median(rounds / rounds[:, :1], axis=0)
     print(
         "| | build [ms] | ratio | evaluate [million points/s] | ratio of times | Sobol first and total [ms] | ratio |"
     )
     print("|---|---|---|---|---|---|---|")
-    for name, *times in rows:
-        build, evaluate, read = (f"{one / first:.3g}" for one, first in zip(times, rows[0][1:], strict=True))
+    for name, (build, evaluate, read), ratio in zip(makers, medians, ratios, strict=True):
         print(
-            f"| {name} | {1e3 * times[0]:.3g} | {build} | {1e-6 / times[1]:.3g} | {evaluate} "
-            f"| {1e3 * times[2]:.3g} | {read} |"
+            f"| {name} | {1e3 * build:.3g} | {ratio[0]:.3g} | {1e-6 / evaluate:.3g} | {ratio[1]:.3g} "
+            f"| {1e3 * read:.3g} | {ratio[2]:.3g} |"
         )
     for name in OTHERS:
-        if find_spec(name) is None:
+        if name not in makers:
             print(f"{name} is not installed, so it is not in the table.")
 
 
-OTHERS: dict[str, Callable[[np.ndarray, np.ndarray, np.ndarray], Row]] = {
-    "openturns": openturns_row,
-    "chaospy": chaospy_row,
+OTHERS = ("openturns", "chaospy")
+MAKERS: dict[str, Callable[[np.ndarray, np.ndarray, np.ndarray], Contender]] = {
+    "NumPy reference": reference,
+    "lithobrake.chaos": own,
+    "lithobrake.chaos without Numba": plain,
+    "openturns": with_openturns,
+    "chaospy": with_chaospy,
 }
 
 if __name__ == "__main__":

@@ -55,6 +55,23 @@ def test_moments_of_correlated_normals(tmp_path):
         load(tmp_path / "model.json")
 
 
+def test_moments_of_margins_that_are_not_normal():
+    uniforms = {"a": Uniform(0.0, 1.0), "b": Uniform(0.0, 1.0)}
+    x = GaussianCopula(uniforms, [[1.0, 0.6], [0.6, 1.0]]).sobol_sequence(300)
+    # Spearman's correlation is that of the probabilities: E[ab] = 1/4 + 0.6/12.
+    product = fit_dependent(uniforms, [[1.0, 0.6], [0.6, 1.0]], x, x[:, 0] * x[:, 1])
+    assert product.mean == pytest.approx(0.3, abs=1e-5)
+    logs = {"a": LogNormal(0.1, 0.3), "b": LogNormal(-0.2, 0.2)}
+    rank = 6.0 / np.pi * np.arcsin(-0.5 / 2.0)
+    x = GaussianCopula(logs, [[1.0, rank], [rank, 1.0]]).sobol_sequence(300)
+    product = fit_dependent(logs, [[1.0, rank], [rank, 1.0]], x, x[:, 0] * x[:, 1], degree=9)
+    # A product of log-normals of normal correlation -0.5 is log-normal.
+    mean, variance = -0.1, 0.3**2 + 0.2**2 - 0.3 * 0.2
+    assert product.mean == pytest.approx(np.exp(mean + 0.5 * variance), rel=1e-9)
+    # Powers beyond the ninth hold a billionth of its variance.
+    assert product.variance == pytest.approx(np.expm1(variance) * np.exp(2.0 * mean + variance), rel=1e-8)
+
+
 @pytest.mark.parametrize(
     "matrix",
     [
