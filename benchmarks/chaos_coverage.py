@@ -22,11 +22,14 @@ CASES: list[tuple[str, Model, float, int, str | None]] = [
     ("smooth", smooth, 0.3, 150, None),
     ("smooth", smooth, 0.3, 150, "ols"),
     ("smooth", smooth, 0.3, 150, "omp"),
-    ("smooth", smooth, 0.3, 150, "lars"),
+    ("smooth", smooth, 0.5, 80, None),
+    ("smooth", smooth, 1.0, 120, None),
     ("kinked", kinked, 0.0, 60, None),
     ("kinked", kinked, 0.15, 60, None),
     ("kinked", kinked, 0.3, 150, None),
     ("kinked", kinked, 0.3, 150, "ols"),
+    ("kinked", kinked, 0.5, 80, None),
+    ("kinked", kinked, 1.0, 120, None),
 ]
 
 

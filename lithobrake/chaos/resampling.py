@@ -22,6 +22,8 @@ from lithobrake.chaos.training import Training, checked_training
 # With more terms than this share of the points the residuals say too little about the error.
 TERM_SHARE = 0.7
 SMALLEST_FREEDOM = 0.05
+# Above this share of scatter in the variance a process has settled what matters too firmly to be drawn from.
+SCATTER_SHARE = 0.05
 # Fewer test runs than this, drawn anew, repeat each other too often to tell a spread.
 FEWEST_TEST_RUNS = 5
 
@@ -32,7 +34,7 @@ class Refit:
 
     indices [term_count, input_count]; coefficients: of outputs [count, draw_count], result [term_count, draw_count].
     fitted [count]: outputs that draws scatter about; truth [2, input_count]: first-order and total indices of what
-    gave them; residuals [count], as large as errors at new points.
+    gave them; residuals [count], as large as errors at new points; shrinks: whether the fit pulls coefficients to 0.
     """
 
     indices: Indices
@@ -40,6 +42,7 @@ class Refit:
     fitted: Array
     truth: Array
     residuals: Array
+    shrinks: bool = False
 
 
 @one_thread()
@@ -50,10 +53,10 @@ def sobol_intervals(
 
     Result: "first" and "total", each [2 (lower, upper), input_count, output_count] (last axis dropped for a
     one-dimensional y). Draws are fitted again: least squares with its terms, a sparse fit by least squares on its terms
-    and all of low degree, a process with its parameters. Rows of residuals are drawn jointly for all outputs and are as
-    large as the error at new points, so that they hold what the fit left out. An interval is of the basic kind, which
-    takes off the bias that scatter gives to squared coefficients; it holds the index of the expansion itself, and
-    reaches up to the percentile of the draws, without which small effects would be missed.
+    and all of low degree, a process with its parameters or, where scatter is more than a twentieth of the variance, by
+    least squares on all terms of low degree: parameters learnt from much scatter rule out inputs that may matter.
+    Rows of residuals are drawn jointly for all outputs and are as large as the error at new points, so that they hold
+    what the fit left out. An interval holds the index of the expansion itself.
     Source: Davison and Hinkley, 1997, sections 5.2 and 6.2; Dubreuil and others, 2014 (indices from expansions).
     """
     _check_resampling(count, level)
@@ -62,15 +65,46 @@ def sobol_intervals(
     own = np.stack([surrogate.sobol_first, surrogate.sobol_total]).reshape(2, len(training.inputs), -1)
     bounds = []
     for output in range(len(surrogate.output_names)):
+        if np.ptp(training.y[:, output]) == 0.0:
+            bounds.append(np.stack([own[..., output]] * 2))
+            continue
         refit = _refit_of(surrogate, training, output)
-        draws = _indices_of(refit.indices, refit.coefficients(refit.fitted[:, None] + refit.residuals[rows].T))
-        low, high = np.quantile(draws, [0.5 - 0.5 * level, 0.5 + 0.5 * level], axis=-1)
-        bias = draws.mean(axis=-1) - refit.truth
-        lower = np.minimum(2.0 * refit.truth - high, own[..., output])
-        upper = np.maximum(np.maximum(2.0 * refit.truth - low, high - bias), own[..., output])
+        coefficients = refit.coefficients(refit.fitted[:, None] + refit.residuals[rows].T)
+        low, high = (_basic_bounds if refit.shrinks else _debiased_bounds)(refit, coefficients, level)
+        lower, upper = np.minimum(low, own[..., output]), np.maximum(high, own[..., output])
         bounds.append(np.clip([lower, upper], 0.0, 1.0))
     table = np.stack(bounds, axis=-1)
     return {"first": surrogate.shaped(table[:, 0]), "total": surrogate.shaped(table[:, 1])}
+
+
+def _basic_bounds(refit: Refit, coefficients: Array, level: float) -> tuple[Array, Array]:
+    """Bounds [2, input_count] each, from coefficients [term_count, draw_count] of a fit that shrinks.
+
+    Distances of the draws from what they were drawn about, turned round; up to the percentile of the draws without
+    their mean distance, or small effects would be missed.
+    """
+    draws = _indices_of(refit.indices, coefficients)
+    low, high = np.quantile(draws, [0.5 - 0.5 * level, 0.5 + 0.5 * level], axis=-1)
+    bias = draws.mean(axis=-1) - refit.truth
+    return 2.0 * refit.truth - high, np.maximum(2.0 * refit.truth - low, high - bias)
+
+
+def _debiased_bounds(refit: Refit, coefficients: Array, level: float) -> tuple[Array, Array]:
+    """Bounds [2, input_count] each, from coefficients [term_count, draw_count] of least squares.
+
+    Scatter adds its variance to every squared coefficient; it is taken off, so that many small terms do not add up to
+    an effect. Source: Searle, Casella and McCulloch, 1992, "Variance Components", section 3.5 (analysis of variance).
+    """
+    active = (refit.indices > 0).T
+    squares = coefficients**2 - coefficients.var(axis=1, ddof=1, keepdims=True)
+    squares[refit.indices.sum(axis=1) == 0] = 0.0
+    variance = squares.sum(axis=0)
+    chosen = np.stack([active & (active.sum(axis=0) == 1), active]).astype(float)
+    # A draw that leaves no variance says nothing: every second one counts as none, the others as all of it.
+    shares = np.broadcast_to(np.arange(len(variance)) % 2.0, (*chosen.shape[:2], len(variance))).copy()
+    np.divide(chosen @ squares, variance, out=shares, where=variance > 0.0)
+    low, high = np.quantile(shares, [0.5 - 0.5 * level, 0.5 + 0.5 * level], axis=-1)
+    return low, high
 
 
 def _indices_of(indices: Indices, coefficients: Array) -> Array:
@@ -95,6 +129,9 @@ def _refit_of(surrogate: Surrogate, training: Training, output: int) -> Refit:
     if method in ("lars", "omp") and "candidate_degree" in entry:
         return _sparse_refit(training, output, entry["rmse_estimate"], indices)
     if method == "gaussian_process" and "covariance" in entry:
+        if entry.get("noise_std", 0.0) ** 2 > SCATTER_SHARE * np.var(training.y[:, output]):
+            constant = np.zeros((1, len(training.inputs)), dtype=np.int64)
+            return _least_squares_refit(training, output, _with_low_degrees(constant, training))
         return _process_refit(training, output, entry, indices)
     if method != "ols" or len(indices) > TERM_SHARE * training.count:
         indices = best_terms(training, term_limit=TERM_SHARE * training.count)
@@ -154,7 +191,7 @@ def _process_refit(training: Training, output: int, entry: dict[str, Any], indic
 
     truth = _indices_of(indices, process.coefficients(indices)[:, None])[..., 0]
     residuals = _grown(errors - errors.mean(), entry["rmse_estimate"])
-    return Refit(indices, coefficients, process.predict(process.germs), truth, residuals)
+    return Refit(indices, coefficients, process.predict(process.germs), truth, residuals, shrinks=True)
 
 
 def score_intervals(
