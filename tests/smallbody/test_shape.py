@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from lithobrake.smallbody import Shape, didymos, dimorphos
+from lithobrake.smallbody.didymos import DIDYMOS_POLE
 
 from .meshes import CUBE_FACES, cube_vertices, sphere_mesh
 
@@ -193,6 +194,15 @@ def test_built_in_bodies_have_the_published_extents():
     assert body.shape.surface_normal(0.0, 0.0) == pytest.approx([1.0, 0.0, 0.0], abs=1e-12)
     assert np.ptp(dimorphos().shape.vertices, axis=0) == pytest.approx([177.0, 174.0, 116.0], rel=1e-12)
     assert np.array_equal(didymos().shape.vertices, body.shape.vertices)
+
+
+def test_the_pole_is_that_of_the_frames_kernel():
+    """Right ascension and declination of the Didymos system frames kernel, version 007, turned into the ecliptic."""
+    right_ascension, declination, obliquity = np.radians([69.326861, -72.724550, 23.4392911])
+    up = np.sin(declination) * np.cos(obliquity) - np.cos(declination) * np.sin(obliquity) * np.sin(right_ascension)
+    across = np.sin(right_ascension) * np.cos(obliquity) + np.tan(declination) * np.sin(obliquity)
+    longitude = np.degrees(np.arctan2(across, np.cos(right_ascension))) % 360.0
+    assert (longitude, np.degrees(np.arcsin(up))) == pytest.approx(DIDYMOS_POLE, abs=0.05)
 
 
 def test_local_frame_is_a_compass():
