@@ -9,9 +9,9 @@ from lithobrake.smallbody.body import Body
 from lithobrake.smallbody.partner import Partner
 from lithobrake.smallbody.shape import Shape
 
-# Ecliptic longitude and latitude of the pole [deg], of spin and mutual orbit: right ascension 69.327, declination -72.725
-# deg (J2000) in the Didymos system frames kernel, version 007 (Nair 2023, JHU/APL), orbit solution 542 before the impact
-# of DART. No flight depends on it.
+# Ecliptic longitude and latitude of the pole [deg], of spin and mutual orbit: right ascension 69.327 and declination
+# -72.725 deg (J2000) in the frames kernel of the Didymos system, version 007 (Nair 2023, JHU/APL; orbit solution 542,
+# before the impact of DART). No flight depends on it.
 DIDYMOS_POLE = (310.0, -80.6)
 MUTUAL_PERIOD = 11.3674 * 3600.0  # [s], since the impact of DART; Naidu et al. (2024)
 RINGS = 15  # between a pole and the band along the equator: 8 * 15 * 16 = 1920 facets
