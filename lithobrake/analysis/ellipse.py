@@ -19,7 +19,8 @@ class Ellipses:
 
     latitude_deg, longitude_deg   of the middle
     heading_deg                   of the longer axis there, from north toward east, in [0, 180)
-    semi_axes_deg                 of each share, longer and shorter, as angles at the sphere's centre
+    semi_axes_deg                 of each share, longer and shorter, as angles at the sphere's centre; a share whose
+                                  ellipse would reach round more than half of the sphere is left out
     """
 
     latitude_deg: float
@@ -60,7 +61,11 @@ def landing_ellipses(
     return Ellipses(
         *middle,
         math.degrees(math.atan2(east, north)) % 180.0,
-        {share: (math.degrees(k * sizes[1]), math.degrees(k * sizes[0])) for share, k in scales.items()},
+        {
+            share: (math.degrees(k * sizes[1]), math.degrees(k * sizes[0]))
+            for share, k in scales.items()
+            if k * sizes[1] <= 0.5 * math.pi
+        },
     )
 
 

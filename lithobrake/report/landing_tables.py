@@ -129,7 +129,7 @@ def _ellipses(data: Results) -> Table:
     sets |= {f"at rest, {GROUND_WORDS[ground]}": table["ellipses"] for ground, table in followed(data).items()}
     rows = []
     for name, found in sets.items():
-        if not found:
+        if not found or not found["shares"]:
             rows.append([name, "none", "", "", "", ""])
             continue
         for entry in found["shares"]:

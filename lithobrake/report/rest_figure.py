@@ -38,19 +38,22 @@ def rest_figure(maps: list[RestMap], site: tuple[float, float], vertices: Array 
 
     site: latitude and longitude [deg]; vertices: of the body [m], shape [vertex, 3], for the relief; absent: plain.
     """
-    figure = Figure(figsize=(9.2, 4.0))
+    # In inches: the maps, a row for each bar, and the axis below the bars.
+    rows, maps_height, row_height, below = max(len(one.shares) for one in maps), 2.5, 0.2, 0.5
+    height = maps_height + row_height * rows + below
+    figure = Figure(figsize=(9.2, height))
     together = [np.concatenate([getattr(one, name) for one in maps]) for name in ("latitude", "longitude")]
     window = close_window(together[0], together[1], site) or WHOLE
     for side, one in enumerate(maps):
-        axes = figure.add_axes((0.06 + 0.5 * side, 0.4, 0.345, 0.54))
+        axes = figure.add_axes((0.06 + 0.5 * side, 1.0 - (maps_height - 0.55) / height, 0.345, 1.7 / height))
         axes.set_title(one.title)
         if one.absent is not None:
             axes.set_axis_off()
             axes.text(0.0, 0.9, textwrap.fill(one.absent, 58), transform=axes.transAxes, va="top", color=QUIET)
             continue
         _map(figure, axes, one, site, window, vertices)
-        height = 0.05 * len(one.shares)
-        bars = figure.add_axes((0.135 + 0.5 * side, 0.32 - height, 0.345, height))
+        share = row_height * len(one.shares) / height
+        bars = figure.add_axes((0.135 + 0.5 * side, 1.0 - maps_height / height - share, 0.345, share))
         draw_shares(bars, one.shares, "share of landers [%], with 95 % interval", room=80.0)
     return figure
 

@@ -200,9 +200,10 @@ def body(data: Results) -> str:
         return "No flight comes down on the body, so there is nothing to show on it."
     shared = f"{_thousands(len(data.facet))} impacts on the shape that the flights used"
     ellipse = data.results["ellipses"]
-    if ellipse is None:
-        return f"{shared}; they lie too far around the body, or are too few, to have a landing ellipse."
-    long, short = next(entry["semi_axes_m"] for entry in ellipse["shares"] if entry["share"] > 0.9)
+    large = [entry["semi_axes_m"] for entry in ellipse["shares"] if entry["share"] > 0.9] if ellipse else []
+    if not large:
+        return f"{shared}; they lie too far around the body, or are too few, for an ellipse that holds 95 % of them."
+    long, short = large[0]
     return (
         f"{shared}; an ellipse of {number(long)} by {number(short)} m (semi-axes) about latitude "
         f"{ellipse['latitude_deg']:.1f} deg, longitude {ellipse['longitude_deg']:.1f} deg holds 95 % of them."

@@ -171,13 +171,15 @@ def _rest(data: Results) -> "Figure | None":
     found, site, limit = followed(data), data.results["site"], hours(data.study["rest"]["duration"])
     if not found:
         return None
+    # The same ends on both sides, so that rows and colours match.
+    met = {key: words for key, words in SHORT_END_WORDS.items() if any(one[key]["count"] for one in found.values())}
     maps = []
     for ground, (latitude, longitude) in data.rest.items():
         table = found.get(ground)
         shares = [
             Share(words.format(hours=limit), *(table[key][end] for end in ("share", "lower", "upper")))
-            for key, words in SHORT_END_WORDS.items()
-            if table and table[key]["count"]
+            for key, words in met.items()
+            if table
         ]
         absent = None if table else f"Not asked: {data.results['rest']['why_no_soil']}."
         ellipses = table["ellipses"] if table else None

@@ -33,6 +33,14 @@ def test_a_heading_wraps_at_half_a_turn() -> None:
     assert min(found.heading_deg, 180.0 - found.heading_deg) < 3.0
 
 
+def test_an_ellipse_that_would_reach_round_half_the_body_is_left_out() -> None:
+    random = np.random.default_rng(2)
+    near, far = 5.0 * random.normal(size=(900, 2)), np.column_stack([np.zeros(100), np.linspace(-170.0, 170.0, 100)])
+    found = landing_ellipses(*np.concatenate([near, far]).T, (0.5, 0.99))
+    assert found is not None
+    assert list(found.semi_axes_deg) == [0.5]
+
+
 def test_few_places_and_places_all_around_have_no_ellipse() -> None:
     assert landing_ellipses([1.0] * 5, [2.0] * 5) is None
     around = np.linspace(-180.0, 170.0, 36)
