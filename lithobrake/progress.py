@@ -6,11 +6,19 @@ from types import TracebackType
 from typing import Self
 
 from rich.console import Console, RenderableType
-from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+from rich.progress import BarColumn, Progress, Task, TaskID, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 from rich.text import Text
 
 # Where no terminal shows the lines, say in a log file, they are written this often [s].
 _WRITTEN_EVERY = 60.0
+
+
+class _TimeLeft(TimeRemainingColumn):
+    """Time left of the work; none for the stages, which differ too much, and none where the lines below tell it."""
+
+    def render(self, task: Task) -> Text:
+        """Give what is drawn."""
+        return Text.assemble("left ", super().render(task)) if task.fields["tells_time_left"] else Text("")
 
 
 class _Lines(Progress):
@@ -35,11 +43,10 @@ class StudyProgress:
             BarColumn(),
             TextColumn("{task.fields[count]:>11}"),
             TimeElapsedColumn(),
-            TextColumn("left"),
-            TimeRemainingColumn(),
+            _TimeLeft(),
             console=Console(stderr=True),
         )
-        self._stages = self._progress.add_task("study", total=None, count="")
+        self._stages = self._progress.add_task("study", total=None, count="", tells_time_left=False)
         self._work: TaskID | None = None
         self._written = time.monotonic()
 
@@ -67,7 +74,7 @@ class StudyProgress:
             self._progress.remove_task(self._work)
             self._work = None
         if self._work is None:
-            self._work = self._progress.add_task(f"  {what}", total=total, count=count)
+            self._work = self._progress.add_task(f"  {what}", total=total, count=count, tells_time_left=not detail)
         self._progress.update(self._work, completed=done, total=total, count=count)
         self._progress.detail = detail
         if not self._progress.console.is_terminal and time.monotonic() > self._written + _WRITTEN_EVERY:

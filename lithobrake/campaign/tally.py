@@ -84,13 +84,12 @@ class Tally:
         return f"{self.total} runs: {', '.join(parts)}"
 
     def spread_lines(self, names: Iterable[str]) -> list[str]:
-        """Mean and standard deviation so far of each of these outputs [SI], in lines."""
+        """Mean and standard deviation so far of each of these outputs [SI], in lines; two runs are needed for them."""
         width = max(map(len, names), default=0)
         return [
-            f"{name:<{width}}  {self.spreads[name].mean:>10.4g} +- {self.spreads[name].std:<9.3g}"
-            f" ({self.spreads[name].count} runs)"
-            for name in names
-            if name in self.spreads
+            f"{name:<{width}}  {spread.mean:>10.4g} +- {spread.std:<9.3g} ({spread.count} runs)"
+            for name, spread in ((name, self.spreads.get(name, Spread())) for name in names)
+            if spread.count > 1
         ]
 
 

@@ -63,6 +63,7 @@ DETERMINED = "key, status, outcome, inputs, draws, outputs, seed, replicate, rea
 RESULTS = ("beds/bed_0.h5", "screening.json", "refined.json", "scores.json", "samples.h5", "flights.csv", "body.obj")
 # Stage at which to kill, 0 = before the first; every stage is hit, those in which much is made several times.
 MOMENTS = (0, 0, 1, 1, 1, 2, 3, 3, 3, 3, 3, 4, 5, 5, 5, 6, 7, 8, 9, 9)
+MAKE_RUNS, LEDGER = (3, 4, 5), ("runs.sqlite", "runs.sqlite-wal", "runs.sqlite-shm")
 VICTIMS = ("coordinator", "worker", "both")
 
 pytestmark = pytest.mark.skipif(not Path("/proc").is_dir(), reason="the processes are found in /proc (Linux)")
@@ -76,7 +77,7 @@ def start(study: Path, out: Path, worker_count: int = 1) -> "subprocess.Popen[by
 
 def end(study: Path, out: Path, worker_count: int = 1) -> None:
     """Run a study to its end, undisturbed."""
-    assert start(study, out, worker_count).wait(timeout=300) == 0, (study.parent / "said.txt").read_text()
+    assert start(study, out, worker_count).wait(timeout=1200) == 0, (study.parent / "said.txt").read_text()
 
 
 def workers(coordinator: int) -> list[int]:
@@ -146,8 +147,8 @@ def test_a_study_killed_at_20_random_moments_ends_with_the_same_bits(tmp_path: P
             kill(process, VICTIMS[kills % len(VICTIMS)], chance)
             kills += 1
         else:
-            # It came to its end before its time: something is taken away that it has to make again.
-            for name in files[stage - 1]:
+            # It came to its end before its time: what this stage has made is taken away, and has to be made again.
+            for name in (*files[stage - 1], *(LEDGER if stage in MAKE_RUNS else ())):
                 (killed / name).unlink(missing_ok=True)
         if process.poll() is not None:
             process = start(study, killed)
