@@ -65,7 +65,9 @@ class StudyProgress:
 
     def say(self, sentence: str) -> None:
         """Write a sentence that stays."""
-        self._progress.console.print(sentence, highlight=False)
+        # A file takes lines as long as they are.
+        console = self._progress.console
+        console.print(sentence, highlight=False, soft_wrap=not console.is_terminal)
 
     def progress(self, done: float, total: float, what: str, detail: str = "", /) -> None:
         """Show how far the work of the stage is, and more about it; a change of `what` starts a new bar."""

@@ -12,7 +12,7 @@ import threading
 import time
 from collections import deque
 from collections.abc import Callable
-from concurrent.futures import Executor, Future
+from concurrent.futures import BrokenExecutor, Executor, Future
 from multiprocessing.connection import Pipe, wait
 from typing import Any
 
@@ -21,6 +21,8 @@ from lithobrake.campaign.worker import BEGUN, Call, Worker
 
 # How often running calls are looked at when they have limits [s].
 _LOOK = 0.2
+# So many processes in a row that die before they begin with a call are no accident.
+_STILLBORN = 3
 
 
 class WorkerDiedError(ChildProcessError):
@@ -43,6 +45,7 @@ class LocalExecutor(Executor):
         self._lock = threading.Lock()
         self._thread: threading.Thread | None = None
         self._closing = False
+        self._stillborn_count = 0
 
     @property
     def capacity(self) -> int:
@@ -56,8 +59,11 @@ class LocalExecutor(Executor):
     def submit_limited(
         self, limits: Limits, function: Callable[..., Any], /, *args: Any, **kwargs: Any
     ) -> "Future[Any]":
-        """Queue a call whose process is ended when it goes over its limits; the future then has a WorkerDiedError."""
-        call, future = pickle.dumps((function, args, kwargs)), Future[Any]()
+        """Queue a call whose process is ended when it goes over its limits; the future then has a WorkerDiedError.
+
+        Raises ValueError for a call that cannot be sent to a process.
+        """
+        call, future = _pickled(function, args, kwargs), Future[Any]()
         with self._lock:
             if self._closing:
                 raise RuntimeError("this LocalExecutor is shut down; make another one")
@@ -133,10 +139,13 @@ class LocalExecutor(Executor):
         try:
             said = worker.connection.recv_bytes()
         except (EOFError, OSError):
-            self._lose(worker, "its process died ({ended})")
+            if worker.begun is None:
+                self._pass_on_the_call_of(worker)
+            else:
+                self._lose(worker, "its process died ({ended})")
             return
         if said == BEGUN:
-            worker.begun = time.monotonic()
+            worker.begun, self._stillborn_count = time.monotonic(), 0
             return
         call, worker.call = worker.call, None
         # The next call goes out before anybody is told of this one, so that the process need not wait.
@@ -146,6 +155,22 @@ class LocalExecutor(Executor):
             call.future.set_result(answer)
         elif call:
             call.future.set_exception(answer)
+
+    def _pass_on_the_call_of(self, worker: Worker) -> None:
+        """Give the call of a process that died before it began with it to another one.
+
+        Raises BrokenExecutor when this has happened to several in a row.
+        """
+        self._remove(worker)
+        self._stillborn_count += 1
+        if worker.call:
+            with self._lock:
+                self._waiting.appendleft(worker.call)
+        if self._stillborn_count >= _STILLBORN:
+            raise BrokenExecutor(
+                f"processes end before they begin with a run ({worker.ended()}); in a script of your own, what starts "
+                'the campaign belongs under: if __name__ == "__main__":'
+            )
 
     def _lose(self, worker: Worker, reason: str) -> None:
         self._remove(worker)
@@ -173,6 +198,16 @@ class LocalExecutor(Executor):
             reason = limits.exceeded(time.monotonic() - since, memory.get(worker.number, 0))
             if reason:
                 self._lose(worker, reason)
+
+
+def _pickled(*call: Any) -> bytes:
+    try:
+        return pickle.dumps(call)
+    except (pickle.PicklingError, AttributeError, TypeError) as error:
+        raise ValueError(
+            f"a call cannot be sent to a process ({error}); a model may be a function of a file, outside of any other "
+            "function, or an object whose attributes can be sent"
+        ) from error
 
 
 def available_cores() -> int:

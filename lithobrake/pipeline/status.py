@@ -12,14 +12,13 @@ from lithobrake.study import OUTPUTS
 def study_status(path: Path) -> list[str]:
     """Say who is at work on a study and at which stage, and where its runs stand, in lines.
 
-    Raises ValueError when the folder is not that of a study.
+    A folder that has a ledger alone is that of a campaign. Raises ValueError when it has neither study nor ledger.
     """
-    if not (path / "study.toml").is_file():
-        raise ValueError(f"{path} has no study.toml; name the folder of a study, or make one with: lithobrake run")
-    lines = [_work(path)]
-    if (path / "runs.sqlite").is_file():
-        lines += _runs(path / "runs.sqlite")
-    return lines
+    ledger, has_study = path / "runs.sqlite", (path / "study.toml").is_file()
+    if not (has_study or ledger.is_file()):
+        raise ValueError(f"{path} has neither study.toml nor runs.sqlite; name the folder of a study that ran, or runs")
+    lines = [_work(path) if has_study else f"{path}: {'a campaign' if campaign_began(ledger) else 'nobody'} is at work"]
+    return lines + (_runs(ledger) if ledger.is_file() else [])
 
 
 def _work(path: Path) -> str:
@@ -40,7 +39,7 @@ def _runs(path: Path) -> list[str]:
         lines.append("outcomes: " + ", ".join(f"{count} {name}" for name, count in sorted(outcomes.items())))
     for reason, count in _reasons(records).most_common(3):
         lines.append(f"failed {count} times: {reason}")
-    spreads = state.spread_lines(OUTPUTS)
+    spreads = state.spread_lines([name for name in OUTPUTS if name in state.spreads] or sorted(state.spreads))
     return lines + (["mean and standard deviation so far [SI]:", *spreads] if spreads else [])
 
 

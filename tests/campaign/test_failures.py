@@ -1,6 +1,9 @@
 """Runs that fail: recorded with their reason, tried again as configured, counted, and looked at for holes."""
 
 import importlib.util
+import os
+import signal
+import subprocess
 import sys
 import time
 from pathlib import Path
@@ -15,6 +18,7 @@ from lithobrake.campaign import (
     Limits,
     LocalExecutor,
     Runs,
+    Tally,
     missing,
     read_records,
     run,
@@ -145,3 +149,51 @@ def test_a_model_that_no_worker_can_import_ends_the_campaign_and_fails_no_run(tm
         campaign(tmp_path, module.model)
     # Which of them were handed to a process before it told that it cannot, depends on how fast it starts.
     assert {entry.status for entry in read_records(tmp_path / "runs.sqlite")} <= {"queued", "running"}
+
+
+def test_a_model_that_cannot_be_sent_is_one_sentence(tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match="a model may be a function of a file, outside of any other function"):
+        campaign(tmp_path, lambda inputs, seed: {})
+
+
+UNGUARDED = """
+import numpy as np
+from lithobrake import campaign
+
+def model(inputs, seed):
+    return {"height": 1.0}
+
+with campaign.Ledger("runs.sqlite") as ledger:
+    campaign.run(model, np.ones((1, 1)), names=["a"], ledger=ledger, executor=campaign.LocalExecutor(1))
+"""
+
+
+def test_a_script_that_its_workers_would_start_again_is_told_so_and_fails_no_run(tmp_path: Path) -> None:
+    (tmp_path / "unguarded.py").write_text(UNGUARDED)
+    said = subprocess.run([sys.executable, "unguarded.py"], cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert said.returncode == 1
+    last = said.stderr.strip().splitlines()[-1]
+    assert "processes end before they begin with a run (exit code 1)" in last
+    assert 'belongs under: if __name__ == "__main__":' in last
+    assert {entry.status for entry in read_records(tmp_path / "runs.sqlite")} <= {"queued", "running"}
+
+
+class KillsOneThatStarts:
+    """A progress that kills the first process of an executor, before it has begun with anything."""
+
+    def __init__(self, executor: LocalExecutor) -> None:
+        self.executor, self.killed = executor, False
+
+    def __call__(self, state: Tally) -> None:
+        started = self.executor._workers
+        if started and not self.killed:
+            self.killed = True
+            os.kill(started[0].number, signal.SIGKILL)
+
+
+def test_a_process_that_is_killed_before_it_begins_costs_no_run_a_try(tmp_path: Path) -> None:
+    with Ledger(tmp_path / "runs.sqlite") as ledger, LocalExecutor(1) as executor:
+        kills = KillsOneThatStarts(executor)
+        runs = run(models.parabola, X, names=("a", "b"), ledger=ledger, executor=executor, progress=kills)
+    assert kills.killed
+    assert runs.outcomes == ["clear"] * 4
