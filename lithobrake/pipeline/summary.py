@@ -168,9 +168,16 @@ def _expansion(surrogate: "Surrogate", runs: DesignRuns) -> dict[str, Any]:
 
 
 def _fit(entry: dict[str, Any]) -> dict[str, Any]:
-    """How one output was fitted, the error expected at a new run and the scatter between equal runs, SI."""
+    """How one output was fitted, the error expected at a new run and the scatter between equal runs, SI.
+
+    noise_share: of the variance of the runs; None where the scatter is not known or the runs do not vary.
+    """
     keys = ("method", "term_count", "condition_number", "rmse_estimate", "rrmse_estimate", "noise_std", "noise_from")
-    return {key: entry.get(key) for key in keys}
+    table = {key: entry.get(key) for key in keys}
+    noise, share = table["noise_std"], table["rrmse_estimate"]
+    if noise is None or not share:
+        return {**table, "noise_share": None}
+    return {**table, "noise_share": min((noise * share / table["rmse_estimate"]) ** 2, 1.0)}
 
 
 def _by_output(surrogate: "Surrogate", values: np.ndarray) -> dict[str, float]:
@@ -223,7 +230,12 @@ def headline(results: dict[str, Any]) -> list[str]:
     if speed:
         low, middle, high = (100 * speed[f"quantile_{level:g}"] for level in QUANTILES)
         sentences.append(f"Outgoing speed {middle:.3g} cm/s (median; 5 to 95 %: {low:.3g} to {high:.3g} cm/s).")
-    sentences.append(f"{main} decides it most: total Sobol index {total[main]:.2f} of the outgoing speed.")
+    if total[main] > 0.0:
+        share = results["screening"]["fits"]["speed_out"]["noise_share"]
+        rest = "" if share is None else f"; {100 * share:.0f} % of its variance is scatter that no input decides"
+        sentences.append(f"{main} decides it most: total Sobol index {total[main]:.2f} of the outgoing speed{rest}.")
+    else:
+        sentences.append("No input was found to decide it.")
     explained = "no share" if score["q2"] is None else f"{100 * score['q2']:.0f} %"
     error = f"{100 * score['rmse']:.2g} of spread {100 * score['std']:.2g} cm/s, MAPE {_percent(score['mape'])}"
     sentences.append(

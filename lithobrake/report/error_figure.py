@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from lithobrake.report.look import INK, PAPER_OUTPUTS, QUIET, TEST, TEST_ALL, TRAINING, output
-from lithobrake.report.page import number
+from lithobrake.report.page import fixed, number
 
 Array = NDArray[np.float64]
 
@@ -82,7 +82,8 @@ def _panel(axes: Axes, name: str, series: Sequence[tuple[str, Score, str]]) -> N
     # The figures stand above the panel, where no bar can run into them; the last series is the lowest.
     y = 1.03
     for words, score, colour in reversed(series):
-        mape, q2 = words_of(score.mape, ".3g", " %"), words_of(score.q2, ".2f")
+        mape = "undefined" if score.mape is None else f"{score.mape:.3g} %"
+        q2 = "undefined" if score.q2 is None else fixed(score.q2)
         lines = (
             f"{len(score.ape)} runs: MAPE {mape}, $Q^2$ {q2}\n"
             f"RMSE {number(score.rmse * shown.factor, 2)} at a spread of "
@@ -118,8 +119,3 @@ def _limit(errors: Sequence[Array]) -> tuple[float, int]:
     limit = largest if largest <= 2.0 * usual else 1.25 * usual
     limit = max(limit, 1e-12)
     return limit, int(np.sum(together > limit * (1 + 1e-12)))
-
-
-def words_of(value: float | None, form: str, unit: str = "") -> str:
-    """A score in words; one that does not exist is called undefined."""
-    return "undefined" if value is None else f"{value:{form}}{unit}"

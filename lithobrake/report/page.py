@@ -130,6 +130,12 @@ def show(value: object) -> str:
     return str(value)
 
 
+def fixed(value: float, digits: int = 2) -> str:
+    """A number to some digits behind the point, without a sign when they are all zeros."""
+    text = f"{value:.{digits}f}"
+    return text if float(text) else text.removeprefix("-")
+
+
 def number(value: float, digits: int = 3, *, zeros: bool = False) -> str:
     """A number to some digits, very large and very small ones with a power of ten; zeros: keep those at the end."""
     if value == 0 or 1e-3 <= abs(value) < 1e5:

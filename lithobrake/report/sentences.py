@@ -4,7 +4,7 @@ import math
 
 from lithobrake.report.error_figure import Score
 from lithobrake.report.look import PAPER_OUTPUTS, output
-from lithobrake.report.page import number
+from lithobrake.report.page import fixed, number
 from lithobrake.report.results import Results
 from lithobrake.report.scatter_figure import DRAWN_COUNT
 
@@ -117,7 +117,8 @@ def counts(data: Results) -> str:
         words += f", against {_thousands(full)} on the full tensor grid"
     place = f"at level {design['refined_level']}" if grid else f"of degree {design['refined_degree']}"
     kept = len(data.results["kept_inputs"])
-    return f"{words}; the refined design in the {kept} kept inputs {place} takes {_runs(designs['refined'])}."
+    refined = "the kept input" if kept == 1 else f"the {kept} kept inputs"
+    return f"{words}; the refined design in {refined} {place} takes {_runs(designs['refined'])}."
 
 
 def _runs(design: dict[str, int]) -> str:
@@ -128,18 +129,27 @@ def _runs(design: dict[str, int]) -> str:
 
 def sobol(data: Results) -> str:
     """Figure 4."""
-    first = data.results["screening"]["sobol_first"]
-    mains = {name: max(first[name], key=lambda key: first[name][key]) for name in PAPER_OUTPUTS}
-    leaders = [
-        f"{PLAIN_SYMBOLS[name]} varies most with the {input_words(main)} "
-        f"({percent(first[name][main], 0)} of its variance)"
-        for name, main in mains.items()
-    ]
+    screening = data.results["screening"]
+    leaders = [_leader(name, screening["sobol_first"][name]) for name in PAPER_OUTPUTS]
+    shares = {name: screening["fits"][name]["noise_share"] for name in PAPER_OUTPUTS}
+    scatter = [f"{percent(share, 0)} of {PLAIN_SYMBOLS[name]}" for name, share in shares.items() if share is not None]
+    rest = f"; of the variance of the runs {listing(scatter)} is scatter, which no input decides" if scatter else ""
     kept = listing([input_words(name) for name in data.results["kept_inputs"]])
     share = min(data.results["kept_share"][name] for name in data.study["design"]["kept_outputs"])
     return (
-        f"{listing(leaders)}; the second step keeps {kept}, which together explain at least {percent(share, 0)} of "
-        "every output that decides."
+        f"{listing(leaders)}{rest}; the second step keeps {kept}, which together have at least {percent(share, 0)} of "
+        "the explained variance of every output that decides."
+    )
+
+
+def _leader(name: str, first: dict[str, float]) -> str:
+    """The input that an output varies with most, if any was found."""
+    main = max(first, key=lambda key: first[key])
+    if first[main] <= 0.0:
+        return f"no input was found that {PLAIN_SYMBOLS[name]} varies with"
+    return (
+        f"{PLAIN_SYMBOLS[name]} varies most with the {input_words(main)} ({percent(first[main], 0)} of its explained "
+        "variance)"
     )
 
 
@@ -157,7 +167,7 @@ def _explained(table: dict[str, Score]) -> str:
     parts = []
     for name in PAPER_OUTPUTS:
         q2, mape = table[name].q2, table[name].mape
-        words = "an undefined share" if q2 is None else f"Q2 = {q2:.2f}"
+        words = "an undefined share" if q2 is None else f"Q2 = {fixed(q2)}"
         parts.append(f"{words} of {PLAIN_SYMBOLS[name]} (MAPE {'undefined' if mape is None else f'{mape:.2g} %'})")
     return listing(parts)
 

@@ -12,10 +12,16 @@ from lithobrake.report.page import number
 Array = NDArray[np.float64]
 
 
-def sobol_figure(input_names: tuple[str, ...], sobol_first: dict[str, Array], spread: dict[str, float]) -> Figure:
+def sobol_figure(
+    input_names: tuple[str, ...],
+    sobol_first: dict[str, Array],
+    spread: dict[str, float],
+    scatter: dict[str, float | None],
+) -> Figure:
     """Draw one ring an output; what is left of the whole belongs to interactions.
 
-    sobol_first: output name to indices, shape [input]; spread: output name to standard deviation [SI].
+    sobol_first: output name to indices, shape [input]; spread: output name to standard deviation of the expansion [SI];
+    scatter: output name to the share of the runs' variance that is scatter, None where that is not known.
     """
     names = [name for name in PAPER_OUTPUTS if name in sobol_first]
     colours = input_colours(input_names)
@@ -23,6 +29,10 @@ def sobol_figure(input_names: tuple[str, ...], sobol_first: dict[str, Array], sp
     for column, name in enumerate(names):
         axes = figure.add_axes((0.01 + column / len(names), 0.17, 0.98 / len(names), 0.75))
         _ring(axes, name, sobol_first[name], [colours[key] for key in input_names], spread[name])
+        share = scatter[name]
+        if share is not None:
+            words = f"scatter: {100 * share:.0f} % of\nthe runs' variance"
+            axes.text(0, -0.27, words, ha="center", va="top", fontsize=7, color=QUIET)
     handles = [Patch(color=colours[key], label=input_label(key, with_unit=False)) for key in input_names]
     handles.append(Patch(color=INTERACTIONS, label="interactions"))
     figure.legend(
@@ -38,6 +48,12 @@ def sobol_figure(input_names: tuple[str, ...], sobol_first: dict[str, Array], sp
 def _ring(axes: Axes, name: str, first: Array, colours: list[str], spread: float) -> None:
     """One ring with the share in per cent on every piece that has room for it."""
     shown = output(name)
+    axes.set_title(f"{shown.words} {shown.symbol}".strip(), loc="center")
+    if spread == 0.0:
+        axes.set(aspect="equal", xlim=(-1.05, 1.05), ylim=(-1.05, 1.05))
+        axes.axis("off")
+        axes.text(0, 0, "no input found\nthat decides it", ha="center", va="center", color=QUIET)
+        return
     shares = np.append(np.clip(first, 0.0, None), max(0.0, 1.0 - float(np.sum(first))))
     wedges, *_ = axes.pie(
         shares,
@@ -62,8 +78,7 @@ def _ring(axes: Axes, name: str, first: Array, colours: list[str], spread: float
             fontweight="bold",
             color="white" if dark else "#1c2733",
         )
-    axes.set_title(f"{shown.words} {shown.symbol}".strip(), loc="center")
     axes.text(0, 0.06, number(spread * shown.factor, 2), ha="center", va="center", fontsize=12, fontweight="bold")
     axes.text(0, -0.16, f"{shown.unit} spread", ha="center", va="center", fontsize=7.5, color=QUIET)
-    axes.set_xlim(-1.05, 1.05)
-    axes.set_ylim(-1.05, 1.05)
+    # A pie sets limits of its own.
+    axes.set(xlim=(-1.05, 1.05), ylim=(-1.05, 1.05))

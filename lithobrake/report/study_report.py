@@ -128,7 +128,8 @@ def _sobol(data: Results) -> "Figure":
     screening = data.results["screening"]
     names = tuple(screening["inputs"])
     first = {output: np.array([screening["sobol_first"][output][name] for name in names]) for output in PAPER_OUTPUTS}
-    return sobol_figure(names, first, screening["std"])
+    scatter = {output: screening["fits"][output]["noise_share"] for output in PAPER_OUTPUTS}
+    return sobol_figure(names, first, screening["std"], scatter)
 
 
 def _errors(data: Results) -> "Figure":

@@ -5,9 +5,9 @@ from typing import Any
 
 from lithobrake.report.landing_tables import landing_tables
 from lithobrake.report.look import PAPER_OUTPUTS, output
-from lithobrake.report.page import Table, Tile, flat, number, show
+from lithobrake.report.page import Table, Tile, fixed, flat, number, show
 from lithobrake.report.results import Results
-from lithobrake.report.sentences import hours, input_words
+from lithobrake.report.sentences import hours, input_words, percent
 
 OUTPUT_WORDS = {
     "speed_out": "outgoing speed V+",
@@ -38,6 +38,7 @@ def tiles(data: Results) -> list[Tile]:
     designs, shares = results["designs"].values(), results["shares"]
     total = results["screening"]["sobol_total"]["speed_out"]
     main = max(total, key=lambda name: total[name])
+    noise = results["screening"]["fits"]["speed_out"]["noise_share"]
     score = results["scores"]["test_all"]["speed_out"]
     remains = shares["remains"]
     speed = results["monte_carlo"]["outputs"].get("speed_out")
@@ -53,9 +54,14 @@ def tiles(data: Results) -> list[Tile]:
             f"of {sum(design['run_count'] for design in designs)}",
             "simulated touchdowns left the surface",
         ),
-        Tile(f"{total[main]:.2f}", "Sobol", f"{input_words(main)} decides the outgoing speed most (total index)"),
         Tile(
-            "none" if score["q2"] is None else f"{score['q2']:.2f}",
+            f"{total[main]:.2f}",
+            "Sobol",
+            f"{input_words(main)} decides the outgoing speed most (total index)"
+            + ("" if noise is None else f"; {percent(noise, 0)} of its variance is scatter"),
+        ),
+        Tile(
+            "none" if score["q2"] is None else fixed(score["q2"]),
             "Q2",
             f"outgoing speed, fresh runs, all inputs vary: error {number(score['rmse'], 2)} m/s at a spread of "
             f"{number(score['std'], 2)} m/s",
@@ -231,7 +237,7 @@ def _index(table: Mapping[str, Any], kind: str, name: str, key: str) -> str:
 def _with_interval(score: Mapping[str, Any], key: str) -> str:
     """A score, with its interval where there is one."""
     low, high = score.get(f"{key}_interval") or (None, None)
-    words = _or_none(score[key])
+    words = fixed(score[key], 3) if key == "q2" and score[key] is not None else _or_none(score[key])
     return words if low is None or high is None else f"{words} ({number(low, 2)} to {number(high, 2)})"
 
 

@@ -108,7 +108,8 @@ def made_up_summary(scores: dict[str, dict[str, dict[str, object]]]) -> dict[str
     spread = dict.fromkeys(OUTPUTS, 0.02)
     quantiles = {"quantile_0.05": 0.08, "quantile_0.5": 0.1, "quantile_0.95": 0.12}
     share = {"count": 200, "share": 0.5, "lower": 0.45, "upper": 0.55}
-    fit = {"method": "ols", "term_count": 10, "condition_number": 5.3, "rmse_estimate": 0.01, "noise_std": None}
+    fit = {"method": "ols", "term_count": 10, "condition_number": 5.3, "rmse_estimate": 0.01}
+    fit |= {"noise_std": 0.005, "noise_share": 0.06}
     fits = dict.fromkeys(OUTPUTS, fit)
     expansion = {
         "term_count": 10,

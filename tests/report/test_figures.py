@@ -107,11 +107,23 @@ def test_sobol_figure_gives_the_rest_to_interactions() -> None:
     names = ("grain.friction", "grain.restitution")
     first = {name: np.array([0.5, 0.2]) for name in PAPER_OUTPUTS}
     with figure_style():
-        figure = sobol_figure(names, first, dict.fromkeys(PAPER_OUTPUTS, 0.1))
+        figure = sobol_figure(names, first, dict.fromkeys(PAPER_OUTPUTS, 0.1), dict.fromkeys(PAPER_OUTPUTS))
     words = texts(figure)
     assert words.count("50 %") == 3
     assert words.count("30 %") == 3
     assert "interactions" in words
+    assert picture(figure)
+
+
+def test_sobol_figure_says_what_is_scatter_and_where_no_input_was_found() -> None:
+    first = dict.fromkeys(PAPER_OUTPUTS, np.array([1.0])) | {"elevation_out": np.array([0.0])}
+    spread = dict.fromkeys(PAPER_OUTPUTS, 0.1) | {"elevation_out": 0.0}
+    with figure_style():
+        figure = sobol_figure(("impact.speed",), first, spread, dict.fromkeys(PAPER_OUTPUTS, 0.7))
+    words = texts(figure)
+    assert words.count("100 %") == 2
+    assert words.count("no input found\nthat decides it") == 1
+    assert words.count("scatter: 70 % of\nthe runs' variance") == 3
     assert picture(figure)
 
 
