@@ -118,7 +118,7 @@ def _result(future: "Future[Any]") -> Mapping[str, Any]:
         answer: Mapping[str, Any] = future.result()
         return answer
     if isinstance(error, WorkerDiedError):
-        return {"status": "failed", "reason": str(error)}
+        return {"status": "failed", "reason": str(error), "wall_s": error.wall_s, "host": error.host}
     raise ConnectionError(
         f"the executor cannot make the runs ({type(error).__name__}: {error}); every run that had ended is kept: see "
         "that its workers are there and have the same code, and give the same command again"

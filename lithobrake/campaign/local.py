@@ -8,6 +8,7 @@ import contextlib
 import math
 import os
 import pickle
+import platform
 import threading
 import time
 from collections import deque
@@ -25,8 +26,20 @@ _LOOK = 0.2
 _STILLBORN = 3
 
 
-class WorkerDiedError(ChildProcessError):
-    """The process of a call died, or was ended because the call went over its limits; the message says which."""
+class WorkerDiedError(RuntimeError):
+    """The process of a call died, or was ended because the call went over its limits; the reason says which.
+
+    wall_s: how long it had been at the call [s]; host: where; None where nobody saw it.
+    """
+
+    def __init__(self, reason: str, wall_s: float | None = None, host: str | None = None) -> None:
+        """Keep all three; it may be sent from one process to another."""
+        super().__init__(reason, wall_s, host)
+        self.wall_s, self.host = wall_s, host
+
+    def __str__(self) -> str:
+        """Give the reason."""
+        return str(self.args[0])
 
 
 class LocalExecutor(Executor):
@@ -174,8 +187,11 @@ class LocalExecutor(Executor):
 
     def _lose(self, worker: Worker, reason: str) -> None:
         self._remove(worker)
-        if worker.call is not None:
-            worker.call.future.set_exception(WorkerDiedError(reason.format(ended=worker.ended())))
+        if worker.call is not None and worker.begun is not None:
+            wall = time.monotonic() - worker.begun
+            worker.call.future.set_exception(
+                WorkerDiedError(reason.format(ended=worker.ended()), wall, platform.node())
+            )
 
     def _remove(self, worker: Worker) -> None:
         worker.kill()

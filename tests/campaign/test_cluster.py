@@ -13,7 +13,7 @@ import campaign_models as models
 import numpy as np
 import pytest
 
-from lithobrake.campaign import DaskExecutor, Ledger, Limits, LocalExecutor, Tally, run
+from lithobrake.campaign import DaskExecutor, Ledger, Limits, LocalExecutor, Runs, Tally, read_records, run
 
 pytest.importorskip("distributed", reason="distributed is not installed (pip install lithobrake[dask])")
 
@@ -65,9 +65,12 @@ def cluster(folder: Path) -> Iterator[Cluster]:
 
 
 def campaign(path: Path, executor: Any, model: Any = models.sleeps_a_moment, **options: Any) -> list[tuple[Any, ...]]:
-    """What determines the runs and what came of them, as the ledger has it."""
+    """Make the runs at X; give what determines them and what came of them."""
     with Ledger(path) as ledger, executor:
-        runs = run(model, X, names=("a", "b"), ledger=ledger, executor=executor, **options)
+        return what_came(run(model, X, names=("a", "b"), ledger=ledger, executor=executor, **options))
+
+
+def what_came(runs: Runs) -> list[tuple[Any, ...]]:
     return [(e.key, e.status, e.outcome, e.inputs, e.outputs, e.draws, e.seed, e.reason) for e in runs.records]
 
 
@@ -87,6 +90,38 @@ def test_a_cluster_that_loses_a_worker_gives_the_bits_of_this_machine(tmp_path: 
     assert there == here
 
 
+COORDINATE = """
+import sys
+from pathlib import Path
+sys.path.insert(0, sys.argv[1])
+from test_cluster import campaign, DaskExecutor
+campaign(Path(sys.argv[2]), DaskExecutor(sys.argv[3]))
+"""
+
+
+def done_count(path: Path) -> int:
+    return sum(entry.status == "done" for entry in read_records(path))
+
+
+def test_a_coordinator_that_is_killed_loses_no_run_that_its_cluster_has_made(tmp_path: Path) -> None:
+    path, here = tmp_path / "there.sqlite", campaign(tmp_path / "here.sqlite", LocalExecutor(2))
+    with cluster(tmp_path) as made:
+        made.add_worker("only")
+        # A ledger that is being made is there a moment before its table.
+        Ledger(path).close()
+        arguments = [str(Path(__file__).parent), str(path), made.address]
+        coordinator = subprocess.Popen([sys.executable, "-c", COORDINATE, *arguments], env=made.environment)
+        while done_count(path) < 10 and coordinator.poll() is None:
+            time.sleep(0.02)
+        coordinator.kill()
+        coordinator.wait()
+        kept = done_count(path)
+        with Ledger(path) as ledger, DaskExecutor(made.address) as executor:
+            runs = run(models.sleeps_a_moment, X, names=("a", "b"), ledger=ledger, executor=executor)
+    assert 10 <= runs.reused_count == kept
+    assert what_came(runs) == here
+
+
 def test_limits_hold_on_a_cluster_and_its_worker_lives_on(tmp_path: Path) -> None:
     with cluster(tmp_path) as made:
         # A worker under a nanny is a daemon, which may not start processes as it is.
@@ -96,6 +131,7 @@ def test_limits_hold_on_a_cluster_and_its_worker_lives_on(tmp_path: Path) -> Non
         )
     assert [entry[1] for entry in runs] == ["done"] * 39 + ["failed"]
     assert runs[39][7] == "it ran longer than its limit of 1 s"
+    assert all(entry.wall_s and entry.host for entry in read_records(tmp_path / "runs.sqlite"))
 
 
 def test_a_scheduler_that_goes_away_is_one_sentence_and_what_had_ended_is_kept(tmp_path: Path) -> None:

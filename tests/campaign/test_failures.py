@@ -36,7 +36,11 @@ def test_a_run_over_its_wall_limit_is_ended_and_the_others_go_on(tmp_path: Path)
     began = time.monotonic()
     runs = campaign(tmp_path, models.sleeps_at_two, Limits(wall_s=0.5))
     assert runs.outcomes == ["clear", "failed", "clear", "clear"]
-    assert runs.records[1].reason == "it ran longer than its limit of 0.5 s"
+    ended = runs.records[1]
+    assert ended.reason == "it ran longer than its limit of 0.5 s"
+    assert ended.wall_s is not None
+    assert ended.wall_s > 0.5
+    assert ended.host == runs.records[0].host
     assert time.monotonic() - began < 600
 
 

@@ -84,6 +84,17 @@ def test_one_more_bed_reuses_the_runs_that_stay_on_theirs_and_says_so(fixed: Pat
     assert {key: after[key] for key in before} == before
 
 
+def test_one_more_run_at_every_point_reuses_the_first_ones_and_says_so(fixed: Path, tmp_path: Path) -> None:
+    before = what_came(read_records(fixed / "runs.sqlite"))
+    changes = {FRICTION: "friction = 0.225", "screening_level = 1": "screening_level = 1\nreplicate_count = 2"}
+    said = said_by("screen", write_study(tmp_path, changes), "--out", fixed, "--workers", 1)
+    assert "screening: 7 of 14 runs were known and are reused" in said
+    after = read_records(fixed / "runs.sqlite")
+    assert len(after) == len(before) + 7
+    assert {entry.replicate for entry in after if entry.key not in before} == {1}
+    assert {key: what_came(after)[key] for key in before} == before
+
+
 FAILS_ABOVE = """
 import json, runpy, sys
 if json.load(open("inputs.json"))["inputs"]["lander.restitution"] > 0.65:
