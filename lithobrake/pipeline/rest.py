@@ -7,9 +7,8 @@ import numpy as np
 
 from lithobrake.pipeline.flights import partner_time, sample_sites, write_table
 from lithobrake.pipeline.job import Job
-from lithobrake.pipeline.samples import Samples, sampling_seed
+from lithobrake.pipeline.samples import Samples, sampling_seed, touchdown_values
 from lithobrake.pipeline.soil import rolling_spin, soil_bounce, trained_ranges, why_no_soil
-from lithobrake.quantity import median
 from lithobrake.site import frames, site_body
 from lithobrake.study import Study
 
@@ -52,14 +51,6 @@ def first_samples(samples: Samples, count: int) -> Samples:
     return replace(samples, without_scatter=None, **{name: getattr(samples, name)[:count] for name in names})
 
 
-def touchdown_values(study: Study, samples: Samples, name: str) -> np.ndarray:
-    """One touchdown value of each sample, drawn or fixed, in the file's units, shape [sample_count]."""
-    if name in samples.input_names:
-        drawn: np.ndarray = samples.inputs[:, samples.input_names.index(name)]
-        return drawn
-    return np.full(len(samples.stays), median(study.touchdown_values()[name]))
-
-
 def hard_surface(study: Study) -> "HardSurface":
     """The hard ground of a study."""
     from lithobrake.smallbody import HardSurface
@@ -84,7 +75,7 @@ def _on_hard_ground(study: Study, sites: "Sites") -> tuple["Rebounds", "Bounce"]
 
     bounce, samples = hard_surface(study), sites.samples
     speed, incidence_deg, *spin = (
-        touchdown_values(study, samples, f"impact.{name}")
+        touchdown_values(study, samples.input_names, samples.inputs, f"impact.{name}")
         for name in ("speed", "incidence_deg", "spin_x", "spin_y", "spin_z")
     )
     lander = np.arange(len(samples.stays))

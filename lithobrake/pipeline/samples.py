@@ -1,5 +1,6 @@
 """Monte Carlo on the refined expansion: what leaves the surface, how fast and where to, and what stays."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -9,6 +10,8 @@ from lithobrake.atomic import atomic_path
 from lithobrake.pipeline.expansions import DESIGNS, DesignRuns, design_inputs, design_runs
 from lithobrake.pipeline.folder import StudyFolder, json_hash
 from lithobrake.pipeline.job import Job
+from lithobrake.pipeline.scatter import Scatter
+from lithobrake.quantity import median
 from lithobrake.study import Study
 
 if TYPE_CHECKING:
@@ -90,10 +93,9 @@ def draw_samples(job: Job) -> None:
     draws = np.random.Generator(np.random.PCG64(sampling_seed(study, "capture"))).random(len(x))
     is_captured, outputs, without_scatter = draws < probability, smooth, None
     if study.monte_carlo.scatter:
-        rows = scatter_rows(refined, design_runs(job, "refined", refined.input_names))
+        speed = touchdown_values(study, inputs, x, "impact.speed")
         generator = np.random.Generator(np.random.PCG64(sampling_seed(study, "scatter")))
-        outputs = smooth + rows[generator.integers(len(rows), size=len(x))]
-        without_scatter = smooth
+        outputs, without_scatter = smooth + Scatter.of(job, refined).draw(speed, generator), smooth
     outward = outputs[:, refined.output_names.index("velocity_out_z")] > 0
     stays = is_captured | ~outward
     Samples(list(inputs), refined.output_names, x, outputs, probability, is_captured, stays, without_scatter).save(
@@ -101,14 +103,16 @@ def draw_samples(job: Job) -> None:
     )
 
 
-def scatter_rows(refined: "Surrogate", runs: DesignRuns) -> np.ndarray:
-    """Scatter from run to run, a row for each run that tells of it, [row_count, output_count]; drawn from as they are.
+def touchdown_values(study: Study, inputs: Iterable[str], x: np.ndarray, name: str) -> np.ndarray:
+    """One touchdown value in the file's units, shape [sample_count]: its column of x, or what the study fixes it to.
 
-    runs: of the refined design.
+    x: [sample_count, input_count], of the inputs in their order.
     """
-    from lithobrake.chaos import joint_scatter
-
-    return joint_scatter(refined, runs.columns(refined.input_names), runs.y)
+    columns = list(inputs)
+    if name in columns:
+        drawn: np.ndarray = x[:, columns.index(name)]
+        return drawn
+    return np.full(len(x), median(study.touchdown_values()[name]))
 
 
 def capture_model(job: Job, refined: "Surrogate") -> "CaptureModel":

@@ -5,9 +5,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lithobrake.pipeline.expansions import design_inputs, design_runs, points
+from lithobrake.pipeline.expansions import design_inputs, points
 from lithobrake.pipeline.job import Job
-from lithobrake.pipeline.samples import capture_model, scatter_rows
+from lithobrake.pipeline.samples import capture_model
+from lithobrake.pipeline.scatter import Scatter
 from lithobrake.study import Study
 
 if TYPE_CHECKING:
@@ -45,8 +46,7 @@ class SoilBounce:
     inputs    of each lander, by dotted key in the file's units, each of shape [lander_count]: the soil that a lander
               has met at first is the soil that it meets again
     ranges    of the runs; an impact outside them is not answered
-    scatter   rows to draw from, [row_count, output_count], of impacts at scatter_speed [m/s]; without rows: none.
-              They are drawn in proportion to the impact speed, or a slow impact could throw a lander up
+    scatter   drawn anew at each impact; None: none
 
     Of speed, incidence, spin and the push of gravity and rotation at an impact those enter that are inputs of the
     study; the others stay as the study has them. The expansion gives the size of the outgoing spin; its axis is taken
@@ -57,8 +57,7 @@ class SoilBounce:
     capture: "CaptureModel"
     inputs: dict[str, np.ndarray]
     ranges: dict[str, tuple[float, float]]
-    scatter: np.ndarray
-    scatter_speed: float
+    scatter: Scatter | None
 
     def __call__(self, impacts: "Impacts", random: np.random.Generator) -> "Rebounds":
         """Answer each impact with the outputs of the expansion, a draw of its scatter and a draw of capture."""
@@ -67,9 +66,8 @@ class SoilBounce:
         x, outside = self._inputs_at(impacts)
         columns = [list(self.inputs).index(name) for name in self.surrogate.input_names]
         outputs = np.asarray(self.surrogate(x[:, columns]))
-        if len(self.scatter):
-            rows = self.scatter[random.integers(len(self.scatter), size=len(x))]
-            outputs = outputs + rows * (impacts.speed / self.scatter_speed)[:, None]
+        if self.scatter is not None:
+            outputs = outputs + self.scatter.draw(impacts.speed, random)
         names = self.surrogate.output_names
         velocity = outputs[:, [names.index(f"velocity_out_{axis}") for axis in "xyz"]]
         captured = (random.random(len(x)) < self.capture.probability(x)) | ~(velocity[:, 2] > 0.0)
@@ -109,7 +107,5 @@ def soil_bounce(job: Job, inputs: dict[str, np.ndarray]) -> SoilBounce:
     from lithobrake.chaos import load
 
     study, refined = job.study, load(job.folder / "refined.json")
-    runs = design_runs(job, "refined", refined.input_names)
-    rows = scatter_rows(refined, runs) if study.monte_carlo.scatter else np.empty((0, len(refined.output_names)))
-    speed = float(np.sqrt(np.mean(runs.columns(["impact.speed"])[runs.has_outputs] ** 2)))
-    return SoilBounce(refined, capture_model(job, refined), inputs, trained_ranges(study), rows, speed)
+    scatter = Scatter.of(job, refined) if study.monte_carlo.scatter else None
+    return SoilBounce(refined, capture_model(job, refined), inputs, trained_ranges(study), scatter)

@@ -18,6 +18,7 @@ from lithobrake.pipeline.fates import ENDS, landing_results, proportion
 from lithobrake.pipeline.flights import COLUMNS, read_table, write_table
 from lithobrake.pipeline.rest import follow_samples
 from lithobrake.pipeline.samples import Samples
+from lithobrake.pipeline.scatter import Scatter
 from lithobrake.pipeline.soil import SoilBounce, rolling_spin, trained_ranges, why_no_soil
 from lithobrake.smallbody import Impacts
 from lithobrake.study import OUTPUTS, Study
@@ -38,14 +39,14 @@ def rebound(x: np.ndarray) -> np.ndarray:
     return np.column_stack([nothing, nothing, 2.0 * speed, incidence * speed / 80.0, -friction * speed, 0.5 * speed])
 
 
-def bounce(friction: list[float], scatter: np.ndarray, captured: bool = False) -> SoilBounce:
+def bounce(friction: list[float], scatter: Scatter | None = None, *, captured: bool = False) -> SoilBounce:
     """A soil that is exactly as `rebound` says."""
     x = smolyak(INPUTS, level=2)
     surrogate = fit(INPUTS, x, rebound(x), degree=2, method="ols", output_names=OUTPUTS)
     capture = CaptureModel(INPUTS, x, np.full(len(x), captured))
     values = np.array(friction)
     inputs = {name: values if name == "grain.friction" else np.full(len(values), 0.3) for name in INPUTS}
-    return SoilBounce(surrogate, capture, inputs, RANGES, scatter, 0.2)
+    return SoilBounce(surrogate, capture, inputs, RANGES, scatter)
 
 
 def impacts(speed: list[float], incidence_deg: list[float], lander: list[int]) -> Impacts:
@@ -55,7 +56,7 @@ def impacts(speed: list[float], incidence_deg: list[float], lander: list[int]) -
 
 
 def test_the_expansion_answers_with_the_soil_of_the_lander_and_the_impact_that_came() -> None:
-    soil = bounce([0.2, 0.5, 0.7], np.empty((0, 6)))
+    soil = bounce([0.2, 0.5, 0.7])
     found = soil(impacts([0.1, 0.3], [40.0, 20.0], [2, 0]), np.random.default_rng(0))
     assert found.velocity == pytest.approx(np.array([[0.05, -0.07, 0.05], [0.075, -0.06, 0.15]]), abs=1e-12)
     assert np.linalg.norm(found.spin, axis=1) == pytest.approx([0.2, 0.6])
@@ -69,7 +70,7 @@ def test_the_expansion_answers_with_the_soil_of_the_lander_and_the_impact_that_c
 
 
 def test_what_the_runs_do_not_reach_is_not_answered() -> None:
-    soil = bounce([0.5], np.empty((0, 6)))
+    soil = bounce([0.5])
     found = soil(impacts([0.3, 0.41, 0.3, 0.3], [79.9, 10.0, 80.1, 10.0], [0] * 4), np.random.default_rng(0))
     assert found.outside.tolist() == [False, True, True, False]
     limited = replace(soil, ranges=RANGES | {"impact.speed": (0.1, 0.2)})
@@ -80,13 +81,17 @@ def test_what_the_runs_do_not_reach_is_not_answered() -> None:
 def test_scatter_is_drawn_anew_in_proportion_to_the_speed_and_capture_with_its_chance() -> None:
     rows = np.zeros((2, 6))
     rows[:, OUTPUTS.index("velocity_out_x")] = [0.02, -0.02]
-    soil = bounce([0.5], rows)
+    rows[:, OUTPUTS.index("elevation_out")] = 0.3
+    scatter = Scatter(rows, 0.2, np.array([name != "elevation_out" for name in OUTPUTS]))
+    angles = scatter.draw(np.array([0.1, 0.4]), np.random.default_rng(1))[:, OUTPUTS.index("elevation_out")]
+    assert angles.tolist() == [0.3, 0.3]
+    soil = bounce([0.5], scatter)
     fast = soil(impacts([0.4] * 200, [0.0] * 200, [0] * 200), np.random.default_rng(1)).velocity[:, 0]
     slow = soil(impacts([0.1] * 200, [0.0] * 200, [0] * 200), np.random.default_rng(1)).velocity[:, 0]
     assert sorted(set(np.round(fast, 9))) == [-0.04, 0.04]
     assert slow == pytest.approx(fast / 4.0)
     assert 60 < (fast > 0.0).sum() < 140
-    assert bounce([0.5], rows, captured=True)(impacts([0.4], [0.0], [0]), np.random.default_rng(1)).captured.all()
+    assert bounce([0.5], scatter, captured=True)(impacts([0.4], [0.0], [0]), np.random.default_rng(1)).captured.all()
 
 
 def test_a_spin_straight_up_has_a_level_axis() -> None:
