@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 
 from lithobrake.chaos.automatic import best_solutions, process_solution
 from lithobrake.chaos.germ import Distribution
-from lithobrake.chaos.noise import with_noise
+from lithobrake.chaos.noise import replicates, with_noise
 from lithobrake.chaos.regression import best_terms, solve_ols
 from lithobrake.chaos.solution import Solution, joined, summary
 from lithobrake.chaos.sparse import solve_sparse
@@ -82,6 +82,7 @@ def _assembled(training: Training, solutions: list[Solution], extra: dict[str, A
     # Rounding would give a constant output a variance of 1e-32, and with it meaningless shares.
     constant = np.ptp(training.y, axis=0) == 0.0
     coefficients[:, constant] = np.where(indices.sum(axis=1) == 0, 1.0, 0.0)[:, None] * training.y[0, constant]
+    pooled = replicates(training.x, training.y) if training.groups else None
     facts = {
         "degree": int(indices.sum(axis=1).max()),
         "train_count": training.count,
@@ -94,7 +95,7 @@ def _assembled(training: Training, solutions: list[Solution], extra: dict[str, A
         coefficients,
         output_names=training.output_names,
         one_dimensional=training.one_dimensional,
-        report={**with_noise(report, training.x, training.y), **facts},
+        report={**with_noise(report, pooled), **facts},
     )
     known = [one.residuals for one in solutions if one.residuals is not None]
     if len(known) == len(solutions):

@@ -82,12 +82,12 @@ def least_squares(
         raise ValueError(
             f"{count} points cannot determine {term_count} terms: give at least {term_count} points or lower the degree"
         )
-    root = np.ones(count) if weights is None else np.sqrt(weights)
-    orthogonal, triangle = np.linalg.qr(matrix * root[:, None])
+    root = None if weights is None else np.sqrt(weights)[:, None]
+    orthogonal, triangle = np.linalg.qr(matrix if root is None else matrix * root)
     values = np.linalg.svd(triangle, compute_uv=False)
     if values[-1] <= RANK_TOLERANCE * values[0]:
         raise ValueError(_lost_terms(triangle, values, indices, names, count))
-    coefficients = solve_triangular(triangle, orthogonal.T @ (y * root[:, None]), check_finite=False)
+    coefficients = solve_triangular(triangle, orthogonal.T @ (y if root is None else y * root), check_finite=False)
     residuals = y - matrix @ coefficients
     # In an orthonormal basis the mean of psi (H'H)**-1 psi over the inputs is the trace of the inverse.
     spread = float(np.sum(values**-2.0)) if weights is None else 0.0

@@ -60,9 +60,8 @@ def replicates(x: Array, y: Array) -> Replicates | None:
     return Replicates(pooled, freedom, points[several], means[several], variances, sizes[several], correlation)
 
 
-def with_noise(report: dict[str, Any], x: Array, y: Array) -> dict[str, Any]:
+def with_noise(report: dict[str, Any], pooled: Replicates | None) -> dict[str, Any]:
     """Add to a report the scatter of each output (from repeated points where there are, else from a nugget)."""
-    pooled = replicates(x, y)
     if pooled is None:
         for entry in report["outputs"].values():
             entry["noise_from"] = "nugget of a Gaussian process" if "noise_std" in entry else None
