@@ -24,8 +24,8 @@ def missing(x: np.ndarray, reasons: Sequence[str | None], names: Sequence[str], 
     if count == 0:
         return ""
     common = Counter(reason for reason in reasons if reason).most_common(3)
-    said = "; ".join(f"{number} times: {reason}" for reason, number in common)
-    sentence = f"{count} of {total} runs have failed ({said})"
+    said = "; ".join(f"{number} x {reason}" for reason, number in common)
+    sentence = f"{count} of {total} runs failed ({said})"
     corner = _corner(x, failed, names)
     if count > largest_share * total:
         place = "" if corner is None else f", {corner[0]} of them where {corner[1]}"

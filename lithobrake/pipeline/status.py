@@ -38,7 +38,7 @@ def _runs(path: Path) -> list[str]:
     if outcomes:
         lines.append("outcomes: " + ", ".join(f"{count} {name}" for name, count in sorted(outcomes.items())))
     for reason, count in _reasons(records).most_common(3):
-        lines.append(f"failed {count} times: {reason}")
+        lines.append(f"failed: {count} x {reason}")
     spreads = state.spread_lines([name for name in OUTPUTS if name in state.spreads] or sorted(state.spreads))
     return lines + (["mean and standard deviation so far [SI]:", *spreads] if spreads else [])
 

@@ -220,12 +220,14 @@ def _site(study: Study) -> dict[str, Any]:
 def headline(results: dict[str, Any]) -> list[str]:
     """The five most telling numbers, each in a sentence."""
     designs, remains = results["designs"], results["shares"]["remains"]
-    run_count = sum(design["run_count"] for design in designs.values())
+    failed = sum(design["outcomes"].get("failed", 0) for design in designs.values())
+    run_count = sum(design["run_count"] for design in designs.values()) - failed
     rebounds = sum(design["with_outputs"] for design in designs.values())
     total = results["screening"]["sobol_total"]["speed_out"]
     main = max(total, key=lambda name: total[name])
     score = results["scores"]["test_all"]["speed_out"]
-    sentences = [f"{rebounds} of {run_count} touchdowns left the surface."]
+    beside = f"; {failed} more runs failed" if failed else ""
+    sentences = [f"{rebounds} of {run_count} touchdowns left the surface{beside}."]
     speed = results["monte_carlo"]["outputs"].get("speed_out")
     if speed:
         low, middle, high = (100 * speed[f"quantile_{level:g}"] for level in QUANTILES)

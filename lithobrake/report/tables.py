@@ -49,11 +49,7 @@ def tiles(data: Results) -> list[Tile]:
             "%",
             f"stay or come down again within {hours(data.study['flight']['duration'])} ({low:.1f} to {high:.1f} %)",
         ),
-        Tile(
-            str(sum(design["with_outputs"] for design in designs)),
-            f"of {sum(design['run_count'] for design in designs)}",
-            "simulated touchdowns left the surface",
-        ),
+        _touchdowns_tile(list(designs)),
         Tile(
             f"{total[main]:.2f}",
             "Sobol",
@@ -73,6 +69,15 @@ def tiles(data: Results) -> list[Tile]:
         )
         found.insert(1, Tile(number(speed["quantile_0.5"]), "m/s", words))
     return found
+
+
+def _touchdowns_tile(designs: list[dict[str, Any]]) -> Tile:
+    """How many left the surface, of those that came to an end."""
+    left = sum(design["with_outputs"] for design in designs)
+    failed = sum(design["outcomes"].get("failed", 0) for design in designs)
+    ended = sum(design["run_count"] for design in designs) - failed
+    beside = f"; {failed} more runs failed" if failed else ""
+    return Tile(str(left), f"of {ended}", f"simulated touchdowns left the surface{beside}")
 
 
 def tables(data: Results) -> list[Table]:

@@ -100,14 +100,14 @@ def test_scattered_failures_are_counted_and_accepted() -> None:
     failed = np.zeros(100, dtype=bool)
     failed[np.random.default_rng(3).choice(100, 8, replace=False)] = True
     assert missing(grid(), reasons(failed), ("a", "b"), 0.1) == (
-        "8 of 100 runs have failed (8 times: it diverged); what is fitted goes without them"
+        "8 of 100 runs failed (8 x it diverged); what is fitted goes without them"
     )
 
 
 def test_too_many_failures_are_refused() -> None:
     failed = np.zeros(100, dtype=bool)
     failed[::9] = True
-    with pytest.raises(ValueError, match=r"12 of 100 runs have failed .* allowed: at most 10 %"):
+    with pytest.raises(ValueError, match=r"12 of 100 runs failed .* allowed: at most 10 %"):
         missing(grid(), reasons(failed), ("a", "b"), 0.1)
 
 

@@ -106,7 +106,7 @@ runpy.run_path(PROGRAM, run_name="__main__")
 @pytest.mark.parametrize(
     ("share", "said"),
     [
-        ("0.02", "of 41 runs have failed (8 times: RuntimeError: the program ended with exit code 1; its last words: "
+        ("0.02", "of 41 runs failed (8 x RuntimeError: the program ended with exit code 1; its last words: "
                  "the ball broke), 8 of them where lander.restitution > 0.6; allowed: at most 2 %"),
         ("0.5", "8 of them lie where lander.restitution > 0.6, so what is fitted without them knows nothing there"),
     ],
@@ -130,8 +130,10 @@ def test_a_second_coordinator_is_refused_while_the_first_goes_on(tmp_path: Path)
             time.sleep(0.01)
         os.kill(first.pid, signal.SIGSTOP)
         said = said_by("screen", study, "--out", tmp_path / "out", code=2)
+        told = lithobrake("status", tmp_path / "out").stdout
         os.kill(first.pid, signal.SIGCONT)
     assert f"another lithobrake is at work in {tmp_path / 'out'} (process {first.pid} on " in said
+    assert f"(process {first.pid} on " in told
     assert first.returncode == 0
     assert len(read_records(tmp_path / "out" / "runs.sqlite")) == 9
 
