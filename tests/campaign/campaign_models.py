@@ -1,5 +1,6 @@
 """Models that workers can import."""
 
+import multiprocessing
 import os
 import signal
 import time
@@ -90,3 +91,12 @@ def sleeps_at_ten(inputs: dict[str, float], seed: int) -> dict[str, Any]:
     if inputs["a"] == 10.0:
         time.sleep(600)
     return parabola(inputs, seed)
+
+
+def threads(inputs: dict[str, float], seed: int) -> dict[str, Any]:
+    """A model that tells how its process was started and how many threads its libraries may take."""
+    import numba
+
+    counts = {name.lower(): float(os.environ[name]) for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS")}
+    is_spawned = multiprocessing.get_start_method() == "spawn"
+    return {**counts, "numba": float(numba.get_num_threads()), "is_spawned": float(is_spawned)}

@@ -125,3 +125,10 @@ def test_a_file_that_is_no_ledger_is_refused(tmp_path: Path) -> None:
     (tmp_path / "runs.sqlite").write_text("this is not a database, and long enough to be seen as such" * 20)
     with pytest.raises(ValueError, match="cannot be used as a ledger"):
         Ledger(tmp_path / "runs.sqlite")
+
+
+def test_each_process_is_started_anew_and_has_one_thread(tmp_path: Path) -> None:
+    with LocalExecutor(1) as executor:
+        runs = campaign(tmp_path, models.threads, executor)
+    expected = {"omp_num_threads": 1.0, "openblas_num_threads": 1.0, "numba": 1.0, "is_spawned": 1.0}
+    assert all(entry.outputs == expected for entry in runs.records)
