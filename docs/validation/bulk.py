@@ -225,14 +225,14 @@ def froude() -> list[Result]:
     for seed in (1, 2):
         bed = bed_of(0.6, seed, count=300)
         generator = np.random.default_rng(seed)
-        places = generator.uniform(-0.1, 0.1, size=(3, 2))
-        for gravity in (1e-3, 1e-2, 1e-1):
+        places = generator.uniform(-0.1, 0.1, size=(2, 2))
+        for gravity in (1e-2, 1e-1, 1.0):
             for number in (0.5, 1.0, 2.0, 4.0):
                 for place in places:
                     landing = Landing(
                         grain=stuff, speed=number * math.sqrt(gravity * size), incidence=0.0, azimuth=0.0,
                         place=tuple(place), orientation=(1.0, 0.0, 0.0, 0.0), spin=(0.0, 0.0, 0.0),
-                        gravity=(0.0, 0.0, -gravity), time_limit=20.0 * math.sqrt(size / gravity),
+                        gravity=(0.0, 0.0, -gravity), time_limit=8.0 * math.sqrt(size / gravity),
                         contact=ContactModel(steps_per_contact=30.0),
                     )  # fmt: skip
                     outcome = land(bed, lander, landing)

@@ -94,7 +94,45 @@ def test_a_heavy_plate_rolls_on_small_balls(ratio, refinement):
     world.run(duration=0.5)
     # The balls yield to their load first, and roll on radii that much shorter.
     assert world.velocity[3, 0] == pytest.approx(speed, rel=2e-3)
-    assert np.allclose(world.velocity[:3, 0], 0.5 * speed, rtol=0.02)
+    assert np.abs(world.velocity[:3, 0] - 0.5 * speed).max() < 0.02 * 0.5 * speed
+
+
+def plate_on_cubes(ratio, share, refinement):
+    """Distance that a heavy plate slides in a second, and in the second after, on three cubes that are `ratio` times
+    thinner, on a slope whose tangent is a share of the friction; and the acceleration of a rigid block there.
+    """
+    edge, friction, gravity = 0.1 / ratio, 0.5, 1e-3
+    stuff = material(0.5, friction, young_modulus=1e8)
+    angle = math.atan(share * friction)
+    plate = Box((1.0, 1.0, 0.1))
+    world = World((0, 0, -gravity), 0.7e-3 / ratio / refinement)
+    for x, y in ((-0.3, -0.3), (0.3, -0.3), (0.0, 0.3)):
+        world.add_body(Box((edge, edge, edge)), stuff, (x, y, 0.5 * edge))
+    world.add_body(plate, stuff, (0, 0, edge + 0.05), mass=250.0)
+    world.add_plane((0, 0, 0), (0, 0, 1), stuff)
+    world.drag = 20.0
+    world.run(duration=1.5)
+    world.drag = 0.0
+    for slope in np.linspace(0.0, angle, 100):
+        world.gravity = (gravity * math.sin(slope), 0, -gravity * math.cos(slope))
+        world.run(duration=0.01)
+    places = [world.position[3, 0]]
+    for _ in range(2):
+        world.run(duration=1.0)
+        places.append(world.position[3, 0])
+    return *np.diff(places), gravity * (math.sin(angle) - friction * math.cos(angle))
+
+
+@pytest.mark.parametrize("ratio", [10.0, 100.0])
+def test_a_heavy_plate_sticks_to_small_cubes(ratio):
+    """Below the friction angle it gives once and stays, above it slides as a rigid block does, at two steps alike."""
+    coarse, fine = plate_on_cubes(ratio, 0.9, 1.0), plate_on_cubes(ratio, 0.9, 4.0)
+    for first, later, _ in (coarse, fine):
+        assert abs(later) < 1e-3 * abs(first)
+    assert coarse[0] == pytest.approx(fine[0], rel=0.02)
+    for refinement in (1.0, 4.0):
+        first, later, acceleration = plate_on_cubes(ratio, 1.1, refinement)
+        assert (later - first) / 0.25 == pytest.approx(acceleration, rel=0.01)
 
 
 def test_a_step_too_large_is_refused_with_one_that_serves():

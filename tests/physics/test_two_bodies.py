@@ -25,6 +25,12 @@ def rigid(like):
     return material(1e9 * like.young_modulus, 0.0, 1.0, like.restitution, like.friction)
 
 
+def fiftieth(stuff, radius, speed):
+    """A fiftieth of the duration of an elastic contact of a ball with a plane that does not give [s]."""
+    mass = stuff.density * Sphere(radius).volume
+    return contact_duration(mass, radius, stuff.young_modulus / (1 - stuff.poisson_ratio**2), speed) / 50
+
+
 def collide(world, step_limit=100_000):
     """Step through one contact; return peak normal force, peak overlap and duration."""
     force, overlaps = 0.0, [0.0]
@@ -47,6 +53,7 @@ def collide(world, step_limit=100_000):
     ids=["glass", "limestone"],
 )
 def test_t1_two_equal_spheres_elastic(young, nu, rho, force, overlap, duration):
+    """Chung and Ooi (2011), test 1: two equal spheres, R = 10 mm, 10 m/s each, e = 1, mu = .35; step t_c/100."""
     stuff = material(young, nu, rho, 1.0, 0.35)
     world = World(time_step=duration / 100)
     for sign in (-1.0, 1.0):
@@ -55,7 +62,8 @@ def test_t1_two_equal_spheres_elastic(young, nu, rho, force, overlap, duration):
     assert peak == pytest.approx(force, rel=1e-3)
     assert deepest == pytest.approx(overlap, rel=1e-3)
     assert lasted == pytest.approx(duration, rel=1e-3)
-    assert np.allclose(np.abs(world.velocity[:, 0]), 10.0, rtol=1e-3)
+    assert np.abs(world.velocity[:, 0]).min() == pytest.approx(10.0, rel=1e-3)
+    assert np.abs(world.velocity[:, 0]).max() == pytest.approx(10.0, rel=1e-3)
 
 
 @pytest.mark.parametrize(
@@ -64,6 +72,7 @@ def test_t1_two_equal_spheres_elastic(young, nu, rho, force, overlap, duration):
     ids=["aluminium", "magnesium"],
 )
 def test_t2_sphere_on_rigid_plane_elastic(young, nu, rho, force, overlap, duration):
+    """Chung and Ooi (2011), test 2: sphere of R = .1 m on a rigid plane, .2 m/s, e = 1, mu = 0; step t_c/100."""
     stuff = material(young, nu, rho)
     world = World(time_step=duration / 100)
     world.add_body(Sphere(0.1), stuff, (0, 0, 0.1), velocity=(0, 0, -0.2))
@@ -77,9 +86,9 @@ def test_t2_sphere_on_rigid_plane_elastic(young, nu, rho, force, overlap, durati
 @pytest.mark.parametrize("speed", [1e-6, 3.9])
 @pytest.mark.parametrize("restitution", [0.05, 0.1, 0.2, 0.4, 0.6, 0.8, 0.95, 1.0])
 def test_t3_restitution_comes_out_as_entered(restitution, speed):
+    """Chung and Ooi (2011), test 3: aluminium oxide sphere of R = 2.5 mm on a rigid plane; step t_c/50."""
     stuff = material(380e9, 0.23, 4000.0, restitution)
-    mass = 4000.0 * Sphere(0.0025).volume
-    world = World(time_step=contact_duration(mass, 0.0025, 380e9 / (1 - 0.23**2), speed) / 50)
+    world = World(time_step=fiftieth(stuff, 0.0025, speed))
     world.add_body(Sphere(0.0025), stuff, (0, 0, 0.0025), velocity=(0, 0, -speed))
     world.add_plane((0, 0, 0), (0, 0, 1), rigid(stuff))
     collide(world)
@@ -100,9 +109,10 @@ def test_damping_ratio_without_attraction(restitution, ratio):
     [(35, 0.7398, 581.95), (50, 0.8471, 456.65), (70, 0.9337, 242.98), (85, 0.9841, 61.92)],
 )
 def test_t4_oblique_impact_gross_sliding(angle_deg, tangential, spin):
+    """Chung and Ooi (2011), test 4: the sphere of test 3 at angles from the normal, mu = .092, e = .98; step t_c/50."""
     stuff = material(380e9, 0.23, 4000.0, 0.98, 0.092)
     angle = math.radians(angle_deg)
-    world = World(time_step=1e-8)
+    world = World(time_step=fiftieth(stuff, 0.0025, 3.9 * math.cos(angle)))
     velocity = (3.9 * math.sin(angle), 0, -3.9 * math.cos(angle))
     world.add_body(Sphere(0.0025), stuff, (0, 0, 0.0025), velocity=velocity)
     world.add_plane((0, 0, 0), (0, 0, 1), rigid(stuff))
@@ -113,9 +123,10 @@ def test_t4_oblique_impact_gross_sliding(angle_deg, tangential, spin):
 
 @pytest.mark.parametrize("x", [8.0, 12.0])
 def test_t5_gross_sliding_at_a_fixed_normal_speed(x):
+    """Chung and Ooi (2011), test 5: steel sphere of R = 10 um, x = v_t/(mu v_n), mu = .3, e = 1; step t_c/50."""
     stuff = material(208e9, 0.30, 7850.0, 1.0, 0.3)
     radius, normal = 1e-5, 5.0
-    world = World(time_step=1e-11)
+    world = World(time_step=fiftieth(stuff, radius, normal))
     world.add_body(Sphere(radius), stuff, (0, 0, radius), velocity=(x * 0.3 * normal, 0, -normal))
     world.add_plane((0, 0, 0), (0, 0, 1), rigid(stuff))
     collide(world)
@@ -127,9 +138,10 @@ def test_t5_gross_sliding_at_a_fixed_normal_speed(x):
 
 @pytest.mark.parametrize(("q", "kept"), [(0.184, 0.8163), (0.370, 0.6297), (0.563, 0.4373)])
 def test_t6_spinning_sphere_gross_sliding(q, kept):
+    """Chung and Ooi (2011), test 6: spinning sphere, R = .1 m, mu = .4; q = 3.5 mu (1 + e) v_n/v_s; e = .5; t_c/50."""
     stuff = material(70e9, 0.33, 2700.0, 0.5, 0.4)
     surface_speed = 3.5 * 0.4 * 1.5 * 0.2 / q
-    world = World(time_step=5e-6)
+    world = World(time_step=fiftieth(stuff, 0.1, 0.2))
     world.add_body(Sphere(0.1), stuff, (0, 0, 0.1), velocity=(0, 0, -0.2), spin=(0, surface_speed / 0.1, 0))
     world.add_plane((0, 0, 0), (0, 0, 1), rigid(stuff))
     collide(world)
@@ -138,12 +150,13 @@ def test_t6_spinning_sphere_gross_sliding(q, kept):
 
 
 def test_t7_equal_and_opposite_spins_feel_no_friction():
+    """Chung and Ooi (2011), test 7: two equal spheres that roll off each other keep their spins."""
     stuff = material(70e9, 0.33, 2700.0, 0.5, 0.4)
     world = World(time_step=1e-6)
     for sign in (-1.0, 1.0):
         world.add_body(Sphere(0.1), stuff, (sign * 0.1, 0, 0), velocity=(-sign * 0.2, 0, 0), spin=(0, 0, sign * 7.0))
     collide(world)
-    assert np.allclose(world.spin[:, 2], [-7.0, 7.0], rtol=1e-12)
+    assert np.abs(world.spin[:, 2] - [-7.0, 7.0]).max() <= 1e-12 * 7.0
     assert np.abs(world.velocity[:, 1]).max() <= 1e-12 * 0.2
 
 
