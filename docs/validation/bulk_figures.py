@@ -52,6 +52,8 @@ def draw_froude(rows: Rows) -> None:
             spread = [values.std(ddof=1) for values in table.values()]
             axis.errorbar(list(table), mean, spread, marker="o", capsize=3, label=f"g = {gravity:g} m/s2")
         axis.set(xlabel="v / sqrt(g D)", ylabel=label, xscale="log")
+        axis.set_xticks(list(table), [f"{number:g}" for number in table], minor=False)
+        axis.minorticks_off()
     axes[0].legend(frameon=False)
     figure.savefig(HERE / "bulk_froude.png", dpi=130)
 
@@ -61,7 +63,8 @@ SHOWN = {
                     "Spheres pressed from six sides; expected .639 and .593, 6 and 4.5 (Agnolin, Roux 2007)."),
     "friction": ("friction", ["solid_fraction", "coordination"], "Poured beds of 150 hulls."),
     "repose": ("kind", ["angle_deg", "stayed"], "Slope left when one end opens; about 25 and 40 deg (Kleinhans 2011)."),
-    "packing": ("shape", ["solid_fraction", "coordination"], "The Platonic solids, poured, amid the heap."),
+    "packing": ("shape", ["solid_fraction", "coordination"], 
+                "The Platonic solids, poured; loose dice: .51, .54, .52, .51, .50, +-.01 (Baker, Kudrolli 2010)."),
     "froude": ("froude", ["penetration_over_diameter", "duration_scaled"],
                "A sphere dropped into beds at three gravities; equal Froude numbers should give equal values."),
 }  # fmt: skip
@@ -97,16 +100,17 @@ def main() -> None:
 def bed_size(found: dict[str, Any]) -> list[str]:
     """Means on a bed and on one twice as wide and deep."""
     text = [
-        "| landing | compared | output | plain bed | double bed | difference in standard errors |",
-        "|---|---|---|---|---|---|",
+        "Means of several beds of each size, +- the scatter between beds.",
+        "",
+        "| landing | output | plain beds | double beds | difference in standard errors |",
+        "|---|---|---|---|---|",
     ]
     for way, entry in found["landings"].items():
         for output in ("speed_out", "elevation_out", "spin_out"):
             value = entry[output]
-            text.append(
-                f"| {way} | {entry['compared']} | {output} | {value['plain']:.4g} | {value['double']:.4g} | "
-                f"{value['difference_in_standard_errors']:.2g} |"
-            )
+            cells = [f"{value[size]:.4g} +- {value['scatter'][size]:.2g} ({value['beds'][size]})"
+                     for size in ("plain", "double")]  # fmt: skip
+            text.append(f"| {way} | {output} | {' | '.join(cells)} | {value['difference_in_standard_errors']:.2g} |")
     rule = ", ".join(f"{way} {w:.3g} and {d:.3g} m" for way, (w, d) in found["smallest_width_and_depth_m"].items())
     return [*text, "", f"Smallest width and depth by the rule: {rule}. {found['command']}, {found['date']}, "
             f"{found['machine']}, {found['cpu_s']} s of CPU time."]  # fmt: skip

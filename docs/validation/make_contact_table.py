@@ -3,6 +3,7 @@
 python docs/validation/make_contact_table.py
 """
 
+import csv
 import platform
 import re
 import sys
@@ -15,6 +16,11 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 PAGE = Path(__file__).with_name("contact.md")
+ROWS = Path(__file__).with_name("contact_rows.csv")
+NOT_TESTS = (
+    "The engine runs on one thread: threads cannot change its bits. Compression, angle of repose, Froude scaling and",
+    "packings are in [bulk.md](bulk.md), the distances of a million pairs in `benchmarks/fuzz_distance.py`.",
+)
 SECTIONS = {
     "test_two_bodies.py": "Two bodies",
     "test_contact_law.py": "The contact law",
@@ -54,6 +60,46 @@ def short(text: str) -> str:
     return text.replace("|", "/").replace("\n", " ")[:160]
 
 
+def measured(notes: Notes, tests: list[str]) -> str:
+    """Return what the tests found: the left side of each comparison, or "holds"; ";" between parameters."""
+    found = []
+    for test in notes.outcome:
+        if test.split("::")[1].split("[")[0].removeprefix("test_") not in tests:
+            continue
+        values = []
+        for _, expl in dict(notes.found.get(test, [])).items():
+            compared = re.match(r"(abs\()?(-?[\d.]+(e[-+]?\d+)?)\)? (==|<=|<|>=|>) ", short(expl).lstrip("("))
+            values.append(compared[2] if compared else "holds")
+        found.append(", ".join(dict.fromkeys(values)))
+    return "; ".join(dict.fromkeys(found))
+
+
+def facts(notes: Notes) -> Iterator[str]:
+    """Tables of what is asked, with what was measured; raises KeyError where a row has lost a test.
+
+    Sources: Chung and Ooi (2011), Granular Matter 13, 643-656, tests 1 to 7; the rest is derived, as the tests say.
+    """
+    names = {test: test.split("::")[1].split("[")[0].removeprefix("test_") for test in notes.outcome}
+    part = ""
+    with ROWS.open(newline="", encoding="utf-8") as file:
+        for row in csv.DictReader(file):
+            if row["part"] != part:
+                part = row["part"]
+                yield from (
+                    "",
+                    f"## {part}",
+                    "",
+                    "| what | expected | tolerance | measured | |",
+                    "|---|---|---|---|---|",
+                )
+            tests = row["tests"].split()
+            if missing := set(tests) - set(names.values()):
+                raise KeyError(f"no test {', '.join(missing)}: {ROWS.name} names it")
+            met = all(notes.outcome[test] == "passed" for test, name in names.items() if name in tests)
+            cells = row["what"], row["expected"], row["tolerance"], measured(notes, tests), "met" if met else "not met"
+            yield f"| {' | '.join(cells)} |"
+
+
 def rows(notes: Notes, file: str) -> Iterator[str]:
     """Table lines of one file: the last few assertions of every test, since a loop may repeat one many times."""
     for test, outcome in notes.outcome.items():
@@ -80,14 +126,17 @@ def main() -> None:
     lines = [
         "# What the contact physics reproduces",
         "",
-        "Every physical test with what its assertions compared: what was found, and the value and tolerance asked for.",
-        'Where a test repeats an assertion, the last one stands here; "True" is a comparison of arrays that held.',
+        "First the facts that were set before the code was written, then every physical test with what its assertions",
+        "compared: what was found, and the value and tolerance asked for. Where a test repeats an assertion, the last",
+        'one stands here; "True" is a comparison of arrays that held.',
         "Written by `python docs/validation/make_contact_table.py`; do not edit.",
         "",
         f"{time.strftime('%Y-%m-%d')}, {platform.machine()}, {sys.platform}, Python {platform.python_version()}: "
         f"{passed} of {len(notes.outcome)} passed.",
     ]
+    lines += [*facts(notes), "", *NOT_TESTS]
     for file, title in SECTIONS.items():
+        title = f"All tests: {title[0].lower()}{title[1:]}"
         lines += ["", f"## {title}", "", "| test | what it is | found, and asked | outcome |", "|---|---|---|---|"]
         lines += rows(notes, file)
     PAGE.write_text("\n".join(lines) + "\n", encoding="utf-8")

@@ -1,25 +1,17 @@
 """The time loop."""
 
-from typing import NamedTuple
-
 import numpy as np
 
 from lithobrake.compiled import kernel
 from lithobrake.dem.arrays import Bodies, Cores, Floats, Laws, Pairs, Planes
 from lithobrake.dem.distance import Search
-from lithobrake.dem.force import DAMPING, FREQUENCY_SQUARED, Step, act
+from lithobrake.dem.force import DAMPING, Step, act
 from lithobrake.dem.listing import renew
 from lithobrake.dem.motion import drift, kick
+from lithobrake.dem.stability import STABLE_SHARE, unsteadiness
 from lithobrake.dem.vectors import dot, plus, row, scaled
 
 DONE, LIST_USED_UP, NAMES_OVERFLOW, STEP_TOO_LARGE, DIVERGED = 0, 1, 2, 3, 4
-
-
-class Limits(NamedTuple):
-    """Where the time loop must stop and ask."""
-
-    half_skin: float  # m, motion that a neighbour list allows
-    frequency: float  # -, largest contact frequency times step; 2 is the limit of stability
 
 
 @kernel
@@ -29,6 +21,7 @@ def apply_forces(
     """Compute all forces at the present positions and predicted velocities; sums run in the order of the pairs."""
     bodies.force[:] = 0.0
     bodies.torque[:] = 0.0
+    bodies.rates[:] = 0.0
     for pair in range(len(pairs.first)):
         act(pair, bodies, cores, planes, pairs, laws, step, search, totals)
     if step.drag > 0.0:
@@ -51,7 +44,7 @@ def apply_drag(bodies: Bodies, step: Step, totals: Floats) -> None:
 @kernel
 def advance(
     step_count: int, drifted: bool, bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, laws: Laws, step: Step,
-    limits: Limits, search: Search, totals: Floats, probe: int, probed: Floats,
+    half_skin: float, search: Search, totals: Floats, probe: int, probed: Floats,
 ) -> tuple[int, int, bool]:  # fmt: skip
     """Take up to `step_count` steps.
 
@@ -64,17 +57,16 @@ def advance(
             farthest = drift(bodies, step)
             if not np.isfinite(farthest):
                 return taken, DIVERGED, False
-            if farthest > limits.half_skin * limits.half_skin:
+            if farthest > half_skin * half_skin:
                 return taken, LIST_USED_UP, True
         if renew(bodies, cores, planes, pairs, search) > pairs.term.shape[1]:
             return taken, NAMES_OVERFLOW, True
         drifted = False
-        totals[FREQUENCY_SQUARED] = 0.0
         apply_forces(bodies, cores, planes, pairs, laws, step, search, totals)
         kick(bodies, step)
         if probe >= 0:
             note(probe, bodies, probed)
-        if totals[FREQUENCY_SQUARED] * step.time_step**2 > limits.frequency**2:
+        if unsteadiness(step.time_step, bodies.rates, pairs) > STABLE_SHARE:
             return taken + 1, STEP_TOO_LARGE, False
     return step_count, DONE, False
 

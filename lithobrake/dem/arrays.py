@@ -50,6 +50,7 @@ class Bodies(NamedTuple):
     velocity_predicted: Floats  # [body_count, 3], m/s, at the instant of the positions
     spin_predicted: Floats  # [body_count, 3], rad/s, at the instant of the positions
     position_listed: Floats  # [body_count, 3], where the neighbour list was made
+    rates: Floats  # [body_count, 2], 1/s2 and 1/s, how stiffly and how damped its contacts hold it
     travel: Floats  # [body_count], m, a bound on the way that any point of the body has gone so far
 
 

@@ -17,8 +17,8 @@ from lithobrake.dem.shape import Box, ConvexHull, Shape, Sphere
 if TYPE_CHECKING:
     from lithobrake.dem.world import World
 
-FORMAT_VERSION = 1
-MOVING = ("force", "torque", "half_spin", "position_listed", "travel")
+FORMAT_VERSION = 2
+MOVING = ("force", "torque", "half_spin", "position_listed", "travel", "rates")
 
 
 def _shape_text(shape: Shape) -> str:

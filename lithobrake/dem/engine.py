@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from lithobrake.dem.advance import DONE, LIST_USED_UP, NAMES_OVERFLOW, Limits, advance
+from lithobrake.dem.advance import DONE, LIST_USED_UP, NAMES_OVERFLOW, advance
 from lithobrake.dem.arrays import Bodies, Cores, Floats, Laws, Pairs, Planes
 from lithobrake.dem.body import Body, Plane, bodies_of, cores_of, laws_of, planes_of
 from lithobrake.dem.distance import Search, search_for
@@ -10,7 +10,6 @@ from lithobrake.dem.force import Step
 from lithobrake.dem.material import Material
 from lithobrake.dem.neighbours import neighbours, pairs_of, renewed, roomier
 from lithobrake.dem.shape import Shape
-from lithobrake.dem.timestep import FREQUENCY_LIMIT
 
 # Skin of the neighbour list over the smallest bounding radius: costs or saves time, changes no result.
 SKIN = 0.2
@@ -47,7 +46,6 @@ class Engine:
         self.bodies: Bodies = bodies_of(bodies, self.shapes, self.materials, state)
         self.pairs, self.totals, self.probed = pairs, totals, probed
         self.skin = SKIN * float(self.bodies.bounding_radius.min())
-        self.limits = Limits(0.5 * self.skin, FREQUENCY_LIMIT)
         self.search: Search = self._scratch()
         self._list_neighbours()
         self.pairs.wake[:] = 0.0
@@ -60,7 +58,7 @@ class Engine:
         left, drifted = steps, False
         while left > 0:
             taken, reason, drifted = advance(
-                left, drifted, self.bodies, self.cores, self.planes, self.pairs, self.laws, step, self.limits,
+                left, drifted, self.bodies, self.cores, self.planes, self.pairs, self.laws, step, 0.5 * self.skin,
                 self.search, self.totals, watched, self.probed,
             )  # fmt: skip
             left -= taken

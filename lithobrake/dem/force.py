@@ -13,10 +13,11 @@ from lithobrake.dem.distance import Search
 from lithobrake.dem.patch import touch_bodies, touch_plane
 from lithobrake.dem.shares import EDGES_SUNK, spin_radii, spread
 from lithobrake.dem.spring import across, hold, stored, turned_spring
+from lithobrake.dem.stability import Grip, hold_body, tilting
 from lithobrake.dem.vectors import Vector, add, cross, dot, minus, plus, put, row, scaled, times
 
-DAMPING, FRICTION, ROLLING, FREQUENCY_SQUARED = 0, 1, 2, 3
-TOTALS = 4
+DAMPING, FRICTION, ROLLING = 0, 1, 2
+TOTALS = 3
 
 
 class Step(NamedTuple):
@@ -215,8 +216,6 @@ def act(
     root = (overlap / meeting.curvature) ** 0.5
     stiffness = 4.0 / 3.0 * laws.young_modulus[here, there] * root
     shear_stiffness = 8.0 * laws.shear_modulus[here, there] * root
-    rate = 1.5 * stiffness * meeting.inverse_mass
-
     dashpot = 2.0 * damping_ratio * (1.25 * stiffness / meeting.inverse_mass) ** 0.5
     elastic = stiffness * overlap
     cohesion = laws.cohesion_force[here, there] + laws.cohesion_line[here, there] / meeting.curvature
@@ -239,16 +238,22 @@ def act(
         turn(bodies, first, second, scaled(couple, normal))
         totals[FRICTION] += slid
         totals[DAMPING] += damped
+    tilt = tilting(search, count, point, normal, overlap, stiffness)
+    tilt_dashpot = dashpot * tilt / (8.5 * stiffness)
     lever = laws.rolling_friction[here, there] / meeting.curvature
     if lever > 0.0:
-        rolling, lost, rolling_rate = resist_rolling(
+        rolling, lost, rolling_dashpot = resist_rolling(
             pair, pairs, normal, meeting.spin, meeting.twist, lever, force, stiffness, damping_ratio,
             inverse_inertia_across(bodies, first, second, normal), step.time_step,
         )  # fmt: skip
         turn(bodies, first, second, rolling)
         totals[ROLLING] += lost
-        rate = max(rate, rolling_rate)
-    totals[FREQUENCY_SQUARED] = max(totals[FREQUENCY_SQUARED], rate * max(1.0, 2.0 * damping_ratio) ** 2)
+        tilt += pairs.roll_stiffness[pair]
+        tilt_dashpot += rolling_dashpot
+    grip = Grip(1.5 * stiffness, shear_stiffness, tilt, dashpot, shear_dashpot, tilt_dashpot)
+    hold_body(bodies, first, point, normal, grip)
+    if is_body:
+        hold_body(bodies, second, point, normal, grip)
     pairs.overlap[pair], pairs.normal_force[pair], pairs.elastic_force[pair] = overlap, total, elastic
     pairs.cohesion[pair] = cohesion
     put(pairs.normal, pair, normal)

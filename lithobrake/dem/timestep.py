@@ -10,8 +10,6 @@ from lithobrake.dem.shape import ConvexHull, Shape
 
 # Steps in the shortest contact when a world chooses its own step.
 STEPS_PER_CONTACT = 50.0
-# Largest contact frequency times step that is allowed; 2 is the limit of stability, t_c / 50 of a collision gives 0.08.
-FREQUENCY_LIMIT = 0.5
 
 
 def contact_duration(mass: float, radius: float, young_modulus: float, speed: float) -> float:

@@ -13,9 +13,10 @@ from lithobrake.dem.advance import DIVERGED, FIRST_CONTACT, LAST_CONTACT, PEAK_F
 from lithobrake.dem.arrays import Floats, Pairs
 from lithobrake.dem.body import Body, Plane, rotation_matrices, unit
 from lithobrake.dem.engine import Engine, no_pairs
-from lithobrake.dem.force import FREQUENCY_SQUARED, TOTALS, Step
+from lithobrake.dem.force import TOTALS, Step
 from lithobrake.dem.material import PAIR_RULES, SHEAR_MODULUS_RULES, Material
 from lithobrake.dem.shape import Shape, equivalent_radius
+from lithobrake.dem.stability import largest_step
 
 DAMPING_MASSES = ("contact", "paper")
 CONTACT = np.dtype(
@@ -183,10 +184,13 @@ class World:
         self._time_step = self._given_time_step = float(value)
 
     @property
-    def contact_frequency(self) -> float:
-        """Largest rate [rad/s] of a contact, spring or dashpot, at its present overlap; 0 where nothing touches."""
-        self._assembled()
-        return math.sqrt(self._totals[FREQUENCY_SQUARED])
+    def largest_step(self) -> float:
+        """Largest safe time step [s] for the contacts at their present overlaps; infinite where nothing touches.
+
+        Source: see stability.py.
+        """
+        engine = self._assembled()
+        return largest_step(engine.bodies.rates, engine.pairs)
 
     def shortest_contact(self, speed: float) -> float:
         """Return the duration [s] of the shortest collision that can happen at a relative speed [m/s].
@@ -240,10 +244,9 @@ class World:
     def _refuse(self, reason: int) -> None:
         """Say why the time loop could not go on."""
         if reason == STEP_TOO_LARGE:
-            largest = timestep.FREQUENCY_LIMIT / math.sqrt(self._totals[FREQUENCY_SQUARED])
             raise ValueError(
                 f"World time_step is {self.time_step:.6g} s; allowed for the contact met at t = {self.time:.6g} s "
-                f"is at most {largest:.6g} s: make it smaller"
+                f"is at most {self.largest_step:.6g} s: make it smaller"
             )
         assert reason == DIVERGED
         raise FloatingPointError(

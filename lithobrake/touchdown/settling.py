@@ -19,7 +19,7 @@ PERIODS_HELD = 10.0  # settled: both hold for so many periods of a grain's small
 PERIODS_RELAXED = 5.0
 PERIODS_PATIENCE = 1200.0  # after so many the bed is given up
 PERIODS_PRESSED = 300.0  # after so many a bed need not rest under the pour gravity any more
-QUIET_PHASE = 0.1  # contact frequency times step while nothing collides: 63 steps a period
+QUIET_SHARE = 0.25  # of the largest safe step, while nothing collides
 CHECKS_PER_PERIOD = 20
 
 
@@ -58,8 +58,7 @@ def unbalanced_force(world: World) -> float:
 
 def quiet_time_step(world: World, longest: float) -> float:
     """Return a time step [s] that resolves the contacts at their present overlaps, at most `longest`."""
-    frequency = world.contact_frequency
-    return min(longest, QUIET_PHASE / frequency) if frequency > 0.0 else longest
+    return min(longest, QUIET_SHARE * world.largest_step)
 
 
 def ramp(world: World, gravity: Floats, period: float, each_chunk: Callable[[float], None] = lambda _: None) -> None:
