@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from lithobrake.compiled import kernel
-from lithobrake.dem.arrays import Bodies, Cores, Floats, Laws, Pairs, Planes
+from lithobrake.compiled import kernel, large_kernel
+from lithobrake.dem.arrays import Bodies, Cores, Floats, Laws, Pairs, Planes, Reactions
 from lithobrake.dem.distance import Search
-from lithobrake.dem.force import DAMPING, Step, act
+from lithobrake.dem.force import Step, act
 from lithobrake.dem.listing import renew
 from lithobrake.dem.motion import drift, kick
 from lithobrake.dem.stability import STABLE_SHARE, unsteadiness
@@ -15,55 +15,64 @@ DONE, LIST_USED_UP, NAMES_OVERFLOW, STEP_TOO_LARGE, DIVERGED = 0, 1, 2, 3, 4
 
 
 @kernel
-def apply_forces(
-    bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, laws: Laws, step: Step, search: Search, totals: Floats
-) -> None:
-    """Compute all forces at the present positions and predicted velocities; sums run in the order of the pairs."""
+def rest(bodies: Bodies) -> None:
+    """Take all forces off."""
     bodies.force[:] = 0.0
     bodies.torque[:] = 0.0
     bodies.rates[:] = 0.0
-    for pair in range(len(pairs.first)):
-        act(pair, bodies, cores, planes, pairs, laws, step, search, totals)
-    if step.drag > 0.0:
-        apply_drag(bodies, step, totals)
+
+
+@large_kernel
+def act_all(
+    bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, laws: Laws, step: Step, search: Search,
+    reactions: Reactions, start: int, stop: int,
+) -> None:  # fmt: skip
+    """Compute the contact forces of pairs start to stop; sums run in the order of the pairs."""
+    for pair in range(start, stop):
+        act(pair, bodies, cores, planes, pairs, laws, step, search, reactions)
 
 
 @kernel
-def apply_drag(bodies: Bodies, step: Step, totals: Floats) -> None:
+def apply_drag(bodies: Bodies, step: Step, start: int, stop: int) -> None:
     """Add a force against every velocity and a torque against every spin, for settling."""
-    for body in range(len(bodies.mass)):
+    for body in range(start, stop):
         velocity, spin = row(bodies.velocity_predicted, body), row(bodies.spin_predicted, body)
         momentum = plus(row(bodies.angular_momentum, body), scaled(0.5 * step.time_step, row(bodies.torque, body)))
         for axis in range(3):
             bodies.force[body, axis] -= step.drag * bodies.mass[body] * velocity[axis]
             bodies.torque[body, axis] -= step.drag * momentum[axis]
         energy = bodies.mass[body] * dot(velocity, velocity) + dot(spin, momentum)
-        totals[DAMPING] += step.drag * energy * step.time_step
+        bodies.dragged[body] += step.drag * energy * step.time_step
 
 
 @kernel
 def advance(
     step_count: int, drifted: bool, bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, laws: Laws, step: Step,
-    half_skin: float, search: Search, totals: Floats, probe: int, probed: Floats,
+    half_skin: float, search: Search, reactions: Reactions, probe: int, probed: Floats,
 ) -> tuple[int, int, bool]:  # fmt: skip
     """Take up to `step_count` steps.
 
     Returns the steps taken, why it stopped, and whether the step in hand has drifted but not yet felt its forces (it
-    goes on from there once the neighbour list is renewed). Body `probe` (none: -1) is watched, see `note`.
+    goes on from there once the neighbour list is renewed). Body `probe` (none: -1) is watched, see `note`. There is
+    no room in `reactions`.
     """
+    body_count, pair_count = len(bodies.mass), len(pairs.first)
     for taken in range(step_count):
         if not drifted:
-            kick(bodies, step)
-            farthest = drift(bodies, step)
+            kick(bodies, step, 0, body_count)
+            farthest = drift(bodies, step, 0, body_count)
             if not np.isfinite(farthest):
                 return taken, DIVERGED, False
             if farthest > half_skin * half_skin:
                 return taken, LIST_USED_UP, True
-        if renew(bodies, cores, planes, pairs, search) > pairs.term.shape[1]:
+        if renew(bodies, cores, planes, pairs, search, 0, pair_count) > pairs.term.shape[1]:
             return taken, NAMES_OVERFLOW, True
         drifted = False
-        apply_forces(bodies, cores, planes, pairs, laws, step, search, totals)
-        kick(bodies, step)
+        rest(bodies)
+        act_all(bodies, cores, planes, pairs, laws, step, search, reactions, 0, pair_count)
+        if step.drag > 0.0:
+            apply_drag(bodies, step, 0, body_count)
+        kick(bodies, step, 0, body_count)
         if probe >= 0:
             note(probe, bodies, probed)
         if unsteadiness(step.time_step, bodies.rates, pairs) > STABLE_SHARE:

@@ -51,6 +51,7 @@ class Bodies(NamedTuple):
     spin_predicted: Floats  # [body_count, 3], rad/s, at the instant of the positions
     position_listed: Floats  # [body_count, 3], where the neighbour list was made
     rates: Floats  # [body_count, 2], 1/s2 and 1/s, how stiffly and how damped its contacts hold it
+    dragged: Floats  # [body_count], J, what drag has taken
     travel: Floats  # [body_count], m, a bound on the way that any point of the body has gone so far
 
 
@@ -82,6 +83,7 @@ class Pairs(NamedTuple):
     twist_stiffness: Floats  # [pair_count], N m
     roll: Floats  # [pair_count, 3], N m, couple of the rolling spring on second
     roll_stiffness: Floats  # [pair_count], N m
+    lost: Floats  # [pair_count, 3], J, what damping, friction and rolling took since the list was made
     term_count: Integers  # [pair_count], features near enough to touch before waking; -1: deepest point only
     term: Integers  # [pair_count, term_max], their names
 
@@ -98,3 +100,13 @@ class Laws(NamedTuple):
     spinning_friction: Floats
     cohesion_force: Floats  # N
     cohesion_line: Floats  # N/m, cohesion over contact radius
+
+
+class Reactions(NamedTuple):
+    """What contacts do to their bodies: one slot for each pair, or one for all, where they are passed on at once."""
+
+    force: Floats  # [slot_count, 3], N, on the second
+    first_torque: Floats  # [slot_count, 3], N m
+    second_torque: Floats  # [slot_count, 3], N m
+    first_rates: Floats  # [slot_count, 2], see Bodies.rates
+    second_rates: Floats  # [slot_count, 2]

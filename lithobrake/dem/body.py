@@ -114,8 +114,7 @@ def bodies_of(bodies: list[Body], shapes: list[Shape], materials: list[Material]
         angular_momentum=state["angular_momentum"], rotation=np.zeros((n, 3, 3)), inverse_inertia=np.zeros((n, 3, 3)),
         force=np.zeros((n, 3)), torque=np.zeros((n, 3)), half_spin=np.zeros((n, 3)),
         velocity_predicted=np.zeros((n, 3)), spin_predicted=np.zeros((n, 3)), position_listed=np.zeros((n, 3)),
-        rates=np.zeros((n, 2)),
-        travel=np.zeros(n),
+        rates=np.zeros((n, 2)), dragged=np.zeros(n), travel=np.zeros(n),
     )  # fmt: skip
     write_matrices(arrays)
     return arrays

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from lithobrake.dem.world import World
 
 FORMAT_VERSION = 2
-MOVING = ("force", "torque", "half_spin", "position_listed", "travel", "rates")
+MOVING = ("force", "torque", "half_spin", "position_listed", "travel", "rates", "dragged")
 
 
 def _shape_text(shape: Shape) -> str:
@@ -49,7 +49,7 @@ def save(world: "World", path: str | os.PathLike[str]) -> None:
         file.attrs["given_time_step"] = json.dumps(world._given_time_step)
         file.attrs["time_step"] = json.dumps(world._time_step)
         file.attrs["time"], file.attrs["drag"], file.attrs["watched"] = world.time, world.drag, world._watched
-        for name in ("gravity", "_totals", "_probed"):
+        for name in ("gravity", "_lost", "_probed"):
             file[name.strip("_")] = getattr(world, name)
         file["body/shape"], file["body/material"] = engine.bodies.shape, engine.bodies.material
         file["body/mass"] = world.mass
@@ -94,10 +94,9 @@ def load(path: str | os.PathLike[str]) -> "World":
     # Assembling took a step of no duration, which may have rounded the orientations anew.
     engine.bodies.quaternion[:] = data["body/quaternion"]
     write_matrices(engine.bodies)
-    world._totals[:], world._probed[:] = data["totals"], data["probed"]
+    world._lost[:], world._probed[:] = data["lost"], data["probed"]
     for name in MOVING:
         getattr(engine.bodies, name)[:] = data[f"body/{name}"]
-    engine.pairs = pairs_of(data["pair/first"], data["pair/second"])
-    engine.pairs = engine.pairs._replace(**{name: data[f"pair/{name}"] for name in engine.pairs._fields})
-    engine.search = engine._scratch()
+    pairs = pairs_of(data["pair/first"], data["pair/second"])
+    engine.gather(pairs._replace(**{name: data[f"pair/{name}"] for name in pairs._fields}))
     return world

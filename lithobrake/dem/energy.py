@@ -8,7 +8,7 @@ from lithobrake.dem.force import DAMPING, FRICTION, ROLLING
 
 def ledger(
     mass: Floats, position: Floats, velocity: Floats, spin: Floats, angular_momentum: Floats, gravity: Floats,
-    pairs: Pairs, totals: Floats,
+    pairs: Pairs, lost: Floats,
 ) -> dict[str, float]:  # fmt: skip
     """Return the energies [J] of a world: kinetic, potential, elastic, cohesive, what damping, friction and
     rolling took, and the total.
@@ -28,7 +28,7 @@ def ledger(
     elastic += 0.5 * float(((pairs.roll[rolling] ** 2).sum(axis=1) / pairs.roll_stiffness[rolling]).sum())
     parts = {
         "kinetic": kinetic, "potential": potential, "elastic": elastic,
-        "cohesive": -float((pairs.cohesion * pairs.overlap).sum()), "damping": float(totals[DAMPING]),
-        "friction": float(totals[FRICTION]), "rolling": float(totals[ROLLING]),
+        "cohesive": -float((pairs.cohesion * pairs.overlap).sum()), "damping": float(lost[DAMPING]),
+        "friction": float(lost[FRICTION]), "rolling": float(lost[ROLLING]),
     }  # fmt: skip
     return {**parts, "total": float(np.sum(list(parts.values())))}

@@ -6,13 +6,15 @@ from lithobrake.dem.advance import DONE, LIST_USED_UP, NAMES_OVERFLOW, advance
 from lithobrake.dem.arrays import Bodies, Cores, Floats, Laws, Pairs, Planes
 from lithobrake.dem.body import Body, Plane, bodies_of, cores_of, laws_of, planes_of
 from lithobrake.dem.distance import Search, search_for
-from lithobrake.dem.force import Step
+from lithobrake.dem.force import DAMPING, Step
 from lithobrake.dem.material import Material
 from lithobrake.dem.neighbours import neighbours, pairs_of, renewed, roomier
 from lithobrake.dem.shape import Shape
+from lithobrake.dem.threads import Team, room_for
 
 # Skin of the neighbour list over the smallest bounding radius: costs or saves time, changes no result.
 SKIN = 0.2
+NO_ROOM = room_for(0)
 
 
 def no_pairs() -> Pairs:
@@ -24,7 +26,7 @@ class Engine:
     """Arrays of a world in which nothing is added any more.
 
     state holds position, velocity, quaternion and angular_momentum and is advanced in place; pairs carry the history of
-    contacts; totals and probed count on across engines.
+    contacts; lost [3] (see force.py) and probed count on across engines.
     """
 
     def __init__(
@@ -34,8 +36,9 @@ class Engine:
         options: dict[str, str],
         state: dict[str, Floats],
         pairs: Pairs,
-        totals: Floats,
+        lost: Floats,
         probed: Floats,
+        thread_count: int,
     ) -> None:
         self.shapes: list[Shape] = list({id(body.shape): body.shape for body in bodies}.values())
         made_of = [body.material for body in bodies] + [plane.material for plane in planes]
@@ -44,9 +47,10 @@ class Engine:
         self.laws: Laws = laws_of(self.materials, options["shear_modulus_rule"], options["pair_rule"])
         self.planes: Planes = planes_of(planes, self.materials, len(bodies))
         self.bodies: Bodies = bodies_of(bodies, self.shapes, self.materials, state)
-        self.pairs, self.totals, self.probed = pairs, totals, probed
+        self.pairs, self.lost, self.probed, self.thread_count = pairs, lost, probed, thread_count
+        self.search: Search
+        self.team: Team | None
         self.skin = SKIN * float(self.bodies.bounding_radius.min())
-        self.search: Search = self._scratch()
         self._list_neighbours()
         self.pairs.wake[:] = 0.0
 
@@ -57,30 +61,57 @@ class Engine:
         """
         left, drifted = steps, False
         while left > 0:
-            taken, reason, drifted = advance(
-                left, drifted, self.bodies, self.cores, self.planes, self.pairs, self.laws, step, 0.5 * self.skin,
-                self.search, self.totals, watched, self.probed,
-            )  # fmt: skip
+            taken, reason, drifted = self._advance(left, drifted, step, watched)
             left -= taken
             if reason == LIST_USED_UP:
                 self._list_neighbours()
             elif reason == NAMES_OVERFLOW:
-                self.pairs = roomier(self.pairs, 2 * self.pairs.term.shape[1])
-                self.search = self._scratch()
+                self.gather(roomier(self.pairs, 2 * self.pairs.term.shape[1]))
             elif reason != DONE:
                 return steps - left, reason
         return steps, DONE
 
-    def _scratch(self) -> Search:
+    def _advance(self, steps: int, drifted: bool, step: Step, watched: int) -> tuple[int, int, bool]:
+        """Take steps until the lists have to be renewed, on one thread or on several."""
+        if self.team is None:
+            return advance(
+                steps, drifted, self.bodies, self.cores, self.planes, self.pairs, self.laws, step, 0.5 * self.skin,
+                self.search, NO_ROOM, watched, self.probed,
+            )  # fmt: skip
+        return self.team.advance(
+            steps, drifted, self.bodies, self.cores, self.planes, self.laws, step, 0.5 * self.skin, watched, self.probed
+        )
+
+    def losses(self) -> Floats:
+        """Return what damping, friction and rolling have taken so far [J], shape [3]."""
+        lost = self.lost + self.pairs.lost.sum(axis=0)
+        lost[DAMPING] += self.bodies.dragged.sum()
+        return lost
+
+    def book(self) -> None:
+        """Enter the losses of pairs and bodies into the sums, before these arrays are left."""
+        self.lost[:] = self.losses()
+        self.pairs.lost[:], self.bodies.dragged[:] = 0.0, 0.0
+
+    def gather(self, pairs: Pairs) -> None:
+        """Take on pairs: make scratch for them, and share them out among the threads."""
+        self.pairs, self.search = pairs, self._scratch(pairs)
+        self.team = None
+        if self.thread_count > 1:
+            searches = [self._scratch(pairs) for _ in range(self.thread_count)]
+            self.team = Team(searches, len(self.bodies.mass), pairs)
+
+    def _scratch(self, pairs: Pairs) -> Search:
         shape = self.bodies.shape
         vertices, edges = (
             np.sort(np.diff(start)[shape])[-2:] for start in (self.cores.vertex_start, self.cores.edge_start)
         )
         # All corners and all pairs of edges of the two largest bodies, should they cross, and a list's worth beside.
-        points = 1 + int(vertices.sum() + 2 * edges.prod()) + self.pairs.term.shape[1]
+        points = 1 + int(vertices.sum() + 2 * edges.prod()) + pairs.term.shape[1]
         return search_for(int(vertices.max() + edges.max()), points)
 
     def _list_neighbours(self) -> None:
+        self.book()
         first, second = neighbours(self.bodies, self.planes, self.skin)
-        self.pairs = renewed(self.pairs, first, second)
+        self.gather(renewed(self.pairs, first, second))
         self.bodies.position_listed[:] = self.bodies.position

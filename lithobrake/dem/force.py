@@ -7,17 +7,17 @@ that makes up for it, see material.restitution_of.
 from typing import NamedTuple
 
 from lithobrake.compiled import kernel
-from lithobrake.dem.arrays import Bodies, Cores, Floats, Laws, Pairs, Planes
+from lithobrake.dem.arrays import Bodies, Cores, Floats, Laws, Pairs, Planes, Reactions
 from lithobrake.dem.couples import let_go, resist_rolling, resist_twisting
 from lithobrake.dem.distance import Search
 from lithobrake.dem.patch import touch_bodies, touch_plane
 from lithobrake.dem.shares import EDGES_SUNK, spin_radii, spread
 from lithobrake.dem.spring import across, hold, stored, turned_spring
-from lithobrake.dem.stability import Grip, hold_body, tilting
+from lithobrake.dem.stability import Grip, held_rates, tilting
 from lithobrake.dem.vectors import Vector, add, cross, dot, minus, plus, put, row, scaled, times
 
-DAMPING, FRICTION, ROLLING = 0, 1, 2
-TOTALS = 3
+DAMPING, FRICTION, ROLLING = 0, 1, 2  # columns of Pairs.lost
+LOSSES = 3
 
 
 class Step(NamedTuple):
@@ -27,6 +27,16 @@ class Step(NamedTuple):
     drag: float  # 1/s, viscous damping of all motion, 0 but in settling
     gravity: Vector  # m/s2
     paper_mass: bool  # damping with the reduced mass of the bodies, not the mass seen at the contact point
+
+
+class Pressure(NamedTuple):
+    """What the points of a patch do together along their normals."""
+
+    repulsion: float  # N, along the normal of the patch
+    total: float  # N, less cohesion
+    force: Vector  # N, on the second
+    torque: Vector  # N m, on the second, about the centroid of the first
+    damped: float  # J
 
 
 class Meeting(NamedTuple):
@@ -94,95 +104,76 @@ def meet(bodies: Bodies, first: int, second: int, point: Vector, normal: Vector,
 
 
 @kernel
-def push(bodies: Bodies, first: int, second: int, point: Vector, force: Vector) -> None:
-    """Apply a force at a point to the second body, and its opposite to the first."""
-    add(bodies.force, first, -1.0, force)
-    add(bodies.torque, first, -1.0, cross(minus(point, row(bodies.position, first)), force))
-    if second >= 0:
-        add(bodies.force, second, 1.0, force)
-        add(bodies.torque, second, 1.0, cross(minus(point, row(bodies.position, second)), force))
-
-
-@kernel
-def turn(bodies: Bodies, first: int, second: int, couple: Vector) -> None:
-    """Apply a couple to the second body, and its opposite to the first."""
-    add(bodies.torque, first, -1.0, couple)
-    if second >= 0:
-        add(bodies.torque, second, 1.0, couple)
-
-
-@kernel
-def repel(share: float, elastic: float, dashpot: float, speed: float, step: Step, totals: Floats) -> float:
-    """Return the repulsion at a point of a patch, which never pulls, and book what its dashpot takes."""
-    force = share * max(0.0, elastic - dashpot * speed)
-    totals[DAMPING] += (share * elastic - force) * speed * step.time_step
-    return force
+def repel(share: float, elastic: float, dashpot: float, speed: float) -> float:
+    """Return the repulsion at a point of a patch, which never pulls."""
+    return share * max(0.0, elastic - dashpot * speed)
 
 
 @kernel
 def press(
-    search: Search, count: int, bodies: Bodies, first: int, second: int, meeting: Meeting, normal: Vector,
-    elastic: float, cohesion: float, dashpot: float, step: Step, totals: Floats,
-) -> tuple[float, float, float]:  # fmt: skip
-    """Apply the normal forces at the points of a patch: repulsion less cohesion.
-
-    Returns the repulsion and the whole force along the normal, and what is left to apply at the centre: all of it,
-    where the patch is one point.
-    """
+    search: Search, count: int, bodies: Bodies, first: int, second: int, meeting: Meeting, point: Vector,
+    normal: Vector, elastic: float, cohesion: float, dashpot: float, time_step: float,
+) -> Pressure:  # fmt: skip
+    """Return the normal forces at the points of a patch: repulsion less cohesion; point and normal are its own."""
+    centre = row(bodies.position, first)
     if count == 1 and search.family[0] != EDGES_SUNK:
-        repulsion = repel(search.share[0], elastic, dashpot, dot(meeting.now, normal), step, totals)
-        total = repulsion - search.share[0] * cohesion
-        return repulsion, total, total
-    repulsion, total = 0.0, 0.0
+        speed, share = dot(meeting.now, normal), search.share[0]
+        repulsion = repel(share, elastic, dashpot, speed)
+        total = repulsion - share * cohesion
+        force = scaled(total, normal)
+        damped = (share * elastic - repulsion) * speed * time_step
+        return Pressure(repulsion, total, force, cross(minus(point, centre), force), damped)
+    repulsion, total, damped, force, torque = 0.0, 0.0, 0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
     for k in range(count):
-        point, outward = row(search.point, k), row(search.normal, k)
-        arm = minus(point, row(bodies.position, first))
+        place, outward = row(search.point, k), row(search.normal, k)
+        arm = minus(place, centre)
         now = scaled(-1.0, point_velocity(bodies.velocity_predicted, bodies.spin_predicted, first, arm))
         if second >= 0:
-            other_arm = minus(point, row(bodies.position, second))
+            other_arm = minus(place, row(bodies.position, second))
             now = plus(now, point_velocity(bodies.velocity_predicted, bodies.spin_predicted, second, other_arm))
         speed = dot(now, outward)
+        lever = cross(arm, outward)
         if search.family[k] == EDGES_SUNK:
             turning = minus(row(bodies.spin_predicted, second), row(bodies.spin_predicted, first))
             speed += dot(turning, row(search.couple, k))
-        force = repel(search.share[k], elastic, dashpot, speed, step, totals)
+            lever = plus(lever, row(search.couple, k))
+        pushes = repel(search.share[k], elastic, dashpot, speed)
+        damped += (search.share[k] * elastic - pushes) * speed * time_step
         along = dot(outward, normal)
-        repulsion += force * along
-        force -= search.share[k] * cohesion
-        push(bodies, first, second, point, scaled(force, outward))
-        if search.family[k] == EDGES_SUNK:
-            turn(bodies, first, second, scaled(force, row(search.couple, k)))
-        total += force * along
-    return repulsion, total, 0.0
+        repulsion += pushes * along
+        pushes -= search.share[k] * cohesion
+        force, torque = plus(force, scaled(pushes, outward)), plus(torque, scaled(pushes, lever))
+        total += pushes * along
+    return Pressure(repulsion, total, force, torque, damped)
 
 
 @kernel
 def rub(
     pair: int, pairs: Pairs, normal: Vector, meeting: Meeting, limit: float, stiffness: float, dashpot: float,
-    step: Step, totals: Floats,
+    time_step: float,
 ) -> Vector:  # fmt: skip
     """Return the tangential force on the second body, within the Coulomb limit."""
-    before = turned_spring(row(pairs.spring, pair), row(pairs.normal, pair), normal, meeting.twist * step.time_step)
-    slip = scaled(step.time_step, across(meeting.moved, normal))
+    before = turned_spring(row(pairs.spring, pair), row(pairs.normal, pair), normal, meeting.twist * time_step)
+    slip = scaled(time_step, across(meeting.moved, normal))
     held = hold(
         before, pairs.tangential_stiffness[pair], stiffness, slip, across(meeting.now, normal), dashpot, limit
     )  # fmt: skip
     put(pairs.spring, pair, held.spring)
     pairs.tangential_stiffness[pair] = stiffness
-    totals[FRICTION] += held.slid
-    totals[DAMPING] += held.damped * step.time_step
+    pairs.lost[pair, FRICTION] += held.slid
+    pairs.lost[pair, DAMPING] += held.damped * time_step
     return held.total
 
 
 @kernel
-def part(pairs: Pairs, pair: int, totals: Floats) -> None:
+def part(pairs: Pairs, pair: int) -> None:
     """End a contact, if there was one: the springs let go."""
     if pairs.overlap[pair] == 0.0:
         return
     spring = row(pairs.spring, pair)
     twisted, rolled = let_go(pair, pairs)
-    totals[FRICTION] += stored(dot(spring, spring), pairs.tangential_stiffness[pair]) + twisted
-    totals[ROLLING] += rolled
+    pairs.lost[pair, FRICTION] += stored(dot(spring, spring), pairs.tangential_stiffness[pair]) + twisted
+    pairs.lost[pair, ROLLING] += rolled
     put(pairs.spring, pair, (0.0, 0.0, 0.0))
     put(pairs.tangential_force, pair, (0.0, 0.0, 0.0))
     pairs.tangential_stiffness[pair] = 0.0
@@ -191,22 +182,44 @@ def part(pairs: Pairs, pair: int, totals: Floats) -> None:
 
 
 @kernel
+def deliver(bodies: Bodies, body: int, sign: float, force: Vector, torque: Vector, rates: tuple[float, float]) -> None:
+    """Add what a contact does to one of its bodies."""
+    add(bodies.force, body, sign, force)
+    add(bodies.torque, body, sign, torque)
+    bodies.rates[body, 0] += rates[0]
+    bodies.rates[body, 1] += rates[1]
+
+
+@kernel
+def keep(
+    reactions: Reactions, pair: int, force: Vector, first_torque: Vector, second_torque: Vector,
+    first_rates: tuple[float, float], second_rates: tuple[float, float],
+) -> None:  # fmt: skip
+    """Note what a contact does to its bodies, for them to fetch."""
+    put(reactions.force, pair, force)
+    put(reactions.first_torque, pair, first_torque)
+    put(reactions.second_torque, pair, second_torque)
+    reactions.first_rates[pair, 0], reactions.first_rates[pair, 1] = first_rates
+    reactions.second_rates[pair, 0], reactions.second_rates[pair, 1] = second_rates
+
+
+@kernel
 def act(
     pair: int, bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, laws: Laws, step: Step, search: Search,
-    totals: Floats,
+    reactions: Reactions,
 ) -> None:  # fmt: skip
-    """Compute the contact force of one pair and add it to its members."""
+    """Compute the contact force of one pair, and add it to its members or, where there is room for it, keep it."""
     first, second = pairs.first[pair], pairs.second[pair]
     is_body = second >= 0
     if pairs.term_count[pair] == 0:
-        part(pairs, pair, totals)
+        part(pairs, pair)
         return
     if is_body:
         count, sunk, slope = touch_bodies(pair, bodies, cores, pairs, search)
     else:
         count, sunk, slope = touch_plane(pair, bodies, cores, planes, pairs, search), 0.0, 0.0
     if count == 0:
-        part(pairs, pair, totals)
+        part(pairs, pair)
         return
     overlap, point, normal = spread(search, count, sunk, slope)
     meeting = meet(bodies, first, second, point, normal, step.paper_mass)
@@ -219,42 +232,52 @@ def act(
     dashpot = 2.0 * damping_ratio * (1.25 * stiffness / meeting.inverse_mass) ** 0.5
     elastic = stiffness * overlap
     cohesion = laws.cohesion_force[here, there] + laws.cohesion_line[here, there] / meeting.curvature
-    force, total, left = press(
-        search, count, bodies, first, second, meeting, normal, elastic, cohesion, dashpot, step, totals
+    pressure = press(
+        search, count, bodies, first, second, meeting, point, normal, elastic, cohesion, dashpot, step.time_step
     )  # fmt: skip
+    pairs.lost[pair, DAMPING] += pressure.damped
     shear_dashpot = dashpot * laws.shear_damping[here, there]
-    limit = laws.friction[here, there] * force
-    tangential = rub(pair, pairs, normal, meeting, limit, shear_stiffness, shear_dashpot, step, totals)
-    push(bodies, first, second, point, plus(scaled(left, normal), tangential))
+    limit = laws.friction[here, there] * pressure.repulsion
+    tangential = rub(pair, pairs, normal, meeting, limit, shear_stiffness, shear_dashpot, step.time_step)
+    force = plus(pressure.force, tangential)
+    torque = plus(pressure.torque, cross(minus(point, row(bodies.position, first)), tangential))
 
     lever = laws.spinning_friction[here, there] / meeting.curvature
     square, mean = spin_radii(search, count, point, normal)
     square += lever * lever
     if square > 0.0 or pairs.twist_stiffness[pair] > 0.0:
         couple, slid, damped = resist_twisting(
-            pair, pairs, dot(meeting.spin, normal), limit * mean + force * lever, shear_stiffness * square,
+            pair, pairs, dot(meeting.spin, normal), limit * mean + pressure.repulsion * lever, shear_stiffness * square,
             damping_ratio, inverse_inertia_along(bodies, first, second, normal), step.time_step,
         )  # fmt: skip
-        turn(bodies, first, second, scaled(couple, normal))
-        totals[FRICTION] += slid
-        totals[DAMPING] += damped
+        torque = plus(torque, scaled(couple, normal))
+        pairs.lost[pair, FRICTION] += slid
+        pairs.lost[pair, DAMPING] += damped
     tilt = tilting(search, count, point, normal, overlap, stiffness)
     tilt_dashpot = dashpot * tilt / (8.5 * stiffness)
     lever = laws.rolling_friction[here, there] / meeting.curvature
     if lever > 0.0:
         rolling, lost, rolling_dashpot = resist_rolling(
-            pair, pairs, normal, meeting.spin, meeting.twist, lever, force, stiffness, damping_ratio,
+            pair, pairs, normal, meeting.spin, meeting.twist, lever, pressure.repulsion, stiffness, damping_ratio,
             inverse_inertia_across(bodies, first, second, normal), step.time_step,
         )  # fmt: skip
-        turn(bodies, first, second, rolling)
-        totals[ROLLING] += lost
+        torque = plus(torque, rolling)
+        pairs.lost[pair, ROLLING] += lost
         tilt += pairs.roll_stiffness[pair]
         tilt_dashpot += rolling_dashpot
     grip = Grip(1.5 * stiffness, shear_stiffness, tilt, dashpot, shear_dashpot, tilt_dashpot)
-    hold_body(bodies, first, point, normal, grip)
+    first_rates, second_rates = held_rates(bodies, first, point, normal, grip), (0.0, 0.0)
+    second_torque = torque
     if is_body:
-        hold_body(bodies, second, point, normal, grip)
-    pairs.overlap[pair], pairs.normal_force[pair], pairs.elastic_force[pair] = overlap, total, elastic
+        second_rates = held_rates(bodies, second, point, normal, grip)
+        second_torque = minus(torque, cross(minus(row(bodies.position, second), row(bodies.position, first)), force))
+    if len(reactions.force) > 0:
+        keep(reactions, pair, force, torque, second_torque, first_rates, second_rates)
+    else:
+        deliver(bodies, first, -1.0, force, torque, first_rates)
+        if is_body:
+            deliver(bodies, second, 1.0, force, second_torque, second_rates)
+    pairs.overlap[pair], pairs.normal_force[pair], pairs.elastic_force[pair] = overlap, pressure.total, elastic
     pairs.cohesion[pair] = cohesion
     put(pairs.normal, pair, normal)
     put(pairs.point, pair, point)

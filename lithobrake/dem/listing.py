@@ -41,10 +41,10 @@ def margin_of(bodies: Bodies, cores: Cores, first: int, second: int) -> float:
 
 
 @large_kernel
-def renew(bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, search: Search) -> int:
-    """Renew the lists of all pairs whose margin is used up; return the longest length that was asked for."""
+def renew(bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, search: Search, start: int, stop: int) -> int:
+    """Renew the lists of pairs start to stop whose margin is used up; return the longest length that was asked for."""
     longest = 0
-    for pair in range(len(pairs.first)):
+    for pair in range(start, stop):
         first, second = pairs.first[pair], pairs.second[pair]
         travel = travelled(bodies, first, second)
         if travel < pairs.wake[pair]:

@@ -110,24 +110,25 @@ def rotate(body: int, bodies: Bodies, time_step: float) -> None:
 
 
 @large_kernel
-def kick(bodies: Bodies, step: Step) -> None:
-    """Advance the velocities by half a step under the forces at hand."""
+def kick(bodies: Bodies, step: Step, start: int, stop: int) -> None:
+    """Advance the velocities of bodies start to stop by half a step under the forces at hand."""
     half = 0.5 * step.time_step
-    for body in range(len(bodies.mass)):
+    for body in range(start, stop):
         add(bodies.velocity, body, half * bodies.inverse_mass[body], row(bodies.force, body))
         add(bodies.velocity, body, half, step.gravity)
         add(bodies.angular_momentum, body, half, row(bodies.torque, body))
 
 
 @large_kernel
-def drift(bodies: Bodies, step: Step) -> float:
+def drift(bodies: Bodies, step: Step, start: int, stop: int) -> float:
     """Advance positions by a step at the half-step velocities and predict the velocities at their instant.
 
+    Of bodies start to stop.
     Returns the largest squared distance from where the neighbour list was made [m2].
     """
     farthest = 0.0
     half = 0.5 * step.time_step
-    for body in range(len(bodies.mass)):
+    for body in range(start, stop):
         add(bodies.position, body, step.time_step, row(bodies.velocity, body))
         rotate(body, bodies, step.time_step)
         velocity, spin = row(bodies.velocity, body), row(bodies.half_spin, body)

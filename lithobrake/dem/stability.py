@@ -69,14 +69,12 @@ def tilting(search: Search, count: int, centre: Vector, normal: Vector, overlap:
 
 
 @kernel
-def hold_body(bodies: Bodies, body: int, point: Vector, normal: Vector, grip: Grip) -> None:
-    """Add what a contact does to a body's rates: w^2 and c in the fastest of its directions."""
+def held_rates(bodies: Bodies, body: int, point: Vector, normal: Vector, grip: Grip) -> tuple[float, float]:
+    """Return what a contact adds to a body's w^2 and c, in the fastest of its directions."""
     arm = minus(point, row(bodies.position, body))
     along, sideways, couple = inverse_masses(bodies, body, arm, normal)
-    bodies.rates[body, 0] += max(grip.normal * along + grip.tilt * couple, grip.shear * sideways)
-    bodies.rates[body, 1] += max(
-        grip.normal_dashpot * along + grip.tilt_dashpot * couple, grip.shear_dashpot * sideways
-    )  # fmt: skip
+    square = max(grip.normal * along + grip.tilt * couple, grip.shear * sideways)
+    return square, max(grip.normal_dashpot * along + grip.tilt_dashpot * couple, grip.shear_dashpot * sideways)
 
 
 @kernel

@@ -13,7 +13,7 @@ from lithobrake.dem.advance import DIVERGED, FIRST_CONTACT, LAST_CONTACT, PEAK_F
 from lithobrake.dem.arrays import Floats, Pairs
 from lithobrake.dem.body import Body, Plane, rotation_matrices, unit
 from lithobrake.dem.engine import Engine, no_pairs
-from lithobrake.dem.force import TOTALS, Step
+from lithobrake.dem.force import LOSSES, Step
 from lithobrake.dem.material import PAIR_RULES, SHEAR_MODULUS_RULES, Material
 from lithobrake.dem.shape import Shape, equivalent_radius
 from lithobrake.dem.stability import largest_step
@@ -71,10 +71,11 @@ class World:
             "angular_momentum": np.zeros((0, 3)),
         }  # fmt: skip
         self._pairs: Pairs = no_pairs()
-        self._totals = np.zeros(TOTALS)
+        self._lost = np.zeros(LOSSES)
         self._watched = -1
         self._probed = np.zeros(4)
         self._engine: Engine | None = None
+        self._thread_count = 1
 
     # --- what is in it -------------------------------------------------------------------------------------------
 
@@ -184,6 +185,20 @@ class World:
         self._time_step = self._given_time_step = float(value)
 
     @property
+    def thread_count(self) -> int:
+        """Number of threads that share a step; any number gives the same bits. It pays from some thousand bodies on."""
+        return self._thread_count
+
+    @thread_count.setter
+    def thread_count(self, value: int) -> None:
+        if value != int(value) or value < 1:
+            raise ValueError(f"World thread_count is {value!r}; allowed is a whole number of at least 1: change it")
+        self._thread_count = int(value)
+        if self._engine is not None:
+            self._engine.thread_count = self._thread_count
+            self._engine.gather(self._engine.pairs)
+
+    @property
     def largest_step(self) -> float:
         """Largest safe time step [s] for the contacts at their present overlaps; infinite where nothing touches.
 
@@ -276,14 +291,16 @@ class World:
         """Return the engine for what is in the world now, with the forces of the state at hand."""
         if self._engine is None:
             self._engine = Engine(
-                self.bodies, self.planes, self.options, self._state, self._pairs, self._totals, self._probed
-            )
+                self.bodies, self.planes, self.options, self._state, self._pairs, self._lost, self._probed,
+                self._thread_count,
+            )  # fmt: skip
             self._engine.advance(1, self._step(0.0), -1)
         return self._engine
 
     def _disassemble(self) -> None:
         """Make ready for a change of what is in the world."""
         if self._engine is not None:
+            self._engine.book()
             self._pairs = self._engine.pairs
         self._state = {name: array.copy() for name, array in self._state.items()}
         self._time_step = self._given_time_step
@@ -355,9 +372,9 @@ class World:
 
     def energy(self) -> dict[str, float]:
         """Return the energy ledger [J]: see energy.ledger: kinetic, potential, elastic, cohesive, lost ones, total."""
-        pairs = self._assembled().pairs
+        engine = self._assembled()
         return energy.ledger(self.mass, self.position, self.velocity, self.spin, self.angular_momentum, self.gravity,
-                             pairs, self._totals)  # fmt: skip
+                             engine.pairs, engine.losses())  # fmt: skip
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write everything to an HDF5 file, whole or not at all; `World.load` continues from it bit for bit."""

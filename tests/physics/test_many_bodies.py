@@ -70,6 +70,27 @@ def test_same_input_same_bits():
     assert sum(b >= 0 for _, b in met) >= 3
 
 
+@pytest.mark.parametrize("count", [2, 3])
+def test_threads_change_no_bit(count):
+    """On one, two or three threads, changed on the way, with drag at first and lists renewed."""
+    worlds = heap(), heap()
+    for world in worlds:
+        world.drag = 1.0
+    worlds[1].thread_count = count
+    for k in range(4):
+        for world in worlds:
+            world.run(steps=1000)
+            world.drag = 0.0
+        worlds[1].thread_count = count if k == 1 else 1
+    alone, shared = worlds
+    assert len(alone.contacts()) >= 3
+    assert alone.energy()["damping"] > 0.0
+    assert alone.energy() == shared.energy()
+    for name in ("position", "velocity", "orientation", "angular_momentum", "contact_force", "contact_torque"):
+        assert np.array_equal(getattr(alone, name), getattr(shared, name))
+    assert np.array_equal(alone.contacts(), shared.contacts())
+
+
 @pytest.mark.parametrize(
     ("length", "time", "stress"),
     [(1.0, 0.25, 16.0), (1.0, 4.0, 1 / 16), (4.0, 1.0, 16.0), (0.5, 1.0, 0.25), (1.0, 1.0, 8.0)],
