@@ -50,7 +50,7 @@ class Bodies(NamedTuple):
     velocity_predicted: Floats  # [body_count, 3], m/s, at the instant of the positions
     spin_predicted: Floats  # [body_count, 3], rad/s, at the instant of the positions
     position_listed: Floats  # [body_count, 3], where the neighbour list was made
-    rates: Floats  # [body_count, 2], 1/s2 and 1/s, how stiffly and how damped its contacts hold it
+    rates: Floats  # [body_count, 2], 1/s2 and 1/s, see stability.py; holds at the last look
     dragged: Floats  # [body_count], J, what drag has taken
     travel: Floats  # [body_count], m, a bound on the way that any point of the body has gone so far
 
@@ -83,6 +83,7 @@ class Pairs(NamedTuple):
     twist_stiffness: Floats  # [pair_count], N m
     roll: Floats  # [pair_count, 3], N m, couple of the rolling spring on second
     roll_stiffness: Floats  # [pair_count], N m
+    tilt_stiffness: Floats  # [pair_count], N m, against tilting of a patch of several points
     lost: Floats  # [pair_count, 3], J, what damping, friction and rolling took since the list was made
     term_count: Integers  # [pair_count], features near enough to touch before waking; -1: deepest point only
     term: Integers  # [pair_count, term_max], their names
@@ -108,5 +109,3 @@ class Reactions(NamedTuple):
     force: Floats  # [slot_count, 3], N, on the second
     first_torque: Floats  # [slot_count, 3], N m
     second_torque: Floats  # [slot_count, 3], N m
-    first_rates: Floats  # [slot_count, 2], see Bodies.rates
-    second_rates: Floats  # [slot_count, 2]

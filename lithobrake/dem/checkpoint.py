@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from lithobrake.dem.world import World
 
 FORMAT_VERSION = 2
-MOVING = ("force", "torque", "half_spin", "position_listed", "travel", "rates", "dragged")
+MOVING = ("force", "torque", "half_spin", "position_listed", "travel", "dragged")
 
 
 def _shape_text(shape: Shape) -> str:

@@ -34,8 +34,8 @@ def resist_twisting(
 def resist_rolling(
     pair: int, pairs: Pairs, normal: Vector, spin: Vector, twist: float, lever: float, force: float, stiffness: float,
     damping_ratio: float, inverse_inertia: float, time_step: float,
-) -> tuple[Vector, float, float]:  # fmt: skip
-    """Return the rolling couple on the second body, what it took [J], and its dashpot [N m s].
+) -> tuple[Vector, float]:  # fmt: skip
+    """Return the rolling couple on the second body, and what it took [J].
 
     A spring of 2.25 times the normal stiffness times the lever squared, the lever being rolling friction times contact
     radius, up to lever times normal force, with a dashpot of the contact's damping ratio.
@@ -48,7 +48,7 @@ def resist_rolling(
     held = hold(before, pairs.roll_stiffness[pair], rolling, scaled(time_step, rate), rate, dashpot, lever * force)
     put(pairs.roll, pair, held.spring)
     pairs.roll_stiffness[pair] = rolling
-    return held.total, held.slid + held.damped * time_step, dashpot
+    return held.total, held.slid + held.damped * time_step
 
 
 @kernel

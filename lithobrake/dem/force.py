@@ -13,7 +13,7 @@ from lithobrake.dem.distance import Search
 from lithobrake.dem.patch import touch_bodies, touch_plane
 from lithobrake.dem.shares import EDGES_SUNK, spin_radii, spread
 from lithobrake.dem.spring import across, hold, stored, turned_spring
-from lithobrake.dem.stability import Grip, held_rates, tilting
+from lithobrake.dem.stability import tilting
 from lithobrake.dem.vectors import Vector, add, cross, dot, minus, plus, put, row, scaled, times
 
 DAMPING, FRICTION, ROLLING = 0, 1, 2  # columns of Pairs.lost
@@ -34,8 +34,9 @@ class Pressure(NamedTuple):
 
     repulsion: float  # N, along the normal of the patch
     total: float  # N, less cohesion
-    force: Vector  # N, on the second
-    torque: Vector  # N m, on the second, about the centroid of the first
+    left: float  # N, to be applied along the normal at the centre: all of it, where the patch is one point
+    force: Vector  # N, the rest, on the second
+    torque: Vector  # N m, of the rest, on the second about the centroid of the first
     damped: float  # J
 
 
@@ -111,22 +112,20 @@ def repel(share: float, elastic: float, dashpot: float, speed: float) -> float:
 
 @kernel
 def press(
-    search: Search, count: int, bodies: Bodies, first: int, second: int, meeting: Meeting, point: Vector,
-    normal: Vector, elastic: float, cohesion: float, dashpot: float, time_step: float,
+    search: Search, count: int, bodies: Bodies, first: int, second: int, meeting: Meeting, normal: Vector,
+    elastic: float, cohesion: float, dashpot: float, time_step: float,
 ) -> Pressure:  # fmt: skip
-    """Return the normal forces at the points of a patch: repulsion less cohesion; point and normal are its own."""
-    centre = row(bodies.position, first)
+    """Return the normal forces at the points of a patch: repulsion less cohesion."""
     if count == 1 and search.family[0] != EDGES_SUNK:
         speed, share = dot(meeting.now, normal), search.share[0]
         repulsion = repel(share, elastic, dashpot, speed)
         total = repulsion - share * cohesion
-        force = scaled(total, normal)
         damped = (share * elastic - repulsion) * speed * time_step
-        return Pressure(repulsion, total, force, cross(minus(point, centre), force), damped)
+        return Pressure(repulsion, total, total, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), damped)
     repulsion, total, damped, force, torque = 0.0, 0.0, 0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
     for k in range(count):
         place, outward = row(search.point, k), row(search.normal, k)
-        arm = minus(place, centre)
+        arm = minus(place, row(bodies.position, first))
         now = scaled(-1.0, point_velocity(bodies.velocity_predicted, bodies.spin_predicted, first, arm))
         if second >= 0:
             other_arm = minus(place, row(bodies.position, second))
@@ -144,7 +143,7 @@ def press(
         pushes -= search.share[k] * cohesion
         force, torque = plus(force, scaled(pushes, outward)), plus(torque, scaled(pushes, lever))
         total += pushes * along
-    return Pressure(repulsion, total, force, torque, damped)
+    return Pressure(repulsion, total, 0.0, force, torque, damped)
 
 
 @kernel
@@ -182,45 +181,33 @@ def part(pairs: Pairs, pair: int) -> None:
 
 
 @kernel
-def deliver(bodies: Bodies, body: int, sign: float, force: Vector, torque: Vector, rates: tuple[float, float]) -> None:
+def deliver(bodies: Bodies, body: int, sign: float, force: Vector, torque: Vector) -> None:
     """Add what a contact does to one of its bodies."""
     add(bodies.force, body, sign, force)
     add(bodies.torque, body, sign, torque)
-    bodies.rates[body, 0] += rates[0]
-    bodies.rates[body, 1] += rates[1]
-
-
-@kernel
-def keep(
-    reactions: Reactions, pair: int, force: Vector, first_torque: Vector, second_torque: Vector,
-    first_rates: tuple[float, float], second_rates: tuple[float, float],
-) -> None:  # fmt: skip
-    """Note what a contact does to its bodies, for them to fetch."""
-    put(reactions.force, pair, force)
-    put(reactions.first_torque, pair, first_torque)
-    put(reactions.second_torque, pair, second_torque)
-    reactions.first_rates[pair, 0], reactions.first_rates[pair, 1] = first_rates
-    reactions.second_rates[pair, 0], reactions.second_rates[pair, 1] = second_rates
 
 
 @kernel
 def act(
     pair: int, bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, laws: Laws, step: Step, search: Search,
     reactions: Reactions,
-) -> None:  # fmt: skip
-    """Compute the contact force of one pair, and add it to its members or, where there is room for it, keep it."""
+) -> float:  # fmt: skip
+    """Compute the contact force of one pair, and add it to its members or, where there is room for it, keep it.
+
+    Returns the square [1/s2] of the rate of its spring or dashpot, 0 where nothing touches.
+    """
     first, second = pairs.first[pair], pairs.second[pair]
     is_body = second >= 0
     if pairs.term_count[pair] == 0:
         part(pairs, pair)
-        return
+        return 0.0
     if is_body:
         count, sunk, slope = touch_bodies(pair, bodies, cores, pairs, search)
     else:
         count, sunk, slope = touch_plane(pair, bodies, cores, planes, pairs, search), 0.0, 0.0
     if count == 0:
         part(pairs, pair)
-        return
+        return 0.0
     overlap, point, normal = spread(search, count, sunk, slope)
     meeting = meet(bodies, first, second, point, normal, step.paper_mass)
     here, there = bodies.material[first], bodies.material[second] if is_body else planes.material[-1 - second]
@@ -233,14 +220,15 @@ def act(
     elastic = stiffness * overlap
     cohesion = laws.cohesion_force[here, there] + laws.cohesion_line[here, there] / meeting.curvature
     pressure = press(
-        search, count, bodies, first, second, meeting, point, normal, elastic, cohesion, dashpot, step.time_step
+        search, count, bodies, first, second, meeting, normal, elastic, cohesion, dashpot, step.time_step
     )  # fmt: skip
     pairs.lost[pair, DAMPING] += pressure.damped
     shear_dashpot = dashpot * laws.shear_damping[here, there]
     limit = laws.friction[here, there] * pressure.repulsion
     tangential = rub(pair, pairs, normal, meeting, limit, shear_stiffness, shear_dashpot, step.time_step)
-    force = plus(pressure.force, tangential)
-    torque = plus(pressure.torque, cross(minus(point, row(bodies.position, first)), tangential))
+    central = plus(scaled(pressure.left, normal), tangential)
+    force = plus(pressure.force, central)
+    torque = plus(pressure.torque, cross(minus(point, row(bodies.position, first)), central))
 
     lever = laws.spinning_friction[here, there] / meeting.curvature
     square, mean = spin_radii(search, count, point, normal)
@@ -253,32 +241,29 @@ def act(
         torque = plus(torque, scaled(couple, normal))
         pairs.lost[pair, FRICTION] += slid
         pairs.lost[pair, DAMPING] += damped
-    tilt = tilting(search, count, point, normal, overlap, stiffness)
-    tilt_dashpot = dashpot * tilt / (8.5 * stiffness)
+    pairs.tilt_stiffness[pair] = tilting(search, count, point, normal, overlap, stiffness) if count > 1 else 0.0
     lever = laws.rolling_friction[here, there] / meeting.curvature
     if lever > 0.0:
-        rolling, lost, rolling_dashpot = resist_rolling(
+        rolling, lost = resist_rolling(
             pair, pairs, normal, meeting.spin, meeting.twist, lever, pressure.repulsion, stiffness, damping_ratio,
             inverse_inertia_across(bodies, first, second, normal), step.time_step,
         )  # fmt: skip
         torque = plus(torque, rolling)
         pairs.lost[pair, ROLLING] += lost
-        tilt += pairs.roll_stiffness[pair]
-        tilt_dashpot += rolling_dashpot
-    grip = Grip(1.5 * stiffness, shear_stiffness, tilt, dashpot, shear_dashpot, tilt_dashpot)
-    first_rates, second_rates = held_rates(bodies, first, point, normal, grip), (0.0, 0.0)
     second_torque = torque
     if is_body:
-        second_rates = held_rates(bodies, second, point, normal, grip)
         second_torque = minus(torque, cross(minus(row(bodies.position, second), row(bodies.position, first)), force))
     if len(reactions.force) > 0:
-        keep(reactions, pair, force, torque, second_torque, first_rates, second_rates)
+        put(reactions.force, pair, force)
+        put(reactions.first_torque, pair, torque)
+        put(reactions.second_torque, pair, second_torque)
     else:
-        deliver(bodies, first, -1.0, force, torque, first_rates)
+        deliver(bodies, first, -1.0, force, torque)
         if is_body:
-            deliver(bodies, second, 1.0, force, second_torque, second_rates)
+            deliver(bodies, second, 1.0, force, second_torque)
     pairs.overlap[pair], pairs.normal_force[pair], pairs.elastic_force[pair] = overlap, pressure.total, elastic
     pairs.cohesion[pair] = cohesion
     put(pairs.normal, pair, normal)
     put(pairs.point, pair, point)
     put(pairs.tangential_force, pair, tangential)
+    return 1.5 * stiffness * meeting.inverse_mass * max(1.0, 2.0 * damping_ratio) ** 2

@@ -60,7 +60,7 @@ def pairs_of(first: Integers, second: Integers, term_max: int = TERM_MAX) -> Pai
         point=np.zeros((n, 3)), normal_force=np.zeros(n), elastic_force=np.zeros(n), cohesion=np.zeros(n),
         spring=np.zeros((n, 3)), tangential_force=np.zeros((n, 3)), tangential_stiffness=np.zeros(n),
         twist=np.zeros(n), twist_stiffness=np.zeros(n), roll=np.zeros((n, 3)), roll_stiffness=np.zeros(n),
-        lost=np.zeros((n, 3)), term_count=np.zeros(n, dtype=np.int64),
+        tilt_stiffness=np.zeros(n), lost=np.zeros((n, 3)), term_count=np.zeros(n, dtype=np.int64),
         term=np.zeros((n, term_max), dtype=np.int64),
     )  # fmt: skip
 

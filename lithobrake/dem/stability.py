@@ -13,14 +13,23 @@ from typing import NamedTuple
 
 import numpy as np
 
-from lithobrake.compiled import kernel
-from lithobrake.dem.arrays import Bodies, Floats, Pairs
+from lithobrake.compiled import kernel, large_kernel
+from lithobrake.dem.arrays import Bodies, Floats, Laws, Pairs, Planes
 from lithobrake.dem.distance import Search
 from lithobrake.dem.spring import across
 from lithobrake.dem.vectors import Vector, cross, dot, minus, row, times
 
 # Largest c dt + (w dt)^2 / 4 that is allowed; 1 is the limit of stability.
 STABLE_SHARE = 0.8
+# Steps from look to look while no contact turns farther in a step than this phase [rad]; t_c / 50 turns by .08 at most.
+LOOK_STEPS, LOOK_PHASE = 16, 0.2
+
+
+class Damping(NamedTuple):
+    """Dashpots of a pair of materials."""
+
+    ratio: float  # of the critical damping
+    shear: float  # across the normal over along it
 
 
 class Grip(NamedTuple):
@@ -69,18 +78,58 @@ def tilting(search: Search, count: int, centre: Vector, normal: Vector, overlap:
 
 
 @kernel
-def held_rates(bodies: Bodies, body: int, point: Vector, normal: Vector, grip: Grip) -> tuple[float, float]:
-    """Return what a contact adds to a body's w^2 and c, in the fastest of its directions."""
-    arm = minus(point, row(bodies.position, body))
-    along, sideways, couple = inverse_masses(bodies, body, arm, normal)
-    square = max(grip.normal * along + grip.tilt * couple, grip.shear * sideways)
-    return square, max(grip.normal_dashpot * along + grip.tilt_dashpot * couple, grip.shear_dashpot * sideways)
+def grip_of(bodies: Bodies, pairs: Pairs, pair: int, inverse_mass: float, couple: float, law: Damping) -> Grip:
+    """Return how a pair that touches holds its bodies; inverse_mass and couple are what both show it together."""
+    secant = pairs.elastic_force[pair] / pairs.overlap[pair]
+    dashpot = 2.0 * law.ratio * (1.25 * secant / inverse_mass) ** 0.5
+    tilt, roll = pairs.tilt_stiffness[pair], pairs.roll_stiffness[pair]
+    # The weights of tilting are at least 1.5 + 7 times those of its dashpot.
+    tilt_dashpot = dashpot * tilt / (8.5 * secant) + 2.0 * law.ratio * (roll / couple) ** 0.5
+    shear_dashpot = dashpot * law.shear
+    return Grip(1.5 * secant, pairs.tangential_stiffness[pair], tilt + roll, dashpot, shear_dashpot, tilt_dashpot)
 
 
 @kernel
-def unsteadiness(time_step: float, rates: Floats, pairs: Pairs) -> float:
+def hold(rates: Floats, body: int, grip: Grip, masses: tuple[float, float, float]) -> None:
+    """Add what a contact does to a body's w^2 and c, in the fastest of its directions."""
+    along, sideways, couple = masses
+    rates[body, 0] += max(grip.normal * along + grip.tilt * couple, grip.shear * sideways)
+    rates[body, 1] += max(grip.normal_dashpot * along + grip.tilt_dashpot * couple, grip.shear_dashpot * sideways)
+
+
+@large_kernel
+def write_rates(bodies: Bodies, planes: Planes, pairs: Pairs, laws: Laws, paper_mass: bool) -> None:
+    """Sum up for every body how its contacts hold it."""
+    bodies.rates[:] = 0.0
+    for pair in range(len(pairs.first)):
+        if pairs.overlap[pair] == 0.0:
+            continue
+        first, second, point, normal = (
+            pairs.first[pair],
+            pairs.second[pair],
+            row(pairs.point, pair),
+            row(pairs.normal, pair),
+        )
+        here = bodies.material[first]
+        ours = inverse_masses(bodies, first, minus(point, row(bodies.position, first)), normal)
+        theirs = (0.0, 0.0, 0.0)
+        there = planes.material[-1 - second] if second < 0 else bodies.material[second]
+        inverse_mass = bodies.inverse_mass[first] if paper_mass else ours[0]
+        if second >= 0:
+            theirs = inverse_masses(bodies, second, minus(point, row(bodies.position, second)), normal)
+            inverse_mass += bodies.inverse_mass[second] if paper_mass else theirs[0]
+        law = Damping(laws.damping_ratio[here, there], laws.shear_damping[here, there])
+        grip = grip_of(bodies, pairs, pair, inverse_mass, ours[2] + theirs[2], law)
+        hold(bodies.rates, first, grip, ours)
+        if second >= 0:
+            hold(bodies.rates, second, grip, theirs)
+
+
+@large_kernel
+def unsteadiness(bodies: Bodies, planes: Planes, pairs: Pairs, laws: Laws, paper_mass: bool, time_step: float) -> float:
     """Return the largest c dt + (w dt)^2 / 4 of two that touch."""
-    most = 0.0
+    write_rates(bodies, planes, pairs, laws, paper_mass)
+    rates, most = bodies.rates, 0.0
     for pair in range(len(pairs.first)):
         if pairs.overlap[pair] > 0.0:
             first, second = pairs.first[pair], pairs.second[pair]
@@ -91,11 +140,23 @@ def unsteadiness(time_step: float, rates: Floats, pairs: Pairs) -> float:
     return most
 
 
-def largest_step(rates: Floats, pairs: Pairs) -> float:
-    """Return the largest safe time step [s], infinite where nothing touches; rates [body_count, 2]."""
+@kernel
+def unsteady(
+    taken: int, phase_squared: float, bodies: Bodies, planes: Planes, pairs: Pairs, laws: Laws, paper_mass: bool,
+    time_step: float,
+) -> bool:  # fmt: skip
+    """Whether the step is too large; looks at every so many steps, and where a contact alone turns far in one."""
+    if taken % LOOK_STEPS > 0 and phase_squared < LOOK_PHASE * LOOK_PHASE:
+        return False
+    return unsteadiness(bodies, planes, pairs, laws, paper_mass, time_step) > STABLE_SHARE
+
+
+def largest_step(bodies: Bodies, planes: Planes, pairs: Pairs, laws: Laws, paper_mass: bool) -> float:
+    """Return the largest safe time step [s], infinite where nothing touches."""
+    write_rates(bodies, planes, pairs, laws, paper_mass)
     touching = pairs.overlap > 0.0
     first, second = pairs.first[touching], pairs.second[touching]
-    both = rates[first] + np.where(second >= 0, 1.0, 0.0)[:, None] * rates[np.maximum(second, 0)]
+    both = bodies.rates[first] + np.where(second >= 0, 1.0, 0.0)[:, None] * bodies.rates[np.maximum(second, 0)]
     square, damping = both[:, 0], both[:, 1]
     most = float((damping + np.sqrt(damping * damping + STABLE_SHARE * square)).max(initial=0.0))
     return 2.0 * STABLE_SHARE / most if most > 0.0 else math.inf

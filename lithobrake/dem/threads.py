@@ -26,7 +26,7 @@ from lithobrake.dem.distance import Search
 from lithobrake.dem.force import Step, deliver
 from lithobrake.dem.listing import renew
 from lithobrake.dem.motion import drift, kick
-from lithobrake.dem.stability import STABLE_SHARE, unsteadiness
+from lithobrake.dem.stability import unsteady
 from lithobrake.dem.vectors import row
 
 
@@ -50,7 +50,7 @@ def incidence_of(pairs: Pairs, body_count: int) -> Incidence:
 
 def room_for(count: int) -> Reactions:
     """Return room for what so many pairs do."""
-    return Reactions(*(np.zeros((count, width)) for width in (3, 3, 3, 2, 2)))
+    return Reactions(*(np.zeros((count, 3)) for _ in range(3)))
 
 
 @large_kernel
@@ -68,16 +68,13 @@ def end_step(
     for body in range(start, stop):
         bodies.force[body] = 0.0
         bodies.torque[body] = 0.0
-        bodies.rates[body] = 0.0
         for k in range(incidence.as_second_start[body], incidence.as_second_start[body + 1]):
             pair = incidence.as_second[k]
             if pairs.overlap[pair] > 0.0:
-                rates = (reactions.second_rates[pair, 0], reactions.second_rates[pair, 1])
-                deliver(bodies, body, 1.0, row(reactions.force, pair), row(reactions.second_torque, pair), rates)
+                deliver(bodies, body, 1.0, row(reactions.force, pair), row(reactions.second_torque, pair))
         for pair in range(incidence.as_first_start[body], incidence.as_first_start[body + 1]):
             if pairs.overlap[pair] > 0.0:
-                rates = (reactions.first_rates[pair, 0], reactions.first_rates[pair, 1])
-                deliver(bodies, body, -1.0, row(reactions.force, pair), row(reactions.first_torque, pair), rates)
+                deliver(bodies, body, -1.0, row(reactions.force, pair), row(reactions.first_torque, pair))
     if step.drag > 0.0:
         apply_drag(bodies, step, start, stop)
     kick(bodies, step, start, stop)
@@ -120,7 +117,7 @@ class Team:
             if max(lengths) > pairs.term.shape[1]:
                 return taken, NAMES_OVERFLOW, True
             drifted = False
-            self.share(
+            turned = self.share(
                 pair_count,
                 lambda start, stop, search: act_all(
                     bodies, cores, planes, pairs, laws, step, search, reactions, start, stop
@@ -132,6 +129,6 @@ class Team:
             )
             if probe >= 0:
                 note(probe, bodies, probed)
-            if unsteadiness(step.time_step, bodies.rates, pairs) > STABLE_SHARE:
+            if unsteady(taken, max(turned), bodies, planes, pairs, laws, step.paper_mass, step.time_step):
                 return taken + 1, STEP_TOO_LARGE, False
         return step_count, DONE, False

@@ -205,7 +205,9 @@ class World:
         Source: see stability.py.
         """
         engine = self._assembled()
-        return largest_step(engine.bodies.rates, engine.pairs)
+        return largest_step(
+            engine.bodies, engine.planes, engine.pairs, engine.laws, self.options["damping_mass"] == "paper"
+        )
 
     def shortest_contact(self, speed: float) -> float:
         """Return the duration [s] of the shortest collision that can happen at a relative speed [m/s].
