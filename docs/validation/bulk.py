@@ -95,7 +95,7 @@ def compress(friction: float, seed: int, count: int = 1500) -> Result:
     low, high = np.array([-0.5 * width, -0.5 * width, 0.0]), np.array([0.5 * width, 0.5 * width, width])
     add_walls(world, low, high, wall, top=True)
     world.run(steps=5000)
-    inertial = 1e-3 / (2 * radius) / math.sqrt(2500.0 / pressure) * 2 * radius  # strain rate at inertial number 1e-3
+    inertial = 1e-3 / (2.0 * radius * math.sqrt(2500.0 / pressure))  # strain rate at inertial number 1e-3
     block, calm = 50, 0
     for _ in range(40_000):
         contacts = world.contacts()
