@@ -36,7 +36,7 @@ def rock(**changes: float) -> Material:
 
 def lattice(count: int, pitch: float, width: float, generator: np.random.Generator) -> Floats:
     """Places on a cubic lattice above a square floor of a width, moved a little at random."""
-    row = int(width / pitch)
+    row = int(width / pitch * (1.0 + 1e-9))  # a width of whole pitches may come out a bit short
     index = np.arange(count)
     places = np.stack([index % row, index // row % row, index // row**2], axis=1) + 0.5
     return places * pitch - [0.5 * width, 0.5 * width, 0.0] + 0.02 * pitch * generator.uniform(-1, 1, (count, 3))
@@ -84,8 +84,7 @@ def compress(friction: float, seed: int, count: int = 1500) -> Result:
     """
     generator = np.random.default_rng(seed)
     radius, pressure = 0.005, 20.0
-    stuff = rock(young_modulus=1e8, restitution=0.3, friction=friction)
-    wall = rock(young_modulus=1e8, restitution=0.3, friction=0.0)
+    stuff, wall = (rock(young_modulus=1e7, restitution=0.3, friction=value) for value in (friction, 0.0))
     width = count ** (1 / 3) * 2.15 * radius
     width = math.ceil(width / (2.15 * radius)) * 2.15 * radius
     world = World((0.0, 0.0, 0.0), 2e-5)
@@ -122,7 +121,7 @@ def compress(friction: float, seed: int, count: int = 1500) -> Result:
     inner = np.all((world.position > low + margin) & (world.position < high - margin), axis=1)
     return {
         "friction": friction, "seed": seed, "count": count, "settled": calm > 200,
-        "pressure_over_modulus": pressure / (1e8 / (1 - 0.25**2)),
+        "pressure_over_modulus": pressure / (1e7 / (1 - 0.25**2)),
         "solid_fraction": inside_share(world.position, radius, low + margin, high - margin),
         "coordination_without_rattlers": rattle_free(world, inner), "time_s": world.time,
     }  # fmt: skip
