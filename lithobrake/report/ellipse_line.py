@@ -47,3 +47,16 @@ def draw_ellipses(axes: Axes, ellipses: Mapping[str, Any] | None, window: Window
         style = "-" if entry["share"] < 0.9 else "--"
         axes.plot(longitude, latitude, style, color="white", linewidth=2.6, zorder=4, alpha=0.8)
         axes.plot(longitude, latitude, style, color=SITE, linewidth=1.2, zorder=5)
+        lowest = int(np.argmin(latitude))
+        axes.annotate(
+            f"{100 * entry['share']:.0f} %",
+            (longitude[lowest], latitude[lowest]),
+            xytext=(0, 5),
+            textcoords="offset points",
+            ha="center",
+            color=SITE,
+            fontsize=7,
+            bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.8},
+            zorder=5,
+            annotation_clip=True,
+        )

@@ -10,7 +10,7 @@ from lithobrake.report.bed_figure import bed_figure, three_moments
 from lithobrake.report.body_figure import body_figure, colour_ends, facet_density
 from lithobrake.report.count_figure import Design, count_figure
 from lithobrake.report.density import WHOLE, close_window, draw_density, neighbour_count
-from lithobrake.report.ellipse_line import outline
+from lithobrake.report.ellipse_line import draw_ellipses, outline
 from lithobrake.report.error_figure import Score, error_figure
 from lithobrake.report.hulls import Body
 from lithobrake.report.landing_figure import instants, landing_figure
@@ -193,6 +193,14 @@ def test_map_figure_shows_impacts_near_the_site_in_a_close_view() -> None:
     with figure_style():
         figure = map_figure(latitude, longitude, (30.0, 179.0), [Share("impact", 1.0, 0.98, 1.0)], None, ELLIPSES)
     assert picture(figure)
+
+
+def test_ellipses_say_what_share_they_hold() -> None:
+    axes = Figure().add_subplot()
+    draw_ellipses(axes, ELLIPSES, WHOLE)
+    assert [text.get_text() for text in axes.texts] == ["50 %", "95 %"]
+    draw_ellipses(axes, None, WHOLE)
+    assert len(axes.lines) == 4
 
 
 def test_an_ellipse_lies_as_far_from_its_middle_as_it_is_long() -> None:
