@@ -3,7 +3,7 @@
 Beside the package, with and without Numba, stand a plain vectorised NumPy reference and, where installed, openturns and
 chaospy. CPU time: the median of several rounds, and the median over rounds of its ratio to the reference. In a round
 all take their turn, so that other work on the machine meets them alike. The other libraries evaluate a million points.
-Usage: OMP_NUM_THREADS=1 python benchmarks/chaos_speed.py [--points 10000000] [--rounds 5]
+Usage: OMP_NUM_THREADS=1 python benchmarks/chaos_speed.py [--points 10000000] [--rounds 5] [--alone]
 """
 
 import argparse
@@ -162,10 +162,12 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--points", type=int, default=10_000_000)
     parser.add_argument("--rounds", type=int, default=5)
+    parser.add_argument("--alone", action="store_true", help="without the other libraries, whose memory slows all")
     options = parser.parse_args()
     x = smolyak(INPUTS, level=5)
     y, points = model(x), np.ascontiguousarray(sobol_sequence(INPUTS, options.points))
-    makers = {name: make for name, make in MAKERS.items() if name not in OTHERS or find_spec(name) is not None}
+    present = [name for name in OTHERS if not options.alone and find_spec(name) is not None]
+    makers = {name: make for name, make in MAKERS.items() if name not in OTHERS or name in present}
     contenders = [make(x, y, points) for make in makers.values()]
     rounds = np.array([[times(one) for one in contenders] for _ in range(options.rounds)])
     medians, ratios = np.median(rounds, axis=0), np.median(rounds / rounds[:, :1], axis=0)
@@ -179,7 +181,7 @@ def main() -> None:
             f"| {1e3 * read:.3g} | {ratio[2]:.3g} |"
         )
     for name in OTHERS:
-        if name not in makers:
+        if name not in present and not options.alone:
             print(f"{name} is not installed, so it is not in the table.")
 
 
