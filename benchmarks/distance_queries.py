@@ -16,7 +16,7 @@ from lithobrake.dem.body import Body, bodies_of
 from lithobrake.dem.closest import approach, way_out
 from lithobrake.dem.distance import CROSSING, Search, search_for, weighted
 from lithobrake.dem.features import write_relative
-from lithobrake.dem.listing import DEEP, KIND, SPHERES, list_bodies, list_plane, margin_of
+from lithobrake.dem.listing import DEEP, KIND, SPHERES, list_bodies, list_plane, margin_of, name_of
 from lithobrake.dem.neighbours import pairs_of
 from lithobrake.dem.patch import feature
 from lithobrake.dem.vectors import dot, minus, put, row, scaled, transposed_times
@@ -37,6 +37,12 @@ def cached(function: Callable[..., Any]) -> Callable[..., Any]:
         return numba.njit(function, cache=True, error_model="numpy")
     finally:
         numba.config.CACHE_DIR = outside
+
+
+def one_pair(second: int) -> Pairs:
+    """Return a pair with room for many names."""
+    pair = pairs_of(np.zeros(1, dtype=np.int64), np.full(1, second))
+    return pair._replace(rest_row=np.zeros(1, dtype=np.int64), rest=np.zeros((1, NAMES), dtype=np.int64))
 
 
 def scratch(shapes: Library) -> Search:
@@ -127,7 +133,7 @@ def kept(shapes: Library, poses: Poses, generator: np.random.Generator) -> tuple
     n = len(poses.first)
     distance, reach = np.full(n, np.nan), np.zeros(n)
     moves = np.column_stack([units(generator, n), units(generator, n), generator.random((n, 2))])
-    pair = pairs_of(np.zeros(1, dtype=np.int64), np.ones(1, dtype=np.int64), NAMES)
+    pair = one_pair(1)
     ask_kept(
         shapes.cores, bodies_for(shapes), poses.first, poses.second, poses.rotation, poses.position, pair,
         scratch(shapes), moves, distance, reach,
@@ -161,13 +167,13 @@ def ask_kept(
 def nearest_named(cores: Cores, bodies: Bodies, one: int, two: int, pair: Pairs, search: Search, reach: float) -> float:
     """Return the smallest distance of the named features, at most `reach` [m]."""
     apart = minus(row(bodies.position, two), row(bodies.position, one))
-    if pair.term_count[0] > 0 and pair.term[0, 0] // KIND == SPHERES:
+    if pair.term_count[0] > 0 and name_of(pair, 0, 0) // KIND == SPHERES:
         return min(reach, dot(apart, apart) ** 0.5)
     write_relative(bodies.rotation, one, two, search.relative)
     there, smallest = transposed_times(bodies.rotation, one, apart), reach
     for name in range(pair.term_count[0]):
         shapes = (bodies.shape[one], bodies.shape[two])
-        smallest = min(smallest, feature(pair.term[0, name], cores, shapes, search, there, reach)[2])
+        smallest = min(smallest, feature(name_of(pair, 0, name), cores, shapes, search, there, reach)[2])
     return smallest
 
 
@@ -176,7 +182,7 @@ def over_plane(shapes: Library, poses: Poses) -> Floats:
     away = poses.position[:, 0] - poses.position[:, 1]
     normal = away / np.linalg.norm(away, axis=1)[:, None]
     gap = np.zeros(len(normal))
-    pair = pairs_of(np.zeros(1, dtype=np.int64), np.full(1, -1), NAMES)
+    pair = one_pair(-1)
     ask_plane(
         shapes.cores, bodies_for(shapes), poses.first, poses.rotation, poses.position, normal, pair, gap
     )  # fmt: skip

@@ -69,7 +69,7 @@ def advance(
                 return taken, DIVERGED, False
             if farthest > half_skin * half_skin:
                 return taken, LIST_USED_UP, True
-        if renew(bodies, cores, planes, pairs, search, 0, pair_count) > pairs.term.shape[1]:
+        if renew(bodies, cores, planes, pairs, search, 0, pair_count) > 0:
             return taken, NAMES_OVERFLOW, True
         drifted = False
         rest(bodies)

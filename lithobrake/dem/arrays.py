@@ -86,7 +86,9 @@ class Pairs(NamedTuple):
     tilt_stiffness: Floats  # [pair_count], N m, against tilting of a patch of several points
     lost: Floats  # [pair_count, 3], J, what damping, friction and rolling took since the list was made
     term_count: Integers  # [pair_count], features near enough to touch before waking; -1: deepest point only
-    term: Integers  # [pair_count, term_max], their names
+    term: Integers  # [pair_count, NEAR], names of the first of them
+    rest_row: Integers  # [pair_count], row of the names that found no room there, -1: none
+    rest: Integers  # [row_count, rest_max]
 
 
 class Laws(NamedTuple):

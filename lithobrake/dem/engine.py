@@ -7,6 +7,7 @@ from lithobrake.dem.arrays import Bodies, Cores, Floats, Laws, Pairs, Planes
 from lithobrake.dem.body import Body, Plane, bodies_of, cores_of, laws_of, planes_of
 from lithobrake.dem.distance import Search, search_for
 from lithobrake.dem.force import DAMPING, Step
+from lithobrake.dem.listing import NEAR
 from lithobrake.dem.material import Material
 from lithobrake.dem.neighbours import neighbours, pairs_of, renewed, roomier
 from lithobrake.dem.shape import Shape
@@ -66,7 +67,7 @@ class Engine:
             if reason == LIST_USED_UP:
                 self._list_neighbours()
             elif reason == NAMES_OVERFLOW:
-                self.gather(roomier(self.pairs, 2 * self.pairs.term.shape[1]))
+                self.gather(roomier(self.pairs))
             elif reason != DONE:
                 return steps - left, reason
         return steps, DONE
@@ -107,7 +108,7 @@ class Engine:
             np.sort(np.diff(start)[shape])[-2:] for start in (self.cores.vertex_start, self.cores.edge_start)
         )
         # All corners and all pairs of edges of the two largest bodies, should they cross, and a list's worth beside.
-        points = 1 + int(vertices.sum() + 2 * edges.prod()) + pairs.term.shape[1]
+        points = 1 + int(vertices.sum() + 2 * edges.prod()) + NEAR + pairs.rest.shape[1]
         return search_for(int(vertices.max() + edges.max()), points)
 
     def _list_neighbours(self) -> None:

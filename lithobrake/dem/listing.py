@@ -16,6 +16,8 @@ from lithobrake.dem.vectors import Vector, dot, minus, plus, row, scaled, times,
 # the face below it, or 0), two edges (i and j), two spheres.
 CORNER_OF_FIRST, CORNER_OF_SECOND, EDGES, SPHERES = 0, 1, 2, 3
 KIND, PLACE = 1 << 40, 1 << 20
+# Names that every pair has room for; few need more.
+NEAR = 6
 # In `term_count`: the cores cross, and all their features are looked at.
 DEEP = -1
 # The margin is this part of the rounding radii, which themselves count for at most this part of the contact radii.
@@ -42,8 +44,11 @@ def margin_of(bodies: Bodies, cores: Cores, first: int, second: int) -> float:
 
 @large_kernel
 def renew(bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, search: Search, start: int, stop: int) -> int:
-    """Renew the lists of pairs start to stop whose margin is used up; return the longest length that was asked for."""
-    longest = 0
+    """Renew the lists of pairs start to stop whose margin is used up; return how many found too little room.
+
+    Those are listed again at the next call.
+    """
+    lacking = 0
     for pair in range(start, stop):
         first, second = pairs.first[pair], pairs.second[pair]
         travel = travelled(bodies, first, second)
@@ -54,18 +59,35 @@ def renew(bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, search: Se
             serves = max(margin, list_plane(pair, bodies, cores, planes, pairs, margin))
         else:
             serves = list_bodies(pair, bodies, cores, pairs, margin, search)
-        longest = max(longest, pairs.term_count[pair])
-        pairs.wake[pair] = travel + (1.0 - BOUND_SLACK) * serves
-    return longest
+        if pairs.term_count[pair] > room(pairs, pair):
+            lacking += 1
+        else:
+            pairs.wake[pair] = travel + (1.0 - BOUND_SLACK) * serves
+    return lacking
 
 
 @kernel
 def note_term(pairs: Pairs, pair: int, kind: int, i: int, j: int) -> None:
     """Add a name to the list of a pair; the count goes on where the list is full."""
-    count = pairs.term_count[pair]
-    if count < pairs.term.shape[1]:
-        pairs.term[pair, count] = kind * KIND + i * PLACE + j
+    count, name = pairs.term_count[pair], kind * KIND + i * PLACE + j
+    if count < room(pairs, pair):
+        if count < NEAR:
+            pairs.term[pair, count] = name
+        else:
+            pairs.rest[pairs.rest_row[pair], count - NEAR] = name
     pairs.term_count[pair] = count + 1
+
+
+@kernel
+def room(pairs: Pairs, pair: int) -> int:
+    """Return how many names the list of a pair can hold."""
+    return NEAR + pairs.rest.shape[1] if pairs.rest_row[pair] >= 0 else NEAR
+
+
+@kernel
+def name_of(pairs: Pairs, pair: int, k: int) -> int:
+    """Return name k of the list of a pair."""
+    return pairs.term[pair, k] if k < NEAR else pairs.rest[pairs.rest_row[pair], k - NEAR]
 
 
 @kernel

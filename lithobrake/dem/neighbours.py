@@ -4,9 +4,7 @@ import numpy as np
 
 from lithobrake.compiled import kernel
 from lithobrake.dem.arrays import Bodies, Floats, Integers, Pairs, Planes
-
-# Room for names of features near each other that a pair starts with; doubled when some pair needs more.
-TERM_MAX = 16
+from lithobrake.dem.listing import NEAR
 
 
 @kernel
@@ -52,8 +50,8 @@ def neighbours(bodies: Bodies, planes: Planes, skin: float) -> tuple[Integers, I
     return first[sorting], second[sorting]
 
 
-def pairs_of(first: Integers, second: Integers, term_max: int = TERM_MAX) -> Pairs:
-    """Return pairs without any history, with room for so many names of features each."""
+def pairs_of(first: Integers, second: Integers) -> Pairs:
+    """Return pairs without any history."""
     n = len(first)
     return Pairs(
         first=first, second=second, wake=np.zeros(n), overlap=np.zeros(n), normal=np.zeros((n, 3)),
@@ -61,7 +59,7 @@ def pairs_of(first: Integers, second: Integers, term_max: int = TERM_MAX) -> Pai
         spring=np.zeros((n, 3)), tangential_force=np.zeros((n, 3)), tangential_stiffness=np.zeros(n),
         twist=np.zeros(n), twist_stiffness=np.zeros(n), roll=np.zeros((n, 3)), roll_stiffness=np.zeros(n),
         tilt_stiffness=np.zeros(n), lost=np.zeros((n, 3)), term_count=np.zeros(n, dtype=np.int64),
-        term=np.zeros((n, term_max), dtype=np.int64),
+        term=np.zeros((n, NEAR), dtype=np.int64), rest_row=np.full(n, -1), rest=np.zeros((0, 1), dtype=np.int64),
     )  # fmt: skip
 
 
@@ -70,17 +68,28 @@ def renewed(old: Pairs, first: Integers, second: Integers) -> Pairs:
 
     No contact is lost: what touches lies deep inside the reach of the list.
     """
-    new = pairs_of(first, second, old.term.shape[1])
+    new = pairs_of(first, second)
     span = 1 + max(int(first.max(initial=0)), int(old.first.max(initial=0)), int(np.abs(second).max(initial=0)),
                    int(np.abs(old.second).max(initial=0)))  # fmt: skip
     key_old, key_new = old.first * (2 * span) + old.second, first * (2 * span) + second
     _, here, there = np.intersect1d(key_new, key_old, assume_unique=True, return_indices=True)
-    for name in Pairs._fields[2:]:
+    for name in Pairs._fields[2:-1]:
         getattr(new, name)[here] = getattr(old, name)[there]
-    return new
+    return with_rows(new, old.rest, old.rest.shape[1])
 
 
-def roomier(old: Pairs, term_max: int) -> Pairs:
-    """Return the same pairs with room for more names; they are all to be listed anew."""
-    term = np.zeros((len(old.first), term_max), dtype=np.int64)
-    return old._replace(term=term, wake=np.zeros_like(old.wake))
+def with_rows(pairs: Pairs, rest: Integers, width: int) -> Pairs:
+    """Return the pairs with rows of so many names for those that have one in `rest`, moved up."""
+    using = np.flatnonzero(pairs.rest_row >= 0)
+    rows = np.zeros((len(using), width), dtype=np.int64)
+    known = pairs.rest_row[using] < len(rest)
+    rows[known, : rest.shape[1]] = rest[pairs.rest_row[using[known]]]
+    pairs.rest_row[using] = np.arange(len(using))
+    return pairs._replace(rest=rows)
+
+
+def roomier(pairs: Pairs) -> Pairs:
+    """Return the pairs with room for as many names as they ask for."""
+    lacking = pairs.term_count > np.where(pairs.rest_row < 0, NEAR, NEAR + pairs.rest.shape[1])
+    pairs.rest_row[lacking & (pairs.rest_row < 0)] = len(pairs.rest)
+    return with_rows(pairs, pairs.rest, max(pairs.rest.shape[1], int(pairs.term_count.max()) - NEAR))

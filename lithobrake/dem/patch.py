@@ -9,7 +9,7 @@ from lithobrake.dem.arrays import Bodies, Cores, Pairs, Planes
 from lithobrake.dem.closest import approach, way_out
 from lithobrake.dem.distance import CROSSING, Search
 from lithobrake.dem.features import edge_of, edge_to_edge, point_to_core, stands_above, write_relative
-from lithobrake.dem.listing import CORNER_OF_FIRST, CORNER_OF_SECOND, DEEP, KIND, PLACE, SPHERES
+from lithobrake.dem.listing import CORNER_OF_FIRST, CORNER_OF_SECOND, DEEP, KIND, PLACE, SPHERES, name_of
 from lithobrake.dem.shares import CORNER, EDGES_APART, SINK_FROM, WAY_OUT, note_point, sinking
 from lithobrake.dem.sunk import note_sunk_edges
 from lithobrake.dem.vectors import Vector, dot, minus, plus, put, row, scaled, times, transposed_times
@@ -27,7 +27,7 @@ def touch_plane(pair: int, bodies: Bodies, cores: Cores, planes: Planes, pairs: 
     down = transposed_times(bodies.rotation, body, outward)
     level = planes.offset[plane] + rounding - dot(outward, row(bodies.position, body))
     for k in range(pairs.term_count[pair]):
-        corner = row(cores.vertex, cores.vertex_start[shape] + pairs.term[pair, k] // PLACE)
+        corner = row(cores.vertex, cores.vertex_start[shape] + name_of(pairs, pair, k) // PLACE)
         depth = level - dot(corner, down)
         foot = plus(row(bodies.position, body), times(bodies.rotation, body, corner))
         point = minus(foot, scaled(rounding, outward))
@@ -91,9 +91,10 @@ def note_listed(
     first, second = pairs.first[pair], pairs.second[pair]
     count, corners, deepest = 0, 0, 0.0
     for k in range(pairs.term_count[pair]):
-        count = note_feature(search, count, bodies, cores, first, second, there, pairs.term[pair, k])
+        name = name_of(pairs, pair, k)
+        count = note_feature(search, count, bodies, cores, first, second, there, name)
         # Corners are listed before edges.
-        if pairs.term[pair, k] // KIND <= CORNER_OF_SECOND:
+        if name // KIND <= CORNER_OF_SECOND:
             corners = count
     for k in range(count):
         deepest = max(deepest, search.depth[k])

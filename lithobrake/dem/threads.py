@@ -111,10 +111,10 @@ class Team:
                     return taken, DIVERGED, False
                 if max(ways) > half_skin * half_skin:
                     return taken, LIST_USED_UP, True
-            lengths = self.share(
+            lacking = self.share(
                 pair_count, lambda start, stop, search: renew(bodies, cores, planes, pairs, search, start, stop)
             )
-            if max(lengths) > pairs.term.shape[1]:
+            if max(lacking) > 0:
                 return taken, NAMES_OVERFLOW, True
             drifted = False
             turned = self.share(
