@@ -63,15 +63,15 @@ def inside_share(position: Floats, radius: float, low: Floats, high: Floats) -> 
     return float((nearest < radius).mean())
 
 
-def rattle_free(world: World, inner: NDArray[np.bool_]) -> float:
-    """Mean contacts of the inner bodies that have at least four (three of them could not hold a sphere)."""
+def rattle_free(world: World, inner: NDArray[np.bool_], least: int) -> float:
+    """Mean contacts of the inner spheres that have so many at least: four hold a sphere, with friction two."""
     contacts = world.contacts()
     a, b = contacts["body_a"], contacts["body_b"]
     keep = np.ones(len(world.bodies), dtype=bool)
     while True:
         alive = keep[a] & ((b < 0) | keep[np.maximum(b, 0)])
         number = np.bincount(a[alive], minlength=len(keep)) + np.bincount(b[alive & (b >= 0)], minlength=len(keep))
-        fallen = keep & (number < 4)
+        fallen = keep & (number < least)
         if not fallen.any():
             return float(number[keep & inner].mean())
         keep &= ~fallen
@@ -123,7 +123,8 @@ def compress(friction: float, seed: int, count: int = 1500) -> Result:
         "friction": friction, "seed": seed, "count": count, "settled": calm > 200,
         "pressure_over_modulus": pressure / (1e7 / (1 - 0.25**2)),
         "solid_fraction": inside_share(world.position, radius, low + margin, high - margin),
-        "coordination_without_rattlers": rattle_free(world, inner), "time_s": world.time,
+        "coordination_without_rattlers": rattle_free(world, inner, 2 if friction > 0.0 else 4),
+        "time_s": world.time,
     }  # fmt: skip
 
 
