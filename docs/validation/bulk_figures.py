@@ -92,8 +92,7 @@ def main() -> None:
             draw_froude(found["rows"])
             page += ["![Froude](bulk_froude.png)", ""]
     path = HERE / "bed_size.json"
-    if path.exists():
-        page += ["## Size of the bed", "", *bed_size(json.loads(path.read_text()))]
+    page += ["## Size of the bed", "", *(bed_size(json.loads(path.read_text())) if path.exists() else ["Not run yet."])]
     (HERE / "bulk.md").write_text("\n".join(page) + "\n", encoding="utf-8")
 
 
