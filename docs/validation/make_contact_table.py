@@ -61,14 +61,19 @@ def short(text: str) -> str:
     return text.replace("|", "/").replace("\n", " ")[:160]
 
 
+def name_of(test: str) -> str:
+    """Return the name of a test function from the identity of one of its runs."""
+    return test.split("::")[1].split("[")[0].removeprefix("test_")
+
+
 def measured(notes: Notes, tests: list[str]) -> str:
     """Return what the tests found: the left side of each comparison, or "holds"; ";" between parameters."""
     found = []
     for test in notes.outcome:
-        if test.split("::")[1].split("[")[0].removeprefix("test_") not in tests:
+        if name_of(test) not in tests:
             continue
         values = []
-        for _, expl in dict(notes.found.get(test, [])).items():
+        for expl in dict(notes.found.get(test, [])).values():
             compared = re.match(r"(abs\()?(-?[\d.]+(e[-+]?\d+)?)\)? (==|<=|<|>=|>) ", short(expl).lstrip("("))
             values.append(compared[2] if compared else "holds")
         found.append(", ".join(dict.fromkeys(values)))
@@ -80,7 +85,7 @@ def facts(notes: Notes) -> Iterator[str]:
 
     Sources: Chung and Ooi (2011), Granular Matter 13, 643-656, tests 1 to 7; the rest is derived, as the tests say.
     """
-    names = {test: test.split("::")[1].split("[")[0].removeprefix("test_") for test in notes.outcome}
+    names = {test: name_of(test) for test in notes.outcome}
     part = ""
     with ROWS.open(newline="", encoding="utf-8") as file:
         for row in csv.DictReader(file):

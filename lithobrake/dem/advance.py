@@ -14,13 +14,6 @@ from lithobrake.dem.vectors import dot, plus, row, scaled
 DONE, LIST_USED_UP, NAMES_OVERFLOW, STEP_TOO_LARGE, DIVERGED = 0, 1, 2, 3, 4
 
 
-@kernel
-def rest(bodies: Bodies) -> None:
-    """Take all forces off."""
-    bodies.force[:] = 0.0
-    bodies.torque[:] = 0.0
-
-
 @large_kernel
 def act_all(
     bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, laws: Laws, step: Step, search: Search,
@@ -72,7 +65,8 @@ def advance(
         if renew(bodies, cores, planes, pairs, search, 0, pair_count) > 0:
             return taken, NAMES_OVERFLOW, True
         drifted = False
-        rest(bodies)
+        bodies.force[:] = 0.0
+        bodies.torque[:] = 0.0
         turned = act_all(bodies, cores, planes, pairs, laws, step, search, reactions, 0, pair_count)
         if step.drag > 0.0:
             apply_drag(bodies, step, 0, body_count)

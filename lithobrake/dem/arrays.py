@@ -85,7 +85,7 @@ class Pairs(NamedTuple):
     roll_stiffness: Floats  # [pair_count], N m
     tilt_stiffness: Floats  # [pair_count], N m, against tilting of a patch of several points
     lost: Floats  # [pair_count, 3], J, what damping, friction and rolling took since the list was made
-    term_count: Integers  # [pair_count], features near enough to touch before waking; -1: deepest point only
+    term_count: Integers  # [pair_count], features near enough to touch before waking; -1: all of them
     term: Integers  # [pair_count, NEAR], names of the first of them
     rest_row: Integers  # [pair_count], row of the names that found no room there, -1: none
     rest: Integers  # [row_count, rest_max]
@@ -106,8 +106,8 @@ class Laws(NamedTuple):
 
 
 class Reactions(NamedTuple):
-    """What contacts do to their bodies: one slot for each pair, or one for all, where they are passed on at once."""
+    """What contacts do to their bodies, kept for them to fetch; no room where it is passed on at once (threads.py)."""
 
-    force: Floats  # [slot_count, 3], N, on the second
-    first_torque: Floats  # [slot_count, 3], N m
-    second_torque: Floats  # [slot_count, 3], N m
+    force: Floats  # [pair_count, 3] or [0, 3], N, on the second
+    first_torque: Floats  # the same, N m
+    second_torque: Floats  # the same, N m

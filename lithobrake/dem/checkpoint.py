@@ -71,8 +71,11 @@ def load(path: str | os.PathLike[str]) -> "World":
     from lithobrake.dem.world import World
 
     with h5py.File(path, "r") as file:
-        if file.attrs.get("format") != "lithobrake world" or file.attrs["format_version"] > FORMAT_VERSION:
-            raise ValueError(f"{path} is not a world that this version reads (format_version up to {FORMAT_VERSION})")
+        if file.attrs.get("format") != "lithobrake world" or file.attrs["format_version"] != FORMAT_VERSION:
+            found = f"{file.attrs.get('format', 'no world')!s}, version {file.attrs.get('format_version', 'none')}"
+            raise ValueError(
+                f"{path} holds {found}, this version reads lithobrake world, version {FORMAT_VERSION}: make it again"
+            )
         data: dict[str, Any] = {}
         file.visititems(lambda name, item: data.update({name: item[()]}) if isinstance(item, h5py.Dataset) else None)
         attributes = dict(file.attrs)

@@ -68,8 +68,7 @@ def through_edges(search: Search, cores: Cores, shapes: tuple[int, int], there: 
     turn_edges(search, cores, shapes[1], there)
     second_count = cores.edge_start[shapes[1] + 1] - cores.edge_start[shapes[1]]
     for edge in range(cores.edge_start[shapes[0]], cores.edge_start[shapes[0] + 1]):
-        begin = row(cores.vertex, cores.vertex_start[shapes[0]] + cores.edge[edge, 0])
-        along = minus(row(cores.vertex, cores.vertex_start[shapes[0]] + cores.edge[edge, 1]), begin)
+        begin, along = row(cores.edge_begin, edge), row(cores.edge_along, edge)
         left = row(cores.normal, cores.face_start[shapes[0]] + cores.edge[edge, 2])
         right = row(cores.normal, cores.face_start[shapes[0]] + cores.edge[edge, 3])
         for k in range(second_count):
@@ -97,12 +96,10 @@ def turn_edges(search: Search, cores: Cores, shape: int, there: Vector) -> None:
     first = cores.edge_start[shape]
     for edge in range(first, cores.edge_start[shape + 1]):
         k = edge - first
-        begin = row(cores.vertex, cores.vertex_start[shape] + cores.edge[edge, 0])
-        end = row(cores.vertex, cores.vertex_start[shape] + cores.edge[edge, 1])
         left = row(cores.normal, cores.face_start[shape] + cores.edge[edge, 2])
         right = row(cores.normal, cores.face_start[shape] + cores.edge[edge, 3])
-        put(search.turned, k, plus(times(search.relative, 0, begin), there))
-        put(search.turned[:, 3:6], k, times(search.relative, 0, minus(end, begin)))
+        put(search.turned, k, plus(times(search.relative, 0, row(cores.edge_begin, edge)), there))
+        put(search.turned[:, 3:6], k, times(search.relative, 0, row(cores.edge_along, edge)))
         put(search.turned[:, 6:9], k, times(search.relative, 0, left))
         put(search.turned[:, 9:12], k, times(search.relative, 0, right))
 

@@ -1,5 +1,7 @@
 """The compiled side of a world: its arrays, and the stepping that renews lists as they are used up."""
 
+from concurrent.futures import ThreadPoolExecutor
+
 import numpy as np
 
 from lithobrake.dem.advance import DONE, LIST_USED_UP, NAMES_OVERFLOW, advance
@@ -21,6 +23,11 @@ NO_ROOM = room_for(0)
 def no_pairs() -> Pairs:
     """Return the pairs of a world in which nothing has met."""
     return pairs_of(np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64))
+
+
+def pool_of(thread_count: int) -> ThreadPoolExecutor | None:
+    """Return the threads beside the one that calls, if there are any."""
+    return ThreadPoolExecutor(thread_count - 1) if thread_count > 1 else None
 
 
 class Engine:
@@ -48,10 +55,11 @@ class Engine:
         self.laws: Laws = laws_of(self.materials, options["shear_modulus_rule"], options["pair_rule"])
         self.planes: Planes = planes_of(planes, self.materials, len(bodies))
         self.bodies: Bodies = bodies_of(bodies, self.shapes, self.materials, state)
-        self.pairs, self.lost, self.probed, self.thread_count = pairs, lost, probed, thread_count
+        self.pairs, self.lost, self.probed = pairs, lost, probed
         self.search: Search
         self.team: Team | None
         self.skin = SKIN * float(self.bodies.bounding_radius.min())
+        self.thread_count, self.pool = thread_count, pool_of(thread_count)
         self._list_neighbours()
         self.pairs.wake[:] = 0.0
 
@@ -94,13 +102,18 @@ class Engine:
         self.lost[:] = self.losses()
         self.pairs.lost[:], self.bodies.dragged[:] = 0.0, 0.0
 
+    def share_among(self, thread_count: int) -> None:
+        """Go on with so many threads."""
+        self.thread_count, self.pool = thread_count, pool_of(thread_count)
+        self.gather(self.pairs)
+
     def gather(self, pairs: Pairs) -> None:
         """Take on pairs: make scratch for them, and share them out among the threads."""
         self.pairs, self.search = pairs, self._scratch(pairs)
         self.team = None
-        if self.thread_count > 1:
+        if self.pool is not None:
             searches = [self._scratch(pairs) for _ in range(self.thread_count)]
-            self.team = Team(searches, len(self.bodies.mass), pairs)
+            self.team = Team(self.pool, searches, len(self.bodies.mass), pairs)
 
     def _scratch(self, pairs: Pairs) -> Search:
         shape = self.bodies.shape

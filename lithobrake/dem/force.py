@@ -10,11 +10,12 @@ from lithobrake.compiled import kernel
 from lithobrake.dem.arrays import Bodies, Cores, Floats, Laws, Pairs, Planes, Reactions
 from lithobrake.dem.couples import let_go, resist_rolling, resist_twisting
 from lithobrake.dem.distance import Search
+from lithobrake.dem.masses import inverse_inertia_across, inverse_inertia_along, inverse_mass_at
 from lithobrake.dem.patch import touch_bodies, touch_plane
 from lithobrake.dem.shares import EDGES_SUNK, spin_radii, spread
 from lithobrake.dem.spring import across, hold, stored, turned_spring
 from lithobrake.dem.stability import tilting
-from lithobrake.dem.vectors import Vector, add, cross, dot, minus, plus, put, row, scaled, times
+from lithobrake.dem.vectors import Vector, add, cross, dot, minus, plus, put, row, scaled
 
 DAMPING, FRICTION, ROLLING = 0, 1, 2  # columns of Pairs.lost
 LOSSES = 3
@@ -55,32 +56,6 @@ class Meeting(NamedTuple):
 def point_velocity(linear: Floats, spin: Floats, body: int, arm: Vector) -> Vector:
     """Return the velocity of the body's material at an arm from its centroid."""
     return plus(row(linear, body), cross(row(spin, body), arm))
-
-
-@kernel
-def inverse_mass_at(bodies: Bodies, body: int, arm: Vector, normal: Vector, paper_mass: bool) -> float:
-    """Return one over the mass that a force along the normal meets at the contact point, n . W . n."""
-    if paper_mass:
-        return bodies.inverse_mass[body]
-    turn = cross(arm, normal)
-    return bodies.inverse_mass[body] + dot(turn, times(bodies.inverse_inertia, body, turn))
-
-
-@kernel
-def inverse_inertia_along(bodies: Bodies, first: int, second: int, normal: Vector) -> float:
-    """Return what a couple along the normal meets of a pair, 1/(kg m2)."""
-    inverse = dot(normal, times(bodies.inverse_inertia, first, normal))
-    return inverse + dot(normal, times(bodies.inverse_inertia, second, normal)) if second >= 0 else inverse
-
-
-@kernel
-def inverse_inertia_across(bodies: Bodies, first: int, second: int, normal: Vector) -> float:
-    """Return what a couple across the normal meets of a pair in the mean of all directions, 1/(kg m2)."""
-    inverse = bodies.inverse_inertia
-    trace = inverse[first, 0, 0] + inverse[first, 1, 1] + inverse[first, 2, 2]
-    if second >= 0:
-        trace += inverse[second, 0, 0] + inverse[second, 1, 1] + inverse[second, 2, 2]
-    return 0.5 * (trace - inverse_inertia_along(bodies, first, second, normal))
 
 
 @kernel
@@ -241,7 +216,7 @@ def act(
         torque = plus(torque, scaled(couple, normal))
         pairs.lost[pair, FRICTION] += slid
         pairs.lost[pair, DAMPING] += damped
-    pairs.tilt_stiffness[pair] = tilting(search, count, point, normal, overlap, stiffness) if count > 1 else 0.0
+    pairs.tilt_stiffness[pair] = tilting(search, count, point, normal, overlap, stiffness)
     lever = laws.rolling_friction[here, there] / meeting.curvature
     if lever > 0.0:
         rolling, lost = resist_rolling(

@@ -121,9 +121,8 @@ def kick(bodies: Bodies, step: Step, start: int, stop: int) -> None:
 
 @large_kernel
 def drift(bodies: Bodies, step: Step, start: int, stop: int) -> float:
-    """Advance positions by a step at the half-step velocities and predict the velocities at their instant.
+    """Advance bodies start to stop by a step at the half-step velocities and predict the velocities at its end.
 
-    Of bodies start to stop.
     Returns the largest squared distance from where the neighbour list was made [m2].
     """
     farthest = 0.0

@@ -11,13 +11,12 @@ Source: Anderson and Morley (1985), Linear and Multilinear Algebra 18, 141-145, 
 import math
 from typing import NamedTuple
 
-import numpy as np
-
 from lithobrake.compiled import kernel, large_kernel
 from lithobrake.dem.arrays import Bodies, Floats, Laws, Pairs, Planes
 from lithobrake.dem.distance import Search
+from lithobrake.dem.masses import inverse_inertia_across, inverse_mass_at
 from lithobrake.dem.spring import across
-from lithobrake.dem.vectors import Vector, cross, dot, minus, row, times
+from lithobrake.dem.vectors import Vector, dot, minus, row, times
 
 # Largest c dt + (w dt)^2 / 4 that is allowed; 1 is the limit of stability.
 STABLE_SHARE = 0.8
@@ -48,13 +47,12 @@ def inverse_masses(bodies: Bodies, body: int, arm: Vector, normal: Vector) -> tu
     """Return what forces along and across (mean of both directions) the normal meet at an arm, 1/kg, and what couples
     across it meet in the mean, 1/(kg m2).
     """
-    inverse = bodies.inverse_inertia
+    along = inverse_mass_at(bodies, body, arm, normal, False)
+    couple = inverse_inertia_across(bodies, body, -1, normal)
+    inverse, mass = bodies.inverse_inertia, bodies.inverse_mass[body]
     trace = inverse[body, 0, 0] + inverse[body, 1, 1] + inverse[body, 2, 2]
-    all_ways = trace * dot(arm, arm) - dot(arm, times(inverse, body, arm))
-    lever = cross(arm, normal)
-    along = dot(lever, times(inverse, body, lever))
-    couple = 0.5 * (trace - dot(normal, times(inverse, body, normal)))
-    return bodies.inverse_mass[body] + along, bodies.inverse_mass[body] + 0.5 * (all_ways - along), couple
+    turning_all_ways = trace * dot(arm, arm) - dot(arm, times(inverse, body, arm))
+    return along, mass + 0.5 * (turning_all_ways - (along - mass)), couple
 
 
 @kernel
@@ -126,8 +124,10 @@ def write_rates(bodies: Bodies, planes: Planes, pairs: Pairs, laws: Laws, paper_
 
 
 @large_kernel
-def unsteadiness(bodies: Bodies, planes: Planes, pairs: Pairs, laws: Laws, paper_mass: bool, time_step: float) -> float:
-    """Return the largest c dt + (w dt)^2 / 4 of two that touch."""
+def largest_step(bodies: Bodies, planes: Planes, pairs: Pairs, laws: Laws, paper_mass: bool) -> float:
+    """Return the largest safe time step [s], infinite where nothing touches: there c dt + (w dt)^2 / 4 of two that
+    touch comes to the share that is allowed.
+    """
     write_rates(bodies, planes, pairs, laws, paper_mass)
     rates, most = bodies.rates, 0.0
     for pair in range(len(pairs.first)):
@@ -136,8 +136,8 @@ def unsteadiness(bodies: Bodies, planes: Planes, pairs: Pairs, laws: Laws, paper
             square, damping = rates[first, 0], rates[first, 1]
             if second >= 0:
                 square, damping = square + rates[second, 0], damping + rates[second, 1]
-            most = max(most, damping * time_step + 0.25 * square * time_step * time_step)
-    return most
+            most = max(most, damping + (damping * damping + STABLE_SHARE * square) ** 0.5)
+    return 2.0 * STABLE_SHARE / most if most > 0.0 else math.inf
 
 
 @kernel
@@ -148,15 +148,4 @@ def unsteady(
     """Whether the step is too large; looks at every so many steps, and where a contact alone turns far in one."""
     if taken % LOOK_STEPS > 0 and phase_squared < LOOK_PHASE * LOOK_PHASE:
         return False
-    return unsteadiness(bodies, planes, pairs, laws, paper_mass, time_step) > STABLE_SHARE
-
-
-def largest_step(bodies: Bodies, planes: Planes, pairs: Pairs, laws: Laws, paper_mass: bool) -> float:
-    """Return the largest safe time step [s], infinite where nothing touches."""
-    write_rates(bodies, planes, pairs, laws, paper_mass)
-    touching = pairs.overlap > 0.0
-    first, second = pairs.first[touching], pairs.second[touching]
-    both = bodies.rates[first] + np.where(second >= 0, 1.0, 0.0)[:, None] * bodies.rates[np.maximum(second, 0)]
-    square, damping = both[:, 0], both[:, 1]
-    most = float((damping + np.sqrt(damping * damping + STABLE_SHARE * square)).max(initial=0.0))
-    return 2.0 * STABLE_SHARE / most if most > 0.0 else math.inf
+    return time_step > largest_step(bodies, planes, pairs, laws, paper_mass)

@@ -83,9 +83,8 @@ def end_step(
 class Team:
     """Threads that share the bodies and pairs of an engine out in equal runs."""
 
-    def __init__(self, searches: list[Search], body_count: int, pairs: Pairs) -> None:
-        self.pool = ThreadPoolExecutor(len(searches) - 1)
-        self.searches = searches  # scratch, one for each thread
+    def __init__(self, pool: ThreadPoolExecutor, searches: list[Search], body_count: int, pairs: Pairs) -> None:
+        self.pool, self.searches = pool, searches  # scratch, one for each thread and for the one that calls
         self.body_count, self.pairs = body_count, pairs
         self.reactions = room_for(len(pairs.first))
         self.incidence = incidence_of(pairs, body_count)

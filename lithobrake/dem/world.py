@@ -195,8 +195,7 @@ class World:
             raise ValueError(f"World thread_count is {value!r}; allowed is a whole number of at least 1: change it")
         self._thread_count = int(value)
         if self._engine is not None:
-            self._engine.thread_count = self._thread_count
-            self._engine.gather(self._engine.pairs)
+            self._engine.share_among(self._thread_count)
 
     @property
     def largest_step(self) -> float:
@@ -204,10 +203,8 @@ class World:
 
         Source: see stability.py.
         """
-        engine = self._assembled()
-        return largest_step(
-            engine.bodies, engine.planes, engine.pairs, engine.laws, self.options["damping_mass"] == "paper"
-        )
+        engine, paper_mass = self._assembled(), self._step(0.0).paper_mass
+        return float(largest_step(engine.bodies, engine.planes, engine.pairs, engine.laws, paper_mass))
 
     def shortest_contact(self, speed: float) -> float:
         """Return the duration [s] of the shortest collision that can happen at a relative speed [m/s].

@@ -2,6 +2,7 @@
 
 import math
 
+import h5py
 import numpy as np
 import pytest
 
@@ -145,6 +146,16 @@ def test_loaded_world_takes_new_bodies_on_its_planes(tmp_path):
     loaded.add_body(Sphere(0.05), ROCK, (1, 0, 0.06))
     loaded.run(duration=0.3)
     assert loaded.position[1, 2] > 0.04
+
+
+def test_a_world_of_another_format_version_is_refused_in_a_sentence(tmp_path):
+    world = World((0, 0, -9.81), 1e-4)
+    world.add_body(Sphere(0.05), ROCK, (0, 0, 0.05))
+    world.save(tmp_path / "world.h5")
+    with h5py.File(tmp_path / "world.h5", "a") as file:
+        file.attrs["format_version"] = 1
+    with pytest.raises(ValueError, match=r"world\.h5 holds lithobrake world, version 1, .* make it again"):
+        World.load(tmp_path / "world.h5")
 
 
 def test_time_step_that_was_set_stays():
