@@ -52,22 +52,9 @@ def new(name: Annotated[str, typer.Argument(metavar="NAME", help="Name of the st
         print(f"Wrote {path}. Change what you like, then: lithobrake run {path}")
 
 
-@app.command()
-def run(
-    study: StudyPath,
-    out: OutPath = None,
-    workers: Workers = None,
-    executor: ExecutorName = "local",
-    scheduler: Scheduler = None,
-    logs: Logs = False,
-) -> None:
-    """Run a study from its file to its report; what its folder already has is kept."""
-    _make(study, out, "report", workers, _scheduler(executor, scheduler), logs)
-    _print_results(out or _default_folder(study))
-
-
-def _stage_command(name: str, what: str, until: str | None = None) -> None:
+def _study_command(name: str, what: str, until: str | None = None) -> None:
     """Add the command that runs a study up to a stage."""
+    last = until or name
 
     def command(
         study: StudyPath,
@@ -77,19 +64,25 @@ def _stage_command(name: str, what: str, until: str | None = None) -> None:
         scheduler: Scheduler = None,
         logs: Logs = False,
     ) -> None:
-        _make(study, out, until or name, workers, _scheduler(executor, scheduler), logs)
-        print(f"Done: {out or _default_folder(study)}")
+        _make(study, out, last, workers, _scheduler(executor, scheduler), logs)
+        folder = out or _default_folder(study)
+        if last == "report":
+            _print_results(folder)
+        else:
+            print(f"Done: {folder}")
 
-    app.command(name, help=f"{what} What comes before is made too, where it is missing.")(command)
+    app.command(name, help=what)(command)
 
 
-_stage_command("bed", "Pour and settle the beds, and land once at the medians.", until="landing")
-_stage_command("screen", "Run the screening design and fit all inputs.")
-_stage_command("refine", "Run the refined design and fit the inputs that matter.")
-_stage_command("test", "Make the test runs and score the expansions.")
-_stage_command("sample", "Sample the refined expansion.")
-_stage_command("fly", "Fly the samples that leave the surface.")
-_stage_command("rest", "Follow samples from bounce to bounce until they rest.")
+BEFORE = "What comes before is made too, where it is missing."
+_study_command("run", "Run a study from its file to its report; what its folder already has is kept.", until="report")
+_study_command("bed", f"Pour and settle the beds, and land once at the medians. {BEFORE}", until="landing")
+_study_command("screen", f"Run the screening design and fit all inputs. {BEFORE}")
+_study_command("refine", f"Run the refined design and fit the inputs that matter. {BEFORE}")
+_study_command("test", f"Make the test runs and score the expansions. {BEFORE}")
+_study_command("sample", f"Sample the refined expansion. {BEFORE}")
+_study_command("fly", f"Fly the samples that leave the surface. {BEFORE}")
+_study_command("rest", f"Follow samples from bounce to bounce until they rest. {BEFORE}")
 
 
 @app.command()

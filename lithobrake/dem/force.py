@@ -183,7 +183,8 @@ def act(
     if count == 0:
         part(pairs, pair)
         return 0.0
-    overlap, point, normal = spread(search, count, sunk, slope)
+    reach = cores.rounding[bodies.shape[first]] + (cores.rounding[bodies.shape[second]] if is_body else 0.0)
+    overlap, point, normal = spread(search, count, sunk, slope, reach)
     meeting = meet(bodies, first, second, point, normal, step.paper_mass)
     here, there = bodies.material[first], bodies.material[second] if is_body else planes.material[-1 - second]
     damping_ratio = laws.damping_ratio[here, there]

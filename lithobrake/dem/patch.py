@@ -67,8 +67,9 @@ def note_way_out(
 ) -> int:
     """Add the point at the shortest way out, if the cores still cross; return the number of points.
 
-    Its overlap is the depth of the cores alone. It keeps two flat bars apart of which no corner lies in the other: the
-    points at which their edges meet stay on the sides of both, however deep they are.
+    Its overlap is the depth of the cores and both roundings. It keeps two flat bars apart of which no corner lies in
+    the other: the points at which their edges meet stay on the sides of both, however deep they are. And it pushes out
+    the sharp edge through whose far side another has come, where the nearest points of both edges draw inward.
     """
     shapes, members = (bodies.shape[first], bodies.shape[second]), (first, second)
     found, _, _ = approach(search, cores, shapes, bodies.rotation, members, apart, 0.0)
@@ -78,7 +79,8 @@ def note_way_out(
     half_difference = 0.5 * (cores.rounding[shapes[0]] - cores.rounding[shapes[1]])
     middle = plus(scaled(0.5, plus(on_first, on_second)), scaled(half_difference, normal))
     point = plus(row(bodies.position, first), middle)
-    return note_point(search, count, WAY_OUT, -distance, point, normal)
+    reach = cores.rounding[shapes[0]] + cores.rounding[shapes[1]]
+    return note_point(search, count, WAY_OUT, reach - distance, point, normal)
 
 
 @kernel

@@ -51,13 +51,35 @@ def deepest_apart(search: Search, count: int) -> int:
 
 
 @kernel
-def spread(search: Search, count: int, sunk: float, slope: float) -> tuple[float, Vector, Vector]:
+def power_eight(ratio: float) -> tuple[float, float]:
+    """Return the eighth power, and an eighth of its derivative."""
+    square = ratio * ratio
+    sixth = square * square * square
+    return sixth * square, sixth * ratio
+
+
+@kernel
+def past_touch(ratio: float, start: float) -> tuple[float, float]:
+    """Return how far an eighth power has risen over its tangent at the start, and an eighth of the derivative of that.
+
+    Both start from nothing. Written out in powers of the growth, whose terms are all positive.
+    """
+    x = (ratio - start) / start
+    power, seventh = power_eight(start)
+    grown = x * x * (28.0 + x * (56.0 + x * (70.0 + x * (56.0 + x * (28.0 + x * (8.0 + x))))))
+    slope = x * (7.0 + x * (21.0 + x * (35.0 + x * (35.0 + x * (21.0 + x * (7.0 + x))))))
+    return power * grown, seventh * slope
+
+
+@kernel
+def spread(search: Search, count: int, sunk: float, slope: float, reach: float) -> tuple[float, Vector, Vector]:
     """Combine the overlaps of a patch into one, and write the share of each point in the force.
 
     D^8 = sum of d^8 over the corners + 1/4 (1 - sunk) sum of d^8 over edges apart + 1/4 sunk sum of d^8 over sunk
-    edges + 1/4 d^8 of the way out, with `sunk` a function of the deepest overlap and `slope` [1/m] its derivative. One
-    corner is Hertz exactly, four or eight equal ones are 1.5 or 1.9 times as stiff. Returns D [m], the centre of
-    pressure, and the unit normal of the whole force.
+    edges + d^8 of the way out less its tangent at d = reach, where the cores begin to cross, with `sunk` a function of
+    the deepest overlap, `slope` [1/m] its derivative, and `reach` [m] both roundings. One corner is Hertz exactly until
+    cores cross, four or eight equal ones are 1.5 or 1.9 times as stiff. Returns D [m], the centre of pressure, and the
+    unit normal of the whole force.
     """
     if count == 1 and search.family[0] == CORNER:
         search.share[0] = 1.0
@@ -66,19 +88,22 @@ def spread(search: Search, count: int, sunk: float, slope: float) -> tuple[float
     for k in range(count):
         deepest = max(deepest, search.depth[k])
     for k in range(count):
-        ratio = search.depth[k] / deepest
-        fourth = ratio * ratio * ratio * ratio
-        weight, family = 1.0, search.family[k]
+        ratio, family = search.depth[k] / deepest, search.family[k]
+        eighth, seventh = power_eight(ratio)
+        weight = 1.0
         if family == CORNER:
-            corners += fourth * fourth
+            corners += eighth
         elif family == EDGES_APART:
             weight = EDGE_WEIGHT * (1.0 - sunk)
-            apart += EDGE_WEIGHT * fourth * fourth
-        else:
+            apart += EDGE_WEIGHT * eighth
+        elif family == EDGES_SUNK:
             # Each pair of sunk edges gives two points.
-            weight = EDGE_WEIGHT * (0.5 * sunk if family == EDGES_SUNK else 1.0)
-            below += (0.5 if family == EDGES_SUNK else 1.0) * EDGE_WEIGHT * fourth * fourth
-        search.share[k] = weight * fourth * ratio * ratio * ratio
+            weight = 0.5 * EDGE_WEIGHT * sunk
+            below += 0.5 * EDGE_WEIGHT * eighth
+        else:
+            eighth, seventh = past_touch(ratio, reach / deepest)
+            corners += eighth
+        search.share[k] = weight * seventh
     total = corners + (1.0 - sunk) * apart + sunk * below
     root = ((total**0.5) ** 0.5) ** 0.5
     centre, force, weight = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), 0.0

@@ -102,12 +102,8 @@ def write_rates(bodies: Bodies, planes: Planes, pairs: Pairs, laws: Laws, paper_
     for pair in range(len(pairs.first)):
         if pairs.overlap[pair] == 0.0:
             continue
-        first, second, point, normal = (
-            pairs.first[pair],
-            pairs.second[pair],
-            row(pairs.point, pair),
-            row(pairs.normal, pair),
-        )
+        first, second = pairs.first[pair], pairs.second[pair]
+        point, normal = row(pairs.point, pair), row(pairs.normal, pair)
         here = bodies.material[first]
         ours = inverse_masses(bodies, first, minus(point, row(bodies.position, first)), normal)
         theirs = (0.0, 0.0, 0.0)

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -14,7 +14,13 @@ from lithobrake.touchdown.surface import height_map
 
 Progress = Callable[[float, str], None]
 FREE_FALL_DAMPING = 2.0  # drag while a bed comes to rest, in units of sqrt(gravity / diameter)
+RAIN_ROOM = 1.05  # room of a grain in the rain, in its bounding radii
+RAIN_PLACES = 20  # tried for each grain
+FALL_STEPS = 15.0  # at most, in the shortest contact: the bed does not remember how its grains bounced
+FALL_CHECKS = 40  # looks at the grains in the time that the highest falls
+FALLS_PATIENCE = 25  # after so many times of that the pour is given up
 FALLEN = 1e-3  # kinetic ratio below which the grains lie, and only have to settle
+PERIODS_LOOSENED = 10.0  # of a grain's small oscillation at its rest overlap under the local gravity
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -82,26 +88,30 @@ def pour_bed(recipe: BedRecipe, progress: Progress | None = None) -> Bed:
     world = boxed_world(grains, position, orientation, recipe.width, recipe.material, down, recipe.contact)
     recorder = Recorder(float(diameter.mean()))
     fall(world, recorder, recipe, tell)
-    # Faces pressed together deeper than their rounding may hop for ever: such a bed need only rest under less gravity.
-    patience = settling.PERIODS_PRESSED
-    settle(world, recorder, recipe, lambda share: tell(0.4 + 0.2 * share, "settling under the pour gravity"), patience)
-    lower_gravity(world, recorder, recipe, tell)
-    if not settle(world, recorder, recipe, lambda share: tell(0.8 + 0.2 * share, "settling under the local gravity")):
-        raise ValueError(settling.restless(world))
+    settle(world, recorder, recipe, lambda share: tell(0.4 + 0.2 * share, "settling under the pour gravity"))
+    world = loosened(world, recorder, recipe, grains, tell)
+    settle(world, recorder, recipe, lambda share: tell(0.7 + 0.2 * share, "settling under the local gravity"))
+    world.drag = 0.0
+    settle(world, recorder, recipe, lambda share: tell(0.9 + 0.1 * share, "settling under the local gravity"))
     return finished(world, recorder, recipe, grains, diameter)
 
 
 def rain(generator: np.random.Generator, grains: list[ConvexHull], width: tuple[float, float]) -> tuple[Floats, Floats]:
-    """Return positions and orientations of grains spread at random in a column above the box, none touching."""
-    reach = np.array([grain.bounding_radius for grain in grains])
-    cell = 2.1 * float(reach.max())
-    per_row = [max(1, int(w / cell)) for w in width]
-    cells = np.arange(len(grains))
-    index = np.stack([cells % per_row[0], cells // per_row[0] % per_row[1], cells // (per_row[0] * per_row[1])], axis=1)
-    pitch = np.array([width[0] / per_row[0], width[1] / per_row[1], cell])
-    centre = (index + 0.5) * pitch - np.array([0.5 * width[0], 0.5 * width[1], 0.0])
-    slack = np.maximum(0.5 * pitch - reach[:, None], 0.0)
-    position = centre + slack * generator.uniform(-1.0, 1.0, size=(len(grains), 3))
+    """Return positions and orientations of grains in a column above the box, none touching.
+
+    Each comes to lie as deep as its bounding sphere gets, over those before it, at the best of a few random places.
+    """
+    reach = RAIN_ROOM * np.array([grain.bounding_radius for grain in grains])
+    position = np.zeros((len(grains), 3))
+    for k, radius in enumerate(reach):
+        slack = np.maximum(0.5 * np.array(width) - radius, 0.0)
+        places = slack * generator.uniform(-1.0, 1.0, size=(RAIN_PLACES, 2))
+        touching = radius + reach[:k]
+        beside = ((places[:, None, :] - position[:k, :2]) ** 2).sum(axis=2)
+        over = np.sqrt(np.maximum(touching**2 - beside, 0.0))
+        heights = np.where(beside < touching**2, position[:k, 2] + over, radius).max(axis=1, initial=radius)
+        best = int(heights.argmin())
+        position[k] = *places[best], heights[best]
     return position, np.array([random_orientation(generator) for _ in grains])
 
 
@@ -110,47 +120,67 @@ def fall(world: World, recorder: Recorder, recipe: BedRecipe, tell: Progress) ->
     height = float(world.position[:, 2].max())
     fall_time = math.sqrt(2.0 * height / recipe.pour_gravity)
     speed = math.sqrt(2.0 * height * recipe.pour_gravity)
-    chunk = fall_time / 40.0
-    world.time_step = chunk / math.ceil(chunk * recipe.contact.steps_per_contact / world.shortest_contact(speed))
+    chunk = fall_time / FALL_CHECKS
+    steps = min(FALL_STEPS, recipe.contact.steps_per_contact)
+    world.time_step = chunk / math.ceil(chunk * steps / world.shortest_contact(speed))
     recorder.frame(world)
     calm = 0
-    for check in range(40 * 25):
+    for check in range(FALLS_PATIENCE * FALL_CHECKS):
         world.run(chunk)
         recorder.note(world)
-        if check < 40 and check % 8 == 7:
+        if check < FALL_CHECKS and check % 8 == 7:
             recorder.frame(world)
-        calm = calm + 1 if check >= 40 and recorder.rows[-1][1] < FALLEN else 0
-        tell(0.4 * (1.0 - math.exp(-check / 60.0)), "pouring grains")
+        if check == FALL_CHECKS:
+            world.drag = free_fall_drag(recipe.pour_gravity, recorder.diameter)
+        calm = calm + 1 if check > FALL_CHECKS and recorder.rows[-1][1] < FALLEN else 0
+        tell(0.4 * (1.0 - math.exp(-check / FALL_CHECKS)), "pouring grains")
         if calm >= 4:
             return
     raise ValueError(
-        f"the poured grains were not calm after {25 * fall_time:.3g} s: raise grain.friction or lower grain.restitution"
+        f"the poured grains were not calm after {FALLS_PATIENCE * fall_time:.3g} s: raise grain.friction or lower "
+        "grain.restitution"
     )
 
 
-def lower_gravity(world: World, recorder: Recorder, recipe: BedRecipe, tell: Progress) -> None:
-    """Lower the gravity exponentially from the pour's to the local one, slowly against the contacts."""
-    period = settling.rest_period(recipe.material, recorder.diameter, float(np.linalg.norm(recipe.gravity)))
-
-    def note(done: float) -> None:
-        recorder.note(world)
-        tell(0.6 + 0.2 * done, "lowering gravity")
-
-    settling.ramp(world, np.array(recipe.gravity), period, note)
-    recorder.frame(world)
+def free_fall_drag(gravity: float, diameter: float) -> float:
+    """Return a drag [1/s] at which what nothing holds up still falls fast enough to be seen by the criteria of rest."""
+    return FREE_FALL_DAMPING * math.sqrt(gravity / diameter)
 
 
-def settle(
-    world: World, recorder: Recorder, recipe: BedRecipe, tell: Callable[[float], None],
-    patience: float = settling.PERIODS_PATIENCE,
-) -> bool:  # fmt: skip
-    """Wait until the bed has been at rest, undamped, for long enough under the gravity at hand; tell whether it was.
+def loosened(
+    world: World, recorder: Recorder, recipe: BedRecipe, grains: list[ConvexHull], tell: Progress
+) -> World:  # fmt: skip
+    """Return the grains under the local gravity, rid of what the pour pressed into them.
 
-    A loose grain rocks and rolls on for minutes. Till the bed first rests, motion is damped at a few times the rate of
-    free fall through a grain: what nothing holds up still falls fast enough to be seen by the criteria.
+    A grain that friction wedges keeps the compression of the pour, and would throw up its neighbours when it slips: its
+    energy then counts by the local gravity. So the compression is let out at once, without friction, under a drag at
+    the frequency of a contact of the pour. Nothing moves on by more than about the overlap of that contact.
     """
-    strength = float(np.linalg.norm(world.gravity))
-    period = settling.rest_period(recipe.material, recorder.diameter, strength)
+    slippery = replace(recipe.material, friction=0.0)
+    pressed = settling.rest_period(recipe.material, recorder.diameter, recipe.pour_gravity)
+    loose = settling.rest_period(recipe.material, recorder.diameter, float(np.linalg.norm(recipe.gravity)))
+    start = world.time
+
+    def anew(material: Material, drag: float) -> World:
+        other = boxed_world(
+            grains, world.position, world.orientation, recipe.width, material, recipe.gravity, recipe.contact
+        )
+        other.time, other.drag = world.time, drag
+        return other
+
+    world = anew(slippery, 2.0 * math.pi / pressed)
+    while world.time < start + PERIODS_LOOSENED * loose:
+        settling.run_quietly(world, loose / settling.CHECKS_PER_PERIOD)
+        recorder.note(world)
+        tell(0.6 + 0.1 * (world.time - start) / (PERIODS_LOOSENED * loose), "letting out the pressure")
+    recorder.frame(world)
+    return anew(recipe.material, free_fall_drag(float(np.linalg.norm(recipe.gravity)), recorder.diameter))
+
+
+def settle(world: World, recorder: Recorder, recipe: BedRecipe, tell: Callable[[float], None]) -> None:
+    """Wait until the bed has been at rest for long enough under the gravity and the drag at hand."""
+    period = settling.rest_period(recipe.material, recorder.diameter, float(np.linalg.norm(world.gravity)))
+    held = settling.PERIODS_RELAXED if world.drag > 0.0 else settling.PERIODS_HELD
     checks = 0
 
     def check() -> None:
@@ -159,13 +189,10 @@ def settle(
         recorder.note(world)
         tell(1.0 - math.exp(-checks / (settling.PERIODS_HELD * settling.CHECKS_PER_PERIOD)))
 
-    world.drag = FREE_FALL_DAMPING * math.sqrt(strength / recorder.diameter)
-    calm = settling.rests(world, period, settling.PERIODS_RELAXED, lambda: recorder.at_rest, check, patience)
-    world.drag = 0.0
-    calm = calm and settling.rests(world, period, settling.PERIODS_HELD, lambda: recorder.at_rest, check, patience)
+    if not settling.rests(world, period, held, lambda: recorder.at_rest, check):
+        raise ValueError(settling.restless(world))
     recorder.frame(world)
     tell(1.0)
-    return calm
 
 
 def finished(world: World, recorder: Recorder, recipe: BedRecipe, grains: list[ConvexHull], diameter: Floats) -> Bed:

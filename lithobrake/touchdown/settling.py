@@ -18,8 +18,7 @@ UNBALANCED_FORCE = 1e-2  # of the mean contact force
 PERIODS_HELD = 10.0  # settled: both hold for so many periods of a grain's small oscillation at its rest overlap
 PERIODS_RELAXED = 5.0
 PERIODS_PATIENCE = 1200.0  # after so many the bed is given up
-PERIODS_PRESSED = 300.0  # after so many a bed need not rest under the pour gravity any more
-QUIET_SHARE = 0.25  # of the largest safe step, while nothing collides
+QUIET_SHARE = 0.5  # of the largest safe step, while nothing collides
 CHECKS_PER_PERIOD = 20
 
 
@@ -56,9 +55,10 @@ def unbalanced_force(world: World) -> float:
     return float(np.linalg.norm(resultant, axis=1).mean()) / carried if carried > 0.0 else math.inf
 
 
-def quiet_time_step(world: World, longest: float) -> float:
-    """Return a time step [s] that resolves the contacts at their present overlaps, at most `longest`."""
-    return min(longest, QUIET_SHARE * world.largest_step)
+def run_quietly(world: World, chunk: float) -> None:
+    """Run for a chunk [s] in steps, at least four, that resolve the contacts at their present overlaps."""
+    world.time_step = chunk / math.ceil(chunk / min(chunk / 4.0, QUIET_SHARE * world.largest_step))
+    world.run(chunk)
 
 
 def ramp(world: World, gravity: Floats, period: float, each_chunk: Callable[[float], None] = lambda _: None) -> None:
@@ -72,8 +72,7 @@ def ramp(world: World, gravity: Floats, period: float, each_chunk: Callable[[flo
     chunks = math.ceil(RAMP_STEPS * math.log(change / RAMP_LEFT)) if change > RAMP_LEFT else 0
     for k in range(1, chunks + 1):
         world.gravity = gravity + (start - gravity) * math.exp(-k / RAMP_STEPS) * (k < chunks)
-        world.time_step = chunk / math.ceil(chunk / quiet_time_step(world, chunk / 4.0))
-        world.run(chunk)
+        run_quietly(world, chunk)
         each_chunk(k / chunks)
     world.gravity = gravity.copy()
 
@@ -84,14 +83,12 @@ def rests(
     periods_held: float,
     at_rest: Callable[[], bool],
     each_check: Callable[[], None] = lambda: None,
-    patience: float = PERIODS_PATIENCE,
 ) -> bool:
     """Run until the world has been at rest for so many periods [s]; tell whether it was within its patience."""
     chunk = period / CHECKS_PER_PERIOD
     held = 0.0
-    for _ in range(int(patience * CHECKS_PER_PERIOD)):
-        world.time_step = chunk / math.ceil(chunk / quiet_time_step(world, chunk / 4.0))
-        world.run(chunk)
+    for _ in range(int(PERIODS_PATIENCE * CHECKS_PER_PERIOD)):
+        run_quietly(world, chunk)
         each_check()
         held = held + 1.0 / CHECKS_PER_PERIOD if at_rest() else 0.0
         if held >= periods_held:

@@ -1,0 +1,77 @@
+"""Hulls pressed together past their rounding, as by hard impacts: they part again, and keep their energy."""
+
+import math
+
+import numpy as np
+import pytest
+
+from lithobrake.dem import Box, ConvexHull, Material, World
+from lithobrake.touchdown.grains import make_grain
+
+PAIRS = 200
+
+
+def touching_distance(hulls: list[ConvexHull], turns: np.ndarray, along: np.ndarray, rock: Material) -> float:
+    """Distance of two centroids [m] at which the hulls begin to touch, by bisection."""
+    near, far = 0.0, 2.0 * max(hull.bounding_radius for hull in hulls)
+    for _ in range(25):
+        middle = 0.5 * (near + far)
+        touch = len(pressed(hulls, turns, middle * along, rock).contacts()) > 0
+        near, far = (middle, far) if touch else (near, middle)
+    return near
+
+
+def pressed(hulls: list[ConvexHull], turns: np.ndarray, apart: np.ndarray, rock: Material) -> World:
+    """Return a world of two hulls at rest."""
+    world = World((0, 0, 0), 1e-9)
+    for hull, turn, place in zip(hulls, turns, (np.zeros(3), apart), strict=True):
+        world.add_body(hull, rock, place, orientation=turn)
+    return world
+
+
+def test_hulls_pressed_into_each_other_part_with_their_energy():
+    """Depths of 1.3 to 2 times both roundings, where the cores cross: no way of lying in each other is one of rest."""
+    rock = Material(young_modulus=5e6, poisson_ratio=0.3, restitution=1.0, friction=0.0, density=2500.0)
+    generator = np.random.default_rng(3)
+    ratios = []
+    for _ in range(PAIRS):
+        hulls = [make_grain(generator, 14, 0.08) for _ in range(2)]
+        turns, along = generator.normal(size=(2, 4)), generator.normal(size=3)
+        turns /= np.linalg.norm(turns, axis=1)[:, None]
+        along /= np.linalg.norm(along)
+        depth = generator.uniform(1.3, 2.0) * sum(hull.rounding for hull in hulls)
+        world = pressed(hulls, turns, (touching_distance(hulls, turns, along, rock) - depth) * along, rock)
+        stored = world.energy()["elastic"]
+        world.time_step = 0.02 * world.largest_step
+        for _ in range(400):
+            world.run(steps=50)
+            if len(world.contacts()) == 0:
+                break
+            world.time_step = min(world.time_step, 0.02 * world.largest_step)
+        assert len(world.contacts()) == 0
+        ratios.append(world.energy()["kinetic"] / stored)
+    assert np.abs(np.array(ratios) - 1.0).max() < 0.02
+
+
+HALF = math.pi / 8.0  # half of the angle that stands a cube on its edge
+
+
+@pytest.mark.parametrize(
+    ("turns", "touching"),
+    [
+        (((math.cos(HALF), math.sin(HALF), 0, 0), (math.cos(HALF), 0, math.sin(HALF), 0)), "edges"),
+        (((1, 0, 0, 0), (1, 0, 0, 0)), "faces"),
+    ],
+)
+@pytest.mark.parametrize("depth", [2.0, 3.0, 4.0])
+def test_deep_contacts_are_hertz(turns, touching, depth):
+    """Cubes on crossed edges, or flush, at overlaps past both roundings: 2/5 K d^(5/2), though no corner lies inside."""
+    rock = Material(young_modulus=1e7, poisson_ratio=0.25, restitution=1.0, friction=0.0, density=2500.0)
+    cube = Box((1.0, 1.0, 1.0))
+    edge = math.sqrt(0.5) - (math.sqrt(2.0) - 1.0) * cube.rounding
+    overlap = 2.0 * depth * cube.rounding
+    world = World((0, 0, 0), 1e-9)
+    for turn, height in zip(turns, (0.0, 2.0 * (edge if touching == "edges" else 0.5) - overlap), strict=True):
+        world.add_body(cube, rock, (0, 0, height), orientation=turn)
+    stiffness = 4.0 / 3.0 * 1e7 / (2.0 * (1.0 - 0.25**2)) * math.sqrt(0.5 * math.cbrt(0.75 / math.pi))
+    assert world.energy()["elastic"] == pytest.approx(0.4 * stiffness * overlap**2.5, rel=0.03)
