@@ -65,7 +65,7 @@ HALF = math.pi / 8.0  # half of the angle that stands a cube on its edge
 )
 @pytest.mark.parametrize("depth", [2.0, 3.0, 4.0])
 def test_deep_contacts_are_hertz(turns, touching, depth):
-    """Cubes on crossed edges, or flush, at overlaps past both roundings: 2/5 K d^(5/2), though no corner lies inside."""
+    """Cubes on crossed edges, or flush, at overlaps past the rounding: 2/5 K d^(5/2), though no corner lies inside."""
     rock = Material(young_modulus=1e7, poisson_ratio=0.25, restitution=1.0, friction=0.0, density=2500.0)
     cube = Box((1.0, 1.0, 1.0))
     edge = math.sqrt(0.5) - (math.sqrt(2.0) - 1.0) * cube.rounding
