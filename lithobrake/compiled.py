@@ -5,6 +5,7 @@ Here the cache folder is named by a hash of all sources of the part that it belo
 """
 
 import hashlib
+import logging
 import os
 from collections.abc import Callable
 from functools import cache
@@ -13,6 +14,7 @@ from typing import Any, TypeVar
 
 import numba
 
+log = logging.getLogger(__name__)
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 
@@ -28,6 +30,13 @@ def cache_folder(part: str) -> Path:
         digest.update(str(source.relative_to(package)).encode() + b"\0" + source.read_bytes())
     root = os.environ.get("LITHOBRAKE_CACHE") or os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache")
     return Path(root) / "lithobrake" / f"{part}-{digest.hexdigest()[:16]}"
+
+
+@cache
+def announce(part: str, what: str) -> None:
+    """Say, once, that the kernels of a part have yet to be compiled; nothing where they lie on disk."""
+    if next(cache_folder(part).rglob("*.nbi"), None) is None:
+        log.warning("Compiling %s for this processor, once: about a minute.", what)
 
 
 def compiled(function: Function) -> Function:

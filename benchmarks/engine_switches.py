@@ -1,0 +1,118 @@
+"""What each trick of the soft-surface engine gains, and what it changes: the engine with all but one, beside all.
+
+    python benchmarks/engine_switches.py BED_FOLDER [SWITCH ...] [--out FILE]
+
+A switch turns one trick off in a copy of the package, which is compiled anew (about a minute of CPU time each) and timed
+in a process of its own on hull1000 and sph4000 at rest and on a CubeSat's touchdown. Medians of CPU times; the file
+tells as well how far the bodies end from where they do with every trick on, in their own sizes.
+"""
+
+import argparse
+import json
+import os
+import platform
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+# Name, file, what stands there, what stands there without the trick.
+SWITCHES = {
+    "sleeping pairs": ("listing.py", "        if travel < pairs.wake[pair]:", "        if False:"),
+    "gaps as margins": ("listing.py", "        return bound - reach\n", "        return margin\n"),
+    "names of faces": ("patch.py", "    if face >= 0:", "    if False:"),
+    "one point pushes once": ("force.py", "    if count == 1 and search.family[0] != EDGES_SUNK:", "    if False:"),
+    "skin of the list": ("engine.py", "SKIN = 0.2", "SKIN = 0.02"),
+    "one moment of inertia": ("body.py", "np.array_equal(body.inertia, body.inertia[0, 0] * np.eye(3))", "False"),
+    "look every 16 steps": ("stability.py", "LOOK_STEPS, LOOK_PHASE = 16", "LOOK_STEPS, LOOK_PHASE = 1"),
+    "kernels in their callers": ("../compiled.py", '"forceinline": True', '"forceinline": False'),
+}
+RELAX_STEPS, STEPS, REPEATS = 4000, 500, 5
+
+
+def measure(folder: Path, result: Path) -> None:
+    """Time the engine at hand, and keep where the bodies end."""
+    from grains_beds import ROCK, bed, relaxed
+    from grains_speed import cpu_seconds
+
+    from lithobrake.dem import Box
+
+    times, places = {}, {}
+    for case in ("hull1000", "sph4000", "touchdown"):
+        world = relaxed(bed(folder, case.replace("touchdown", "hull1000")), RELAX_STEPS)
+        if case == "touchdown":
+            top = float(world.position[np.linalg.norm(world.position[:, :2], axis=1) < 0.2, 2].max())
+            world.add_body(Box((0.2, 0.1, 0.1)), ROCK, (0, 0, top + 0.1), velocity=(0.15, 0, -0.3), mass=6.0)
+            world.run(steps=100)
+        times[case] = 1e3 * cpu_seconds(lambda world=world: world.run(steps=STEPS), REPEATS) / STEPS
+        places[case] = world.position
+    np.savez(result, **places, **{f"{case}_ms": value for case, value in times.items()})
+
+
+def engine_without(switch: str | None, place: Path) -> None:
+    """Put a copy of the package at a place, with one trick turned off."""
+    shutil.copytree(Path(__file__).parents[1] / "lithobrake", place / "lithobrake")
+    if switch is not None:
+        name, there, without = SWITCHES[switch]
+        path = place / "lithobrake" / "dem" / name
+        text = path.read_text()
+        if text.count(there) != 1:
+            raise ValueError(f"{path.name} holds {there!r} {text.count(there)} times; once is needed: mend SWITCHES")
+        path.write_text(text.replace(there, without))
+
+
+def run(switch: str | None, folder: Path) -> dict[str, Any]:
+    """Measure in a process of its own, with a copy of the package and a cache of its own."""
+    with tempfile.TemporaryDirectory() as scratch:
+        place = Path(scratch)
+        engine_without(switch, place)
+        found = place / "found.npz"
+        paths = os.pathsep.join([str(place), str(Path(__file__).parent)])
+        subprocess.run(
+            [sys.executable, __file__, str(folder.resolve()), "--measure", str(found)], check=True, cwd=place,
+            env={**os.environ, "PYTHONPATH": paths, "LITHOBRAKE_CACHE": str(place / "cache")},
+        )  # fmt: skip
+        return dict(np.load(found))
+
+
+def main() -> None:
+    """Measure the switches asked for."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("switch", nargs="*", default=[*SWITCHES])
+    parser.add_argument("--out", type=Path, default=Path(__file__).with_suffix(".json"))
+    parser.add_argument("--measure", type=Path, help=argparse.SUPPRESS)
+    chosen = parser.parse_args()
+    if chosen.measure:
+        measure(chosen.folder, chosen.measure)
+        return
+    rows: list[dict[str, Any]] = []
+    everything = run(None, chosen.folder)
+    for switch in chosen.switch:
+        without, row = run(switch, chosen.folder), {"without": switch}
+        for case in ("hull1000", "sph4000", "touchdown"):
+            with_ms, without_ms = float(everything[f"{case}_ms"]), float(without[f"{case}_ms"])
+            moved = np.abs(everything[case] - without[case]).max()
+            row[case] = {"with_ms": with_ms, "without_ms": without_ms, "gain": without_ms / with_ms,
+                         "largest_change_m": float(moved)}  # fmt: skip
+        rows.append(row)
+        document = {
+            "date": time.strftime("%Y-%m-%d"), "machine": f"{platform.machine()}, {sys.platform}",
+            "load": os.getloadavg()[0], "command": "python benchmarks/engine_switches.py BED_FOLDER", "rows": rows,
+        }  # fmt: skip
+        chosen.out.write_text(json.dumps(document, indent=1) + "\n")
+        gains = ", ".join(
+            f"{case} {row[case]['gain']:.2f} ({row[case]['largest_change_m']:.2g} m)"
+            for case in row
+            if case != "without"
+        )
+        print(f"{switch}: {gains}", flush=True)
+
+
+if __name__ == "__main__":
+    main()
