@@ -2,9 +2,9 @@
 
     python benchmarks/engine_switches.py BED_FOLDER [SWITCH ...] [--out FILE]
 
-A switch turns one trick off in a copy of the package, which is compiled anew (about a minute of CPU time each) and timed
-in a process of its own on hull1000 and sph4000 at rest and on a CubeSat's touchdown. Medians of CPU times; the file
-tells as well how far the bodies end from where they do with every trick on, in their own sizes.
+A switch turns one trick off in a copy of the package, which is compiled anew (a minute of CPU time) and timed in a
+process of its own on hull1000 and sph4000 at rest and on a CubeSat's touchdown. Medians of CPU times; beside them, how
+far from where they end with every trick on the bodies end.
 """
 
 import argparse
