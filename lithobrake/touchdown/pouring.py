@@ -88,11 +88,10 @@ def pour_bed(recipe: BedRecipe, progress: Progress | None = None) -> Bed:
     world = boxed_world(grains, position, orientation, recipe.width, recipe.material, down, recipe.contact)
     recorder = Recorder(float(diameter.mean()))
     fall(world, recorder, recipe, tell)
-    settle(world, recorder, recipe, lambda share: tell(0.4 + 0.2 * share, "settling under the pour gravity"))
+    settle(world, recorder, recipe, 0.0, lambda share: tell(0.4 + 0.2 * share, "settling under the pour gravity"))
     world = loosened(world, recorder, recipe, grains, tell)
-    settle(world, recorder, recipe, lambda share: tell(0.7 + 0.2 * share, "settling under the local gravity"))
-    world.drag = 0.0
-    settle(world, recorder, recipe, lambda share: tell(0.9 + 0.1 * share, "settling under the local gravity"))
+    undamped = settling.PERIODS_HELD
+    settle(world, recorder, recipe, undamped, lambda share: tell(0.7 + 0.3 * share, "settling under the local gravity"))
     return finished(world, recorder, recipe, grains, diameter)
 
 
@@ -174,22 +173,28 @@ def loosened(
         recorder.note(world)
         tell(0.6 + 0.1 * (world.time - start) / (PERIODS_LOOSENED * loose), "letting out the pressure")
     recorder.frame(world)
-    return anew(recipe.material, free_fall_drag(float(np.linalg.norm(recipe.gravity)), recorder.diameter))
+    return anew(recipe.material, 0.0)
 
 
-def settle(world: World, recorder: Recorder, recipe: BedRecipe, tell: Callable[[float], None]) -> None:
-    """Wait until the bed has been at rest for long enough under the gravity and the drag at hand."""
-    period = settling.rest_period(recipe.material, recorder.diameter, float(np.linalg.norm(world.gravity)))
-    held = settling.PERIODS_RELAXED if world.drag > 0.0 else settling.PERIODS_HELD
-    checks = 0
+def settle(
+    world: World, recorder: Recorder, recipe: BedRecipe, undamped: float, tell: Callable[[float], None]
+) -> None:  # fmt: skip
+    """Wait until the bed has been at rest for long enough: some periods under drag, then so many undamped ones."""
+    strength = float(np.linalg.norm(world.gravity))
+    period = settling.rest_period(recipe.material, recorder.diameter, strength)
+    drag = free_fall_drag(strength, recorder.diameter)
+    checks, calm = 0, 0
 
     def check() -> None:
-        nonlocal checks
+        nonlocal checks, calm
         checks += 1
         recorder.note(world)
+        calm = calm + 1 if recorder.at_rest else 0
+        world.drag = drag if calm < settling.PERIODS_RELAXED * settling.CHECKS_PER_PERIOD else 0.0
         tell(1.0 - math.exp(-checks / (settling.PERIODS_HELD * settling.CHECKS_PER_PERIOD)))
 
-    if not settling.rests(world, period, held, lambda: recorder.at_rest, check):
+    world.drag = drag
+    if not settling.rests(world, period, settling.PERIODS_RELAXED + undamped, lambda: recorder.at_rest, check):
         raise ValueError(settling.restless(world))
     recorder.frame(world)
     tell(1.0)
