@@ -263,7 +263,7 @@ def packed(name: str, seed: int, count: int = 800) -> Result:
         world.add_body(shape, stuff, place, orientation=random_orientation(generator))
     big = np.array([0.5 * width, 0.5 * width, 0.0])
     add_walls(world, -big, big, stuff, top=False)
-    world.time_step = world.shortest_contact(4.0) / 45.0
+    world.time_step = world.shortest_contact(4.0) / 60.0
     for drag, duration in ((0.0, 1.0), (5.0, 1.5), (0.0, 0.5)):
         world.drag = drag
         world.run(duration=duration)
