@@ -86,7 +86,7 @@ def main() -> None:
             page += ["Not run yet.", ""]
             continue
         found = json.loads(path.read_text())
-        page += [*lines(found["rows"], by, columns), ""]
+        page += [*lines(found["rows"], by, columns), "", *([found["note"], ""] if "note" in found else [])]
         page += [f"`{found['command']}`, {found['date']}, {found['machine']}, {found['cpu_s']} s of CPU time.", ""]
         if name == "froude":
             draw_froude(found["rows"])
