@@ -91,19 +91,21 @@ def land(bed: Bed, lander: Lander, landing: Landing, frame_count: int = 0) -> Ou
 
 
 def relax(world: World, bed: Bed, landing: Landing) -> None:
-    """Let the stored bed find its rest under the landing's material and gravity, with extra damping that fades.
+    """Let the stored bed find its rest under the landing's material and gravity, under damping that fades.
 
     Where the site's acceleration vanishes or points outward nothing settles: the bed rests under the gravity it was
     made with, and the site's acts from the touchdown on.
     """
     gravity = np.array(landing.gravity)
     rests_under = gravity if gravity[2] < 0.0 else np.array(bed.gravity)
-    period = settling.rest_period(landing.grain, bed.grain_diameter, float(np.linalg.norm(rests_under)))
+    strength = float(np.linalg.norm(rests_under))
+    period = settling.rest_period(landing.grain, bed.grain_diameter, strength)
+    lasting = settling.free_fall_drag(strength, bed.grain_diameter)
     world.drag = 2.0 * RELAX_DAMPING * 2.0 * math.pi / period
     settling.ramp(world, rests_under, period)
 
     def fade() -> None:
-        world.drag *= math.exp(-1.0 / (RELAX_FADING * settling.CHECKS_PER_PERIOD))
+        world.drag = max(lasting, world.drag * math.exp(-1.0 / (RELAX_FADING * settling.CHECKS_PER_PERIOD)))
 
     def at_rest() -> bool:
         return settling.unbalanced_force(world) < settling.UNBALANCED_FORCE

@@ -13,7 +13,6 @@ from lithobrake.touchdown.grains import GrainSizes, make_grain, random_orientati
 from lithobrake.touchdown.surface import height_map
 
 Progress = Callable[[float, str], None]
-FREE_FALL_DAMPING = 2.0  # drag while a bed comes to rest, in units of sqrt(gravity / diameter)
 RAIN_ROOM = 1.05  # room of a grain in the rain, in its bounding radii
 RAIN_PLACES = 20  # tried for each grain
 FALL_STEPS = 15.0  # at most, in the shortest contact: the bed does not remember how its grains bounced
@@ -130,7 +129,7 @@ def fall(world: World, recorder: Recorder, recipe: BedRecipe, tell: Progress) ->
         if check < FALL_CHECKS and check % 8 == 7:
             recorder.frame(world)
         if check == FALL_CHECKS:
-            world.drag = free_fall_drag(recipe.pour_gravity, recorder.diameter)
+            world.drag = settling.free_fall_drag(recipe.pour_gravity, recorder.diameter)
         calm = calm + 1 if check > FALL_CHECKS and recorder.rows[-1][1] < FALLEN else 0
         tell(0.4 * (1.0 - math.exp(-check / FALL_CHECKS)), "pouring grains")
         if calm >= 4:
@@ -139,11 +138,6 @@ def fall(world: World, recorder: Recorder, recipe: BedRecipe, tell: Progress) ->
         f"the poured grains were not calm after {FALLS_PATIENCE * fall_time:.3g} s: raise grain.friction or lower "
         "grain.restitution"
     )
-
-
-def free_fall_drag(gravity: float, diameter: float) -> float:
-    """Return a drag [1/s] at which what nothing holds up still falls fast enough to be seen by the criteria of rest."""
-    return FREE_FALL_DAMPING * math.sqrt(gravity / diameter)
 
 
 def loosened(
@@ -182,7 +176,7 @@ def settle(
     """Wait until the bed has been at rest for long enough: some periods under drag, then so many undamped ones."""
     strength = float(np.linalg.norm(world.gravity))
     period = settling.rest_period(recipe.material, recorder.diameter, strength)
-    drag = free_fall_drag(strength, recorder.diameter)
+    drag = settling.free_fall_drag(strength, recorder.diameter)
     checks, calm = 0, 0
 
     def check() -> None:
