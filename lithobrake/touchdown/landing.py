@@ -104,7 +104,7 @@ def relax(world: World, bed: Bed, landing: Landing) -> None:
     world.drag = 2.0 * RELAX_DAMPING * 2.0 * math.pi / period
     settling.ramp(world, rests_under, period)
 
-    def fade() -> None:
+    def fade(_: float) -> None:
         world.drag = max(lasting, world.drag * math.exp(-1.0 / (RELAX_FADING * settling.CHECKS_PER_PERIOD)))
 
     def at_rest() -> bool:

@@ -1,12 +1,12 @@
 """Making a bed: grains rain into an open box under a strong gravity, which is then lowered to the local one."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from lithobrake.dem import ConvexHull, Material, World
+from lithobrake.dem import ConvexHull, Material, Shape, World
 from lithobrake.touchdown import settling
 from lithobrake.touchdown.bed import Bed, ContactModel, Floats, boxed_world
 from lithobrake.touchdown.grains import GrainSizes, make_grain, random_orientation
@@ -94,7 +94,7 @@ def pour_bed(recipe: BedRecipe, progress: Progress | None = None) -> Bed:
     return finished(world, recorder, recipe, grains, diameter)
 
 
-def rain(generator: np.random.Generator, grains: list[ConvexHull], width: tuple[float, float]) -> tuple[Floats, Floats]:
+def rain(generator: np.random.Generator, grains: Sequence[Shape], width: tuple[float, float]) -> tuple[Floats, Floats]:
     """Return positions and orientations of grains in a column above the box, none touching.
 
     Each comes to lie as deep as its bounding sphere gets, over those before it, at the best of a few random places.
@@ -154,20 +154,21 @@ def loosened(
     loose = settling.rest_period(recipe.material, recorder.diameter, float(np.linalg.norm(recipe.gravity)))
     start = world.time
 
-    def anew(material: Material, drag: float) -> World:
+    def anew(material: Material) -> World:
         other = boxed_world(
             grains, world.position, world.orientation, recipe.width, material, recipe.gravity, recipe.contact
         )
-        other.time, other.drag = world.time, drag
+        other.time = world.time
         return other
 
-    world = anew(slippery, 2.0 * math.pi / pressed)
+    world = anew(slippery)
+    world.drag = 2.0 * math.pi / pressed
     while world.time < start + PERIODS_LOOSENED * loose:
         settling.run_quietly(world, loose / settling.CHECKS_PER_PERIOD)
         recorder.note(world)
         tell(0.6 + 0.1 * (world.time - start) / (PERIODS_LOOSENED * loose), "letting out the pressure")
     recorder.frame(world)
-    return anew(recipe.material, 0.0)
+    return anew(recipe.material)
 
 
 def settle(
@@ -177,18 +178,19 @@ def settle(
     strength = float(np.linalg.norm(world.gravity))
     period = settling.rest_period(recipe.material, recorder.diameter, strength)
     drag = settling.free_fall_drag(strength, recorder.diameter)
-    checks, calm = 0, 0
+    first = len(recorder.rows)
 
-    def check() -> None:
-        nonlocal checks, calm
-        checks += 1
+    def at_rest() -> bool:
         recorder.note(world)
-        calm = calm + 1 if recorder.at_rest else 0
-        world.drag = drag if calm < settling.PERIODS_RELAXED * settling.CHECKS_PER_PERIOD else 0.0
+        return recorder.at_rest
+
+    def check(held: float) -> None:
+        world.drag = drag if held < settling.PERIODS_RELAXED else 0.0
+        checks = len(recorder.rows) - first
         tell(1.0 - math.exp(-checks / (settling.PERIODS_HELD * settling.CHECKS_PER_PERIOD)))
 
     world.drag = drag
-    if not settling.rests(world, period, settling.PERIODS_RELAXED + undamped, lambda: recorder.at_rest, check):
+    if not settling.rests(world, period, settling.PERIODS_RELAXED + undamped, at_rest, check):
         raise ValueError(settling.restless(world))
     recorder.frame(world)
     tell(1.0)

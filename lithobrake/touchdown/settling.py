@@ -67,10 +67,10 @@ def run_quietly(world: World, chunk: float) -> None:
     world.run(chunk)
 
 
-def ramp(world: World, gravity: Floats, period: float, each_chunk: Callable[[float], None] = lambda _: None) -> None:
+def ramp(world: World, gravity: Floats, period: float) -> None:
     """Bring the gravity of a world exponentially to another [m/s2], slowly against a grain's period [s] there.
 
-    Calls each_chunk with the share done. Changed at once, what was compressed would throw up the grains.
+    Changed at once, what was compressed would throw up the grains.
     """
     start = world.gravity.copy()
     change = float(np.linalg.norm(start - gravity) / np.linalg.norm(gravity))
@@ -79,7 +79,6 @@ def ramp(world: World, gravity: Floats, period: float, each_chunk: Callable[[flo
     for k in range(1, chunks + 1):
         world.gravity = gravity + (start - gravity) * math.exp(-k / RAMP_STEPS) * (k < chunks)
         run_quietly(world, chunk)
-        each_chunk(k / chunks)
     world.gravity = gravity.copy()
 
 
@@ -88,16 +87,18 @@ def rests(
     period: float,
     periods_held: float,
     at_rest: Callable[[], bool],
-    each_check: Callable[[], None] = lambda: None,
+    each_check: Callable[[float], None] = lambda held: None,
 ) -> bool:
-    """Run until the world has been at rest for so many periods [s]; tell whether it was within its patience."""
-    chunk = period / CHECKS_PER_PERIOD
-    held = 0.0
+    """Run until the world has been at rest for so many periods [s]; tell whether it was within its patience.
+
+    Calls each_check with the number of periods for which it has been at rest.
+    """
+    calm = 0
     for _ in range(int(PERIODS_PATIENCE * CHECKS_PER_PERIOD)):
-        run_quietly(world, chunk)
-        each_check()
-        held = held + 1.0 / CHECKS_PER_PERIOD if at_rest() else 0.0
-        if held >= periods_held:
+        run_quietly(world, period / CHECKS_PER_PERIOD)
+        calm = calm + 1 if at_rest() else 0
+        each_check(calm / CHECKS_PER_PERIOD)
+        if calm >= periods_held * CHECKS_PER_PERIOD:
             return True
     return False
 
