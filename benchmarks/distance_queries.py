@@ -15,11 +15,10 @@ from lithobrake.dem.arrays import Bodies, Cores, Pairs, Planes
 from lithobrake.dem.body import Body, bodies_of
 from lithobrake.dem.closest import approach, way_out
 from lithobrake.dem.distance import CROSSING, Search, search_for, weighted
-from lithobrake.dem.features import write_relative
-from lithobrake.dem.listing import DEEP, KIND, SPHERES, list_bodies, list_plane, margin_of, name_of
+from lithobrake.dem.listing import DEEP, SPHERES, kind_of, list_bodies, list_plane, margin_of, name_of
 from lithobrake.dem.neighbours import pairs_of
 from lithobrake.dem.patch import feature
-from lithobrake.dem.vectors import dot, minus, put, row, scaled, transposed_times
+from lithobrake.dem.vectors import dot, minus, put, row, scaled
 
 ROCK = Material(young_modulus=1e7, poisson_ratio=0.25, restitution=0.5, friction=0.5, density=2500.0)
 # Names that the list of a pair has room for.
@@ -167,13 +166,11 @@ def ask_kept(
 def nearest_named(cores: Cores, bodies: Bodies, one: int, two: int, pair: Pairs, search: Search, reach: float) -> float:
     """Return the smallest distance of the named features, at most `reach` [m]."""
     apart = minus(row(bodies.position, two), row(bodies.position, one))
-    if pair.term_count[0] > 0 and name_of(pair, 0, 0) // KIND == SPHERES:
+    if pair.term_count[0] > 0 and kind_of(name_of(pair, 0, 0)) == SPHERES:
         return min(reach, dot(apart, apart) ** 0.5)
-    write_relative(bodies.rotation, one, two, search.relative)
-    there, smallest = transposed_times(bodies.rotation, one, apart), reach
-    for name in range(pair.term_count[0]):
-        shapes = (bodies.shape[one], bodies.shape[two])
-        smallest = min(smallest, feature(name_of(pair, 0, name), cores, shapes, search, there, reach)[2])
+    smallest = reach
+    for k in range(pair.term_count[0]):
+        smallest = min(smallest, feature(name_of(pair, 0, k), bodies, cores, one, two, apart, reach)[2])
     return smallest
 
 

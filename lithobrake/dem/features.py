@@ -134,7 +134,11 @@ def closest_shares(a: Vector, along_a: Vector, b: Vector, along_b: Vector) -> tu
     determinant = dot(turn, turn)
     parallel = determinant <= PARALLEL * aa * bb
     if not parallel:
-        share = min(max((ad * bb - bd * ab) / determinant, 0.0), 1.0)
+        share = (ad * bb - bd * ab) / determinant
+        other = (share * ab - bd) / bb
+        if 0.0 < share < 1.0 and 0.0 < other < 1.0:
+            return share, other, False
+        share = min(max(share, 0.0), 1.0)
     else:
         near, far = ad / aa, (ad + ab) / aa
         low, high = max(0.0, min(near, far)), min(1.0, max(near, far))

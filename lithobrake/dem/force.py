@@ -11,8 +11,8 @@ from lithobrake.dem.arrays import Bodies, Cores, Floats, Laws, Pairs, Planes, Re
 from lithobrake.dem.couples import let_go, resist_rolling, resist_twisting
 from lithobrake.dem.distance import Search
 from lithobrake.dem.masses import inverse_inertia_across, inverse_inertia_along, inverse_mass_at
-from lithobrake.dem.patch import touch_bodies, touch_plane
-from lithobrake.dem.shares import EDGES_SUNK, spin_radii, spread
+from lithobrake.dem.patch import touch
+from lithobrake.dem.shares import EDGES_SUNK, spin_radii
 from lithobrake.dem.spring import across, hold, stored, turned_spring
 from lithobrake.dem.stability import tilting
 from lithobrake.dem.vectors import Vector, add, cross, dot, minus, plus, put, row, scaled
@@ -59,10 +59,10 @@ def point_velocity(linear: Floats, spin: Floats, body: int, arm: Vector) -> Vect
 
 
 @kernel
-def meet(bodies: Bodies, first: int, second: int, point: Vector, normal: Vector, paper_mass: bool) -> Meeting:
+def meet(bodies: Bodies, first: int, second: int, point: Vector, normal: Vector, whole_mass: bool) -> Meeting:
     """Return how a body meets another, or a plane (second < 0)."""
     arm = minus(point, row(bodies.position, first))
-    inverse_mass = inverse_mass_at(bodies, first, arm, normal, paper_mass)
+    inverse_mass = inverse_mass_at(bodies, first, arm, normal, whole_mass)
     curvature = bodies.curvature[first]
     now = scaled(-1.0, point_velocity(bodies.velocity_predicted, bodies.spin_predicted, first, arm))
     moved = scaled(-1.0, point_velocity(bodies.velocity, bodies.half_spin, first, arm))
@@ -70,7 +70,7 @@ def meet(bodies: Bodies, first: int, second: int, point: Vector, normal: Vector,
     twist = 0.5 * dot(row(bodies.half_spin, first), normal)
     if second >= 0:
         arm = minus(point, row(bodies.position, second))
-        inverse_mass += inverse_mass_at(bodies, second, arm, normal, paper_mass)
+        inverse_mass += inverse_mass_at(bodies, second, arm, normal, whole_mass)
         curvature += bodies.curvature[second]
         now = plus(now, point_velocity(bodies.velocity_predicted, bodies.spin_predicted, second, arm))
         moved = plus(moved, point_velocity(bodies.velocity, bodies.half_spin, second, arm))
@@ -176,25 +176,22 @@ def act(
     if pairs.term_count[pair] == 0:
         part(pairs, pair)
         return 0.0
-    if is_body:
-        count, sunk, slope = touch_bodies(pair, bodies, cores, pairs, search)
-    else:
-        count, sunk, slope = touch_plane(pair, bodies, cores, planes, pairs, search), 0.0, 0.0
+    count, overlap, point, normal, through_centroids = touch(pair, bodies, cores, planes, pairs, search)
     if count == 0:
         part(pairs, pair)
         return 0.0
-    reach = cores.rounding[bodies.shape[first]] + (cores.rounding[bodies.shape[second]] if is_body else 0.0)
-    overlap, point, normal = spread(search, count, sunk, slope, reach)
-    meeting = meet(bodies, first, second, point, normal, step.paper_mass)
+    # A force through the centroid turns nothing: it meets the whole mass.
+    meeting = meet(bodies, first, second, point, normal, through_centroids or step.paper_mass)
     here, there = bodies.material[first], bodies.material[second] if is_body else planes.material[-1 - second]
     damping_ratio = laws.damping_ratio[here, there]
+    radius = 1.0 / meeting.curvature
     # The root is taken of the product: a length scaled by a power of two then scales every bit.
-    root = (overlap / meeting.curvature) ** 0.5
+    root = (overlap * radius) ** 0.5
     stiffness = 4.0 / 3.0 * laws.young_modulus[here, there] * root
     shear_stiffness = 8.0 * laws.shear_modulus[here, there] * root
-    dashpot = 2.0 * damping_ratio * (1.25 * stiffness / meeting.inverse_mass) ** 0.5
+    dashpot = 2.0 * damping_ratio * (1.25 * stiffness * (1.0 / meeting.inverse_mass)) ** 0.5
     elastic = stiffness * overlap
-    cohesion = laws.cohesion_force[here, there] + laws.cohesion_line[here, there] / meeting.curvature
+    cohesion = laws.cohesion_force[here, there] + laws.cohesion_line[here, there] * radius
     pressure = press(
         search, count, bodies, first, second, meeting, normal, elastic, cohesion, dashpot, step.time_step
     )  # fmt: skip
@@ -206,7 +203,7 @@ def act(
     force = plus(pressure.force, central)
     torque = plus(pressure.torque, cross(minus(point, row(bodies.position, first)), central))
 
-    lever = laws.spinning_friction[here, there] / meeting.curvature
+    lever = laws.spinning_friction[here, there] * radius
     square, mean = spin_radii(search, count, point, normal)
     square += lever * lever
     if square > 0.0 or pairs.twist_stiffness[pair] > 0.0:
@@ -218,7 +215,7 @@ def act(
         pairs.lost[pair, FRICTION] += slid
         pairs.lost[pair, DAMPING] += damped
     pairs.tilt_stiffness[pair] = tilting(search, count, point, normal, overlap, stiffness)
-    lever = laws.rolling_friction[here, there] / meeting.curvature
+    lever = laws.rolling_friction[here, there] * radius
     if lever > 0.0:
         rolling, lost = resist_rolling(
             pair, pairs, normal, meeting.spin, meeting.twist, lever, pressure.repulsion, stiffness, damping_ratio,

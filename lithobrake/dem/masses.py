@@ -6,9 +6,9 @@ from lithobrake.dem.vectors import Vector, cross, dot, times
 
 
 @kernel
-def inverse_mass_at(bodies: Bodies, body: int, arm: Vector, normal: Vector, paper_mass: bool) -> float:
-    """Return one over the mass that a force along the normal meets at the contact point, n . W . n."""
-    if paper_mass:
+def inverse_mass_at(bodies: Bodies, body: int, arm: Vector, normal: Vector, whole: bool) -> float:
+    """Return one over the mass that a force along the normal meets at the contact point, or the whole mass."""
+    if whole:
         return bodies.inverse_mass[body]
     turn = cross(arm, normal)
     return bodies.inverse_mass[body] + dot(turn, times(bodies.inverse_inertia, body, turn))

@@ -4,15 +4,56 @@ The overlap of a feature is what is left of both rounding radii when its distanc
 that cross go on so: the distance of a corner changes its sign, and pairs of edges have by then passed into sunk ones.
 """
 
+from typing import NamedTuple
+
 from lithobrake.compiled import kernel, large_kernel
 from lithobrake.dem.arrays import Bodies, Cores, Pairs, Planes
 from lithobrake.dem.closest import approach, way_out
 from lithobrake.dem.distance import CROSSING, Search
 from lithobrake.dem.features import edge_of, edge_to_edge, point_to_core, stands_above, write_relative
-from lithobrake.dem.listing import CORNER_OF_FIRST, CORNER_OF_SECOND, DEEP, KIND, PLACE, SPHERES, name_of
-from lithobrake.dem.shares import CORNER, EDGES_APART, SINK_FROM, WAY_OUT, note_point, sinking
+from lithobrake.dem.listing import (
+    CORNER_OF_FIRST,
+    CORNER_OF_SECOND,
+    DEEP,
+    SPHERES,
+    feature_name,
+    kind_of,
+    name_of,
+    places_of,
+)
+from lithobrake.dem.shares import CORNER, EDGES_APART, SINK_FROM, WAY_OUT, note_point, sinking, spread
 from lithobrake.dem.sunk import note_sunk_edges
 from lithobrake.dem.vectors import Vector, dot, minus, plus, put, row, scaled, times, transposed_times
+
+
+class Touch(NamedTuple):
+    """Where the members of a pair touch."""
+
+    points: int  # number of points of the patch, whose shares are in the scratch; 0 where apart
+    overlap: float  # m
+    point: Vector  # m, centre of pressure
+    normal: Vector  # from first to second
+    through_centroids: bool  # whether the normal runs so: two spheres
+
+
+@kernel
+def touch(pair: int, bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, search: Search) -> Touch:
+    """Return where the members of a pair touch that has features to look at."""
+    first, second = pairs.first[pair], pairs.second[pair]
+    if kind_of(pairs.term[pair, 0]) == SPHERES and pairs.term_count[pair] > 0:
+        overlap, point, normal = touch_spheres(bodies, first, second)
+        search.share[0], search.family[0] = 1.0, CORNER
+        return Touch(1 if overlap > 0.0 else 0, overlap, point, normal, True)
+    reach = cores.rounding[bodies.shape[first]]
+    if second >= 0:
+        count, sunk, slope = touch_bodies(pair, bodies, cores, pairs, search)
+        reach += cores.rounding[bodies.shape[second]]
+    else:
+        count, sunk, slope = touch_plane(pair, bodies, cores, planes, pairs, search), 0.0, 0.0
+    if count == 0:
+        return Touch(0, 0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), False)
+    overlap, point, normal = spread(search, count, sunk, slope, reach)
+    return Touch(count, overlap, point, normal, False)
 
 
 @kernel
@@ -27,7 +68,7 @@ def touch_plane(pair: int, bodies: Bodies, cores: Cores, planes: Planes, pairs: 
     down = transposed_times(bodies.rotation, body, outward)
     level = planes.offset[plane] + rounding - dot(outward, row(bodies.position, body))
     for k in range(pairs.term_count[pair]):
-        corner = row(cores.vertex, cores.vertex_start[shape] + name_of(pairs, pair, k) // PLACE)
+        corner = row(cores.vertex, cores.vertex_start[shape] + places_of(name_of(pairs, pair, k))[0])
         depth = level - dot(corner, down)
         foot = plus(row(bodies.position, body), times(bodies.rotation, body, corner))
         point = minus(foot, scaled(rounding, outward))
@@ -40,17 +81,15 @@ def touch_bodies(pair: int, bodies: Bodies, cores: Cores, pairs: Pairs, search: 
     """Write the points where two bodies touch. Returns their number, and what `spread` needs to know of edges."""
     first, second = pairs.first[pair], pairs.second[pair]
     apart = minus(row(bodies.position, second), row(bodies.position, first))
-    if pairs.term_count[pair] > 0 and pairs.term[pair, 0] // KIND == SPHERES:
-        return touch_spheres(bodies, first, second, apart, search), 0.0, 0.0
-    shapes = (bodies.shape[first], bodies.shape[second])
-    write_relative(bodies.rotation, first, second, search.relative)
-    there = transposed_times(bodies.rotation, first, apart)
     crossing = pairs.term_count[pair] == DEEP
     if crossing:
-        count, sunk, slope = note_all_corners(search, bodies, cores, first, second, there), 1.0, 0.0
+        count, sunk, slope = note_all_corners(search, bodies, cores, first, second, apart), 1.0, 0.0
     else:
-        count, sunk, slope = note_listed(search, pairs, pair, bodies, cores, there)
+        count, sunk, slope = note_listed(search, pairs, pair, bodies, cores, apart)
     if sunk > 0.0:
+        shapes = (bodies.shape[first], bodies.shape[second])
+        write_relative(bodies.rotation, first, second, search.relative)
+        there = transposed_times(bodies.rotation, first, apart)
         apart_count, count = count, note_sunk_edges(search, count, cores, shapes, there)
         for k in range(apart_count, count):
             put(search.point, k, plus(row(bodies.position, first), times(bodies.rotation, first, row(search.point, k))))
@@ -85,7 +124,7 @@ def note_way_out(
 
 @kernel
 def note_listed(
-    search: Search, pairs: Pairs, pair: int, bodies: Bodies, cores: Cores, there: Vector
+    search: Search, pairs: Pairs, pair: int, bodies: Bodies, cores: Cores, apart: Vector
 ) -> tuple[int, float, float]:
     """Write the listed features that overlap; return their number, how far edges have passed into sunk ones, and the
     derivative of that by the deepest overlap (1/m).
@@ -94,9 +133,9 @@ def note_listed(
     count, corners, deepest = 0, 0, 0.0
     for k in range(pairs.term_count[pair]):
         name = name_of(pairs, pair, k)
-        count = note_feature(search, count, bodies, cores, first, second, there, name)
+        count = note_feature(search, count, bodies, cores, first, second, apart, name)
         # Corners are listed before edges.
-        if name // KIND <= CORNER_OF_SECOND:
+        if kind_of(name) <= CORNER_OF_SECOND:
             corners = count
     for k in range(count):
         deepest = max(deepest, search.depth[k])
@@ -108,53 +147,55 @@ def note_listed(
 
 
 @large_kernel
-def note_all_corners(search: Search, bodies: Bodies, cores: Cores, first: int, second: int, there: Vector) -> int:
+def note_all_corners(search: Search, bodies: Bodies, cores: Cores, first: int, second: int, apart: Vector) -> int:
     """Write all corners of two bodies that overlap; return their number."""
     count = 0
     for kind in range(2):
         shape = bodies.shape[first if kind == 0 else second]
         for k in range(cores.vertex_start[shape + 1] - cores.vertex_start[shape]):
-            term = kind * KIND + k * PLACE
-            count = note_feature(search, count, bodies, cores, first, second, there, term)
+            name = feature_name(kind, k, 0)
+            count = note_feature(search, count, bodies, cores, first, second, apart, name)
     return count
 
 
 @kernel
 def note_feature(
-    search: Search, count: int, bodies: Bodies, cores: Cores, first: int, second: int, there: Vector, term: int
+    search: Search, count: int, bodies: Bodies, cores: Cores, first: int, second: int, apart: Vector, name: int
 ) -> int:
     """Add a feature to the patch if it overlaps; return the number of points."""
-    shapes = (bodies.shape[first], bodies.shape[second])
-    reach = cores.rounding[shapes[0]] + cores.rounding[shapes[1]]
-    half_difference = 0.5 * (cores.rounding[shapes[0]] - cores.rounding[shapes[1]])
-    on_first, normal, distance = feature(term, cores, shapes, search, there, reach)
+    roundings = (cores.rounding[bodies.shape[first]], cores.rounding[bodies.shape[second]])
+    reach, half_difference = roundings[0] + roundings[1], 0.5 * (roundings[0] - roundings[1])
+    on_first, normal, distance = feature(name, bodies, cores, first, second, apart, reach)
     if distance >= reach:
         return count
     middle = plus(on_first, scaled(0.5 * distance + half_difference, normal))
-    point = plus(row(bodies.position, first), times(bodies.rotation, first, middle))
-    family = CORNER if term // KIND <= CORNER_OF_SECOND else EDGES_APART
-    return note_point(search, count, family, reach - distance, point, times(bodies.rotation, first, normal))
+    family = CORNER if kind_of(name) <= CORNER_OF_SECOND else EDGES_APART
+    return note_point(search, count, family, reach - distance, plus(row(bodies.position, first), middle), normal)
 
 
 @kernel
 def feature(
-    term: int, cores: Cores, shapes: tuple[int, int], search: Search, there: Vector, reach: float
+    name: int, bodies: Bodies, cores: Cores, first: int, second: int, apart: Vector, reach: float
 ) -> tuple[Vector, Vector, float]:
-    """Return point on the first core, normal to the second and distance of a feature, in the first body's frame."""
-    kind, i, j = term // KIND, term % KIND // PLACE, term % PLACE
+    """Return point on the first core, about its centroid, normal to the second and distance of a feature."""
+    kind, (i, j), turn = kind_of(name), places_of(name), bodies.rotation
+    shape, other_shape = bodies.shape[first], bodies.shape[second]
     if kind == CORNER_OF_FIRST:
-        corner = row(cores.vertex, cores.vertex_start[shapes[0]] + i)
-        seen = transposed_times(search.relative, 0, minus(corner, there))
-        distance, outward = over(cores, shapes[1], seen, j - 1, reach)
-        return corner, scaled(-1.0, times(search.relative, 0, outward)), distance
+        corner = times(turn, first, row(cores.vertex, cores.vertex_start[shape] + i))
+        seen = transposed_times(turn, second, minus(corner, apart))
+        distance, outward = over(cores, other_shape, seen, j - 1, reach)
+        return corner, scaled(-1.0, times(turn, second, outward)), distance
     if kind == CORNER_OF_SECOND:
-        corner = plus(times(search.relative, 0, row(cores.vertex, cores.vertex_start[shapes[1]] + i)), there)
-        distance, outward = over(cores, shapes[0], corner, j - 1, reach)
-        return minus(corner, scaled(distance, outward)), outward, distance
-    begin, along = edge_of(cores, shapes[0], i)
-    other, other_along = edge_of(cores, shapes[1], j)
-    other = plus(times(search.relative, 0, other), there)
-    here, hither = edge_to_edge(begin, along, other, times(search.relative, 0, other_along))
+        corner = plus(times(turn, second, row(cores.vertex, cores.vertex_start[other_shape] + i)), apart)
+        distance, outward = over(cores, shape, transposed_times(turn, first, corner), j - 1, reach)
+        normal = times(turn, first, outward)
+        return minus(corner, scaled(distance, normal)), normal, distance
+    begin, along = edge_of(cores, shape, i)
+    other, other_along = edge_of(cores, other_shape, j)
+    here, hither = edge_to_edge(
+        times(turn, first, begin), times(turn, first, along),
+        plus(times(turn, second, other), apart), times(turn, second, other_along),
+    )  # fmt: skip
     between = minus(hither, here)
     square = dot(between, between)
     if square >= reach * reach:
@@ -178,11 +219,12 @@ def over(cores: Cores, shape: int, point: Vector, face: int, reach: float) -> tu
 
 
 @kernel
-def touch_spheres(bodies: Bodies, first: int, second: int, apart: Vector, search: Search) -> int:
-    """Write the point where two spheres touch."""
+def touch_spheres(bodies: Bodies, first: int, second: int) -> tuple[float, Vector, Vector]:
+    """Return overlap (not above 0: none), middle and normal of two spheres."""
+    apart = minus(row(bodies.position, second), row(bodies.position, first))
     distance = dot(apart, apart) ** 0.5
-    depth = bodies.contact_radius[first] + bodies.contact_radius[second] - distance
+    overlap = bodies.contact_radius[first] + bodies.contact_radius[second] - distance
     # Spheres about one centre: every normal is as good as another.
     normal = scaled(1.0 / distance, apart) if distance > 0.0 else (0.0, 0.0, 1.0)
-    middle = plus(row(bodies.position, first), scaled(bodies.contact_radius[first] - 0.5 * depth, normal))
-    return note_point(search, 0, CORNER, depth, middle, normal)
+    half = scaled(bodies.contact_radius[first] - 0.5 * overlap, normal)
+    return overlap, plus(row(bodies.position, first), half), normal

@@ -14,6 +14,7 @@ from lithobrake.dem.vectors import Vector, dot, minus, plus, put, row, scaled
 CORNER, EDGES_APART, EDGES_SUNK, WAY_OUT = 0, 1, 2, 3
 # Weight of a pair of edges beside a corner: where an edge ends, all edges of that corner meet the same place.
 EDGE_WEIGHT = 0.25
+EDGE_ALONE = EDGE_WEIGHT**0.125  # overlap of a patch that is one pair of edges, over the overlap of that pair
 # Between these parts of the rounding, edges apart pass into sunk ones; the cores themselves stay apart till 1.
 SINK_FROM, SINK_TO = 0.5, 0.9
 
@@ -81,10 +82,12 @@ def spread(search: Search, count: int, sunk: float, slope: float, reach: float) 
     cores cross, four or eight equal ones are 1.5 or 1.9 times as stiff. Returns D [m], the centre of pressure, and the
     unit normal of the whole force.
     """
-    if count == 1 and search.family[0] == CORNER:
-        search.share[0] = 1.0
-        return search.depth[0], row(search.point, 0), row(search.normal, 0)
+    if count == 1 and (search.family[0] == CORNER or (search.family[0] == EDGES_APART and sunk == 0.0)):
+        share = 1.0 if search.family[0] == CORNER else EDGE_ALONE
+        search.share[0] = share
+        return share * search.depth[0], row(search.point, 0), row(search.normal, 0)
     deepest, corners, apart, below = 0.0, 0.0, 0.0, 0.0
+    centre, force, weights = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), 0.0
     for k in range(count):
         deepest = max(deepest, search.depth[k])
     for k in range(count):
@@ -103,22 +106,22 @@ def spread(search: Search, count: int, sunk: float, slope: float, reach: float) 
         else:
             eighth, seventh = past_touch(ratio, reach / deepest)
             corners += eighth
-        search.share[k] = weight * seventh
+        share = weight * seventh
+        search.share[k] = share
+        centre = plus(centre, scaled(share, row(search.point, k)))
+        force = plus(force, scaled(share, row(search.normal, k)))
+        weights += share
     total = corners + (1.0 - sunk) * apart + sunk * below
     root = ((total**0.5) ** 0.5) ** 0.5
-    centre, force, weight = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), 0.0
     for k in range(count):
         search.share[k] *= root / total
-        centre = plus(centre, scaled(search.share[k], row(search.point, k)))
-        force = plus(force, scaled(search.share[k], row(search.normal, k)))
-        weight += search.share[k]
     if slope > 0.0:
         # As the patch deepens, edges apart pass into sunk ones: that too changes the energy.
         search.share[deepest_apart(search, count)] += 0.125 * (below - apart) * slope * deepest * root / total
     size = dot(force, force) ** 0.5
     # Forces of all directions that cancel: every normal is as good as another.
     normal = scaled(1.0 / size, force) if size > 0.0 else (0.0, 0.0, 1.0)
-    return deepest * root, scaled(1.0 / weight, centre), normal
+    return deepest * root, scaled(1.0 / weights, centre), normal
 
 
 @kernel

@@ -51,18 +51,22 @@ def stored(force_squared: float, stiffness: float) -> float:
 
 
 @kernel
+def within(vector: Vector, limit: float) -> Vector:
+    """Return a vector, shortened to the limit where it is longer."""
+    square = dot(vector, vector)
+    return vector if square <= limit * limit else scaled(limit / square**0.5, vector)
+
+
+@kernel
 def hold(
     before: Vector, stiffness_before: float, stiffness: float, way: Vector, rate: Vector, dashpot: float, limit: float
 ) -> Hold:
     """Stretch a spring by a way, or an angle, and add a dashpot against its rate; neither passes the limit."""
-    spring = minus(scaled(unloaded(stiffness_before, stiffness), before), scaled(stiffness, way))
-    stretch = dot(spring, spring) ** 0.5
-    if stretch > limit:
-        spring = scaled(limit / stretch, spring)
-    given = stored(dot(before, before), stiffness_before) - 0.5 * dot(plus(before, spring), way)
-    total = minus(spring, scaled(dashpot, rate))
-    pull = dot(total, total) ** 0.5
-    if pull > limit:
-        total = scaled(limit / pull, total)
+    softness_before = 1.0 / stiffness_before if stiffness_before > 0.0 else 0.0
+    kept = stiffness * softness_before if stiffness < stiffness_before else 1.0
+    spring = minus(scaled(kept, before), scaled(stiffness, way))
+    spring = within(spring, limit)
+    given = 0.5 * dot(before, before) * softness_before - 0.5 * dot(plus(before, spring), way)
+    total = within(minus(spring, scaled(dashpot, rate)), limit)
     slid = given - stored(dot(spring, spring), stiffness)
     return Hold(spring, total, slid, dot(minus(spring, total), rate))
