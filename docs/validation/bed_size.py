@@ -4,7 +4,7 @@
 
 Several beds of each size, since one bed differs from the next. Writes bed_size.csv, a line for each landing as it ends,
 and bed_size.json with the means and their standard errors, anew after each bed. Places and attitudes are drawn once,
-and are the same on all beds.
+and are the same on all beds. Landings that stand in bed_size.csv already are not run again: delete it to start anew.
 """
 
 import argparse
@@ -15,6 +15,7 @@ import platform
 import sys
 import time
 from collections import Counter
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -32,6 +33,7 @@ LANDER = Lander(shape=Box((0.1, 0.1, 0.1)), mass=1.3, inertia=None, material=ROC
 OUTPUTS = ("speed_out", "elevation_out", "spin_out")
 
 
+@cache
 def bed(name: str, seed: int, folder: Path) -> Bed:
     """Return a bed, poured unless it lies there."""
     path = folder / f"bed_size_{name}_{seed}.h5"
@@ -46,8 +48,12 @@ def bed(name: str, seed: int, folder: Path) -> Bed:
     return Bed.load(path)
 
 
-def landings(bed: Bed, name: str, seed: int, placements: int, table: Path) -> list[dict[str, object]]:
-    """Land at each place in each way."""
+def landings(name: str, seed: int, placements: int, folder: Path) -> list[dict[str, object]]:
+    """Land at each place in each way on a bed, and note it in the table; what stands there is done."""
+    table = folder / "bed_size.csv"
+    done = {
+        (row["landing"], row["placement"]): row for row in noted(table) if (row["bed"], row["seed"]) == (name, seed)
+    }
     rows: list[dict[str, object]] = []
     generator = np.random.default_rng(11)
     for placement in range(placements):
@@ -55,18 +61,30 @@ def landings(bed: Bed, name: str, seed: int, placements: int, table: Path) -> li
         attitude = tuple(generator.normal(size=4))
         azimuth = float(generator.uniform(-math.pi, math.pi))
         for way, (speed, incidence_deg) in LANDINGS.items():
+            if (way, placement) in done:
+                rows.append(done[way, placement])
+                continue
             landing = Landing(
                 grain=ROCK, speed=speed, incidence=math.radians(incidence_deg), azimuth=azimuth, place=place,
                 orientation=attitude, spin=(0.0, 0.0, 0.0), gravity=(0.0, 0.0, -GRAVITY), time_limit=60.0,
                 contact=CONTACT,
             )  # fmt: skip
-            outcome = land(bed, LANDER, landing)
+            outcome = land(bed(name, seed, folder), LANDER, landing)
             rows.append(
                 {"bed": name, "seed": seed, "landing": way, "placement": placement, "status": outcome.status}
                 | {key: outcome.outputs[key] for key in OUTPUTS}
             )
             note(rows[-1], table)
     return rows
+
+
+def noted(table: Path) -> list[dict[str, object]]:
+    """Return the lines of the table on disk."""
+    if not table.exists():
+        return []
+    kinds = {"bed": str, "seed": int, "landing": str, "placement": int, "status": str} | dict.fromkeys(OUTPUTS, float)
+    with table.open(newline="") as file:
+        return [{key: kinds[key](value) for key, value in row.items()} for row in csv.DictReader(file)]
 
 
 def note(row: dict[str, object], table: Path) -> None:
@@ -114,13 +132,11 @@ def main() -> None:
     parser.add_argument("--placements", type=int, default=10)
     parser.add_argument("--out", type=Path, default=Path(__file__).parent)
     chosen = parser.parse_args()
-    table = chosen.out / "bed_size.csv"
-    table.unlink(missing_ok=True)
     start, rows = time.process_time(), []
     rule = {way: smallest_bed(LANDER, ROCK, DIAMETER, speed) for way, (speed, _) in LANDINGS.items()}
     turns = [(name, seed) for k in range(6) for name in BEDS for seed in SEEDS[name][k : k + 1]]
     for name, seed in turns:
-        rows += landings(bed(name, seed, chosen.out), name, seed, chosen.placements, table)
+        rows += landings(name, seed, chosen.placements, chosen.out)
         document = {
             "date": time.strftime("%Y-%m-%d"), "machine": f"{platform.machine()}, {sys.platform}",
             "command": f"python docs/validation/bed_size.py --placements {chosen.placements}",
