@@ -169,13 +169,13 @@ def slope_of(position: Floats, radius: float, length: float) -> float:
     return math.degrees(math.atan(-np.polyfit(middle, top, 1)[0]))
 
 
-def drained(corners: int, friction: float, seed: int, count: int = 1000) -> Result:
+def drained(corners: int, friction: float, seed: int, count: int = 600) -> Result:
     """Fill a narrow box with hulls of so many points (0: spheres), open one end above its lowest two layers, and
     measure the slope of what stays on them. It is filled high enough for 45 deg: where height_left is 1 the slope
     does not reach the back, and the angle is too small.
     """
     generator = np.random.default_rng(seed)
-    radius, length, depth = 0.01, 0.24, 0.1
+    radius, length, depth = 0.01, 0.2, 0.08
     stuff, smooth = rock(young_modulus=2e7, friction=friction), rock(young_modulus=2e7, friction=0.0)
     world = World((0.0, 0.0, -9.81), None)
     sphere = Sphere(radius)
@@ -190,7 +190,7 @@ def drained(corners: int, friction: float, seed: int, count: int = 1000) -> Resu
     # What falls over the ledge is caught below: a body in free fall for ever would wear out the neighbour list.
     world.add_plane((0, 0, -12.0 * radius), (0, 0, 1), stuff)
     gate = world.add_plane((length, 0, 0), (-1, 0, 0), stuff)
-    world.time_step = world.shortest_contact(2.0) / 30.0
+    world.time_step = world.shortest_contact(3.0) / 50.0
     world.drag = 2.0
     world.run(duration=1.0)
     world.drag = 0.0
@@ -199,11 +199,11 @@ def drained(corners: int, friction: float, seed: int, count: int = 1000) -> Resu
     # What lies at the bottom stays behind the gate: a floor of grains, as rough as the heap.
     world.move_plane(gate, bodies=[int(k) for k in np.flatnonzero(world.position[:, 2] < 4.0 * radius)])
     staying: NDArray[np.intp] = np.arange(count)
-    for _ in range(80):
+    for _ in range(40):
         world.run(duration=0.05)
         staying = np.flatnonzero((world.position[:, 0] < length) & (world.position[:, 2] > 0.0))
         world.move_plane(0, bodies=[int(k) for k in staying])
-        if np.abs(world.velocity[staying]).max() < 1e-3:
+        if np.abs(world.velocity[staying]).max() < 5e-3:
             break
     left = world.position[staying]
     kind = f"{corners}-point hull" if corners else "sphere"
@@ -214,8 +214,8 @@ def drained(corners: int, friction: float, seed: int, count: int = 1000) -> Resu
 
 def repose() -> Iterator[Result]:
     """Angle of repose of spheres and of hulls. Expected: about 25 deg rounded, 40 deg angular (Kleinhans 2011)."""
-    for seed in (1, 2, 3):
-        for corners, friction in ((0, 0.6), (14, 0.6), (14, 0.9), (6, 0.9)):
+    for seed in (1, 2):
+        for corners, friction in ((0, 0.6), (14, 0.6), (6, 0.9)):
             yield drained(corners, friction, seed)
 
 
@@ -266,8 +266,8 @@ def packed(name: str, seed: int, count: int = 800) -> Result:
         world.add_body(shape, stuff, place, orientation=turn)
     big = np.array([0.5 * width, 0.5 * width, 0.0])
     add_walls(world, -big, big, stuff, top=False)
-    world.time_step = world.shortest_contact(6.0) / 60.0
-    for drag, duration in ((0.0, 1.0), (5.0, 1.5), (0.0, 0.5)):
+    world.time_step = world.shortest_contact(2.0) / 60.0
+    for drag, duration in ((5.0, 5.0), (0.0, 0.5)):  # it falls at 2 m/s, from up to 9 m
         world.drag = drag
         world.run(duration=duration)
     top = np.quantile(world.position[:, 2], 0.7)

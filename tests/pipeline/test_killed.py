@@ -18,6 +18,7 @@ from lithobrake.atomic import lock_holder
 from lithobrake.pipeline import STAGES
 
 STUDY = """
+seed = 2
 [bed]
 grain_count = 12
 width = [0.3, 0.3]
