@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from lithobrake.dem.arrays import Bodies, Cores, Floats, Integers, Laws, Planes
 from lithobrake.dem.material import Material, pair_law
@@ -30,12 +31,37 @@ class Plane:
     meets: frozenset[int] | None
 
 
-def unit(vector: object, name: str) -> Floats:
+def new_body(shape: Shape, material: Material, mass: float | None, inertia: ArrayLike | None) -> Body:
+    """Return a body; its mass and inertia follow from the material's density unless given.
+
+    Raises ValueError for a mass that is not positive or an inertia that is not symmetric positive definite.
+    """
+    if mass is not None and not 0.0 < mass < np.inf:
+        raise ValueError(f"add_body mass is {mass!r} kg; allowed is a finite value above 0: change it")
+    mass = material.density * shape.volume if mass is None else float(mass)
+    tensor = shape.inertia_per_density * (mass / shape.volume) if inertia is None else np.array(inertia, dtype=float)
+    symmetric = tensor.shape == (3, 3) and np.isfinite(tensor).all() and np.array_equal(tensor, tensor.T)
+    if not symmetric or np.linalg.eigvalsh(tensor).min() <= 0.0:
+        raise ValueError(
+            f"add_body inertia is {tensor!r} kg m2; allowed is a symmetric positive definite 3 x 3 tensor: mend it"
+        )
+    return Body(shape, material, mass, tensor)
+
+
+def vector(value: ArrayLike, name: str) -> Floats:
+    """Return three finite numbers. Raises ValueError for anything else."""
+    array = np.array(value, dtype=np.float64)
+    if array.shape != (3,) or not np.isfinite(array).all():
+        raise ValueError(f"{name} is {value!r}; allowed are three finite numbers: change it")
+    return array
+
+
+def unit(value: ArrayLike, name: str) -> Floats:
     """Return a vector of unit length. Raises ValueError where it has none."""
-    array = np.array(vector, dtype=np.float64)
+    array = np.array(value, dtype=np.float64)
     length = float(np.sqrt((array * array).sum()))
     if not 0.0 < length < np.inf:
-        raise ValueError(f"{name} is {vector!r}; allowed is any finite vector other than zero: change it")
+        raise ValueError(f"{name} is {value!r}; allowed is any finite vector other than zero: change it")
     return array / length
 
 

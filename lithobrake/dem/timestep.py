@@ -61,3 +61,18 @@ def shortest_contact_duration(
             # A dashpot above half of the critical damping is stiffer than its spring: explicit steps must follow it.
             shortest = min(shortest, duration / max(1.0, 2.0 * law.damping_ratio))
     return shortest
+
+
+def top_speed(
+    position: Floats, velocity: Floats, spin: Floats, reach: Floats, places: list[Floats], gravity: Floats
+) -> float:  # fmt: skip
+    """Return a bound on the speeds [m/s] at which bodies meet: now, and after falling through all that there is.
+
+    position, velocity, spin [body_count, 3]; reach [m] holds their bounding radii, places [m] points of planes.
+    """
+    speed = np.linalg.norm(velocity, axis=1) + np.linalg.norm(spin, axis=1) * reach
+    down = gravity / max(float(np.linalg.norm(gravity)), np.finfo(float).tiny)
+    points = np.vstack([position - reach[:, None] * down, position + reach[:, None] * down, *places])
+    fall = float(np.ptp(points @ gravity))
+    relative = 2.0 * float(speed.max()) if len(speed) > 1 else float(speed.max())
+    return max(relative, math.sqrt(2.0 * fall))

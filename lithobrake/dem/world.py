@@ -11,7 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 from lithobrake.dem import energy, timestep
 from lithobrake.dem.advance import DIVERGED, FIRST_CONTACT, LAST_CONTACT, PEAK_FORCE, STEP_TOO_LARGE
 from lithobrake.dem.arrays import Floats, Pairs
-from lithobrake.dem.body import Body, Plane, rotation_matrices, unit
+from lithobrake.dem.body import Body, Plane, new_body, rotation_matrices, unit, vector
+from lithobrake.dem.contacts import contacts_of
 from lithobrake.dem.engine import Engine, no_pairs
 from lithobrake.dem.force import LOSSES, Step
 from lithobrake.dem.material import PAIR_RULES, SHEAR_MODULUS_RULES, Material
@@ -19,12 +20,6 @@ from lithobrake.dem.shape import Shape, equivalent_radius
 from lithobrake.dem.stability import largest_step
 
 DAMPING_MASSES = ("contact", "paper")
-CONTACT = np.dtype(
-    [
-        ("body_a", np.int64), ("body_b", np.int64), ("point", np.float64, 3), ("normal", np.float64, 3),
-        ("overlap", np.float64), ("normal_force", np.float64), ("tangential_force", np.float64, 3),
-    ]
-)  # fmt: skip
 
 
 class World:
@@ -56,7 +51,7 @@ class World:
             raise ValueError(
                 f"World time_step is {time_step!r} s; allowed is a finite value above 0, or None: change it"
             )
-        self.gravity = np.array(_vector(gravity, "World gravity"))
+        self.gravity = vector(gravity, "World gravity")
         self.drag = 0.0  # 1/s, viscous damping of all motion, for settling only
         self.time = 0.0  # s
         self.options = {
@@ -98,26 +93,14 @@ class World:
         centroid, frame of the shape] follow from the material's density unless given. Raises ValueError for values
         that are not finite, a mass that is not positive or an inertia that is not positive definite.
         """
-        if mass is not None and not 0.0 < mass < math.inf:
-            raise ValueError(f"add_body mass is {mass!r} kg; allowed is a finite value above 0: change it")
-        mass = material.density * shape.volume if mass is None else float(mass)
-        tensor = (
-            shape.inertia_per_density * (mass / shape.volume) if inertia is None else np.array(inertia, dtype=float)
-        )
-        symmetric = tensor.shape == (3, 3) and np.isfinite(tensor).all() and np.array_equal(tensor, tensor.T)
-        if not symmetric or np.linalg.eigvalsh(tensor).min() <= 0.0:
-            raise ValueError(
-                f"add_body inertia is {tensor!r} kg m2; allowed is a symmetric positive definite 3 x 3 tensor: mend it"
-            )
+        body = new_body(shape, material, mass, inertia)
         quaternion = unit(orientation, "add_body orientation")
-        body = Body(shape, material, mass, tensor)
         rotation = rotation_matrices(quaternion[None])[0]
-        spinning = np.array(_vector(spin, "add_body spin"))
         row = {
-            "position": np.array(_vector(position, "add_body position")),
-            "velocity": np.array(_vector(velocity, "add_body velocity")),
+            "position": vector(position, "add_body position"),
+            "velocity": vector(velocity, "add_body velocity"),
             "quaternion": quaternion,
-            "angular_momentum": rotation @ (tensor @ (rotation.T @ spinning)),
+            "angular_momentum": rotation @ (body.inertia @ (rotation.T @ vector(spin, "add_body spin"))),
         }
         self._disassemble()
         self._state = {name: np.vstack([array, row[name]]) for name, array in self._state.items()}
@@ -133,7 +116,7 @@ class World:
         bodies: Iterable[int] | None = None,
     ) -> int:
         """Add a half-space of matter behind a plane; `normal` points out of it. It meets the bodies listed, or all."""
-        place = np.array(_vector(point, "add_plane point"))
+        place = vector(point, "add_plane point")
         meets = None if bodies is None else frozenset(bodies)
         self._disassemble()
         self.planes.append(Plane(place, unit(normal, "add_plane normal"), material, meets))
@@ -148,7 +131,7 @@ class World:
         """
         number = range(len(self.planes))[plane]
         old = self.planes[number]
-        place = old.point if point is None else np.array(_vector(point, "move_plane point"))
+        place = old.point if point is None else vector(point, "move_plane point")
         meets = old.meets if bodies is None else frozenset(bodies)
         given, chosen = self._given_time_step, self._time_step
         self._disassemble()
@@ -175,7 +158,10 @@ class World:
     def time_step(self) -> float:
         """Time step [s]."""
         if self._time_step is None:
-            return self.shortest_contact(self._top_speed()) / timestep.STEPS_PER_CONTACT
+            reach = np.array([body.shape.bounding_radius for body in self.bodies])
+            places = [plane.point for plane in self.planes]
+            speed = timestep.top_speed(self.position, self.velocity, self.spin, reach, places, self.gravity)
+            return self.shortest_contact(speed) / timestep.STEPS_PER_CONTACT
         return self._time_step
 
     @time_step.setter
@@ -267,20 +253,6 @@ class World:
             f"the motion diverged at t = {self.time:.6g} s: positions are no longer finite numbers"
         )
 
-    def _top_speed(self) -> float:
-        """Return a bound on the speeds [m/s] of the bodies: now, and after falling through all that there is."""
-        reach = np.array([body.shape.bounding_radius for body in self.bodies])
-        speed = np.linalg.norm(self.velocity, axis=1) + np.linalg.norm(self.spin, axis=1) * reach
-        ends = [
-            self.position + sign * reach[:, None] * unit_gravity
-            for sign in (-1.0, 1.0)
-            for unit_gravity in [self.gravity / max(float(np.linalg.norm(self.gravity)), np.finfo(float).tiny)]
-        ]
-        points = np.vstack([*ends, *[plane.point[None] for plane in self.planes]])
-        fall = float(np.ptp(points @ self.gravity))
-        relative = 2.0 * float(speed.max()) if len(self.bodies) > 1 else float(speed.max())
-        return max(relative, math.sqrt(2.0 * fall))
-
     def _step(self, time_step: float) -> Step:
         return Step(time_step, float(self.drag), tuple(self.gravity), self.options["damping_mass"] == "paper")
 
@@ -356,18 +328,12 @@ class World:
         return self._assembled().bodies.torque.copy()
 
     def contacts(self) -> NDArray[Any]:
-        """Return the contacts (overlap > 0): structured array, see DESIGN of the fields below.
+        """Return the contacts (overlap > 0), a structured array.
 
         body_a, body_b (plane k is -1 - k), point [m], normal from a to b, overlap [m], normal_force [N],
         tangential_force on b [N, 3].
         """
-        pairs = self._assembled().pairs
-        touching = np.flatnonzero(pairs.overlap > 0.0)
-        result = np.zeros(len(touching), dtype=CONTACT)
-        result["body_a"], result["body_b"] = pairs.first[touching], pairs.second[touching]
-        for name in ("point", "normal", "overlap", "normal_force", "tangential_force"):
-            result[name] = getattr(pairs, name)[touching]
-        return result
+        return contacts_of(self._assembled().pairs)
 
     def energy(self) -> dict[str, float]:
         """Return the energy ledger [J]: see energy.ledger: kinetic, potential, elastic, cohesive, lost ones, total."""
@@ -387,11 +353,3 @@ class World:
         from lithobrake.dem import checkpoint
 
         return checkpoint.load(path)
-
-
-def _vector(value: Sequence[float], name: str) -> tuple[float, float, float]:
-    """Return three finite floats."""
-    array = np.asarray(value, dtype=np.float64)
-    if array.shape != (3,) or not np.isfinite(array).all():
-        raise ValueError(f"{name} is {value!r}; allowed are three finite numbers: change it")
-    return (float(array[0]), float(array[1]), float(array[2]))
