@@ -20,6 +20,7 @@ FALL_CHECKS = 40  # looks at the grains in the time that the highest falls
 FALLS_PATIENCE = 25  # after so many times of that the pour is given up
 FALLEN = 1e-3  # kinetic ratio below which the grains lie, and only have to settle
 PERIODS_LOOSENED = 10.0  # of a grain's small oscillation at its rest overlap under the local gravity
+TOPPLING_TIMES = 3.0  # sqrt(diameter / gravity), for which a bed must rest before its gravity is lowered
 RUNG = 100.0  # gravity under which loosened grains fall, over the local one: they fall ten times as fast
 
 
@@ -88,13 +89,10 @@ def pour_bed(recipe: BedRecipe, progress: Progress | None = None) -> Bed:
     world = boxed_world(grains, position, orientation, recipe.width, recipe.material, down, recipe.contact)
     recorder = Recorder(float(diameter.mean()))
     fall(world, recorder, recipe, tell)
-    settle(world, recorder, recipe, 0.0, lambda share: tell(0.4 + 0.2 * share, "settling under the pour gravity"))
+    settle(world, recorder, recipe, False, lambda share: tell(0.4 + 0.2 * share, "settling under the pour gravity"))
     world = loosened(world, recorder, recipe, grains, tell)
     lower(world, recorder, recipe, lambda share: tell(0.7 + 0.15 * share, "letting loose grains fall"))
-    undamped = settling.PERIODS_HELD
-    settle(
-        world, recorder, recipe, undamped, lambda share: tell(0.85 + 0.15 * share, "settling under the local gravity")
-    )
+    settle(world, recorder, recipe, True, lambda share: tell(0.85 + 0.15 * share, "settling under the local gravity"))
     return finished(world, recorder, recipe, grains, diameter)
 
 
@@ -185,30 +183,37 @@ def lower(world: World, recorder: Recorder, recipe: BedRecipe, tell: Callable[[f
     local = np.array(recipe.gravity)
     strength = float(np.linalg.norm(local))
     world.gravity = local * min(RUNG, recipe.pour_gravity / strength)
-    settle(world, recorder, recipe, 0.0, tell)
+    settle(world, recorder, recipe, False, tell)
     settling.ramp(world, local, settling.rest_period(recipe.material, recorder.diameter, strength))
 
 
 def settle(
-    world: World, recorder: Recorder, recipe: BedRecipe, undamped: float, tell: Callable[[float], None]
+    world: World, recorder: Recorder, recipe: BedRecipe, last: bool, tell: Callable[[float], None]
 ) -> None:  # fmt: skip
-    """Wait until the bed has been at rest for long enough: some periods under drag, then so many undamped ones."""
+    """Wait until the bed has been at rest for long enough: at last for some periods under drag, then undamped ones.
+
+    Before that under drag alone, for as long as grains take to topple that stand on an edge: under less gravity they
+    would take longer.
+    """
     strength = float(np.linalg.norm(world.gravity))
     period = settling.rest_period(recipe.material, recorder.diameter, strength)
     drag = settling.free_fall_drag(strength, recorder.diameter)
     first = len(recorder.rows)
+    toppling = TOPPLING_TIMES * math.sqrt(recorder.diameter / strength) / period
+    damped = settling.PERIODS_RELAXED if last else max(settling.PERIODS_RELAXED, toppling)
+    undamped = settling.PERIODS_HELD if last else 0.0
 
     def at_rest() -> bool:
         recorder.note(world)
         return recorder.at_rest
 
     def check(held: float) -> None:
-        world.drag = drag if held < settling.PERIODS_RELAXED else 0.0
+        world.drag = drag if held < damped else 0.0
         checks = len(recorder.rows) - first
         tell(1.0 - math.exp(-checks / (settling.PERIODS_HELD * settling.CHECKS_PER_PERIOD)))
 
     world.drag = drag
-    if not settling.rests(world, period, settling.PERIODS_RELAXED + undamped, at_rest, check):
+    if not settling.rests(world, period, damped + undamped, at_rest, check):
         raise ValueError(settling.restless(world))
     recorder.frame(world)
     tell(1.0)
