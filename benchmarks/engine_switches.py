@@ -27,11 +27,15 @@ SWITCHES = {
     "gaps as margins": ("listing.py", "        return bound - reach\n", "        return margin\n"),
     "names of faces": ("patch.py", "    if face >= 0:", "    if False:"),
     "one point pushes once": ("force.py", "    if count == 1 and search.family[0] != EDGES_SUNK:", "    if False:"),
+    "one pair of edges alone": ("shares.py", "(search.family[0] == EDGES_APART and sunk == 0.0)", "False"),
+    "spheres met by their mass": ("force.py", "through_centroids or step.paper_mass", "step.paper_mass"),
+    "limits by squares": ("spring.py", "    return vector if square <= limit * limit else",
+                          "    return vector if square**0.5 <= limit else"),
     "skin of the list": ("engine.py", "SKIN = 0.2", "SKIN = 0.02"),
     "one moment of inertia": ("body.py", "np.array_equal(body.inertia, body.inertia[0, 0] * np.eye(3))", "False"),
     "look every 16 steps": ("stability.py", "LOOK_STEPS, LOOK_PHASE = 16", "LOOK_STEPS, LOOK_PHASE = 1"),
     "kernels in their callers": ("../compiled.py", '"forceinline": True', '"forceinline": False'),
-}
+}  # fmt: skip
 RELAX_STEPS, STEPS, REPEATS = 4000, 500, 5
 
 

@@ -16,8 +16,7 @@ from lithobrake.touchdown.surface import rotation_matrix
 
 Floats = NDArray[np.float64]
 Vector = tuple[float, float, float]
-RELAX_DAMPING = 0.1  # damping ratio of a grain's small oscillation while a bed takes on another material, at first
-RELAX_FADING = 5.0  # periods in which that damping falls by a factor of e: what has to slide must be free to
+RELAX_FADING = 5.0  # periods in which the damping of contacts falls by a factor of e: what has to slide must be free to
 CHECKS_PER_CONTACT = 5  # looks at the lander in the time of the shortest contact
 
 
@@ -101,7 +100,7 @@ def relax(world: World, bed: Bed, landing: Landing) -> None:
     strength = float(np.linalg.norm(rests_under))
     period = settling.rest_period(landing.grain, bed.grain_diameter, strength)
     lasting = settling.free_fall_drag(strength, bed.grain_diameter)
-    world.drag = 2.0 * RELAX_DAMPING * 2.0 * math.pi / period
+    world.drag = settling.contact_drag(period)
     settling.ramp(world, rests_under, period)
 
     def fade(_: float) -> None:

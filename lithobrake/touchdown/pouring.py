@@ -176,15 +176,16 @@ def loosened(
 def lower(world: World, recorder: Recorder, recipe: BedRecipe, tell: Callable[[float], None]) -> None:
     """Let loosened grains fall into place under more than the local gravity, and bring it down to that.
 
-    Falling under the local gravity would take most of the time that a bed takes to make. What this compresses is too
-    little to throw up anything: a contact under RUNG times the gravity holds enough to lift its grain by RUNG times its
-    overlap there.
+    Falling under the local gravity would take most of the time that a bed takes to make. Slips while it comes down give
+    kicks that a grain on top would fly on for long under the local gravity: they are damped as contacts oscillate.
     """
     local = np.array(recipe.gravity)
     strength = float(np.linalg.norm(local))
     world.gravity = local * min(RUNG, recipe.pour_gravity / strength)
     settle(world, recorder, recipe, False, tell)
-    settling.ramp(world, local, settling.rest_period(recipe.material, recorder.diameter, strength))
+    period = settling.rest_period(recipe.material, recorder.diameter, strength)
+    world.drag = settling.contact_drag(period)
+    settling.ramp(world, local, period)
 
 
 def settle(

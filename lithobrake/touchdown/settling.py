@@ -10,6 +10,7 @@ from lithobrake.dem import Material, World
 
 Floats = NDArray[np.float64]
 
+CONTACT_DAMPING = 0.1  # damping ratio of a grain's small oscillation while a bed takes on another gravity or material
 FREE_FALL_DAMPING = 2.0  # drag while a bed comes to rest, in units of sqrt(gravity / diameter)
 RAMP_PERIODS = 2.0  # time constant of a ramp of gravity, in periods of a grain at rest under the gravity it ends at
 RAMP_STEPS = 40  # changes of gravity a time constant
@@ -33,6 +34,11 @@ def rest_period(material: Material, diameter: float, gravity: float) -> float:
     weight = material.density * math.pi / 6.0 * diameter**3 * gravity
     overlap = (0.75 * weight / (modulus * math.sqrt(diameter / 4.0))) ** (2.0 / 3.0)
     return 2.0 * math.pi * math.sqrt(overlap / (1.5 * gravity))
+
+
+def contact_drag(period: float) -> float:
+    """Return a drag [1/s] that damps a grain's small oscillation of a period [s]."""
+    return 2.0 * CONTACT_DAMPING * 2.0 * math.pi / period
 
 
 def free_fall_drag(gravity: float, diameter: float) -> float:
