@@ -222,7 +222,10 @@ def repose() -> Iterator[Result]:
 
 
 def dropped(bed: Bed, ball: Lander, place: Floats, gravity: float, number: float) -> Result:
-    """Drop a ball at a Froude number v / sqrt(g D) and follow it for four times sqrt(D / g): its deepest point."""
+    """Drop a ball at a Froude number v / sqrt(g D) and follow it for four times sqrt(D / g).
+
+    Returns how deep it comes, and how long it takes to nine tenths of that.
+    """
     size = 2.0 * ball.shape.bounding_radius
     speed = number * math.sqrt(gravity * size)
     landing = Landing(
@@ -243,10 +246,11 @@ def dropped(bed: Bed, ball: Lander, place: Floats, gravity: float, number: float
         if world.watched["first_contact"] > 0.0:
             path.append((height, world.time))
     heights, times = np.array(path).T
-    deepest = int(heights.argmin())
+    depths = heights[0] - heights
+    most = int(np.argmax(depths >= 0.9 * depths.max()))
     return {
-        "gravity": gravity, "froude": number, "penetration_over_diameter": (heights[0] - heights[deepest]) / size,
-        "duration_scaled": (times[deepest] - times[0]) * math.sqrt(gravity / size),
+        "gravity": gravity, "froude": number, "penetration_over_diameter": float(depths.max()) / size,
+        "duration_scaled": (times[most] - times[0]) * math.sqrt(gravity / size),
         "peak_over_v2_per_diameter": world.watched["peak_force"] / ball.mass * size / speed**2,
     }  # fmt: skip
 
@@ -263,7 +267,7 @@ def froude() -> Iterator[Result]:
     for seed in (1, 2):
         bed = bed_of(0.6, seed, count=450, size=0.07)
         generator = np.random.default_rng(seed)
-        for place in generator.uniform(-0.1, 0.1, size=(3, 2)):
+        for place in generator.uniform(-0.1, 0.1, size=(2, 2)):
             for gravity, number in itertools.product((1e-3, 1e-2, 1e-1), (1.0, 2.0, 4.0)):
                 yield {"seed": seed} | dropped(bed, ball, place, gravity, number)
 
