@@ -1,0 +1,105 @@
+"""What a step of the soft-surface engine is made of, on settled beds: a line a part, also in step_parts.json.
+
+    python benchmarks/step_parts.py BED_FOLDER [CASE ...] [--out FILE]
+
+CASE is any of hull1000, hull2000, hull4000, sph4000 (none: hull1000 and sph4000), see grains_speed.py. Forces are
+computed for one kind of pairs after the other, by the features listed for them. Medians of CPU times, one thread.
+"""
+
+import argparse
+import json
+import os
+import platform
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from grains_beds import bed, coordination, relaxed
+from grains_speed import RELAX_STEPS, cpu_seconds
+
+from lithobrake.dem import World
+from lithobrake.dem.advance import act_all
+from lithobrake.dem.arrays import Pairs
+from lithobrake.dem.engine import NO_ROOM
+from lithobrake.dem.listing import EDGES, kind_of, renew
+from lithobrake.dem.motion import drift, kick
+from lithobrake.dem.stability import LOOK_STEPS, largest_step
+
+CALLS = 50
+KINDS = (
+    "nothing near", "one corner, or two spheres", "one pair of edges", "two features", "three or more", "all features",
+    "a plane",
+)  # fmt: skip
+
+
+def kinds_of(pairs: Pairs) -> np.ndarray:
+    """Number in KINDS of every pair."""
+    count = pairs.term_count
+    edges = np.array([kind_of.py_func(int(name)) == EDGES for name in pairs.term[:, 0]])
+    kind = np.select([count < 0, count == 0, count == 1, count == 2], [5, 0, 1 + edges, 3], 4)
+    return np.where(pairs.second < 0, 6, kind)
+
+
+def parts(world: World) -> Iterator[tuple[str, float, float]]:
+    """Return name, number a body and CPU time a body [ns] of the parts of a step."""
+    world.run(steps=20)
+    engine, still, count = world._assembled(), world._step(0.0), len(world.bodies)
+    bodies, pairs = engine.bodies, engine.pairs
+    held = (engine.cores, engine.planes)
+
+    def nanoseconds(work: Any) -> float:
+        work()
+        return 1e9 * cpu_seconds(lambda: [work() for _ in range(CALLS)]) / CALLS / count
+
+    yield "two half kicks", 1.0, 2.0 * nanoseconds(lambda: kick(bodies, still, 0, count))
+    yield "drift and rotation", 1.0, nanoseconds(lambda: drift(bodies, still, 0, count))
+    whole = len(pairs.first)
+    looks = nanoseconds(lambda: renew(bodies, *held, pairs, engine.search, 0, whole))
+    yield "looks at margins", whole / count, looks
+    kind = kinds_of(pairs)
+    order = np.argsort(kind, kind="stable")
+    sorted_pairs = Pairs(*(getattr(pairs, name)[order] for name in Pairs._fields[:-1]), pairs.rest)
+    ends = np.searchsorted(kind[order], np.arange(len(KINDS) + 1))
+    for name, start, stop in zip(KINDS, ends[:-1], ends[1:], strict=True):
+        if start < stop:
+            yield (
+                f"forces: {name}",
+                (stop - start) / count,
+                nanoseconds(
+                    lambda start=start, stop=stop: act_all(
+                        bodies, *held, sorted_pairs, engine.laws, still, engine.search, NO_ROOM, start, stop
+                    )
+                ),
+            )
+    look = nanoseconds(lambda: largest_step(bodies, engine.planes, pairs, engine.laws, False))
+    yield f"look at stability, every {LOOK_STEPS} steps", 1.0 / LOOK_STEPS, look / LOOK_STEPS
+
+
+def main() -> None:
+    """Time the parts of a step on the beds asked for."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("case", nargs="*", default=["hull1000", "sph4000"])
+    parser.add_argument("--out", type=Path, default=Path(__file__).with_suffix(".json"))
+    chosen = parser.parse_args()
+    cases: dict[str, Any] = {}
+    for case in chosen.case:
+        world = relaxed(bed(chosen.folder, case), RELAX_STEPS)
+        rows = [{"part": name, "a_body": number, "ns_a_body": spent} for name, number, spent in parts(world)]
+        cases[case] = {"coordination": coordination(world), "parts": rows}
+        total = sum(row["ns_a_body"] for row in rows)
+        for row in rows:
+            print(f"{case}: {row['part']:45s} {row['a_body']:6.3f} a body {row['ns_a_body']:7.1f} ns a body "
+                  f"{row['ns_a_body'] / total:6.1%}", flush=True)  # fmt: skip
+    document = {
+        "date": time.strftime("%Y-%m-%d"), "machine": f"{platform.machine()}, {sys.platform}",
+        "load": os.getloadavg()[0], "command": "python benchmarks/step_parts.py BED_FOLDER", "cases": cases,
+    }  # fmt: skip
+    chosen.out.write_text(json.dumps(document, indent=1) + "\n")
+
+
+if __name__ == "__main__":
+    main()
