@@ -56,6 +56,23 @@ def test_bed_is_at_rest_in_its_box(bed):
     assert len(bed.frames["time"]) > 4
 
 
+def test_gravity_comes_down_by_a_rung_and_never_at_once_from_the_pour(bed):
+    """Pour, local gravity while the pressure is let out, a hundred times that for what falls, then the local one."""
+    gravity = bed.history["gravity"]
+    stages = gravity[np.concatenate([[True], ~np.isclose(gravity[1:], gravity[:-1])])]
+    assert stages == pytest.approx([0.5, 5e-4, 0.05, 5e-4])
+
+
+def test_quiet_steps_fill_their_time_and_stay_below_the_largest_safe_one(bed, recipe):
+    world = bed.world(recipe().material, bed.gravity, recipe().contact)
+    period = settling.rest_period(recipe().material, bed.grain_diameter, 5e-4)
+    for _ in range(40):
+        before = world.time
+        settling.run_quietly(world, 0.05 * period)
+        assert world.time - before == pytest.approx(0.05 * period, rel=1e-9)
+        assert world.time_step < world.largest_step
+
+
 def test_floor_and_contacts_carry_the_weight(bed, recipe):
     """The sum of all forces on the floor is the weight of the grains, to the balance that counts as rest."""
     rock = recipe().material
