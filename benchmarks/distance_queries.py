@@ -152,7 +152,7 @@ def ask_kept(
         for body, side in ((one, 0), (two, 1)):
             bodies.position[body], bodies.rotation[body] = position[k, side], rotation[k, side]
         reach[k] = cores.rounding[first[k]] + cores.rounding[second[k]]
-        margin = margin_of(bodies, cores, one, two)
+        margin = margin_of(bodies, cores, one, two, 0.0)
         travel, part = margin * moves[k, 6], moves[k, 7]
         bodies.position[one] += part * travel * moves[k, 0:3]
         turn(bodies.rotation[one], moves[k, 3:6], (1.0 - part) * travel / bodies.bounding_radius[one])

@@ -57,7 +57,7 @@ def parts(world: World) -> Iterator[tuple[str, float, float]]:
     yield "two half kicks", 1.0, 2.0 * nanoseconds(lambda: kick(bodies, still, 0, count))
     yield "drift and rotation", 1.0, nanoseconds(lambda: drift(bodies, still, 0, count))
     whole = len(pairs.first)
-    looks = nanoseconds(lambda: renew(bodies, *held, pairs, engine.search, 0, whole))
+    looks = nanoseconds(lambda: renew(bodies, *held, pairs, engine.search, 0.0, 0, whole))
     yield "looks at margins", whole / count, looks
     kind = kinds_of(pairs)
     order = np.argsort(kind, kind="stable")

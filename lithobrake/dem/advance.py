@@ -3,9 +3,9 @@
 import numpy as np
 
 from lithobrake.compiled import kernel, large_kernel
-from lithobrake.dem.arrays import Bodies, Cores, Floats, Laws, Pairs, Planes, Reactions
+from lithobrake.dem.arrays import Bodies, Cores, Floats, Laws, Pairs, Planes, Reactions, Step
 from lithobrake.dem.distance import Search
-from lithobrake.dem.force import Step, act
+from lithobrake.dem.force import act
 from lithobrake.dem.listing import renew
 from lithobrake.dem.motion import drift, kick
 from lithobrake.dem.stability import unsteady
@@ -62,7 +62,7 @@ def advance(
                 return taken, DIVERGED, False
             if farthest > half_skin * half_skin:
                 return taken, LIST_USED_UP, True
-        if renew(bodies, cores, planes, pairs, search, 0, pair_count) > 0:
+        if renew(bodies, cores, planes, pairs, search, step.time_step, 0, pair_count) > 0:
             return taken, NAMES_OVERFLOW, True
         drifted = False
         bodies.force[:] = 0.0

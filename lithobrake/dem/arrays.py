@@ -111,3 +111,12 @@ class Reactions(NamedTuple):
     force: Floats  # [pair_count, 3] or [0, 3], N, on the second
     first_torque: Floats  # the same, N m
     second_torque: Floats  # the same, N m
+
+
+class Step(NamedTuple):
+    """What a step needs beside the arrays."""
+
+    time_step: float  # s
+    drag: float  # 1/s, viscous damping of all motion, 0 but in settling
+    gravity: tuple[float, float, float]  # m/s2
+    paper_mass: bool  # damping with the reduced mass of the bodies, not the mass seen at the contact point

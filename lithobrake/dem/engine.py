@@ -6,10 +6,10 @@ import numpy as np
 
 from lithobrake.compiled import announce
 from lithobrake.dem.advance import DONE, LIST_USED_UP, NAMES_OVERFLOW, advance
-from lithobrake.dem.arrays import Bodies, Cores, Floats, Laws, Pairs, Planes
+from lithobrake.dem.arrays import Bodies, Cores, Floats, Laws, Pairs, Planes, Step
 from lithobrake.dem.body import Body, Plane, bodies_of, cores_of, laws_of, planes_of
 from lithobrake.dem.distance import Search, search_for
-from lithobrake.dem.force import DAMPING, Step
+from lithobrake.dem.force import DAMPING
 from lithobrake.dem.listing import NEAR
 from lithobrake.dem.material import Material
 from lithobrake.dem.neighbours import neighbours, pairs_of, renewed, roomier

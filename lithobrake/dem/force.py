@@ -7,7 +7,7 @@ that makes up for it, see material.restitution_of.
 from typing import NamedTuple
 
 from lithobrake.compiled import kernel
-from lithobrake.dem.arrays import Bodies, Cores, Floats, Laws, Pairs, Planes, Reactions
+from lithobrake.dem.arrays import Bodies, Cores, Floats, Laws, Pairs, Planes, Reactions, Step
 from lithobrake.dem.couples import let_go, resist_rolling, resist_twisting
 from lithobrake.dem.distance import Search
 from lithobrake.dem.masses import inverse_inertia_across, inverse_inertia_along, inverse_mass_at
@@ -19,15 +19,6 @@ from lithobrake.dem.vectors import Vector, add, cross, dot, minus, plus, put, ro
 
 DAMPING, FRICTION, ROLLING = 0, 1, 2  # columns of Pairs.lost
 LOSSES = 3
-
-
-class Step(NamedTuple):
-    """What a step needs beside the arrays."""
-
-    time_step: float  # s
-    drag: float  # 1/s, viscous damping of all motion, 0 but in settling
-    gravity: Vector  # m/s2
-    paper_mass: bool  # damping with the reduced mass of the bodies, not the mass seen at the contact point
 
 
 class Pressure(NamedTuple):

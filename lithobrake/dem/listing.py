@@ -9,6 +9,7 @@ from lithobrake.dem.arrays import Bodies, Cores, Pairs, Planes
 from lithobrake.dem.closest import approach
 from lithobrake.dem.distance import APART, CROSSING, Search, weighted
 from lithobrake.dem.features import edge_of, edge_to_edge, lowest_height, point_to_core, write_relative
+from lithobrake.dem.motion import top_speed
 from lithobrake.dem.shares import SINK_TO
 from lithobrake.dem.vectors import Vector, dot, minus, plus, row, scaled, times, transposed_times
 
@@ -22,6 +23,8 @@ NEAR = 6
 DEEP = -1
 # The margin is this part of the rounding radii, which themselves count for at most this part of the contact radii.
 MARGIN_OF_ROUNDING, ROUNDING_OF_RADIUS = 0.1, 0.04
+# A pair in motion has a margin for about so many steps at its present speed, up to that part of the contact radii.
+STEPS_LISTED = 48.0
 # Share of a margin that is kept back: covers the round-off in summing travels.
 BOUND_SLACK = 1e-6
 
@@ -33,17 +36,22 @@ def travelled(bodies: Bodies, first: int, second: int) -> float:
 
 
 @kernel
-def margin_of(bodies: Bodies, cores: Cores, first: int, second: int) -> float:
+def margin_of(bodies: Bodies, cores: Cores, first: int, second: int, time_step: float) -> float:
     """Return the motion [m] for which the list of a pair shall serve."""
     rounding, radius = cores.rounding[bodies.shape[first]], bodies.contact_radius[first]
+    speed = top_speed(bodies, first)
     if second >= 0:
         rounding += cores.rounding[bodies.shape[second]]
         radius += bodies.contact_radius[second]
-    return MARGIN_OF_ROUNDING * min(rounding, ROUNDING_OF_RADIUS * radius)
+        speed += top_speed(bodies, second)
+    most = ROUNDING_OF_RADIUS * radius
+    return max(MARGIN_OF_ROUNDING * min(rounding, most), min(STEPS_LISTED * speed * time_step, most))
 
 
 @large_kernel
-def renew(bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, search: Search, start: int, stop: int) -> int:
+def renew(
+    bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, search: Search, time_step: float, start: int, stop: int
+) -> int:
     """Renew the lists of pairs start to stop whose margin is used up; return how many found too little room.
 
     Those are listed again at the next call.
@@ -54,7 +62,7 @@ def renew(bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, search: Se
         travel = travelled(bodies, first, second)
         if travel < pairs.wake[pair]:
             continue
-        margin = margin_of(bodies, cores, first, second)
+        margin = margin_of(bodies, cores, first, second, time_step)
         if second < 0:
             serves = max(margin, list_plane(pair, bodies, cores, planes, pairs, margin))
         else:

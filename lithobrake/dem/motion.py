@@ -1,8 +1,7 @@
 """Motion of rigid bodies: half kick, drift, half kick, with the angular momentum in the world frame as state."""
 
 from lithobrake.compiled import kernel, large_kernel
-from lithobrake.dem.arrays import Bodies, Floats
-from lithobrake.dem.force import Step
+from lithobrake.dem.arrays import Bodies, Floats, Step
 from lithobrake.dem.vectors import Vector, add, cross, dot, plus, put, row, scaled, times
 
 Quaternion = tuple[float, float, float, float]
@@ -119,6 +118,13 @@ def kick(bodies: Bodies, step: Step, start: int, stop: int) -> None:
         add(bodies.angular_momentum, body, half, row(bodies.torque, body))
 
 
+@kernel
+def top_speed(bodies: Bodies, body: int) -> float:
+    """Return a bound on the speed of any point of a body [m/s]."""
+    velocity, spin = row(bodies.velocity, body), row(bodies.half_spin, body)
+    return dot(velocity, velocity) ** 0.5 + bodies.bounding_radius[body] * dot(spin, spin) ** 0.5
+
+
 @large_kernel
 def drift(bodies: Bodies, step: Step, start: int, stop: int) -> float:
     """Advance bodies start to stop by a step at the half-step velocities and predict the velocities at its end.
@@ -130,9 +136,7 @@ def drift(bodies: Bodies, step: Step, start: int, stop: int) -> float:
     for body in range(start, stop):
         add(bodies.position, body, step.time_step, row(bodies.velocity, body))
         rotate(body, bodies, step.time_step)
-        velocity, spin = row(bodies.velocity, body), row(bodies.half_spin, body)
-        way = dot(velocity, velocity) ** 0.5 + bodies.bounding_radius[body] * dot(spin, spin) ** 0.5
-        bodies.travel[body] += step.time_step * way
+        bodies.travel[body] += step.time_step * top_speed(bodies, body)
         gain = scaled(half * bodies.inverse_mass[body], row(bodies.force, body))
         predicted = plus(row(bodies.velocity, body), plus(gain, scaled(half, step.gravity)))
         put(bodies.velocity_predicted, body, predicted)

@@ -21,9 +21,9 @@ from lithobrake.dem.advance import (
     apply_drag,
     note,
 )
-from lithobrake.dem.arrays import Bodies, Cores, Floats, Integers, Laws, Pairs, Planes, Reactions
+from lithobrake.dem.arrays import Bodies, Cores, Floats, Integers, Laws, Pairs, Planes, Reactions, Step
 from lithobrake.dem.distance import Search
-from lithobrake.dem.force import Step, deliver
+from lithobrake.dem.force import deliver
 from lithobrake.dem.listing import renew
 from lithobrake.dem.motion import drift, kick
 from lithobrake.dem.stability import unsteady
@@ -111,7 +111,8 @@ class Team:
                 if max(ways) > half_skin * half_skin:
                     return taken, LIST_USED_UP, True
             lacking = self.share(
-                pair_count, lambda start, stop, search: renew(bodies, cores, planes, pairs, search, start, stop)
+                pair_count,
+                lambda start, stop, search: renew(bodies, cores, planes, pairs, search, step.time_step, start, stop),
             )
             if max(lacking) > 0:
                 return taken, NAMES_OVERFLOW, True

@@ -10,11 +10,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from lithobrake.dem import energy, timestep
 from lithobrake.dem.advance import DIVERGED, FIRST_CONTACT, LAST_CONTACT, PEAK_FORCE, STEP_TOO_LARGE
-from lithobrake.dem.arrays import Floats, Pairs
+from lithobrake.dem.arrays import Floats, Pairs, Step
 from lithobrake.dem.body import Body, Plane, new_body, rotation_matrices, unit, vector
 from lithobrake.dem.contacts import contacts_of
 from lithobrake.dem.engine import Engine, no_pairs
-from lithobrake.dem.force import LOSSES, Step
+from lithobrake.dem.force import LOSSES
 from lithobrake.dem.material import PAIR_RULES, SHEAR_MODULUS_RULES, Material
 from lithobrake.dem.shape import Shape, equivalent_radius
 from lithobrake.dem.stability import largest_step
