@@ -24,7 +24,7 @@ DEEP = -1
 # The margin is this part of the rounding radii, which themselves count for at most this part of the contact radii.
 MARGIN_OF_ROUNDING, ROUNDING_OF_RADIUS = 0.1, 0.04
 # A pair in motion has a margin for about so many steps at its present speed, up to that part of the contact radii.
-STEPS_LISTED = 48.0
+STEPS_LISTED = 24.0
 # Share of a margin that is kept back: covers the round-off in summing travels.
 BOUND_SLACK = 1e-6
 
