@@ -58,6 +58,28 @@ def draw_froude(rows: Rows) -> None:
     figure.savefig(HERE / "bulk_froude.png", dpi=130)
 
 
+EXPECTED = {
+    ("repose", "angle_deg"): [25.0, *[40.0] * 2], ("packing", "solid_fraction"): [0.51, 0.54, 0.52, 0.51, 0.50],
+    ("compression", "solid_fraction"): [0.639, 0.593], ("compression", "coordination_without_rattlers"): [6.0, 4.5],
+}  # fmt: skip
+
+
+def draw(name: str, rows: Rows, by: str, columns: list[str]) -> None:
+    """Means, scatter and single runs of the first two columns; crosses: what is expected."""
+    figure, axes = plt.subplots(1, 2, figsize=(9.0, 3.4), constrained_layout=True)
+    for axis, column in zip(axes, columns, strict=False):
+        table = grouped(rows, by, column)
+        for place, values in enumerate(table.values()):
+            axis.plot([place] * len(values), values, "o", color="0.6")
+            axis.errorbar(place, values.mean(), values.std(ddof=1) if len(values) > 1 else None, fmt="_", color="k",
+                          markersize=18, capsize=4)  # fmt: skip
+        expected = EXPECTED.get((name, column), [])[: len(table)]
+        axis.plot(range(len(expected)), expected, "x", color="C3")
+        axis.set_xticks(range(len(table)), [str(key).replace(", ", "\n") for key in table], fontsize=8)
+        axis.set(xlabel=by, ylabel=column.replace("_", " "), xlim=(-0.5, len(table) - 0.5))
+    figure.savefig(HERE / f"bulk_{name}.png", dpi=110)
+
+
 SHOWN = {
     "compression": ("friction", ["solid_fraction", "coordination_without_rattlers"],
                     "Spheres pressed from six sides; expected .639 and .593, 6 and 4.5 (Agnolin, Roux 2007)."),
@@ -93,7 +115,9 @@ def main() -> None:
         page += [f"`{found['command']}`, {found['date']}, {found['machine']}, {found['cpu_s']} s of CPU time.", ""]
         if name == "froude":
             draw_froude(found["rows"])
-            page += ["![Froude](bulk_froude.png)", ""]
+        else:
+            draw(name, found["rows"], by, columns)
+        page += [f"![{name}](bulk_{name}.png)", ""]
     path = HERE / "bed_size.json"
     page += ["## Size of the bed", "", *(bed_size(json.loads(path.read_text())) if path.exists() else ["Not run yet."])]
     (HERE / "bulk.md").write_text("\n".join(page) + "\n", encoding="utf-8")
