@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from lithobrake.dem import Box, Material, Sphere, World
+from lithobrake.dem.spring import hold
 from lithobrake.dem.timestep import contact_duration
 
 
@@ -169,3 +170,27 @@ def test_box_of_boxes_comes_to_rest():
     world.run(duration=4.0)
     assert kinetic(world) < 1e-9 * world.mass.sum() * 9.81 * 0.1
     assert np.abs(world.position[:, 2] - (0.05 + 0.1 * (np.arange(8) // 4))).max() < 2e-3
+
+
+@pytest.mark.parametrize("poisson_ratio", [0.0, 0.1, 0.25, 0.4, 0.49])
+def test_tangential_spring_gives_back_no_more_than_it_got_on_random_paths(poisson_ratio):
+    """VALIDATION: no energy from load and slip that wander at random, the overlap up to 100 times as deep at times.
+
+    Work and stored energy are summed here, not taken from the ledger. Without rescaling on unloading they fail.
+    """
+    generator = np.random.default_rng(7)
+    shear_over_normal = 8.0 / (4.0 * (2.0 - poisson_ratio) * (1.0 + poisson_ratio))
+    normal_over = 4.0 / 3.0 / (2.0 * (1.0 - poisson_ratio**2))
+    for friction in (0.1, 0.5, 5.0):
+        overlap, spring, stiffness, given, most = 1.0, (0.0, 0.0, 0.0), 0.0, 0.0, 0.0
+        for _ in range(4000):
+            overlap = float(np.clip(overlap * np.exp(0.3 * generator.normal()), 0.1, 10.0))
+            way = tuple(0.2 * overlap * np.append(generator.normal(size=2), 0.0))
+            before, softer = spring, stiffness
+            stiffness = shear_over_normal * overlap**0.5
+            limit = friction * normal_over * overlap**1.5
+            spring = hold(before, softer, stiffness, way, (0.0, 0.0, 0.0), 0.0, limit).total
+            given -= 0.5 * float(np.dot(np.add(before, spring), way))
+            most = max(most, given)
+            assert given - 0.5 * float(np.dot(spring, spring)) / stiffness > -1e-12 * most
+            assert np.linalg.norm(spring) <= limit * (1.0 + 1e-12)
