@@ -277,7 +277,7 @@ def froude() -> Iterator[Result]:
 def packed(name: str, seed: int, count: int = 800) -> Result:
     """Rain solids of one shape into a box and measure what they fill amid it, away from walls, floor and top.
 
-    At random places: from a lattice cubes pile up in columns, and fill .45 where rain fills .54.
+    At random places: from a lattice cubes pile up in columns, and fill .45 where rain fills .55.
     Source: Baker and Kudrolli (2010), Phys. Rev. E 82, 061304: loose .51, .54, .52, .51, .50, +-.01.
     """
     generator = np.random.default_rng(seed)

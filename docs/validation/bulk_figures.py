@@ -139,7 +139,7 @@ def bed_size(found: dict[str, Any]) -> list[str]:
             text.append(f"| {way} | {output} | {' | '.join(cells)} | {value['difference_in_standard_errors']:.2g} |")
     rule = ", ".join(f"{way} {w:.3g} and {d:.3g} m" for way, (w, d) in found["smallest_width_and_depth_m"].items())
     return [*text, "", f"Smallest width and depth by the rule: {rule}. {found['command']}, {found['date']}, "
-            f"{found['machine']}, {found['cpu_s']} s of CPU time."]  # fmt: skip
+            f"{found['machine']}, {found['cpu_s']} s of CPU time since it was last started."]  # fmt: skip
 
 
 if __name__ == "__main__":

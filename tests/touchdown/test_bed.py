@@ -56,7 +56,7 @@ def test_bed_is_at_rest_in_its_box(bed):
     assert len(bed.frames["time"]) > 4
 
 
-def test_gravity_comes_down_by_a_rung_and_never_at_once_from_the_pour(bed):
+def test_gravity_is_raised_to_a_rung_for_what_falls_and_comes_down_again(bed):
     """Pour, local gravity while the pressure is let out, a hundred times that for what falls, then the local one."""
     gravity = bed.history["gravity"]
     stages = gravity[np.concatenate([[True], ~np.isclose(gravity[1:], gravity[:-1])])]
