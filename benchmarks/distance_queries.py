@@ -15,7 +15,8 @@ from lithobrake.dem.arrays import Bodies, Cores, Pairs, Planes
 from lithobrake.dem.body import Body, bodies_of
 from lithobrake.dem.closest import approach, way_out
 from lithobrake.dem.distance import CROSSING, Search, search_for, weighted
-from lithobrake.dem.listing import DEEP, SPHERES, kind_of, list_bodies, list_plane, margin_of, name_of
+from lithobrake.dem.listing import list_bodies, list_plane, margin_of
+from lithobrake.dem.names import DEEP, SPHERES, kind_of, name_of
 from lithobrake.dem.neighbours import pairs_of
 from lithobrake.dem.patch import feature
 from lithobrake.dem.vectors import dot, minus, put, row, scaled

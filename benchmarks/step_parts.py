@@ -24,8 +24,9 @@ from lithobrake.dem import World
 from lithobrake.dem.advance import act_all
 from lithobrake.dem.arrays import Pairs
 from lithobrake.dem.engine import NO_ROOM
-from lithobrake.dem.listing import EDGES, kind_of, renew
+from lithobrake.dem.listing import renew
 from lithobrake.dem.motion import drift, kick
+from lithobrake.dem.names import EDGES, kind_of
 from lithobrake.dem.stability import LOOK_STEPS, largest_step
 
 CALLS = 50

@@ -1,9 +1,11 @@
 """From what a person adds to a world to the arrays that kernels work on."""
 
 from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from lithobrake.dem.arrays import Bodies, Cores, Floats, Integers, Laws, Planes
 from lithobrake.dem.material import Material, pair_law
@@ -19,6 +21,11 @@ class Body:
     material: Material
     mass: float  # kg
     inertia: Floats  # kg m2, [3, 3], about the centroid, in the frame the shape was given in
+
+    @cached_property
+    def inverse_inertia(self) -> NDArray[Any]:
+        """Inverse of the inertia [1/(kg m2)], shape [3, 3]."""
+        return np.linalg.inv(self.inertia)
 
 
 @dataclass(frozen=True, eq=False)
@@ -131,7 +138,7 @@ def bodies_of(bodies: list[Body], shapes: list[Shape], materials: list[Material]
         shape=np.array([shape_of[id(body.shape)] for body in bodies], dtype=np.int64),
         material=np.array([materials.index(body.material) for body in bodies], dtype=np.int64),
         mass=np.array([body.mass for body in bodies]), inverse_mass=np.array([1.0 / body.mass for body in bodies]),
-        inverse_inertia_body=np.array([np.linalg.inv(body.inertia) for body in bodies]),
+        inverse_inertia_body=np.array([body.inverse_inertia for body in bodies]),
         isotropic=np.array([np.array_equal(body.inertia, body.inertia[0, 0] * np.eye(3)) for body in bodies]),
         contact_radius=np.array([equivalent_radius(body.shape) for body in bodies]),
         curvature=np.array([1.0 / equivalent_radius(body.shape) for body in bodies]),

@@ -34,6 +34,7 @@ class Search(NamedTuple):
     weight: Floats  # [4]
     steps: Integers  # [1], that the last search took
     turned: Floats  # [edge_count_max + vertex_count_max, 12], a core in the other's frame
+    listed: Integers  # [edge_count_max + vertex_count_max]
     relative: Floats  # [1, 3, 3]
     point: Floats  # [point_max, 3], of a patch
     normal: Floats  # [point_max, 3], from first to second
@@ -47,8 +48,8 @@ def search_for(feature_max: int, point_max: int) -> Search:
     """Return scratch large enough for the corners and edges of a core, and the points of a patch."""
     return Search(
         np.zeros((4, 3)), np.zeros((4, 3)), np.zeros((4, 3)), np.zeros((4, 2), dtype=np.int64), np.zeros(4),
-        np.zeros(1, dtype=np.int64), np.zeros((feature_max, 12)), np.zeros((1, 3, 3)),
-        np.zeros((point_max, 3)), np.zeros((point_max, 3)), np.zeros((point_max, 3)),
+        np.zeros(1, dtype=np.int64), np.zeros((feature_max, 12)), np.zeros(feature_max, dtype=np.int64),
+        np.zeros((1, 3, 3)), np.zeros((point_max, 3)), np.zeros((point_max, 3)), np.zeros((point_max, 3)),
         np.zeros(point_max), np.zeros(point_max, dtype=np.int64), np.zeros(point_max),
     )  # fmt: skip
 

@@ -6,17 +6,20 @@ from lithobrake.dem.arrays import Floats, Pairs
 from lithobrake.dem.force import DAMPING, FRICTION, ROLLING
 
 
+def kinetic(mass: Floats, velocity: Floats, spin: Floats, angular_momentum: Floats) -> Floats:
+    """Return the kinetic energy of each body [J]."""
+    return 0.5 * (mass * (velocity * velocity).sum(axis=1) + (spin * angular_momentum).sum(axis=1))
+
+
 def ledger(
-    mass: Floats, position: Floats, velocity: Floats, spin: Floats, angular_momentum: Floats, gravity: Floats,
-    pairs: Pairs, lost: Floats,
-) -> dict[str, float]:  # fmt: skip
-    """Return the energies [J] of a world: kinetic, potential, elastic, cohesive, what damping, friction and
-    rolling took, and the total.
+    moving: float, mass: Floats, position: Floats, gravity: Floats, pairs: Pairs, lost: Floats
+) -> dict[str, float]:
+    """Return the energies [J] of a world from that of its motion, `moving`: kinetic, potential, elastic, cohesive, what
+    damping, friction and rolling took, and the total.
 
     A Hertz contact holds 2/5 force times overlap, cohesion minus force times overlap, a spring half its force squared
     over its stiffness.
     """
-    kinetic = 0.5 * float((mass * (velocity * velocity).sum(axis=1)).sum() + (spin * angular_momentum).sum())
     potential = -float((mass[:, None] * position * gravity).sum())
     touching = pairs.tangential_stiffness > 0.0
     spring_square = (pairs.spring[touching] ** 2).sum(axis=1)
@@ -27,7 +30,7 @@ def ledger(
     rolling = pairs.roll_stiffness > 0.0
     elastic += 0.5 * float(((pairs.roll[rolling] ** 2).sum(axis=1) / pairs.roll_stiffness[rolling]).sum())
     parts = {
-        "kinetic": kinetic, "potential": potential, "elastic": elastic,
+        "kinetic": moving, "potential": potential, "elastic": elastic,
         "cohesive": -float((pairs.cohesion * pairs.overlap).sum()), "damping": float(lost[DAMPING]),
         "friction": float(lost[FRICTION]), "rolling": float(lost[ROLLING]),
     }  # fmt: skip

@@ -10,8 +10,8 @@ from lithobrake.dem.arrays import Bodies, Cores, Floats, Laws, Pairs, Planes, St
 from lithobrake.dem.body import Body, Plane, bodies_of, cores_of, laws_of, planes_of
 from lithobrake.dem.distance import Search, search_for
 from lithobrake.dem.force import DAMPING
-from lithobrake.dem.listing import NEAR
 from lithobrake.dem.material import Material
+from lithobrake.dem.names import NEAR
 from lithobrake.dem.neighbours import neighbours, pairs_of, renewed, roomier
 from lithobrake.dem.shape import Shape
 from lithobrake.dem.threads import Team, room_for

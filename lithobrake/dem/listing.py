@@ -7,20 +7,14 @@ nothing. So it makes no difference to any bit when, or how often, the names are 
 from lithobrake.compiled import kernel, large_kernel
 from lithobrake.dem.arrays import Bodies, Cores, Pairs, Planes
 from lithobrake.dem.closest import approach
-from lithobrake.dem.distance import APART, CROSSING, Search, weighted
-from lithobrake.dem.features import edge_of, edge_to_edge, lowest_height, point_to_core, write_relative
+from lithobrake.dem.distance import APART, CLOSE, CROSSING, Search, weighted
+from lithobrake.dem.features import write_relative
 from lithobrake.dem.motion import top_speed
+from lithobrake.dem.names import CORNER_OF_FIRST, DEEP, SPHERES, note_term, room
+from lithobrake.dem.nearby import gap_along, is_point, list_corners, list_edges
 from lithobrake.dem.shares import SINK_TO
-from lithobrake.dem.vectors import Vector, dot, minus, plus, row, scaled, times, transposed_times
+from lithobrake.dem.vectors import dot, minus, row, scaled, transposed_times
 
-# Kinds of features: a corner of the first on the second, of the second on the first (i, and one more than the number of
-# the face below it, or 0), two edges (i and j), two spheres.
-CORNER_OF_FIRST, CORNER_OF_SECOND, EDGES, SPHERES = 0, 1, 2, 3
-KIND_BITS, PLACE_BITS = 40, 20
-# Names that every pair has room for; few need more.
-NEAR = 6
-# In `term_count`: the cores cross, and all their features are looked at.
-DEEP = -1
 # The margin is this part of the rounding radii, which themselves count for at most this part of the contact radii.
 MARGIN_OF_ROUNDING, ROUNDING_OF_RADIUS = 0.1, 0.04
 # A pair in motion has a margin for about so many steps at its present speed, up to that part of the contact radii.
@@ -75,49 +69,6 @@ def renew(
 
 
 @kernel
-def feature_name(kind: int, i: int, j: int) -> int:
-    """Return the name of a feature."""
-    return (kind << KIND_BITS) + (i << PLACE_BITS) + j
-
-
-@kernel
-def kind_of(name: int) -> int:
-    """Return the kind of a feature."""
-    return name >> KIND_BITS
-
-
-@kernel
-def places_of(name: int) -> tuple[int, int]:
-    """Return i and j of a feature."""
-    lowest = (1 << PLACE_BITS) - 1
-    return (name >> PLACE_BITS) & lowest, name & lowest
-
-
-@kernel
-def note_term(pairs: Pairs, pair: int, kind: int, i: int, j: int) -> None:
-    """Add a name to the list of a pair; the count goes on where the list is full."""
-    count, name = pairs.term_count[pair], feature_name(kind, i, j)
-    if count < room(pairs, pair):
-        if count < NEAR:
-            pairs.term[pair, count] = name
-        else:
-            pairs.rest[pairs.rest_row[pair], count - NEAR] = name
-    pairs.term_count[pair] = count + 1
-
-
-@kernel
-def room(pairs: Pairs, pair: int) -> int:
-    """Return how many names the list of a pair can hold."""
-    return NEAR + pairs.rest.shape[1] if pairs.rest_row[pair] >= 0 else NEAR
-
-
-@kernel
-def name_of(pairs: Pairs, pair: int, k: int) -> int:
-    """Return name k of the list of a pair."""
-    return pairs.term[pair, k] if k < NEAR else pairs.rest[pairs.rest_row[pair], k - NEAR]
-
-
-@kernel
 def list_plane(pair: int, bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, margin: float) -> float:
     """List the corners near a plane; return the gap."""
     body, plane = pairs.first[pair], -1 - pairs.second[pair]
@@ -160,67 +111,12 @@ def list_bodies(pair: int, bodies: Bodies, cores: Cores, pairs: Pairs, margin: f
         return (1.0 - SINK_TO) * reach
     write_relative(bodies.rotation, first, second, search.relative)
     there = transposed_times(bodies.rotation, first, apart)
-    list_corners(pair, pairs, cores, shapes, search, there, reach + margin)
+    between = weighted(search.difference, search.weight, count) if found == CLOSE else (0.0, 0.0, 0.0)
+    distance = dot(between, between) ** 0.5
+    direction = scaled(-1.0 / distance, between) if distance > 0.0 else between
+    gap = gap_along(transposed_times(bodies.rotation, first, direction), cores, shapes, search, there, reach + margin)
+    list_corners(pair, pairs, cores, shapes, search, there, gap)
     if not hulls:
         return margin
-    between = weighted(search.difference, search.weight, count)
-    distance = dot(between, between) ** 0.5
-    normal = transposed_times(bodies.rotation, first, scaled(-1.0 / distance, between))
-    list_edges(pair, pairs, cores, shapes, search, there, normal, reach + margin)
+    list_edges(pair, pairs, cores, shapes, search, there, gap)
     return min(margin, distance)
-
-
-@kernel
-def is_point(cores: Cores, shape: int) -> bool:
-    """Whether a core is a point: the shape is a sphere."""
-    return cores.face_start[shape] == cores.face_start[shape + 1]
-
-
-@kernel
-def list_corners(
-    pair: int, pairs: Pairs, cores: Cores, shapes: tuple[int, int], search: Search, there: Vector, farthest: float
-) -> None:
-    """List the corners of either core that are nearer to the other than `farthest`."""
-    if not is_point(cores, shapes[1]):
-        start = cores.vertex_start[shapes[0]]
-        for k in range(start, cores.vertex_start[shapes[0] + 1]):
-            seen = transposed_times(search.relative, 0, minus(row(cores.vertex, k), there))
-            _, _, near, face = point_to_core(cores, shapes[1], seen, farthest)
-            if near:
-                note_term(pairs, pair, CORNER_OF_FIRST, k - start, face + 1)
-    if not is_point(cores, shapes[0]):
-        start = cores.vertex_start[shapes[1]]
-        for k in range(start, cores.vertex_start[shapes[1] + 1]):
-            seen = plus(times(search.relative, 0, row(cores.vertex, k)), there)
-            _, _, near, face = point_to_core(cores, shapes[0], seen, farthest)
-            if near:
-                note_term(pairs, pair, CORNER_OF_SECOND, k - start, face + 1)
-
-
-@large_kernel
-def list_edges(
-    pair: int, pairs: Pairs, cores: Cores, shapes: tuple[int, int], search: Search, there: Vector, normal: Vector,
-    farthest: float,
-) -> None:  # fmt: skip
-    """List the pairs of edges that are nearer than `farthest`; far ones fall out by their depth behind the gap."""
-    turned = transposed_times(search.relative, 0, normal)
-    top = -lowest_height(cores, shapes[0], scaled(-1.0, normal))
-    bottom = lowest_height(cores, shapes[1], turned)
-    # The gap along the normal at hand: it is the distance, but for rounding where cores all but touch.
-    band = farthest - (bottom + dot(there, normal) - top)
-    for i in range(cores.edge_start[shapes[0] + 1] - cores.edge_start[shapes[0]]):
-        begin, along = edge_of(cores, shapes[0], i)
-        height = dot(begin, normal)
-        depth = top - max(height, height + dot(along, normal))
-        if depth >= band:
-            continue
-        for j in range(cores.edge_start[shapes[1] + 1] - cores.edge_start[shapes[1]]):
-            other, other_along = edge_of(cores, shapes[1], j)
-            height = dot(other, turned)
-            if depth + min(height, height + dot(other_along, turned)) - bottom >= band:
-                continue
-            other = plus(times(search.relative, 0, other), there)
-            here, hither = edge_to_edge(begin, along, other, times(search.relative, 0, other_along))
-            between = minus(hither, here)
-            if dot(between, between) < farthest * farthest:
-                note_term(pairs, pair, EDGES, i, j)

@@ -2,7 +2,7 @@
 
 from lithobrake.compiled import kernel, large_kernel
 from lithobrake.dem.arrays import Bodies, Floats, Step
-from lithobrake.dem.vectors import Vector, add, cross, dot, plus, put, row, scaled, times
+from lithobrake.dem.vectors import Vector, add, cross, dot, plus, put, row, scaled, times, transposed_times
 
 Quaternion = tuple[float, float, float, float]
 # Evaluations of the mid-step spin; the error left after three is of the sixth order in spin times step.
@@ -39,6 +39,14 @@ def write_rotations(quaternions: Floats, rotations: Floats) -> None:
     for k in range(len(quaternions)):
         q = (quaternions[k, 0], quaternions[k, 1], quaternions[k, 2], quaternions[k, 3])
         write_rotation(q, rotations[k])
+
+
+@kernel
+def write_spins(rotations: Floats, momenta: Floats, inverse_inertia: Floats, spins: Floats) -> None:
+    """Write spins [count, 3], world frame, from angular momenta; inverse_inertia [count, 3, 3] is in the body frame."""
+    for k in range(len(rotations)):
+        within = times(inverse_inertia, k, transposed_times(rotations, k, row(momenta, k)))
+        put(spins, k, times(rotations, k, within))
 
 
 @kernel

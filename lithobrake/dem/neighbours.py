@@ -4,7 +4,7 @@ import numpy as np
 
 from lithobrake.compiled import kernel
 from lithobrake.dem.arrays import Bodies, Floats, Integers, Pairs, Planes
-from lithobrake.dem.listing import NEAR
+from lithobrake.dem.names import NEAR
 
 
 @kernel

@@ -11,7 +11,7 @@ from lithobrake.dem.arrays import Bodies, Cores, Pairs, Planes
 from lithobrake.dem.closest import approach, way_out
 from lithobrake.dem.distance import CROSSING, Search
 from lithobrake.dem.features import edge_of, edge_to_edge, point_to_core, stands_above, write_relative
-from lithobrake.dem.listing import (
+from lithobrake.dem.names import (
     CORNER_OF_FIRST,
     CORNER_OF_SECOND,
     DEEP,

@@ -56,7 +56,8 @@ def polyhedron(points: NDArray[np.float64]) -> Polyhedron:
     triangles = _outward(index[hull.simplices], scaled[hull.vertices], hull.equations[:, :3])
     vertices = points[hull.vertices]
     face_of, normals = _merge_coplanar(hull.equations)
-    offsets = np.array([(vertices[triangles[face_of == k]] @ normals[k]).mean() for k in range(len(normals))])
+    heights = np.einsum("ijk,ik->i", vertices[triangles], normals[face_of]) / 3.0
+    offsets = np.bincount(face_of, heights) / np.bincount(face_of)
     return Polyhedron(vertices, normals, offsets, triangles, face_of, _edges(triangles, face_of, normals, vertices))
 
 
@@ -73,15 +74,13 @@ def _outward(
 
 def _merge_coplanar(equations: NDArray[np.float64]) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
     """Group facets with the same plane; return the face of each facet and the faces' normals."""
-    face_of = np.full(len(equations), -1)
-    normals: list[NDArray[np.float64]] = []
-    for facet, equation in enumerate(equations):
-        if face_of[facet] < 0:
-            alike = (face_of < 0) & (np.abs(equations - equation).max(axis=1) < COPLANAR)
-            face_of[alike] = len(normals)
-            normal = equations[alike, :3].mean(axis=0)
-            normals.append(normal / np.linalg.norm(normal))
-    return face_of, np.array(normals)
+    alike = np.ones((len(equations), len(equations)), dtype=bool)
+    for column in equations.T:
+        alike &= np.abs(column[:, None] - column) < COPLANAR
+    _, face_of = np.unique(alike.argmax(axis=1), return_inverse=True)
+    total = np.zeros((face_of.max() + 1, 3))
+    np.add.at(total, face_of, equations[:, :3])
+    return face_of, total / np.linalg.norm(total, axis=1, keepdims=True)
 
 
 def _edges(
@@ -91,14 +90,16 @@ def _edges(
     vertices: NDArray[np.float64],
 ) -> NDArray[np.int64]:
     """Return the edges between different faces, ordered so that left normal x right normal points from start to end."""
-    owner = {(t[k], t[(k + 1) % 3]): face for t, face in zip(triangles, face_of, strict=True) for k in range(3)}
-    rows = []
-    for (start, end), face in owner.items():
-        other = owner[end, start]
-        if start < end and face != other:
-            along = np.cross(normals[face], normals[other]) @ (vertices[end] - vertices[start])
-            rows.append((start, end, face, other) if along > 0.0 else (start, end, other, face))
-    return np.array(rows, dtype=np.int64)
+    start, end, face = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel(), np.repeat(face_of, 3)
+    # The same edge, from the triangle on its other side: sorted by (end, start) it stands where this one does.
+    other = np.empty_like(face)
+    other[np.lexsort((end, start))] = face[np.lexsort((start, end))]
+    kept = (start < end) & (face != other)
+    start, end, face, other = start[kept], end[kept], face[kept], other[kept]
+    along = np.einsum("ij,ij->i", np.cross(normals[face], normals[other]), vertices[end] - vertices[start])
+    left, right = np.where(along > 0.0, face, other), np.where(along > 0.0, other, face)
+    rows: NDArray[np.int64] = np.column_stack([start, end, left, right])
+    return rows
 
 
 @dataclass(frozen=True)

@@ -85,12 +85,11 @@ class ConvexHull:
     def core_polyhedron(self) -> Polyhedron:
         """The polyhedron inside the rounding, about the centroid: each vertex stands that far behind its own faces."""
         given = self.polyhedron
-        core = np.empty_like(given.vertices)
-        for k, vertex in enumerate(given.vertices):
-            faces = np.unique(given.triangle_face[(given.triangles == k).any(axis=1)])
-            depth = np.full(len(faces), -self.rounding)
-            shift, *_ = np.linalg.lstsq(given.face_normals[faces], depth, rcond=None)
-            core[k] = vertex - self.centroid + shift
+        at = np.zeros((len(given.vertices), len(given.face_normals)), dtype=bool)
+        at[given.triangles.ravel(), np.repeat(given.triangle_face, 3)] = True
+        # Least squares: where more than three faces meet, they may not after each has moved.
+        back = np.linalg.pinv(np.where(at[:, :, None], given.face_normals, 0.0)) @ at[:, :, None].astype(float)
+        core = given.vertices - self.centroid - self.rounding * back[:, :, 0]
         return polyhedron(core)
 
     @property

@@ -16,6 +16,7 @@ from lithobrake.dem.contacts import contacts_of
 from lithobrake.dem.engine import Engine, no_pairs
 from lithobrake.dem.force import LOSSES
 from lithobrake.dem.material import PAIR_RULES, SHEAR_MODULUS_RULES, Material
+from lithobrake.dem.motion import write_spins
 from lithobrake.dem.shape import Shape, equivalent_radius
 from lithobrake.dem.stability import largest_step
 
@@ -67,6 +68,7 @@ class World:
         }  # fmt: skip
         self._pairs: Pairs = no_pairs()
         self._lost = np.zeros(LOSSES)
+        self._inverse_inertia = np.zeros((0, 3, 3))
         self._watched = -1
         self._probed = np.zeros(4)
         self._engine: Engine | None = None
@@ -302,10 +304,17 @@ class World:
     @property
     def spin(self) -> Floats:
         """Angular velocities [rad/s], shape [body_count, 3], world frame."""
+        if len(self._inverse_inertia) != len(self.bodies):
+            self._inverse_inertia = np.array([body.inverse_inertia for body in self.bodies])
+        spin = np.zeros((len(self.bodies), 3))
         rotation = rotation_matrices(self._state["quaternion"])
-        inertia = np.array([body.inertia for body in self.bodies]).reshape(-1, 3, 3)
-        within = np.einsum("kji,kj->ki", rotation, self._state["angular_momentum"])
-        return np.einsum("kij,kj->ki", rotation, np.linalg.solve(inertia, within[:, :, None])[:, :, 0])
+        write_spins(rotation, self._state["angular_momentum"], self._inverse_inertia, spin)
+        return spin
+
+    @property
+    def kinetic_energy(self) -> Floats:
+        """Kinetic energy of each body [J], shape [body_count]."""
+        return energy.kinetic(self.mass, self._state["velocity"], self.spin, self._state["angular_momentum"])
 
     @property
     def mass(self) -> Floats:
@@ -338,8 +347,8 @@ class World:
     def energy(self) -> dict[str, float]:
         """Return the energy ledger [J]: see energy.ledger: kinetic, potential, elastic, cohesive, lost ones, total."""
         engine = self._assembled()
-        return energy.ledger(self.mass, self.position, self.velocity, self.spin, self.angular_momentum, self.gravity,
-                             engine.pairs, engine.losses())  # fmt: skip
+        kinetic = float(self.kinetic_energy.sum())
+        return energy.ledger(kinetic, self.mass, self.position, self.gravity, engine.pairs, engine.losses())
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write everything to an HDF5 file, whole or not at all; `World.load` continues from it bit for bit."""

@@ -42,9 +42,7 @@ class FlightLine:
 
     def energy(self) -> float:
         """Return the lander's kinetic energy [J]."""
-        velocity, k = self.world.velocity[self.number], self.number
-        turning = self.world.spin[k] @ self.world.angular_momentum[k]
-        return 0.5 * float(self.lander.mass * velocity @ velocity + turning)
+        return float(self.world.kinetic_energy[self.number])
 
     def height(self) -> float:
         """Return the height of the lander's lowest point [m]."""
@@ -67,14 +65,14 @@ class FlightLine:
         position, velocity = world.position[k], world.velocity[k]
         if abs(position[0]) > 0.5 * self.bed.width[0] or abs(position[1]) > 0.5 * self.bed.width[1]:
             return "left_sideways"
-        free = not np.any(world.contact_force[k])
+        free, energy = not np.any(world.contact_force[k]), self.energy()
         if has_touched and free:
             if velocity[2] > 0.0 and height > self.clear_height:
                 return "clear"
             lift = -world.gravity[2] * CAPTURED_APEX * self.lander.smallest_edge
-            if self.energy() < self.lander.mass * lift:
+            if energy < self.lander.mass * lift:
                 return "captured"
-        if has_touched and self.energy() < CAPTURED_ENERGY * self.start_energy:
+        if has_touched and energy < CAPTURED_ENERGY * self.start_energy:
             self.still_since = world.time if self.still_since is None else self.still_since
             patience = CAPTURED_CONTACTS * self.landing.contact.steps_per_contact * world.time_step
             if world.time - self.still_since > patience:

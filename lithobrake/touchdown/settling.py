@@ -48,7 +48,7 @@ def free_fall_drag(gravity: float, diameter: float) -> float:
 
 def kinetic_ratio(world: World, diameter: float, gravity: float) -> float:
     """Return the kinetic energy over that of lifting all bodies by a diameter [m] under gravity [m/s2]."""
-    return world.energy()["kinetic"] / (float(world.mass.sum()) * gravity * diameter)
+    return float(world.kinetic_energy.sum()) / (float(world.mass.sum()) * gravity * diameter)
 
 
 def unbalanced_force(world: World) -> float:

@@ -1,0 +1,125 @@
+"""The corners and pairs of edges of two cores that are nearer to each other than some distance."""
+
+from typing import NamedTuple
+
+from lithobrake.compiled import kernel, large_kernel
+from lithobrake.dem.arrays import Cores, Pairs
+from lithobrake.dem.distance import Search
+from lithobrake.dem.features import edge_of, edge_to_edge, lowest_height, point_to_core
+from lithobrake.dem.names import CORNER_OF_FIRST, CORNER_OF_SECOND, EDGES, note_term
+from lithobrake.dem.vectors import Vector, dot, minus, plus, put, row, scaled, times, transposed_times
+
+
+class Gap(NamedTuple):
+    """The space between two cores along a direction of the first's frame, and what is too far behind it."""
+
+    normal: Vector  # of the first's frame, toward the second; 0: nothing is too far
+    turned: Vector  # the same in the second's frame
+    top: float  # m, of the first core along it, about its centroid
+    bottom: float  # m, of the second core, about its own
+    farthest: float  # m, of features that are wanted
+    band: float  # m: what lies deeper behind the gap on both sides together is farther apart than that
+
+
+@kernel
+def gap_along(
+    normal: Vector, cores: Cores, shapes: tuple[int, int], search: Search, there: Vector, farthest: float
+) -> Gap:
+    """Return the gap of two cores along a normal."""
+    turned = transposed_times(search.relative, 0, normal)
+    top = -lowest_height(cores, shapes[0], scaled(-1.0, normal))
+    bottom = lowest_height(cores, shapes[1], turned)
+    return Gap(normal, turned, top, bottom, farthest, farthest - (bottom + dot(there, normal) - top))
+
+
+@kernel
+def is_point(cores: Cores, shape: int) -> bool:
+    """Whether a core is a point: the shape is a sphere."""
+    return cores.face_start[shape] == cores.face_start[shape + 1]
+
+
+@kernel
+def list_corners(
+    pair: int, pairs: Pairs, cores: Cores, shapes: tuple[int, int], search: Search, there: Vector, gap: Gap
+) -> None:
+    """List the corners of either core that are near enough to the other; far ones fall out by their depth."""
+    if not is_point(cores, shapes[1]):
+        start = cores.vertex_start[shapes[0]]
+        for k in range(start, cores.vertex_start[shapes[0] + 1]):
+            if gap.top - dot(row(cores.vertex, k), gap.normal) >= gap.band:
+                continue
+            seen = transposed_times(search.relative, 0, minus(row(cores.vertex, k), there))
+            _, _, near, face = point_to_core(cores, shapes[1], seen, gap.farthest)
+            if near:
+                note_term(pairs, pair, CORNER_OF_FIRST, k - start, face + 1)
+    if not is_point(cores, shapes[0]):
+        start = cores.vertex_start[shapes[1]]
+        for k in range(start, cores.vertex_start[shapes[1] + 1]):
+            if dot(row(cores.vertex, k), gap.turned) - gap.bottom >= gap.band:
+                continue
+            seen = plus(times(search.relative, 0, row(cores.vertex, k)), there)
+            _, _, near, face = point_to_core(cores, shapes[0], seen, gap.farthest)
+            if near:
+                note_term(pairs, pair, CORNER_OF_SECOND, k - start, face + 1)
+
+
+@large_kernel
+def list_edges(
+    pair: int, pairs: Pairs, cores: Cores, shapes: tuple[int, int], search: Search, there: Vector, gap: Gap
+) -> None:
+    """List the pairs of edges that are near enough: of those that reach into the band, whose parts in it may meet."""
+    near = edges_in_band(cores, shapes[1], search, there, gap)
+    for i in range(cores.edge_start[shapes[0] + 1] - cores.edge_start[shapes[0]]):
+        begin, along = edge_of(cores, shapes[0], i)
+        depth, climb = gap.top - dot(begin, gap.normal), -dot(along, gap.normal)
+        if min(depth, depth + climb) >= gap.band:
+            continue
+        low, high = box_in_band(begin, along, depth, climb, gap.band)
+        for k in range(near):
+            if beyond(low, row(search.turned[:, 9:], k), gap.farthest):
+                continue
+            if beyond(row(search.turned[:, 6:], k), high, gap.farthest):
+                continue
+            here, hither = edge_to_edge(begin, along, row(search.turned, k), row(search.turned[:, 3:], k))
+            between = minus(hither, here)
+            if dot(between, between) < gap.farthest * gap.farthest:
+                note_term(pairs, pair, EDGES, i, search.listed[k])
+
+
+@kernel
+def edges_in_band(cores: Cores, shape: int, search: Search, there: Vector, gap: Gap) -> int:
+    """Write begin, direction and box, in the first's frame, of the second's edges in the band; return their number."""
+    near = 0
+    for j in range(cores.edge_start[shape + 1] - cores.edge_start[shape]):
+        begin, along = edge_of(cores, shape, j)
+        depth, climb = dot(begin, gap.turned) - gap.bottom, dot(along, gap.turned)
+        if min(depth, depth + climb) >= gap.band:
+            continue
+        begin, along = plus(times(search.relative, 0, begin), there), times(search.relative, 0, along)
+        low, high = box_in_band(begin, along, depth, climb, gap.band)
+        put(search.turned, near, begin)
+        put(search.turned[:, 3:], near, along)
+        put(search.turned[:, 6:], near, low)
+        put(search.turned[:, 9:], near, high)
+        search.listed[near] = j
+        near += 1
+    return near
+
+
+@kernel
+def box_in_band(begin: Vector, along: Vector, depth: float, climb: float, band: float) -> tuple[Vector, Vector]:
+    """Return the lowest and highest coordinates of the part of an edge that is less deep than the band.
+
+    Its begin is at a depth, its end deeper by `climb`; one of them at least is in the band.
+    """
+    start = (band - depth) / climb if depth >= band else 0.0
+    stop = (band - depth) / climb if depth + climb >= band else 1.0
+    a, b = plus(begin, scaled(start, along)), plus(begin, scaled(stop, along))
+    low = (min(a[0], b[0]), min(a[1], b[1]), min(a[2], b[2]))
+    return low, (max(a[0], b[0]), max(a[1], b[1]), max(a[2], b[2]))
+
+
+@kernel
+def beyond(low: Vector, high: Vector, farthest: float) -> bool:
+    """Whether lowest coordinates lie farther above highest ones, along any axis, than may be."""
+    return low[0] - high[0] >= farthest or low[1] - high[1] >= farthest or low[2] - high[2] >= farthest
