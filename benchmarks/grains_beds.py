@@ -27,25 +27,46 @@ def shapes_of(folder: Path, case: str, radii: np.ndarray) -> list[Shape]:
     return [hulls[k % LIBRARY_PERIOD[case] % 64] for k in range(len(radii))]
 
 
-def bed(folder: Path, case: str, tiles: tuple[int, int] = (1, 1), share: float = 1.0) -> World:
-    """Return a bed in its open box; so many copies of it side by side, or only a share of its width along x."""
+def bed(folder: Path, case: str, tiles: tuple[int, int] = (1, 1)) -> World:
+    """Return a bed in its open box, or so many copies of it side by side in one."""
     rows, width = np.loadtxt(folder / f"{case}.txt"), WIDTH[case]
     shapes = shapes_of(folder, case, rows[:, 0])
     world = World((0.0, 0.0, -GRAVITY), TIME_STEP)
     for i in range(tiles[0]):
         for j in range(tiles[1]):
             for shape, row in zip(shapes, rows, strict=True):
-                if row[1] < (share - 0.5) * width:
-                    place = row[1:4] + np.array([i * width, j * width, 0.0])
-                    world.add_body(shape, ROCK, place, velocity=row[8:11], orientation=row[4:8], spin=row[11:14])
+                place = row[1:4] + np.array([i * width, j * width, 0.0])
+                world.add_body(shape, ROCK, place, velocity=row[8:11], orientation=row[4:8], spin=row[11:14])
     low = -0.5 * width
-    high = (low + share * tiles[0] * width, low + tiles[1] * width)
+    high = (low + tiles[0] * width, low + tiles[1] * width)
     world.add_plane((0, 0, 0), (0, 0, 1), ROCK)
     for axis in (0, 1):
         inward = np.eye(3)[axis]
         world.add_plane((low, low, 0), inward, ROCK)
         world.add_plane((*high, 0), -inward, ROCK)
     return world
+
+
+def boxes(world: World, width: float, count: int, share: float = 1.0) -> World:
+    """Return copies of a bed on one floor, each in a box of its own, of the grains in a share of its width along x."""
+    copies = World(tuple(world.gravity), TIME_STEP)
+    copies.add_plane((0, 0, 0), (0, 0, 1), ROCK)
+    radius = np.array([body.shape.bounding_radius for body in world.bodies])
+    kept = np.flatnonzero(world.position[:, 0] < (share - 0.5) * width)
+    low = -0.5 * width
+    # A wall stands where the farthest grain that is kept reaches.
+    high = -low if share == 1.0 else float((world.position[kept, 0] + radius[kept]).max())
+    for k in range(count):
+        shift = np.array([2.0 * width * k, 0.0, 0.0])
+        numbers = [
+            copies.add_body(world.bodies[n].shape, ROCK, world.position[n] + shift, orientation=world.orientation[n])
+            for n in kept
+        ]
+        for point, inward in (
+            ((low, 0, 0), (1, 0, 0)), ((high, 0, 0), (-1, 0, 0)), ((0, low, 0), (0, 1, 0)), ((0, -low, 0), (0, -1, 0))
+        ):  # fmt: skip
+            copies.add_plane(np.array(point) + shift, inward, ROCK, bodies=numbers)
+    return copies
 
 
 def relaxed(world: World, steps: int) -> World:

@@ -25,7 +25,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from grains_beds import ROCK, WIDTH, bed, coordination, relaxed
+from grains_beds import ROCK, WIDTH, bed, boxes, coordination, relaxed
 
 from lithobrake.dem import Box, World
 
@@ -90,10 +90,11 @@ def landing(folder: Path) -> list[Result]:
 
 
 def scaling(folder: Path) -> list[Result]:
-    """Time beds of 500 to 50 000 hulls, laid out of copies of hull1000."""
+    """Time 500 to 50 000 hulls at rest: half of hull1000, and copies of it, each in a box of its own."""
     rows = []
-    for tiles, share in (((1, 1), 0.5), ((1, 1), 1.0), ((5, 1), 1.0), ((10, 5), 1.0)):
-        world = relaxed(bed(folder, "hull1000", tiles, share), 3000)
+    settled = relaxed(bed(folder, "hull1000"), RELAX_STEPS)
+    for count, share in ((1, 0.5), (1, 1.0), (5, 1.0), (20, 1.0), (50, 1.0)):
+        world = relaxed(boxes(settled, WIDTH["hull1000"], count, share), RELAX_STEPS if share < 1.0 else 1000)
         steps = max(20, 200_000 // len(world.bodies))
         rows.append(rates(world, cpu_seconds(lambda world=world, steps=steps: world.run(steps=steps)), steps))
     return rows

@@ -1,7 +1,6 @@
 """From what a person adds to a world to the arrays that kernels work on."""
 
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -21,11 +20,6 @@ class Body:
     material: Material
     mass: float  # kg
     inertia: Floats  # kg m2, [3, 3], about the centroid, in the frame the shape was given in
-
-    @cached_property
-    def inverse_inertia(self) -> NDArray[Any]:
-        """Inverse of the inertia [1/(kg m2)], shape [3, 3]."""
-        return np.linalg.inv(self.inertia)
 
 
 @dataclass(frozen=True, eq=False)
@@ -130,6 +124,11 @@ def planes_of(planes: list[Plane], materials: list[Material], body_count: int) -
     return Planes(normal, offset, np.array([materials.index(p.material) for p in planes], dtype=np.int64), meets)
 
 
+def inverse_inertias(bodies: list[Body]) -> NDArray[Any]:
+    """Return the inverses of the inertias of bodies [1/(kg m2)], shape [body_count, 3, 3], body frame."""
+    return np.linalg.inv(np.array([body.inertia for body in bodies]).reshape(-1, 3, 3))
+
+
 def bodies_of(bodies: list[Body], shapes: list[Shape], materials: list[Material], state: dict[str, Floats]) -> Bodies:
     """Return bodies as arrays, in a state of position, velocity, quaternion and angular_momentum."""
     n = len(bodies)
@@ -138,7 +137,7 @@ def bodies_of(bodies: list[Body], shapes: list[Shape], materials: list[Material]
         shape=np.array([shape_of[id(body.shape)] for body in bodies], dtype=np.int64),
         material=np.array([materials.index(body.material) for body in bodies], dtype=np.int64),
         mass=np.array([body.mass for body in bodies]), inverse_mass=np.array([1.0 / body.mass for body in bodies]),
-        inverse_inertia_body=np.array([body.inverse_inertia for body in bodies]),
+        inverse_inertia_body=inverse_inertias(bodies),
         isotropic=np.array([np.array_equal(body.inertia, body.inertia[0, 0] * np.eye(3)) for body in bodies]),
         contact_radius=np.array([equivalent_radius(body.shape) for body in bodies]),
         curvature=np.array([1.0 / equivalent_radius(body.shape) for body in bodies]),

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from lithobrake.dem import energy, timestep
 from lithobrake.dem.advance import DIVERGED, FIRST_CONTACT, LAST_CONTACT, PEAK_FORCE, STEP_TOO_LARGE
 from lithobrake.dem.arrays import Floats, Pairs, Step
-from lithobrake.dem.body import Body, Plane, new_body, rotation_matrices, unit, vector
+from lithobrake.dem.body import Body, Plane, inverse_inertias, new_body, rotation_matrices, unit, vector
 from lithobrake.dem.contacts import contacts_of
 from lithobrake.dem.engine import Engine, no_pairs
 from lithobrake.dem.force import LOSSES
@@ -305,7 +305,7 @@ class World:
     def spin(self) -> Floats:
         """Angular velocities [rad/s], shape [body_count, 3], world frame."""
         if len(self._inverse_inertia) != len(self.bodies):
-            self._inverse_inertia = np.array([body.inverse_inertia for body in self.bodies])
+            self._inverse_inertia = inverse_inertias(self.bodies)
         spin = np.zeros((len(self.bodies), 3))
         rotation = rotation_matrices(self._state["quaternion"])
         write_spins(rotation, self._state["angular_momentum"], self._inverse_inertia, spin)
