@@ -31,7 +31,7 @@ SWITCHES = {
     "spheres met by their mass": ("force.py", "through_centroids or step.paper_mass", "step.paper_mass"),
     "limits by squares": ("spring.py", "    return vector if square <= limit * limit else",
                           "    return vector if square**0.5 <= limit else"),
-    "skin of the list": ("engine.py", "SKIN = 0.2", "SKIN = 0.02"),
+    "skin of the list": ("engine.py", "SKIN = 0.25", "SKIN = 0.025"),
     "one moment of inertia": ("body.py", "np.array_equal(body.inertia, body.inertia[0, 0] * np.eye(3))", "False"),
     "look every 16 steps": ("stability.py", "LOOK_STEPS, LOOK_PHASE = 16", "LOOK_STEPS, LOOK_PHASE = 1"),
     "kernels in their callers": ("../compiled.py", '"forceinline": True', '"forceinline": False'),

@@ -60,7 +60,7 @@ def advance(
             farthest = drift(bodies, step, 0, body_count)
             if not np.isfinite(farthest):
                 return taken, DIVERGED, False
-            if farthest > half_skin * half_skin:
+            if farthest > half_skin:
                 return taken, LIST_USED_UP, True
         if renew(bodies, cores, planes, pairs, search, step.time_step, 0, pair_count) > 0:
             return taken, NAMES_OVERFLOW, True

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
+Flags = NDArray[np.bool_]
 
 
 class Cores(NamedTuple):
@@ -34,10 +35,11 @@ class Bodies(NamedTuple):
     mass: Floats  # [body_count], kg
     inverse_mass: Floats  # [body_count], 1/kg
     inverse_inertia_body: Floats  # [body_count, 3, 3], body frame, 1/(kg m2)
-    isotropic: NDArray[np.bool_]  # [body_count], whether all moments of inertia are the same number
+    isotropic: Flags  # [body_count], whether all moments of inertia are the same number
     contact_radius: Floats  # [body_count], radius of the volume-equivalent sphere
     curvature: Floats  # [body_count], 1/m, one over that
     bounding_radius: Floats  # [body_count]
+    turning_radius: Floats  # [body_count], arm at which a spin moves the surface; 0 for spheres
     position: Floats  # [body_count, 3], centroid
     velocity: Floats  # [body_count, 3], m/s
     quaternion: Floats  # [body_count, 4], w x y z, body to world
@@ -49,10 +51,10 @@ class Bodies(NamedTuple):
     half_spin: Floats  # [body_count, 3], rad/s, that made the last rotation
     velocity_predicted: Floats  # [body_count, 3], m/s, at the instant of the positions
     spin_predicted: Floats  # [body_count, 3], rad/s, at the instant of the positions
-    position_listed: Floats  # [body_count, 3], where the neighbour list was made
     rates: Floats  # [body_count, 2], 1/s2 and 1/s, see stability.py; holds at the last look
     dragged: Floats  # [body_count], J, what drag has taken
-    travel: Floats  # [body_count], m, a bound on the way that any point of the body has gone so far
+    travel: Floats  # [body_count], m, a bound on the way that any point of the surface has gone so far
+    travel_listed: Floats  # [body_count], m, the same when the neighbour list was made
 
 
 class Planes(NamedTuple):
@@ -61,7 +63,7 @@ class Planes(NamedTuple):
     normal: Floats  # [plane_count, 3]
     offset: Floats  # [plane_count], m
     material: Integers  # [plane_count]
-    meets: NDArray[np.bool_]  # [plane_count, body_count]
+    meets: Flags  # [plane_count, body_count]
 
 
 class Pairs(NamedTuple):

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 from lithobrake.dem.arrays import Bodies, Cores, Floats, Integers, Laws, Planes
 from lithobrake.dem.material import Material, pair_law
 from lithobrake.dem.motion import write_matrices, write_rotations
-from lithobrake.dem.shape import ConvexHull, Shape, equivalent_radius
+from lithobrake.dem.shape import ConvexHull, Shape, Sphere, equivalent_radius
 
 
 @dataclass(frozen=True, eq=False)
@@ -131,7 +131,7 @@ def inverse_inertias(bodies: list[Body]) -> NDArray[Any]:
 
 def bodies_of(bodies: list[Body], shapes: list[Shape], materials: list[Material], state: dict[str, Floats]) -> Bodies:
     """Return bodies as arrays, in a state of position, velocity, quaternion and angular_momentum."""
-    n = len(bodies)
+    n, bounding = len(bodies), np.array([body.shape.bounding_radius for body in bodies])
     shape_of = {id(shape): k for k, shape in enumerate(shapes)}
     arrays = Bodies(
         shape=np.array([shape_of[id(body.shape)] for body in bodies], dtype=np.int64),
@@ -141,12 +141,12 @@ def bodies_of(bodies: list[Body], shapes: list[Shape], materials: list[Material]
         isotropic=np.array([np.array_equal(body.inertia, body.inertia[0, 0] * np.eye(3)) for body in bodies]),
         contact_radius=np.array([equivalent_radius(body.shape) for body in bodies]),
         curvature=np.array([1.0 / equivalent_radius(body.shape) for body in bodies]),
-        bounding_radius=np.array([body.shape.bounding_radius for body in bodies]),
+        bounding_radius=bounding, turning_radius=np.where([isinstance(b.shape, Sphere) for b in bodies], 0.0, bounding),
         position=state["position"], velocity=state["velocity"], quaternion=state["quaternion"],
         angular_momentum=state["angular_momentum"], rotation=np.zeros((n, 3, 3)), inverse_inertia=np.zeros((n, 3, 3)),
         force=np.zeros((n, 3)), torque=np.zeros((n, 3)), half_spin=np.zeros((n, 3)),
-        velocity_predicted=np.zeros((n, 3)), spin_predicted=np.zeros((n, 3)), position_listed=np.zeros((n, 3)),
-        rates=np.zeros((n, 2)), dragged=np.zeros(n), travel=np.zeros(n),
+        velocity_predicted=np.zeros((n, 3)), spin_predicted=np.zeros((n, 3)),
+        rates=np.zeros((n, 2)), dragged=np.zeros(n), travel=np.zeros(n), travel_listed=np.zeros(n),
     )  # fmt: skip
     write_matrices(arrays)
     return arrays

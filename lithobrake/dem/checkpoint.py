@@ -17,8 +17,8 @@ from lithobrake.dem.shape import Box, ConvexHull, Shape, Sphere
 if TYPE_CHECKING:
     from lithobrake.dem.world import World
 
-FORMAT_VERSION = 2
-MOVING = ("force", "torque", "half_spin", "position_listed", "travel", "dragged")
+FORMAT_VERSION = 3
+MOVING = ("force", "torque", "half_spin", "travel", "travel_listed", "dragged")
 
 
 def _shape_text(shape: Shape) -> str:

@@ -17,7 +17,7 @@ from lithobrake.dem.shape import Shape
 from lithobrake.dem.threads import Team, room_for
 
 # Skin of the neighbour list over the smallest bounding radius: costs or saves time, changes no result.
-SKIN = 0.2
+SKIN = 0.25
 NO_ROOM = room_for(0)
 
 
@@ -128,6 +128,7 @@ class Engine:
 
     def _list_neighbours(self) -> None:
         self.book()
-        first, second = neighbours(self.bodies, self.planes, self.skin)
+        search = self._scratch(self.pairs)
+        first, second = neighbours(self.bodies, self.cores, self.planes, self.skin, search)
         self.gather(renewed(self.pairs, first, second))
-        self.bodies.position_listed[:] = self.bodies.position
+        self.bodies.travel_listed[:] = self.bodies.travel

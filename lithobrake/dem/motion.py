@@ -128,16 +128,16 @@ def kick(bodies: Bodies, step: Step, start: int, stop: int) -> None:
 
 @kernel
 def top_speed(bodies: Bodies, body: int) -> float:
-    """Return a bound on the speed of any point of a body [m/s]."""
+    """Return a bound on the speed at which any point of a body's surface moves [m/s]."""
     velocity, spin = row(bodies.velocity, body), row(bodies.half_spin, body)
-    return dot(velocity, velocity) ** 0.5 + bodies.bounding_radius[body] * dot(spin, spin) ** 0.5
+    return dot(velocity, velocity) ** 0.5 + bodies.turning_radius[body] * dot(spin, spin) ** 0.5
 
 
 @large_kernel
 def drift(bodies: Bodies, step: Step, start: int, stop: int) -> float:
     """Advance bodies start to stop by a step at the half-step velocities and predict the velocities at its end.
 
-    Returns the largest squared distance from where the neighbour list was made [m2].
+    Returns the farthest that the surface of a body may have moved since the neighbour list was made [m].
     """
     farthest = 0.0
     half = 0.5 * step.time_step
@@ -150,8 +150,5 @@ def drift(bodies: Bodies, step: Step, start: int, stop: int) -> float:
         put(bodies.velocity_predicted, body, predicted)
         momentum = plus(row(bodies.angular_momentum, body), scaled(half, row(bodies.torque, body)))
         put(bodies.spin_predicted, body, times(bodies.inverse_inertia, body, momentum))
-        square = 0.0
-        for axis in range(3):
-            square += (bodies.position[body, axis] - bodies.position_listed[body, axis]) ** 2
-        farthest = max(farthest, square)
+        farthest = max(farthest, bodies.travel[body] - bodies.travel_listed[body])
     return farthest

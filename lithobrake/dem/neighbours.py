@@ -1,10 +1,13 @@
-"""Pairs of bodies near enough to touch before any body has moved half the skin."""
+"""Pairs of bodies near enough to touch before the surface of any has moved half the skin."""
 
 import numpy as np
 
-from lithobrake.compiled import kernel
-from lithobrake.dem.arrays import Bodies, Floats, Integers, Pairs, Planes
+from lithobrake.compiled import kernel, large_kernel
+from lithobrake.dem.arrays import Bodies, Cores, Flags, Floats, Integers, Pairs, Planes
+from lithobrake.dem.closest import approach
+from lithobrake.dem.distance import APART, Search
 from lithobrake.dem.names import NEAR
+from lithobrake.dem.vectors import minus, row
 
 
 @kernel
@@ -30,7 +33,22 @@ def sweep(order: Integers, low: Floats, position: Floats, reach: Floats, first: 
     return count
 
 
-def neighbours(bodies: Bodies, planes: Planes, skin: float) -> tuple[Integers, Integers]:
+@large_kernel
+def note_near(
+    bodies: Bodies, cores: Cores, first: Integers, second: Integers, skin: float, search: Search, near: Flags
+) -> None:
+    """Note which pairs of bodies are less than the skin apart: of hulls whose bounding spheres meet, less than half."""
+    for pair in range(len(first)):
+        members = (first[pair], second[pair])
+        shapes = (bodies.shape[members[0]], bodies.shape[members[1]])
+        apart = minus(row(bodies.position, members[1]), row(bodies.position, members[0]))
+        farthest = cores.rounding[shapes[0]] + cores.rounding[shapes[1]] + skin
+        near[pair] = approach(search, cores, shapes, bodies.rotation, members, apart, farthest)[0] != APART
+
+
+def neighbours(
+    bodies: Bodies, cores: Cores, planes: Planes, skin: float, search: Search
+) -> tuple[Integers, Integers]:  # fmt: skip
     """Return first and second of all neighbouring pairs, ordered; plane k stands as second = -1 - k."""
     reach = bodies.bounding_radius + 0.5 * skin
     low = bodies.position[:, 0] - reach
@@ -42,10 +60,12 @@ def neighbours(bodies: Bodies, planes: Planes, skin: float) -> tuple[Integers, I
         if count <= capacity:
             break
         capacity = count
+    near = np.zeros(count, dtype=np.bool_)
+    note_near(bodies, cores, first[:count], second[:count], skin, search, near)
     gap = planes.normal @ bodies.position.T - planes.offset[:, None] - reach
     plane, body = np.nonzero((gap < 0.0) & planes.meets)
-    first = np.concatenate([first[:count], body])
-    second = np.concatenate([second[:count], -1 - plane])
+    first = np.concatenate([first[:count][near], body])
+    second = np.concatenate([second[:count][near], -1 - plane])
     sorting = np.lexsort((second, first))
     return first[sorting], second[sorting]
 

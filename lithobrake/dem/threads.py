@@ -55,7 +55,7 @@ def room_for(count: int) -> Reactions:
 
 @large_kernel
 def begin_step(bodies: Bodies, step: Step, start: int, stop: int) -> float:
-    """Kick and drift bodies start to stop; return the largest squared distance from where the list was made [m2]."""
+    """Kick and drift bodies start to stop; return how far their surfaces may have moved [m], see `drift`."""
     kick(bodies, step, start, stop)
     return drift(bodies, step, start, stop)
 
@@ -108,7 +108,7 @@ class Team:
                 ways = self.share(self.body_count, lambda start, stop, _: begin_step(bodies, step, start, stop))
                 if not np.isfinite(ways).all():
                     return taken, DIVERGED, False
-                if max(ways) > half_skin * half_skin:
+                if max(ways) > half_skin:
                     return taken, LIST_USED_UP, True
             lacking = self.share(
                 pair_count,

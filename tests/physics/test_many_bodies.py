@@ -223,3 +223,18 @@ def test_renewing_every_list_in_every_step_changes_no_bit():
     assert np.array_equal(worlds[0].position, worlds[1].position)
     assert np.array_equal(worlds[0].angular_momentum, worlds[1].angular_momentum)
     assert worlds[0].energy()["friction"] > 0.0
+
+
+@pytest.mark.parametrize("skin", [0.02, 1.0, 8.0])
+def test_skin_of_the_neighbour_list_changes_no_bit(monkeypatch, skin):
+    """From lists that are renewed in every few steps to one that holds all pairs of hulls, boxes and spheres."""
+    usual = heap()
+    usual.run(0.4)
+    monkeypatch.setattr("lithobrake.dem.engine.SKIN", skin)
+    other = heap()
+    other.run(0.4)
+    assert usual.energy()["friction"] > 0.0
+    assert len(other._engine.pairs.first) != len(usual._engine.pairs.first)
+    for name in ("position", "orientation", "velocity", "angular_momentum"):
+        assert np.array_equal(getattr(usual, name), getattr(other, name))
+    assert usual.energy() == pytest.approx(other.energy(), rel=1e-12)
