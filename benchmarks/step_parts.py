@@ -21,9 +21,9 @@ from grains_beds import bed, coordination, relaxed
 from grains_speed import RELAX_STEPS, cpu_seconds
 
 from lithobrake.dem import World
-from lithobrake.dem.advance import act_all
 from lithobrake.dem.arrays import Pairs
 from lithobrake.dem.engine import NO_ROOM
+from lithobrake.dem.force import act_run
 from lithobrake.dem.listing import renew
 from lithobrake.dem.motion import drift, kick
 from lithobrake.dem.names import EDGES, kind_of
@@ -66,15 +66,9 @@ def parts(world: World) -> Iterator[tuple[str, float, float]]:
     ends = np.searchsorted(kind[order], np.arange(len(KINDS) + 1))
     for name, start, stop in zip(KINDS, ends[:-1], ends[1:], strict=True):
         if start < stop:
-            yield (
-                f"forces: {name}",
-                (stop - start) / count,
-                nanoseconds(
-                    lambda start=start, stop=stop: act_all(
-                        bodies, *held, sorted_pairs, engine.laws, still, engine.search, NO_ROOM, start, stop
-                    )
-                ),
-            )
+            rest = (engine.laws, still, engine.search, NO_ROOM, False, start, stop)
+            spent = nanoseconds(lambda rest=rest: act_run(bodies, *held, sorted_pairs, *rest))
+            yield f"forces: {name}", (stop - start) / count, spent
     look = nanoseconds(lambda: largest_step(bodies, engine.planes, pairs, engine.laws, False))
     yield f"look at stability, every {LOOK_STEPS} steps", 1.0 / LOOK_STEPS, look / LOOK_STEPS
 

@@ -2,31 +2,16 @@
 
 import numpy as np
 
-from lithobrake.compiled import kernel, large_kernel
-from lithobrake.dem.arrays import Bodies, Cores, Floats, Laws, Pairs, Planes, Reactions, Step
+from lithobrake.compiled import kernel
+from lithobrake.dem.arrays import Bodies, Cores, Floats, Laws, Pairs, Planes, Reactions, Share, Step
 from lithobrake.dem.distance import Search
-from lithobrake.dem.force import act
+from lithobrake.dem.force import act_all
 from lithobrake.dem.listing import renew
 from lithobrake.dem.motion import drift, kick
 from lithobrake.dem.stability import unsteady
 from lithobrake.dem.vectors import dot, plus, row, scaled
 
 DONE, LIST_USED_UP, NAMES_OVERFLOW, STEP_TOO_LARGE, DIVERGED = 0, 1, 2, 3, 4
-
-
-@large_kernel
-def act_all(
-    bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, laws: Laws, step: Step, search: Search,
-    reactions: Reactions, start: int, stop: int,
-) -> float:  # fmt: skip
-    """Compute the contact forces of pairs start to stop; sums run in the order of the pairs.
-
-    Returns the square of the farthest that a contact alone turns in the step.
-    """
-    fastest = 0.0
-    for pair in range(start, stop):
-        fastest = max(fastest, act(pair, bodies, cores, planes, pairs, laws, step, search, reactions))
-    return fastest * step.time_step * step.time_step
 
 
 @kernel
@@ -45,13 +30,13 @@ def apply_drag(bodies: Bodies, step: Step, start: int, stop: int) -> None:
 @kernel
 def advance(
     step_count: int, drifted: bool, bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, laws: Laws, step: Step,
-    half_skin: float, search: Search, reactions: Reactions, probe: int, probed: Floats,
+    half_skin: float, search: Search, reactions: Reactions, whole: Share, probe: int, probed: Floats,
 ) -> tuple[int, int, bool]:  # fmt: skip
     """Take up to `step_count` steps.
 
     Returns the steps taken, why it stopped, and whether the step in hand has drifted but not yet felt its forces (it
-    goes on from there once the neighbour list is renewed). Body `probe` (none: -1) is watched, see `note`. There is
-    no room in `reactions`.
+    goes on from there once the neighbour list is renewed). Body `probe` (none: -1) is watched, see `note`. `whole` is
+    the share of all bodies; there is no room in `reactions`.
     """
     body_count, pair_count = len(bodies.mass), len(pairs.first)
     for taken in range(step_count):
@@ -65,9 +50,7 @@ def advance(
         if renew(bodies, cores, planes, pairs, search, step.time_step, 0, pair_count) > 0:
             return taken, NAMES_OVERFLOW, True
         drifted = False
-        bodies.force[:] = 0.0
-        bodies.torque[:] = 0.0
-        turned = act_all(bodies, cores, planes, pairs, laws, step, search, reactions, 0, pair_count)
+        turned = act_all(bodies, cores, planes, pairs, laws, step, search, reactions, whole, False)
         if step.drag > 0.0:
             apply_drag(bodies, step, 0, body_count)
         kick(bodies, step, 0, body_count)

@@ -107,8 +107,19 @@ class Laws(NamedTuple):
     cohesion_line: Floats  # N/m, cohesion over contact radius
 
 
+class Share(NamedTuple):
+    """A run of bodies, and the pairs of which they are the first: what one thread works on, see threads.py."""
+
+    start: int
+    stop: int  # bodies from start to before stop
+    first_pair: int
+    last_pair: int  # pairs from first_pair to before last_pair
+    outgoing: Integers  # those of them whose second is in a later share, in order
+    incoming: Integers  # pairs of earlier shares of which these bodies are the second, in order
+
+
 class Reactions(NamedTuple):
-    """What contacts do to their bodies, kept for them to fetch; no room where it is passed on at once (threads.py)."""
+    """What contacts do to their bodies, kept where these are in different shares; no room where there is one share."""
 
     force: Floats  # [pair_count, 3] or [0, 3], N, on the second
     first_torque: Floats  # the same, N m

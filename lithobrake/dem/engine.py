@@ -14,7 +14,7 @@ from lithobrake.dem.material import Material
 from lithobrake.dem.names import NEAR
 from lithobrake.dem.neighbours import neighbours, pairs_of, renewed, roomier
 from lithobrake.dem.shape import Shape
-from lithobrake.dem.threads import Team, room_for
+from lithobrake.dem.threads import Team, room_for, shares_of
 
 # Skin of the neighbour list over the smallest bounding radius: costs or saves time, changes no result.
 SKIN = 0.25
@@ -87,7 +87,7 @@ class Engine:
         if self.team is None:
             return advance(
                 steps, drifted, self.bodies, self.cores, self.planes, self.pairs, self.laws, step, 0.5 * self.skin,
-                self.search, NO_ROOM, watched, self.probed,
+                self.search, NO_ROOM, self.whole, watched, self.probed,
             )  # fmt: skip
         return self.team.advance(
             steps, drifted, self.bodies, self.cores, self.planes, self.laws, step, 0.5 * self.skin, watched, self.probed
@@ -112,6 +112,7 @@ class Engine:
     def gather(self, pairs: Pairs) -> None:
         """Take on pairs: make scratch for them, and share them out among the threads."""
         self.pairs, self.search = pairs, self._scratch(pairs)
+        self.whole, *_ = shares_of(pairs, len(self.bodies.mass), 1)
         self.team = None
         if self.pool is not None:
             searches = [self._scratch(pairs) for _ in range(self.thread_count)]

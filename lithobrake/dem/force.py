@@ -6,8 +6,8 @@ that makes up for it, see material.restitution_of.
 
 from typing import NamedTuple
 
-from lithobrake.compiled import kernel
-from lithobrake.dem.arrays import Bodies, Cores, Floats, Laws, Pairs, Planes, Reactions, Step
+from lithobrake.compiled import kernel, large_kernel
+from lithobrake.dem.arrays import Bodies, Cores, Floats, Laws, Pairs, Planes, Reactions, Share, Step
 from lithobrake.dem.couples import let_go, resist_rolling, resist_twisting
 from lithobrake.dem.distance import Search
 from lithobrake.dem.masses import inverse_inertia_across, inverse_inertia_along, inverse_mass_at
@@ -156,9 +156,9 @@ def deliver(bodies: Bodies, body: int, sign: float, force: Vector, torque: Vecto
 @kernel
 def act(
     pair: int, bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, laws: Laws, step: Step, search: Search,
-    reactions: Reactions,
+    reactions: Reactions, kept: bool,
 ) -> float:  # fmt: skip
-    """Compute the contact force of one pair, and add it to its members or, where there is room for it, keep it.
+    """Compute the contact force of one pair, and add it to its members or keep it in `reactions`.
 
     Returns the square [1/s2] of the rate of its spring or dashpot, 0 where nothing touches.
     """
@@ -217,7 +217,7 @@ def act(
     second_torque = torque
     if is_body:
         second_torque = minus(torque, cross(minus(row(bodies.position, second), row(bodies.position, first)), force))
-    if len(reactions.force) > 0:
+    if kept:
         put(reactions.force, pair, force)
         put(reactions.first_torque, pair, torque)
         put(reactions.second_torque, pair, second_torque)
@@ -231,3 +231,55 @@ def act(
     put(pairs.point, pair, point)
     put(pairs.tangential_force, pair, tangential)
     return 1.5 * stiffness * meeting.inverse_mass * max(1.0, 2.0 * damping_ratio) ** 2
+
+
+@large_kernel
+def act_run(
+    bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, laws: Laws, step: Step, search: Search,
+    reactions: Reactions, kept: bool, start: int, stop: int,
+) -> float:  # fmt: skip
+    """Compute the contact forces of pairs from start to before stop; return the largest square of a rate, see `act`."""
+    fastest = 0.0
+    for pair in range(start, stop):
+        fastest = max(fastest, act(pair, bodies, cores, planes, pairs, laws, step, search, reactions, kept))
+    return fastest
+
+
+@large_kernel
+def act_all(
+    bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, laws: Laws, step: Step, search: Search,
+    reactions: Reactions, share: Share, across: bool,
+) -> float:  # fmt: skip
+    """Compute the contact forces of a share's pairs: at first of those across its end, whose reactions are kept, then
+    of all others. Sums run in the order of the pairs, in one share as in many.
+
+    Returns the square of the farthest that a contact alone turns in the step.
+    """
+    fastest, start = 0.0, share.first_pair
+    if not across:
+        fetch(bodies, pairs, reactions, share)
+    for k in range(len(share.outgoing)):
+        pair = share.outgoing[k]
+        if across:
+            rate = act_run(bodies, cores, planes, pairs, laws, step, search, reactions, True, pair, pair + 1)
+        else:
+            rate = act_run(bodies, cores, planes, pairs, laws, step, search, reactions, False, start, pair)
+            start = pair + 1
+            if pairs.overlap[pair] > 0.0:
+                deliver(bodies, pairs.first[pair], -1.0, row(reactions.force, pair), row(reactions.first_torque, pair))
+        fastest = max(fastest, rate)
+    if not across:
+        rate = act_run(bodies, cores, planes, pairs, laws, step, search, reactions, False, start, share.last_pair)
+        fastest = max(fastest, rate)
+    return fastest * step.time_step * step.time_step
+
+
+@kernel
+def fetch(bodies: Bodies, pairs: Pairs, reactions: Reactions, share: Share) -> None:
+    """Begin the sums of a share's bodies with what pairs of earlier shares do to them."""
+    bodies.force[share.start : share.stop] = 0.0
+    bodies.torque[share.start : share.stop] = 0.0
+    for k in range(len(share.incoming)):
+        pair = share.incoming[k]
+        if pairs.overlap[pair] > 0.0:
+            deliver(bodies, pairs.second[pair], 1.0, row(reactions.force, pair), row(reactions.second_torque, pair))
