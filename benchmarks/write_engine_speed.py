@@ -45,9 +45,15 @@ def others(found: dict[str, Any]) -> list[str]:
     for name, entry in found.items():
         if name not in AIMS:
             for result in entry["result"] if isinstance(entry["result"], list) else [entry["result"]]:
-                values = ", ".join(f"{key.replace('_', ' ')} {shown(value)}" for key, value in result.items())
-                lines.append(f"- {name}: {values} ({entry['date']}, load {entry['load']:.2g})")
+                landings = result.pop("landings", [])
+                lines.append(f"- {name}: {listed(result)} ({entry['date']}, load {entry['load']:.2g})")
+                lines += [f"    - a landing: {listed(landing)}" for landing in landings]
     return lines
+
+
+def listed(values: dict[str, Any]) -> str:
+    """Names and values on a line."""
+    return ", ".join(f"{key.replace('_', ' ')} {shown(value)}" for key, value in values.items())
 
 
 def step_parts(found: dict[str, Any]) -> list[str]:
