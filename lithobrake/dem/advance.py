@@ -5,7 +5,7 @@ import numpy as np
 from lithobrake.compiled import kernel
 from lithobrake.dem.arrays import Bodies, Cores, Floats, Laws, Pairs, Planes, Reactions, Share, Step
 from lithobrake.dem.distance import Search
-from lithobrake.dem.force import act_all
+from lithobrake.dem.force import act_within
 from lithobrake.dem.listing import renew
 from lithobrake.dem.motion import drift, kick
 from lithobrake.dem.stability import unsteady
@@ -50,13 +50,13 @@ def advance(
         if renew(bodies, cores, planes, pairs, search, step.time_step, 0, pair_count) > 0:
             return taken, NAMES_OVERFLOW, True
         drifted = False
-        turned = act_all(bodies, cores, planes, pairs, laws, step, search, reactions, whole, False)
+        rate = act_within(bodies, cores, planes, pairs, laws, step, search, reactions, whole)
         if step.drag > 0.0:
             apply_drag(bodies, step, 0, body_count)
         kick(bodies, step, 0, body_count)
         if probe >= 0:
             note(probe, bodies, probed)
-        if unsteady(taken, turned, bodies, planes, pairs, laws, step.paper_mass, step.time_step):
+        if unsteady(taken, rate, bodies, planes, pairs, laws, step.paper_mass, step.time_step):
             return taken + 1, STEP_TOO_LARGE, False
     return step_count, DONE, False
 

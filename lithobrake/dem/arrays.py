@@ -39,7 +39,7 @@ class Bodies(NamedTuple):
     contact_radius: Floats  # [body_count], radius of the volume-equivalent sphere
     curvature: Floats  # [body_count], 1/m, one over that
     bounding_radius: Floats  # [body_count]
-    turning_radius: Floats  # [body_count], arm at which a spin moves the surface; 0 for spheres
+    turning_radius: Floats  # [body_count], arm at which a spin moves the surface; 0 for spheres, which look the same
     position: Floats  # [body_count, 3], centroid
     velocity: Floats  # [body_count, 3], m/s
     quaternion: Floats  # [body_count, 4], w x y z, body to world
@@ -53,7 +53,7 @@ class Bodies(NamedTuple):
     spin_predicted: Floats  # [body_count, 3], rad/s, at the instant of the positions
     rates: Floats  # [body_count, 2], 1/s2 and 1/s, see stability.py; holds at the last look
     dragged: Floats  # [body_count], J, what drag has taken
-    travel: Floats  # [body_count], m, a bound on the way that any point of the surface has gone so far
+    travel: Floats  # [body_count], m, a bound on how much nearer to anything the surface may have come so far
     travel_listed: Floats  # [body_count], m, the same when the neighbour list was made
 
 

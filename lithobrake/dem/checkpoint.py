@@ -49,6 +49,7 @@ def save(world: "World", path: str | os.PathLike[str]) -> None:
         file.attrs["given_time_step"] = json.dumps(world._given_time_step)
         file.attrs["time_step"] = json.dumps(world._time_step)
         file.attrs["time"], file.attrs["drag"], file.attrs["watched"] = world.time, world.drag, world._watched
+        file.attrs["skin"] = engine.skin
         for name in ("gravity", "_lost", "_probed"):
             file[name.strip("_")] = getattr(world, name)
         file["body/shape"], file["body/material"] = engine.bodies.shape, engine.bodies.material
@@ -98,6 +99,7 @@ def load(path: str | os.PathLike[str]) -> "World":
     engine.bodies.quaternion[:] = data["body/quaternion"]
     write_matrices(engine.bodies)
     world._lost[:], world._probed[:] = data["lost"], data["probed"]
+    engine.skin = float(attributes["skin"])
     for name in MOVING:
         getattr(engine.bodies, name)[:] = data[f"body/{name}"]
     pairs = pairs_of(data["pair/first"], data["pair/second"])

@@ -33,8 +33,8 @@ class Search(NamedTuple):
     names: Integers  # [4, 2]
     weight: Floats  # [4]
     steps: Integers  # [1], that the last search took
-    turned: Floats  # [edge_count_max + vertex_count_max, 12], a core in the other's frame
-    listed: Integers  # [edge_count_max + vertex_count_max]
+    turned: Floats  # [edge_count_max + vertex_count_max, 12], a core, or edges with their boxes, in the other's frame
+    listed: Integers  # [edge_count_max + vertex_count_max], which edges these are
     relative: Floats  # [1, 3, 3]
     point: Floats  # [point_max, 3], of a patch
     normal: Floats  # [point_max, 3], from first to second

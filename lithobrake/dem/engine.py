@@ -10,6 +10,7 @@ from lithobrake.dem.arrays import Bodies, Cores, Floats, Laws, Pairs, Planes, St
 from lithobrake.dem.body import Body, Plane, bodies_of, cores_of, laws_of, planes_of
 from lithobrake.dem.distance import Search, search_for
 from lithobrake.dem.force import DAMPING
+from lithobrake.dem.listing import BOUND_SLACK
 from lithobrake.dem.material import Material
 from lithobrake.dem.names import NEAR
 from lithobrake.dem.neighbours import neighbours, pairs_of, renewed, roomier
@@ -57,11 +58,13 @@ class Engine:
         self.laws: Laws = laws_of(self.materials, options["shear_modulus_rule"], options["pair_rule"])
         self.planes: Planes = planes_of(planes, self.materials, len(bodies))
         self.bodies: Bodies = bodies_of(bodies, self.shapes, self.materials, state)
-        self.pairs, self.lost, self.probed = pairs, lost, probed
+        self.pairs: Pairs
         self.search: Search
         self.team: Team | None
+        self.lost, self.probed = lost, probed
         self.skin = SKIN * float(self.bodies.bounding_radius.min())
         self.thread_count, self.pool = thread_count, pool_of(thread_count)
+        self.gather(pairs)
         self._list_neighbours()
         self.pairs.wake[:] = 0.0
 
@@ -86,11 +89,11 @@ class Engine:
         """Take steps until the lists have to be renewed, on one thread or on several."""
         if self.team is None:
             return advance(
-                steps, drifted, self.bodies, self.cores, self.planes, self.pairs, self.laws, step, 0.5 * self.skin,
+                steps, drifted, self.bodies, self.cores, self.planes, self.pairs, self.laws, step, self._way,
                 self.search, NO_ROOM, self.whole, watched, self.probed,
             )  # fmt: skip
         return self.team.advance(
-            steps, drifted, self.bodies, self.cores, self.planes, self.laws, step, 0.5 * self.skin, watched, self.probed
+            steps, drifted, self.bodies, self.cores, self.planes, self.laws, step, self._way, watched, self.probed
         )
 
     def losses(self) -> Floats:
@@ -127,9 +130,13 @@ class Engine:
         points = 1 + int(vertices.sum() + 2 * edges.prod()) + NEAR + pairs.rest.shape[1]
         return search_for(int(vertices.max() + edges.max()), points)
 
+    @property
+    def _way(self) -> float:
+        """How far a surface may come nearer to others before neighbours are listed anew [m]."""
+        return 0.5 * (1.0 - BOUND_SLACK) * self.skin
+
     def _list_neighbours(self) -> None:
         self.book()
-        search = self._scratch(self.pairs)
-        first, second = neighbours(self.bodies, self.cores, self.planes, self.skin, search)
+        first, second = neighbours(self.bodies, self.cores, self.planes, self.skin, self.search)
         self.gather(renewed(self.pairs, first, second))
         self.bodies.travel_listed[:] = self.bodies.travel

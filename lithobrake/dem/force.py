@@ -238,7 +238,7 @@ def act_run(
     bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, laws: Laws, step: Step, search: Search,
     reactions: Reactions, kept: bool, start: int, stop: int,
 ) -> float:  # fmt: skip
-    """Compute the contact forces of pairs from start to before stop; return the largest square of a rate, see `act`."""
+    """Compute the contact forces of pairs from start to before stop; return the largest square of a rate [1/s2]."""
     fastest = 0.0
     for pair in range(start, stop):
         fastest = max(fastest, act(pair, bodies, cores, planes, pairs, laws, step, search, reactions, kept))
@@ -246,32 +246,38 @@ def act_run(
 
 
 @large_kernel
-def act_all(
+def act_across(
     bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, laws: Laws, step: Step, search: Search,
-    reactions: Reactions, share: Share, across: bool,
+    reactions: Reactions, share: Share,
 ) -> float:  # fmt: skip
-    """Compute the contact forces of a share's pairs: at first of those across its end, whose reactions are kept, then
-    of all others. Sums run in the order of the pairs, in one share as in many.
-
-    Returns the square of the farthest that a contact alone turns in the step.
-    """
-    fastest, start = 0.0, share.first_pair
-    if not across:
-        fetch(bodies, pairs, reactions, share)
+    """Compute the contact forces of a share's pairs with bodies of later shares, and keep them; return as act_run."""
+    fastest = 0.0
     for k in range(len(share.outgoing)):
         pair = share.outgoing[k]
-        if across:
-            rate = act_run(bodies, cores, planes, pairs, laws, step, search, reactions, True, pair, pair + 1)
-        else:
-            rate = act_run(bodies, cores, planes, pairs, laws, step, search, reactions, False, start, pair)
-            start = pair + 1
-            if pairs.overlap[pair] > 0.0:
-                deliver(bodies, pairs.first[pair], -1.0, row(reactions.force, pair), row(reactions.first_torque, pair))
+        rate = act_run(bodies, cores, planes, pairs, laws, step, search, reactions, True, pair, pair + 1)
         fastest = max(fastest, rate)
-    if not across:
-        rate = act_run(bodies, cores, planes, pairs, laws, step, search, reactions, False, start, share.last_pair)
-        fastest = max(fastest, rate)
-    return fastest * step.time_step * step.time_step
+    return fastest
+
+
+@large_kernel
+def act_within(
+    bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, laws: Laws, step: Step, search: Search,
+    reactions: Reactions, share: Share,
+) -> float:  # fmt: skip
+    """Sum up the contact forces on the bodies of a share, once those across shares are known; return as act_run.
+
+    Sums run in the order of the pairs, in one share as in many.
+    """
+    fetch(bodies, pairs, reactions, share)
+    fastest, start = 0.0, share.first_pair
+    for k in range(len(share.outgoing)):
+        pair = share.outgoing[k]
+        rate = act_run(bodies, cores, planes, pairs, laws, step, search, reactions, False, start, pair)
+        fastest, start = max(fastest, rate), pair + 1
+        if pairs.overlap[pair] > 0.0:
+            deliver(bodies, pairs.first[pair], -1.0, row(reactions.force, pair), row(reactions.first_torque, pair))
+    rate = act_run(bodies, cores, planes, pairs, laws, step, search, reactions, False, start, share.last_pair)
+    return max(fastest, rate)
 
 
 @kernel

@@ -11,7 +11,7 @@ from lithobrake.dem.distance import APART, CLOSE, CROSSING, Search, weighted
 from lithobrake.dem.features import write_relative
 from lithobrake.dem.motion import top_speed
 from lithobrake.dem.names import CORNER_OF_FIRST, DEEP, SPHERES, note_term, room
-from lithobrake.dem.nearby import gap_along, is_point, list_corners, list_edges
+from lithobrake.dem.nearby import band_along, is_point, list_corners, list_edges
 from lithobrake.dem.shares import SINK_TO
 from lithobrake.dem.vectors import dot, minus, row, scaled, transposed_times
 
@@ -114,9 +114,9 @@ def list_bodies(pair: int, bodies: Bodies, cores: Cores, pairs: Pairs, margin: f
     between = weighted(search.difference, search.weight, count) if found == CLOSE else (0.0, 0.0, 0.0)
     distance = dot(between, between) ** 0.5
     direction = scaled(-1.0 / distance, between) if distance > 0.0 else between
-    gap = gap_along(transposed_times(bodies.rotation, first, direction), cores, shapes, search, there, reach + margin)
-    list_corners(pair, pairs, cores, shapes, search, there, gap)
+    band = band_along(transposed_times(bodies.rotation, first, direction), cores, shapes, search, there, reach + margin)
+    list_corners(pair, pairs, cores, shapes, search, there, band)
     if not hulls:
         return margin
-    list_edges(pair, pairs, cores, shapes, search, there, gap)
+    list_edges(pair, pairs, cores, shapes, search, there, band)
     return min(margin, distance)

@@ -128,7 +128,7 @@ def kick(bodies: Bodies, step: Step, start: int, stop: int) -> None:
 
 @kernel
 def top_speed(bodies: Bodies, body: int) -> float:
-    """Return a bound on the speed at which any point of a body's surface moves [m/s]."""
+    """Return a bound on the speed at which a body's surface comes nearer to anything [m/s]."""
     velocity, spin = row(bodies.velocity, body), row(bodies.half_spin, body)
     return dot(velocity, velocity) ** 0.5 + bodies.turning_radius[body] * dot(spin, spin) ** 0.5
 
@@ -137,9 +137,10 @@ def top_speed(bodies: Bodies, body: int) -> float:
 def drift(bodies: Bodies, step: Step, start: int, stop: int) -> float:
     """Advance bodies start to stop by a step at the half-step velocities and predict the velocities at its end.
 
-    Returns the farthest that the surface of a body may have moved since the neighbour list was made [m].
+    Returns the farthest that the surface of a body may have moved since the neighbour list was made [m], not finite
+    where one is lost.
     """
-    farthest = 0.0
+    farthest, lost = 0.0, 0.0
     half = 0.5 * step.time_step
     for body in range(start, stop):
         add(bodies.position, body, step.time_step, row(bodies.velocity, body))
@@ -150,5 +151,8 @@ def drift(bodies: Bodies, step: Step, start: int, stop: int) -> float:
         put(bodies.velocity_predicted, body, predicted)
         momentum = plus(row(bodies.angular_momentum, body), scaled(half, row(bodies.torque, body)))
         put(bodies.spin_predicted, body, times(bodies.inverse_inertia, body, momentum))
-        farthest = max(farthest, bodies.travel[body] - bodies.travel_listed[body])
-    return farthest
+        way = bodies.travel[body] - bodies.travel_listed[body]
+        farthest = max(farthest, way)
+        # A maximum passes over what is no number; nothing times what is not finite stays none.
+        lost += 0.0 * way
+    return farthest + lost

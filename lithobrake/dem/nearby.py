@@ -10,7 +10,7 @@ from lithobrake.dem.names import CORNER_OF_FIRST, CORNER_OF_SECOND, EDGES, note_
 from lithobrake.dem.vectors import Vector, dot, minus, plus, put, row, scaled, times, transposed_times
 
 
-class Gap(NamedTuple):
+class Band(NamedTuple):
     """The space between two cores along a direction of the first's frame, and what is too far behind it."""
 
     normal: Vector  # of the first's frame, toward the second; 0: nothing is too far
@@ -18,18 +18,18 @@ class Gap(NamedTuple):
     top: float  # m, of the first core along it, about its centroid
     bottom: float  # m, of the second core, about its own
     farthest: float  # m, of features that are wanted
-    band: float  # m: what lies deeper behind the gap on both sides together is farther apart than that
+    depth: float  # m: features deeper behind the gap than this, on both sides together, are farther apart than that
 
 
 @kernel
-def gap_along(
+def band_along(
     normal: Vector, cores: Cores, shapes: tuple[int, int], search: Search, there: Vector, farthest: float
-) -> Gap:
-    """Return the gap of two cores along a normal."""
+) -> Band:
+    """Return the gap of two cores along a normal, and what is near it."""
     turned = transposed_times(search.relative, 0, normal)
     top = -lowest_height(cores, shapes[0], scaled(-1.0, normal))
     bottom = lowest_height(cores, shapes[1], turned)
-    return Gap(normal, turned, top, bottom, farthest, farthest - (bottom + dot(there, normal) - top))
+    return Band(normal, turned, top, bottom, farthest, farthest - (bottom + dot(there, normal) - top))
 
 
 @kernel
@@ -40,63 +40,63 @@ def is_point(cores: Cores, shape: int) -> bool:
 
 @kernel
 def list_corners(
-    pair: int, pairs: Pairs, cores: Cores, shapes: tuple[int, int], search: Search, there: Vector, gap: Gap
+    pair: int, pairs: Pairs, cores: Cores, shapes: tuple[int, int], search: Search, there: Vector, band: Band
 ) -> None:
     """List the corners of either core that are near enough to the other; far ones fall out by their depth."""
     if not is_point(cores, shapes[1]):
         start = cores.vertex_start[shapes[0]]
         for k in range(start, cores.vertex_start[shapes[0] + 1]):
-            if gap.top - dot(row(cores.vertex, k), gap.normal) >= gap.band:
+            if band.top - dot(row(cores.vertex, k), band.normal) >= band.depth:
                 continue
             seen = transposed_times(search.relative, 0, minus(row(cores.vertex, k), there))
-            _, _, near, face = point_to_core(cores, shapes[1], seen, gap.farthest)
+            _, _, near, face = point_to_core(cores, shapes[1], seen, band.farthest)
             if near:
                 note_term(pairs, pair, CORNER_OF_FIRST, k - start, face + 1)
     if not is_point(cores, shapes[0]):
         start = cores.vertex_start[shapes[1]]
         for k in range(start, cores.vertex_start[shapes[1] + 1]):
-            if dot(row(cores.vertex, k), gap.turned) - gap.bottom >= gap.band:
+            if dot(row(cores.vertex, k), band.turned) - band.bottom >= band.depth:
                 continue
             seen = plus(times(search.relative, 0, row(cores.vertex, k)), there)
-            _, _, near, face = point_to_core(cores, shapes[0], seen, gap.farthest)
+            _, _, near, face = point_to_core(cores, shapes[0], seen, band.farthest)
             if near:
                 note_term(pairs, pair, CORNER_OF_SECOND, k - start, face + 1)
 
 
 @large_kernel
 def list_edges(
-    pair: int, pairs: Pairs, cores: Cores, shapes: tuple[int, int], search: Search, there: Vector, gap: Gap
+    pair: int, pairs: Pairs, cores: Cores, shapes: tuple[int, int], search: Search, there: Vector, band: Band
 ) -> None:
     """List the pairs of edges that are near enough: of those that reach into the band, whose parts in it may meet."""
-    near = edges_in_band(cores, shapes[1], search, there, gap)
+    near = edges_in_band(cores, shapes[1], search, there, band)
     for i in range(cores.edge_start[shapes[0] + 1] - cores.edge_start[shapes[0]]):
         begin, along = edge_of(cores, shapes[0], i)
-        depth, climb = gap.top - dot(begin, gap.normal), -dot(along, gap.normal)
-        if min(depth, depth + climb) >= gap.band:
+        depth, climb = band.top - dot(begin, band.normal), -dot(along, band.normal)
+        if min(depth, depth + climb) >= band.depth:
             continue
-        low, high = box_in_band(begin, along, depth, climb, gap.band)
+        low, high = box_in_band(begin, along, depth, climb, band.depth)
         for k in range(near):
-            if beyond(low, row(search.turned[:, 9:], k), gap.farthest):
+            if beyond(low, row(search.turned[:, 9:], k), band.farthest):
                 continue
-            if beyond(row(search.turned[:, 6:], k), high, gap.farthest):
+            if beyond(row(search.turned[:, 6:], k), high, band.farthest):
                 continue
             here, hither = edge_to_edge(begin, along, row(search.turned, k), row(search.turned[:, 3:], k))
             between = minus(hither, here)
-            if dot(between, between) < gap.farthest * gap.farthest:
+            if dot(between, between) < band.farthest * band.farthest:
                 note_term(pairs, pair, EDGES, i, search.listed[k])
 
 
 @kernel
-def edges_in_band(cores: Cores, shape: int, search: Search, there: Vector, gap: Gap) -> int:
+def edges_in_band(cores: Cores, shape: int, search: Search, there: Vector, band: Band) -> int:
     """Write begin, direction and box, in the first's frame, of the second's edges in the band; return their number."""
     near = 0
     for j in range(cores.edge_start[shape + 1] - cores.edge_start[shape]):
         begin, along = edge_of(cores, shape, j)
-        depth, climb = dot(begin, gap.turned) - gap.bottom, dot(along, gap.turned)
-        if min(depth, depth + climb) >= gap.band:
+        depth, climb = dot(begin, band.turned) - band.bottom, dot(along, band.turned)
+        if min(depth, depth + climb) >= band.depth:
             continue
         begin, along = plus(times(search.relative, 0, begin), there), times(search.relative, 0, along)
-        low, high = box_in_band(begin, along, depth, climb, gap.band)
+        low, high = box_in_band(begin, along, depth, climb, band.depth)
         put(search.turned, near, begin)
         put(search.turned[:, 3:], near, along)
         put(search.turned[:, 6:], near, low)
@@ -107,13 +107,13 @@ def edges_in_band(cores: Cores, shape: int, search: Search, there: Vector, gap: 
 
 
 @kernel
-def box_in_band(begin: Vector, along: Vector, depth: float, climb: float, band: float) -> tuple[Vector, Vector]:
-    """Return the lowest and highest coordinates of the part of an edge that is less deep than the band.
+def box_in_band(begin: Vector, along: Vector, depth: float, climb: float, deepest: float) -> tuple[Vector, Vector]:
+    """Return the lowest and highest coordinates of the part of an edge that is less deep than the deepest.
 
-    Its begin is at a depth, its end deeper by `climb`; one of them at least is in the band.
+    Its begin is at a depth, its end deeper by `climb`; one of them at least is less deep.
     """
-    start = (band - depth) / climb if depth >= band else 0.0
-    stop = (band - depth) / climb if depth + climb >= band else 1.0
+    start = (deepest - depth) / climb if depth >= deepest else 0.0
+    stop = (deepest - depth) / climb if depth + climb >= deepest else 1.0
     a, b = plus(begin, scaled(start, along)), plus(begin, scaled(stop, along))
     low = (min(a[0], b[0]), min(a[1], b[1]), min(a[2], b[2]))
     return low, (max(a[0], b[0]), max(a[1], b[1]), max(a[2], b[2]))

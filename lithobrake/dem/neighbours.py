@@ -37,7 +37,7 @@ def sweep(order: Integers, low: Floats, position: Floats, reach: Floats, first: 
 def note_near(
     bodies: Bodies, cores: Cores, first: Integers, second: Integers, skin: float, search: Search, near: Flags
 ) -> None:
-    """Note which pairs of bodies are less than the skin apart: of hulls whose bounding spheres meet, less than half."""
+    """Note which pairs of bodies are less than the skin apart: fewer than half of those whose bounding spheres meet."""
     for pair in range(len(first)):
         members = (first[pair], second[pair])
         shapes = (bodies.shape[members[0]], bodies.shape[members[1]])

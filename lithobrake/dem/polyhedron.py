@@ -55,7 +55,7 @@ def polyhedron(points: NDArray[np.float64]) -> Polyhedron:
     index[hull.vertices] = np.arange(len(hull.vertices))
     triangles = _outward(index[hull.simplices], scaled[hull.vertices], hull.equations[:, :3])
     vertices = points[hull.vertices]
-    face_of, normals = _merge_coplanar(hull.equations)
+    face_of, normals = _merge_coplanar(hull.equations, hull.neighbors)
     heights = np.einsum("ijk,ik->i", vertices[triangles], normals[face_of]) / 3.0
     offsets = np.bincount(face_of, heights) / np.bincount(face_of)
     return Polyhedron(vertices, normals, offsets, triangles, face_of, _edges(triangles, face_of, normals, vertices))
@@ -72,12 +72,18 @@ def _outward(
     return result
 
 
-def _merge_coplanar(equations: NDArray[np.float64]) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+def _merge_coplanar(
+    equations: NDArray[np.float64], neighbours: NDArray[np.int32]
+) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
     """Group facets with the same plane; return the face of each facet and the faces' normals."""
-    alike = np.ones((len(equations), len(equations)), dtype=bool)
-    for column in equations.T:
-        alike &= np.abs(column[:, None] - column) < COPLANAR
-    _, face_of = np.unique(alike.argmax(axis=1), return_inverse=True)
+    face_of = np.arange(len(equations))
+    # Of a face that is split some facets are neighbours; mostly there is none.
+    if (np.abs(equations[neighbours] - equations[:, None]).max(axis=2) < COPLANAR).any():
+        face_of[:], faces = -1, 0
+        for facet, equation in enumerate(equations):
+            if face_of[facet] < 0:
+                face_of[(face_of < 0) & (np.abs(equations - equation).max(axis=1) < COPLANAR)] = faces
+                faces += 1
     total = np.zeros((face_of.max() + 1, 3))
     np.add.at(total, face_of, equations[:, :3])
     return face_of, total / np.linalg.norm(total, axis=1, keepdims=True)

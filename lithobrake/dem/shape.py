@@ -85,11 +85,14 @@ class ConvexHull:
     def core_polyhedron(self) -> Polyhedron:
         """The polyhedron inside the rounding, about the centroid: each vertex stands that far behind its own faces."""
         given = self.polyhedron
-        at = np.zeros((len(given.vertices), len(given.face_normals)), dtype=bool)
-        at[given.triangles.ravel(), np.repeat(given.triangle_face, 3)] = True
+        corners = np.column_stack([given.triangles.ravel(), np.repeat(given.triangle_face, 3)])
+        vertex, face = np.unique(corners, axis=0).T
+        count = np.bincount(vertex)
+        place = np.arange(len(vertex)) - np.repeat(np.cumsum(count) - count, count)
+        normals, there = np.zeros((len(count), count.max(), 3)), np.zeros((len(count), count.max(), 1))
+        normals[vertex, place], there[vertex, place] = given.face_normals[face], 1.0
         # Least squares: where more than three faces meet, they may not after each has moved.
-        back = np.linalg.pinv(np.where(at[:, :, None], given.face_normals, 0.0)) @ at[:, :, None].astype(float)
-        core = given.vertices - self.centroid - self.rounding * back[:, :, 0]
+        core = given.vertices - self.centroid - self.rounding * (np.linalg.pinv(normals) @ there)[:, :, 0]
         return polyhedron(core)
 
     @property

@@ -138,10 +138,12 @@ def largest_step(bodies: Bodies, planes: Planes, pairs: Pairs, laws: Laws, paper
 
 @kernel
 def unsteady(
-    taken: int, phase_squared: float, bodies: Bodies, planes: Planes, pairs: Pairs, laws: Laws, paper_mass: bool,
+    taken: int, rate: float, bodies: Bodies, planes: Planes, pairs: Pairs, laws: Laws, paper_mass: bool,
     time_step: float,
 ) -> bool:  # fmt: skip
-    """Whether the step is too large; looks at every so many steps, and where a contact alone turns far in one."""
-    if taken % LOOK_STEPS > 0 and phase_squared < LOOK_PHASE * LOOK_PHASE:
+    """Whether the step is too large; looks at every so many steps, and where a contact alone turns far in one: `rate`
+    is the largest square of a rate [1/s2].
+    """
+    if taken % LOOK_STEPS > 0 and rate * time_step * time_step < LOOK_PHASE * LOOK_PHASE:
         return False
     return time_step > largest_step(bodies, planes, pairs, laws, paper_mass)

@@ -15,7 +15,7 @@ from lithobrake.compiled import large_kernel
 from lithobrake.dem.advance import DIVERGED, DONE, LIST_USED_UP, NAMES_OVERFLOW, STEP_TOO_LARGE, apply_drag, note
 from lithobrake.dem.arrays import Bodies, Cores, Floats, Laws, Pairs, Planes, Reactions, Share, Step
 from lithobrake.dem.distance import Search
-from lithobrake.dem.force import act_all
+from lithobrake.dem.force import act_across, act_within
 from lithobrake.dem.listing import renew
 from lithobrake.dem.motion import drift, kick
 from lithobrake.dem.stability import unsteady
@@ -86,13 +86,13 @@ class Team:
                 bodies, cores, planes, pairs, search, step.time_step, share.first_pair, share.last_pair
             )  # fmt: skip
 
-        def act(share: Share, search: Search, across: bool) -> float:
-            return act_all(bodies, cores, planes, pairs, laws, step, search, self.reactions, share, across)
+        def across(share: Share, search: Search) -> float:
+            return act_across(bodies, cores, planes, pairs, laws, step, search, self.reactions, share)
 
         def end(share: Share, search: Search) -> float:
-            turned = act(share, search, False)
+            rate = act_within(bodies, cores, planes, pairs, laws, step, search, self.reactions, share)
             end_step(bodies, step, share.start, share.stop)
-            return turned
+            return rate
 
         for taken in range(step_count):
             if not drifted:
@@ -104,10 +104,9 @@ class Team:
             if max(self.each(look)) > 0:
                 return taken, NAMES_OVERFLOW, True
             drifted = False
-            turned = self.each(lambda share, search: act(share, search, True))
-            turned += self.each(end)
+            rates = self.each(across) + self.each(end)
             if probe >= 0:
                 note(probe, bodies, probed)
-            if unsteady(taken, max(turned), bodies, planes, pairs, laws, step.paper_mass, step.time_step):
+            if unsteady(taken, max(rates), bodies, planes, pairs, laws, step.paper_mass, step.time_step):
                 return taken + 1, STEP_TOO_LARGE, False
         return step_count, DONE, False

@@ -65,7 +65,7 @@ class FlightLine:
         position, velocity = world.position[k], world.velocity[k]
         if abs(position[0]) > 0.5 * self.bed.width[0] or abs(position[1]) > 0.5 * self.bed.width[1]:
             return "left_sideways"
-        free, energy = not np.any(world.contact_force[k]), self.energy()
+        free, energy = not np.any(world.contact_force[k]), self.energy() if has_touched else math.inf
         if has_touched and free:
             if velocity[2] > 0.0 and height > self.clear_height:
                 return "clear"

@@ -172,3 +172,16 @@ def test_steps_are_whole_and_not_negative(steps):
     world.add_body(Sphere(0.05), ROCK, (0, 0, 0.05))
     with pytest.raises(ValueError, match="steps"):
         world.run(steps=steps)
+
+
+@pytest.mark.parametrize("shape", [Sphere(0.1), Box((0.1, 0.2, 0.1))])
+@pytest.mark.parametrize("name", ["velocity", "angular_momentum"])
+@pytest.mark.parametrize("value", [math.nan, math.inf])
+def test_motion_that_is_lost_is_told(shape, name, value):
+    world = World((0, 0, -1), 1e-3)
+    world.add_body(shape, ROCK, (0, 0, 1))
+    world.add_body(shape, ROCK, (0, 0, 2))
+    world.run(steps=5)
+    getattr(world._engine.bodies, name)[0] = value
+    with pytest.raises(FloatingPointError, match="diverged"):
+        world.run(steps=5)
