@@ -4,7 +4,7 @@
 
 A switch turns one trick off in a copy of the package, which is compiled anew (a minute of CPU time) and timed in a
 process of its own on hull1000 and sph4000 at rest and on a CubeSat's touchdown. Medians of CPU times; beside them, how
-far from where they end with every trick on the bodies end.
+far from where they end with every trick on the bodies end. Rows of FILE whose switches are not asked for stay.
 """
 
 import argparse
@@ -26,7 +26,8 @@ SWITCHES = {
     "sleeping pairs": ("listing.py", "        if travel < pairs.wake[pair]:", "        if False:"),
     "gaps as margins": ("listing.py", "        return bound - reach\n", "        return margin\n"),
     "names of faces": ("patch.py", "    if face >= 0:", "    if False:"),
-    "one point pushes once": ("force.py", "    if count == 1 and search.family[0] != EDGES_SUNK:", "    if False:"),
+    "one point pushes once": ("force.py", "    if count == 1 and search.family[0] != EDGES_SUNK:",
+                              "    if bodies.turning_radius[first] == 0.0:"),
     "one pair of edges alone": ("shares.py", "(search.family[0] == EDGES_APART and sunk == 0.0)", "False"),
     "spheres met by their mass": ("force.py", "through_centroids or step.paper_mass", "step.paper_mass"),
     "limits by squares": ("spring.py", "    return vector if square <= limit * limit else",
@@ -98,7 +99,8 @@ def main() -> None:
     if chosen.measure:
         measure(chosen.folder, chosen.measure)
         return
-    rows: list[dict[str, Any]] = []
+    known = json.loads(chosen.out.read_text())["rows"] if chosen.out.exists() else []
+    rows: list[dict[str, Any]] = [row for row in known if row["without"] not in chosen.switch]
     everything = run(None, chosen.folder)
     for switch in chosen.switch:
         without, row = run(switch, chosen.folder), {"without": switch}
