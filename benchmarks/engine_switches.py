@@ -40,7 +40,7 @@ SWITCHES = {
     "look every 16 steps": ("stability.py", "LOOK_STEPS, LOOK_PHASE = 16", "LOOK_STEPS, LOOK_PHASE = 1"),
     "kernels in their callers": ("../compiled.py", '"forceinline": True', '"forceinline": False'),
 }  # fmt: skip
-RELAX_STEPS, STEPS, REPEATS = 4000, 500, 5
+RELAX_STEPS, STEPS, REPEATS = 4000, 500, 9
 
 
 def measure(folder: Path, result: Path) -> None:
@@ -74,18 +74,29 @@ def engine_without(switch: str | None, place: Path) -> None:
         path.write_text(text.replace(there, without))
 
 
-def run(switch: str | None, folder: Path) -> dict[str, Any]:
-    """Measure in a process of its own, with a copy of the package and a cache of its own."""
+def run(place: Path, folder: Path) -> dict[str, Any]:
+    """Measure the copy of the package at a place, in a process of its own and with a cache of its own."""
+    found = place / "found.npz"
+    paths = os.pathsep.join([str(place), str(Path(__file__).parent)])
+    subprocess.run(
+        [sys.executable, __file__, str(folder.resolve()), "--measure", str(found)], check=True, cwd=place,
+        env={**os.environ, "PYTHONPATH": paths, "LITHOBRAKE_CACHE": str(place / "cache")},
+    )  # fmt: skip
+    return dict(np.load(found))
+
+
+def compare(switch: str, whole: Path, folder: Path) -> dict[str, Any]:
+    """Measure without a trick and, right after it, with all."""
     with tempfile.TemporaryDirectory() as scratch:
-        place = Path(scratch)
-        engine_without(switch, place)
-        found = place / "found.npz"
-        paths = os.pathsep.join([str(place), str(Path(__file__).parent)])
-        subprocess.run(
-            [sys.executable, __file__, str(folder.resolve()), "--measure", str(found)], check=True, cwd=place,
-            env={**os.environ, "PYTHONPATH": paths, "LITHOBRAKE_CACHE": str(place / "cache")},
-        )  # fmt: skip
-        return dict(np.load(found))
+        engine_without(switch, Path(scratch))
+        without = run(Path(scratch), folder)
+    everything, row = run(whole, folder), {"without": switch}
+    for case in ("hull1000", "sph4000", "touchdown"):
+        with_ms, without_ms = float(everything[f"{case}_ms"]), float(without[f"{case}_ms"])
+        moved = np.abs(everything[case] - without[case]).max()
+        row[case] = {"with_ms": with_ms, "without_ms": without_ms, "gain": without_ms / with_ms,
+                     "largest_change_m": float(moved)}  # fmt: skip
+    return row
 
 
 def main() -> None:
@@ -101,26 +112,24 @@ def main() -> None:
         return
     known = json.loads(chosen.out.read_text())["rows"] if chosen.out.exists() else []
     rows: list[dict[str, Any]] = [row for row in known if row["without"] not in chosen.switch]
-    everything = run(None, chosen.folder)
-    for switch in chosen.switch:
-        without, row = run(switch, chosen.folder), {"without": switch}
-        for case in ("hull1000", "sph4000", "touchdown"):
-            with_ms, without_ms = float(everything[f"{case}_ms"]), float(without[f"{case}_ms"])
-            moved = np.abs(everything[case] - without[case]).max()
-            row[case] = {"with_ms": with_ms, "without_ms": without_ms, "gain": without_ms / with_ms,
-                         "largest_change_m": float(moved)}  # fmt: skip
-        rows.append(row)
-        document = {
-            "date": time.strftime("%Y-%m-%d"), "machine": f"{platform.machine()}, {sys.platform}",
-            "load": os.getloadavg()[0], "command": "python benchmarks/engine_switches.py BED_FOLDER", "rows": rows,
-        }  # fmt: skip
-        chosen.out.write_text(json.dumps(document, indent=1) + "\n")
-        gains = ", ".join(
-            f"{case} {row[case]['gain']:.2f} ({row[case]['largest_change_m']:.2g} m)"
-            for case in row
-            if case != "without"
-        )
-        print(f"{switch}: {gains}", flush=True)
+    with tempfile.TemporaryDirectory() as scratch:
+        whole = Path(scratch)
+        engine_without(None, whole)
+        for switch in chosen.switch:
+            rows.append(compare(switch, whole, chosen.folder))
+            keep(rows, chosen.out)
+
+
+def keep(rows: list[dict[str, Any]], path: Path) -> None:
+    """Write the rows, and tell the last."""
+    document = {
+        "date": time.strftime("%Y-%m-%d"), "machine": f"{platform.machine()}, {sys.platform}",
+        "load": os.getloadavg()[0], "command": "python benchmarks/engine_switches.py BED_FOLDER", "rows": rows,
+    }  # fmt: skip
+    path.write_text(json.dumps(document, indent=1) + "\n")
+    *cases, row = ("hull1000", "sph4000", "touchdown", rows[-1])
+    gains = ", ".join(f"{case} {row[case]['gain']:.2f} ({row[case]['largest_change_m']:.2g} m)" for case in cases)
+    print(f"{row['without']}: {gains}", flush=True)
 
 
 if __name__ == "__main__":
