@@ -10,16 +10,16 @@ far from where they end with every trick on the bodies end. Rows of FILE whose s
 import argparse
 import json
 import os
-import platform
 import shutil
 import subprocess
 import sys
 import tempfile
-import time
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from grains_beds import bed, origin, relaxed, touch_down
+from grains_speed import cpu_seconds
 
 # Name, file, what stands there, what stands there without the trick.
 SWITCHES = {
@@ -45,18 +45,11 @@ RELAX_STEPS, STEPS, REPEATS = 4000, 500, 9
 
 def measure(folder: Path, result: Path) -> None:
     """Time the engine at hand, and keep where the bodies end."""
-    from grains_beds import ROCK, bed, relaxed
-    from grains_speed import cpu_seconds
-
-    from lithobrake.dem import Box
-
     times, places = {}, {}
     for case in ("hull1000", "sph4000", "touchdown"):
         world = relaxed(bed(folder, case.replace("touchdown", "hull1000")), RELAX_STEPS)
         if case == "touchdown":
-            top = float(world.position[np.linalg.norm(world.position[:, :2], axis=1) < 0.2, 2].max())
-            world.add_body(Box((0.2, 0.1, 0.1)), ROCK, (0, 0, top + 0.1), velocity=(0.15, 0, -0.3), mass=6.0)
-            world.run(steps=100)
+            touch_down(world, 0.3)
         times[case] = 1e3 * cpu_seconds(lambda world=world: world.run(steps=STEPS), REPEATS) / STEPS
         places[case] = world.position
     np.savez(result, **places, **{f"{case}_ms": value for case, value in times.items()})
@@ -122,10 +115,7 @@ def main() -> None:
 
 def keep(rows: list[dict[str, Any]], path: Path) -> None:
     """Write the rows, and tell the last."""
-    document = {
-        "date": time.strftime("%Y-%m-%d"), "machine": f"{platform.machine()}, {sys.platform}",
-        "load": os.getloadavg()[0], "command": "python benchmarks/engine_switches.py BED_FOLDER", "rows": rows,
-    }  # fmt: skip
+    document = {**origin("engine_switches.py BED_FOLDER"), "rows": rows}
     path.write_text(json.dumps(document, indent=1) + "\n")
     *cases, row = ("hull1000", "sph4000", "touchdown", rows[-1])
     gains = ", ".join(f"{case} {row[case]['gain']:.2f} ({row[case]['largest_change_m']:.2g} m)" for case in cases)

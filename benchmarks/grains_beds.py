@@ -1,10 +1,18 @@
-"""The beds of hulls and spheres that other engines were timed on, and larger ones laid out of copies of them."""
+"""The beds of hulls and spheres that other engines were timed on, and larger ones laid out of copies of them.
 
+And a CubeSat that comes down on them, and what is kept with every figure.
+"""
+
+import os
+import platform
+import sys
+import time
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from lithobrake.dem import ConvexHull, Material, Shape, Sphere, World
+from lithobrake.dem import Box, ConvexHull, Material, Shape, Sphere, World
 
 ROCK = Material(young_modulus=5e6, poisson_ratio=0.3, restitution=0.5, friction=0.5, density=2500.0)
 WIDTH = {"hull1000": 1.0, "hull2000": 2.0, "hull4000": 2.0, "sph4000": 1.0}
@@ -78,6 +86,22 @@ def relaxed(world: World, steps: int) -> World:
     world.run(steps=steps)
     world.drag = 0.0
     return world
+
+
+def touch_down(world: World, speed: float) -> None:
+    """Let a CubeSat of 6 kg (.2 x .1 x .1 m) come down amid a bed, until its first steps in it."""
+    top = float(world.position[np.linalg.norm(world.position[:, :2], axis=1) < 0.2, 2].max())
+    world.add_body(Box((0.2, 0.1, 0.1)), ROCK, (0.0, 0.0, top + 0.1), velocity=(0.5 * speed, 0, -speed), mass=6.0)
+    world.time_step = TIME_STEP
+    world.run(steps=100)
+
+
+def origin(command: str) -> dict[str, Any]:
+    """Return when, where, beside what and by which command something was measured."""
+    return {
+        "date": time.strftime("%Y-%m-%d"), "machine": f"{platform.machine()}, {sys.platform}",
+        "load": os.getloadavg()[0], "command": f"python benchmarks/{command}",
+    }  # fmt: skip
 
 
 def coordination(world: World) -> float:

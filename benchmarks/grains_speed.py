@@ -12,7 +12,6 @@ counts, and everything but threads runs on one thread.
 import argparse
 import json
 import os
-import platform
 import statistics
 import subprocess
 import sys
@@ -25,7 +24,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from grains_beds import ROCK, WIDTH, bed, boxes, coordination, relaxed
+from grains_beds import ROCK, WIDTH, bed, boxes, coordination, origin, relaxed, touch_down
 
 from lithobrake.dem import Box, World
 
@@ -76,12 +75,7 @@ def landing(folder: Path) -> list[Result]:
         plain.save(Path(folder_of_bed) / "bed.h5")
         for speed in (0.1, 0.3, 0.5):
             world = World.load(Path(folder_of_bed) / "bed.h5")
-            top = float(world.position[np.linalg.norm(world.position[:, :2], axis=1) < 0.2, 2].max())
-            world.add_body(
-                Box((0.2, 0.1, 0.1)), ROCK, (0.0, 0.0, top + 0.1), velocity=(0.5 * speed, 0, -speed), mass=6.0
-            )
-            world.time_step = 2e-4
-            world.run(steps=100)
+            touch_down(world, speed)
             start = time.process_time()
             world.run(duration=1.0)
             seconds = time.process_time() - start
@@ -225,10 +219,7 @@ def main() -> None:
     known = json.loads(chosen.out.read_text()) if chosen.out.exists() else {}
     for name in chosen.case:
         found = CASES[name](chosen.folder)
-        known[name] = {
-            "result": found, "date": time.strftime("%Y-%m-%d"), "machine": f"{platform.machine()}, {sys.platform}",
-            "load": os.getloadavg()[0], "command": f"python benchmarks/grains_speed.py BED_FOLDER {name}",
-        }  # fmt: skip
+        known[name] = {"result": found, **origin(f"grains_speed.py BED_FOLDER {name}")}
         chosen.out.write_text(json.dumps(known, indent=1) + "\n")
         for row in found if isinstance(found, list) else [found]:
             values = ", ".join(f"{key} {value:.4g}" if isinstance(value, float) else f"{key} {value}"

@@ -8,16 +8,12 @@ computed for one kind of pairs after the other, by the features listed for them.
 
 import argparse
 import json
-import os
-import platform
-import sys
-import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from grains_beds import bed, coordination, relaxed
+from grains_beds import bed, coordination, origin, relaxed
 from grains_speed import RELAX_STEPS, cpu_seconds
 
 from lithobrake.dem import World
@@ -89,10 +85,7 @@ def main() -> None:
         for row in rows:
             print(f"{case}: {row['part']:45s} {row['a_body']:6.3f} a body {row['ns_a_body']:7.1f} ns a body "
                   f"{row['ns_a_body'] / total:6.1%}", flush=True)  # fmt: skip
-    document = {
-        "date": time.strftime("%Y-%m-%d"), "machine": f"{platform.machine()}, {sys.platform}",
-        "load": os.getloadavg()[0], "command": "python benchmarks/step_parts.py BED_FOLDER", "cases": cases,
-    }  # fmt: skip
+    document = {**origin("step_parts.py BED_FOLDER"), "cases": cases}
     chosen.out.write_text(json.dumps(document, indent=1) + "\n")
 
 
