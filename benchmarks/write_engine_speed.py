@@ -92,9 +92,8 @@ def main() -> None:
         *others(speed), "",
         "## What a step is made of", "", *step_parts(parts), "",
         "## What each trick gains", "",
-        "Time without it over time with it; beside it, how far from where they end with all tricks the bodies end. Rows "
-        "that cannot touch a case (spheres' tricks on hulls) show the noise: some hundredths. A touchdown renews lists; a "
-        "bed at rest does not.", "",
+        "Time without it over time with it; beside it, how far from where they end with all tricks the bodies end.",
+        "Rows that cannot touch a case (spheres' tricks on hulls) show the noise, some hundredths.", "",
         *switches(tricks),
     ]  # fmt: skip
     (HERE.parent / "docs" / "engine_speed.md").write_text("\n".join(page) + "\n", encoding="utf-8")
