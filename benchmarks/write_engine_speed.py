@@ -93,8 +93,8 @@ def main() -> None:
         "## What a step is made of", "", *step_parts(parts), "",
         "## What each trick gains", "",
         "Time without it over time with it; beside it, how far from where they end with all tricks the bodies end.",
-        "Rows that cannot touch a case (spheres' tricks on hulls) show the noise; ratios measured in turns, and so more",
-        "exactly, stand in performance.md.", "",
+        "Rows that cannot touch a case (spheres' tricks on hulls) show the noise; ratios measured in turns, more",
+        "exact ones, stand in performance.md.", "",
         *switches(tricks),
     ]  # fmt: skip
     (HERE.parent / "docs" / "engine_speed.md").write_text("\n".join(page) + "\n", encoding="utf-8")
