@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from lithobrake.compiled import kernel
+from lithobrake.compiled import kernel, large_kernel
 from lithobrake.dem.arrays import Bodies, Cores, Floats, Laws, Pairs, Planes, Reactions, Share, Step
 from lithobrake.dem.distance import Search
 from lithobrake.dem.force import act_within
@@ -27,6 +27,21 @@ def apply_drag(bodies: Bodies, step: Step, start: int, stop: int) -> None:
         bodies.dragged[body] += step.drag * energy * step.time_step
 
 
+@large_kernel
+def begin_step(bodies: Bodies, step: Step, start: int, stop: int) -> float:
+    """Kick and drift bodies start to stop; return how far their surfaces may have moved [m], see `drift`."""
+    kick(bodies, step, start, stop)
+    return drift(bodies, step, start, stop)
+
+
+@large_kernel
+def end_step(bodies: Bodies, step: Step, start: int, stop: int) -> None:
+    """Kick bodies start to stop under their new forces."""
+    if step.drag > 0.0:
+        apply_drag(bodies, step, start, stop)
+    kick(bodies, step, start, stop)
+
+
 @kernel
 def advance(
     step_count: int, drifted: bool, bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, laws: Laws, step: Step,
@@ -38,22 +53,18 @@ def advance(
     goes on from there once the neighbour list is renewed). Body `probe` (none: -1) is watched, see `note`. `whole` is
     the share of all bodies; there is no room in `reactions`.
     """
-    body_count, pair_count = len(bodies.mass), len(pairs.first)
     for taken in range(step_count):
         if not drifted:
-            kick(bodies, step, 0, body_count)
-            farthest = drift(bodies, step, 0, body_count)
+            farthest = begin_step(bodies, step, whole.start, whole.stop)
             if not np.isfinite(farthest):
                 return taken, DIVERGED, False
             if farthest > half_skin:
                 return taken, LIST_USED_UP, True
-        if renew(bodies, cores, planes, pairs, search, step.time_step, 0, pair_count) > 0:
+        if renew(bodies, cores, planes, pairs, search, step.time_step, whole.first_pair, whole.last_pair) > 0:
             return taken, NAMES_OVERFLOW, True
         drifted = False
         rate = act_within(bodies, cores, planes, pairs, laws, step, search, reactions, whole)
-        if step.drag > 0.0:
-            apply_drag(bodies, step, 0, body_count)
-        kick(bodies, step, 0, body_count)
+        end_step(bodies, step, whole.start, whole.stop)
         if probe >= 0:
             note(probe, bodies, probed)
         if unsteady(taken, rate, bodies, planes, pairs, laws, step.paper_mass, step.time_step):

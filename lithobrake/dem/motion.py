@@ -153,6 +153,6 @@ def drift(bodies: Bodies, step: Step, start: int, stop: int) -> float:
         put(bodies.spin_predicted, body, times(bodies.inverse_inertia, body, momentum))
         way = bodies.travel[body] - bodies.travel_listed[body]
         farthest = max(farthest, way)
-        # A maximum passes over what is no number; nothing times what is not finite stays none.
+        # A maximum passes over NaN; zero times what is not finite is NaN.
         lost += 0.0 * way
     return farthest + lost

@@ -11,13 +11,20 @@ from typing import Any
 
 import numpy as np
 
-from lithobrake.compiled import large_kernel
-from lithobrake.dem.advance import DIVERGED, DONE, LIST_USED_UP, NAMES_OVERFLOW, STEP_TOO_LARGE, apply_drag, note
+from lithobrake.dem.advance import (
+    DIVERGED,
+    DONE,
+    LIST_USED_UP,
+    NAMES_OVERFLOW,
+    STEP_TOO_LARGE,
+    begin_step,
+    end_step,
+    note,
+)
 from lithobrake.dem.arrays import Bodies, Cores, Floats, Laws, Pairs, Planes, Reactions, Share, Step
 from lithobrake.dem.distance import Search
 from lithobrake.dem.force import act_across, act_within
 from lithobrake.dem.listing import renew
-from lithobrake.dem.motion import drift, kick
 from lithobrake.dem.stability import unsteady
 
 
@@ -40,21 +47,6 @@ def shares_of(pairs: Pairs, body_count: int, count: int) -> list[Share]:
 def room_for(count: int) -> Reactions:
     """Return room for what so many pairs do."""
     return Reactions(*(np.zeros((count, 3)) for _ in range(3)))
-
-
-@large_kernel
-def begin_step(bodies: Bodies, step: Step, start: int, stop: int) -> float:
-    """Kick and drift bodies start to stop; return how far their surfaces may have moved [m], see `drift`."""
-    kick(bodies, step, start, stop)
-    return drift(bodies, step, start, stop)
-
-
-@large_kernel
-def end_step(bodies: Bodies, step: Step, start: int, stop: int) -> None:
-    """Kick bodies start to stop under their new forces."""
-    if step.drag > 0.0:
-        apply_drag(bodies, step, start, stop)
-    kick(bodies, step, start, stop)
 
 
 class Team:
