@@ -40,13 +40,14 @@ SWITCHES = {
     "look every 16 steps": ("stability.py", "LOOK_STEPS, LOOK_PHASE = 16", "LOOK_STEPS, LOOK_PHASE = 1"),
     "kernels in their callers": ("../compiled.py", '"forceinline": True', '"forceinline": False'),
 }  # fmt: skip
+CASES = ("hull1000", "sph4000", "touchdown")
 RELAX_STEPS, STEPS, REPEATS = 4000, 500, 9
 
 
 def measure(folder: Path, result: Path) -> None:
     """Time the engine at hand, and keep where the bodies end."""
     times, places = {}, {}
-    for case in ("hull1000", "sph4000", "touchdown"):
+    for case in CASES:
         world = relaxed(bed(folder, case.replace("touchdown", "hull1000")), RELAX_STEPS)
         if case == "touchdown":
             touch_down(world, 0.3)
@@ -84,7 +85,7 @@ def compare(switch: str, whole: Path, folder: Path) -> dict[str, Any]:
         engine_without(switch, Path(scratch))
         without = run(Path(scratch), folder)
     everything, row = run(whole, folder), {"without": switch}
-    for case in ("hull1000", "sph4000", "touchdown"):
+    for case in CASES:
         with_ms, without_ms = float(everything[f"{case}_ms"]), float(without[f"{case}_ms"])
         moved = np.abs(everything[case] - without[case]).max()
         row[case] = {"with_ms": with_ms, "without_ms": without_ms, "gain": without_ms / with_ms,
@@ -117,8 +118,8 @@ def keep(rows: list[dict[str, Any]], path: Path) -> None:
     """Write the rows, and tell the last."""
     document = {**origin("engine_switches.py BED_FOLDER"), "rows": rows}
     path.write_text(json.dumps(document, indent=1) + "\n")
-    *cases, row = ("hull1000", "sph4000", "touchdown", rows[-1])
-    gains = ", ".join(f"{case} {row[case]['gain']:.2f} ({row[case]['largest_change_m']:.2g} m)" for case in cases)
+    row = rows[-1]
+    gains = ", ".join(f"{case} {row[case]['gain']:.2f} ({row[case]['largest_change_m']:.2g} m)" for case in CASES)
     print(f"{row['without']}: {gains}", flush=True)
 
 
