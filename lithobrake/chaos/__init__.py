@@ -20,7 +20,7 @@ from lithobrake.chaos.kinds import distribution
 from lithobrake.chaos.moments import shape_moments
 from lithobrake.chaos.noise import replicates
 from lithobrake.chaos.optimal import christoffel, christoffel_weights, d_optimal, fekete
-from lithobrake.chaos.resampling import score_intervals, sobol_intervals
+from lithobrake.chaos.resampling import score_intervals, sobol_estimates, sobol_intervals
 from lithobrake.chaos.scores import absolute_percentage_error
 from lithobrake.chaos.sparse_grid import smolyak, smolyak_count
 from lithobrake.chaos.stochastic import StochasticSurrogate, fit_stochastic, joint_scatter, load_stochastic
@@ -72,6 +72,7 @@ __all__ = [
     "shape_moments",
     "smolyak",
     "smolyak_count",
+    "sobol_estimates",
     "sobol_intervals",
     "sobol_sequence",
     "tensor_count",

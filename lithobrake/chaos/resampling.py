@@ -33,12 +33,14 @@ class Refit:
     """A fit of one output that can be made again, and where draws of its runs come from.
 
     indices [term_count, input_count]; coefficients: of outputs [count, draw_count], result [term_count, draw_count].
-    fitted [count]: outputs that draws scatter about; truth [2, input_count]: first-order and total indices of what
-    gave them; residuals [count], as large as errors at new points; shrinks: whether the fit pulls coefficients to 0.
+    observed [count]: the outputs of the runs; fitted [count]: those that draws scatter about; truth [2, input_count]:
+    first-order and total indices of what gave them; residuals [count], as large as errors at new points; shrinks:
+    whether the fit pulls coefficients to 0.
     """
 
     indices: Indices
     coefficients: Callable[[Array], Array]
+    observed: Array
     fitted: Array
     truth: Array
     residuals: Array
@@ -46,39 +48,60 @@ class Refit:
 
 
 @one_thread()
-def sobol_intervals(
+def sobol_estimates(
     surrogate: Surrogate, x: ArrayLike, y: ArrayLike, *, count: int = 500, level: float = 0.95, seed: int = 0
 ) -> dict[str, Any]:
-    """Confidence intervals of the Sobol indices by resampling the residuals of the training runs x, y.
+    """Sobol indices freed of the scatter of the training runs x, y, with confidence intervals by resampling residuals.
 
-    Result: "first" and "total", each [2 (lower, upper), input_count, output_count] (last axis dropped for a
-    one-dimensional y). Draws are fitted again: least squares with its terms, a sparse fit by least squares on its terms
+    Result: "first" and "total", each [3 (estimate, lower, upper), input_count, output_count] (last axis dropped for a
+    one-dimensional y): shares of the variance that the inputs give the expansion. An expansion's own indices are sums
+    of squared coefficients, to which scatter adds: the less an output depends on its inputs, the more they say.
+    Draws are fitted again: least squares with its terms, a sparse fit by least squares on its terms
     and all of low degree, a process with its parameters or, where scatter is more than a twentieth of the variance, by
     least squares on all terms of low degree: parameters learnt from much scatter rule out inputs that may matter.
     Rows of residuals are drawn jointly for all outputs and are as large as the error at new points, so that they hold
-    what the fit left out. An interval holds the index of the expansion itself.
+    what the fit left out. Intervals take the runs as independent: they hold for the bed and place of these runs.
     Source: Davison and Hinkley, 1997, sections 5.2 and 6.2; Dubreuil and others, 2014 (indices from expansions).
     """
     _check_resampling(count, level)
     training = checked_training(surrogate.inputs, x, y, output_names=surrogate.output_names)
     rows = np.random.default_rng(seed).integers(training.count, size=(count, training.count))
-    own = np.stack([surrogate.sobol_first, surrogate.sobol_total]).reshape(2, len(training.inputs), -1)
-    bounds = []
+    own, found = _own_indices(surrogate), []
     for output in range(len(surrogate.output_names)):
         if np.ptp(training.y[:, output]) == 0.0:
-            bounds.append(np.stack([own[..., output]] * 2))
+            found.append(np.stack([own[..., output]] * 3))
             continue
         refit = _refit_of(surrogate, training, output)
         coefficients = refit.coefficients(refit.fitted[:, None] + refit.residuals[rows].T)
-        low, high = (_basic_bounds if refit.shrinks else _debiased_bounds)(refit, coefficients, level)
-        lower, upper = np.minimum(low, own[..., output]), np.maximum(high, own[..., output])
-        bounds.append(np.clip([lower, upper], 0.0, 1.0))
-    table = np.stack(bounds, axis=-1)
+        estimate, low, high = (_basic if refit.shrinks else _debiased)(refit, coefficients, level)
+        found.append(np.clip([estimate, np.minimum(low, estimate), np.maximum(high, estimate)], 0.0, 1.0))
+    table = np.stack(found, axis=-1)
     return {"first": surrogate.shaped(table[:, 0]), "total": surrogate.shaped(table[:, 1])}
 
 
-def _basic_bounds(refit: Refit, coefficients: Array, level: float) -> tuple[Array, Array]:
-    """Bounds [2, input_count] each, from coefficients [term_count, draw_count] of a fit that shrinks.
+def sobol_intervals(
+    surrogate: Surrogate, x: ArrayLike, y: ArrayLike, *, count: int = 500, level: float = 0.95, seed: int = 0
+) -> dict[str, Any]:
+    """The intervals of `sobol_estimates`, widened where needed to hold the indices of the expansion itself.
+
+    Result: "first" and "total", each [2 (lower, upper), input_count, output_count] (last axis dropped for a
+    one-dimensional y).
+    """
+    own, found = _own_indices(surrogate), sobol_estimates(surrogate, x, y, count=count, level=level, seed=seed)
+    result = {}
+    for index, key in enumerate(("first", "total")):
+        _, low, high = found[key].reshape(3, *own[index].shape)
+        result[key] = surrogate.shaped(np.stack([np.minimum(low, own[index]), np.maximum(high, own[index])]))
+    return result
+
+
+def _own_indices(surrogate: Surrogate) -> Array:
+    """First-order and total indices of the expansion itself, [2, input_count, output_count]."""
+    return np.stack([surrogate.sobol_first, surrogate.sobol_total]).reshape(2, len(surrogate.inputs), -1)
+
+
+def _basic(refit: Refit, coefficients: Array, level: float) -> tuple[Array, Array, Array]:
+    """Estimate and bounds [2, input_count] each, from coefficients [term_count, draw_count] of a fit that shrinks.
 
     Distances of the draws from what they were drawn about, turned round; up to the percentile of the draws without
     their mean distance, or small effects would be missed.
@@ -86,25 +109,36 @@ def _basic_bounds(refit: Refit, coefficients: Array, level: float) -> tuple[Arra
     draws = _indices_of(refit.indices, coefficients)
     low, high = np.quantile(draws, [0.5 - 0.5 * level, 0.5 + 0.5 * level], axis=-1)
     bias = draws.mean(axis=-1) - refit.truth
-    return 2.0 * refit.truth - high, np.maximum(2.0 * refit.truth - low, high - bias)
+    return refit.truth - bias, 2.0 * refit.truth - high, np.maximum(2.0 * refit.truth - low, high - bias)
 
 
-def _debiased_bounds(refit: Refit, coefficients: Array, level: float) -> tuple[Array, Array]:
-    """Bounds [2, input_count] each, from coefficients [term_count, draw_count] of least squares.
+def _debiased(refit: Refit, coefficients: Array, level: float) -> tuple[Array, Array, Array]:
+    """Estimate and bounds [2, input_count] each, from coefficients [term_count, draw_count] of least squares.
 
     Scatter adds its variance to every squared coefficient; it is taken off, so that many small terms do not add up to
     an effect. Source: Searle, Casella and McCulloch, 1992, "Variance Components", section 3.5 (analysis of variance).
     """
-    active = (refit.indices > 0).T
-    squares = coefficients**2 - coefficients.var(axis=1, ddof=1, keepdims=True)
-    squares[refit.indices.sum(axis=1) == 0] = 0.0
+    noise = coefficients.var(axis=1, ddof=1, keepdims=True)
+    # A draw that leaves no variance says nothing: every second one counts as none, the others as all of it.
+    shares = _debiased_shares(refit.indices, coefficients, noise, np.arange(coefficients.shape[1]) % 2.0)
+    low, high = np.quantile(shares, [0.5 - 0.5 * level, 0.5 + 0.5 * level], axis=-1)
+    estimate = _debiased_shares(refit.indices, refit.coefficients(refit.observed[:, None]), noise, np.zeros(1))
+    return estimate[..., 0], low, high
+
+
+def _debiased_shares(indices: Indices, coefficients: Array, noise: Array, without: Array) -> Array:
+    """First-order and total shares [2, input_count, draw_count] of squared coefficients less their noise [term_count, 1].
+
+    without: what a draw counts as whose squares leave no variance, [draw_count].
+    """
+    active = (indices > 0).T
+    squares = coefficients**2 - noise
+    squares[indices.sum(axis=1) == 0] = 0.0
     variance = squares.sum(axis=0)
     chosen = np.stack([active & (active.sum(axis=0) == 1), active]).astype(float)
-    # A draw that leaves no variance says nothing: every second one counts as none, the others as all of it.
-    shares = np.broadcast_to(np.arange(len(variance)) % 2.0, (*chosen.shape[:2], len(variance))).copy()
+    shares = np.broadcast_to(without, (*chosen.shape[:2], len(variance))).copy()
     np.divide(chosen @ squares, variance, out=shares, where=variance > 0.0)
-    low, high = np.quantile(shares, [0.5 - 0.5 * level, 0.5 + 0.5 * level], axis=-1)
-    return low, high
+    return shares
 
 
 def _indices_of(indices: Indices, coefficients: Array) -> Array:
@@ -150,7 +184,7 @@ def _least_squares_refit(training: Training, output: int, indices: Indices) -> R
         return np.linalg.solve(triangle, orthogonal.T @ values)
 
     truth = _indices_of(indices, coefficients(y[:, None]))[..., 0]
-    return Refit(indices, coefficients, fitted, truth, residuals - residuals.mean())
+    return Refit(indices, coefficients, y, fitted, truth, residuals - residuals.mean())
 
 
 def _sparse_refit(training: Training, output: int, expected_error: float, kept: Indices) -> Refit:
@@ -191,7 +225,8 @@ def _process_refit(training: Training, output: int, entry: dict[str, Any], indic
 
     truth = _indices_of(indices, process.coefficients(indices)[:, None])[..., 0]
     residuals = _grown(errors - errors.mean(), entry["rmse_estimate"])
-    return Refit(indices, coefficients, process.predict(process.germs), truth, residuals, shrinks=True)
+    observed, fitted = training.y[:, output], process.predict(process.germs)
+    return Refit(indices, coefficients, observed, fitted, truth, residuals, shrinks=True)
 
 
 def score_intervals(

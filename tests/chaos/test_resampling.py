@@ -3,7 +3,15 @@
 import numpy as np
 import pytest
 
-from lithobrake.chaos import Uniform, fit, score_intervals, smolyak, sobol_intervals, sobol_sequence
+from lithobrake.chaos import (
+    Uniform,
+    fit,
+    score_intervals,
+    smolyak,
+    sobol_estimates,
+    sobol_intervals,
+    sobol_sequence,
+)
 
 CUBE = {name: Uniform(-1.0, 1.0) for name in "abc"}
 # y = a + b / 2 + a c: variances 1/3, 1/12, 1/9.
@@ -66,6 +74,23 @@ def test_no_input_is_ruled_out_by_outputs_that_are_all_scatter():
     bounds = sobol_intervals(surrogate, x, y, count=200)
     assert np.all(bounds["total"][0] == 0.0)
     assert np.all(bounds["total"][1] > 0.5)
+
+
+def test_estimates_are_free_of_the_variance_that_scatter_adds_to_squares():
+    """Three quarters of the variance are scatter: what the expansion says of inputs that do nothing is scatter, too."""
+    estimates, own = [], []
+    for seed in range(60):
+        x = sobol_sequence(CUBE, 60, seed=seed)
+        y = x[:, 0] + np.random.default_rng(seed).normal(size=60)
+        surrogate = fit(CUBE, x, y, degree=2)
+        estimates.append(sobol_estimates(surrogate, x, y, count=100, seed=seed)["first"])
+        own.append(surrogate.sobol_first)
+    point, low, high = np.mean(estimates, axis=0)
+    # The truth is 1, 0, 0. What is cut at 0 and 1 keeps a little of the scatter.
+    assert np.all(low <= point)
+    assert np.all(point <= high)
+    assert point[0] > 0.9 > 0.8 > np.mean(own, axis=0)[0]
+    assert np.all(point[1:] < 0.6 * np.mean(own, axis=0)[1:])
 
 
 def test_an_effect_too_small_for_the_choice_of_terms_stays_possible():
