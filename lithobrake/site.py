@@ -43,6 +43,19 @@ def site_medians(study: Study) -> dict[str, float]:
     return {key: median(value) for key, value in site_values(study).items()}
 
 
+def has_heading(study: Study) -> bool:
+    """Whether the heading has a median: one that is uncertain over the circle has none.
+
+    It has none where a draw points hardly anywhere in the mean (resultant length below a tenth; an even spread over
+    325 degrees has that). Source: Mardia and Jupp (2000), Directional Statistics, section 2.3.
+    """
+    heading = site_values(study)["heading_deg"]
+    if not isinstance(heading, Uncertain):
+        return True
+    draws = np.radians(heading.to_chaos().ppf((np.arange(1000) + 0.5) / 1000))
+    return bool(np.hypot(np.cos(draws).mean(), np.sin(draws).mean()) > 0.1)
+
+
 def site_body(study: Study) -> "Body":
     """The body of the study with its shape and partner, at the medians of its mass and spin period."""
     values = site_medians(study)

@@ -3,6 +3,7 @@
 import math
 import re
 import tomllib
+from collections import Counter
 from pathlib import Path
 from typing import Any
 
@@ -13,12 +14,13 @@ from lithobrake import study_file
 from lithobrake.chaos import Uniform, fit, smolyak
 from lithobrake.pipeline import STAGES, StudyFolder, rest, stage_keys
 from lithobrake.pipeline.expansions import design_inputs, kept_inputs, points
-from lithobrake.pipeline.fates import shares
+from lithobrake.pipeline.fates import shares, stays
 from lithobrake.pipeline.flights import COLUMNS, partner_time, starts
 from lithobrake.pipeline.landings import ORIENTATION, PLACE, acceleration, draw, medians
-from lithobrake.pipeline.samples import Samples
+from lithobrake.pipeline.samples import SAMPLE_OUTCOMES, Samples
+from lithobrake.pipeline.scope import scope
 from lithobrake.pipeline.summary import study_tables
-from lithobrake.site import frames, push_at_site, site_body, site_medians, site_warning
+from lithobrake.site import frames, has_heading, push_at_site, site_body, site_medians, site_warning
 from lithobrake.study import OUTPUTS, Study
 from lithobrake.study_template import template
 
@@ -164,34 +166,98 @@ def test_inputs_that_are_not_kept_stand_at_their_median_and_nodes_are_shared() -
     assert len(shared) == 13
 
 
-def made_samples(stays: list[bool], captured: list[bool]) -> Samples:
-    count = len(stays)
-    outputs = np.tile(np.arange(1.0, 7.0), (count, 1))
-    return Samples(
-        ["a"], list(OUTPUTS), np.zeros((count, 1)), outputs, np.zeros(count), np.array(captured), np.array(stays)
-    )
+def made_samples(*outcomes: str) -> Samples:
+    """Samples with these outcomes, which leave at (4, 5, 6) m/s."""
+    speed, elevation = math.sqrt(77.0), math.atan2(6.0, math.hypot(4.0, 5.0))
+    outputs = np.tile([speed, elevation, 3.0, 4.0, 5.0, 6.0], (len(outcomes), 1))
+    drawn = np.array([SAMPLE_OUTCOMES.index(outcome) for outcome in outcomes])
+    return Samples.of(["a"], OUTPUTS, np.zeros((len(outcomes), 1)), outputs, drawn)
 
 
 def test_the_first_samples_that_leave_fly_each_from_its_own_site() -> None:
     study = changed(flight={"flight_count": 2}, site={"latitude_deg": UNIFORM})
-    one = starts(study, made_samples([False, True, False, False], [False] * 4))
+    one = starts(study, made_samples("clear", "captured", "clear", "clear"))
     assert one.sample.tolist() == [0, 2]
-    assert one.velocity.tolist() == [[4.0, 5.0, 6.0]] * 2
+    assert one.velocity == pytest.approx(np.array([[4.0, 5.0, 6.0]] * 2))
     assert ((one.site["latitude_deg"] > 0.1) & (one.site["latitude_deg"] < 0.3)).all()
-    more = starts(
-        changed(flight={"flight_count": 3}, site={"latitude_deg": UNIFORM}), made_samples([False] * 4, [False] * 4)
-    )
+    more = starts(changed(flight={"flight_count": 3}, site={"latitude_deg": UNIFORM}), made_samples(*["clear"] * 4))
     assert more.site["latitude_deg"][[0, 2]].tolist() == one.site["latitude_deg"].tolist()
 
 
-def test_shares_count_the_captured_and_look_at_no_sample_after_the_last_that_flew() -> None:
-    samples = made_samples([False, True, True, False, True, False], [False, True, False, False, True, False])
-    flown = [{"sample": "0", "status": "impact"}, {"sample": "3", "status": "escaped"}]
-    table = shares(samples, flown)
-    assert table["sample_count"] == 4
-    counts = {name: table[name]["count"] for name in ("captured", "no_outward_velocity", "impact", "flying", "escaped")}
-    assert counts == {"captured": 1, "no_outward_velocity": 1, "impact": 1, "flying": 0, "escaped": 1}
-    assert table["remains"]["share"] == 0.75
+def test_drawn_velocities_have_the_drawn_speed_and_elevation_and_impossible_draws_are_a_class() -> None:
+    generator = np.random.default_rng(0)
+    outputs = np.column_stack([generator.normal(0.1, 0.05, 500), generator.normal(0.8, 0.8, 500), np.ones(500)])
+    outputs = np.hstack([outputs, generator.normal(0.0, 0.01, (500, 3))])
+    samples = Samples.of([], OUTPUTS, np.empty((500, 0)), outputs, np.zeros(500, dtype=int))
+    velocity = np.column_stack([samples.output(f"velocity_out_{axis}") for axis in "xyz"])
+    speed, elevation = samples.output("speed_out"), samples.output("elevation_out")
+    assert np.linalg.norm(velocity, axis=1) == pytest.approx(np.abs(speed), rel=1e-12)
+    going = samples.leaves
+    assert np.arcsin(velocity[going, 2] / speed[going]) == pytest.approx(elevation[going])
+    assert (velocity[going, 2] > 0.0).all()
+    # The azimuth is that of the horizontal components as they were drawn.
+    assert np.arctan2(velocity[going, 1], velocity[going, 0]) == pytest.approx(
+        np.arctan2(outputs[going, 4], outputs[going, 3])
+    )
+    impossible = (speed <= 0.0) | (elevation <= 0.0) | (elevation > math.pi / 2)
+    assert 50 < impossible.sum() < 250
+    assert (samples.outcome == SAMPLE_OUTCOMES.index("outside")).tolist() == impossible.tolist()
+
+
+def test_shares_have_a_class_for_each_end_no_interval_and_no_sample_after_the_last_that_flew() -> None:
+    outcomes = ("clear", "captured", "left_sideways", "outside", "time_limit", "clear", "captured", "clear")
+    flown = [{"sample": "0", "status": "impact"}, {"sample": "5", "status": "escaped"}]
+    table = shares(made_samples(*outcomes), flown, Counter(clear=50, captured=1), holds=True)
+    assert table["sample_count"] == 6
+    ends = ("captured", "left_sideways", "time_limit", "outside", "impact", "flying", "escaped", "partner")
+    assert [table[name]["count"] for name in ends] == [1, 1, 1, 1, 1, 0, 1, 0]
+    assert (table["remains"]["count"], table["missing"]["count"]) == (2, 3)
+    assert (table["remains"]["lower"], table["remains"]["upper"]) == (None, None)
+    # Of 51 runs none left sideways or ran out of time: that allows 5.7 % (rule of three).
+    assert table["left_sideways"]["upper_limit"] == pytest.approx(1.0 - 0.05 ** (1 / 51))
+    assert "upper_limit" not in table["captured"]
+    # What is captured where the site pushes outwards is lifted off again.
+    away = shares(made_samples(*outcomes), flown, Counter(clear=50, captured=1), holds=False)
+    assert away["remains"]["count"] == 1
+
+
+def test_the_answer_says_over_what_it_holds_and_flights_do_not_narrow_it() -> None:
+    study = changed(site={"latitude_deg": 75.0})
+    table = shares(made_samples(*["clear"] * 3, "captured"), [{"sample": "0", "status": "impact"}] * 3, {}, holds=True)
+    found = stays(study, table, 40)
+    assert (found["lower"], found["upper"], found["next_bed"], found["level"]) == (None, None, None, 0.9)
+    assert found["why"] == scope(study).why
+    assert found["from"] == "4 samples of an expansion of 40 landings on 1 bed"
+    assert 0.0 < found["flight_sampling"] < 0.5
+    assert found["if_missing"] == [1.0, 1.0]
+
+
+@pytest.mark.parametrize(
+    ("bed", "impact", "where"),
+    [
+        ({}, {}, "On this bed, at this place"),
+        ({"bed_count": 6}, {}, "At this place"),
+        ({}, {"region": {"x": [0.0, 0.1], "y": [0.0, 0.1]}}, "On this bed"),
+        ({"bed_count": 6}, {"region": {"x": [0.0, 0.1], "y": [0.0, 0.1]}}, "In this attitude"),
+        (
+            {"bed_count": 6},
+            {"region": {"x": [0.0, 0.1], "y": [0.0, 0.1]}, "orientation": "random"},
+            "On these 6 beds, at places and in attitudes drawn anew",
+        ),
+    ],
+)
+def test_the_scope_names_what_all_runs_have_in_common(bed: dict[str, Any], impact: dict[str, Any], where: str) -> None:
+    found = scope(changed(bed=bed, impact=impact))
+    assert found.where == where
+    expected = "no interval" if "drawn anew" in where else "this study cannot say how different"
+    assert expected in found.why
+
+
+def test_a_heading_over_the_circle_has_no_median() -> None:
+    circle = {"distribution": "uniform", "lower": 0.0, "upper": 360.0}
+    half = {"distribution": "uniform", "lower": 0.0, "upper": 180.0}
+    given = [has_heading(changed(site={"heading_deg": heading})) for heading in (30.0, half, circle)]
+    assert given == [True, True, False]
 
 
 def test_the_study_in_the_summary_reads_back_as_the_same_study() -> None:
@@ -214,12 +280,12 @@ def test_every_column_of_the_flights_is_documented() -> None:
 
 def test_the_partner_stands_where_the_sample_says() -> None:
     study = changed(site={"partner_longitude_deg": 77.0, "spin_period": 8000.0})
-    site = starts(study, made_samples([False], [False])).site
+    site = starts(study, made_samples("clear")).site
     body = site_body(study)
     time = partner_time(body, site)
     angle = body.orbit.angle + body.orbit.rate * time[0]
     assert math.degrees(angle) % 360.0 == pytest.approx(77.0)
-    open_ended = starts(changed(), made_samples([False] * 40, [False] * 40)).site["partner_longitude_deg"]
+    open_ended = starts(changed(), made_samples(*["clear"] * 40)).site["partner_longitude_deg"]
     assert np.ptp(open_ended) > 180.0
     assert site_body(changed(site={"partner": False})).partner is None
 

@@ -1,8 +1,8 @@
-"""What a fitted expansion says: samples, captured landers, percentages with their intervals."""
+"""What a fitted expansion says: samples, outcomes, percentages with their intervals."""
 
-from lithobrake.analysis.capture import CaptureModel
 from lithobrake.analysis.ellipse import Ellipses, landing_ellipses
+from lithobrake.analysis.outcome_model import OutcomeModel, upper_limit
 from lithobrake.analysis.proportion import wilson_interval
 from lithobrake.analysis.sampling import sample_inputs
 
-__all__ = ["CaptureModel", "Ellipses", "landing_ellipses", "sample_inputs", "wilson_interval"]
+__all__ = ["Ellipses", "OutcomeModel", "landing_ellipses", "sample_inputs", "upper_limit", "wilson_interval"]

@@ -120,16 +120,17 @@ def _debiased(refit: Refit, coefficients: Array, level: float) -> tuple[Array, A
     """
     noise = coefficients.var(axis=1, ddof=1, keepdims=True)
     # A draw that leaves no variance says nothing: every second one counts as none, the others as all of it.
-    shares = _debiased_shares(refit.indices, coefficients, noise, np.arange(coefficients.shape[1]) % 2.0)
+    shares = _debiased_shares(refit.indices, coefficients, noise, np.resize([0.0, 1.0], coefficients.shape[1]))
     low, high = np.quantile(shares, [0.5 - 0.5 * level, 0.5 + 0.5 * level], axis=-1)
     estimate = _debiased_shares(refit.indices, refit.coefficients(refit.observed[:, None]), noise, np.zeros(1))
     return estimate[..., 0], low, high
 
 
 def _debiased_shares(indices: Indices, coefficients: Array, noise: Array, without: Array) -> Array:
-    """First-order and total shares [2, input_count, draw_count] of squared coefficients less their noise [term_count, 1].
+    """First-order and total shares [2, input_count, draw_count] of squared coefficients less their noise.
 
-    without: what a draw counts as whose squares leave no variance, [draw_count].
+    noise: variance of each coefficient [term_count, 1]; without [draw_count]: what a draw counts as whose squares leave
+    no variance.
     """
     active = (indices > 0).T
     squares = coefficients**2 - noise

@@ -180,18 +180,15 @@ def score_all(job: Job) -> None:
     runs = {design: design_runs(job, design, kept) for design in DESIGNS}
     for design in ("test_kept", "test_all"):
         account(job, design, runs[design])
-    scores = {
-        design: _score(screening if design == "screening" else refined, runs[design], fresh=design.startswith("test"))
-        for design in DESIGNS
-    }
-    scores["test_screening"] = _score(screening, runs["test_all"], fresh=True)
+    scores = {design: _score(screening if design == "screening" else refined, runs[design]) for design in DESIGNS}
+    scores["test_screening"] = _score(screening, runs["test_all"])
     job.folder.write_json("scores.json", scores)
 
 
-def _score(surrogate: "Surrogate", design: DesignRuns, *, fresh: bool) -> dict[str, Any]:
-    """Scores by output on the runs that have outputs; null where not finite. Raises ValueError for no runs.
+def _score(surrogate: "Surrogate", design: DesignRuns) -> dict[str, Any]:
+    """Scores by output on the runs that have outputs, with 95 % intervals; null where not finite.
 
-    fresh: the runs were not fitted; then 95 % intervals of the scores stand beside them.
+    Raises ValueError for no runs.
     """
     from lithobrake.chaos import score_intervals
 
@@ -200,9 +197,8 @@ def _score(surrogate: "Surrogate", design: DesignRuns, *, fresh: bool) -> dict[s
         raise ValueError("no test run has outputs (see runs.sqlite); choose an impact that rebounds")
     x, y = design.columns(surrogate.input_names)[known], design.y[known]
     scores = surrogate.score(x, y)
-    if fresh:
-        for output, intervals in score_intervals(surrogate, x, y).items():
-            scores[output] |= {f"{key}_interval": list(interval) for key, interval in intervals.items()}
+    for output, intervals in score_intervals(surrogate, x, y).items():
+        scores[output] |= {f"{key}_interval": list(interval) for key, interval in intervals.items()}
     return {output: {key: _finite(value) for key, value in score.items()} for output, score in scores.items()}
 
 

@@ -1,33 +1,38 @@
-"""What became of the landers: shares with their intervals, times and speeds, ellipses, and where they rest."""
+"""What became of the landers: shares, times and speeds, ellipses, and where they rest."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
 from lithobrake.pipeline.flights import QUANTILES, flight_numbers, read_table
 from lithobrake.pipeline.job import Job
-from lithobrake.pipeline.samples import Samples
-from lithobrake.site import site_body
+from lithobrake.pipeline.samples import MISSING, SAMPLE_OUTCOMES, Samples
+from lithobrake.pipeline.scope import scope
+from lithobrake.pipeline.solver import OUTCOMES
+from lithobrake.site import push_at_site, site_body
 from lithobrake.study import Study
 
 # How a journey from bounce to bounce may end (docs/flights.md).
 ENDS = ("settled", "lofted", "outside", "flying", "escaped", "partner", "sliding", "bouncing")
+NORMAL_QUANTILE_90 = 1.6448536269514722
 Rows = Sequence[dict[str, str]]
 
 
-def landing_results(job: Job, samples: Samples, flights: list[dict[str, str]]) -> dict[str, Any]:
-    """The parts of the summary that come from flights and journeys."""
+def landing_results(job: Job, samples: Samples, flights: Rows, run_outcomes: Mapping[str, int]) -> dict[str, Any]:
+    """The parts of the summary that come from flights and journeys; run_outcomes: how often each came in the runs."""
     study = job.study
+    holds = bool(push_at_site(study)[2] < 0.0)
     results: dict[str, Any] = {}
-    results["shares"] = shares(samples, flights)
+    results["shares"] = shares(samples, flights, run_outcomes, holds=holds) | {"why": scope(study).why}
+    results["stays"] = stays(study, results["shares"], sum(run_outcomes.values()))
     results["flights"] = flight_numbers(flights) | job.folder.read_json("flights.json")
     results["ellipses"] = ellipses(study, flights, ("impact",))
     results["without_scatter"] = None
     if samples.without_scatter is not None:
         alone = read_table(job.folder, "flights_without_scatter.csv")
         results["without_scatter"] = {
-            "shares": shares(samples.expansion_alone(), alone),
+            "shares": shares(samples.expansion_alone(), alone, run_outcomes, holds=holds),
             "flights": flight_numbers(alone),
             "ellipses": ellipses(study, alone, ("impact",)),
         }
@@ -35,22 +40,55 @@ def landing_results(job: Job, samples: Samples, flights: list[dict[str, str]]) -
     return results
 
 
-def shares(samples: Samples, flights: list[dict[str, str]]) -> dict[str, Any]:
-    """What became of the samples, as shares of all that were looked at, with their 95 % intervals.
+def shares(samples: Samples, flights: Rows, run_outcomes: Mapping[str, int], *, holds: bool) -> dict[str, Any]:
+    """What became of the samples, as shares of all that were looked at.
 
     When not all leaving samples flew, only the samples up to the last that flew are looked at: they are a random part
-    of all, so each share is a plain binomial one. `remains` = captured, no outward velocity, or down again in time.
+    of all. `remains` = down again in time, or captured where the site `holds` what lies there; `missing` = left
+    sideways, in contact at the time limit, or outside, after which nobody knows where the lander is.
+    upper_limit: of an outcome that none of the runs had, which its share of 0 does not say (95 %).
     """
-    total = len(samples.stays)
-    if len(flights) < int((~samples.stays).sum()):
+    from lithobrake.analysis import upper_limit
+
+    total = len(samples.outcome)
+    if len(flights) < int(samples.leaves.sum()):
         total = int(flights[-1]["sample"]) + 1
-    captured, stays = samples.captured[:total], samples.stays[:total]
-    counts = {"captured": int(captured.sum()), "no_outward_velocity": int((stays & ~captured).sum())}
+    met = np.bincount(samples.outcome[:total], minlength=len(SAMPLE_OUTCOMES)).tolist()
+    counts = dict(zip(SAMPLE_OUTCOMES, met, strict=True))
+    del counts["clear"]
     statuses = [row["status"] for row in flights]
     counts |= {status: statuses.count(status) for status in ("impact", "flying", "escaped", "partner")}
-    counts["remains"] = counts["captured"] + counts["no_outward_velocity"] + counts["impact"]
+    counts["remains"] = counts["impact"] + (counts["captured"] if holds else 0)
+    counts["missing"] = sum(counts[name] for name in MISSING)
     table: dict[str, Any] = {"sample_count": total, "flight_count": len(flights)}
-    return table | {name: proportion(count, total) for name, count in counts.items()}
+    table |= {name: proportion(count, total) for name, count in counts.items()}
+    for name in set(OUTCOMES) - {"clear", *run_outcomes}:
+        table[name]["upper_limit"] = upper_limit(sum(run_outcomes.values()))
+    return table
+
+
+def stays(study: Study, table: Mapping[str, Any], run_count: int) -> dict[str, Any]:
+    """The answer: the share that remains, without an interval, which runs on one bed or at one place do not give.
+
+    flight_sampling: half of the interval that the number of samples alone would give; more flights narrow it without
+    knowing more.
+    """
+    from lithobrake.analysis import wilson_interval
+
+    total, remains = table["sample_count"], table["remains"]
+    lower, upper = wilson_interval(remains["count"], total, NORMAL_QUANTILE_90)
+    return {
+        "share": remains["share"],
+        "lower": None,
+        "upper": None,
+        "level": 0.9,
+        "from": f"{total} samples of an expansion of {run_count} landings {scope(study).landings}",
+        "next_bed": None,
+        "if_missing": [remains["share"], remains["share"] + table["missing"]["share"]],
+        "flight_sampling": 0.5 * (upper - lower),
+        "emulator": remains["share"],
+        "why": scope(study).why,
+    }
 
 
 def ellipses(study: Study, rows: Rows, statuses: Sequence[str]) -> dict[str, Any] | None:
@@ -89,7 +127,7 @@ def _rest(job: Job) -> dict[str, Any]:
 
 
 def _ends(study: Study, rows: Rows, ranges: dict[str, list[float]]) -> dict[str, Any]:
-    """Shares of each end with their 95 % intervals, and the numbers of the landers that settled."""
+    """Shares of each end, and the numbers of the landers that settled."""
     statuses = [row["status"] for row in rows]
     table: dict[str, Any] = {"sample_count": len(rows)}
     table |= {name: proportion(statuses.count(name), len(rows)) for name in ENDS}
@@ -106,8 +144,5 @@ def _ends(study: Study, rows: Rows, ranges: dict[str, list[float]]) -> dict[str,
 
 
 def proportion(count: int, total: int) -> dict[str, Any]:
-    """A count, its share of a total, and the 95 % interval of that."""
-    from lithobrake.analysis import wilson_interval
-
-    lower, upper = wilson_interval(count, total)
-    return {"count": count, "share": count / total, "lower": lower, "upper": upper}
+    """A count and its share of a total; no interval, which would have to hold for other beds and places."""
+    return {"count": count, "share": count / total, "lower": None, "upper": None}

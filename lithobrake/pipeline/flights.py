@@ -53,9 +53,9 @@ def flight_reads(study: Study) -> dict[str, Any]:
 
 def starts(study: Study, samples: Samples) -> Starts:
     """The first samples that leave the surface, as many as the study flies, each with its own site."""
-    rows = np.flatnonzero(~samples.stays)[: study.flight.flight_count]
+    rows = np.flatnonzero(samples.leaves)[: study.flight.flight_count]
     velocity = np.column_stack([samples.output(f"velocity_out_{axis}") for axis in "xyz"])[rows]
-    site = {key: values[rows] for key, values in sample_sites(study, len(samples.stays)).items()}
+    site = {key: values[rows] for key, values in sample_sites(study, len(samples.outcome)).items()}
     return Starts(rows, velocity, site)
 
 
@@ -177,7 +177,7 @@ def _rows(start: Starts, flown: "Flights") -> Iterator[list[Any]]:
         yield [sample, *before[row], *end]
 
 
-def flight_numbers(flights: list[dict[str, str]]) -> dict[str, Any]:
+def flight_numbers(flights: Sequence[dict[str, str]]) -> dict[str, Any]:
     """Median and the middle nine tenths of time of flight, speed and incidence of the impacts on the body."""
     down = [row for row in flights if row["status"] == "impact"]
     table: dict[str, Any] = {}

@@ -1,13 +1,14 @@
 """From bounce to bounce until the landers rest: on the soil, and on hard ground beside it."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from lithobrake.pipeline.flights import partner_time, sample_sites, write_table
 from lithobrake.pipeline.job import Job
-from lithobrake.pipeline.samples import Samples, sampling_seed, touchdown_values
+from lithobrake.pipeline.outgoing import VELOCITY
+from lithobrake.pipeline.samples import SAMPLE_OUTCOMES, Samples, sampling_seed, touchdown_values
 from lithobrake.pipeline.soil import rolling_spin, soil_bounce, trained_ranges, why_no_soil
 from lithobrake.site import frames, site_body
 from lithobrake.study import Study
@@ -45,12 +46,6 @@ def follow_samples(job: Job) -> None:
     job.folder.write_json("rest.json", {"why_no_soil": why, "trained_ranges": ranges})
 
 
-def first_samples(samples: Samples, count: int) -> Samples:
-    """The first samples, which are as random as all."""
-    names = ("inputs", "outputs", "capture_probability", "captured", "stays")
-    return replace(samples, without_scatter=None, **{name: getattr(samples, name)[:count] for name in names})
-
-
 def hard_surface(study: Study) -> "HardSurface":
     """The hard ground of a study."""
     from lithobrake.smallbody import HardSurface
@@ -62,11 +57,11 @@ def _on_soil(job: Job, samples: Samples) -> tuple["Rebounds", "Bounce"]:
     """What the samples say of the first impact, and what the soil says of those that follow."""
     from lithobrake.smallbody import Rebounds
 
-    velocity = np.column_stack([samples.output(f"velocity_out_{axis}") for axis in "xyz"])
+    velocity = np.column_stack([samples.output(name) for name in VELOCITY])
     spin = rolling_spin(velocity, np.maximum(samples.output("spin_out"), 0.0))
-    leaving = ~samples.stays
-    inputs = {name: samples.inputs[leaving, index] for index, name in enumerate(samples.input_names)}
-    return Rebounds(velocity, spin, samples.stays, np.zeros(len(spin), dtype=bool)), soil_bounce(job, inputs)
+    captured = samples.outcome == SAMPLE_OUTCOMES.index("captured")
+    inputs = {name: samples.inputs[samples.leaves, index] for index, name in enumerate(samples.input_names)}
+    return Rebounds(velocity, spin, captured, ~captured & ~samples.leaves), soil_bounce(job, inputs)
 
 
 def _on_hard_ground(study: Study, sites: "Sites") -> tuple["Rebounds", "Bounce"]:
@@ -78,7 +73,7 @@ def _on_hard_ground(study: Study, sites: "Sites") -> tuple["Rebounds", "Bounce"]
         touchdown_values(study, samples.input_names, samples.inputs, f"impact.{name}")
         for name in ("speed", "incidence_deg", "spin_x", "spin_y", "spin_z")
     )
-    lander = np.arange(len(samples.stays))
+    lander = np.arange(len(samples.outcome))
     first = Impacts(speed, np.radians(incidence_deg), np.column_stack(spin), sites.push, lander)
     # Hard ground has no scatter, so no random number is drawn.
     return bounce(first, np.random.default_rng(0)), bounce
@@ -102,8 +97,8 @@ class Sites:
     @classmethod
     def of(cls, job: Job) -> "Sites":
         """Those of a study with samples."""
-        body, samples = site_body(job.study), first_samples(Samples.load(job.folder), job.study.rest.count)
-        site = sample_sites(job.study, len(samples.stays))
+        body, samples = site_body(job.study), Samples.load(job.folder).first(job.study.rest.count)
+        site = sample_sites(job.study, len(samples.outcome))
         origin, axes = frames(body, site)
         spin_rate = 2.0 * np.pi / site["spin_period"]
         push = body.acceleration(origin) * (site["mass"] / body.mass)[:, None]
@@ -114,7 +109,7 @@ class Sites:
         """A row of rest.csv for each sample, in their order: from how it leaves the first impact to where it ends."""
         from lithobrake.smallbody import hop
 
-        going = np.flatnonzero(~first.captured)
+        going = np.flatnonzero(~(first.captured | first.outside))
         site = {key: values[going] for key, values in self.site.items()}
         velocity, spin = (np.einsum("nij,ni->nj", self.axes[going], v[going]) for v in (first.velocity, first.spin))
         ends = hop(
@@ -129,15 +124,17 @@ class Sites:
             progress=lambda share: job.progress(round(share * len(going)), len(going), f"bounces, {ground} ground"),
         )
         latitude, longitude = self.body.shape.latitude_longitude(self.origin)
+        held = np.where(self.push < 0.0, "settled", "lofted")
+        status = np.where(first.outside, "outside", held).tolist()
         rows = [
-            [ground, sample, "settled" if push < 0.0 else "lofted", 0.0, *place, 0, 0.0, "", ""]
-            for sample, (push, *place) in enumerate(np.column_stack([self.push, latitude, longitude]).tolist())
+            [ground, sample, end, 0.0, *place, 0, 0.0, "", ""]
+            for sample, (end, *place) in enumerate(zip(status, latitude.tolist(), longitude.tolist(), strict=True))
         ]
         for row, sample in enumerate(going.tolist()):
-            status, speed = str(ends.status[row]), float(ends.impact_speed[row])
-            place = [float(ends.latitude[row]), float(ends.longitude[row])] if status in DOWN else ["", ""]
+            end, speed = str(ends.status[row]), float(ends.impact_speed[row])
+            place = [float(ends.latitude[row]), float(ends.longitude[row])] if end in DOWN else ["", ""]
             last = ["", ""] if np.isnan(speed) else [speed, float(np.degrees(ends.incidence[row]))]
             # The journey began with the first rebound, which is counted here.
             rebounds, path = int(ends.bounce_count[row]) + 1, float(ends.path_length[row])
-            rows[sample] = [ground, sample, status, float(ends.time[row]), *place, rebounds, path, *last]
+            rows[sample] = [ground, sample, end, float(ends.time[row]), *place, rebounds, path, *last]
         return rows

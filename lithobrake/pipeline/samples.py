@@ -1,4 +1,4 @@
-"""Monte Carlo on the refined expansion: what leaves the surface, how fast and where to, and what stays."""
+"""Monte Carlo on the refined expansion: what leaves the surface, how fast and where to, and what does not."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
@@ -10,15 +10,22 @@ from lithobrake.atomic import atomic_path
 from lithobrake.pipeline.expansions import DESIGNS, DesignRuns, design_inputs, design_runs
 from lithobrake.pipeline.folder import StudyFolder, json_hash
 from lithobrake.pipeline.job import Job
+from lithobrake.pipeline.outgoing import outgoing
 from lithobrake.pipeline.scatter import Scatter
+from lithobrake.pipeline.solver import OUTCOMES
 from lithobrake.quantity import median
 from lithobrake.study import Study
 
 if TYPE_CHECKING:
-    from lithobrake.analysis import CaptureModel
+    from lithobrake.analysis import OutcomeModel
     from lithobrake.chaos import Surrogate
 
-FORMAT_VERSION = 1
+FORMAT_VERSION = 2
+# What may become of a sample at the touchdown: as of a run, or the expansion gave a way to leave that there is not.
+SAMPLE_OUTCOMES = (*OUTCOMES, "outside")
+CLEAR, OUTSIDE = SAMPLE_OUTCOMES.index("clear"), SAMPLE_OUTCOMES.index("outside")
+# Those after which nobody knows where the lander is.
+MISSING = ("left_sideways", "time_limit", "outside")
 # Points at which the expansion is evaluated at once; between two blocks progress is shown.
 _BLOCK = 1 << 20
 
@@ -28,18 +35,39 @@ class Samples:
     """Samples of the Monte Carlo.
 
     inputs [sample_count, input_count], in the file's units; outputs [sample_count, output_count], SI, in the local
-    frame; captured [sample_count]: by the draw of the capture probability; stays [sample_count]: captured, or without
-    outward velocity; without_scatter: the outputs of the expansion alone, where scatter was added, else None.
+    frame; outcome [sample_count]: place in SAMPLE_OUTCOMES, drawn by its probability, or "outside" where the outputs
+    cannot be; without_scatter: the outputs of the expansion alone, where scatter was added, else None.
     """
 
     input_names: list[str]
     output_names: list[str]
     inputs: np.ndarray
     outputs: np.ndarray
-    capture_probability: np.ndarray
-    captured: np.ndarray
-    stays: np.ndarray
+    outcome: np.ndarray
     without_scatter: np.ndarray | None = None
+
+    @classmethod
+    def of(
+        cls,
+        input_names: Iterable[str],
+        output_names: Iterable[str],
+        inputs: np.ndarray,
+        outputs: np.ndarray,
+        drawn: np.ndarray,
+        without_scatter: np.ndarray | None = None,
+    ) -> "Samples":
+        """Samples whose outcomes were drawn as those of runs; clear ones that cannot leave so become "outside"."""
+        names = list(output_names)
+        consistent, possible = outgoing(outputs, names)
+        outcome = np.where((drawn == CLEAR) & ~possible, OUTSIDE, drawn).astype(np.uint8)
+        alone = None if without_scatter is None else outgoing(without_scatter, names)[0]
+        return cls(list(input_names), names, inputs, consistent, outcome, alone)
+
+    @property
+    def leaves(self) -> np.ndarray:
+        """Which samples leave the surface, shape [sample_count]."""
+        left: np.ndarray = self.outcome == CLEAR
+        return left
 
     def output(self, name: str) -> np.ndarray:
         """One output, shape [sample_count]."""
@@ -49,21 +77,26 @@ class Samples:
         """The samples without the scatter from run to run; themselves where none was added."""
         if self.without_scatter is None:
             return self
-        outward = self.without_scatter[:, self.output_names.index("velocity_out_z")] > 0
-        stays = self.captured | ~outward
-        return replace(self, outputs=self.without_scatter, stays=stays, without_scatter=None)
+        drawn = np.where(self.outcome == OUTSIDE, CLEAR, self.outcome)
+        return Samples.of(self.input_names, self.output_names, self.inputs, self.without_scatter, drawn)
+
+    def first(self, count: int) -> "Samples":
+        """The first samples, which are as random as all, with the scatter where there is any."""
+        part = {name: getattr(self, name)[:count] for name in ("inputs", "outputs", "outcome")}
+        return replace(self, without_scatter=None, **part)
 
     def save(self, folder: StudyFolder) -> None:
         """Write samples.h5."""
         import h5py
 
         with atomic_path(folder / "samples.h5") as draft, h5py.File(draft, "w") as file:
-            for name in ("inputs", "outputs", "capture_probability", "captured", "stays"):
+            for name in ("inputs", "outputs", "outcome"):
                 file.create_dataset(name, data=getattr(self, name))
             if self.without_scatter is not None:
                 file.create_dataset("without_scatter", data=self.without_scatter)
             file.attrs["format_version"] = FORMAT_VERSION
             file.attrs["input_names"], file.attrs["output_names"] = self.input_names, self.output_names
+            file.attrs["outcomes"] = list(SAMPLE_OUTCOMES)
 
     @classmethod
     def load(cls, folder: StudyFolder) -> "Samples":
@@ -81,7 +114,7 @@ def sampling_seed(study: Study, purpose: str) -> int:
 
 
 def draw_samples(job: Job) -> None:
-    """Sample all inputs, evaluate the expansion, and decide for each sample whether the lander stays."""
+    """Sample all inputs, evaluate the expansion, and draw for each sample how the touchdown ends."""
     from lithobrake.analysis import sample_inputs
     from lithobrake.chaos import load
 
@@ -89,18 +122,14 @@ def draw_samples(job: Job) -> None:
     refined = load(job.folder / "refined.json")
     x = sample_inputs(inputs, study.monte_carlo.sample_count, sampling_seed(study, "samples"))
     smooth = _evaluate(refined, x[:, [list(inputs).index(name) for name in refined.input_names]], job)
-    probability = capture_model(job, refined).probability(x)
-    draws = np.random.Generator(np.random.PCG64(sampling_seed(study, "capture"))).random(len(x))
-    is_captured, outputs, without_scatter = draws < probability, smooth, None
+    random = np.random.Generator(np.random.PCG64(sampling_seed(study, "capture")))
+    drawn = outcome_model(job, refined).draw(x, random)
+    outputs, without_scatter = smooth, None
     if study.monte_carlo.scatter:
         speed = touchdown_values(study, inputs, x, "impact.speed")
         generator = np.random.Generator(np.random.PCG64(sampling_seed(study, "scatter")))
         outputs, without_scatter = smooth + Scatter.of(job, refined).draw(speed, generator), smooth
-    outward = outputs[:, refined.output_names.index("velocity_out_z")] > 0
-    stays = is_captured | ~outward
-    Samples(list(inputs), refined.output_names, x, outputs, probability, is_captured, stays, without_scatter).save(
-        job.folder
-    )
+    Samples.of(inputs, refined.output_names, x, outputs, drawn, without_scatter).save(job.folder)
 
 
 def touchdown_values(study: Study, inputs: Iterable[str], x: np.ndarray, name: str) -> np.ndarray:
@@ -115,25 +144,25 @@ def touchdown_values(study: Study, inputs: Iterable[str], x: np.ndarray, name: s
     return np.full(len(x), median(study.touchdown_values()[name]))
 
 
-def capture_model(job: Job, refined: "Surrogate") -> "CaptureModel":
-    """The chance of capture, learnt from all runs of the study."""
-    from lithobrake.analysis import CaptureModel
+def outcome_model(job: Job, refined: "Surrogate") -> "OutcomeModel":
+    """The chances of the outcomes, learnt from all runs of the study."""
+    from lithobrake.analysis import OutcomeModel
 
     runs = [design_runs(job, design, refined.input_names) for design in DESIGNS]
-    return CaptureModel(design_inputs(job.study), *capture_runs(runs))
+    return OutcomeModel(design_inputs(job.study), *ended_runs(runs), OUTCOMES)
 
 
-def capture_runs(designs: list[DesignRuns]) -> tuple[np.ndarray, np.ndarray]:
-    """Points of all runs that ended clear or captured [run_count, input_count], and which were captured [run_count].
+def ended_runs(designs: list[DesignRuns]) -> tuple[np.ndarray, list[str]]:
+    """Points [run_count, input_count] and outcomes of all runs that have one; a run that failed says nothing.
 
-    A run that failed, left sideways or ran out of time says nothing about capture. Raises ValueError when none says.
+    Raises ValueError when no run has ended.
     """
     x = np.concatenate([design.x for design in designs])
-    outcomes = np.array([outcome for design in designs for outcome in design.runs.outcomes])
-    says = np.isin(outcomes, ("clear", "captured"))
-    if not says.any():
-        raise ValueError("no run ended clear or captured (see runs.sqlite); raise landing.time_limit or widen the bed")
-    return x[says], outcomes[says] == "captured"
+    outcomes = [outcome for design in designs for outcome in design.runs.outcomes]
+    ended = np.isin(outcomes, OUTCOMES)
+    if not ended.any():
+        raise ValueError("every run has failed (runs.sqlite has the reasons); mend what they name")
+    return x[ended], [outcome for outcome in outcomes if outcome in OUTCOMES]
 
 
 def _evaluate(surrogate: "Surrogate", x: np.ndarray, job: Job) -> np.ndarray:

@@ -7,12 +7,14 @@ import numpy as np
 
 from lithobrake.pipeline.expansions import design_inputs, points
 from lithobrake.pipeline.job import Job
-from lithobrake.pipeline.samples import capture_model
+from lithobrake.pipeline.outgoing import VELOCITY, outgoing
+from lithobrake.pipeline.samples import CLEAR, outcome_model
 from lithobrake.pipeline.scatter import Scatter
+from lithobrake.pipeline.solver import OUTCOMES
 from lithobrake.study import Study
 
 if TYPE_CHECKING:
-    from lithobrake.analysis import CaptureModel
+    from lithobrake.analysis import OutcomeModel
     from lithobrake.chaos import Surrogate
     from lithobrake.smallbody import Impacts, Rebounds
 
@@ -54,13 +56,17 @@ class SoilBounce:
     """
 
     surrogate: "Surrogate"
-    capture: "CaptureModel"
+    outcome: "OutcomeModel"
     inputs: dict[str, np.ndarray]
     ranges: dict[str, tuple[float, float]]
     scatter: Scatter | None
 
     def __call__(self, impacts: "Impacts", random: np.random.Generator) -> "Rebounds":
-        """Answer each impact with the outputs of the expansion, a draw of its scatter and a draw of capture."""
+        """Answer each impact with the outputs of the expansion, a draw of its scatter and a draw of the outcome.
+
+        A lander that leaves the bed sideways, is still in contact at the time limit, or is drawn with an elevation
+        outside 0 to 90 degrees, has no answer.
+        """
         from lithobrake.smallbody import Rebounds
 
         x, outside = self._inputs_at(impacts)
@@ -69,8 +75,11 @@ class SoilBounce:
         if self.scatter is not None:
             outputs = outputs + self.scatter.draw(impacts.speed, random)
         names = self.surrogate.output_names
-        velocity = outputs[:, [names.index(f"velocity_out_{axis}") for axis in "xyz"]]
-        captured = (random.random(len(x)) < self.capture.probability(x)) | ~(velocity[:, 2] > 0.0)
+        outputs, possible = outgoing(outputs, names)
+        drawn = self.outcome.draw(x, random)
+        captured = drawn == OUTCOMES.index("captured")
+        outside |= ~captured & ~((drawn == CLEAR) & possible)
+        velocity = outputs[:, [names.index(name) for name in VELOCITY]]
         spin = rolling_spin(velocity, np.maximum(outputs[:, names.index("spin_out")], 0.0))
         return Rebounds(velocity, spin, captured, outside)
 
@@ -108,4 +117,4 @@ def soil_bounce(job: Job, inputs: dict[str, np.ndarray]) -> SoilBounce:
 
     study, refined = job.study, load(job.folder / "refined.json")
     scatter = Scatter.of(job, refined) if study.monte_carlo.scatter else None
-    return SoilBounce(refined, capture_model(job, refined), inputs, trained_ranges(study), scatter)
+    return SoilBounce(refined, outcome_model(job, refined), inputs, trained_ranges(study), scatter)

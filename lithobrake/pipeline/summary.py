@@ -3,6 +3,7 @@
 import os
 import platform
 import sys
+from collections import Counter
 from collections.abc import Sequence
 from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
@@ -12,10 +13,12 @@ import numpy as np
 from lithobrake.pipeline.expansions import DESIGNS, DesignRuns, design_runs, kept_inputs, replicate_count
 from lithobrake.pipeline.fates import landing_results
 from lithobrake.pipeline.flights import read_table
+from lithobrake.pipeline.headline import answer, headline
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.samples import Samples
+from lithobrake.pipeline.solver import OUTCOMES
 from lithobrake.pipeline.surface import bed_files
-from lithobrake.site import push_at_site, site_body, site_medians, site_warning
+from lithobrake.site import has_heading, push_at_site, site_body, site_medians, site_warning
 from lithobrake.study import BUILT_IN_BODIES, Study
 
 if TYPE_CHECKING:
@@ -56,9 +59,10 @@ def write_summary(job: Job) -> None:
         },
         "monte_carlo": _monte_carlo(samples),
         "site": _site(job.study),
-        **landing_results(job, samples, flights),
+        **landing_results(job, samples, flights, _run_outcomes(runs)),
     }
-    results["headline"] = headline(results)
+    results["answer"] = answer(job.study, results)
+    results["headline"] = headline(job.study, results)
     job.folder.write_json(
         "summary.json",
         {
@@ -127,6 +131,12 @@ def _design(design: DesignRuns, replicate_count: int) -> dict[str, Any]:
     }
 
 
+def _run_outcomes(runs: dict[str, DesignRuns]) -> Counter[str]:
+    """How often each outcome came among the distinct runs that did not fail."""
+    distinct = {record.key: record.outcome for design in runs.values() for record in design.runs.records}
+    return Counter(outcome for outcome in distinct.values() if outcome in OUTCOMES)
+
+
 def _outputs_of_runs(runs: dict[str, DesignRuns]) -> dict[str, Any]:
     """What else the touchdowns gave, over all distinct runs: median, smallest and largest."""
     units = {"contact_duration": "s", "penetration": "m", "peak_acceleration": "m/s2", "energy_lost": "J"}
@@ -142,12 +152,14 @@ def _outputs_of_runs(runs: dict[str, DesignRuns]) -> dict[str, Any]:
 
 
 def _expansion(surrogate: "Surrogate", runs: DesignRuns) -> dict[str, Any]:
-    """What an expansion says, with 95 % intervals [lower, upper] of its Sobol indices from the runs behind it."""
-    from lithobrake.chaos import sobol_intervals
+    """What an expansion says, with its Sobol indices freed of scatter, and their 95 % intervals [lower, upper].
+
+    An index is a share of the variance that the inputs give the expansion, not of that of the runs.
+    """
+    from lithobrake.chaos import sobol_estimates
 
     inputs = surrogate.input_names
-    first, total = np.asarray(surrogate.sobol_first), np.asarray(surrogate.sobol_total)
-    intervals = sobol_intervals(surrogate, runs.columns(inputs), runs.y)
+    estimates = sobol_estimates(surrogate, runs.columns(inputs), runs.y)
 
     def by_output(table: np.ndarray) -> dict[str, dict[str, Any]]:
         columns = zip(surrogate.output_names, np.moveaxis(table, 1, 0).tolist(), strict=True)
@@ -160,10 +172,10 @@ def _expansion(surrogate: "Surrogate", runs: DesignRuns) -> dict[str, Any]:
         "fits": {name: _fit(entry) for name, entry in surrogate.report["outputs"].items()},
         "mean": _by_output(surrogate, np.asarray(surrogate.mean)),
         "std": _by_output(surrogate, np.sqrt(np.asarray(surrogate.variance))),
-        "sobol_first": by_output(first),
-        "sobol_total": by_output(total),
-        "sobol_first_interval": by_output(np.moveaxis(intervals["first"], 0, -1)),
-        "sobol_total_interval": by_output(np.moveaxis(intervals["total"], 0, -1)),
+        "sobol_first": by_output(estimates["first"][0]),
+        "sobol_total": by_output(estimates["total"][0]),
+        "sobol_first_interval": by_output(np.moveaxis(estimates["first"][1:], 0, -1)),
+        "sobol_total_interval": by_output(np.moveaxis(estimates["total"][1:], 0, -1)),
     }
 
 
@@ -186,7 +198,7 @@ def _by_output(surrogate: "Surrogate", values: np.ndarray) -> dict[str, float]:
 
 def _monte_carlo(samples: Samples) -> dict[str, Any]:
     """Spread of each output over the samples that leave the surface."""
-    leaving = ~samples.stays
+    leaving = samples.leaves
     table: dict[str, Any] = {"sample_count": len(leaving), "leaving_count": int(leaving.sum()), "outputs": {}}
     for index, name in enumerate(samples.output_names if leaving.any() else ()):
         values = samples.outputs[leaving, index]
@@ -198,7 +210,7 @@ def _monte_carlo(samples: Samples) -> dict[str, Any]:
 def _site(study: Study) -> dict[str, Any]:
     """The body at the medians, and the acceleration of a point at rest on the ground at the site."""
     body, site, effective = site_body(study), site_medians(study), push_at_site(study)
-    built_in = study.site.body in BUILT_IN_BODIES
+    built_in, heads = study.site.body in BUILT_IN_BODIES, has_heading(study)
     partner = None if body.partner is None else body.partner.body.name
     return {
         "body": study.site.body if built_in else "mesh",
@@ -209,50 +221,13 @@ def _site(study: Study) -> dict[str, Any]:
         "centroid_m": body.shape.centroid.tolist(),
         "partner": partner,
         "partner_distance_m": None if partner is None else float(body.orbit.distance),
-        **{key: site[key] for key in ("latitude_deg", "longitude_deg", "heading_deg")},
+        **{key: site[key] for key in ("latitude_deg", "longitude_deg")},
+        "heading_deg": site["heading_deg"] if heads else None,
         "place_m": body.shape.surface_point(site["latitude_deg"], site["longitude_deg"]).tolist(),
         "effective_acceleration_outward": float(effective[2]),
-        "effective_acceleration_along_heading": float(effective[0]),
+        "effective_acceleration_along_heading": float(effective[0]) if heads else None,
         "warning": site_warning(study),
     }
-
-
-def headline(results: dict[str, Any]) -> list[str]:
-    """The five most telling numbers, each in a sentence."""
-    designs, remains = results["designs"], results["shares"]["remains"]
-    failed = sum(design["outcomes"].get("failed", 0) for design in designs.values())
-    run_count = sum(design["run_count"] for design in designs.values()) - failed
-    rebounds = sum(design["with_outputs"] for design in designs.values())
-    total = results["screening"]["sobol_total"]["speed_out"]
-    main = max(total, key=lambda name: total[name])
-    score = results["scores"]["test_all"]["speed_out"]
-    beside = f"; {failed} more runs failed" if failed else ""
-    sentences = [f"{rebounds} of {run_count} touchdowns left the surface{beside}."]
-    speed = results["monte_carlo"]["outputs"].get("speed_out")
-    if speed:
-        low, middle, high = (100 * speed[f"quantile_{level:g}"] for level in QUANTILES)
-        sentences.append(f"Outgoing speed {middle:.3g} cm/s (median; 5 to 95 %: {low:.3g} to {high:.3g} cm/s).")
-    if total[main] > 0.0:
-        share = results["screening"]["fits"]["speed_out"]["noise_share"]
-        rest = "" if share is None else f"; {100 * share:.0f} % of its variance is scatter that no input decides"
-        sentences.append(f"{main} decides it most: total Sobol index {total[main]:.2f} of the outgoing speed{rest}.")
-    else:
-        sentences.append("No input was found to decide it.")
-    explained = "no share" if score["q2"] is None else f"{100 * score['q2']:.0f} %"
-    error = f"{100 * score['rmse']:.2g} of spread {100 * score['std']:.2g} cm/s, MAPE {_percent(score['mape'])}"
-    sentences.append(
-        f"On fresh runs with all inputs varying the expansion explains {explained} of the variance of the outgoing "
-        f"speed (error {error})."
-    )
-    sentences.append(
-        f"{100 * remains['share']:.1f} % remain on the surface or come down again in time "
-        f"(95 % interval {100 * remains['lower']:.1f} to {100 * remains['upper']:.1f} %)."
-    )
-    return sentences
-
-
-def _percent(value: float | None) -> str:
-    return "undefined" if value is None else f"{value:.2g} %"
 
 
 def _provenance(job: Job, runs: dict[str, DesignRuns]) -> dict[str, Any]:

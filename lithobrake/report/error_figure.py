@@ -21,7 +21,8 @@ TEXT = {TRAINING: TRAINING, TEST: "#a8690a", TEST_ALL: "#5f656d"}
 class Score:
     """Errors of one output on one set of runs: APE and MAPE [%], Q2, RMSE and spread (std) in SI.
 
-    MAPE and Q2 do not exist (None) where a true value is zero, or all are the same.
+    MAPE and Q2 do not exist (None) where a true value is zero, or all are the same; q2_interval: 95 % (lower, upper),
+    None where it has no such end.
     """
 
     ape: Array
@@ -29,6 +30,19 @@ class Score:
     q2: float | None
     rmse: float
     std: float
+    q2_interval: tuple[float | None, float | None] = (None, None)
+
+    @property
+    def q2_words(self) -> str:
+        """Q2 with its interval: ".93 (.8 to .97)"."""
+        if self.q2 is None:
+            return "undefined"
+        low, high = self.q2_interval
+        if low is None and high is None:
+            return fixed(self.q2)
+        return (
+            f"{fixed(self.q2)} ({'no bound' if low is None else fixed(low)} to {fixed(1.0 if high is None else high)})"
+        )
 
 
 def error_figure(training: dict[str, Score], test_kept: dict[str, Score], test_all: dict[str, Score]) -> Figure:
@@ -83,9 +97,8 @@ def _panel(axes: Axes, name: str, series: Sequence[tuple[str, Score, str]]) -> N
     y = 1.03
     for words, score, colour in reversed(series):
         mape = "undefined" if score.mape is None else f"{score.mape:.3g} %"
-        q2 = "undefined" if score.q2 is None else fixed(score.q2)
         lines = (
-            f"{len(score.ape)} runs: MAPE {mape}, $Q^2$ {q2}\n"
+            f"{len(score.ape)} runs: MAPE {mape}, $Q^2$ {score.q2_words}\n"
             f"RMSE {number(score.rmse * shown.factor, 2)} at a spread of "
             f"{number(score.std * shown.factor, 2)} {shown.unit}"
         )

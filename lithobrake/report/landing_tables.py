@@ -13,13 +13,18 @@ FATE_WORDS = {
     "escaped": "escaped",
     "partner": "on the partner within {hours}",
     "captured": "captured",
-    "no_outward_velocity": "no outward velocity",
-    "remains": "captured, no outward velocity, or down again within {hours}",
+    "left_sideways": "left over the rim of the bed",
+    "time_limit": "in contact at the time limit",
+    "outside": "drawn outside 0 to 90 deg of elevation",
+    "remains": "{remains}",
+    "missing": "nobody knows where (over the rim, time limit, drawn outside)",
 }
+# Each holds others of the table.
+SUMS = ("remains", "missing")
 END_WORDS = {
     "settled": "at rest",
     "lofted": "captured, and lifted off again by the spin",
-    "outside": "stopped at an impact outside the range of the runs",
+    "outside": "stopped where the expansion has no answer",
     "outside_too_slow": "(of these: slower than any run)",
     "sliding": "sliding along the ground",
     "bouncing": "still bouncing after a thousand bounces",
@@ -29,12 +34,14 @@ END_WORDS = {
 }
 GROUND_WORDS = {"soil": "soil", "hard": "hard ground"}
 QUANTILES = ("quantile_0.05", "quantile_0.5", "quantile_0.95")
-ENDS = ("share", "lower", "upper")
 
 
 def fates(data: Results) -> dict[str, str]:
     """What may become of a sample, in words; the partner is left out where there is none."""
-    return {key: words for key, words in FATE_WORDS.items() if key != "partner" or data.results["site"].get("partner")}
+    holds = data.results["site"]["effective_acceleration_outward"] < 0.0
+    remains = "down again within {hours}, or captured" if holds else "down again within {hours}"
+    words = FATE_WORDS | {"remains": remains}
+    return {key: text for key, text in words.items() if key != "partner" or data.results["site"].get("partner")}
 
 
 def landing_tables(data: Results) -> list[Table]:
@@ -45,19 +52,29 @@ def landing_tables(data: Results) -> list[Table]:
 def _fates(data: Results) -> Table:
     shares, limit = data.results["shares"], hours(data.study["flight"]["duration"])
     alone = data.results["without_scatter"]
-    columns = ["what became of the sample", "samples", "share", "95 % from", "to"]
-    columns += ["without scatter", "95 % from", "to"] if alone else []
+    columns = ["what became of the sample", "samples", "share", *(["without scatter"] if alone else [])]
     rows = []
     for key, words in fates(data).items():
-        row = [words.format(hours=limit), str(shares[key]["count"]), *(percent(shares[key][end], 2) for end in ENDS)]
-        rows.append(row + ([percent(alone["shares"][key][end], 2) for end in ENDS] if alone else []))
-    note = f"Shares of {shares['sample_count']} samples; {shares['flight_count']} of them were flown."
+        row = [words.format(hours=limit), str(shares[key]["count"]), _share(shares[key])]
+        rows.append(row + ([_share(alone["shares"][key])] if alone else []))
+    stays = data.results["stays"]
+    note = (
+        f"Shares of {shares['sample_count']} samples; {shares['flight_count']} of them were flown. {stays['why']} "
+        f"The number of flights alone leaves +- {100 * stays['flight_sampling']:.1f} points (90 %) in what remains. "
+        '"At most": no run ended so, which such a probability allows (95 %).'
+    )
     if alone:
         note += (
             " The first shares have the scatter from run to run; without it stand those of the expansion alone, of "
             f"{alone['shares']['sample_count']} samples."
         )
     return Table("After the first bounce", columns, rows, note, frozenset(columns[1:]))
+
+
+def _share(entry: Mapping[str, Any]) -> str:
+    """A share, or the largest that an outcome may have which no run had."""
+    limit = entry.get("upper_limit")
+    return percent(entry["share"], 2) if limit is None else f"at most {percent(limit, 1)}"
 
 
 def _flights(data: Results) -> Table:
@@ -90,11 +107,11 @@ def _ends(data: Results) -> Table:
     found, limit = followed(data), hours(data.study["rest"]["duration"])
     columns = ["after all bounces"]
     for ground in found:
-        columns += [GROUND_WORDS[ground], "95 % from", "to"]
+        columns += [GROUND_WORDS[ground]]
     rows = []
     for key, words in END_WORDS.items():
         if any(table[key]["count"] for table in found.values()):
-            shares = [percent(table[key][end], 2) for table in found.values() for end in ENDS]
+            shares = [percent(table[key]["share"], 2) for table in found.values()]
             rows.append([words.format(hours=limit), *shares])
     counts = {table["sample_count"] for table in found.values()}
     note = f"Shares of {counts.pop()} samples, followed from the first impact." if counts else "No sample was followed."

@@ -19,11 +19,11 @@ FILES = ("summary.json", "scores.json", "samples.h5", "flights.csv", "rest.csv",
 
 @dataclass(frozen=True)
 class Samples:
-    """The Monte Carlo: inputs in the study file's units and outputs [SI] by name, shape [sample]; which stay."""
+    """The Monte Carlo: inputs in the study file's units and outputs [SI] by name, shape [sample]; which leave."""
 
     inputs: dict[str, Array]
     outputs: dict[str, Array]
-    stays: NDArray[np.bool_]
+    leaves: NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
@@ -102,6 +102,7 @@ def read_scores(path: Path) -> dict[str, dict[str, Score]]:
                 ape=np.array([value for value in score["ape"] if value is not None], dtype=float),
                 mape=score["mape"],
                 q2=score["q2"],
+                q2_interval=tuple(score["q2_interval"]),
                 rmse=score["rmse"],
                 std=score["std"],
             )
@@ -116,12 +117,13 @@ def read_samples(path: Path) -> Samples:
     import h5py
 
     with h5py.File(path, "r") as file:
-        inputs, outputs, stays = file["inputs"][:], file["outputs"][:], file["stays"][:].astype(bool)
+        inputs, outputs = file["inputs"][:], file["outputs"][:]
+        leaves = file["outcome"][:] == list(file.attrs["outcomes"]).index("clear")
         input_names, output_names = [str(name) for name in file.attrs["input_names"]], list(file.attrs["output_names"])
     return Samples(
         {name: inputs[:, column] for column, name in enumerate(input_names)},
         {str(name): outputs[:, column] for column, name in enumerate(output_names)},
-        stays,
+        leaves,
     )
 
 

@@ -16,23 +16,23 @@ DRAWN_COUNT = 200_000
 
 
 def scatter_figure(
-    outputs: dict[str, Array], colour_name: str, colour_value: Array, stays: NDArray[np.bool_]
+    outputs: dict[str, Array], colour_name: str, colour_value: Array, leaves: NDArray[np.bool_]
 ) -> Figure:
     """Draw every pair of outputs of the samples that leave the surface, of the first `DRAWN_COUNT` of them.
 
-    outputs: name to values [SI], shape [sample]; colour_value: the input, shape [sample]; stays: shape [sample].
+    outputs: name to values [SI], shape [sample]; colour_value: the input, shape [sample]; leaves: shape [sample].
     """
     names = [name for name in PAPER_OUTPUTS if name in outputs]
     pairs = list(combinations(names, 2))
     figure = Figure(figsize=(9.2, 3.45))
     grid = figure.subplots(1, len(pairs), squeeze=False)[0]
     figure.subplots_adjust(left=0.07, right=0.9, top=0.96, bottom=0.15, wspace=0.3)
-    leaves = np.flatnonzero(~stays)[:DRAWN_COUNT]
-    size = float(np.clip(2e4 / max(len(leaves), 1), 0.25, 6.0))
+    drawn = np.flatnonzero(leaves)[:DRAWN_COUNT]
+    size = float(np.clip(2e4 / max(len(drawn), 1), 0.25, 6.0))
     for axes, (first, second) in zip(grid, pairs, strict=True):
-        x, y = (outputs[name][leaves] * output(name).factor for name in (first, second))
+        x, y = (outputs[name][drawn] * output(name).factor for name in (first, second))
         points = axes.scatter(
-            x, y, c=colour_value[leaves], s=size, cmap="viridis", linewidths=0, alpha=0.55, rasterized=True
+            x, y, c=colour_value[drawn], s=size, cmap="viridis", linewidths=0, alpha=0.55, rasterized=True
         )
         axes.set_xlabel(output(first).label)
         axes.set_ylabel(output(second).label)

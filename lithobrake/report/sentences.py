@@ -1,10 +1,11 @@
 """The sentences of the page, built from the numbers of the files. They are plain text."""
 
 import math
+from typing import Any
 
 from lithobrake.report.error_figure import Score
 from lithobrake.report.look import PAPER_OUTPUTS, output
-from lithobrake.report.page import fixed, number
+from lithobrake.report.page import number
 from lithobrake.report.results import Results
 from lithobrake.report.scatter_figure import DRAWN_COUNT
 
@@ -43,27 +44,16 @@ def percent(share: float, digits: int = 1) -> str:
     return f"{100 * share:.{digits}f} %"
 
 
-def interval(share: dict[str, float], digits: int = 1) -> str:
-    """A share with its interval."""
-    low, high = 100 * share["lower"], 100 * share["upper"]
-    return f"{percent(share['share'], digits)} (95 % interval {low:.{digits}f} to {high:.{digits}f} %)"
-
-
 def hours(seconds: float) -> str:
     """A length of time in hours."""
     return f"{seconds / 3600:.3g} h"
 
 
 def answer(data: Results) -> str:
-    """The answer to the question of the study."""
-    shares, site = data.results["shares"], data.results["site"]
-    duration = hours(data.study["flight"]["duration"])
-    return (
-        f"Landing at latitude {site['latitude_deg']:g} deg, longitude {site['longitude_deg']:g} deg on "
-        f"{body_name(data)}: {interval(shares['remains'])} of the landers stay on the surface or come down again "
-        f"within {duration}; {percent(shares['escaped']['share'])} escape and "
-        f"{percent(shares['flying']['share'])} are still flying."
-    )
+    """The answer to the question of the study: where, and what the summary says of it."""
+    site = data.results["site"]
+    place = f"latitude {site['latitude_deg']:g} deg, longitude {site['longitude_deg']:g} deg on {body_name(data)}"
+    return f"Landing at {place}. {' '.join(data.results['answer'])}"
 
 
 def body_name(data: Results) -> str:
@@ -130,7 +120,7 @@ def _runs(design: dict[str, int]) -> str:
 def sobol(data: Results) -> str:
     """Figure 4."""
     screening = data.results["screening"]
-    leaders = [_leader(name, screening["sobol_first"][name]) for name in PAPER_OUTPUTS]
+    leaders = [_leader(name, screening) for name in PAPER_OUTPUTS]
     shares = {name: screening["fits"][name]["noise_share"] for name in PAPER_OUTPUTS}
     scatter = [f"{percent(share, 0)} of {PLAIN_SYMBOLS[name]}" for name, share in shares.items() if share is not None]
     rest = f"; of the variance of the runs {listing(scatter)} is scatter, which no input decides" if scatter else ""
@@ -142,14 +132,16 @@ def sobol(data: Results) -> str:
     )
 
 
-def _leader(name: str, first: dict[str, float]) -> str:
-    """The input that an output varies with most, if any was found."""
+def _leader(name: str, screening: dict[str, Any]) -> str:
+    """The input that an output varies with most, if any was found, with its 95 % interval."""
+    first = screening["sobol_first"][name]
     main = max(first, key=lambda key: first[key])
     if first[main] <= 0.0:
         return f"no input was found that {PLAIN_SYMBOLS[name]} varies with"
+    low, high = (percent(end, 0) for end in screening["sobol_first_interval"][name][main])
     return (
-        f"{PLAIN_SYMBOLS[name]} varies most with the {input_words(main)} ({percent(first[main], 0)} of its explained "
-        "variance)"
+        f"{PLAIN_SYMBOLS[name]} varies most with the {input_words(main)} ({percent(first[main], 0)}, {low} to {high}, "
+        "of its explained variance)"
     )
 
 
@@ -157,8 +149,9 @@ def errors(data: Results) -> str:
     """Figure 5."""
     kept, every = (_explained(data.scores[stage]) for stage in ("test_kept", "test_all"))
     return (
-        f"On fresh runs in which the kept inputs vary the expansion explains {kept}, and when all inputs vary {every}; "
-        "dashed lines are mean errors, and a small one beside a small Q2 only says that the output hardly varies."
+        f"On fresh runs in which the kept inputs vary the expansion reaches {kept}, and when all inputs vary {every} "
+        "(in brackets 95 % intervals; at a Q2 of 0 or less it explains nothing); dashed lines are mean errors, and a "
+        "small one beside a small Q2 only says that the output hardly varies."
     )
 
 
@@ -167,7 +160,7 @@ def _explained(table: dict[str, Score]) -> str:
     parts = []
     for name in PAPER_OUTPUTS:
         q2, mape = table[name].q2, table[name].mape
-        words = "an undefined share" if q2 is None else f"Q2 = {fixed(q2)}"
+        words = "an undefined share" if q2 is None else f"Q2 = {table[name].q2_words}"
         parts.append(f"{words} of {PLAIN_SYMBOLS[name]} (MAPE {'undefined' if mape is None else f'{mape:.2g} %'})")
     return listing(parts)
 
@@ -197,8 +190,8 @@ def landing_map(data: Results) -> str:
     direction = "outward" if outward > 0 else "inward"
     return (
         f"Of {_thousands(shares['sample_count'])} samples, of which {_thousands(shares['flight_count'])} were flown, "
-        f"{interval(shares['impact'])} come down again within {hours(data.study['flight']['duration'])}, where the map "
-        f"shows (body: {number(site['mass_kg'])} kg, {extents} m, one turn in "
+        f"{percent(shares['impact']['share'])} come down again within {hours(data.study['flight']['duration'])}, "
+        f"where the map shows (body: {number(site['mass_kg'])} kg, {extents} m, one turn in "
         f"{site['spin_period_s'] / 3600:.4g} h; at the site gravity and spin together pull "
         f"{number(abs(outward), 2)} m/s2 {direction})."
     )
@@ -227,11 +220,15 @@ def rest(data: Results) -> str:
     if hard is None:
         return "No sample was followed beyond its next impact (rest.count is 0)."
     limit = hours(data.study["rest"]["duration"])
-    words = f"Followed from bounce to bounce for up to {limit}, on hard ground {interval(hard['settled'])} come to rest"
+    settled = percent(hard["settled"]["share"])
+    words = f"Followed from bounce to bounce for up to {limit}, on hard ground {settled} come to rest"
     if soil is None:
         return f"{words}; on the soil it is not known: {table['why_no_soil']}."
     outside = percent(soil["outside"]["share"])
-    return f"{words}, on the soil {interval(soil['settled'])}, where {outside} meet the ground as none of the runs did."
+    return (
+        f"{words}, on the soil {percent(soil['settled']['share'])}; there {outside} stop where the expansion has no "
+        "answer: at an impact unlike those of the runs, or drawn in a way that there is not."
+    )
 
 
 def _thousands(count: int) -> str:

@@ -14,7 +14,7 @@ from lithobrake.report.body_figure import body_figure
 from lithobrake.report.count_figure import Design, count_figure
 from lithobrake.report.error_figure import error_figure
 from lithobrake.report.landing_figure import landing_figure
-from lithobrake.report.landing_tables import GROUND_WORDS, fates, followed
+from lithobrake.report.landing_tables import GROUND_WORDS, SUMS, fates, followed
 from lithobrake.report.look import PAPER_OUTPUTS, figure_style
 from lithobrake.report.map_figure import Share, map_figure
 from lithobrake.report.page import Panel, page
@@ -146,9 +146,9 @@ def _colour_input(data: Results) -> str:
 
 def _outputs(data: Results, colour_name: str) -> "Figure | None":
     samples = data.samples
-    if samples.stays.all():
+    if not samples.leaves.any():
         return None
-    return scatter_figure(samples.outputs, colour_name, samples.inputs[colour_name], samples.stays)
+    return scatter_figure(samples.outputs, colour_name, samples.inputs[colour_name], samples.leaves)
 
 
 def _map(data: Results) -> "Figure":
@@ -156,7 +156,7 @@ def _map(data: Results) -> "Figure":
     shares = [
         Share(words.format(hours=limit), table[key]["share"], table[key]["lower"], table[key]["upper"])
         for key, words in fates(data).items()
-        if key != "remains"
+        if key not in SUMS
     ]
     where = (site["latitude_deg"], site["longitude_deg"])
     return map_figure(data.latitude, data.longitude, where, shares, data.body_vertices, data.results["ellipses"])

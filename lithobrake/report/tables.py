@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
-from lithobrake.report.landing_tables import landing_tables
+from lithobrake.report.landing_tables import fates, landing_tables
 from lithobrake.report.look import PAPER_OUTPUTS, output
 from lithobrake.report.page import Table, Tile, fixed, flat, number, show
 from lithobrake.report.results import Results
@@ -40,27 +40,26 @@ def tiles(data: Results) -> list[Tile]:
     main = max(total, key=lambda name: total[name])
     noise = results["screening"]["fits"]["speed_out"]["noise_share"]
     score = results["scores"]["test_all"]["speed_out"]
-    remains = shares["remains"]
+    low, high = results["screening"]["sobol_total_interval"]["speed_out"][main]
     speed = results["monte_carlo"]["outputs"].get("speed_out")
-    low, high = 100 * remains["lower"], 100 * remains["upper"]
     found = [
         Tile(
-            f"{100 * remains['share']:.1f}",
+            f"{100 * shares['remains']['share']:.1f}",
             "%",
-            f"stay or come down again within {hours(data.study['flight']['duration'])} ({low:.1f} to {high:.1f} %)",
+            f"{fates(data)['remains'].format(hours=hours(data.study['flight']['duration']))}; {_scope(data)}",
         ),
         _touchdowns_tile(list(designs)),
         Tile(
             f"{total[main]:.2f}",
             "Sobol",
-            f"{input_words(main)} decides the outgoing speed most (total index)"
-            + ("" if noise is None else f"; {percent(noise, 0)} of its variance is scatter"),
+            f"({low:.2f} to {high:.2f}, 95 %) {input_words(main)} decides most of what the expansion explains of the "
+            "outgoing speed (total index)" + ("" if noise is None else f"; {percent(noise, 0)} of it is scatter"),
         ),
         Tile(
             "none" if score["q2"] is None else fixed(score["q2"]),
             "Q2",
-            f"outgoing speed, fresh runs, all inputs vary: error {number(score['rmse'], 2)} m/s at a spread of "
-            f"{number(score['std'], 2)} m/s",
+            f"{_bounds(score, 'q2')}outgoing speed, fresh runs, all inputs vary: error {number(score['rmse'], 2)} m/s "
+            f"at a spread of {number(score['std'], 2)} m/s",
         ),
     ]
     if speed:
@@ -69,6 +68,18 @@ def tiles(data: Results) -> list[Tile]:
         )
         found.insert(1, Tile(number(speed["quantile_0.5"]), "m/s", words))
     return found
+
+
+def _scope(data: Results) -> str:
+    """Over what the answer holds, in the words that it begins with."""
+    where, _, _ = data.results["answer"][0].partition(":")
+    return where[:1].lower() + where[1:]
+
+
+def _bounds(score: Mapping[str, Any], key: str) -> str:
+    """The 95 % interval of a score in words, or nothing where it has no end."""
+    low, high = score[f"{key}_interval"]
+    return "" if high is None else f"({'no bound' if low is None else fixed(low)} to {fixed(high)}, 95 %) "
 
 
 def _touchdowns_tile(designs: list[dict[str, Any]]) -> Tile:
@@ -191,7 +202,7 @@ def _scores(data: Results) -> Table:
             )
     note = (
         "Q2: explained share of the variance. A MAPE is small wherever an output hardly varies, so read it with Q2. "
-        "In brackets, for fresh runs: 95 % interval, by drawing the runs anew."
+        "In brackets: 95 % interval, by drawing the runs anew. Runs that were fitted flatter the expansion."
     )
     return Table("Errors of the expansions", columns, rows, note, frozenset(columns[3:]))
 
@@ -208,7 +219,8 @@ def _sobol(data: Results) -> Table:
         for key in table["inputs"]
     ]
     note = (
-        "From the screening expansion. First: alone. Total: with all interactions. In brackets: 95 % interval, by "
+        "Shares of the variance that the screening expansion explains, on the beds and at the places of its runs, "
+        "freed of what scatter adds. First: alone. Total: with all interactions. In brackets: 95 % interval, by "
         "drawing the residuals of the runs anew."
     )
     return Table("Sobol indices", columns, rows, note, frozenset(columns[1:]))

@@ -135,11 +135,34 @@ def test_points_run_twice_tell_the_scatter(out: Path) -> None:
 
 def test_samples_have_the_scatter_and_are_kept_without_it(out: Path) -> None:
     with h5py.File(out / "samples.h5") as file:
-        scatter = file["outputs"][:] - file["without_scatter"][:]
-        x, z = (file["outputs"].shape[1] - 3 + axis for axis in (0, 2))
-        assert list(file.attrs["output_names"]) == list(OUTPUTS)
-        assert np.array_equal(file["stays"][:], file["captured"][:] | (file["outputs"][:, z] <= 0.0))
-    assert scatter[:, z].std() == pytest.approx(2.0 * SCATTER, rel=0.6)
-    # Drawn jointly: upward is always twice along x.
-    assert np.allclose(scatter[:, z], 2.0 * scatter[:, x], atol=1e-12)
-    assert np.abs(scatter[:, x + 1]).max() == 0.0
+        outputs, alone, names = file["outputs"][:], file["without_scatter"][:], list(file.attrs["output_names"])
+        clear, outside = (list(file.attrs["outcomes"]).index(name) for name in ("clear", "outside"))
+        outcome, inputs = file["outcome"][:], file["inputs"][:]
+        impact_speed = inputs[:, list(file.attrs["input_names"]).index("impact.speed")]
+    assert names == list(OUTPUTS)
+    assert set(np.unique(outcome)) <= {clear, outside}
+    z = outputs[:, OUTPUTS.index("velocity_out_z")]
+    assert np.array_equal(outcome == outside, z <= 0.0)
+    for values in (outputs, alone):
+        speed = values[:, OUTPUTS.index("speed_out")]
+        assert np.linalg.norm(values[:, 3:], axis=1) == pytest.approx(np.abs(speed), rel=1e-12)
+    # Drawn jointly, in whole rows: with each elevation comes one speed, in proportion to that of the impact.
+    scatter = outputs - alone
+    rows = np.column_stack([scatter[:, 1], scatter[:, 0] / impact_speed]).round(9)
+    assert len(np.unique(rows[:, 0])) == len(np.unique(rows, axis=0)) <= 24
+    assert scatter[:, 0].std() > 0.5 * SCATTER
+
+
+def test_the_page_gives_no_interval_that_would_hold_for_these_runs_only(out: Path) -> None:
+    results = json.loads((out / "summary.json").read_text())["results"]
+    shares = [value for value in results["shares"].values() if isinstance(value, dict)]
+    shares += [value for ground in ("soil", "hard") for value in (results["rest"][ground] or {}).values()
+               if isinstance(value, dict) and "share" in value]  # fmt: skip
+    assert len(shares) > 10
+    assert all(share["lower"] is share["upper"] is None for share in shares)
+    assert results["shares"]["why"] == results["stays"]["why"]
+    assert results["headline"][0].startswith("With the touchdowns of this study's own program: ")
+    assert results["headline"][1] == results["stays"]["why"]
+    total, bounds = (results["screening"][key]["speed_out"] for key in ("sobol_total", "sobol_total_interval"))
+    assert all(bounds[name][0] <= total[name] <= bounds[name][1] for name in total)
+    assert all("q2_interval" in score for table in results["scores"].values() for score in table.values())

@@ -11,15 +11,16 @@ import numpy as np
 import pytest
 
 from lithobrake import study_file
-from lithobrake.analysis import CaptureModel
+from lithobrake.analysis import OutcomeModel
 from lithobrake.chaos import Uniform, fit, smolyak
 from lithobrake.pipeline import Job, StudyFolder
 from lithobrake.pipeline.fates import ENDS, landing_results, proportion
 from lithobrake.pipeline.flights import COLUMNS, read_table, write_table
 from lithobrake.pipeline.rest import follow_samples
-from lithobrake.pipeline.samples import Samples
+from lithobrake.pipeline.samples import SAMPLE_OUTCOMES, Samples
 from lithobrake.pipeline.scatter import Scatter
 from lithobrake.pipeline.soil import SoilBounce, rolling_spin, trained_ranges, why_no_soil
+from lithobrake.pipeline.solver import OUTCOMES
 from lithobrake.smallbody import Impacts
 from lithobrake.study import OUTPUTS, Study
 from lithobrake.study_template import template
@@ -33,20 +34,21 @@ RANGES = {"grain.friction": (0.2, 0.8), "impact.speed": (0.0, 0.4), "impact.inci
 
 
 def rebound(x: np.ndarray) -> np.ndarray:
-    """Outputs [count, 6] that are polynomials of the inputs: half the speed straight up, friction of it sideways."""
+    """Outputs [count, 6] that are polynomials of the inputs: half the speed, higher up the less the friction, to the
+    right of the incoming direction."""
     friction, speed, incidence = x.T
     nothing = np.zeros_like(speed)
-    return np.column_stack([nothing, nothing, 2.0 * speed, incidence * speed / 80.0, -friction * speed, 0.5 * speed])
+    return np.column_stack([0.5 * speed, 1.2 - friction, 2.0 * speed, nothing, -speed, incidence])
 
 
-def bounce(friction: list[float], scatter: Scatter | None = None, *, captured: bool = False) -> SoilBounce:
+def bounce(friction: list[float], scatter: Scatter | None = None, outcome: str = "clear") -> SoilBounce:
     """A soil that is exactly as `rebound` says."""
     x = smolyak(INPUTS, level=2)
     surrogate = fit(INPUTS, x, rebound(x), degree=2, method="ols", output_names=OUTPUTS)
-    capture = CaptureModel(INPUTS, x, np.full(len(x), captured))
+    outcomes = OutcomeModel(INPUTS, x, [outcome] * len(x), OUTCOMES)
     values = np.array(friction)
     inputs = {name: values if name == "grain.friction" else np.full(len(values), 0.3) for name in INPUTS}
-    return SoilBounce(surrogate, capture, inputs, RANGES, scatter)
+    return SoilBounce(surrogate, outcomes, inputs, RANGES, scatter)
 
 
 def impacts(speed: list[float], incidence_deg: list[float], lander: list[int]) -> Impacts:
@@ -58,7 +60,9 @@ def impacts(speed: list[float], incidence_deg: list[float], lander: list[int]) -
 def test_the_expansion_answers_with_the_soil_of_the_lander_and_the_impact_that_came() -> None:
     soil = bounce([0.2, 0.5, 0.7])
     found = soil(impacts([0.1, 0.3], [40.0, 20.0], [2, 0]), np.random.default_rng(0))
-    assert found.velocity == pytest.approx(np.array([[0.05, -0.07, 0.05], [0.075, -0.06, 0.15]]), abs=1e-12)
+    along, up = np.cos([0.5, 1.0]), np.sin([0.5, 1.0])
+    expected = np.array([0.05, 0.15])[:, None] * np.column_stack([np.zeros(2), -along, up])
+    assert found.velocity == pytest.approx(expected, abs=1e-12)
     assert np.linalg.norm(found.spin, axis=1) == pytest.approx([0.2, 0.6])
     # The lowest point of a rolling ball is at rest: spin cross (0, 0, -1) runs against the horizontal velocity.
     backwards = np.cross(found.spin, [0.0, 0.0, -1.0])[:, :2]
@@ -78,20 +82,39 @@ def test_what_the_runs_do_not_reach_is_not_answered() -> None:
     assert found.outside.tolist() == [True, False]
 
 
-def test_scatter_is_drawn_anew_in_proportion_to_the_speed_and_capture_with_its_chance() -> None:
+def test_scatter_is_drawn_anew_in_proportion_to_the_speed_and_the_outcome_with_its_chance() -> None:
     rows = np.zeros((2, 6))
-    rows[:, OUTPUTS.index("velocity_out_x")] = [0.02, -0.02]
+    rows[:, OUTPUTS.index("speed_out")] = [0.02, -0.02]
     rows[:, OUTPUTS.index("elevation_out")] = 0.3
     scatter = Scatter(rows, 0.2, np.array([name != "elevation_out" for name in OUTPUTS]))
     angles = scatter.draw(np.array([0.1, 0.4]), np.random.default_rng(1))[:, OUTPUTS.index("elevation_out")]
     assert angles.tolist() == [0.3, 0.3]
     soil = bounce([0.5], scatter)
-    fast = soil(impacts([0.4] * 200, [0.0] * 200, [0] * 200), np.random.default_rng(1)).velocity[:, 0]
-    slow = soil(impacts([0.1] * 200, [0.0] * 200, [0] * 200), np.random.default_rng(1)).velocity[:, 0]
-    assert sorted(set(np.round(fast, 9))) == [-0.04, 0.04]
+    fast, slow = (
+        np.linalg.norm(soil(impacts([speed] * 200, [0.0] * 200, [0] * 200), np.random.default_rng(1)).velocity, axis=1)
+        for speed in (0.4, 0.1)
+    )
+    assert sorted(set(np.round(fast, 9))) == [0.16, 0.24]
     assert slow == pytest.approx(fast / 4.0)
-    assert 60 < (fast > 0.0).sum() < 140
-    assert bounce([0.5], scatter, captured=True)(impacts([0.4], [0.0], [0]), np.random.default_rng(1)).captured.all()
+    assert 60 < (fast > 0.2).sum() < 140
+    one = impacts([0.4], [0.0], [0])
+    captured = bounce([0.5], scatter, "captured")(one, np.random.default_rng(1))
+    assert (captured.captured.all(), captured.outside.any()) == (True, False)
+
+
+def test_what_has_no_answer_is_neither_captured_nor_sent_on() -> None:
+    """Over the rim, in contact at the time limit, or drawn with an elevation that there is not."""
+    one = impacts([0.4], [0.0], [0])
+    for outcome in ("left_sideways", "time_limit"):
+        found = bounce([0.5], outcome=outcome)(one, np.random.default_rng(1))
+        assert (found.captured.tolist(), found.outside.tolist()) == ([False], [True])
+    rows = np.zeros((2, 6))
+    rows[:, OUTPUTS.index("elevation_out")] = [-0.8, 0.1]
+    steep = Scatter(rows, 0.2, np.zeros(6, dtype=bool))
+    many = bounce([0.5], steep)(impacts([0.4] * 100, [0.0] * 100, [0] * 100), np.random.default_rng(1))
+    assert 20 < many.outside.sum() < 80
+    assert not many.captured.any()
+    assert (many.velocity[~many.outside, 2] > 0.0).all()
 
 
 def test_a_spin_straight_up_has_a_level_axis() -> None:
@@ -119,16 +142,16 @@ def test_hard_ground_is_followed_from_the_first_impact_and_the_summary_adds_up(t
     site = {"latitude_deg": 75.0, "partner": False}
     study = changed(site=site, rest={"count": 60}, impact={"speed": 0.1}, flight={"gravity": "exact"})
     folder = StudyFolder(tmp_path / "out")
-    stays = np.ones(100, dtype=bool)
+    drawn = np.full(100, SAMPLE_OUTCOMES.index("captured"))
     outputs = np.tile([0.05, 1.0, 0.5, 0.03, 0.0, 0.04], (100, 1))
-    Samples([], list(OUTPUTS), np.zeros((100, 0)), outputs, np.zeros(100), stays, stays).save(folder)
+    Samples.of([], OUTPUTS, np.zeros((100, 0)), outputs, drawn).save(folder)
     said: list[str] = []
     with ThreadPoolExecutor(1) as executor:
         job = Job(study, {}, folder, executor, lambda *_: None, said.append)
         follow_samples(job)
         write_table(folder, "flights.csv", COLUMNS, [])
         folder.write_json("flights.json", {})
-        table = landing_results(job, Samples.load(folder), [])["rest"]
+        table = landing_results(job, Samples.load(folder), [], {"captured": 40})["rest"]
     assert "on hard ground only: impact.speed and" in said[0]
     assert table["soil"] is None
     assert table["hard"]["sample_count"] == 60

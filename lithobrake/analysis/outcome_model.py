@@ -1,0 +1,78 @@
+"""The chances of the ways in which a touchdown may end, learnt from runs."""
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from lithobrake.chaos import Distribution
+
+# Points whose probabilities are worked out at once: bounds the memory of the polynomial features.
+_BLOCK = 65_536
+
+
+class OutcomeModel:
+    """Logistic regression on a quadratic in the inputs, each put on the scale of its distribution.
+
+    The penalty of the regression keeps it finite when few runs, or all on one side of a plane, had an outcome. One
+    that no run had gets the probability 0 everywhere, which `upper_limit` puts right.
+    """
+
+    def __init__(
+        self, inputs: Mapping[str, "Distribution"], x: np.ndarray, outcomes: Sequence[str], names: Sequence[str]
+    ) -> None:
+        """Learn from runs: x [run_count, input_count] in physical units, outcomes [run_count], each one of the names.
+
+        Raises ValueError for no run, or an outcome that is not among the names.
+        """
+        if len(x) != len(outcomes) or len(x) == 0:
+            raise ValueError(
+                f"{len(x)} points and {len(outcomes)} outcomes; give one outcome for each of at least one run"
+            )
+        unknown = sorted(set(outcomes) - set(names))
+        if unknown:
+            raise ValueError(f"the outcomes hold {unknown[0]}; allowed: {', '.join(names)}")
+        self._inputs, self.names = dict(inputs), tuple(names)
+        self._met = sorted({self.names.index(outcome) for outcome in outcomes})
+        if len(self._met) > 1:
+            from sklearn.linear_model import LogisticRegression
+            from sklearn.pipeline import make_pipeline
+            from sklearn.preprocessing import PolynomialFeatures
+
+            self._regression = make_pipeline(
+                PolynomialFeatures(2, include_bias=False), LogisticRegression(max_iter=10_000)
+            )
+            self._regression.fit(self._scaled(x), [self.names.index(outcome) for outcome in outcomes])
+
+    def probability(self, x: np.ndarray) -> np.ndarray:
+        """Probabilities at x [point_count, input_count], in physical units; shape [point_count, len(names)]."""
+        table = np.zeros((len(x), len(self.names)))
+        if len(self._met) == 1:
+            table[:, self._met] = 1.0
+            return table
+        for start in range(0, len(x), _BLOCK):
+            block = slice(start, start + _BLOCK)
+            table[block, self._met] = self._regression.predict_proba(self._scaled(x[block]))
+        return table
+
+    def draw(self, x: np.ndarray, random: np.random.Generator) -> np.ndarray:
+        """An outcome for each point x [point_count, input_count], as its place among the names, shape [point_count]."""
+        # The last one takes what rounding leaves of the whole.
+        ends = np.cumsum(self.probability(x), axis=1)[:, :-1]
+        drawn: np.ndarray = (random.random(len(x))[:, None] >= ends).sum(axis=1)
+        return drawn
+
+    def _scaled(self, x: np.ndarray) -> np.ndarray:
+        columns = [distribution.germ(x[:, index]) for index, distribution in enumerate(self._inputs.values())]
+        return np.column_stack(columns)
+
+
+def upper_limit(run_count: int, level: float = 0.95) -> float:
+    """Largest probability that an event may have, at a level of confidence, which none of so many runs has met.
+
+    Source: Clopper and Pearson (1934), Biometrika 26, 404, at a count of 0; about 3 / run_count for .95.
+    """
+    if run_count < 1:
+        return 1.0
+    return float(1.0 - (1.0 - level) ** (1.0 / run_count))

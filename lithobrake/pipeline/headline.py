@@ -1,0 +1,115 @@
+"""The answer of a study in sentences, and the numbers that tell most beside it."""
+
+from typing import Any
+
+from lithobrake.pipeline.scope import scope
+from lithobrake.study import Study
+
+CENTIMETRES = 100.0
+
+
+def answer(study: Study, results: dict[str, Any]) -> list[str]:
+    """What becomes of the landers, over what that holds, what is missing, and what the site does to those that lie."""
+    shares, site, hours = results["shares"], results["site"], f"{study.flight.duration / 3600:.3g} h"
+    holds = site["effective_acceleration_outward"] < 0.0
+    down = f"are captured or come down again within {hours}" if holds else f"come down again within {hours}"
+    share = {name: _percent(shares[name]["share"]) for name in ("remains", "escaped", "flying", "partner", "captured")}
+    beside = [f"{share['escaped']} escape", f"{share['flying']} are still flying"]
+    beside += [f"{share['partner']} come down on the partner"] if shares["partner"]["count"] else []
+    beside += [] if holds or not shares["captured"]["count"] else [f"{share['captured']} are captured and lifted again"]
+    sentences = [
+        f"{scope(study).where}: {share['remains']} of the landers {down}; {', '.join(beside)}.",
+        scope(study).why,
+    ]
+    if shares["missing"]["count"]:
+        low, high = (_percent(bound) for bound in results["stays"]["if_missing"])
+        sentences.append(
+            f"Of {_percent(shares['missing']['share'])} of the samples nobody knows where they went ("
+            f"{_percent(shares['left_sideways']['share'])} left over the rim of the bed, "
+            f"{_percent(shares['time_limit']['share'])} were in contact at the time limit, "
+            f"{_percent(shares['outside']['share'])} were drawn with an elevation outside 0 to 90 deg): "
+            f"{low} if none, {high} if all of them came down again."
+        )
+    return [*sentences, *([site["warning"]] if site["warning"] else [])]
+
+
+def headline(study: Study, results: dict[str, Any]) -> list[str]:
+    """The answer, and the most telling numbers behind it, each in a sentence."""
+    return [
+        *results["answer"],
+        _touchdowns(results["designs"].values()),
+        *_speed(study, results["monte_carlo"]["outputs"].get("speed_out")),
+        _main_input(results),
+        _explained(results["scores"]["test_all"]["speed_out"]),
+    ]
+
+
+def _touchdowns(designs: Any) -> str:
+    """How the touchdowns ended."""
+    counts: dict[str, int] = {}
+    for design in designs:
+        for outcome, count in design["outcomes"].items():
+            counts[outcome] = counts.get(outcome, 0) + count
+    failed = counts.pop("failed", 0)
+    words = {
+        "captured": "were captured",
+        "left_sideways": "left over the rim of the bed",
+        "time_limit": "were in contact at the time limit",
+    }
+    others = [f"{counts[name]} {text}" for name, text in words.items() if counts.get(name)]
+    others += [f"{failed} more failed"] if failed else []
+    return "; ".join([f"{counts.get('clear', 0)} of {sum(counts.values())} touchdowns left the surface", *others]) + "."
+
+
+def _speed(study: Study, speed: dict[str, float] | None) -> list[str]:
+    """The outgoing speed of the samples that leave."""
+    if not speed:
+        return []
+    low, middle, high = (CENTIMETRES * speed[f"quantile_{level:g}"] for level in (0.05, 0.5, 0.95))
+    of = "with the scatter from run to run" if study.monte_carlo.scatter else "of the expansion, without scatter"
+    return [
+        f"Outgoing speed of those that leave, {of}: {middle:.3g} cm/s "
+        f"(median; 5 to 95 %: {low:.3g} to {high:.3g} cm/s)."
+    ]
+
+
+def _main_input(results: dict[str, Any]) -> str:
+    """The input that the outgoing speed varies with most, with its interval, and of what it is a share."""
+    screening = results["screening"]
+    total = screening["sobol_total"]["speed_out"]
+    main = max(total, key=lambda name: total[name])
+    if total[main] <= 0.0:
+        return "No input was found to decide the outgoing speed."
+    low, high = screening["sobol_total_interval"]["speed_out"][main]
+    noise = screening["fits"]["speed_out"]["noise_share"]
+    rest = (
+        "" if noise is None else f"; {100 * noise:.0f} % of the variance of the runs is scatter that no input decides"
+    )
+    return (
+        f"{main} decides most of what the expansion explains of the outgoing speed: total Sobol index "
+        f"{total[main]:.2f} ({low:.2f} to {high:.2f}, 95 %) of that variance{rest}."
+    )
+
+
+def _explained(score: dict[str, Any]) -> str:
+    """How well the expansion meets fresh runs."""
+    error = (
+        f"error {CENTIMETRES * score['rmse']:.2g} cm/s at a spread of {CENTIMETRES * score['std']:.2g} cm/s, "
+        f"MAPE {'undefined' if score['mape'] is None else format(score['mape'], '.2g') + ' %'}"
+    )
+    if score["q2"] is None:
+        return f"On fresh runs with all inputs varying the outgoing speed does not vary ({error})."
+    q2 = f"Q2 = {score['q2']:.2f}"
+    low, high = score.get("q2_interval") or (None, None)
+    if high is not None:
+        q2 += f", 95 %: {'below any bound' if low is None else format(low, '.2f')} to {high:.2f}"
+    words = (
+        f"explains {100 * score['q2']:.0f} % of the variance of the outgoing speed"
+        if score["q2"] > 0.0
+        else "is worse than the mean of the runs: it explains nothing of the outgoing speed"
+    )
+    return f"On fresh runs with all inputs varying the expansion {words} ({q2}; {error})."
+
+
+def _percent(share: float) -> str:
+    return f"{100 * share:.1f} %"

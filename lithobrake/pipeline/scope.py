@@ -1,0 +1,47 @@
+"""Over what the answer of a study holds: which bed, which place, which attitude."""
+
+from dataclasses import dataclass
+
+from lithobrake.quantity import Uncertain
+from lithobrake.study import Study
+
+
+@dataclass(frozen=True)
+class Scope:
+    """where: words that the answer begins with. why: why its share has no interval. landings: "on 1 bed"."""
+
+    where: str
+    why: str
+    landings: str
+
+
+def scope(study: Study) -> Scope:
+    """What the runs of a study have in common, and what that leaves unsaid."""
+    if study.solver.command:
+        return Scope(
+            "With the touchdowns of this study's own program",
+            "Other touchdowns give another figure; this study cannot say how different.",
+            "of the study's own program",
+        )
+    count = study.bed.bed_count
+    fixed = ["on this bed"] if count == 1 else []
+    fixed += ["at this place"] if _one_place(study) else []
+    beds = "on 1 bed" if count == 1 else f"on {count} beds"
+    if fixed or study.impact.orientation != "random":
+        where = ", ".join(fixed or ["in this attitude"]).capitalize()
+        return Scope(
+            where, "Another bed, place or attitude gives another figure; this study cannot say how different.", beds
+        )
+    return Scope(
+        f"On these {count} beds, at places and in attitudes drawn anew",
+        "The figure has no interval: how far other beds, places and attitudes and the error of the expansion would "
+        "move it is not worked out.",
+        beds,
+    )
+
+
+def _one_place(study: Study) -> bool:
+    """Whether all runs come down at the same place."""
+    place = study.impact.place
+    drawn = place is not None and (isinstance(place.x, Uncertain) or isinstance(place.y, Uncertain))
+    return study.impact.region is None and not drawn
