@@ -58,8 +58,9 @@ def write_samples(path: Path) -> None:
     inputs = generator.uniform(0.3, 0.9, (400, len(INPUTS)))
     outputs = 0.1 + 0.05 * inputs[:, :1] + 0.01 * generator.normal(size=(400, len(OUTPUTS)))
     with h5py.File(path, "w") as file:
-        file["inputs"], file["outputs"], file["stays"] = inputs, outputs, np.arange(400) < 40
+        file["inputs"], file["outputs"], file["outcome"] = inputs, outputs, (np.arange(400) < 40).astype(np.uint8)
         file.attrs["input_names"], file.attrs["output_names"] = INPUTS, OUTPUTS
+        file.attrs["outcomes"] = ["clear", "captured", "left_sideways", "time_limit", "outside"]
 
 
 def write_flights(path: Path) -> None:
@@ -97,9 +98,9 @@ def write_octahedron(path: Path) -> None:
 def made_up_scores() -> dict[str, dict[str, dict[str, object]]]:
     ape = [0.5, 1.0, 1.5, 3.0]
     score = {"mape": 1.5, "q2": 0.8, "rrmse": 0.45, "rmse": 0.01, "std": 0.022, "ape": ape}
+    score |= {"mape_interval": [1.1, 2.2], "q2_interval": [0.7, 0.85]}
     stages = ("screening", "refined", "test_kept", "test_all", "test_screening")
-    fresh = score | {"mape_interval": [1.1, 2.2], "q2_interval": [0.7, 0.85]}
-    return {stage: {name: fresh if stage.startswith("test") else score for name in OUTPUTS} for stage in stages}
+    return {stage: dict.fromkeys(OUTPUTS, score) for stage in stages}
 
 
 def made_up_summary(scores: dict[str, dict[str, dict[str, object]]]) -> dict[str, object]:
@@ -107,7 +108,10 @@ def made_up_summary(scores: dict[str, dict[str, dict[str, object]]]) -> dict[str
     sobol_interval = {name: {key: [0.9 * one, 1.1 * one] for key, one in row.items()} for name, row in sobol.items()}
     spread = dict.fromkeys(OUTPUTS, 0.02)
     quantiles = {"quantile_0.05": 0.08, "quantile_0.5": 0.1, "quantile_0.95": 0.12}
-    share = {"count": 200, "share": 0.5, "lower": 0.45, "upper": 0.55}
+    share = {"count": 200, "share": 0.5, "lower": None, "upper": None}
+    ends_of_samples = (
+        "captured", "left_sideways", "time_limit", "outside", "impact", "flying", "escaped", "remains", "missing"
+    )  # fmt: skip
     fit = {"method": "ols", "term_count": 10, "condition_number": 5.3, "rmse_estimate": 0.01}
     fit |= {"noise_std": 0.005, "noise_share": 0.06}
     fits = dict.fromkeys(OUTPUTS, fit)
@@ -131,7 +135,7 @@ def made_up_summary(scores: dict[str, dict[str, dict[str, object]]]) -> dict[str
             for share, long in ((0.5, 8.0), (0.95, 20.0))
         ],
     }
-    none = {"count": 0, "share": 0.0, "lower": 0.0, "upper": 0.01}
+    none = {"count": 0, "share": 0.0, "lower": None, "upper": None}
     ends = ("lofted", "outside", "outside_too_slow", "sliding", "bouncing", "flying", "partner")
     hard = {"sample_count": 50, **dict.fromkeys(ends, none), "settled": share, "escaped": share, "ellipses": ellipses}
     uniform = {"distribution": "uniform", "lower": 0.3, "upper": 0.9}
@@ -213,8 +217,11 @@ def made_up_summary(scores: dict[str, dict[str, dict[str, object]]]) -> dict[str
             "shares": {
                 "sample_count": 400,
                 "flight_count": 100,
-                **dict.fromkeys(("captured", "no_outward_velocity", "impact", "flying", "escaped", "remains"), share),
+                **dict.fromkeys(ends_of_samples, share),
+                "captured": none | {"upper_limit": 0.03},
             },
+            "stays": {"share": 0.5, "why": "Another bed gives another figure.", "flight_sampling": 0.04},
+            "answer": ["On this bed, at this place: 50.0 % come down again.", "Another bed gives another figure."],
             "flights": {"gravity_table_error": None, "jacobi_drift_largest_m2_s2": None, "time_s": quantiles},
             "ellipses": ellipses,
             "without_scatter": None,
