@@ -5,6 +5,7 @@ import platform
 import sys
 from collections import Counter
 from collections.abc import Sequence
+from datetime import UTC, datetime
 from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
@@ -235,6 +236,7 @@ def _provenance(job: Job, runs: dict[str, DesignRuns]) -> dict[str, Any]:
     packages = ("lithobrake", "numpy", "scipy", "numba", "scikit-learn", "h5py")
     asked: Sequence[int] = [len(design.x) for design in runs.values()]
     return {
+        "date": datetime.now(UTC).isoformat(timespec="seconds"),
         "folder": str(job.folder.path),
         "host": platform.node(),
         "system": platform.platform(),

@@ -58,8 +58,8 @@ def bed_figure(
         figure.text(
             middle, 0.985, f"{name}\n$t$ = {time[frame]:.3g} s", ha="center", va="top", fontsize=8.5, weight="bold"
         )
-    upper = figure.add_axes((0.725, 0.47, 0.265, 0.45))
-    lower = figure.add_axes((0.725, 0.12, 0.265, 0.26), sharex=upper)
+    upper = figure.add_axes((0.725, 0.47, 0.255, 0.45))
+    lower = figure.add_axes((0.725, 0.12, 0.255, 0.26), sharex=upper)
     _history(upper, lower, history)
     return figure
 

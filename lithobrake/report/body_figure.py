@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from lithobrake.report.hulls import Camera, frame_axes
-from lithobrake.report.look import SITE
+from lithobrake.report.site_mark import draw_legend, mark_site
 
 Array = NDArray[np.float64]
 Facets = NDArray[np.int64]
@@ -49,9 +49,10 @@ def body_figure(vertices: Array, faces: Facets, facet: Facets, site: Array) -> F
         camera = Camera((0.0, 0.0, 0.0), azimuth, elevation, 1e3 * reach)
         _paint(axes, corners, density, norm, camera)
         if number == 0 or site @ camera.axes()[2] > 0.3 * np.linalg.norm(site):
-            axes.plot(*camera.project(site)[0], marker="*", markersize=12, color=SITE, markeredgecolor="white")
+            mark_site(axes, *camera.project(site)[0])
         frame_axes(axes, (-1.04 * reach, 1.04 * reach), (-1.04 * reach, 1.04 * reach))
         axes.set_title(title, loc="center", fontsize=9)
+    draw_legend(figure, None, "impacts", (0.01, 0.01))
     bar = figure.colorbar(ScalarMappable(norm, "viridis"), cax=figure.add_axes((0.925, 0.14, 0.013, 0.68)), format="%g")
     bar.set_label("impacts per hectare")
     outline: Any = bar.outline

@@ -17,6 +17,8 @@ Counts = NDArray[np.float64]
 
 # Two sizes, so that two equal designs are both seen.
 MARKERS = (("o", 11.0), ("D", 6.0))
+# Of a name at a curve, in parts of the panel's height.
+LINE_HEIGHT = 0.043
 RING: dict[str, Any] = {"markerfacecolor": "none", "markeredgecolor": SITE, "markeredgewidth": 1.7}
 
 
@@ -42,13 +44,10 @@ def count_figure(
     for index, level in enumerate(levels):
         left.plot(input_counts, tensor[:, index], "--", color=shades[index], linewidth=1.0)
         left.plot(input_counts, smolyak[:, index], "-", color=shades[index], linewidth=1.7, label=f"level {level}")
-        _end_label(left, input_counts[-1], smolyak[-1, index], f"level {level}", shades[index])
-    shades = matplotlib.colormaps["viridis"](np.linspace(0.05, 0.85, len(input_counts)))
-    for index, input_count in enumerate(input_counts):
-        right.plot(levels, tensor[index], "--", color=shades[index], linewidth=1.0)
-        right.plot(levels, smolyak[index], "-", color=shades[index], linewidth=1.7)
-        words = f"{input_count} inputs" if input_count > 1 else "1 input"
-        _end_label(right, levels[-1], smolyak[index, -1], words, shades[index])
+    input_shades = matplotlib.colormaps["viridis"](np.linspace(0.05, 0.85, len(input_counts)))
+    for index in range(len(input_counts)):
+        right.plot(levels, tensor[index], "--", color=input_shades[index], linewidth=1.0)
+        right.plot(levels, smolyak[index], "-", color=input_shades[index], linewidth=1.7)
     for axes, label, ticks in ((left, "number of uncertain inputs", input_counts), (right, "level (degree)", levels)):
         axes.set_yscale("log")
         axes.set_xlabel(label)
@@ -58,14 +57,31 @@ def count_figure(
         axes.set_xlim(ticks[0] - 0.04 * span, ticks[-1] + 0.17 * span)
     left.set_ylim(0.8, 3.0 * float(np.max(smolyak)) * 10)
     left.set_ylabel("runs")
+    _name_curves(left, input_counts[-1], smolyak[-1], [f"level {level}" for level in levels], shades)
+    words = [f"{count} inputs" if count > 1 else "1 input" for count in input_counts]
+    _name_curves(right, levels[-1], smolyak[:, -1], words, input_shades)
     _mark(left, right, designs)
     _legend(figure, designs)
     return figure
 
 
-def _end_label(axes: Axes, x: float, y: float, words: str, colour: NDArray[np.float64]) -> None:
-    """Name a curve at its right end."""
-    axes.annotate(words, (x, y), xytext=(9, 0), textcoords="offset points", va="center", fontsize=7.5, color=colour)
+def _name_curves(axes: Axes, x: float, ends: Counts, words: Sequence[str], shades: NDArray[np.float64]) -> None:
+    """Name curves at their right ends, from the highest down; one too close below a name stays without."""
+    places = (axes.transData + axes.transAxes.inverted()).transform([(x, end) for end in ends])[:, 1]
+    free = np.inf
+    for index in reversed(range(len(ends))):
+        if places[index] > free:
+            continue
+        free = places[index] - LINE_HEIGHT
+        axes.annotate(
+            words[index],
+            (x, ends[index]),
+            xytext=(9, 0),
+            textcoords="offset points",
+            va="center",
+            fontsize=7.5,
+            color=shades[index],
+        )
 
 
 def _mark(left: Axes, right: Axes, designs: Sequence[Design]) -> None:

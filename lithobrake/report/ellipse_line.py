@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from lithobrake.report.density import Window, near
 from lithobrake.report.look import SITE
+from lithobrake.report.site_mark import ellipse_style
 
 Array = NDArray[np.float64]
 POINTS = 361
@@ -44,19 +45,6 @@ def draw_ellipses(axes: Axes, ellipses: Mapping[str, Any] | None, window: Window
         longitude = near(longitude, window.longitude)
         # Where the line leaves the map on one side it comes back on the other, and must not be joined across.
         longitude[1:][np.abs(np.diff(longitude)) > 180.0] = np.nan
-        style = "-" if entry["share"] < 0.9 else "--"
+        style = ellipse_style(entry["share"])
         axes.plot(longitude, latitude, style, color="white", linewidth=2.6, zorder=4, alpha=0.8)
         axes.plot(longitude, latitude, style, color=SITE, linewidth=1.2, zorder=5)
-        lowest = int(np.argmin(latitude))
-        axes.annotate(
-            f"{100 * entry['share']:.0f} %",
-            (longitude[lowest], latitude[lowest]),
-            xytext=(0, 5),
-            textcoords="offset points",
-            ha="center",
-            color=SITE,
-            fontsize=7,
-            bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.8},
-            zorder=5,
-            annotation_clip=True,
-        )

@@ -53,7 +53,7 @@ def error_figure(training: dict[str, Score], test_kept: dict[str, Score], test_a
     names = [name for name in PAPER_OUTPUTS if name in training]
     figure = Figure(figsize=(9.2, 6.6))
     grid = figure.subplots(2, len(names), squeeze=False)
-    figure.subplots_adjust(left=0.065, right=0.99, top=0.80, bottom=0.07, wspace=0.2, hspace=0.85)
+    figure.subplots_adjust(left=0.065, right=0.98, top=0.80, bottom=0.07, wspace=0.2, hspace=0.85)
     rows = (
         ((("training", training, TRAINING), ("test, kept inputs vary", test_kept, TEST))),
         ((("test, all inputs vary", test_all, TEST_ALL),)),

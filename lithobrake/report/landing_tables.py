@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
-from lithobrake.report.page import Table, flat, number
+from lithobrake.report.page import Table, fixed, flat, number
 from lithobrake.report.results import Results
 from lithobrake.report.sentences import hours, percent
 
@@ -34,6 +34,7 @@ END_WORDS = {
 }
 GROUND_WORDS = {"soil": "soil", "hard": "hard ground"}
 QUANTILES = ("quantile_0.05", "quantile_0.5", "quantile_0.95")
+ACCELERATIONS = ("effective_acceleration_outward", "effective_acceleration_along_heading")
 
 
 def fates(data: Results) -> dict[str, str]:
@@ -151,7 +152,7 @@ def _ellipses(data: Results) -> Table:
             continue
         for entry in found["shares"]:
             axes = " x ".join(number(axis) for axis in entry["semi_axes_m"])
-            middle = [f"{found[key]:.2f}" for key in ("latitude_deg", "longitude_deg")]
+            middle = [fixed(found[key]) for key in ("latitude_deg", "longitude_deg")]
             rows.append([name, percent(entry["share"], 0), *middle, axes, f"{found['heading_deg']:.1f}"])
     note = (
         "Each holds that share of the places, which need follow no law; the heading is that of the longer axis, from "
@@ -161,4 +162,5 @@ def _ellipses(data: Results) -> Table:
 
 
 def _site(data: Results) -> Table:
-    return Table("Site and body", ["name", "value"], flat(data.results["site"]), "m, kg, s, m/s2; degrees where named.")
+    rows = flat(data.results["site"], alike=(("extents_m", "centroid_m", "place_m"), ACCELERATIONS))
+    return Table("Site and body", ["name", "value"], rows, "m, kg, s, m/s2; degrees where named.")

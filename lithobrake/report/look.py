@@ -135,7 +135,10 @@ def output(name: str) -> Output:
 
 def input_label(name: str, with_unit: bool = True) -> str:
     """How a design input is shown; one that has no entry keeps its dotted key in words."""
-    label = INPUT_LABELS.get(name, name.replace("_", " ").replace(".", ": "))
+    label = INPUT_LABELS.get(name)
+    if label is None:
+        words = name.removeprefix("solver.inputs.").replace("_", " ").replace(".", ": ")
+        label = f"{words.removesuffix(' deg')} [deg]" if words.endswith(" deg") else words
     return label if with_unit else label.split(" [")[0]
 
 

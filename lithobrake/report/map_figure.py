@@ -14,19 +14,20 @@ from scipy.interpolate import LinearNDInterpolator
 
 from lithobrake.report.density import WHOLE, Window, close_window, draw_density, near
 from lithobrake.report.ellipse_line import draw_ellipses
-from lithobrake.report.look import INK, INPUT_COLOURS, INTERACTIONS, QUIET, SITE, TEST
+from lithobrake.report.look import INK, INPUT_COLOURS, INTERACTIONS, QUIET, TEST
+from lithobrake.report.site_mark import draw_legend, mark_site
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
 class Share:
-    """A share of the samples with its interval, all in [0, 1]."""
+    """A share of the samples with its interval, if it has one, all in [0, 1]; upper alone: no run had it."""
 
     name: str
     value: float
-    lower: float
-    upper: float
+    lower: float | None = None
+    upper: float | None = None
 
 
 def map_figure(
@@ -36,18 +37,23 @@ def map_figure(
     shares: list[Share],
     vertices: Array | None = None,
     ellipses: Mapping[str, Any] | None = None,
+    whole: str = "all samples",
 ) -> Figure:
     """Draw the density of impacts on a map, and the shares of what became of the samples.
 
     latitude, longitude: of the impacts [deg], shape [impact]; site: latitude and longitude [deg];
     vertices: of the body [m], shape [vertex, 3], for the relief under the map; absent: a plain map; ellipses: of the
-    summary, or None.
+    summary, or None; whole: what the shares are shares of.
     """
-    figure = Figure(figsize=(9.2, 5.9))
-    axes = figure.add_axes((0.06, 0.335, 0.84, 0.645))
+    # In inches from below: the axis of the bars, a row for each bar, the axis of the map, the map, the legend.
+    rows, map_height = 0.2 * len(shares), 3.86
+    height = 0.5 + rows + 0.65 + map_height + 0.38
+    figure = Figure(figsize=(9.2, height))
+    bottom = (1.15 + rows) / height
+    axes = figure.add_axes((0.06, bottom, 0.84, map_height / height))
     if vertices is not None:
         draw_relief(axes, vertices)
-    _mark_site(axes, site)
+    mark_site(axes, float(near(np.array([site[1]]), 0.0)[0]), site[0])
     axes.set_xlim(-180, 180)
     axes.set_ylim(-90, 90)
     axes.set_aspect("equal")
@@ -55,26 +61,13 @@ def map_figure(
     axes.set_yticks(range(-90, 91, 30))
     axes.set_xlabel("longitude, east [deg]")
     axes.set_ylabel("latitude [deg]")
-    _impacts(figure, axes, latitude, longitude, site, ellipses)
-    draw_shares(figure.add_axes((0.2, 0.095, 0.7, 0.15)), shares, "share of all samples [%], with 95 % interval")
+    bar_place = (0.915, bottom + 0.03 * map_height / height, 0.014, 0.94 * map_height / height)
+    drawn = _impacts(axes, latitude, longitude, site, ellipses)
+    if drawn is not None:
+        draw_scale(figure, *drawn, bar_place)
+    draw_legend(figure, ellipses, "impacts", (0.06, 1.0 - 0.28 / height))
+    draw_shares(figure.add_axes((0.2, 0.5 / height, 0.52, rows / height)), shares, whole)
     return figure
-
-
-def _mark_site(axes: Axes, site: tuple[float, float]) -> None:
-    """Mark and name the landing site."""
-    axes.plot(site[1], site[0], marker="*", markersize=13, color=SITE, markeredgecolor="white", zorder=6)
-    axes.annotate(
-        "landing site",
-        (site[1], site[0]),
-        xytext=(9, 9) if inset_left(site) else (-9, 9),
-        textcoords="offset points",
-        ha="left" if inset_left(site) else "right",
-        color=SITE,
-        fontweight="bold",
-        fontsize=8.5,
-        zorder=6,
-        bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 1.2},
-    )
 
 
 def inset_left(site: tuple[float, float]) -> bool:
@@ -83,25 +76,29 @@ def inset_left(site: tuple[float, float]) -> bool:
 
 
 def _impacts(
-    figure: Figure,
-    axes: Axes,
-    latitude: Array,
-    longitude: Array,
-    site: tuple[float, float],
-    ellipses: Mapping[str, Any] | None,
-) -> None:
-    """Draw the impacts, in a close view beside the site where on the whole map they would lie under its mark."""
+    axes: Axes, latitude: Array, longitude: Array, site: tuple[float, float], ellipses: Mapping[str, Any] | None
+) -> tuple[Any, str] | None:
+    """Draw the impacts, in a close view beside the site where on the whole map they would lie under its mark.
+
+    Returns what a colour bar needs, None where there is no impact.
+    """
     if not len(latitude):
         axes.text(0, -50, "no impact among the flights", ha="center", fontsize=11, color=QUIET)
-        return
-    drawn, words = draw_density(axes, latitude, longitude, WHOLE, 11.0)
+        return None
     window = close_window(latitude, longitude, site)
     if window is None:
         draw_ellipses(axes, ellipses, WHOLE)
-    else:
-        drawn, words, view = _close_view(axes, latitude, longitude, site, window)
-        draw_ellipses(view, ellipses, window)
-    bar = figure.colorbar(drawn, cax=figure.add_axes((0.915, 0.36, 0.014, 0.57)), format="%g")
+        return draw_density(axes, latitude, longitude, WHOLE, 11.0)
+    # In one colour: the colour bar is that of the close view.
+    axes.scatter(near(longitude, 0.0), latitude, s=5.0, color=QUIET, linewidths=0, zorder=2, rasterized=True)
+    view, drawn = _close_view(axes, latitude, longitude, site, window)
+    draw_ellipses(view, ellipses, window)
+    return drawn
+
+
+def draw_scale(figure: Figure, drawn: Any, words: str, place: tuple[float, float, float, float]) -> None:
+    """Draw the colour bar of a density at a place in parts of the figure: left, bottom, width, height."""
+    bar = figure.colorbar(drawn, cax=figure.add_axes(place), format="%g")
     bar.set_label(words)
     outline: Any = bar.outline
     outline.set_visible(False)
@@ -109,15 +106,14 @@ def _impacts(
 
 def _close_view(
     axes: Axes, latitude: Array, longitude: Array, site: tuple[float, float], window: Window
-) -> tuple[Any, str, Axes]:
+) -> tuple[Axes, tuple[Any, str]]:
     """Draw the impacts around the site enlarged, on the side of the map where the site is not."""
     left = 0.045 if inset_left(site) else 0.615
     frame = Rectangle((left - 0.03, 0.07), 0.4, 0.88, transform=axes.transAxes, color="white", alpha=0.94, zorder=7)
     axes.add_patch(frame)
     view = axes.inset_axes((left + 0.015, 0.15, 0.34, 0.71), zorder=8)
-    drawn, words = draw_density(view, latitude, longitude, window, 9.0)
-    middle = near(np.array([site[1]]), window.longitude)[0]
-    view.plot(middle, site[0], marker="*", markersize=12, color=SITE, markeredgecolor="white", zorder=6)
+    drawn = draw_density(view, latitude, longitude, window, 9.0)
+    mark_site(view, float(near(np.array([site[1]]), window.longitude)[0]), site[0])
     view.set_xlim(window.longitude - window.half_longitude, window.longitude + window.half_longitude)
     view.set_ylim(window.latitude - window.half, window.latitude + window.half)
     view.set_title("around the site [deg]", fontsize=8, pad=4)
@@ -126,7 +122,7 @@ def _close_view(
     view.grid(visible=True)
     for spine in view.spines.values():
         spine.set_visible(True)
-    return drawn, words, view
+    return view, drawn
 
 
 def draw_relief(axes: Axes, vertices: Array) -> None:
@@ -158,17 +154,29 @@ def draw_relief(axes: Axes, vertices: Array) -> None:
     )
 
 
-def draw_shares(axes: Axes, shares: list[Share], words: str, room: float = 25.0) -> None:
-    """One bar a fate, with its interval and its figure in per cent; `room` [%] to the right of 100 % holds the text."""
+def draw_shares(axes: Axes, shares: list[Share], whole: str) -> None:
+    """One bar a fate, the interval of a share that has one, and in the margin to the right its figure in per cent.
+
+    whole: what they are shares of, "all samples".
+    """
     colours = (INPUT_COLOURS[0], INPUT_COLOURS[5], TEST, QUIET, INTERACTIONS)
     place = np.arange(len(shares))[::-1]
+    words = f"share of {whole} [%]"
     for y, share, colour in zip(place, shares, colours * 3, strict=False):
         axes.barh(y, 100 * share.value, color=colour, height=0.68)
-        axes.plot([100 * share.lower, 100 * share.upper], [y, y], color=INK, linewidth=1.4, solid_capstyle="butt")
-        text = f"{100 * share.value:.2f} %   [{100 * share.lower:.2f}, {100 * share.upper:.2f}]"
-        axes.text(100 * share.upper + 1, y, text, va="center", fontsize=8)
+        text = f"{100 * share.value:.2f} %"
+        if share.lower is not None and share.upper is not None:
+            low, high = 100 * share.lower, 100 * share.upper
+            # At the very ends of the axis a clipped line would look as if there were no interval.
+            axes.plot([low, high], [y, y], color=INK, linewidth=1.4, solid_capstyle="butt", clip_on=False)
+            text += f"   [{low:.2f}, {high:.2f}]"
+            words = f"share of {whole} [%], with 95 % interval"
+        elif share.upper is not None:
+            axes.plot([0, 100 * share.upper], [y, y], color=INK, linewidth=1.4, solid_capstyle="butt", clip_on=False)
+            text = f"at most {100 * share.upper:.1f} %"
+        axes.text(1.025, y, text, transform=axes.get_yaxis_transform(), va="center_baseline", fontsize=8)
     axes.set_yticks(place, [share.name for share in shares])
-    axes.set_xlim(0, 100 + room)
+    axes.set_xlim(0, 100)
     axes.set_xticks(range(0, 101, 20))
     axes.set_xlabel(words)
     axes.spines["left"].set_visible(False)

@@ -1,10 +1,23 @@
 """The page: one HTML file that needs nothing but itself."""
 
 import base64
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from html import escape
 from importlib.resources import files
+
+# More rows or lines than this do not fit on a screen of a phone.
+LONG = 15
+# Of the largest number beside it: what the rounding of doubles may add up to over some million steps of time.
+ROUNDING = 1e-9
+# Paper cannot be unfolded. What was folded is folded again afterwards.
+UNFOLD = """addEventListener("beforeprint", () => {
+  for (const part of document.querySelectorAll("details:not([open])")) { part.open = true; part.dataset.folded = ""; }
+});
+addEventListener("afterprint", () => {
+  for (const part of document.querySelectorAll("[data-folded]")) { part.open = false; delete part.dataset.folded; }
+});
+"""
 
 
 @dataclass(frozen=True)
@@ -27,18 +40,20 @@ class Tile:
 
 @dataclass(frozen=True)
 class Table:
-    """A table of the page; a column whose name stands in `numbers` is set to the right."""
+    """A table of the page; a column whose name stands in `numbers` is set to the right, a cell in `links` is one."""
 
     title: str
     columns: Sequence[str]
     rows: Sequence[Sequence[str]]
     note: str = ""
     numbers: frozenset[str] = field(default_factory=frozenset)
+    links: Mapping[str, str] = field(default_factory=dict)
 
 
 def page(
     title: str,
     answer: str,
+    facts: str,
     tiles: Sequence[Tile],
     panels: Sequence[Panel],
     tables: Sequence[Table],
@@ -62,19 +77,23 @@ def page(
 <p class="kind">Landing study</p>
 <h1>{escape(title)}</h1>
 <p class="answer">{escape(answer)}</p>
+<p class="facts">{escape(facts)}</p>
 </header>
 <ul class="tiles">
 {"".join(_tile(tile) for tile in tiles)}</ul>
 <h2>Figures</h2>
+<p class="note hint">Click or tap a figure to see it in full size, and again to go back.</p>
 {pictures}
 <h2>Tables</h2>
 {"".join(_table(table) for table in tables)}
 <h2>Provenance</h2>
 {"".join(_table(table) for table in provenance)}
-<h3>The study file</h3>
-<pre>{escape(study_text)}</pre>
+{_folding("The study file", len(study_text.splitlines()), "lines", f"<pre>{escape(study_text)}</pre>")}
 <footer>Written by lithobrake from the files of the study's folder. SI units; degrees where a label says so.</footer>
-</main></body>
+</main>
+<script>
+{UNFOLD}</script>
+</body>
 </html>
 """
 
@@ -91,8 +110,11 @@ def _figure(number: int, panel: Panel) -> str:
         return f'<figure id="figure-{number}">{absent}{caption}</figure>'
     data = base64.b64encode(panel.picture).decode("ascii")
     alternative = escape(f"{panel.title}. {panel.sentence}", quote=True)
+    # A picture is enlarged by a box that is ticked: no second copy of it, and nothing that a browser may block on disk.
     return (
-        f'<figure id="figure-{number}"><img alt="{alternative}" src="data:image/png;base64,{data}">{caption}</figure>'
+        f'<figure id="figure-{number}"><label class="picture"><input type="checkbox" '
+        f'aria-label="Figure {number} in full size"><span><img alt="{alternative}" '
+        f'src="data:image/png;base64,{data}"></span></label>{caption}</figure>'
     )
 
 
@@ -100,34 +122,68 @@ def _table(table: Table) -> str:
     kinds = [' class="number"' if name in table.numbers else "" for name in table.columns]
     head = "".join(f"<th{kind}>{escape(name)}</th>" for name, kind in zip(table.columns, kinds, strict=True))
     body = "".join(
-        "<tr>" + "".join(f"<td{kind}>{escape(cell)}</td>" for cell, kind in zip(row, kinds, strict=True)) + "</tr>\n"
+        "<tr>"
+        + "".join(f"<td{kind}>{_cell(cell, table.links)}</td>" for cell, kind in zip(row, kinds, strict=True))
+        + "</tr>\n"
         for row in table.rows
     )
     note = f'<p class="note">{escape(table.note)}</p>' if table.note else ""
-    return f"<h3>{escape(table.title)}</h3>{note}<table><thead><tr>{head}</tr></thead><tbody>\n{body}</tbody></table>\n"
+    # With a tab stop, so that a box that scrolls sideways can be moved from the keyboard.
+    box = f'<div class="scroll" tabindex="0"><table><thead><tr>{head}</tr></thead><tbody>\n{body}</tbody></table></div>'
+    return _folding(table.title, len(table.rows), "rows", note + box)
 
 
-def flat(tree: Mapping[str, object], prefix: str = "") -> list[tuple[str, str]]:
-    """A nested mapping as rows (dotted name, value in words), in its own order."""
+def _cell(cell: str, links: Mapping[str, str]) -> str:
+    words = escape(cell)
+    return f'<a href="{escape(links[cell], quote=True)}">{words}</a>' if cell in links else words
+
+
+def _folding(title: str, length: int, unit: str, content: str) -> str:
+    """Content under its title, folded away where it is long."""
+    is_long = length > LONG
+    count = f" <small>{length} {unit}</small>" if is_long else ""
+    opening = "<details>" if is_long else "<details open>"
+    return f"{opening}<summary><h3>{escape(title)}{count}</h3></summary>{content}</details>\n"
+
+
+def flat(tree: Mapping[str, object], prefix: str = "", alike: Sequence[Sequence[str]] = ()) -> list[tuple[str, str]]:
+    """A nested mapping as rows (dotted name, value in words), in its own order; alike: names that share one scale."""
+    scales = {name: largest([tree.get(one) for one in names]) for names in alike for name in names}
     rows: list[tuple[str, str]] = []
     for name, value in tree.items():
         key = f"{prefix}.{name}" if prefix else str(name)
         if isinstance(value, Mapping):
             rows += flat(value, key)
         else:
-            rows.append((key, show(value)))
+            rows.append((key, show(value, scales.get(name, 0.0))))
     return rows
 
 
-def show(value: object) -> str:
-    """A value of a results file in words: numbers to four digits, lists in one line."""
+def show(value: object, scale: float = 0.0) -> str:
+    """A value of a results file in words: numbers to four digits, lists in one line and of one scale."""
     if isinstance(value, bool) or value is None:
         return {True: "yes", False: "no", None: "none"}[value]
     if isinstance(value, float):
-        return number(value, 4)
+        return number(value, 4, scale=scale)
     if isinstance(value, list | tuple):
-        return ", ".join(show(entry) for entry in value)
+        scale = max(scale, largest(value))
+        return ", ".join(show(entry, scale) for entry in value)
     return str(value)
+
+
+def largest(value: object) -> float:
+    """The largest magnitude among the numbers of a value of a results file; 0 where it has none."""
+    if isinstance(value, list | tuple):
+        return max(map(largest, value), default=0.0)
+    return abs(value) if isinstance(value, int | float) else 0.0
+
+
+def unit_scales(numbers: Iterable[tuple[str, float]]) -> dict[str, float]:
+    """The largest magnitude of each unit among the numbers (unit, value) of a table."""
+    scales: dict[str, float] = {}
+    for unit, value in numbers:
+        scales[unit] = max(scales.get(unit, 0.0), abs(value))
+    return scales
 
 
 def fixed(value: float, digits: int = 2) -> str:
@@ -136,8 +192,13 @@ def fixed(value: float, digits: int = 2) -> str:
     return text if float(text) else text.removeprefix("-")
 
 
-def number(value: float, digits: int = 3, *, zeros: bool = False) -> str:
-    """A number to some digits, very large and very small ones with a power of ten; zeros: keep those at the end."""
+def number(value: float, digits: int = 3, *, zeros: bool = False, scale: float = 0.0) -> str:
+    """A number to some digits, very large and very small ones with a power of ten; zeros: keep those at the end.
+
+    scale: the largest magnitude of what it stands beside; what is rounding next to that is shown as 0.
+    """
+    if abs(value) <= ROUNDING * scale:
+        return "0"
     if value == 0 or 1e-3 <= abs(value) < 1e5:
         text = f"{value:#.{digits}g}" if zeros else f"{value:.{digits}g}"
         return f"{value:.0f}" if "e" in text else text.removesuffix(".")

@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 
 from lithobrake.report.density import WHOLE, Window, close_window, draw_density, near
 from lithobrake.report.ellipse_line import draw_ellipses
-from lithobrake.report.look import QUIET, SITE
-from lithobrake.report.map_figure import Share, draw_relief, draw_shares
+from lithobrake.report.look import QUIET
+from lithobrake.report.map_figure import Share, draw_relief, draw_scale, draw_shares
+from lithobrake.report.site_mark import draw_legend, mark_site
 
 Array = NDArray[np.float64]
 
@@ -22,7 +23,7 @@ Array = NDArray[np.float64]
 class RestMap:
     """One side of the figure: where landers rest [deg], shape [settled] both, the ellipses of the summary, and shares.
 
-    absent: why there is nothing to show, in place of all else.
+    absent: why there is nothing to show, in place of all else; whole: what the shares are shares of.
     """
 
     title: str
@@ -31,6 +32,7 @@ class RestMap:
     ellipses: Mapping[str, Any] | None
     shares: list[Share]
     absent: str | None = None
+    whole: str = "all landers"
 
 
 def rest_figure(maps: list[RestMap], site: tuple[float, float], vertices: Array | None = None) -> Figure:
@@ -38,8 +40,8 @@ def rest_figure(maps: list[RestMap], site: tuple[float, float], vertices: Array 
 
     site: latitude and longitude [deg]; vertices: of the body [m], shape [vertex, 3], for the relief; absent: plain.
     """
-    # In inches: the maps, a row for each bar, and the axis below the bars.
-    rows, maps_height, row_height, below = max(len(one.shares) for one in maps), 2.5, 0.2, 0.5
+    # In inches: the legend and the maps, a row for each bar, and the axis below the bars.
+    rows, maps_height, row_height, below = max(len(one.shares) for one in maps), 2.8, 0.2, 0.5
     height = maps_height + row_height * rows + below
     figure = Figure(figsize=(9.2, height))
     together = [np.concatenate([getattr(one, name) for one in maps]) for name in ("latitude", "longitude")]
@@ -53,8 +55,10 @@ def rest_figure(maps: list[RestMap], site: tuple[float, float], vertices: Array 
             continue
         _map(figure, axes, one, site, window, vertices)
         share = row_height * len(one.shares) / height
-        bars = figure.add_axes((0.135 + 0.5 * side, 1.0 - maps_height / height - share, 0.345, share))
-        draw_shares(bars, one.shares, "share of landers [%], with 95 % interval", room=80.0)
+        bars = figure.add_axes((0.135 + 0.5 * side, 1.0 - maps_height / height - share, 0.18, share))
+        draw_shares(bars, one.shares, one.whole)
+    ellipses = [one.ellipses for one in maps if one.ellipses]
+    draw_legend(figure, ellipses[0] if ellipses else None, "landers at rest", (0.06, 1.0 - 0.25 / height))
     return figure
 
 
@@ -75,7 +79,7 @@ def _map(
     else:
         axes.locator_params(nbins=5)
     middle = near(np.array([site[1]]), window.longitude)[0]
-    axes.plot(middle, site[0], marker="*", markersize=12, color=SITE, markeredgecolor="white", zorder=6)
+    mark_site(axes, float(middle), site[0])
     if not len(one.latitude):
         axes.text(0.5, 0.1, "no lander rests", transform=axes.transAxes, ha="center", color=QUIET)
         return
@@ -83,7 +87,4 @@ def _map(
     draw_ellipses(axes, one.ellipses, window)
     axes.apply_aspect()
     box = axes.get_position()
-    bar = figure.colorbar(drawn, cax=figure.add_axes((box.x1 + 0.012, box.y0, 0.01, box.height)), format="%g")
-    bar.set_label(words.replace("impacts", "landers"))
-    outline: Any = bar.outline
-    outline.set_visible(False)
+    draw_scale(figure, drawn, words.replace("impacts", "landers"), (box.x1 + 0.012, box.y0, 0.01, box.height))

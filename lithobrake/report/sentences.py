@@ -5,7 +5,7 @@ from typing import Any
 
 from lithobrake.report.error_figure import Score
 from lithobrake.report.look import PAPER_OUTPUTS, output
-from lithobrake.report.page import number
+from lithobrake.report.page import fixed, number
 from lithobrake.report.results import Results
 from lithobrake.report.scatter_figure import DRAWN_COUNT
 
@@ -59,6 +59,27 @@ def answer(data: Results) -> str:
 def body_name(data: Results) -> str:
     """The body in words."""
     return "Didymos" if data.study["site"]["body"] == "didymos" else "the body"
+
+
+def facts(data: Results) -> str:
+    """When the study was made, and what the body's gravity is known by."""
+    found = []
+    if "date" in data.provenance:
+        found.append(f"Study of {data.provenance['date'][:16].replace('T', ', ')} UTC.")
+    known = gravity_words(data)
+    if known:
+        found.append(f"{known[0].upper()}{known[1:]}.")
+    return " ".join(found)
+
+
+def gravity_words(data: Results) -> str:
+    """Escape speed at the site and bulk density of the body, where the summary has them."""
+    words = {
+        "escape_speed_m_s": "escape speed at the site {} m/s",
+        "bulk_density_kg_m3": "bulk density of the body {} kg/m3",
+    }
+    site = data.results["site"]
+    return ", ".join(text.format(number(site[key])) for key, text in words.items() if site.get(key) is not None)
 
 
 def bed(data: Results) -> str:
@@ -188,12 +209,13 @@ def landing_map(data: Results) -> str:
     extents = " x ".join(f"{length:.0f}" for length in site["extents_m"])
     outward = site["effective_acceleration_outward"]
     direction = "outward" if outward > 0 else "inward"
+    known = gravity_words(data)
     return (
         f"Of {_thousands(shares['sample_count'])} samples, of which {_thousands(shares['flight_count'])} were flown, "
         f"{percent(shares['impact']['share'])} come down again within {hours(data.study['flight']['duration'])}, "
         f"where the map shows (body: {number(site['mass_kg'])} kg, {extents} m, one turn in "
         f"{site['spin_period_s'] / 3600:.4g} h; at the site gravity and spin together pull "
-        f"{number(abs(outward), 2)} m/s2 {direction})."
+        f"{number(abs(outward), 2)} m/s2 {direction}{known and f'; {known}'})."
     )
 
 
@@ -207,9 +229,10 @@ def body(data: Results) -> str:
     if not large:
         return f"{shared}; they lie too far around the body, or are too few, for an ellipse that holds 95 % of them."
     long, short = large[0]
+    latitude, longitude = (fixed(ellipse[key], 1) for key in ("latitude_deg", "longitude_deg"))
     return (
-        f"{shared}; an ellipse of {number(long)} by {number(short)} m (semi-axes) about latitude "
-        f"{ellipse['latitude_deg']:.1f} deg, longitude {ellipse['longitude_deg']:.1f} deg holds 95 % of them."
+        f"{shared}; an ellipse of {number(long)} by {number(short)} m (semi-axes) about latitude {latitude} deg, "
+        f"longitude {longitude} deg holds 95 % of them."
     )
 
 

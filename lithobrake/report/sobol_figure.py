@@ -25,23 +25,22 @@ def sobol_figure(
     """
     names = [name for name in PAPER_OUTPUTS if name in sobol_first]
     colours = input_colours(input_names)
-    figure = Figure(figsize=(9.2, 4.0))
+    handles = [Patch(color=colours[key], label=input_label(key, with_unit=False)) for key in input_names]
+    handles.append(Patch(color=INTERACTIONS, label="interactions"))
+    columns = 3 if len(handles) > 4 else len(handles)
+    # In inches: the rings with their titles, and a row of the legend for every three inputs.
+    legend = 0.16 + 0.172 * -(-len(handles) // columns)
+    height = 3.34 + legend
+    figure = Figure(figsize=(9.2, height))
     for column, name in enumerate(names):
-        axes = figure.add_axes((0.01 + column / len(names), 0.17, 0.98 / len(names), 0.75))
+        place = (0.01 + column / len(names), legend / height, 0.98 / len(names), 3.0 / height)
+        axes = figure.add_axes(place)
         _ring(axes, name, sobol_first[name], [colours[key] for key in input_names], spread[name])
         share = scatter[name]
         if share is not None:
             words = f"scatter: {100 * share:.0f} % of\nthe runs' variance"
             axes.text(0, -0.27, words, ha="center", va="top", fontsize=7, color=QUIET)
-    handles = [Patch(color=colours[key], label=input_label(key, with_unit=False)) for key in input_names]
-    handles.append(Patch(color=INTERACTIONS, label="interactions"))
-    figure.legend(
-        handles=handles,
-        loc="lower center",
-        ncols=3 if len(handles) > 4 else len(handles),
-        handlelength=1.0,
-        handleheight=1.0,
-    )
+    figure.legend(handles=handles, loc="lower center", ncols=columns, handlelength=1.0, handleheight=1.0)
     return figure
 
 

@@ -23,6 +23,7 @@ from lithobrake.report.results import Results, read_results
 from lithobrake.report.scatter_figure import scatter_figure
 from lithobrake.report.sentences import hours
 from lithobrake.report.sobol_figure import sobol_figure
+from lithobrake.report.study_files import data_files, picture_files
 from lithobrake.report.tables import provenance, tables, tiles
 
 if TYPE_CHECKING:
@@ -48,17 +49,21 @@ def write_report(folder: Path) -> Path:
     """
     data = read_results(folder)
     (folder / "report").mkdir(exist_ok=True)
-    panels = []
+    panels, pictures = [], []
     for number, (name, title, sentence, draw) in enumerate(_figures(data), start=1):
         with figure_style():
             figure = draw()
             picture = None if figure is None else _png(figure)
         if picture is not None:
-            with atomic_path(folder / "report" / f"figure_{number}_{name}.png") as draft:
+            file = f"figure_{number}_{name}.png"
+            with atomic_path(folder / "report" / file) as draft:
                 draft.write_bytes(picture)
+            pictures.append((file, f"Figure {number}. {title}"))
         panels.append(Panel(title, sentence, picture))
     title = data.study.get("title") or folder.name
-    text = page(title, sentences.answer(data), tiles(data), panels, tables(data), provenance(data), data.study_text)
+    origin = [data_files(folder), picture_files(folder, pictures), *provenance(data)]
+    answer, facts = sentences.answer(data), sentences.facts(data)
+    text = page(title, answer, facts, tiles(data), panels, tables(data), origin, data.study_text)
     path = folder / "report" / "index.html"
     with atomic_path(path) as draft:
         draft.write_text(text, encoding="utf-8")
@@ -154,12 +159,19 @@ def _outputs(data: Results, colour_name: str) -> "Figure | None":
 def _map(data: Results) -> "Figure":
     table, site, limit = data.results["shares"], data.results["site"], hours(data.study["flight"]["duration"])
     shares = [
-        Share(words.format(hours=limit), table[key]["share"], table[key]["lower"], table[key]["upper"])
+        Share(words.format(hours=limit), table[key]["share"], upper=table[key].get("upper_limit"))
         for key, words in fates(data).items()
         if key not in SUMS
     ]
     where = (site["latitude_deg"], site["longitude_deg"])
-    return map_figure(data.latitude, data.longitude, where, shares, data.body_vertices, data.results["ellipses"])
+    whole = _samples(table["sample_count"], data.results["monte_carlo"]["sample_count"])
+    return map_figure(data.latitude, data.longitude, where, shares, data.body_vertices, data.results["ellipses"], whole)
+
+
+def _samples(looked_at: int, count: int) -> str:
+    """What the shares of the flights are shares of."""
+    words = f"{looked_at:,} samples".replace(",", " ")
+    return f"all {words}" if looked_at == count else f"the {words} up to the last that was flown"
 
 
 def _body(data: Results) -> "Figure | None":
@@ -177,12 +189,9 @@ def _rest(data: Results) -> "Figure | None":
     maps = []
     for ground, (latitude, longitude) in data.rest.items():
         table = found.get(ground)
-        shares = [
-            Share(words.format(hours=limit), *(table[key][end] for end in ("share", "lower", "upper")))
-            for key, words in met.items()
-            if table
-        ]
+        shares = [Share(words.format(hours=limit), table[key]["share"]) for key, words in met.items() if table]
         absent = None if table else f"Not asked: {data.results['rest']['why_no_soil']}."
         ellipses = table["ellipses"] if table else None
-        maps.append(RestMap(f"On {GROUND_WORDS[ground]}", latitude, longitude, ellipses, shares, absent))
+        whole = f"the {table['sample_count']} followed" if table else ""
+        maps.append(RestMap(f"On {GROUND_WORDS[ground]}", latitude, longitude, ellipses, shares, absent, whole))
     return rest_figure(maps, (site["latitude_deg"], site["longitude_deg"]), data.body_vertices)

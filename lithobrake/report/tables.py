@@ -1,11 +1,11 @@
 """The tables of the page, from the numbers of the files."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 from lithobrake.report.landing_tables import fates, landing_tables
 from lithobrake.report.look import PAPER_OUTPUTS, output
-from lithobrake.report.page import Table, Tile, fixed, flat, number, show
+from lithobrake.report.page import Table, Tile, fixed, flat, number, show, unit_scales
 from lithobrake.report.results import Results
 from lithobrake.report.sentences import hours, input_words, percent
 
@@ -159,6 +159,7 @@ def _fits(data: Results) -> Table:
         "expected error",
         "scatter between equal runs",
     ]
+    scale = _output_scales([data.results[stage]["fits"] for stage in ("screening", "refined")], "rmse_estimate")
     rows = []
     for stage in ("screening", "refined"):
         for row, (name, fit) in enumerate(data.results[stage]["fits"].items()):
@@ -171,8 +172,10 @@ def _fits(data: Results) -> Table:
                     fit["method"].replace("_", " "),
                     str(fit["term_count"]),
                     "-" if fit["condition_number"] is None else f"{fit['condition_number']:.3g}",
-                    _cell(fit["rmse_estimate"] * shown.factor),
-                    "not known" if fit["noise_std"] is None else _cell(fit["noise_std"] * shown.factor),
+                    _cell(fit["rmse_estimate"] * shown.factor, scale[shown.unit]),
+                    "not known"
+                    if fit["noise_std"] is None
+                    else _cell(fit["noise_std"] * shown.factor, scale[shown.unit]),
                 ]
             )
     note = (
@@ -184,6 +187,7 @@ def _fits(data: Results) -> Table:
 
 def _scores(data: Results) -> Table:
     columns = ["expansion and runs", "output", "unit", "MAPE [%]", "Q2", "RMSE", "spread (std)", "RMSE/spread"]
+    scale = _output_scales(data.results["scores"].values(), "std")
     rows = []
     for stage, table in data.results["scores"].items():
         for row, (name, score) in enumerate(table.items()):
@@ -195,8 +199,8 @@ def _scores(data: Results) -> Table:
                     shown.unit,
                     _with_interval(score, "mape"),
                     _with_interval(score, "q2"),
-                    _cell(score["rmse"] * shown.factor),
-                    _cell(score["std"] * shown.factor),
+                    _cell(score["rmse"] * shown.factor, scale[shown.unit]),
+                    _cell(score["std"] * shown.factor, scale[shown.unit]),
                     _or_none(score["rrmse"]),
                 ]
             )
@@ -229,26 +233,37 @@ def _sobol(data: Results) -> Table:
 def _outputs(data: Results) -> Table:
     columns = ["output", "unit", "mean", "std", "5 %", "median", "95 %"]
     keys = ("mean", "std", "quantile_0.05", "quantile_0.5", "quantile_0.95")
+    outputs = data.results["monte_carlo"]["outputs"]
+    scale = _output_scales([outputs], *keys)
     rows = []
-    for name, table in data.results["monte_carlo"]["outputs"].items():
+    for name, table in outputs.items():
         shown = output(name)
-        rows.append([OUTPUT_WORDS.get(name, name), shown.unit, *(_cell(table[key] * shown.factor) for key in keys)])
+        cells = (_cell(table[key] * shown.factor, scale[shown.unit]) for key in keys)
+        rows.append([OUTPUT_WORDS.get(name, name), shown.unit, *cells])
     return Table("Outputs of the samples that leave", columns, rows, numbers=frozenset(columns[2:]))
 
 
 def _touchdowns(data: Results) -> Table:
+    found, keys = data.results["outputs_of_runs"], ("smallest", "median", "largest")
+    scale = unit_scales((table["unit"], table[key]) for table in found.values() for key in keys)
     rows = [
-        [name.replace("_", " "), table["unit"], *(_cell(table[key]) for key in ("smallest", "median", "largest"))]
-        for name, table in data.results["outputs_of_runs"].items()
+        [name.replace("_", " "), table["unit"], *(_cell(table[key], scale[table["unit"]]) for key in keys)]
+        for name, table in found.items()
     ]
     columns = ["quantity", "unit", "smallest", "median", "largest"]
     return Table("What else the touchdowns gave", columns, rows, "Over all distinct runs.", frozenset(columns[2:]))
 
 
+def _output_scales(tables: Iterable[Mapping[str, Any]], *keys: str) -> dict[str, float]:
+    """The largest magnitude of each unit among these numbers of the outputs, as they are shown."""
+    outputs = [(output(name), entry) for table in tables for name, entry in table.items()]
+    return unit_scales((shown.unit, entry[key] * shown.factor) for shown, entry in outputs for key in keys)
+
+
 def _index(table: Mapping[str, Any], kind: str, name: str, key: str) -> str:
     """One Sobol index with its interval."""
     low, high = table[f"{kind}_interval"][name][key]
-    return f"{table[kind][name][key]:.2f} ({low:.2f} to {high:.2f})"
+    return f"{fixed(table[kind][name][key])} ({fixed(low)} to {fixed(high)})"
 
 
 def _with_interval(score: Mapping[str, Any], key: str) -> str:
@@ -262,6 +277,6 @@ def _or_none(value: float | None) -> str:
     return "undefined" if value is None else _cell(value)
 
 
-def _cell(value: float) -> str:
-    """A number in a column: three digits, zeros at the end kept."""
-    return number(value, zeros=True)
+def _cell(value: float, scale: float = 0.0) -> str:
+    """A number in a column: three digits, zeros at the end kept; scale: the largest of its unit in the table."""
+    return number(value, zeros=True, scale=scale)

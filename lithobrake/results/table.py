@@ -63,9 +63,7 @@ class Table(Mapping[str, np.ndarray]):
 
     def where(self, chosen: np.ndarray) -> "Table":
         """The chosen rows: booleans [row_count], or numbers of rows."""
-        columns = {
-            name: Column(column.values[chosen], **column.attributes) for name, column in self.columns.items()
-        }
+        columns = {name: Column(column.values[chosen], **column.attributes) for name, column in self.columns.items()}
         return Table(self.row, columns)
 
     def to_pandas(self) -> "pandas.DataFrame":
@@ -104,10 +102,8 @@ class Table(Mapping[str, np.ndarray]):
             f'<th title="{escape(column.long_name, quote=True)}">{escape(_title(name, column))}</th>'
             for name, column in self.columns.items()
         )
-        rows = "".join(
-            "<tr>" + "".join(f"<td>{escape(_cell(column.values[row]))}</td>" for column in self.columns.values()) + "</tr>"
-            for row in range(shown)
-        )
+        cells = [[escape(_cell(value)) for value in column.values[:shown]] for column in self.columns.values()]
+        rows = "".join(f"<tr>{''.join(f'<td>{cell}</td>' for cell in row)}</tr>" for row in zip(*cells, strict=True))
         more = f"<caption>{shown} of {self.row_count} rows ({escape(self.row)})</caption>"
         return f"<table>{more}<thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>"
 

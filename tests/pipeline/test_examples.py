@@ -7,6 +7,7 @@ import math
 import os
 import subprocess
 import sys
+from datetime import datetime, timedelta
 from pathlib import Path
 
 import pytest
@@ -43,6 +44,14 @@ def test_a_study_with_a_program_goes_to_its_report(plate: Path) -> None:
     assert results["rest"]["hard"]["sample_count"] == 200
     page = (plate / "report" / "index.html").read_text()
     assert "The touchdowns were made by a program of the study&#x27;s author: python3 ball_on_plate.py" in page
+
+
+def test_the_summary_says_when_it_was_made(plate: Path) -> None:
+    content = json.loads((plate / "summary.json").read_text())
+    date = datetime.fromisoformat(content["provenance"]["date"])
+    assert date.utcoffset() == timedelta(0)
+    assert abs(date.timestamp() - (plate / "summary.json").stat().st_mtime) < 60.0
+    assert f"Study of {date:%Y-%m-%d, %H:%M} UTC" in (plate / "report" / "index.html").read_text(encoding="utf-8")
 
 
 def test_the_runs_are_told_from_another_terminal(plate: Path) -> None:

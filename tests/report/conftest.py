@@ -139,6 +139,9 @@ def made_up_summary(scores: dict[str, dict[str, dict[str, object]]]) -> dict[str
     ends = ("lofted", "outside", "outside_too_slow", "sliding", "bouncing", "flying", "partner")
     hard = {"sample_count": 50, **dict.fromkeys(ends, none), "settled": share, "escaped": share, "ellipses": ellipses}
     uniform = {"distribution": "uniform", "lower": 0.3, "upper": 0.9}
+    outputs = {name: {"mean": 0.1, "std": 0.02, **quantiles} for name in OUTPUTS}
+    # A symmetric study: across, there is nothing but rounding.
+    outputs["velocity_out_y"] = {key: -2.2e-14 * value for key, value in outputs["velocity_out_y"].items()}
     return {
         "format_version": 1,
         "study": {
@@ -199,7 +202,7 @@ def made_up_summary(scores: dict[str, dict[str, dict[str, object]]]) -> dict[str
             "monte_carlo": {
                 "sample_count": 400,
                 "leaving_count": 360,
-                "outputs": {name: {"mean": 0.1, "std": 0.02, **quantiles} for name in OUTPUTS},
+                "outputs": outputs,
             },
             "site": {
                 "body": "didymos",
@@ -211,8 +214,11 @@ def made_up_summary(scores: dict[str, dict[str, dict[str, object]]]) -> dict[str
                 "longitude_deg": 0.0,
                 "heading_deg": 90.0,
                 "place_m": [425.0, 0.0, 0.0],
+                "centroid_m": [-2.2e-14, 2.1e-14, 0.0],
                 "effective_acceleration_outward": 1.1e-5,
-                "effective_acceleration_along_heading": 0.0,
+                "effective_acceleration_along_heading": -2.7e-19,
+                "escape_speed_m_s": 0.4086,
+                "bulk_density_kg_m3": 2790.3,
             },
             "shares": {
                 "sample_count": 400,
@@ -232,5 +238,10 @@ def made_up_summary(scores: dict[str, dict[str, dict[str, object]]]) -> dict[str
                 "hard": hard | {"time_s": quantiles},
             },
         },
-        "provenance": {"host": "somewhere", "packages": {"numpy": "2.0"}, "wall_s": {"bed": 12.5}},
+        "provenance": {
+            "date": "2026-03-01T09:30:00+00:00",
+            "host": "somewhere",
+            "packages": {"numpy": "2.0"},
+            "wall_s": {"bed": 12.5},
+        },
     }

@@ -2,8 +2,10 @@
 
 import io
 
+import matplotlib
 import numpy as np
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from lithobrake.report.bed_figure import bed_figure, three_moments
@@ -14,8 +16,8 @@ from lithobrake.report.ellipse_line import draw_ellipses, outline
 from lithobrake.report.error_figure import Score, error_figure
 from lithobrake.report.hulls import Body
 from lithobrake.report.landing_figure import instants, landing_figure
-from lithobrake.report.look import PAPER_OUTPUTS, figure_style, input_label
-from lithobrake.report.map_figure import Share, map_figure
+from lithobrake.report.look import INK, PAPER_OUTPUTS, figure_style, input_label
+from lithobrake.report.map_figure import Share, draw_shares, map_figure
 from lithobrake.report.rest_figure import RestMap, rest_figure
 from lithobrake.report.scatter_figure import scatter_figure
 from lithobrake.report.sobol_figure import sobol_figure
@@ -154,11 +156,19 @@ def test_error_figure_shows_a_q2_that_does_not_exist_as_such() -> None:
 
 def test_scatter_figure_leaves_out_samples_that_stay() -> None:
     outputs = {name: np.linspace(0.0, 1.0, 20) for name in PAPER_OUTPUTS}
-    stays = np.arange(20) < 5
+    leaves = np.arange(20) >= 5
     with figure_style():
-        figure = scatter_figure(outputs, "grain.restitution", np.linspace(0.3, 0.8, 20), stays)
+        figure = scatter_figure(outputs, "grain.restitution", np.linspace(0.3, 0.8, 20), leaves)
     assert [len(axes.collections[0].get_offsets()) for axes in figure.axes[:3]] == [15, 15, 15]
     assert picture(figure)
+
+
+def test_an_outcome_that_no_run_had_shows_its_upper_limit_in_place_of_nothing() -> None:
+    with figure_style():
+        figure = map_figure(np.zeros(0), np.zeros(0), (0.0, 0.0), [Share("captured", 0.0, upper=0.0203)])
+    words = [text.get_text() for axes in figure.axes for text in axes.texts]
+    assert "at most 2.0 %" in words
+    assert not any("95 % interval" in axes.get_xlabel() for axes in figure.axes)
 
 
 @pytest.mark.parametrize("with_relief", [False, True])
@@ -195,12 +205,76 @@ def test_map_figure_shows_impacts_near_the_site_in_a_close_view() -> None:
     assert picture(figure)
 
 
-def test_ellipses_say_what_share_they_hold() -> None:
+def test_ellipses_are_named_beside_the_map_and_not_on_it() -> None:
+    generator = np.random.default_rng(8)
+    latitude, longitude = 10 + generator.normal(size=50), 30 + generator.normal(size=50)
+    with figure_style():
+        figure = map_figure(latitude, longitude, (10.0, 30.0), [], None, ELLIPSES)
+    (legend,) = figure.legends
+    assert [text.get_text() for text in legend.get_texts()] == [
+        "landing site",
+        "ellipse that holds 50 % of the impacts",
+        "ellipse that holds 95 % of the impacts",
+    ]
+    FigureCanvasAgg(figure).draw()
+    assert not any(legend.get_window_extent().overlaps(axes.get_window_extent()) for axes in figure.axes)
     axes = Figure().add_subplot()
     draw_ellipses(axes, ELLIPSES, WHOLE)
-    assert [text.get_text() for text in axes.texts] == ["50 %", "95 %"]
     draw_ellipses(axes, None, WHOLE)
     assert len(axes.lines) == 4
+    assert not axes.texts
+
+
+@pytest.mark.parametrize("longitude", [20.0, 380.0])
+def test_the_mark_of_the_site_leaves_the_densest_place_in_sight(longitude: float) -> None:
+    generator = np.random.default_rng(9)
+    spread = generator.uniform(-60, 60, 12_000), generator.uniform(-180, 180, 12_000)
+    # The peak of the density lies right at the site.
+    places = [np.append(values, np.full(500, middle)) for values, middle in zip(spread, (10.0, 20.0), strict=True)]
+    with figure_style():
+        figure = map_figure(*places, (10.0, longitude), [Share("impact", 1.0)])
+    canvas = FigureCanvasAgg(figure)
+    canvas.draw()
+    x, y = figure.axes[0].transData.transform((20.0, 10.0))
+    pixels = np.asarray(canvas.buffer_rgba(), dtype=float)[:, :, :3] / 255
+    peak = np.array(matplotlib.colormaps["viridis"](1.0)[:3])
+    assert pixels[int(pixels.shape[0] - y), int(x)] == pytest.approx(peak, abs=0.02)
+    # And the mark is there, to the right of it.
+    beside = pixels[int(pixels.shape[0] - y), int(x) : int(x) + 15]
+    assert np.abs(beside - matplotlib.colors.to_rgb(INK)).max(axis=1).min() < 0.1
+
+
+def test_shares_end_at_the_whole_and_have_their_figures_beside_the_axis() -> None:
+    axes = Figure().add_subplot()
+    draw_shares(axes, [Share("down", 0.75, 0.7, 0.8), Share("captured", 0.25)], "all 100 000 samples")
+    assert axes.get_xlim() == (0.0, 100.0)
+    assert [text.get_text() for text in axes.texts] == ["75.00 %   [70.00, 80.00]", "25.00 %"]
+    assert all(text.get_position()[0] > 1.0 for text in axes.texts)
+    assert len(axes.lines) == 1
+    assert axes.get_xlabel() == "share of all 100 000 samples [%], with 95 % interval"
+
+
+def test_shares_without_intervals_speak_of_none() -> None:
+    axes = Figure().add_subplot()
+    draw_shares(axes, [Share("down", 0.75, None, None)], "the 200 followed")
+    assert not axes.lines
+    assert axes.get_xlabel() == "share of the 200 followed [%]"
+
+
+def test_names_of_curves_and_legends_of_many_inputs_cover_nothing() -> None:
+    counts = np.outer(np.arange(1.0, 15.0), [3.0, 9.0])
+    first = {name: np.full(10, 0.1) for name in PAPER_OUTPUTS}
+    with figure_style():
+        curves = count_figure(list(range(1, 15)), [1, 2], counts**2, counts, [])
+        names = tuple(f"grain.input_{number}" for number in range(10))
+        rings = sobol_figure(names, first, dict.fromkeys(PAPER_OUTPUTS, 0.1), dict.fromkeys(PAPER_OUTPUTS))
+    for figure in (curves, rings):
+        FigureCanvasAgg(figure).draw()
+    for axes in curves.axes:
+        boxes = [text.get_window_extent() for text in axes.texts]
+        assert len(boxes) > 1
+        assert not any(one.overlaps(other) for index, one in enumerate(boxes) for other in boxes[:index])
+    assert all(rings.legends[0].get_window_extent().y1 <= axes.get_window_extent().y0 for axes in rings.axes)
 
 
 def test_an_ellipse_lies_as_far_from_its_middle_as_it_is_long() -> None:
@@ -264,8 +338,6 @@ def test_neighbours_are_counted_across_the_date_line() -> None:
 
 
 def test_the_look_leaves_the_settings_of_others_alone() -> None:
-    import matplotlib
-
     before = dict(matplotlib.rcParams)
     with figure_style():
         pass
@@ -274,4 +346,5 @@ def test_the_look_leaves_the_settings_of_others_alone() -> None:
 
 def test_an_input_without_a_label_keeps_its_key_in_words() -> None:
     assert input_label("lander.solar_panel_area") == "lander: solar panel area"
+    assert input_label("solver.inputs.plate_tilt_deg") == "plate tilt [deg]"
     assert input_label("grain.friction", with_unit=False) == r"friction $\mu$, grains"

@@ -5,14 +5,17 @@ import re
 import shutil
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import h5py
 import numpy as np
 import pytest
 
-from lithobrake.report import write_report
+from lithobrake.report import sentences, write_report
+from lithobrake.report.results import read_results
 from lithobrake.report.scene import read_scene
+from lithobrake.report.study_files import size
 
 
 @pytest.fixture(scope="module")
@@ -69,6 +72,48 @@ def test_every_sobol_index_has_its_interval(report: str) -> None:
 def test_provenance_stands_at_the_end(report: str) -> None:
     assert report.index("<h2>Figures") < report.index("<h2>Tables") < report.index("<h2>Provenance")
     assert "packages.numpy" in report
+
+
+def test_page_says_when_the_study_was_made_and_what_its_body_is_like(report: str) -> None:
+    words = "scape speed at the site 0.409 m/s, bulk density of the body 2790 kg/m3"
+    assert f'<p class="facts">Study of 2026-03-01, 09:30 UTC. E{words}.</p>' in report
+    caption = report[report.index("Figure 7.") : report.index("Figure 8.")]
+    assert f"outward; e{words})" in caption
+    assert "<td>escape_speed_m_s</td><td>0.4086</td>" in report
+
+
+def test_page_links_the_files_that_are_there_and_no_others(study_folder: Path, report: str) -> None:
+    links = re.findall(r'href="([^"]+)"', report)
+    assert all((study_folder / "report" / link).is_file() for link in links)
+    for name in ("summary.json", "samples.h5", "flights.csv", "beds/bed_0.h5", "report/figure_7_map.png"):
+        assert f"../{name}" in links
+    assert "../runs.sqlite" not in links
+    held = size((study_folder / "samples.h5").stat().st_size)
+    assert f'every sample</td><td class="number">{held}</td>' in report
+
+
+def test_no_number_of_a_symmetric_study_is_rounding(report: str) -> None:
+    assert "10⁻¹⁴" not in report
+    assert "10⁻¹⁶" not in report
+    assert "10⁻¹⁹" not in report
+    assert '<td>velocity across y</td><td>m/s</td><td class="number">0</td>' in report
+    assert "<td>centroid_m</td><td>0, 0, 0</td>" in report
+
+
+def test_a_summary_without_date_and_escape_speed_is_read_too(study_folder: Path) -> None:
+    data = read_results(study_folder)
+    site = {key: value for key, value in data.results["site"].items() if key[:6] not in ("escape", "bulk_d")}
+    older = replace(data, provenance={}, results=data.results | {"site": site})
+    assert sentences.facts(older) == ""
+    assert sentences.landing_map(older).endswith("outward).")
+
+
+@pytest.mark.parametrize(
+    ("byte_count", "words"),
+    [(0, "0 B"), (999, "999 B"), (1500, "1.5 kB"), (999_600, "1 MB"), (2_041_598_000, "2042 MB")],
+)
+def test_sizes_of_files_in_words(byte_count: int, words: str) -> None:
+    assert size(byte_count) == words
 
 
 def test_same_files_give_the_same_page(study_folder: Path, report: str) -> None:
