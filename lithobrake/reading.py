@@ -1,9 +1,10 @@
 """Reading files that anyone may have changed: whatever is wrong with one ends in a sentence that names it."""
 
+import csv
 import json
 import math
 import reprlib
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from os import PathLike
 from pathlib import Path
@@ -47,6 +48,20 @@ def parsed(text: str | bytes, form: Form) -> Any:
     value = json.loads(text, parse_int=_whole, parse_float=_finite, parse_constant=_finite)
     check(value, form)
     return value
+
+
+def read_rows(path: str | PathLike[str], columns: Iterable[str], remedy: str) -> list[dict[str, str]]:
+    """The rows of a CSV file by column. Raises DamagedFileError when it lacks one of these columns, or half a row."""
+    with reading(path, remedy), open(path, newline="", encoding="utf-8") as file:
+        table = csv.DictReader(file, restkey="", strict=True)
+        lacking = [name for name in columns if name not in (table.fieldnames or ())]
+        if lacking:
+            raise ValueError(f"it lacks the columns {', '.join(lacking)}")
+        rows = list(table)
+        for number, row in enumerate(rows, start=1):
+            if None in row.values() or "" in row:
+                raise ValueError(f"row {number} has another number of entries than the first line")
+        return rows
 
 
 def check(value: Any, form: Form, where: str = "") -> None:

@@ -2,6 +2,7 @@
 
 import os
 import shlex
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -57,8 +58,8 @@ def read_state(path: Path) -> FolderState:
     for number, (name, stage) in enumerate(notes.stages.items(), start=1):
         files = {file: file_state(path, notes, file, stage["key"]) for file in stage["files"]}
         stages += [StageState(number, name, stage["title"], files)] if files else []
-    edited = study and study.is_file() and content_hash(study) != notes.study["sha256"]
-    return FolderState(notes, stages, "", command, study if edited else None)
+    edited = study if study and _differs(study, notes.study["sha256"]) else None
+    return FolderState(notes, stages, "", command, edited)
 
 
 def report_page(path: Path) -> tuple[Path, str]:
@@ -92,12 +93,20 @@ def _state_of_copy(path: Path, sha256: str) -> FileState:
     copy = path / STUDY_FILE
     if not copy.is_file():
         return FileState.MISSING
-    return FileState.CURRENT if content_hash(copy) == sha256 else FileState.CHANGED
+    return FileState.CHANGED if _differs(copy, sha256) else FileState.CURRENT
+
+
+def _differs(file: Path, sha256: str) -> bool:
+    """Tell whether a file has other bytes; one that cannot be read does not tell."""
+    # Whoever may look at a folder may not be allowed to see the study file, or be on another machine.
+    with suppress(OSError):
+        return content_hash(file) != sha256
+    return False
 
 
 def _command(path: Path, study: Path | None) -> str:
     """The command that makes the files of a folder again."""
-    if study is None or not study.is_file():
+    if study is None or not os.path.isfile(study):
         return f"lithobrake run STUDY.toml --out {shlex.quote(str(path))}"
     inside = study.is_relative_to(Path.cwd())
     shown = os.path.relpath(study) if inside else str(study)

@@ -3,12 +3,12 @@
 import time
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 from lithobrake import study_file
 from lithobrake.campaign import DaskExecutor, LocalExecutor
 from lithobrake.pipeline.folder import StudyFolder
 from lithobrake.pipeline.job import Job, Progress
+from lithobrake.pipeline.notes import NAME
 from lithobrake.pipeline.owner import refuse_others_folder
 from lithobrake.pipeline.stages import make, setting
 from lithobrake.pipeline.state import grouped, read_state
@@ -54,24 +54,18 @@ def run_study(
 
 def write_report_again(path: Path) -> None:
     """Write the report of a study's folder again. Raises ValueError when its files do not belong together."""
-    _refuse_mixed(path)
+    if not (path / NAME).is_file():
+        # Nothing is to be made in a folder that is none of a study.
+        raise ValueError(read_state(path).unknown)
     folder = StudyFolder(path, f"no report can be written there; copy {path} to where you may write")
     with folder.alone():
-        # Another process may have gone on with the study in between.
-        stage = _refuse_mixed(path)
+        state = read_state(path)
+        wrong = grouped([stage for stage in state.stages if stage.name != "report"])
+        if state.unknown or wrong:
+            mixed = f"{path} has no files that make one report ({wrong}); make them with: {state.command}"
+            raise ValueError(state.unknown or mixed)
         from lithobrake.report import write_report
 
-        started = time.perf_counter()
+        started, stage = time.perf_counter(), state.notes.stages["report"]
         write_report(path)
         folder.note("report", stage["files"], stage["key"], time.perf_counter() - started)
-
-
-def _refuse_mixed(path: Path) -> dict[str, Any]:
-    """The stage of the report, where all that it reads is current."""
-    state = read_state(path)
-    wrong = grouped([stage for stage in state.stages if stage.name != "report"])
-    if state.unknown or wrong:
-        raise ValueError(
-            state.unknown or f"{path} has no files that make one report ({wrong}); make them with: {state.command}"
-        )
-    return state.notes.stages["report"]

@@ -1,6 +1,5 @@
 """The files of a study as the report reads them."""
 
-import csv
 import shlex
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -10,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lithobrake.reading import NUMBER, DamagedFileError, parsed, read_json, reading
+from lithobrake.reading import NUMBER, DamagedFileError, parsed, read_json, read_rows, reading
 from lithobrake.report.error_figure import Score
 from lithobrake.report.scene import Scene, read_scene
 
@@ -84,9 +83,9 @@ def read_results(folder: Path) -> Results:
     if has_scenes:
         _refuse_without(folder, ("landing.h5", "beds/bed_0.h5"))
     places = ("latitude_deg", "longitude_deg")
-    impacts = read("flights.csv", read_columns, {"status": "impact"}, *places, "facet")
+    impacts = read("flights.csv", read_columns, remedy, {"status": "impact"}, *places, "facet")
     rest = {
-        ground: read("rest.csv", read_columns, {"ground": ground, "status": "settled"}, *places)
+        ground: read("rest.csv", read_columns, remedy, {"ground": ground, "status": "settled"}, *places)
         for ground in ("soil", "hard")
     }
     vertices, faces = read("body.obj", read_body)
@@ -113,7 +112,7 @@ def read_summary(path: Path, remedy: str) -> Table:
     content = read_json(path, {"format_version": int, "study": dict, "results": dict, "provenance": dict}, remedy)
     if content["format_version"] != FORMAT_VERSION:
         raise DamagedFileError(
-            f"{path} has format {content['format_version']}; this version reads {FORMAT_VERSION}: {remedy}"
+            f"{path} has format {content['format_version']}; this version reads {FORMAT_VERSION}; {remedy}"
         )
     return Table(content, path, remedy)
 
@@ -163,15 +162,18 @@ def read_samples(path: Path) -> Samples:
     )
 
 
-def read_columns(path: Path, wanted: Mapping[str, str], *names: str) -> list[Array]:
+def read_columns(path: Path, remedy: str, wanted: Mapping[str, str], *names: str) -> list[Array]:
     """Columns of numbers of a CSV file, of the rows that have the wanted words, shape [row] each."""
-    with path.open(newline="", encoding="utf-8") as file:
-        rows = [row for row in csv.DictReader(file) if all(row[key] == word for key, word in wanted.items())]
-    return [np.array([float(row[name]) for row in rows]) for name in names]
+    rows = read_rows(path, (*wanted, *names), remedy)
+    chosen = [row for row in rows if all(row[key] == word for key, word in wanted.items())]
+    return [np.array([float(row[name]) for row in chosen]) for name in names]
 
 
 def read_body(path: Path) -> tuple[Array, NDArray[np.int64]]:
     """Vertices of the body [m], shape [vertex, 3], and its faces, counted from 0, shape [face, 3]."""
     lines = [line.split() for line in path.read_text(encoding="utf-8").splitlines()]
     vertices = np.array([[float(word) for word in words[1:4]] for words in lines if words[0] == "v"])
-    return vertices, np.array([[int(word) - 1 for word in words[1:4]] for words in lines if words[0] == "f"])
+    faces = np.array([[int(word) - 1 for word in words[1:4]] for words in lines if words[0] == "f"])
+    if vertices.ndim != 2 or faces.ndim != 2 or not 0 <= faces.min() <= faces.max() < len(vertices):
+        raise ValueError("it has no vertices, or faces without them")
+    return vertices, faces
