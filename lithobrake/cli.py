@@ -4,7 +4,7 @@ import errno
 import os
 import shlex
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated, NoReturn
@@ -20,7 +20,7 @@ app = typer.Typer(
 
 StudyPath = Annotated[Path, typer.Argument(metavar="STUDY.toml", help="The study file.", show_default=False)]
 OutPath = Annotated[
-    Path | None, typer.Option("--out", metavar="DIR", help="Folder of the study; absent: runs/<study name>.")
+    str | None, typer.Option("--out", metavar="DIR", help="Folder of the study; absent: runs/<study name>.")
 ]
 ExecutorName = Annotated[
     str, typer.Option("--executor", metavar="local|dask", help="Where runs are made: here, or on a Dask cluster.")
@@ -64,12 +64,9 @@ def _study_command(name: str, what: str, until: str | None = None) -> None:
         scheduler: Scheduler = None,
         logs: Logs = False,
     ) -> None:
-        _make(study, out, last, workers, _scheduler(executor, scheduler), logs)
-        folder = out or _default_folder(study)
-        if last == "report":
-            _print_results(folder)
-        else:
-            print(f"Done: {folder}")
+        folder = _default_folder(study) if out is None else _given_folder(out)
+        _make(study, folder, last, workers, _scheduler(executor, scheduler), logs)
+        _tell(_results(folder) if last == "report" else [f"Done: {folder}"])
 
     app.command(name, help=what)(command)
 
@@ -89,12 +86,10 @@ _study_command("rest", f"Follow samples from bounce to bounce until they rest. {
 def report(folder: StudyDirectory) -> None:
     """Write the report of a study again."""
     with _one_sentence():
-        if not (folder / "summary.json").is_file():
-            raise ValueError(f"{folder} has no summary.json; make it with: lithobrake run STUDY.toml --out {folder}")
-        from lithobrake.report import write_report
+        from lithobrake.pipeline import write_report_again
 
-        write_report(folder)
-        _print_results(folder)
+        write_report_again(folder)
+    _tell(_results(folder))
 
 
 @app.command()
@@ -104,7 +99,7 @@ def status(folder: StudyDirectory) -> None:
         from lithobrake.pipeline import study_status
 
         lines = study_status(folder)
-    print("\n".join(lines))
+    _tell(lines)
 
 
 @app.command()
@@ -116,30 +111,42 @@ def runs(
         from lithobrake.campaign import read_records, write_csv
 
         records = read_records(folder / "runs.sqlite")
-    # A reader that has enough (`| head`) closes the pipe, which is nobody's mistake: so this stands outside.
     if csv:
-        write_csv(records, sys.stdout)
+        with _reader_may_leave():
+            write_csv(records, sys.stdout)
         return
-    for entry in records:
-        wall = "" if entry.wall_s is None else f"{entry.wall_s:.4g} s"
-        print(f"{entry.key[:12]}  {entry.status:<8} {wall:>10}  {entry.outcome or entry.reason or ''}")
+    walls = ["" if entry.wall_s is None else f"{entry.wall_s:.4g} s" for entry in records]
+    _tell(
+        f"{entry.key[:12]}  {entry.status:<8} {wall:>10}  {entry.outcome or entry.reason or ''}"
+        for entry, wall in zip(records, walls, strict=True)
+    )
 
 
 @app.command()
 def view(folder: StudyDirectory) -> None:
     """Open the report of a study in the browser."""
     with _one_sentence():
-        page = (folder / "report" / "index.html").resolve()
-        if not page.is_file():
-            raise ValueError(f"{folder} has no report; make it with: lithobrake run STUDY.toml --out {folder}")
+        from lithobrake.pipeline import report_page
+
+        page, doubt = report_page(folder)
         import webbrowser
 
-        if not webbrowser.open(page.as_uri()):
-            print(f"No browser answers here; open this file: {page}")
+        opened = webbrowser.open(page.as_uri())
+    _tell([*([doubt] if doubt else []), *([] if opened else [f"No browser answers here; open this file: {page}"])])
 
 
 def _default_folder(study: Path) -> Path:
     return Path("runs") / study.stem
+
+
+def _given_folder(out: str) -> Path:
+    if not out.strip():
+        _leave(
+            "--out is empty, as a variable is that nobody has set, and would mean the present folder; "
+            "name a folder, or leave --out away to have runs/<study name>",
+            BAD_INPUT,
+        )
+    return Path(out)
 
 
 def _scheduler(executor: str, scheduler: str | None) -> str | None:
@@ -151,7 +158,7 @@ def _scheduler(executor: str, scheduler: str | None) -> str | None:
     return scheduler
 
 
-def _make(study: Path, out: Path | None, until: str, workers: int | None, scheduler: str | None, logs: bool) -> None:
+def _make(study: Path, out: Path, until: str, workers: int | None, scheduler: str | None, logs: bool) -> None:
     """Make the files of a study up to a stage, with two lines of progress."""
     # The bits of a least-squares fit depend on the threads of the linear algebra, which reads this when it is loaded.
     os.environ.update(OPENBLAS_NUM_THREADS="1", MKL_NUM_THREADS="1")
@@ -162,7 +169,7 @@ def _make(study: Path, out: Path | None, until: str, workers: int | None, schedu
         with StudyProgress() as shown:
             run_study(
                 study,
-                out or _default_folder(study),
+                out,
                 worker_count=workers,
                 scheduler=scheduler,
                 until=until,
@@ -173,14 +180,32 @@ def _make(study: Path, out: Path | None, until: str, workers: int | None, schedu
             )
 
 
-def _print_results(folder: Path) -> None:
-    """Say where the report is, and the five most telling numbers."""
-    import json
+def _results(folder: Path) -> list[str]:
+    """The five most telling numbers, and where the report is, in lines."""
+    with _one_sentence():
+        from lithobrake.reading import read_json
 
-    summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
-    for sentence in summary["results"]["headline"]:
-        print(f"  {sentence}")
-    print(f"Report: {(folder / 'report' / 'index.html').resolve()}")
+        form, remedy = {"results": {"headline": [str]}}, "give the same command again, and it is made anew"
+        summary = read_json(folder / "summary.json", form, remedy)
+    page = (folder / "report" / "index.html").resolve()
+    return [*(f"  {sentence}" for sentence in summary["results"]["headline"]), f"Report: {page}"]
+
+
+def _tell(lines: Iterable[str]) -> None:
+    with _reader_may_leave():
+        for line in lines:
+            print(line)
+
+
+@contextmanager
+def _reader_may_leave() -> Iterator[None]:
+    """Write to standard output as long as somebody reads it: whoever has enough (`| head`) makes no mistake."""
+    try:
+        yield
+        print(end="", flush=True)
+    except BrokenPipeError:
+        # What is still buffered would be tried again at the end, and fail again.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 @contextmanager

@@ -7,9 +7,9 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, Field
 
+from lithobrake.outputs import OUTPUTS as OUTPUTS
 from lithobrake.quantity import MaybeUncertain, Number, Numbers, Scalar, Uncertain, Whole
 from lithobrake.study_campaign import CampaignSection, Section, SolverSection
-from lithobrake.study_design import OUTPUTS as OUTPUTS
 from lithobrake.study_design import DesignSection, MonteCarloSection
 from lithobrake.study_flight import BUILT_IN_BODIES as BUILT_IN_BODIES
 from lithobrake.study_flight import Angle, FlightSection, RestSection, SiteSection

@@ -1,14 +1,12 @@
 """The tables of the study file that say which runs are made, what is fitted to them and how it is sampled."""
 
-from typing import Annotated, Literal, get_args
+from typing import Annotated, Literal
 
 from pydantic import Field, StrictBool
 
+from lithobrake.outputs import OUTPUTS, OutputName
 from lithobrake.quantity import Number, Whole
 from lithobrake.study_campaign import Section
-
-OutputName = Literal["speed_out", "elevation_out", "spin_out", "velocity_out_x", "velocity_out_y", "velocity_out_z"]
-OUTPUTS: tuple[OutputName, ...] = get_args(OutputName)
 
 Level = Annotated[int, Whole("", at_least=1, at_most=8)]
 Degree = Annotated[int, Whole("", at_least=1, at_most=15)]

@@ -69,6 +69,26 @@ def test_a_folder_that_cannot_be_written_is_one_sentence(tmp_path: Path, monkeyp
     assert "cannot be written" in refused(["run", "study.toml", "--out", str(tmp_path / "file" / "out")])
 
 
+@pytest.mark.parametrize("out", ["", " "])
+def test_an_empty_out_is_not_the_present_folder(out: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    RUNNER.invoke(app, ["new", "study"])
+    assert "--out is empty, as a variable is that nobody has set" in refused(["run", "study.toml", "--out", out])
+    assert [path.name for path in tmp_path.iterdir()] == ["study.toml"]
+
+
+def test_a_study_is_not_run_where_it_or_other_things_lie(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    RUNNER.invoke(app, ["new", "study"])
+    before = (tmp_path / "study.toml").read_bytes()
+    assert "study.toml lies in ." in refused(["run", "study.toml", "--out", "."])
+    (tmp_path / "mine").mkdir()
+    (tmp_path / "mine" / "body.obj").write_text("v 0 0 0")
+    assert "mine holds body.obj, and no study made it" in refused(["run", "study.toml", "--out", "mine"])
+    assert sorted(path.name for path in tmp_path.rglob("*")) == ["body.obj", "mine", "study.toml"]
+    assert (tmp_path / "study.toml").read_bytes() == before
+
+
 @pytest.mark.skipif(os.name != "posix" or os.geteuid() == 0, reason="the administrator may write anywhere")
 def test_a_read_only_folder_is_one_sentence(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)

@@ -14,7 +14,7 @@ from types import TracebackType
 from typing import Any, Self
 
 from lithobrake.atomic import locked
-from lithobrake.campaign.record import COLUMNS, Record, lock_path, record, utc_now
+from lithobrake.campaign.record import COLUMNS, LEFT, Record, lock_path, reading_ledger, record, utc_now
 
 FORMAT_VERSION = 2
 
@@ -51,26 +51,38 @@ class Ledger:
             self._note = self._open.enter_context(locked(lock_path(self.path), refusal))
             self._database = sqlite3.connect(self.path, isolation_level=None)
             self._open.callback(self._database.close)
-            self._prepare()
+            # Nothing is written before the file has been found to be a ledger.
+            self._prepare(self._format())
         except (sqlite3.Error, OSError) as error:
             self._open.close()
-            raise ValueError(
-                f"{self.path} cannot be used as a ledger ({error}); choose a folder that can be written and has room"
-            ) from error
+            busy = isinstance(error, sqlite3.OperationalError | OSError)
+            remedy = "choose a folder that can be written and has room" if busy else LEFT
+            raise ValueError(f"{self.path} cannot be used as a ledger ({error}); {remedy}") from error
         except BaseException:
             self._open.close()
             raise
 
-    def _prepare(self) -> None:
-        # A finished run must survive a power cut: the log is synced at each commit.
-        self._database.execute("PRAGMA journal_mode = WAL")
-        self._database.execute("PRAGMA synchronous = FULL")
-        version = self._database.execute("PRAGMA user_version").fetchone()[0]
+    def _format(self) -> int:
+        """The format of the ledger, 0 for a new one. Raises ValueError for a file that is no ledger."""
+        version: int = self._database.execute("PRAGMA user_version").fetchone()[0]
         if version not in (0, 1, FORMAT_VERSION):
             raise ValueError(
                 f"{self.path} has ledger format {version}; this version reads 1 to {FORMAT_VERSION}: "
                 "move the file away, or use the version of lithobrake that wrote it"
             )
+        tables = self._database.execute("SELECT name FROM sqlite_master WHERE type = 'table'").fetchall()
+        columns = {row[1] for row in self._database.execute("PRAGMA table_info(runs)")}
+        lacking = sorted(set(COLUMNS) - columns - ({"attempts", "started"} if version == 1 else set()))
+        if lacking and (version or tables):
+            raise ValueError(f"{self.path} cannot be used as a ledger (it lacks {', '.join(lacking)}); {LEFT}")
+        return version
+
+    def _prepare(self, version: int) -> None:
+        # A finished run must survive a power cut: the log is synced at each commit.
+        self._database.execute("PRAGMA journal_mode = WAL")
+        self._database.execute("PRAGMA synchronous = FULL")
+        if version == FORMAT_VERSION:
+            return
         with self._database:
             self._database.execute("BEGIN IMMEDIATE")
             for statement in _FROM_FIRST if version == 1 else (_SCHEMA,):
@@ -119,12 +131,16 @@ class Ledger:
     def find(self, keys: Iterable[str]) -> dict[str, Record]:
         """The runs with these keys that have ended, by key."""
         wanted = set(keys)
-        rows = self._database.execute(f"SELECT {', '.join(COLUMNS)} FROM runs WHERE status IN ('done', 'failed')")
-        return {row[0]: record(row) for row in rows if row[0] in wanted}
+        with reading_ledger(self.path):
+            rows = self._database.execute(f"SELECT {', '.join(COLUMNS)} FROM runs WHERE status IN ('done', 'failed')")
+            return {row[0]: record(row) for row in rows if row[0] in wanted}
 
     @contextmanager
     def _transaction(self) -> Iterator[None]:
-        """Change the file, or leave it as it was. Raises OSError when the disk is full or does not answer."""
+        """Change the file, or leave it as it was.
+
+        Raises OSError when the disk is full or does not answer, ValueError when the file is damaged.
+        """
         try:
             with self._database:
                 self._database.execute("BEGIN IMMEDIATE")
@@ -134,6 +150,8 @@ class Ledger:
                 f"{self.path} cannot be written ({error}); every run that had ended before is kept: make room on the "
                 "disk, or end what holds the file, and give the same command again"
             ) from error
+        except sqlite3.DatabaseError as error:
+            raise ValueError(f"{self.path} cannot be used as a ledger ({error}); {LEFT}") from error
 
     def close(self) -> None:
         """Close the file."""

@@ -1,8 +1,8 @@
 """One run as the ledger keeps it, and the ledger as another process reads it."""
 
 import csv
-import json
 import sqlite3
+from contextlib import AbstractContextManager, closing
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from os import PathLike
@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any, TextIO
 
 from lithobrake.atomic import lock_holder
+from lithobrake.reading import NUMBER, check, parsed, reading
 
 
 @dataclass(frozen=True)
@@ -35,13 +36,27 @@ class Record:
 
 
 COLUMNS = tuple(Record.__dataclass_fields__)
+# Runs may have taken days: no damage is a reason to write over them.
+LEFT = "it is left as it is: put a copy of it back, or move it away to have all its runs made again"
 _OBJECTS = ("inputs", "outputs", "draws")
+_FORM = {
+    "key": str, "status": str, "outcome": str | None, "inputs": {str: NUMBER}, "outputs": {str: NUMBER}, "draws": dict,
+    "seed": int, "replicate": int, "attempts": int, "reason": str | None, "wall_s": NUMBER | None,
+    "cpu_s": NUMBER | None, "host": str | None, "version": str, "started": str | None, "ended": str | None,
+}  # fmt: skip
+
+
+def reading_ledger(path: Path) -> AbstractContextManager[None]:
+    """Turn whatever a damaged ledger makes its reader raise into DamagedFileError."""
+    return reading(path, LEFT, sqlite3.Error)
 
 
 def record(row: tuple[Any, ...]) -> Record:
-    """A row of the ledger, its columns in the order of COLUMNS."""
+    """A row of the ledger, its columns in the order of COLUMNS. Raises ValueError for one that no campaign wrote."""
     values = dict(zip(COLUMNS, row, strict=True))
-    return Record(**(values | {name: json.loads(values[name] or "{}") for name in _OBJECTS}))
+    values |= {name: parsed(values[name] or "{}", dict) for name in _OBJECTS}
+    check(values, _FORM, f"run {values['key']}")
+    return Record(**values)
 
 
 def utc_now() -> str:
@@ -52,21 +67,19 @@ def utc_now() -> str:
 def read_records(path: str | PathLike[str]) -> list[Record]:
     """All runs of a ledger in the order of their ends, the unended last; a campaign may be at work on it meanwhile.
 
-    Raises ValueError when there is no ledger at the path.
+    Raises ValueError when there is no ledger at the path, or a damaged one.
     """
     path = Path(path)
+    if not path.is_file():
+        raise ValueError(f"{path} is not there; name the folder of a study that ran")
     # Without a log beside it the file is complete; so it can be read where nothing may be written, too.
     whole = "" if path.with_name(f"{path.name}-wal").exists() else "&immutable=1"
-    try:
-        database = sqlite3.connect(f"{path.absolute().as_uri()}?mode=ro{whole}", uri=True)
-        try:
-            order = "ended IS NULL OR status IN ('queued', 'running'), ended, key"
-            rows = database.execute(f"SELECT {', '.join(COLUMNS)} FROM runs ORDER BY {order}").fetchall()
-        finally:
-            database.close()
-    except sqlite3.Error as error:
-        raise ValueError(f"{path} cannot be read as a ledger ({error}); name the folder of a study that ran") from error
-    return [record(row) for row in rows]
+    order = "ended IS NULL OR status IN ('queued', 'running'), ended, key"
+    with (
+        reading_ledger(path),
+        closing(sqlite3.connect(f"{path.absolute().as_uri()}?mode=ro{whole}", uri=True)) as database,
+    ):
+        return [record(row) for row in database.execute(f"SELECT {', '.join(COLUMNS)} FROM runs ORDER BY {order}")]
 
 
 def lock_path(path: Path) -> Path:

@@ -14,6 +14,7 @@ from lithobrake.chaos.germ import Distribution
 from lithobrake.chaos.kinds import distribution
 from lithobrake.chaos.polynomials import Array
 from lithobrake.chaos.surrogate import Surrogate
+from lithobrake.reading import UNREADABLE
 
 Kept = TypeVar("Kept")
 
@@ -92,7 +93,7 @@ def read(kind: str, build: Callable[[dict[str, Any]], Kept], path: str | os.Path
     name = Path(path)
     try:
         content = json.loads(name.read_text(encoding="utf-8"))
-    except (json.JSONDecodeError, UnicodeDecodeError) as error:
+    except (ValueError, RecursionError) as error:
         raise ValueError(f"{name} is not JSON ({error}): give a file that save wrote") from None
     if not isinstance(content, dict) or content.get("format") != kind:
         raise ValueError(f"{name} is not a {kind}: give a file that save wrote")
@@ -105,7 +106,7 @@ def read(kind: str, build: Callable[[dict[str, Any]], Kept], path: str | os.Path
         )
     try:
         return build(content)
-    except (KeyError, TypeError, ValueError) as error:
+    except UNREADABLE as error:
         raise ValueError(f"{name} is damaged ({error}): save it again") from error
 
 

@@ -1,9 +1,29 @@
 """A study from its file to its report, stage by stage."""
 
-from lithobrake.pipeline.folder import StudyFolder
-from lithobrake.pipeline.job import Job
-from lithobrake.pipeline.stages import STAGES, Stage, make, stage_keys
-from lithobrake.pipeline.status import study_status
-from lithobrake.pipeline.study_run import run_study
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
 
-__all__ = ["STAGES", "Job", "Stage", "StudyFolder", "make", "run_study", "stage_keys", "study_status"]
+if TYPE_CHECKING:
+    from lithobrake.pipeline.folder import StudyFolder
+    from lithobrake.pipeline.job import Job
+    from lithobrake.pipeline.stages import STAGES, Stage, make, stage_keys
+    from lithobrake.pipeline.state import report_page
+    from lithobrake.pipeline.status import study_status
+    from lithobrake.pipeline.study_run import run_study, write_report_again
+
+_HOME = {
+    "STAGES": "stages", "Job": "job", "Stage": "stages", "StudyFolder": "folder", "make": "stages",
+    "report_page": "state", "run_study": "study_run", "stage_keys": "stages", "study_status": "status",
+    "write_report_again": "study_run",
+}  # fmt: skip
+__all__ = [
+    "STAGES", "Job", "Stage", "StudyFolder", "make", "report_page", "run_study", "stage_keys", "study_status",
+    "write_report_again",
+]  # fmt: skip
+
+
+def __getattr__(name: str) -> Any:
+    # Who only looks at a study, as a second terminal does every few seconds, does not wait for what makes one.
+    if name not in _HOME:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(f"{__name__}.{_HOME[name]}"), name)

@@ -11,7 +11,7 @@ from lithobrake.campaign import Runs, missing
 from lithobrake.pipeline.folder import json_hash
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.surface import touchdown_reads
-from lithobrake.pipeline.touchdowns import drawn_reads, touchdowns
+from lithobrake.pipeline.touchdowns import drawn_reads, drawn_rows, touchdown_keys, touchdowns
 from lithobrake.quantity import uncertain
 from lithobrake.study import OUTPUTS, Study
 
@@ -113,11 +113,17 @@ def replicate_count(study: Study, design: str) -> int:
 
 
 def design_runs(job: Job, design: str, kept: Sequence[str] = ()) -> DesignRuns:
-    """Make the runs of a design, all points once, then again if asked; those that the ledger has are read from it."""
+    """Make the runs of a design, all points once, then again if asked; those that the ledger has are read from it.
+
+    Which runs they are is noted before they are made, so that whoever looks can tell them from all others.
+    """
     inputs, x = tuple(design_inputs(job.study)), points(job.study, design, kept)
     count, title = replicate_count(job.study, design), f"{design.replace('_', ' ')} runs"
     titles = [f"{title}, {number} of {count} times" if count > 1 else title for number in range(1, count + 1)]
-    runs = [touchdowns(job, inputs, x, words, replicate) for replicate, words in enumerate(titles)]
+    rows = [drawn_rows(job.study, inputs, x, replicate) for replicate in range(count)]
+    keys = [key for replicate, one in enumerate(rows) for key in touchdown_keys(job.study, one, replicate)]
+    job.folder.note_runs(design, keys)
+    runs = [touchdowns(job, rows[replicate], words, replicate) for replicate, words in enumerate(titles)]
     records = [record for one in runs for record in one.records]
     return DesignRuns(inputs, np.tile(x, (count, 1)), Runs(records, sum(one.reused_count for one in runs)))
 

@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from lithobrake.atomic import atomic_path
-from lithobrake.pipeline.folder import StudyFolder, content_hash
+from lithobrake.pipeline.folder import AGAIN, StudyFolder, content_hash
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.samples import Samples, sampling_seed
 from lithobrake.quantity import uncertain
+from lithobrake.reading import read_rows
 from lithobrake.site import SITE_KEYS, frames, site_body, site_medians, site_values, site_warning
 from lithobrake.study import BUILT_IN_BODIES, Study
 
@@ -188,6 +189,5 @@ def flight_numbers(flights: Sequence[dict[str, str]]) -> dict[str, Any]:
 
 
 def read_table(folder: StudyFolder, name: str) -> list[dict[str, str]]:
-    """The rows of a CSV file of the folder by column."""
-    with (folder / name).open(newline="", encoding="utf-8") as file:
-        return list(csv.DictReader(file))
+    """The rows of a CSV file of samples by column. Raises ValueError for a damaged file."""
+    return read_rows(folder / name, ("sample", "status"), AGAIN)

@@ -8,12 +8,13 @@ import numpy as np
 
 from lithobrake.atomic import atomic_path
 from lithobrake.pipeline.expansions import DESIGNS, DesignRuns, design_inputs, design_runs
-from lithobrake.pipeline.folder import StudyFolder, json_hash
+from lithobrake.pipeline.folder import AGAIN, StudyFolder, json_hash
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.outgoing import outgoing
 from lithobrake.pipeline.scatter import Scatter
 from lithobrake.pipeline.solver import OUTCOMES
 from lithobrake.quantity import median
+from lithobrake.reading import reading
 from lithobrake.study import Study
 
 if TYPE_CHECKING:
@@ -100,10 +101,10 @@ class Samples:
 
     @classmethod
     def load(cls, folder: StudyFolder) -> "Samples":
-        """Read samples.h5."""
+        """Read samples.h5. Raises ValueError for a damaged file."""
         import h5py
 
-        with h5py.File(folder / "samples.h5") as file:
+        with reading(folder / "samples.h5", AGAIN), h5py.File(folder / "samples.h5") as file:
             arrays = {name: data[()] for name, data in file.items()}
             return cls(list(file.attrs["input_names"]), list(file.attrs["output_names"]), **arrays)
 

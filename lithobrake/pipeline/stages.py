@@ -89,6 +89,17 @@ def stage_keys(study: Study) -> dict[str, str]:
     return keys
 
 
+def setting(study: Study) -> dict[str, dict[str, Any]]:
+    """The stages of a study as its folder notes them, so that whoever reads its files need not know how they are made.
+
+    By name: title, key, and the files that it writes.
+    """
+    keys = stage_keys(study)
+    return {
+        stage.name: {"title": stage.title, "key": keys[stage.name], "files": stage.files(study)} for stage in STAGES
+    }
+
+
 def make(job: Job, until: str, begin: Callable[[str, int, int], None]) -> None:
     """Make every file up to and with a stage that is not there, or no longer what the study says.
 

@@ -1,14 +1,17 @@
-"""Running a study file in a folder."""
+"""Running a study file in a folder, and writing the report of a folder again."""
 
+import time
 from collections.abc import Callable
 from pathlib import Path
 
 from lithobrake import study_file
-from lithobrake.atomic import atomic_path
 from lithobrake.campaign import DaskExecutor, LocalExecutor
 from lithobrake.pipeline.folder import StudyFolder
 from lithobrake.pipeline.job import Job, Progress
-from lithobrake.pipeline.stages import make
+from lithobrake.pipeline.notes import NAME
+from lithobrake.pipeline.owner import refuse_others_folder
+from lithobrake.pipeline.stages import make, setting
+from lithobrake.pipeline.state import grouped, read_state
 
 
 def run_study(
@@ -28,13 +31,14 @@ def run_study(
     worker_count: processes here (None: one for each core); scheduler: address of a Dask scheduler, whose workers make
     the runs instead. begin(title, number, count) is called as each stage begins, progress(done, total, what, detail)
     within it, say with a sentence that the user should read. keeps_logs: each run leaves a log in the folder.
-    Raises ValueError for a study file that is refused, a folder that cannot be written, too few runs with outputs.
+    Raises ValueError for a study file that is refused, a folder that is not the study's or cannot be written, too few
+    runs with outputs.
     """
     study, tables = study_file.read(path), study_file.load(path)
+    refuse_others_folder(path, out)
     folder = StudyFolder(out)
     with folder.alone() as note, DaskExecutor(scheduler) if scheduler else LocalExecutor(worker_count) as executor:
-        with atomic_path(folder / "study.toml") as draft:
-            draft.write_bytes(path.read_bytes())
+        folder.begin(path, setting(study), say)
 
         def begin_and_note(title: str, number: int, count: int) -> None:
             note(stage=title, number=number, count=count)
@@ -46,3 +50,22 @@ def run_study(
             # What is under way would be waited for otherwise; every finished run is in the ledger already.
             executor.shutdown(cancel_futures=True)
             raise
+
+
+def write_report_again(path: Path) -> None:
+    """Write the report of a study's folder again. Raises ValueError when its files do not belong together."""
+    if not (path / NAME).is_file():
+        # Nothing is to be made in a folder that is none of a study.
+        raise ValueError(read_state(path).unknown)
+    folder = StudyFolder(path, f"no report can be written there; copy {path} to where you may write")
+    with folder.alone():
+        state = read_state(path)
+        wrong = grouped([stage for stage in state.stages if stage.name != "report"])
+        if state.unknown or wrong:
+            mixed = f"{path} has no files that make one report ({wrong}); make them with: {state.command}"
+            raise ValueError(state.unknown or mixed)
+        from lithobrake.report import write_report
+
+        started, stage = time.perf_counter(), state.notes.stages["report"]
+        write_report(path)
+        folder.note("report", stage["files"], stage["key"], time.perf_counter() - started)

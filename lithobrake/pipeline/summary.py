@@ -25,7 +25,7 @@ from lithobrake.study import BUILT_IN_BODIES, Study
 if TYPE_CHECKING:
     from lithobrake.chaos import Surrogate
 
-FORMAT_VERSION = 1
+FORMAT_VERSION = 2
 UNITS = {
     "speed_out": "m/s", "elevation_out": "rad", "spin_out": "rad/s",
     "velocity_out_x": "m/s", "velocity_out_y": "m/s", "velocity_out_z": "m/s",

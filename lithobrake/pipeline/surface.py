@@ -50,6 +50,7 @@ def pour_beds(job: Job) -> None:
     sizes = study.bed.diameter.model_dump()
     if sizes["distribution"] == "constant":
         sizes = {"distribution": "constant", "lower": sizes["value"], "upper": sizes["value"]}
+    (job.folder / "beds").mkdir(exist_ok=True)
     settle_gravity = study.bed.settle_gravity or values["surface.gravity"]
     for index, name in enumerate(bed_files(study)):
         if name not in job.wanted:

@@ -1,8 +1,7 @@
 """The files of a study as the report reads them."""
 
-import csv
-import json
-from collections.abc import Mapping
+import shlex
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -10,11 +9,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from lithobrake.reading import NUMBER, DamagedFileError, parsed, read_json, read_rows, reading
 from lithobrake.report.error_figure import Score
 from lithobrake.report.scene import Scene, read_scene
 
 Array = NDArray[np.float64]
 FILES = ("summary.json", "scores.json", "samples.h5", "flights.csv", "rest.csv", "body.obj", "study.toml")
+FORMAT_VERSION = 2
 
 
 @dataclass(frozen=True)
@@ -52,29 +53,51 @@ class Results:
     rest: dict[str, tuple[Array, Array]]
 
 
+class Table(dict[str, Any]):
+    """A table of summary.json; a key that it lacks, as where another version wrote it, is named with the file."""
+
+    def __init__(self, content: Mapping[str, Any], path: Path, remedy: str, inside: str = "") -> None:
+        """Take over a table and those in it; inside: its dotted name with a point, empty for the outermost."""
+        super().__init__(content)
+        self._lacks = f"{path} lacks {inside}{{key}}; {remedy}"
+        for key, value in content.items():
+            if isinstance(value, dict):
+                self[key] = Table(value, path, remedy, f"{inside}{key}.")
+
+    def __missing__(self, key: str) -> Any:
+        """Raise DamagedFileError for a key that is not there."""
+        raise DamagedFileError(self._lacks.format(key=key))
+
+
 def read_results(folder: Path) -> Results:
-    """Read a study's folder. Raises ValueError that names the file when one is missing."""
+    """Read a study's folder. Raises ValueError that names the file when one is missing or damaged."""
     _refuse_without(folder, FILES)
-    summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    remedy = f"make it again with: lithobrake run STUDY.toml --out {shlex.quote(str(folder))}"
+
+    def read(name: str, reader: Callable[..., Any], *arguments: Any) -> Any:
+        with reading(folder / name, remedy):
+            return reader(folder / name, *arguments)
+
+    summary = read_summary(folder / "summary.json", remedy)
     has_scenes = not summary["study"].get("solver", {}).get("command")
     if has_scenes:
         _refuse_without(folder, ("landing.h5", "beds/bed_0.h5"))
-    impacts = read_columns(folder / "flights.csv", {"status": "impact"}, "latitude_deg", "longitude_deg", "facet")
     places = ("latitude_deg", "longitude_deg")
+    impacts = read("flights.csv", read_columns, remedy, {"status": "impact"}, *places, "facet")
     rest = {
-        ground: read_columns(folder / "rest.csv", {"ground": ground, "status": "settled"}, *places)
+        ground: read("rest.csv", read_columns, remedy, {"ground": ground, "status": "settled"}, *places)
         for ground in ("soil", "hard")
     }
-    vertices, faces = read_body(folder / "body.obj")
+    vertices, faces = read("body.obj", read_body)
     return Results(
         study=summary["study"],
         results=summary["results"],
         provenance=summary["provenance"],
-        study_text=(folder / "study.toml").read_text(encoding="utf-8"),
-        bed=read_scene(folder / "beds/bed_0.h5", has_lander=False) if has_scenes else None,
-        landing=read_scene(folder / "landing.h5", has_lander=True) if has_scenes else None,
-        scores=read_scores(folder / "scores.json"),
-        samples=read_samples(folder / "samples.h5"),
+        study_text=read("study.toml", lambda path: path.read_text(encoding="utf-8")),
+        bed=read("beds/bed_0.h5", read_scene, False) if has_scenes else None,
+        landing=read("landing.h5", read_scene, True) if has_scenes else None,
+        scores=read("scores.json", read_scores),
+        samples=read("samples.h5", read_samples),
         latitude=impacts[0],
         longitude=impacts[1],
         facet=impacts[2].astype(np.int64),
@@ -82,6 +105,16 @@ def read_results(folder: Path) -> Results:
         body_faces=faces,
         rest={ground: (columns[0], columns[1]) for ground, columns in rest.items()},
     )
+
+
+def read_summary(path: Path, remedy: str) -> Table:
+    """The tables of summary.json. Raises DamagedFileError for a damaged file, and for another format."""
+    content = read_json(path, {"format_version": int, "study": dict, "results": dict, "provenance": dict}, remedy)
+    if content["format_version"] != FORMAT_VERSION:
+        raise DamagedFileError(
+            f"{path} has format {content['format_version']}; this version reads {FORMAT_VERSION}; {remedy}"
+        )
+    return Table(content, path, remedy)
 
 
 def _refuse_without(folder: Path, needed: tuple[str, ...]) -> None:
@@ -94,7 +127,11 @@ def _refuse_without(folder: Path, needed: tuple[str, ...]) -> None:
 
 def read_scores(path: Path) -> dict[str, dict[str, Score]]:
     """Scores by stage and output; a score that does not exist is None."""
-    content = json.loads(path.read_text(encoding="utf-8"))
+    known, absent = (
+        {"rmse": NUMBER, "std": NUMBER},
+        {"ape": [NUMBER | None], "mape": NUMBER | None, "q2": NUMBER | None},
+    )
+    content = parsed(path.read_text(encoding="utf-8"), {str: {str: known | absent}})
     return {
         stage: {
             name: Score(
@@ -127,15 +164,18 @@ def read_samples(path: Path) -> Samples:
     )
 
 
-def read_columns(path: Path, wanted: Mapping[str, str], *names: str) -> list[Array]:
+def read_columns(path: Path, remedy: str, wanted: Mapping[str, str], *names: str) -> list[Array]:
     """Columns of numbers of a CSV file, of the rows that have the wanted words, shape [row] each."""
-    with path.open(newline="", encoding="utf-8") as file:
-        rows = [row for row in csv.DictReader(file) if all(row[key] == word for key, word in wanted.items())]
-    return [np.array([float(row[name]) for row in rows]) for name in names]
+    rows = read_rows(path, (*wanted, *names), remedy)
+    chosen = [row for row in rows if all(row[key] == word for key, word in wanted.items())]
+    return [np.array([float(row[name]) for row in chosen]) for name in names]
 
 
 def read_body(path: Path) -> tuple[Array, NDArray[np.int64]]:
     """Vertices of the body [m], shape [vertex, 3], and its faces, counted from 0, shape [face, 3]."""
     lines = [line.split() for line in path.read_text(encoding="utf-8").splitlines()]
     vertices = np.array([[float(word) for word in words[1:4]] for words in lines if words[0] == "v"])
-    return vertices, np.array([[int(word) - 1 for word in words[1:4]] for words in lines if words[0] == "f"])
+    faces = np.array([[int(word) - 1 for word in words[1:4]] for words in lines if words[0] == "f"])
+    if vertices.ndim != 2 or faces.ndim != 2 or not 0 <= faces.min() <= faces.max() < len(vertices):
+        raise ValueError("it has no vertices, or faces without them")
+    return vertices, faces

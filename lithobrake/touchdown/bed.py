@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from lithobrake.atomic import atomic_path
 from lithobrake.dem import ConvexHull, Material, World
+from lithobrake.reading import reading
 
 Floats = NDArray[np.float64]
 FORMAT_VERSION = 1
@@ -83,12 +84,12 @@ class Bed:
 
     @staticmethod
     def load(path: str | os.PathLike[str]) -> "Bed":
-        """Read a bed. Raises ValueError where the file is not one that this version reads."""
+        """Read a bed. Raises ValueError where the file is damaged, or not one that this version reads."""
         import h5py
 
-        with h5py.File(path, "r") as file:
+        with reading(path, "pour it again"), h5py.File(path, "r") as file:
             if file.attrs.get("format") != "lithobrake bed" or file.attrs["format_version"] > FORMAT_VERSION:
-                raise ValueError(f"{path} is not a bed of format_version up to {FORMAT_VERSION}: pour it again")
+                raise ValueError(f"it is not a bed of format_version up to {FORMAT_VERSION}")
             scalars = {name: plain(file.attrs[name]) for name in SCALARS}
             groups: dict[str, Any] = {g: {n: file[g][n][()] for n in file.get(g, {})} for g in ("frames", "history")}
             arrays: dict[str, Any] = {name: file[name][()] for name in ("position", "orientation", "diameter")}

@@ -110,7 +110,7 @@ def test_runs_as_csv(tmp_path: Path) -> None:
 
 
 def test_a_folder_without_a_ledger_is_one_sentence(tmp_path: Path) -> None:
-    with pytest.raises(ValueError, match="cannot be read as a ledger"):
+    with pytest.raises(ValueError, match=r"runs\.sqlite is not there"):
         read_records(tmp_path / "runs.sqlite")
 
 

@@ -5,6 +5,7 @@ import io
 import json
 import math
 import os
+import shutil
 import subprocess
 import sys
 from datetime import datetime, timedelta
@@ -70,6 +71,8 @@ def test_a_higher_order_and_more_test_runs_reuse_what_is_still_valid_and_say_so(
     text = (EXAMPLES / "ball_on_plate.toml").read_text().replace("ball_on_plate.py", str(EXAMPLES / "ball_on_plate.py"))
     more = text.replace("screening_level = 2", "screening_level = 3").replace("test_count = 10", "test_count = 12")
     (tmp_path / "more.toml").write_text(more)
+    # The folder goes over to the study under its new name.
+    shutil.copy(tmp_path / "more.toml", plate / "study.toml")
     before = len(read_records(plate / "runs.sqlite"))
     ended = lithobrake("test", tmp_path / "more.toml", "--out", plate, "--workers", 2)
     assert ended.returncode == 0, ended.stderr

@@ -63,9 +63,9 @@ def fixed(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder / "out"
 
 
-def test_an_input_that_becomes_uncertain_reuses_the_runs_at_its_median_and_says_so(fixed: Path, tmp_path: Path) -> None:
+def test_an_input_that_becomes_uncertain_reuses_the_runs_at_its_median_and_says_so(fixed: Path) -> None:
     before = what_came(read_records(fixed / "runs.sqlite"))
-    said = said_by("screen", write_study(tmp_path, {}), "--out", fixed, "--workers", 1)
+    said = said_by("screen", write_study(fixed.parent, {}), "--out", fixed, "--workers", 1)
     # Three inputs have 7 nodes, four have 9: the two new ones are the ends of the friction.
     assert "screening: 7 of 9 runs were known and are reused" in said
     after = what_came(read_records(fixed / "runs.sqlite"))
@@ -73,10 +73,10 @@ def test_an_input_that_becomes_uncertain_reuses_the_runs_at_its_median_and_says_
     assert {key: after[key] for key in before} == before
 
 
-def test_one_more_bed_reuses_the_runs_that_stay_on_theirs_and_says_so(fixed: Path, tmp_path: Path) -> None:
+def test_one_more_bed_reuses_the_runs_that_stay_on_theirs_and_says_so(fixed: Path) -> None:
     before = what_came(read_records(fixed / "runs.sqlite"))
     changes = {FRICTION: "friction = 0.225", "grain_count = 100": "grain_count = 100\nbed_count = 2"}
-    said = said_by("screen", write_study(tmp_path, changes), "--out", fixed, "--workers", 1)
+    said = said_by("screen", write_study(fixed.parent, changes), "--out", fixed, "--workers", 1)
     after = what_came(read_records(fixed / "runs.sqlite"))
     moved = [entry for entry in read_records(fixed / "runs.sqlite") if entry.inputs["bed"] == 1.0]
     assert 0 < len(moved) < 7
@@ -84,10 +84,10 @@ def test_one_more_bed_reuses_the_runs_that_stay_on_theirs_and_says_so(fixed: Pat
     assert {key: after[key] for key in before} == before
 
 
-def test_one_more_run_at_every_point_reuses_the_first_ones_and_says_so(fixed: Path, tmp_path: Path) -> None:
+def test_one_more_run_at_every_point_reuses_the_first_ones_and_says_so(fixed: Path) -> None:
     before = what_came(read_records(fixed / "runs.sqlite"))
     changes = {FRICTION: "friction = 0.225", "screening_level = 1": "screening_level = 1\nreplicate_count = 2"}
-    said = said_by("screen", write_study(tmp_path, changes), "--out", fixed, "--workers", 1)
+    said = said_by("screen", write_study(fixed.parent, changes), "--out", fixed, "--workers", 1)
     assert "screening: 7 of 14 runs were known and are reused" in said
     after = read_records(fixed / "runs.sqlite")
     assert len(after) == len(before) + 7
@@ -203,9 +203,10 @@ def test_a_folder_that_may_only_be_read_is_refused_in_one_sentence_and_its_runs_
         assert said[0].startswith(f"{out} cannot be written (")
         assert said[0].endswith("choose another folder with --out")
         assert said[1].startswith(f"{out / 'runs.sqlite'} cannot be used as a ledger (")
-        assert said[2:5] == [
-            "7",
-            f"{out}: nobody is at work; there is no report yet",
+        assert said[2:4] == ["7", f"{out}: nobody is at work; there is no report yet"]
+        assert said[4] == "1 of 8 stages are current: screening"
+        assert said[5].startswith("not there: refined.json, scores.json, ")
+        assert said[6:7] == [
             "7 runs: 7 done, 0 running, 0 failed",
         ]
         assert {path: path.read_bytes() for path in out.rglob("*") if path.is_file()} == before

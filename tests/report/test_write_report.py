@@ -5,6 +5,7 @@ import re
 import shutil
 import subprocess
 import sys
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -127,6 +128,48 @@ def test_missing_files_are_named_at_once(study_folder: Path, tmp_path: Path) -> 
     (folder / "flights.csv").unlink()
     with pytest.raises(ValueError, match=r"scores\.json, flights\.csv.*run the study to its end"):
         write_report(folder)
+
+
+def without(name: str) -> Callable[[Path], None]:
+    def remove(path: Path) -> None:
+        with h5py.File(path, "r+") as file:
+            del file[name]
+
+    return remove
+
+
+DAMAGED: list[tuple[str, Callable[[Path], object]]] = [
+    ("summary.json", lambda path: path.write_text("")),
+    ("summary.json", lambda path: path.write_text("[]")),
+    ("summary.json", lambda path: path.write_text("[" * 3000)),
+    (
+        "summary.json",
+        lambda path: path.write_text(path.read_text().replace('"format_version": 1', '"format_version": 7')),
+    ),
+    ("summary.json", lambda path: path.write_text(path.read_text().replace('"remains"', '"stays"'))),
+    ("scores.json", lambda path: path.write_text('{"refined": 3}')),
+    ("flights.csv", lambda path: path.write_text("")),
+    ("flights.csv", lambda path: path.write_text(path.read_text()[:-9])),
+    ("rest.csv", lambda path: path.write_text("a,b\n1,2\n")),
+    ("body.obj", lambda path: path.write_text("\n")),
+    ("body.obj", lambda path: path.write_text("v 0 0 0\nf 1 2 3\n")),
+    ("samples.h5", lambda path: path.write_bytes(path.read_bytes()[:2000])),
+    ("samples.h5", without("stays")),
+    ("landing.h5", without("frames/position")),
+    ("beds/bed_0.h5", lambda path: path.write_bytes(b"")),
+]
+
+
+@pytest.mark.parametrize(("name", "damage"), DAMAGED)
+def test_a_damaged_file_is_one_sentence(
+    name: str, damage: Callable[[Path], object], study_folder: Path, tmp_path: Path
+) -> None:
+    folder = tmp_path / "damaged"
+    shutil.copytree(study_folder, folder)
+    damage(folder / name)
+    with pytest.raises(ValueError, match=f"{name}.*; make it again with: lithobrake run") as refused:
+        write_report(folder)
+    assert "\n" not in str(refused.value)
 
 
 def test_study_in_which_nothing_leaves_has_a_page_that_says_so(study_folder: Path, tmp_path: Path) -> None:

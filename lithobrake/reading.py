@@ -1,0 +1,94 @@
+"""Reading files that anyone may have changed: whatever is wrong with one ends in a sentence that names it."""
+
+import csv
+import json
+import math
+import reprlib
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+# What a form may be: a type; {"key": form}, an object with at least these keys; {str: form}, an object with any keys;
+# [form], a list.
+Form = Any
+NUMBER = int | float
+# What readers of text, JSON, CSV and HDF5 raise over a file that is not what they expect.
+UNREADABLE = (OSError, ValueError, TypeError, LookupError, AttributeError, ArithmeticError, RecursionError)
+
+
+class DamagedFileError(ValueError):
+    """A file that is not what its name says; the message names it and says what to do."""
+
+
+@contextmanager
+def reading(path: str | PathLike[str], remedy: str, *also: type[Exception]) -> Iterator[None]:
+    """Turn whatever a damaged file makes its reader raise into DamagedFileError; also: what else the reader raises."""
+    kinds: tuple[type[Exception], ...] = (*UNREADABLE, *also)
+    try:
+        yield
+    except DamagedFileError:
+        raise
+    except kinds as error:
+        # A missing key is all that its error says, in quotation marks.
+        said = f"lacks {error.args[0]}" if type(error) is KeyError and error.args else str(error)
+        words = " ".join(said.split()) or type(error).__name__
+        raise DamagedFileError(f"{path} cannot be read ({words}); {remedy}") from error
+
+
+def read_json(path: str | PathLike[str], form: Form, remedy: str) -> Any:
+    """Read a JSON file. Raises DamagedFileError, with the remedy, when it is not there or not of the form."""
+    with reading(path, remedy):
+        return parsed(Path(path).read_text(encoding="utf-8"), form)
+
+
+def parsed(text: str | bytes, form: Form) -> Any:
+    """The value of a JSON text. Raises ValueError or RecursionError when it is none, or not of the form."""
+    value = json.loads(text, parse_int=_whole, parse_float=_finite, parse_constant=_finite)
+    check(value, form)
+    return value
+
+
+def read_rows(path: str | PathLike[str], columns: Iterable[str], remedy: str) -> list[dict[str, str]]:
+    """The rows of a CSV file by column. Raises DamagedFileError when it lacks one of these columns, or half a row."""
+    with reading(path, remedy), open(path, newline="", encoding="utf-8") as file:
+        table = csv.DictReader(file, restkey="", strict=True)
+        lacking = [name for name in columns if name not in (table.fieldnames or ())]
+        if lacking:
+            raise ValueError(f"it lacks the columns {', '.join(lacking)}")
+        rows = list(table)
+        for number, row in enumerate(rows, start=1):
+            if None in row.values() or "" in row:
+                raise ValueError(f"row {number} has another number of entries than the first line")
+        return rows
+
+
+def check(value: Any, form: Form, where: str = "") -> None:
+    """Raise ValueError, with the dotted key of what is wrong, when a JSON value is not of the form."""
+    if isinstance(form, dict):
+        check(value, dict, where)
+        for key, inner in dict.fromkeys(value, form[str]).items() if str in form else form.items():
+            if key not in value:
+                raise ValueError(f"{where or 'it'} lacks {key}")
+            check(value[key], inner, f"{where}.{key}" if where else str(key))
+    elif isinstance(form, list):
+        check(value, list, where)
+        for number, entry in enumerate(value):
+            check(entry, form[0], f"{where}[{number}]")
+    elif not isinstance(value, form):
+        kind = getattr(form, "__name__", str(form))
+        raise ValueError(f"{where or 'it'} is {reprlib.repr(value)}, not of type {kind}")
+
+
+def _whole(text: str) -> int:
+    # No number of a study has more digits than a float can hold, and arithmetic with one that has would end badly.
+    _finite(text)
+    return int(text)
+
+
+def _finite(text: str) -> float:
+    value = float(text)
+    if not math.isfinite(value):
+        raise ValueError(f"{reprlib.repr(text)} is no finite number")
+    return value
