@@ -26,7 +26,7 @@ ALLOWED: dict[str, set[str]] = {
     "site": {"study", "quantity", "smallbody"},
     "study_body": {"study", "quantity", "wording", "site"},
     "study_contact": {"study", "quantity"},
-    "study_checks": {"study", "study_body", "study_contact", "quantity", "chaos", "touchdown"},
+    "study_checks": {"study", "study_body", "study_contact", "quantity", "wording", "chaos", "touchdown"},
     "study_file": {"study", "study_body", "study_checks", "site", "wording", "campaign"},
     "study_template": {"study", "quantity"},
     "pipeline": {

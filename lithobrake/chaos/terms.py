@@ -51,8 +51,8 @@ def multi_index_set(
     for limit in highest:
         if len(rows) * (limit + 1) > LOOKED_AT:
             raise ValueError(
-                f"degree is {degree}, which for {input_count} inputs gives too many terms to look at ({len(rows)} times "
-                f"{limit + 1} for one of the inputs, at most {LOOKED_AT} fit into memory): lower it or q_norm"
+                f"degree is {degree}, which for {input_count} inputs gives too many terms to look at: {len(rows)} by "
+                f"{limit + 1} for one input more, of which {LOOKED_AT} fit into memory; lower it or q_norm"
             )
         powers = np.arange(limit + 1)
         spent = used[:, None] + powers[None, :].astype(float) ** q_norm

@@ -55,7 +55,9 @@ def checked_inertia(inertia: ArrayLike, name: str) -> Floats:
     symmetric = tensor.shape == (3, 3) and np.isfinite(tensor).all() and np.array_equal(tensor, tensor.T)
     moments = np.linalg.eigvalsh(tensor) if symmetric else np.zeros(3)
     if moments[0] <= 0.0:
-        raise ValueError(f"{name} is {tensor.tolist()} kg m2; allowed is a symmetric positive definite 3 x 3 tensor: mend it")
+        raise ValueError(
+            f"{name} is {tensor.tolist()} kg m2; allowed is a symmetric positive definite 3 x 3 tensor: mend it"
+        )
     if moments[2] > (moments[0] + moments[1]) * (1.0 + ROUNDING):
         raise ValueError(
             f"{name} has the principal moments {', '.join(f'{moment:.6g}' for moment in moments)} kg m2; allowed is "

@@ -13,6 +13,7 @@ from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.surface import touchdown_reads
 from lithobrake.pipeline.touchdowns import drawn_reads, touchdowns
 from lithobrake.quantity import uncertain
+from lithobrake.site import gravity_warning
 from lithobrake.study import OUTPUTS, Study
 
 if TYPE_CHECKING:
@@ -134,6 +135,10 @@ def account(job: Job, design: str, runs: DesignRuns) -> None:
 
 def fit_screening(job: Job) -> None:
     """Run the screening design and fit all inputs at medium order."""
+    # Said before the landings are made, as it may be a reason not to make them.
+    warning = gravity_warning(job.study)
+    if warning:
+        job.say(warning)
     design = design_runs(job, "screening")
     account(job, "screening", design)
     _fit(job.study, "screening", design, list(design_inputs(job.study))).save(job.folder / "screening.json")

@@ -15,7 +15,7 @@ from lithobrake.pipeline.flights import read_table
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.samples import Samples
 from lithobrake.pipeline.surface import bed_files
-from lithobrake.site import push_at_site, site_body, site_medians, site_warning
+from lithobrake.site import escape_speed, gravity_warning, push_at_site, site_body, site_medians, site_warning
 from lithobrake.study import BUILT_IN_BODIES, Study
 
 if TYPE_CHECKING:
@@ -203,6 +203,7 @@ def _site(study: Study) -> dict[str, Any]:
     return {
         "body": study.site.body if built_in else "mesh",
         "mass_kg": body.mass,
+        "bulk_density_kg_m3": body.density,
         "spin_period_s": body.spin_period,
         "extents_m": np.ptp(body.shape.vertices, axis=0).tolist(),
         "facet_count": len(body.shape.faces),
@@ -213,7 +214,10 @@ def _site(study: Study) -> dict[str, Any]:
         "place_m": body.shape.surface_point(site["latitude_deg"], site["longitude_deg"]).tolist(),
         "effective_acceleration_outward": float(effective[2]),
         "effective_acceleration_along_heading": float(effective[0]),
+        # In axes that do not turn, from the body alone.
+        "escape_speed_m_s": escape_speed(study),
         "warning": site_warning(study),
+        "gravity_warning": gravity_warning(study),
     }
 
 

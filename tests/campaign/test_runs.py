@@ -136,5 +136,5 @@ def test_each_process_is_started_anew_and_has_one_thread(tmp_path: Path) -> None
 
 @pytest.mark.parametrize("count", [-1, 0, 1.5])
 def test_a_pool_of_less_than_one_process_is_refused(count: float) -> None:
-    with pytest.raises(ValueError, match="worker_count is .*at least 1"):
+    with pytest.raises(ValueError, match=r"worker_count is .*at least 1"):
         LocalExecutor(count)  # type: ignore[arg-type]

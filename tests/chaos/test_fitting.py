@@ -233,7 +233,11 @@ def test_scores_of_wrong_shapes_are_refused():
 
 @pytest.mark.parametrize(
     ("degree", "said"),
-    [(10**9, "whole number from 0 to 20000000"), (20_000_000, "too many terms to look at"), (100_000, "50 points cannot")],
+    [
+        (10**9, "whole number from 0 to 20000000"),
+        (20_000_000, "too many terms to look at"),
+        (100_000, "50 points cannot"),
+    ],
 )
 def test_a_degree_beyond_all_memory_is_refused_before_anything_is_made(degree, said):
     x = sobol_sequence({"a": Uniform(0.0, 1.0)}, 50)
