@@ -6,6 +6,7 @@ support of the distribution, so no sample can ever leave it.
 """
 
 import math
+import sys
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
@@ -28,6 +29,7 @@ DISTRIBUTIONS: dict[str, tuple[str, ...]] = {
     "gamma": ("shape", "scale"),
     "exponential": ("rate",),
 }
+RARE = 1e-3
 _POSITIVE_PARAMETERS = ("std", "alpha", "beta", "shape", "scale", "rate")
 
 
@@ -57,6 +59,20 @@ Scalar = float | Uncertain
 def median(value: Scalar) -> float:
     """The number itself, or the median of its distribution."""
     return float(value.to_chaos().median) if isinstance(value, Uncertain) else value
+
+
+def reach(value: Scalar) -> tuple[float, float]:
+    """Smallest and largest possible value; infinite where its distribution has no end."""
+    return value.support() if isinstance(value, Uncertain) else (value, value)
+
+
+def usual_reach(value: Scalar) -> tuple[float, float]:
+    """The same, where a distribution without an end counts from RARE to 1 - RARE of its samples."""
+    ends = reach(value)
+    if isinstance(value, Uncertain) and not all(map(math.isfinite, ends)):
+        distribution = value.to_chaos()
+        return float(distribution.ppf(RARE)), float(distribution.ppf(1.0 - RARE))
+    return ends
 
 
 def uncertain(values: dict[str, Scalar]) -> dict[str, Uncertain]:
@@ -110,7 +126,8 @@ class Number:
         if isinstance(value, dict):
             raise refuse(value, self, "it cannot be uncertain: write one number")
         if not is_number(value):
-            raise refuse(value, self, "write a number without quotes" + (f", in {self.unit}" if self.unit else ""))
+            unit = f", in {self.unit}" if self.unit else ""
+            raise refuse(value, self, f"write a finite number without quotes{unit}")
         if not self.allow(value, value):
             raise refuse(value, self, "write a number in this range")
         return float(value)
@@ -120,10 +137,10 @@ class Whole(Number):
     """A whole number in its range."""
 
     def check(self, value: Any) -> int:
-        """Give back the whole number; refuse anything else."""
-        if not isinstance(value, int) or isinstance(value, bool) or not self.allow(value, value):
+        """Give back the whole number, also one written as 100.0; refuse anything else."""
+        if not is_number(value) or value != int(value) or not self.allow(value, value):
             raise refuse(value, self, "write a whole number in this range")
-        return value
+        return int(value)
 
 
 @dataclass(frozen=True)
@@ -156,7 +173,7 @@ class MaybeUncertain(Number):
     def _uncertain(self, table: dict[str, Any]) -> Uncertain:
         given = dict(table)
         kind = given.pop("distribution", None)
-        if kind not in DISTRIBUTIONS:
+        if not isinstance(kind, str) or kind not in DISTRIBUTIONS:
             names = ", ".join(DISTRIBUTIONS)
             remedy = f"give it a distribution out of {names}{closest(kind, DISTRIBUTIONS)}"
             raise refuse(table, self, f"{remedy}; discrete choices are not supported: make one study for each")
@@ -177,5 +194,6 @@ class MaybeUncertain(Number):
 
 
 def is_number(value: object) -> bool:
-    """Tell whether a value read from TOML is a finite number (true and false are not)."""
-    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+    """Tell whether a value read from TOML is a number that a float can hold (true, false and infinity are not)."""
+    largest = sys.float_info.max
+    return isinstance(value, int | float) and not isinstance(value, bool) and -largest <= value <= largest

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lithobrake.quantity import Scalar, Uncertain, median
+from lithobrake.quantity import Scalar, Uncertain, median, usual_reach
 from lithobrake.study import BUILT_IN_BODIES, Study
 
 if TYPE_CHECKING:
@@ -22,6 +22,8 @@ SITE_KEYS = (
 )  # fmt: skip
 # Below this share of gravity the acceleration at a place counts as nearly none.
 NEARLY_NONE = 0.05
+# Accelerations that differ by this factor, or in direction, are told to the user.
+UNLIKE = 3.0
 
 
 def site_values(study: Study) -> dict[str, Scalar]:
@@ -62,13 +64,18 @@ def site_body(study: Study) -> "Body":
     return replace(_body(study), mass=values["mass"], spin_period=values["spin_period"])
 
 
+def site_shape(study: Study) -> "Shape":
+    """The shape of the body of the study."""
+    return _body(study).shape
+
+
 def _body(study: Study) -> "Body":
     """The body with its built-in mass and spin, or with 1 where it comes from a mesh, which has none."""
     from lithobrake.smallbody import Body
 
     if study.site.body in BUILT_IN_BODIES:
         return _built_in(study.site.body, study.site.partner)
-    return Body(_read_shape(Path(study.site.body)), mass=1.0, spin_period=1.0)
+    return Body(_read_shape(Path(study.site.body), study.site.unit), mass=1.0, spin_period=1.0)
 
 
 @lru_cache(maxsize=4)
@@ -80,30 +87,48 @@ def _built_in(name: str, partner: bool) -> "Body":
 
 
 @lru_cache(maxsize=1)
-def _read_shape(path: Path) -> "Shape":
+def _read_shape(path: Path, unit: str) -> "Shape":
     from lithobrake.smallbody import Shape
 
-    return Shape.read(path)
+    return Shape.read(path, unit)
 
 
 def frames(body: "Body", site: Mapping[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
     """Origins on the surface [m], shape [count, 3], and axes in their rows, [count, 3, 3], for columns of SITE_KEYS.
 
-    The delivery error moves the place along the ground, north and east; the frame is that of where it ends.
+    The delivery error moves the place north and east; the frame is that of where it ends.
     """
     names = ("latitude_deg", "longitude_deg", "heading_deg", "north_error", "east_error")
     columns = np.column_stack([site[name] for name in names])
     # Most studies have one site, or few: each is looked for once.
     unique, index = np.unique(columns, axis=0, return_inverse=True)
     latitude, longitude, heading, north, east = unique.T
-    origin, axes = body.local_frame(latitude, longitude, 0.0)
     moved = (north != 0.0) | (east != 0.0)
     if moved.any():
-        # North is the first axis, and east is opposite to the second.
-        place = origin[moved] + north[moved, None] * axes[moved, 0] - east[moved, None] * axes[moved, 1]
-        latitude[moved], longitude[moved] = body.shape.latitude_longitude(place)
+        there = _delivered(body.shape, latitude[moved], longitude[moved], north[moved], east[moved])
+        latitude[moved], longitude[moved] = body.shape.latitude_longitude(there)
     origin, axes = body.local_frame(latitude, longitude, heading)
     return origin[index.reshape(-1)], axes[index.reshape(-1)]
+
+
+def _delivered(
+    shape: "Shape", latitude_deg: np.ndarray, longitude_deg: np.ndarray, north: np.ndarray, east: np.ndarray
+) -> np.ndarray:
+    """Directions from the centre, shape [count, 3], in which places lie that an error [m] moved north and east.
+
+    The way is that of a great circle as long as the error on a ball of the radius at the site: whatever its length, it
+    ends on the body, and on a ball it is the way over the ground.
+    """
+    latitude, longitude = np.radians(latitude_deg), np.radians(longitude_deg)
+    sine, cosine, along, across = np.sin(latitude), np.cos(latitude), np.cos(longitude), np.sin(longitude)
+    up = np.stack([cosine * along, cosine * across, sine], axis=1)
+    northward = np.stack([-sine * along, -sine * across, cosine], axis=1)
+    eastward = np.stack([-across, along, np.zeros_like(along)], axis=1)
+    way = np.hypot(north, east)
+    turn = way / np.linalg.norm(shape.surface_point(latitude_deg, longitude_deg), axis=1)
+    ahead = (north / way)[:, None] * northward + (east / way)[:, None] * eastward
+    there: np.ndarray = np.cos(turn)[:, None] * up + np.sin(turn)[:, None] * ahead
+    return there
 
 
 def push_at_site(study: Study) -> np.ndarray:
@@ -132,6 +157,32 @@ def site_warning(study: Study) -> str | None:
         f"{where} nearly cancel: they {words} by only {abs(outward):.2g} m/s2, {hour:.2g} m in the first hour from "
         f"rest. The least uncertainty of mass, spin or shape turns that round, so {end}"
     )
+
+
+def gravity_warning(study: Study) -> str | None:
+    """What it means that touchdowns and flights feel another acceleration; None where the two are alike."""
+    at_site = -float(push_at_site(study)[2])
+    given = study.surface.gravity
+    lower, upper = (at_site, at_site) if isinstance(given, str) else usual_reach(given)
+    # That end of surface.gravity which is nearest to the acceleration at the site.
+    nearest = min(max(at_site, lower), upper)
+    if nearest == at_site or (nearest * at_site > 0.0 and 1.0 / UNLIKE < nearest / at_site < UNLIKE):
+        return None
+    reached = f"{lower:.3g}" if lower == upper else f"{lower:.3g} to {upper:.3g}"
+    settle = "" if at_site > 0.0 else " and bed.settle_gravity an inward value"
+    return (
+        f"surface.gravity is {reached} m/s2 inwards, and at the site gravity and rotation together are "
+        f"{abs(at_site):.3g} m/s2 {'inwards' if at_site > 0.0 else 'outwards'}: touchdowns and flights are made under "
+        'different accelerations; write surface.gravity = "site"'
+        f"{settle}, or choose the site that the touchdown is meant for"
+    )
+
+
+def escape_speed(study: Study) -> float:
+    """Speed [m/s], in axes that do not turn, with which a point at the site escapes the body alone, at medians."""
+    body, values = site_body(study), site_medians(study)
+    origin, _ = frames(body, {key: np.array([value]) for key, value in values.items()})
+    return math.sqrt(2.0 * float(body.potential(origin[0])))
 
 
 def with_site_gravity(study: Study) -> Study:

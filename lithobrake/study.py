@@ -12,7 +12,7 @@ from lithobrake.quantity import MaybeUncertain, Number, Numbers, Scalar, Uncerta
 from lithobrake.study_campaign import CampaignSection, Section, SolverSection
 from lithobrake.study_design import DesignSection, MonteCarloSection
 from lithobrake.study_flight import BUILT_IN_BODIES as BUILT_IN_BODIES
-from lithobrake.study_flight import Angle, FlightSection, RestSection, SiteSection
+from lithobrake.study_flight import Angle, FlightSection, LengthUnit, RestSection, SiteSection
 
 Metres = Annotated[float, Number("m", above=0)]
 Interval = Annotated[tuple[float, float], Numbers("m", count=2, ascending=True)]
@@ -120,9 +120,12 @@ class LanderSection(Section):
     diameter: Annotated[Scalar, MaybeUncertain("m", above=0)] | None = None
     """Diameter of a sphere."""
     file: str | None = None
-    """Closed mesh (OBJ or STL, metres) whose convex hull is the lander; the path counts from the study file."""
+    """Closed mesh (OBJ or STL) whose convex hull is the lander; the path counts from the study file."""
+    unit: LengthUnit = "m"
+    """Unit of the lengths in the mesh: "m", "km", "cm" or "mm"."""
     inertia: Annotated[tuple[float, float, float], Numbers("kg m2", count=3, above=0)] | None = None
-    """Moments of inertia about the axes of the shape; absent: those of the homogeneous body."""
+    """Moments of inertia about the axes of the shape, each at most the sum of the other two; absent: those of the
+    homogeneous body."""
     young_modulus: YoungModulus | None = None
     """Young's modulus of the lander; absent: that of the grains."""
     poisson_ratio: PoissonRatio | None = None
@@ -164,8 +167,8 @@ class RegionSection(Section):
 class ImpactSection(Section):
     """How the lander arrives."""
 
-    speed: Annotated[Scalar, MaybeUncertain("m/s", above=0)] = Field(examples=["0.2"])
-    """Speed."""
+    speed: Annotated[Scalar, MaybeUncertain("m/s", above=0, at_most=1000)] = Field(examples=["0.2"])
+    """Speed; far below the limit already a contact may be too deep for its law, which is looked at too."""
     incidence_deg: Annotated[Scalar, MaybeUncertain("deg", at_least=0, below=90)] = Field(examples=["30.0"])
     """Angle between the velocity and the mean surface normal; 0 is straight down."""
     azimuth_deg: Annotated[Scalar | str, MaybeUncertain("deg", at_least=-360, at_most=360, word="random")] = 0.0

@@ -8,6 +8,7 @@ from lithobrake.quantity import MaybeUncertain, Number, Scalar, Whole
 from lithobrake.study_campaign import Section
 
 Angle = Annotated[Scalar, MaybeUncertain("deg", at_least=-360, at_most=360)]
+LengthUnit = Literal["m", "km", "cm", "mm"]
 
 BUILT_IN_BODIES = ("didymos", "dimorphos")
 
@@ -16,8 +17,10 @@ class SiteSection(Section):
     """Where on which body the lander touches down. Uncertain values here vary in the Monte Carlo only."""
 
     body: str = "didymos"
-    """"didymos" or "dimorphos" (built in), or a closed mesh (OBJ, STL or PDS plates, metres); the path counts from the
-    study file."""
+    """"didymos" or "dimorphos" (built in), or a closed mesh (OBJ, STL or PDS plates) around the body's centre; the path
+    counts from the study file."""
+    unit: LengthUnit = "m"
+    """Unit of the lengths in the mesh: "m", "km", "cm" or "mm"."""
     partner: Annotated[bool, Strict()] = True
     """Whether the partner of a built-in body attracts and may be hit; false: the body is alone, as in the paper."""
     partner_longitude_deg: Angle | None = None
@@ -33,7 +36,8 @@ class SiteSection(Section):
     heading_deg: Angle = 0.0
     """Direction of the incoming horizontal velocity, from north toward east."""
     north_error: Annotated[Scalar, MaybeUncertain("m")] = 0.0
-    """How far the delivery misses the site along the ground, toward north."""
+    """How far the delivery misses the site toward north: a way over the ground, as if the body were a ball of the
+    radius at the site; at most a quarter of the way round."""
     east_error: Annotated[Scalar, MaybeUncertain("m")] = 0.0
     """The same toward east."""
 

@@ -1,26 +1,41 @@
 """Sentences about a study file that is refused: the key, what stands there, what is allowed, what to write instead."""
 
 import difflib
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
+LONGEST = 200  # characters of a value that a sentence shows
+
 
 def closest(word: object, known: Iterable[str]) -> str:
-    """Ask back with the nearest known word, or say nothing when none is near."""
-    near = difflib.get_close_matches(str(word), list(known), n=1, cutoff=0.5)
+    """Ask back with the nearest known word, all of which are of small letters, or say nothing when none is near."""
+    text = word if isinstance(word, str) else show(word)
+    near = difflib.get_close_matches(text.lower(), list(known), n=1, cutoff=0.5)
     return f"; did you mean {near[0]}?" if near else ""
 
 
 def show(value: object) -> str:
-    """A value as the study file would show it."""
+    """A value as the study file would show it; of a long one the beginning."""
+    text = _text(value)
+    return text if len(text) <= LONGEST else f"{text[:LONGEST]}... ({len(text)} characters)"
+
+
+def _text(value: object, levels: int = 4) -> str:
+    """The text of a value; what stands deeper in brackets than so many levels is left out."""
+    if isinstance(value, Mapping | list | tuple) and levels == 0:
+        return "..."
     if isinstance(value, Mapping):
-        return "{ " + ", ".join(f"{key} = {show(entry)}" for key, entry in value.items()) + " }"
+        return "{ " + ", ".join(f"{key} = {_text(entry, levels - 1)}" for key, entry in value.items()) + " }"
+    if isinstance(value, list | tuple):
+        return "[" + ", ".join(_text(entry, levels - 1) for entry in value) + "]"
     if isinstance(value, str):
         return f'"{value}"'
     if isinstance(value, bool):
         return str(value).lower()
-    if isinstance(value, list | tuple):
-        return "[" + ", ".join(show(entry) for entry in value) + "]"
+    if isinstance(value, int) and abs(value) >= 1e21:
+        # Python refuses to write out very long ones.
+        return f"about {'-' * (value < 0)}1e{value.bit_length() * math.log10(2.0):.0f}"
     return f"{value:g}" if isinstance(value, float) else str(value)
 
 
@@ -52,6 +67,11 @@ def _sentence(error: Mapping[str, Any], known_keys: Mapping[str, tuple[str, ...]
         allowed = str(context.get("expected", context.get("expected_tags"))).replace("'", "")
         near = closest(context.get("tag", found), allowed.replace(" or ", ", ").split(", "))
         return f"{key} is {show(found)}; allowed: {allowed}{near}"
+    if kind == "union_tag_not_found":
+        return f"{key} is {show(found)}; it must name its {context['discriminator'].strip(chr(39))}"
+    if kind == "too_short":
+        least = context["min_length"]
+        return f"{key} is {show(found)}; allowed: at least {least} entry; leave the key out for its default"
     if kind in {"model_type", "model_attributes_type", "dict_type"}:
         return f"{key} is {show(found)}; allowed: a table; write [{key}] with its keys below"
     return f"{key} is {show(found)}; {error['msg'].replace('Input should be', 'it must be')}"

@@ -7,7 +7,7 @@ import pytest
 
 PACKAGE = Path(__file__).parents[1] / "lithobrake"
 # Anyone may import these: they know nothing of the rest.
-LEAVES = {"compiled", "atomic", "reading", "outputs", "__init__"}
+LEAVES = {"compiled", "atomic", "mesh", "mesh_files", "outputs", "reading", "__init__"}
 # What each part may import beside the leaves and itself.
 ALLOWED: dict[str, set[str]] = {
     "dem": set(),
@@ -16,6 +16,7 @@ ALLOWED: dict[str, set[str]] = {
     "campaign": set(),
     "smallbody": set(),
     "analysis": {"chaos"},
+    "results": set(),
     "report": {"chaos"},
     "wording": set(),
     "quantity": {"wording", "chaos"},
@@ -24,7 +25,10 @@ ALLOWED: dict[str, set[str]] = {
     "study_flight": {"study_campaign", "quantity"},
     "study": {"study_campaign", "study_design", "study_flight", "quantity"},
     "site": {"study", "quantity", "smallbody"},
-    "study_file": {"site", "study", "quantity", "wording", "chaos", "campaign", "touchdown"},
+    "study_body": {"study", "quantity", "wording", "site"},
+    "study_contact": {"study", "quantity"},
+    "study_checks": {"study", "study_body", "study_contact", "quantity", "wording", "chaos", "touchdown"},
+    "study_file": {"study", "study_body", "study_checks", "site", "wording", "campaign"},
     "study_template": {"study", "quantity"},
     "pipeline": {
         *("dem", "touchdown", "chaos", "campaign", "smallbody", "analysis", "report"),

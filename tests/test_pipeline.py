@@ -16,7 +16,7 @@ from lithobrake.pipeline import STAGES, StudyFolder, rest, stage_keys
 from lithobrake.pipeline.expansions import design_inputs, kept_inputs, points
 from lithobrake.pipeline.fates import shares, stays
 from lithobrake.pipeline.flights import COLUMNS, partner_time, starts
-from lithobrake.pipeline.landings import ORIENTATION, PLACE, acceleration, draw, medians
+from lithobrake.pipeline.landings import ORIENTATION, PLACE, acceleration, draw, in_words_of_the_study, medians
 from lithobrake.pipeline.samples import SAMPLE_OUTCOMES, Samples
 from lithobrake.pipeline.scope import scope
 from lithobrake.pipeline.summary import study_tables
@@ -51,6 +51,7 @@ REMADE = [
     ({"site": {"heading_deg": 10.0}}, "fly"),
     ({"flight": {"flight_count": 7}}, "fly"),
     ({"site": {"partner": False}}, "fly"),
+    ({"lander": {"mass": 3.0}}, "landing"),
     ({"site": {"east_error": 10.0}}, "fly"),
     ({"rest": {"friction": 0.5}}, "rest"),
 ]
@@ -299,6 +300,24 @@ def test_the_delivery_error_moves_the_start_along_the_ground() -> None:
     # The ground is not plane: it falls off by some metres over 50 m.
     assert moved[:2] == pytest.approx([30.0, 40.0], abs=3.0)
     assert abs(body.shape.height(origin[0])) < 1e-9
+
+
+@pytest.mark.parametrize(
+    ("raised", "said"),
+    [
+        (
+            ValueError("World time_step is 1e-3 s; allowed is at most 5e-4 s: make it smaller"),
+            "at most 5e-4 s: raise contact.steps_per_contact",
+        ),
+        (ValueError("Landing.speed is 0.0; allowed is a finite value above 0 m/s: change it"), "impact.speed is 0.0"),
+        (ValueError("BedRecipe.pour_gravity is 1e-6; allowed is at least"), "bed.pour_gravity is 1e-6"),
+        (FloatingPointError("the motion diverged: positions are no longer finite numbers"), "steps_per_contact"),
+    ],
+)
+def test_what_the_engine_refuses_is_said_by_the_keys_of_the_study(raised: Exception, said: str) -> None:
+    with pytest.raises(type(raised), match=re.escape(said)) as caught, in_words_of_the_study():
+        raise raised
+    assert not re.search("World|Landing|BedRecipe|make it smaller", str(caught.value))
 
 
 def test_the_acceleration_of_the_site_is_offered_to_the_touchdown() -> None:

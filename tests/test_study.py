@@ -1,5 +1,7 @@
 """The study file: what is accepted, and how everything else is refused."""
 
+import subprocess
+import sys
 import tomllib
 from copy import deepcopy
 from pathlib import Path
@@ -100,6 +102,31 @@ REFUSED = [
     ("grain.friction", table("exponential", rate=2.0), ["grain.friction is exponential, which has no end"]),
     ("impact.spin_x", table("normal", mean=0.0, std=0.1), ["impact.spin_x is normal, which has no end"]),
     ("site.body", "no_such.obj", ["no such file"]),
+    ("site.body", "Didymos", ["no such file; did you mean didymos?"]),
+    ("site.body", "a" * 5000, ["no such file"]),
+    ("site.unit", "km", ["site.unit is", "leave it out"]),
+    ("lander.unit", "mm", ["there is no lander.file"]),
+    ("lander.inertia", [0.001, 0.001, 0.01], ["lander.inertia is [0.001, 0.001, 0.01]", "sum of the other two"]),
+    ("lander.mass", 1e6, ["lander.mass is 1e+06 kg", "allowed: 6.7e-07 to 6.7e+05 kg"]),
+    ("lander.mass", 1e-9, ["lander.mass is 1e-09 kg"]),
+    ("impact.speed", 1e300, ["at most 1000 [m/s]"]),
+    ("impact.speed", 50.0, ["impact.speed reaches 50 m/s", "0.188 m deep", "at most the radius of a grain, 0.04 m"]),
+    ("site.north_error", 800.0, ["site.north_error reaches 800 m", "at most 590.1 m", "quarter of the way round"]),
+    ("site.east_error", table("normal", mean=0.0, std=300.0), ["site.east_error reaches 927.1 m"]),
+    ("site.mass", 3.5e10, ["bulk density of 157.6 kg/m3", "allowed: 300 to 8000 kg/m3"]),
+    ("site.mass", table("uniform", lower=5e11, upper=5e12), ["2252 to 2.252e+04 kg/m3"]),
+    ("bed.grain_count", 100.5, ["whole number"]),
+    ("bed.grain_count", 10**399, ["bed.grain_count is about 1e399", "at most 1e+06"]),
+    ("bed.width", [], ["bed.width is []", "2 numbers"]),
+    ("bed.diameter", {}, ["must name its distribution"]),
+    ("lander.shape", 16**5000, ["lander.shape is about 1e6021"]),
+    ("lander.mass", 10**400, ["lander.mass is about 1e400", "write a finite number"]),
+    ("lander.mass", [[[[[[1]]]]]], ["lander.mass is [[[[...]]]]"]),
+    ("lander.mass", table(["uniform"]), ["lander.mass is", "did you mean uniform?"]),  # type: ignore[arg-type]
+    ("lander.mass", "x" * 5000, ["(5002 characters)"]),
+    ("design.kept_outputs", [], ["design.kept_outputs is []", "at least 1 entry"]),
+    ("solver.inputs", {"a$b": 1.0}, ["solver.command is missing"]),
+    ("solver", {"command": "python3", "inputs": {"a$b": 1.0}}, ["solver.inputs.a$b is no name", "letters, digits"]),
     ("surface.gravity", -1e-5, ["bed.settle_gravity"]),
     ("lander.diameter", 0.2, ["does not go with this shape"]),
     ("site.mass", table("uniform", lower=0, upper=1), ["above 0 [kg]"]),
@@ -107,7 +134,7 @@ REFUSED = [
 ]
 
 
-@pytest.mark.parametrize(("key", "value", "words"), REFUSED, ids=[f"{key}={value}" for key, value, _ in REFUSED])
+@pytest.mark.parametrize(("key", "value", "words"), REFUSED, ids=[f"{key}: {words[0]}" for key, _, words in REFUSED])
 def test_a_wrong_key_is_named_with_its_value_and_range(key: str, value: Any, words: list[str]) -> None:
     said = "\n".join(problems({key: value}))
     for word in ["study.toml: ", *words]:
@@ -125,6 +152,10 @@ ACCEPTED = [
     {"design.replicate_count": 3, "impact.orientation": "random"},
     {"design.replicate_count": 2, "bed.bed_count": 2, "design.fit": "best", "monte_carlo.scatter": True},
     {"grain.restitution": 1.0},
+    {"bed.grain_count": 100.0},
+    {"lander.inertia": [0.001, 0.002, 0.003]},
+    {"lander.mass": 1e6, "solver.command": "python3", "impact.speed": 900.0},
+    {"site.north_error": table("normal", mean=0.0, std=50.0), "site.east_error": 590.0},
     {"impact.incidence_deg": table("truncated_normal", mean=30.0, std=5.0, lower=10.0, upper=50.0)},
     {"impact.azimuth_deg": "random", "impact.orientation": "random"},
     {"impact.region": {"x": [-0.1, 0.1], "y": [0.0, 0.1]}, "impact.azimuth_deg": table("uniform", lower=0, upper=90)},
@@ -159,16 +190,103 @@ def test_nothing_uncertain_is_refused() -> None:
 
 def test_a_broken_file_and_a_missing_file_are_one_sentence(tmp_path: Path) -> None:
     (tmp_path / "broken.toml").write_text("bed = [\n")
-    for name, word in (("broken.toml", "not TOML"), ("missing.toml", "cannot be read")):
+    (tmp_path / "deep.toml").write_text(f"seed = {'[' * 3000}{']' * 3000}")
+    (tmp_path / "long.toml").write_text(f"seed = {'1' * 5000}")
+    said = {
+        "broken": "not TOML",
+        "missing": "cannot be read",
+        "deep": "nested too deeply",
+        "long": "thousands of digits",
+    }
+    for name, word in ((f"{stem}.toml", word) for stem, word in said.items()):
         with pytest.raises(study_file.StudyError, match=word) as caught:
             study_file.read(tmp_path / name)
         assert len(caught.value.problems) == 1
 
 
+def test_a_mark_of_the_encoding_and_whole_numbers_with_a_point_are_read(tmp_path: Path) -> None:
+    text = template().replace("grain_count = 150", "grain_count = 150.0")
+    (tmp_path / "study.toml").write_text(text, encoding="utf-8-sig")
+    assert study_file.read(tmp_path / "study.toml").bed.grain_count == 150
+
+
+OCTAHEDRON = "f 1 3 5\nf 3 2 5\nf 2 4 5\nf 4 1 5\nf 3 1 6\nf 2 3 6\nf 4 2 6\nf 1 4 6\n"
+
+
+def octahedron(radius: float, middle: float = 0.0) -> str:
+    """An OBJ file; the octahedron has a volume of 4/3 radius**3."""
+    corners = [(radius, 0, 0), (-radius, 0, 0), (0, radius, 0), (0, -radius, 0), (0, 0, radius), (0, 0, -radius)]
+    return "".join(f"v {x + middle} {y} {z}\n" for x, y, z in corners) + OCTAHEDRON
+
+
+def rock(folder: Path, text: str, **changes: Any) -> list[str]:
+    """What is said about a study on a body from this mesh, of 4/3e6 m3 if it is an octahedron of 100 m."""
+    (folder / "rock.obj").write_text(text)
+    site = {"body": "rock.obj", "mass": 3e9, "spin_period": 8000.0, **changes}
+    return problems({"site": {key: value for key, value in site.items() if value is not None}}, folder)
+
+
 def test_mesh_paths_count_from_the_study_file(tmp_path: Path) -> None:
-    tables = {**TABLES, "site": {"body": "rock.obj", "mass": 1e11, "spin_period": 8000.0}}
-    (tmp_path / "rock.obj").write_text("")
+    assert rock(tmp_path, octahedron(100.0)) == []
+    tables = {**TABLES, "site": {"body": "rock.obj", "mass": 3e9, "spin_period": 8000.0}}
     assert Path(study_file.check(tables, tmp_path).site.body) == tmp_path / "rock.obj"
+
+
+def test_a_mesh_in_another_unit_is_refused_with_the_unit_that_was_meant_and_read_with_it(tmp_path: Path) -> None:
+    (said,) = rock(tmp_path, octahedron(0.1))
+    assert "bulk density of 2.25e+12 kg/m3; allowed: 300 to 8000 kg/m3" in said
+    assert 'is the mesh in km? then set site.unit = "km"' in said
+    assert rock(tmp_path, octahedron(0.1), unit="km") == []
+    (said,) = rock(tmp_path, octahedron(10_000.0))
+    assert 'set site.unit = "cm"' in said
+    # Right in itself, and a pebble.
+    (said,) = rock(tmp_path, octahedron(0.1), mass=3.0)
+    assert "0.1366 m across" in said
+    assert "1 to 1e+06 m" in said
+
+
+@pytest.mark.parametrize(
+    ("text", "changes", "said"),
+    [
+        (octahedron(100.0).replace("f 1 4 6\n", ""), {}, "open, 3 edges belong to one facet only"),
+        ("a stone\n", {}, "0 facets cannot enclose a volume"),
+        ("v 1 2 x\n", {}, "is not a vertex or a facet"),
+        (octahedron(100.0, middle=200.0), {}, "the origin, about which the body turns, lies outside"),
+        (octahedron(100.0), {"mass": None}, "site.mass is missing"),
+        (octahedron(100.0), {"east_error": 120.0}, "at most 107"),
+    ],
+)
+def test_a_body_that_cannot_be_used_is_refused_before_anything_runs(
+    text: str, changes: dict[str, Any], said: str, tmp_path: Path
+) -> None:
+    assert [said in problem for problem in rock(tmp_path, text, **changes)] == [True]
+
+
+CHECK = """
+import sys
+from pathlib import Path
+from lithobrake import study_file
+study_file.read(Path(sys.argv[1]))
+print("numba" in sys.modules)
+"""
+
+
+def test_a_mesh_is_looked_at_without_loading_the_compiler(tmp_path: Path) -> None:
+    (tmp_path / "rock.obj").write_text(octahedron(100.0))
+    site = f'body = "{tmp_path / "rock.obj"}"\nmass = 3e9\nspin_period = 8000.0\n'
+    text = (Path(__file__).parents[1] / "examples" / "ball_on_plate.toml").read_text()
+    (tmp_path / "study.toml").write_text(f"{text}\n[site]\n{site}")
+    command = [sys.executable, "-c", CHECK, str(tmp_path / "study.toml")]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    assert done.stdout == "False\n"
+
+
+def test_a_lander_in_another_unit_is_asked_about(tmp_path: Path) -> None:
+    (tmp_path / "lander.obj").write_text(octahedron(100.0))
+    lander = {"lander.shape": "hull", "lander.edges": None, "lander.file": "lander.obj"}
+    (said,) = problems(lander, tmp_path)
+    assert 'name the unit of lander.file (lander.unit is "m")' in said
+    assert problems({**lander, "lander.unit": "mm"}, tmp_path) == []
 
 
 def test_scalars_of_the_touchdown_and_of_the_site_are_apart() -> None:

@@ -50,8 +50,13 @@ class LocalExecutor(Executor):
     """
 
     def __init__(self, worker_count: int | None = None) -> None:
-        """Prepare `worker_count` processes (None: one for each core); they start when there is work for them."""
-        self.worker_count = worker_count or available_cores()
+        """Prepare `worker_count` processes (None: one for each core); they start when there is work for them.
+
+        Raises ValueError for less than one.
+        """
+        if worker_count is not None and (worker_count != int(worker_count) or worker_count < 1):
+            raise ValueError(f"worker_count is {worker_count!r}; allowed: a whole number of at least 1, or None")
+        self.worker_count = available_cores() if worker_count is None else int(worker_count)
         self._waiting: deque[Call] = deque()
         self._workers: list[Worker] = []
         self._ear, self._bell = Pipe(duplex=False)

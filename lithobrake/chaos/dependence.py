@@ -125,7 +125,10 @@ def load_dependent(path: str | os.PathLike[str]) -> DependentSurrogate:
 
     def build(content: dict[str, Any]) -> DependentSurrogate:
         copula = GaussianCopula(inputs_from_json(content["dependent_inputs"]), content["rank_correlation"])
-        return DependentSurrogate(copula, surrogate_of(content["independent"]))
+        independent = surrogate_of(content["independent"])
+        if independent.inputs != copula.germ_inputs:
+            raise ValueError("the inputs of independent are not the germs of dependent_inputs")
+        return DependentSurrogate(copula, independent)
 
     return read(FORMAT, build, path)
 

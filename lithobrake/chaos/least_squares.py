@@ -72,21 +72,17 @@ def least_squares(
 ) -> LeastSquares:
     """Solve min sum w_k (y_k - H_k c)**2 by QR; matrix H [count, term_count], y [count, output_count].
 
-    Raises ValueError for fewer points than terms, and for rank deficiency (naming terms that cannot be told apart).
+    It takes at least as many points as terms. Raises ValueError for rank deficiency, naming terms that cannot be told
+    apart.
     Source: the paper, Eqs 15 and 16; Golub and Van Loan, 2013, section 5.5.
     """
     from scipy.linalg import solve_triangular
 
-    count, term_count = matrix.shape
-    if count < term_count:
-        raise ValueError(
-            f"{count} points cannot determine {term_count} terms: give at least {term_count} points or lower the degree"
-        )
     root = None if weights is None else np.sqrt(weights)[:, None]
     orthogonal, triangle = np.linalg.qr(matrix if root is None else matrix * root)
     values = np.linalg.svd(triangle, compute_uv=False)
     if values[-1] <= RANK_TOLERANCE * values[0]:
-        raise ValueError(_lost_terms(triangle, values, indices, names, count))
+        raise ValueError(_lost_terms(triangle, values, indices, names, len(matrix)))
     coefficients = solve_triangular(triangle, orthogonal.T @ (y if root is None else y * root), check_finite=False)
     residuals = y - matrix @ coefficients
     # In an orthonormal basis the mean of psi (H'H)**-1 psi over the inputs is the trace of the inverse.

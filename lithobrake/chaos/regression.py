@@ -14,7 +14,16 @@ HIGHEST_DEGREE = 15
 
 
 def solve_ols(training: Training, indices: Indices) -> list[Solution]:
-    """Least squares for all outputs at once; the error is that of leave-one-out, exact for a fixed set of terms."""
+    """Least squares for all outputs at once; the error is that of leave-one-out, exact for a fixed set of terms.
+
+    Raises ValueError for fewer points than terms, and for rank deficiency.
+    """
+    # Looked at before the matrix is made, which for a high degree would fill the memory.
+    if training.count < len(indices):
+        raise ValueError(
+            f"{training.count} points cannot determine {len(indices)} terms: give at least {len(indices)} points or "
+            "lower the degree"
+        )
     matrix = basis_matrix(training.inputs, indices, training.x)
     names = list(training.inputs)
     solved = least_squares(matrix, training.y, indices=indices, names=names, weights=training.weights)

@@ -14,7 +14,7 @@ from lithobrake.chaos.fitting import fit
 from lithobrake.chaos.germ import Distribution
 from lithobrake.chaos.noise import equal_rows, replicates
 from lithobrake.chaos.polynomials import Array
-from lithobrake.chaos.storage import content_of, read, surrogate_of, write
+from lithobrake.chaos.storage import content_of, numbers, read, surrogate_of, write
 from lithobrake.chaos.surrogate import Surrogate
 from lithobrake.chaos.training import checked_training
 
@@ -55,7 +55,12 @@ def load_stochastic(path: str | os.PathLike[str]) -> StochasticSurrogate:
 
     def build(content: dict[str, Any]) -> StochasticSurrogate:
         mean, spread = surrogate_of(content["mean"]), surrogate_of(content["log_variance"])
-        return StochasticSurrogate(mean, spread, np.array(content["correlation"], dtype=float))
+        correlation = numbers("correlation", content["correlation"], len(mean.output_names))
+        if mean.inputs != spread.inputs or mean.output_names != spread.output_names:
+            raise ValueError("mean and log_variance have different inputs or outputs")
+        if len(correlation) != len(mean.output_names) or not np.allclose(correlation, correlation.T):
+            raise ValueError("correlation must have a row for each output, and be symmetric")
+        return StochasticSurrogate(mean, spread, correlation)
 
     return read(FORMAT, build, path)
 

@@ -14,6 +14,7 @@ from lithobrake.chaos.germ import Distribution
 from lithobrake.chaos.kinds import distribution
 from lithobrake.chaos.polynomials import Array
 from lithobrake.chaos.surrogate import Surrogate
+from lithobrake.chaos.terms import LOOKED_AT, Indices
 from lithobrake.reading import UNREADABLE
 
 Kept = TypeVar("Kept")
@@ -63,9 +64,11 @@ def inputs_to_json(inputs: Mapping[str, Distribution]) -> list[dict[str, Any]]:
 
 
 def inputs_from_json(rows: list[dict[str, Any]]) -> dict[str, Distribution]:
-    """Inputs that `inputs_to_json` wrote."""
-    inputs = {}
+    """Inputs that `inputs_to_json` wrote. Raises ValueError where rows are none, or two have one name."""
+    inputs: dict[str, Distribution] = {}
     for row in rows:
+        if not isinstance(row, dict) or str(row["name"]) in inputs:
+            raise ValueError(f"inputs hold {row!r}; each must be a table with a name of its own")
         parameters = {key: value for key, value in row.items() if key not in ("name", "kind")}
         inputs[str(row["name"])] = distribution(row["kind"], **parameters)
     return inputs
@@ -93,7 +96,7 @@ def read(kind: str, build: Callable[[dict[str, Any]], Kept], path: str | os.Path
     name = Path(path)
     try:
         content = json.loads(name.read_text(encoding="utf-8"))
-    except (ValueError, RecursionError) as error:
+    except (json.JSONDecodeError, UnicodeDecodeError, RecursionError) as error:
         raise ValueError(f"{name} is not JSON ({error}): give a file that save wrote") from None
     if not isinstance(content, dict) or content.get("format") != kind:
         raise ValueError(f"{name} is not a {kind}: give a file that save wrote")
@@ -111,19 +114,52 @@ def read(kind: str, build: Callable[[dict[str, Any]], Kept], path: str | os.Path
 
 
 def surrogate_of(content: dict[str, Any]) -> Surrogate:
-    """The expansion that `content_of` wrote."""
-    inputs = inputs_from_json(content["inputs"])
-    names = [str(name) for name in content["output_names"]]
-    indices = np.array(content["multi_indices"], dtype=np.int64).reshape(-1, len(inputs))
-    coefficients = np.array(content["coefficients"], dtype=float)
-    if coefficients.shape != (len(indices), len(names)) or (indices < 0).any():
-        raise ValueError(f"coefficients have shape {coefficients.shape}, not {(len(indices), len(names))}")
+    """The expansion that `content_of` wrote. Raises ValueError for content that is none."""
+    inputs, names = inputs_from_json(content["inputs"]), _names(content["output_names"])
+    indices = _indices(content["multi_indices"], len(inputs))
+    coefficients = numbers("coefficients", content["coefficients"], len(names))
+    if len(coefficients) != len(indices):
+        raise ValueError(f"there are {len(coefficients)} coefficients for {len(indices)} multi_indices")
+    one_dimensional, report = content["one_dimensional"], content["report"]
+    if type(one_dimensional) is not bool or (one_dimensional and len(names) > 1) or not isinstance(report, dict):
+        raise ValueError("one_dimensional must be true or false, true for one output only, and report a table")
+    residuals = numbers("residuals", content["residuals"], len(names))
     return Surrogate(
         inputs,
         indices,
         coefficients,
         output_names=names,
-        one_dimensional=bool(content["one_dimensional"]),
-        residuals=np.array(content["residuals"], dtype=float).reshape(-1, len(names)),
-        report=dict(content["report"]),
+        one_dimensional=one_dimensional,
+        residuals=residuals,
+        report=report,
     )
+
+
+def numbers(name: str, rows: Any, width: int) -> Array:
+    """A table of finite numbers, shape [any, width]. Raises ValueError for anything else."""
+    table = np.array(rows, dtype=float)
+    if table.size == 0:
+        table = table.reshape(0, width)
+    if table.ndim != 2 or table.shape[1] != width or not np.isfinite(table).all():
+        raise ValueError(f"{name} must be rows of {width} finite numbers")
+    return table
+
+
+def _names(names: Any) -> list[str]:
+    if not isinstance(names, list) or not names or not all(isinstance(name, str) for name in names):
+        raise ValueError(f"output_names are {names!r}; they must be a list of names")
+    if len(set(names)) < len(names):
+        raise ValueError(f"output_names are {names!r}; each must be there once")
+    return names
+
+
+def _indices(rows: Any, input_count: int) -> Indices:
+    """Multi-indices, shape [term_count, input_count], as they were written: nothing is rounded or dropped."""
+    whole = isinstance(rows, list) and all(
+        isinstance(row, list) and len(row) == input_count and all(type(power) is int for power in row) for row in rows
+    )
+    if not whole or not rows or not all(0 <= power < LOOKED_AT for row in rows for power in row):
+        raise ValueError(f"multi_indices must be rows of {input_count} whole numbers from 0 on")
+    if len({tuple(row) for row in rows}) < len(rows):
+        raise ValueError("multi_indices hold a term twice")
+    return np.array(rows, dtype=np.int64)

@@ -9,10 +9,13 @@ from numpy.typing import NDArray
 
 Indices = NDArray[np.int64]
 
+# Terms that are looked at for one more input: with more, neither they nor any matrix of them would fit into memory.
+LOOKED_AT = 20_000_000
+
 
 def whole_number(name: str, value: object, at_least: int, at_most: int | None = None) -> int:
     """Check a whole number and give it back; raises ValueError for anything else, with its name and range."""
-    whole = isinstance(value, Real) and not isinstance(value, bool) and float(value).is_integer()
+    whole = isinstance(value, Real) and not isinstance(value, bool) and value % 1 == 0
     if not whole or value < at_least or (at_most is not None and value > at_most):  # type: ignore[operator]
         allowed = f"of at least {at_least}" if at_most is None else f"from {at_least} to {at_most}"
         raise ValueError(f"{name} is {value!r}, but must be a whole number {allowed}")
@@ -30,10 +33,10 @@ def multi_index_set(
     """Multi-indices with (sum i_r**q)**(1/q) <= degree, shape [term_count, input_count], ordered by total degree.
 
     q_norm: 1 is the total degree; smaller drops interactions. max_degrees: highest degree of each input, [input_count].
-    Raises ValueError for a negative degree or q_norm outside (0, 1].
+    Raises ValueError for a negative degree or q_norm outside (0, 1], and for more terms than a fit could ever have.
     Source: the paper, Eq 13; Blatman and Sudret, 2011, Eq 22 (hyperbolic sets).
     """
-    total = whole_number("degree", degree, 0)
+    total = whole_number("degree", degree, 0, LOOKED_AT)
     if not isinstance(q_norm, Real) or not 0.0 < q_norm <= 1.0:
         raise ValueError(f"q_norm is {q_norm!r}, but must be above 0 and at most 1")
     highest = [total] * input_count
@@ -46,6 +49,11 @@ def multi_index_set(
     used = np.zeros(1)
     # Inputs are added one at a time and hopeless rows dropped at once, so the full tensor is never formed.
     for limit in highest:
+        if len(rows) * (limit + 1) > LOOKED_AT:
+            raise ValueError(
+                f"degree is {degree}, which for {input_count} inputs gives too many terms to look at: {len(rows)} by "
+                f"{limit + 1} for one input more, of which {LOOKED_AT} fit into memory; lower it or q_norm"
+            )
         powers = np.arange(limit + 1)
         spent = used[:, None] + powers[None, :].astype(float) ** q_norm
         row, power = np.nonzero(spent <= budget)

@@ -11,6 +11,8 @@ from lithobrake.dem.material import Material, pair_law
 from lithobrake.dem.motion import write_matrices, write_rotations
 from lithobrake.dem.shape import ConvexHull, Shape, Sphere, equivalent_radius
 
+ROUNDING = 1e-9  # of a moment of inertia: what the eigenvalues of a flat plate may be off
+
 
 @dataclass(frozen=True, eq=False)
 class Body:
@@ -35,18 +37,33 @@ class Plane:
 def new_body(shape: Shape, material: Material, mass: float | None, inertia: ArrayLike | None) -> Body:
     """Return a body; its mass and inertia follow from the material's density unless given.
 
-    Raises ValueError for a mass that is not positive or an inertia that is not symmetric positive definite.
+    Raises ValueError for a mass that is not positive, and for an inertia that no body has.
     """
     if mass is not None and not 0.0 < mass < np.inf:
         raise ValueError(f"add_body mass is {mass!r} kg; allowed is a finite value above 0: change it")
     mass = material.density * shape.volume if mass is None else float(mass)
-    tensor = shape.inertia_per_density * (mass / shape.volume) if inertia is None else np.array(inertia, dtype=float)
+    tensor = shape.inertia_per_density * (mass / shape.volume) if inertia is None else inertia
+    return Body(shape, material, mass, checked_inertia(tensor, "add_body inertia"))
+
+
+def checked_inertia(inertia: ArrayLike, name: str) -> Floats:
+    """Return an inertia [kg m2, 3 x 3]. Raises ValueError for one that no body has; `name` says whose it is.
+
+    Mass anywhere adds at most as much to one principal moment as to the other two together; a flat plate reaches that.
+    """
+    tensor = np.array(inertia, dtype=float)
     symmetric = tensor.shape == (3, 3) and np.isfinite(tensor).all() and np.array_equal(tensor, tensor.T)
-    if not symmetric or np.linalg.eigvalsh(tensor).min() <= 0.0:
+    moments = np.linalg.eigvalsh(tensor) if symmetric else np.zeros(3)
+    if moments[0] <= 0.0:
         raise ValueError(
-            f"add_body inertia is {tensor!r} kg m2; allowed is a symmetric positive definite 3 x 3 tensor: mend it"
+            f"{name} is {tensor.tolist()} kg m2; allowed is a symmetric positive definite 3 x 3 tensor: mend it"
         )
-    return Body(shape, material, mass, tensor)
+    if moments[2] > (moments[0] + moments[1]) * (1.0 + ROUNDING):
+        raise ValueError(
+            f"{name} has the principal moments {', '.join(f'{moment:.6g}' for moment in moments)} kg m2; allowed is "
+            "each at most the sum of the other two, as every body has it: mend it"
+        )
+    return tensor
 
 
 def vector(value: ArrayLike, name: str) -> Floats:

@@ -93,7 +93,7 @@ class World:
         position of the centroid [m], velocity [m/s], orientation (w, x, y, z) that turns the shape's vertices, as
         given, about their centroid, spin [rad/s] in the world frame. mass [kg] and inertia [kg m2, 3 x 3, about the
         centroid, frame of the shape] follow from the material's density unless given. Raises ValueError for values
-        that are not finite, a mass that is not positive or an inertia that is not positive definite.
+        that are not finite, a mass that is not positive or an inertia that no body has.
         """
         body = new_body(shape, material, mass, inertia)
         quaternion = unit(orientation, "add_body orientation")

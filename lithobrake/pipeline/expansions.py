@@ -13,6 +13,7 @@ from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.surface import touchdown_reads
 from lithobrake.pipeline.touchdowns import drawn_reads, drawn_rows, touchdown_keys, touchdowns
 from lithobrake.quantity import uncertain
+from lithobrake.site import gravity_warning
 from lithobrake.study import OUTPUTS, Study
 
 if TYPE_CHECKING:
@@ -32,8 +33,8 @@ class DesignRuns:
     @property
     def y(self) -> np.ndarray:
         """Fitted outputs, shape [run_count, output_count]; a row of NaN where the lander did not leave."""
-        y = self.runs.outputs(OUTPUTS)
-        return np.where(np.isnan(y).any(axis=1, keepdims=True), np.nan, y)
+        y, clear = self.runs.outputs(OUTPUTS), np.array(self.runs.outcomes) == "clear"
+        return np.where((clear & ~np.isnan(y).any(axis=1))[:, None], y, np.nan)
 
     @property
     def has_outputs(self) -> np.ndarray:
@@ -140,6 +141,10 @@ def account(job: Job, design: str, runs: DesignRuns) -> None:
 
 def fit_screening(job: Job) -> None:
     """Run the screening design and fit all inputs at medium order."""
+    # Said before the landings are made, as it may be a reason not to make them.
+    warning = gravity_warning(job.study)
+    if warning:
+        job.say(warning)
     design = design_runs(job, "screening")
     account(job, "screening", design)
     _fit(job.study, "screening", design, list(design_inputs(job.study))).save(job.folder / "screening.json")

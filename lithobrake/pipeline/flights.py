@@ -47,6 +47,7 @@ def flight_reads(study: Study) -> dict[str, Any]:
     return study.flight.model_dump() | {
         "seed": study.seed,
         "body": body,
+        "unit": study.site.unit,
         "partner": study.site.partner,
         "site": {name: str(value) for name, value in study.site_values().items()},
     }

@@ -1,7 +1,8 @@
 """One touchdown as a model: from the numbers of the study file, by dotted key, to what came out."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cache, lru_cache
 from pathlib import Path
@@ -53,14 +54,47 @@ class TouchdownModel:
                 "of lithobrake on both"
             )
         bed = stored_bed(self.bed_paths[round(values["bed"])])
-        outcome = land(bed, lander(self.study, values), landing(self.study, values))
+        with in_words_of_the_study():
+            outcome = land(bed, lander(self.study, values), landing(self.study, values))
         return {"outcome": outcome.status, "outputs": outcome.outputs}
+
+
+# What the engine calls things by its own names, and what they are in a study file.
+STUDY_WORDS = {
+    "World time_step": "the time step (a contact has contact.steps_per_contact of them)",
+    ": make it smaller": ": raise contact.steps_per_contact",
+    "positions are no longer finite numbers": "positions are no longer finite numbers; raise contact.steps_per_contact",
+    "BedRecipe.gravity": "surface.gravity with surface.slope_deg",
+    "BedRecipe.": "bed.",
+    "Landing.incidence": "impact.incidence_deg, in radians,",
+    "Landing.azimuth": "impact.azimuth_deg, in radians,",
+    "Landing.gravity": "surface.gravity",
+    "Landing.time_limit": "landing.time_limit",
+    "Landing.": "impact.",
+    "Lander.": "lander.",
+    "add_body ": "lander.",
+    "Sphere radius": "half of lander.diameter",
+    "Box lengths": "lander.edges",
+}
+
+
+@contextmanager
+def in_words_of_the_study() -> Iterator[None]:
+    """Say what the engine refuses by the keys of the study file, which is all that its user has written."""
+    try:
+        yield
+    except (ValueError, FloatingPointError) as error:
+        text = str(error)
+        for engine, study in STUDY_WORDS.items():
+            text = text.replace(engine, study)
+        # Either may be a kind of its own that takes no text.
+        raise (ValueError if isinstance(error, ValueError) else FloatingPointError)(text) from error
 
 
 @cache
 def engine_hash() -> str:
     """Hash of the code that decides what a touchdown gives."""
-    return source_hash("dem", "touchdown", "pipeline/landings.py")
+    return source_hash("dem", "touchdown", "mesh.py", "mesh_files.py", "pipeline/landings.py")
 
 
 def stored_bed(path: Path) -> "Bed":
@@ -132,8 +166,10 @@ def lander(study: Study, values: Values) -> "Lander":
     shape: Box | Sphere | ConvexHull
     if section.edges is not None:
         shape = Box(section.edges)
+    elif section.file is not None:
+        shape = read_hull(Path(section.file), section.unit)
     else:
-        shape = Sphere(values["lander.diameter"] / 2) if section.file is None else read_hull(Path(section.file))
+        shape = Sphere(values["lander.diameter"] / 2)
     properties = {name: values.get(f"lander.{name}", values[f"grain.{name}"]) for name in SURFACE}
     # The density of the material plays no part: the mass is given.
     material = Material(density=values["lander.mass"] / shape.volume, **properties)

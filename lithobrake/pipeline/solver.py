@@ -13,6 +13,8 @@ from lithobrake.study import OUTPUTS, Study
 
 # How a touchdown may end; one that is clear has outputs.
 OUTCOMES = ("clear", "captured", "left_sideways", "time_limit")
+# What speed and elevation may be off their components: numbers printed with six digits, as C and C++ do, agree so far.
+PRINTED = 2e-5
 
 
 @dataclass(frozen=True)
@@ -28,9 +30,8 @@ class SolverModel:
         outcome, outputs = answer.get("outcome", "clear"), completed(answer["outputs"])
         if outcome not in OUTCOMES:
             raise ValueError(f"outputs.json has the outcome {outcome!r}; allowed: {', '.join(OUTCOMES)}")
-        lacking = [name for name in OUTPUTS if name not in outputs]
-        if outcome == "clear" and lacking:
-            raise ValueError(f"outputs.json lacks {', '.join(lacking)}; a lander that leaves has all of them")
+        if outcome == "clear":
+            refuse_contradictions(outputs)
         return {"outcome": outcome, "outputs": outputs, "draws": answer.get("draws", {})}
 
 
@@ -44,6 +45,27 @@ def completed(outputs: Mapping[str, float]) -> dict[str, float]:
     return found
 
 
+def refuse_contradictions(outputs: Mapping[str, float]) -> None:
+    """Raise ValueError unless these are outputs [SI] of a lander that leaves: all there, outwards, of one velocity."""
+    lacking = [name for name in OUTPUTS if name not in outputs]
+    if lacking:
+        raise ValueError(f"outputs.json lacks {', '.join(lacking)}; a lander that leaves has all of them")
+    if outputs["velocity_out_z"] <= 0.0:
+        raise ValueError(
+            f"outputs.json has the outcome clear and a velocity_out_z of {outputs['velocity_out_z']:g} m/s; a lander "
+            "that leaves moves outwards, along +z: turn the axis round, or name another outcome"
+        )
+    if outputs["spin_out"] < 0.0:
+        raise ValueError(f"outputs.json has a spin_out of {outputs['spin_out']:g} rad/s; it is a size: at least 0")
+    components = {name: value for name, value in outputs.items() if name.startswith("velocity_out_")}
+    for name, follows in completed(components).items():
+        if not math.isclose(outputs[name], follows, rel_tol=PRINTED, abs_tol=0.0):
+            raise ValueError(
+                f"outputs.json has {outputs[name]:.8g} for {name}, and {follows:.8g} follows from velocity_out_x, _y "
+                "and _z (SI, angles in rad): leave it out, or mend one of them"
+            )
+
+
 def solver_command(study: Study, folder: Path) -> Command:
     """The program of a study, with its runs in a folder of the study."""
     return Command(str(study.solver.command), folder / "solver")
@@ -53,7 +75,7 @@ def solver_setting(study: Study) -> dict[str, Any]:
     """What a program is told beside the values of a run, as it stands in the study file."""
     return {
         "bed": study.bed.model_dump(exclude={"bed_count"}),
-        "lander": study.lander.model_dump(include={"shape", "edges", "inertia", "file"}),
+        "lander": study.lander.model_dump(include={"shape", "edges", "inertia", "file", "unit"}),
         "contact": study.contact.model_dump(),
         "time_limit": study.landing.time_limit,
     }

@@ -59,7 +59,7 @@ def _write_report(job: Job) -> None:
     write_report(job.folder.path)
 
 
-FIT, FLY = ("pipeline", "chaos", "analysis"), ("pipeline", "smallbody", "site.py")
+FIT, FLY = ("pipeline", "chaos", "analysis"), ("pipeline", "smallbody", "site.py", "mesh.py", "mesh_files.py")
 _SCREENING = ("method", "fit", "replicate_count", "screening_level", "screening_count", "screening_degree")
 _REFINED = _design("refined_level", "refined_count", "refined_degree", "kept_share", "kept_outputs")
 _TEST = _design("test_count")

@@ -19,7 +19,15 @@ from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.samples import Samples
 from lithobrake.pipeline.solver import OUTCOMES
 from lithobrake.pipeline.surface import bed_files
-from lithobrake.site import has_heading, push_at_site, site_body, site_medians, site_warning
+from lithobrake.site import (
+    escape_speed,
+    gravity_warning,
+    has_heading,
+    push_at_site,
+    site_body,
+    site_medians,
+    site_warning,
+)
 from lithobrake.study import BUILT_IN_BODIES, Study
 
 if TYPE_CHECKING:
@@ -216,6 +224,7 @@ def _site(study: Study) -> dict[str, Any]:
     return {
         "body": study.site.body if built_in else "mesh",
         "mass_kg": body.mass,
+        "bulk_density_kg_m3": body.density,
         "spin_period_s": body.spin_period,
         "extents_m": np.ptp(body.shape.vertices, axis=0).tolist(),
         "facet_count": len(body.shape.faces),
@@ -227,7 +236,10 @@ def _site(study: Study) -> dict[str, Any]:
         "place_m": body.shape.surface_point(site["latitude_deg"], site["longitude_deg"]).tolist(),
         "effective_acceleration_outward": float(effective[2]),
         "effective_acceleration_along_heading": float(effective[0]) if heads else None,
+        # In axes that do not turn, from the body alone.
+        "escape_speed_m_s": escape_speed(study),
         "warning": site_warning(study),
+        "gravity_warning": gravity_warning(study),
     }
 
 

@@ -12,6 +12,7 @@ from lithobrake.pipeline.landings import (
     draw,
     engine_hash,
     grain,
+    in_words_of_the_study,
     lander,
     landing,
     medians,
@@ -55,22 +56,24 @@ def pour_beds(job: Job) -> None:
     for index, name in enumerate(bed_files(study)):
         if name not in job.wanted:
             continue
-        recipe = BedRecipe(
-            grain_count=study.bed.grain_count,
-            sizes=GrainSizes(**sizes),
-            cloud_point_count=study.bed.cloud_point_count,
-            width=study.bed.width,
-            material=grain(values),
-            gravity=acceleration(values, settle_gravity),
-            pour_gravity=study.bed.pour_gravity,
-            seed=int(json_hash([study.seed, "bed", index])[:12], 16),
-            contact=contact(study),
-        )
 
         def show(done: float, what: str, index: int = index) -> None:
             job.progress(index + done, study.bed.bed_count, what)
 
-        pour_bed(recipe, progress=show).save(job.folder / name)
+        with in_words_of_the_study():
+            recipe = BedRecipe(
+                grain_count=study.bed.grain_count,
+                sizes=GrainSizes(**sizes),
+                cloud_point_count=study.bed.cloud_point_count,
+                width=study.bed.width,
+                material=grain(values),
+                gravity=acceleration(values, settle_gravity),
+                pour_gravity=study.bed.pour_gravity,
+                seed=int(json_hash([study.seed, "bed", index])[:12], 16),
+                contact=contact(study),
+            )
+            bed = pour_bed(recipe, progress=show)
+        bed.save(job.folder / name)
 
 
 def landing_files(study: Study) -> list[str]:
@@ -84,7 +87,7 @@ def touchdown_reads(study: Study) -> dict[str, Any]:
         return solver_reads(study)
     return {
         "bed": bed_reads(study),
-        "lander": study.lander.model_dump(include={"shape", "edges", "inertia"}),
+        "lander": study.lander.model_dump(include={"shape", "edges", "inertia", "unit"}),
         "mesh": None if study.lander.file is None else content_hash(Path(study.lander.file)),
         "time_limit": study.landing.time_limit,
         "version": f"{__version__}+{engine_hash()}",
@@ -101,7 +104,8 @@ def land_once(job: Job) -> None:
     from lithobrake.touchdown import land
 
     values = draw(job.study, medians(job.study), job.study.seed)
-    bed, body = stored_bed(job.folder / bed_files(job.study)[round(values["bed"])]), lander(job.study, values)
-    arrival = landing(job.study, values)
-    outcome = land(bed, body, arrival, frame_count=SNAPSHOT_FRAMES)
+    bed = stored_bed(job.folder / bed_files(job.study)[round(values["bed"])])
+    with in_words_of_the_study():
+        body, arrival = lander(job.study, values), landing(job.study, values)
+        outcome = land(bed, body, arrival, frame_count=SNAPSHOT_FRAMES)
     outcome.save_frames(job.folder / "landing.h5", bed, body, arrival)

@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from lithobrake.mesh import closed_faces, mass_properties
+from lithobrake.mesh_files import read_mesh
 from lithobrake.smallbody.crossing import outermost
 from lithobrake.smallbody.grid import Grid
-from lithobrake.smallbody.mesh import closed_faces, mass_properties
-from lithobrake.smallbody.mesh_files import read_mesh
 from lithobrake.smallbody.multipole import Multipole
 from lithobrake.smallbody.nearest import heights, pseudonormals
 from lithobrake.smallbody.polyhedron import Polyhedron

@@ -20,6 +20,8 @@ CAPTURED_ENERGY = 1e-4  # of the energy of impact
 CAPTURED_APEX = 0.5  # of the lander's smallest edge; the apex if all of its energy lifted it
 # A lander that turns round passes through rest: only rest that lasts for so many of the shortest contacts is capture.
 CAPTURED_CONTACTS = 10.0
+# Of the lander's smallest edge: deeper in the floor an overlap is no contact, and nothing that follows is a landing.
+SUNK_SHARE = 0.5
 
 
 class FlightLine:
@@ -50,8 +52,17 @@ class FlightLine:
         return self.lander.lowest(self.world.position[self.number], rotation)
 
     def look(self) -> None:
-        """Take note of the lander, and settle its fate if it can be settled."""
+        """Take note of the lander, and settle its fate if it can be settled.
+
+        Raises ValueError for a lander that went through the floor: no fate is to be told of that.
+        """
         height, touched = self.height(), self.world.watched
+        if height < -SUNK_SHARE * self.lander.smallest_edge:
+            raise ValueError(
+                f"the lander went through the floor: it is {-height:.3g} m below it, of {self.lander.mass:.3g} kg and "
+                f"come with {self.landing.speed:.3g} m/s, for which these grains are too soft or too few; raise "
+                "grain.young_modulus or bed.grain_count, or lower lander.mass or impact.speed"
+            )
         if touched["first_contact"] > 0.0 and self.height_at_contact is None:
             self.height_at_contact = self.lowest
         self.lowest = min(self.lowest, height)

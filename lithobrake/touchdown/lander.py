@@ -7,18 +7,30 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lithobrake.dem import Box, ConvexHull, Material, Sphere
+from lithobrake.dem.body import checked_inertia
+from lithobrake.mesh import refuse_malformed
+from lithobrake.mesh_files import read_mesh
 
 Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Lander:
-    """A rigid convex body with a mass [kg] and an inertia [kg m2, 3 x 3, about its centroid; None: homogeneous]."""
+    """A rigid convex body with a mass [kg] and an inertia [kg m2, 3 x 3, about its centroid; None: homogeneous].
+
+    Raises ValueError for a mass that is not positive, and for an inertia that no body has.
+    """
 
     shape: Sphere | Box | ConvexHull
     mass: float
     material: Material
     inertia: Floats | None = None
+
+    def __post_init__(self) -> None:
+        if not 0.0 < self.mass < np.inf:
+            raise ValueError(f"Lander.mass is {self.mass!r} kg; allowed is a finite value above 0: change it")
+        if self.inertia is not None:
+            checked_inertia(self.inertia, "Lander.inertia")
 
     @property
     def smallest_edge(self) -> float:
@@ -37,54 +49,16 @@ class Lander:
         return float(position[2] + ((self.shape.vertices - self.shape.centroid) @ rotation[2]).min())
 
 
-def read_hull(path: str | os.PathLike[str]) -> ConvexHull:
-    """Return the convex envelope of a closed OBJ or STL mesh with coordinates in metres.
+def read_hull(path: str | os.PathLike[str], unit: str = "m") -> ConvexHull:
+    """Return the convex envelope of a closed OBJ or STL mesh whose coordinates are in `unit` (m, km, cm, mm).
 
-    Raises ValueError for a mesh that is not closed, has no triangles, or is of another format.
+    The mesh may have several pieces, say solar panels. Raises ValueError for one that is not closed or cannot be read.
     """
-    name = os.fspath(path).lower()
-    with open(path, "rb") as file:
-        content = file.read()
-    if name.endswith(".obj"):
-        vertices, triangles = _read_obj(content.decode("utf-8", "replace"), path)
-    elif name.endswith(".stl"):
-        vertices, triangles = _read_stl(content, path)
-    else:
-        raise ValueError(f"lander mesh {path} has an unknown ending; allowed are .obj and .stl: convert it")
-    edges = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
-    forward = {(int(a), int(b)) for a, b in edges}
-    if len(triangles) < 4 or len(forward) != len(edges) or any((b, a) not in forward for a, b in forward):
+    vertices, faces = read_mesh(path, unit)
+    refuse_malformed(vertices, faces, f"lander mesh {path}")
+    edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
+    forward = {(a, b) for a, b in edges.tolist()}
+    if len(forward) != len(edges) or any((b, a) not in forward for a, b in forward):
         raise ValueError(f"lander mesh {path} is not closed, or its triangles turn both ways: mend it in a mesh editor")
-    return ConvexHull(vertices)
-
-
-def _read_obj(text: str, path: object) -> tuple[Floats, NDArray[np.int64]]:
-    """Read vertices and faces of an OBJ file; polygons are cut into fans."""
-    vertices, triangles = [], []
-    for line in text.splitlines():
-        words = line.split()
-        if words[:1] == ["v"]:
-            vertices.append([float(word) for word in words[1:4]])
-        elif words[:1] == ["f"]:
-            index = [int(word.split("/")[0]) for word in words[1:]]
-            index = [i - 1 if i > 0 else len(vertices) + i for i in index]
-            triangles += [[index[0], index[k], index[k + 1]] for k in range(1, len(index) - 1)]
-    if not triangles:
-        raise ValueError(f"lander mesh {path} has no faces: export it with faces")
-    return np.array(vertices), np.array(triangles)
-
-
-def _read_stl(content: bytes, path: object) -> tuple[Floats, NDArray[np.int64]]:
-    """Read an STL file, text or binary, joining corners with equal coordinates."""
-    record = np.dtype([("normal", "<f4", 3), ("corner", "<f4", (3, 3)), ("attribute", "<u2")])
-    count = int.from_bytes(content[80:84], "little")
-    if len(content) == 84 + count * record.itemsize:
-        corners = np.frombuffer(content, record, count, 84)["corner"].reshape(-1, 3).astype(np.float64)
-    else:
-        words = content.decode("utf-8", "replace").split()
-        starts = [k for k, word in enumerate(words) if word == "vertex"]
-        corners = np.array([[float(word) for word in words[k + 1 : k + 4]] for k in starts]).reshape(-1, 3)
-    if len(corners) == 0 or len(corners) % 3:
-        raise ValueError(f"lander mesh {path} has no whole triangles: export it again as STL")
-    vertices, index = np.unique(corners, axis=0, return_inverse=True)
-    return vertices, index.reshape(-1, 3)
+    # Vertices that no face uses are not of the lander.
+    return ConvexHull(vertices[np.unique(faces)])

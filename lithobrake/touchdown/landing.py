@@ -67,7 +67,8 @@ class Landing:
 def land(bed: Bed, lander: Lander, landing: Landing, frame_count: int = 0) -> Outcome:
     """Let a lander meet a bed whose grains have taken on the landing's material, until its fate is clear.
 
-    Raises ValueError where bed and landing do not fit, FloatingPointError where the motion diverged.
+    Raises ValueError where bed and landing do not fit and where the lander goes through the floor, FloatingPointError
+    where the motion diverged.
     """
     if max(abs(landing.place[0]) / bed.width[0], abs(landing.place[1]) / bed.width[1]) >= 0.5:
         raise ValueError(f"Landing.place is {landing.place!r} m; allowed is inside the box of {bed.width} m: move it")

@@ -132,3 +132,9 @@ def test_each_process_is_started_anew_and_has_one_thread(tmp_path: Path) -> None
         runs = campaign(tmp_path, models.threads, executor)
     expected = {"omp_num_threads": 1.0, "openblas_num_threads": 1.0, "numba": 1.0, "is_spawned": 1.0}
     assert all(entry.outputs == expected for entry in runs.records)
+
+
+@pytest.mark.parametrize("count", [-1, 0, 1.5])
+def test_a_pool_of_less_than_one_process_is_refused(count: float) -> None:
+    with pytest.raises(ValueError, match=r"worker_count is .*at least 1"):
+        LocalExecutor(count)  # type: ignore[arg-type]

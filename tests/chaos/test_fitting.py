@@ -229,3 +229,20 @@ def test_scores_of_wrong_shapes_are_refused():
     for points, y in ((x, x[:5, 0]), (x, np.zeros((10, 2))), (np.zeros((0, 1)), np.zeros(0))):
         with pytest.raises(ValueError, match="y has shape"):
             surrogate.score(points, y)
+
+
+@pytest.mark.parametrize(
+    ("degree", "said"),
+    [
+        (10**9, "whole number from 0 to 20000000"),
+        (20_000_000, "too many terms to look at"),
+        (100_000, "50 points cannot"),
+    ],
+)
+def test_a_degree_beyond_all_memory_is_refused_before_anything_is_made(degree, said):
+    x = sobol_sequence({"a": Uniform(0.0, 1.0)}, 50)
+    with pytest.raises(ValueError, match=said):
+        fit({"a": Uniform(0.0, 1.0)}, x, x[:, 0], degree=degree)
+    many = {name: Uniform(0.0, 1.0) for name in "abcdef"}
+    with pytest.raises(ValueError, match="too many terms to look at"):
+        fit(many, sobol_sequence(many, 50), np.arange(50.0), degree=1000)

@@ -101,7 +101,19 @@ def test_code_in_a_file_stays_text(tmp_path, monkeypatch):
         ("inputs", [{"name": "a"}]),
         ("output_names", None),
         ("residuals", [[1.0]]),
+        ("residuals", [[1.0, float("nan")]]),
+        ("residuals", [[1.0, 2.0, 3.0, 4.0]]),
         ("report", 3),
+        ("multi_indices", [[0, 0, 0]]),
+        ("multi_indices", [[0, 0, 0, 0.5]]),
+        ("multi_indices", [[0, 0, 0, True]]),
+        ("multi_indices", [[0, 0, 0, 10**30]]),
+        ("multi_indices", [[0, 0, 0, 0]] * 2),
+        ("multi_indices", []),
+        ("output_names", "vw"),
+        ("output_names", ["v", "v"]),
+        ("one_dimensional", "no"),
+        ("one_dimensional", True),
     ],
 )
 def test_damaged_content_is_refused_with_the_name_of_the_file(key, value, tmp_path):
@@ -110,3 +122,41 @@ def test_damaged_content_is_refused_with_the_name_of_the_file(key, value, tmp_pa
     path.write_text(json.dumps(content))
     with pytest.raises(ValueError, match=r"model\.json is damaged"):
         load(path)
+
+
+def test_numbers_of_a_file_that_are_none_are_refused(tmp_path):
+    path = tmp_path / "model.json"
+    for broken in (float("nan"), float("inf"), None):
+        content = json.loads(VERSION_1.read_text())
+        content["coefficients"][1][0] = broken
+        path.write_text(json.dumps(content))
+        with pytest.raises(ValueError, match="coefficients must be rows of 2 finite numbers"):
+            load(path)
+    content = json.loads(VERSION_1.read_text())
+    content["inputs"][1]["name"] = content["inputs"][0]["name"]
+    path.write_text(json.dumps(content))
+    with pytest.raises(ValueError, match="name of its own"):
+        load(path)
+    path.write_text("[" * 100_000)
+    with pytest.raises(ValueError, match="not JSON"):
+        load(path)
+
+
+def test_parts_of_a_file_that_do_not_belong_together_are_refused(tmp_path):
+    x = np.repeat(sobol_sequence(INPUTS, 12), 2, axis=0)
+    y = x[:, 0] + np.random.default_rng(0).normal(size=24)
+    path = tmp_path / "model.json"
+    fit_stochastic(INPUTS, x, y).save(path)
+    assert np.isfinite(load_stochastic(path).sample(x)).all()
+    whole = json.loads(path.read_text())
+    other = {**whole["log_variance"], "output_names": ["z"]}
+    for change in ({"correlation": [[float("nan")]]}, {"correlation": [[1.0], [1.0]]}, {"log_variance": other}):
+        path.write_text(json.dumps({**whole, **change}))
+        with pytest.raises(ValueError, match="damaged"):
+            load_stochastic(path)
+    fit_dependent(INPUTS, np.eye(2), x, y, degree=1).save(path)
+    whole = json.loads(path.read_text())
+    whole["independent"]["inputs"] = whole["dependent_inputs"]
+    path.write_text(json.dumps(whole))
+    with pytest.raises(ValueError, match="not the germs"):
+        load_dependent(path)

@@ -111,6 +111,10 @@ def test_too_large_a_step_names_the_largest_safe_one():
         (lambda w: w.add_body(Sphere(1.0), ROCK, (0, 0, 0), mass=-1.0), "mass"),
         (lambda w: w.add_body(Sphere(1.0), ROCK, (0, 0, 0), inertia=-np.eye(3)), "inertia"),
         (lambda w: w.add_body(Sphere(1.0), ROCK, (0, 0, 0), inertia=np.eye(3) + np.eye(3, k=1)), "inertia"),
+        (
+            lambda w: w.add_body(Sphere(1.0), ROCK, (0, 0, 0), inertia=np.diag([0.001, 0.001, 0.01])),
+            "sum of the other two",
+        ),
         (lambda w: w.add_plane((0, 0, 0), (0, 0, 0), ROCK), "normal"),
         (lambda w: w.run(duration=1.0), "no body"),
         (lambda w: w.run(), "either"),

@@ -144,7 +144,7 @@ DAMAGED: list[tuple[str, Callable[[Path], object]]] = [
     ("summary.json", lambda path: path.write_text("[" * 3000)),
     (
         "summary.json",
-        lambda path: path.write_text(path.read_text().replace('"format_version": 1', '"format_version": 7')),
+        lambda path: path.write_text(path.read_text().replace('"format_version": 2', '"format_version": 7')),
     ),
     ("summary.json", lambda path: path.write_text(path.read_text().replace('"remains"', '"stays"'))),
     ("scores.json", lambda path: path.write_text('{"refined": 3}')),
@@ -154,7 +154,7 @@ DAMAGED: list[tuple[str, Callable[[Path], object]]] = [
     ("body.obj", lambda path: path.write_text("\n")),
     ("body.obj", lambda path: path.write_text("v 0 0 0\nf 1 2 3\n")),
     ("samples.h5", lambda path: path.write_bytes(path.read_bytes()[:2000])),
-    ("samples.h5", without("stays")),
+    ("samples.h5", without("outcome")),
     ("landing.h5", without("frames/position")),
     ("beds/bed_0.h5", lambda path: path.write_bytes(b"")),
 ]

@@ -124,11 +124,21 @@ def test_meshes_of_landers_are_read_if_closed(tmp_path):
     with pytest.raises(ValueError, match="not closed"):
         read_hull(tmp_path / "open.obj")
     (tmp_path / "empty.obj").write_text(CUBE)
-    with pytest.raises(ValueError, match="no faces"):
+    with pytest.raises(ValueError, match="0 facets cannot enclose a volume"):
         read_hull(tmp_path / "empty.obj")
+    (tmp_path / "beyond.obj").write_text(CUBE + FACES.replace("8", "9"))
+    with pytest.raises(ValueError, match="there are 1 to 8"):
+        read_hull(tmp_path / "beyond.obj")
     (tmp_path / "cube.ply").write_text("")
     with pytest.raises(ValueError, match="ending"):
         read_hull(tmp_path / "cube.ply")
+
+
+def test_a_lander_mesh_has_a_unit_and_only_what_its_faces_use(tmp_path):
+    (tmp_path / "cube.obj").write_text(CUBE + FACES)
+    assert read_hull(tmp_path / "cube.obj", "cm").volume == pytest.approx(1e-6)
+    (tmp_path / "stray.obj").write_text(CUBE + "v 9 9 9\n" + FACES)
+    assert read_hull(tmp_path / "stray.obj").volume == pytest.approx(1.0)
 
 
 def test_stl_is_read_as_text(tmp_path):
@@ -144,3 +154,24 @@ def read_hull_of_stl(folder):
         lines += ["vertex {} {} {}".format(*corners[k]) for k in triangle] + ["endloop", "endfacet"]
     (folder / "lander.stl").write_text("\n".join([*lines, "endsolid lander"]))
     return read_hull(folder / "lander.stl")
+
+
+@pytest.mark.parametrize(("mass", "speed"), [(1e6, 0.3), (0.3, 1e5)])
+def test_a_lander_that_goes_through_the_floor_is_a_failure_and_no_fate(bed, mass, speed):
+    with pytest.raises(ValueError, match=r"went through the floor .*raise grain\.young_modulus .*lower lander\.mass"):
+        land(bed, ball(mass=mass), landing(speed=speed))
+
+
+@pytest.mark.parametrize(
+    ("moments", "said"), [((0.001, 0.001, 0.01), "sum of the other two"), ((1.0, 1.0, -1.0), "positive definite")]
+)
+def test_an_inertia_that_no_body_has_is_refused(moments, said):
+    with pytest.raises(ValueError, match=rf"Lander\.inertia .*{said}"):
+        Lander(shape=Sphere(0.06), mass=0.3, material=BOUNCY, inertia=np.diag(moments))
+    # A flat plate has moments of which one is the sum of the others.
+    assert Lander(shape=Sphere(0.06), mass=0.3, material=BOUNCY, inertia=np.diag([0.1, 0.2, 0.1 + 0.2])).mass == 0.3
+
+
+def test_a_lander_needs_a_mass():
+    with pytest.raises(ValueError, match=r"Lander\.mass is 0\.0 kg"):
+        ball(mass=0.0)

@@ -1,4 +1,4 @@
-"""What makes a list of triangles the closed surface of one body, and what that body weighs."""
+"""What makes a list of triangles the closed surface of one body, what that body weighs, and where its inside is."""
 
 import warnings
 
@@ -10,7 +10,8 @@ from scipy.sparse.csgraph import breadth_first_order, connected_components
 Vertices = NDArray[np.float64]
 Faces = NDArray[np.int64]
 
-FLATTEST = 1e-10  # height of a triangle over its longest edge, below which it has no usable normal
+# Height of a triangle over its longest edge, below which it has no usable normal; of a body, over its extent.
+FLATTEST = 1e-10
 
 
 def closed_faces(vertices: Vertices, faces: Faces, where: str) -> Faces:
@@ -19,19 +20,28 @@ def closed_faces(vertices: Vertices, faces: Faces, where: str) -> Faces:
     vertices [m], shape [vertex_count, 3]; faces: vertex indices, shape [facet_count, 3]; `where` names the mesh in
     errors. Raises ValueError for a mesh that is degenerate, open, non-manifold, in several pieces, or has no volume.
     """
-    _refuse_malformed(vertices, faces, where)
+    refuse_malformed(vertices, faces, where)
     _refuse_degenerate(vertices, faces, where)
     edges, owner = _edges(faces)
     neighbours = _refuse_open(edges, owner, faces, where)
     _refuse_pieces(neighbours, where)
     faces, turned = _agree(faces, neighbours)
     _refuse_pinched(faces, where)
-    if mass_properties(vertices, faces)[0] < 0.0:
+    volume, extent = volume_of(vertices, faces), float(np.ptp(vertices[faces].reshape(-1, 3), axis=0).max())
+    if not abs(volume) > FLATTEST * extent**3:
+        raise ValueError(f"{where}: flat, it encloses {volume:g} m3 over {extent:g} m; give a body with a volume.")
+    if volume < 0.0:
         faces, turned = faces[:, ::-1].copy(), len(faces) - turned
     if turned:
         kind = "all facets" if turned == len(faces) else f"{turned} of {len(faces)} facets"
         warnings.warn(f"{where}: {kind} faced inwards and were turned to face outwards.", stacklevel=3)
     return faces
+
+
+def volume_of(vertices: Vertices, faces: Faces) -> float:
+    """Volume inside a closed surface [m3], negative where its facets face inwards."""
+    corner = vertices[faces] - vertices.mean(axis=0)
+    return float(np.einsum("fi,fi->", corner[:, 0], np.cross(corner[:, 1], corner[:, 2])) / 6.0)
 
 
 def mass_properties(vertices: Vertices, faces: Faces) -> tuple[float, NDArray[np.float64], NDArray[np.float64]]:
@@ -53,7 +63,21 @@ def mass_properties(vertices: Vertices, faces: Faces) -> tuple[float, NDArray[np
     return float(volume), centroid + base, 0.5 * (inertia + inertia.T)
 
 
-def _refuse_malformed(vertices: Vertices, faces: Faces, where: str) -> None:
+def holds_origin(vertices: Vertices, faces: Faces) -> bool:
+    """Tell whether a closed surface goes round the origin: whether it fills more than half of the sky seen from there.
+
+    Source: Van Oosterom and Strackee (1983), The solid angle of a plane triangle, IEEE Trans. Biomed. Eng. 30, 125-126.
+    """
+    a, b, c = (vertices[faces[:, corner]] for corner in range(3))
+    length_a, length_b, length_c = (np.linalg.norm(corner, axis=1) for corner in (a, b, c))
+    triple = np.einsum("fi,fi->f", a, np.cross(b, c))
+    base = length_a * length_b * length_c
+    base += (a * b).sum(axis=1) * length_c + (b * c).sum(axis=1) * length_a + (c * a).sum(axis=1) * length_b
+    return bool(abs(2.0 * np.arctan2(triple, base).sum()) > 2.0 * np.pi)
+
+
+def refuse_malformed(vertices: Vertices, faces: Faces, where: str) -> None:
+    """Raise ValueError unless these are 4 or more triangles between finite vertices; arguments as of closed_faces."""
     if vertices.ndim != 2 or vertices.shape[1] != 3 or faces.ndim != 2 or faces.shape[1] != 3:
         raise ValueError(
             f"{where}: vertices have shape {vertices.shape} and faces {faces.shape}; give [count, 3] for both."

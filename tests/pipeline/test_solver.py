@@ -1,0 +1,73 @@
+"""What a solver of one's own may answer, and what a study cannot use."""
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+from lithobrake.campaign import Record, Runs
+from lithobrake.pipeline.expansions import DesignRuns
+from lithobrake.pipeline.solver import SolverModel
+
+VELOCITY = {"velocity_out_x": 0.03, "velocity_out_y": -0.02, "velocity_out_z": 0.06}
+CLEAR = {**VELOCITY, "spin_out": 1.5}
+
+
+class Answers:
+    """A program that always gives one answer."""
+
+    def __init__(self, answer: dict[str, Any]) -> None:
+        self.answer = answer
+
+    def ask(self, question: dict[str, Any]) -> dict[str, Any]:
+        return self.answer
+
+
+def made(outputs: dict[str, float], outcome: str = "clear") -> dict[str, Any]:
+    """The run that a study makes of an answer."""
+    model = SolverModel(Answers({"outcome": outcome, "outputs": outputs}), {})  # type: ignore[arg-type]
+    return model({"speed": 1.0}, 1)
+
+
+def test_speed_and_elevation_follow_from_the_components() -> None:
+    outputs = made(CLEAR)["outputs"]
+    assert outputs["speed_out"] == pytest.approx(0.07, rel=1e-12)
+    assert outputs["elevation_out"] == pytest.approx(math.atan2(0.06, math.hypot(0.03, 0.02)), rel=1e-12)
+
+
+def test_numbers_printed_with_six_digits_agree() -> None:
+    outputs = {"velocity_out_x": 1.23456, "velocity_out_y": 0.100005, "velocity_out_z": 0.0100005, "spin_out": 0.0}
+    speed, elevation = made(outputs)["outputs"]["speed_out"], made(outputs)["outputs"]["elevation_out"]
+    printed = {**outputs, "speed_out": float(f"{speed:.6g}"), "elevation_out": float(f"{elevation:.6g}")}
+    # What is given stays as it was given.
+    assert made(printed)["outputs"] == printed
+
+
+@pytest.mark.parametrize(
+    ("outputs", "said"),
+    [
+        ({**CLEAR, "velocity_out_z": -0.06}, "velocity_out_z of -0.06 m/s; a lander that leaves moves outwards"),
+        ({**CLEAR, "velocity_out_z": 0.0}, "velocity_out_z of 0 m/s"),
+        ({**CLEAR, "speed_out": 7.0}, "7 for speed_out, and 0.07 follows"),
+        ({**CLEAR, "elevation_out": 59.0}, "59 for elevation_out, and 1.029"),
+        ({**CLEAR, "spin_out": -1.5}, "spin_out of -1.5 rad/s"),
+        (VELOCITY, "lacks spin_out"),
+        ({"speed_out": 0.07, "elevation_out": 1.03, "spin_out": 1.5}, "lacks velocity_out_x"),
+    ],
+)
+def test_a_lander_that_leaves_and_contradicts_itself_is_a_failed_run(outputs: dict[str, float], said: str) -> None:
+    with pytest.raises(ValueError, match=said):
+        made(outputs)
+
+
+@pytest.mark.parametrize("outcome", ["captured", "left_sideways", "time_limit"])
+def test_only_a_lander_that_is_clear_counts_as_leaving_whatever_else_is_told_of_it(outcome: str) -> None:
+    answers = [made(CLEAR), made(CLEAR, outcome), made({"penetration": 0.01}, outcome)]
+    assert answers[1]["outputs"]["spin_out"] == CLEAR["spin_out"]
+    records = [
+        Record("", "done", answer["outcome"], {}, answer["outputs"], {}, 1, 0, 1, None, *[None] * 3, "", None, None)
+        for answer in answers
+    ]
+    design = DesignRuns(("a",), np.zeros((3, 1)), Runs(records, 0))
+    assert design.has_outputs.tolist() == [True, False, False]
