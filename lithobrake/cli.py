@@ -157,9 +157,9 @@ def _make(study: Path, out: Path | None, until: str, workers: int | None, schedu
     os.environ.update(OPENBLAS_NUM_THREADS="1", MKL_NUM_THREADS="1")
     with _one_sentence():
         from lithobrake.pipeline import run_study
-        from lithobrake.progress import StudyProgress
+        from lithobrake.progress import study_progress
 
-        with StudyProgress() as shown:
+        with study_progress() as shown:
             run_study(
                 study,
                 out or _default_folder(study),

@@ -9,7 +9,7 @@ from lithobrake.campaign.local import LocalExecutor, WorkerDiedError
 from lithobrake.campaign.missing import missing
 from lithobrake.campaign.record import Record, campaign_began, read_records, write_csv
 from lithobrake.campaign.runs import Runs, run
-from lithobrake.campaign.tally import Tally, ledger_tally
+from lithobrake.campaign.tally import Tally, duration, ledger_tally, per_time
 
 __all__ = [
     "Command",
@@ -23,8 +23,10 @@ __all__ = [
     "WorkerDiedError",
     "absolute_words",
     "campaign_began",
+    "duration",
     "ledger_tally",
     "missing",
+    "per_time",
     "read_records",
     "run",
     "run_key",
