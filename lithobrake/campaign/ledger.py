@@ -122,6 +122,11 @@ class Ledger:
                 (result["status"], texts["outputs"], texts["draws"], *plain, result.get("attempts", 1), utc_now(), key),
             )
 
+    def forget_tries(self, keys: Iterable[str]) -> None:
+        """Count failed runs as never tried, so that the next campaign tries them whatever its number of retries."""
+        with self._transaction():
+            self._database.executemany("UPDATE runs SET attempts = 0 WHERE key = ?", [(key,) for key in keys])
+
     def find(self, keys: Iterable[str]) -> dict[str, Record]:
         """The runs with these keys that have ended, by key."""
         wanted = set(keys)

@@ -1,6 +1,7 @@
 """Where a campaign stands: counts, rate, time left, and the spread of each output so far."""
 
 import math
+from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
@@ -90,6 +91,12 @@ class Tally:
             for name, spread in ((name, self.spreads.get(name, Spread())) for name in names)
             if spread.count > 1
         ]
+
+
+def common_reasons(reasons: Iterable[str | None]) -> str:
+    """The commonest reasons of failed runs with their counts; None, where a run has not failed, counts for nothing."""
+    common = Counter(reason for reason in reasons if reason is not None).most_common(3)
+    return "; ".join(f"{number} x {reason}" for reason, number in common)
 
 
 def per_time(rate: float, things: str = "") -> str:
