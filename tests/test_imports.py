@@ -33,7 +33,7 @@ ALLOWED: dict[str, set[str]] = {
     "progress": {"progress_log"},
     "progress_log": {"campaign"},
     "__main__": {"cli"},
-    "cli": {"pipeline", "campaign", "progress", "study_template", "report"},
+    "cli": {"study_file", "pipeline", "campaign", "progress", "study_template", "report"},
 }
 
 

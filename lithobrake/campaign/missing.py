@@ -3,16 +3,18 @@
 from collections.abc import Iterator, Sequence
 from itertools import combinations, product
 from math import comb
-
-import numpy as np
+from typing import TYPE_CHECKING
 
 from lithobrake.campaign.tally import common_reasons
+
+if TYPE_CHECKING:
+    import numpy as np
 
 # A chance below this, over all corners looked at, is no chance [-].
 _CHANCE = 0.01
 
 
-def missing(x: np.ndarray, reasons: Sequence[str | None], names: Sequence[str], largest_share: float) -> str:
+def missing(x: "np.ndarray", reasons: Sequence[str | None], names: Sequence[str], largest_share: float) -> str:
     """Say how many runs of a design have failed, and why; the empty string for none.
 
     x: inputs, shape [run_count, len(names)]. reasons: why each run failed, None where it has not. largest_share: of
@@ -20,6 +22,8 @@ def missing(x: np.ndarray, reasons: Sequence[str | None], names: Sequence[str], 
     one side of an input, or in a corner of two, as they would by chance in less than 1 of 100 designs: what is fitted
     without them would know nothing there.
     """
+    import numpy as np
+
     failed = np.array([reason is not None for reason in reasons])
     count, total = int(failed.sum()), len(failed)
     if count == 0:
@@ -41,7 +45,7 @@ def missing(x: np.ndarray, reasons: Sequence[str | None], names: Sequence[str], 
     return f"{sentence}; what is fitted goes without them"
 
 
-def _corner(x: np.ndarray, failed: np.ndarray, names: Sequence[str]) -> tuple[int, str] | None:
+def _corner(x: "np.ndarray", failed: "np.ndarray", names: Sequence[str]) -> tuple[int, str] | None:
     """The corner in which failures are least likely by chance: how many, and where; None when chance may do it.
 
     Among the failed and the others drawn without order, the number of failed ones in a corner has the hypergeometric
@@ -59,8 +63,10 @@ def _corner(x: np.ndarray, failed: np.ndarray, names: Sequence[str]) -> tuple[in
     return best[1], best[2]
 
 
-def _corners(x: np.ndarray, names: Sequence[str]) -> Iterator[tuple[np.ndarray, str]]:
+def _corners(x: "np.ndarray", names: Sequence[str]) -> "Iterator[tuple[np.ndarray, str]]":
     """Every side of every input that varies, below or above its middle value, and every corner of two such sides."""
+    import numpy as np
+
     sides: list[list[tuple[np.ndarray, str]]] = []
     for column, name in enumerate(names):
         values = x[:, column]

@@ -6,9 +6,7 @@ from concurrent.futures import Executor
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
-
-import numpy as np
+from typing import TYPE_CHECKING, Any
 
 from lithobrake.campaign.coordinator import Coordinator, Job
 from lithobrake.campaign.identity import run_key, run_seed
@@ -18,6 +16,9 @@ from lithobrake.campaign.local import LocalExecutor
 from lithobrake.campaign.one_run import Model
 from lithobrake.campaign.record import Record
 from lithobrake.campaign.tally import Tally
+
+if TYPE_CHECKING:
+    import numpy as np
 
 
 @dataclass(frozen=True)
@@ -37,15 +38,17 @@ class Runs:
         """Why each run failed; None where it has not."""
         return [record.reason if record.status == "failed" else None for record in self.records]
 
-    def outputs(self, names: Sequence[str]) -> np.ndarray:
+    def outputs(self, names: Sequence[str]) -> "np.ndarray":
         """Outputs, shape [run_count, len(names)]; NaN where a run has failed or has no such output."""
+        import numpy as np
+
         rows = [[record.outputs.get(name, math.nan) for name in names] for record in self.records]
         return np.array(rows, dtype=float).reshape(len(rows), len(names))
 
 
 def run(
     model: Model,
-    x: np.ndarray,
+    x: "np.ndarray",
     *,
     names: Sequence[str],
     ledger: Ledger,
@@ -98,8 +101,10 @@ def _silent(state: Tally) -> None:
     """Show nothing."""
 
 
-def _inputs_of(x: np.ndarray, names: Sequence[str], fixed: Mapping[str, float]) -> list[dict[str, float]]:
+def _inputs_of(x: "np.ndarray", names: Sequence[str], fixed: Mapping[str, float]) -> list[dict[str, float]]:
     """The inputs of each row by name. Raises ValueError for rows that do not fit the names or are not finite."""
+    import numpy as np
+
     table = np.asarray(x, dtype=float)
     if table.ndim != 2 or table.shape[1] != len(names):
         raise ValueError(
