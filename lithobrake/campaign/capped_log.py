@@ -2,10 +2,7 @@
 
 import io
 from pathlib import Path
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from _typeshed import ReadableBuffer as Buffer
+from typing import Any
 
 # Bytes kept of the beginning, and at least of the end; the end may be twice as long until its first half is dropped.
 KEPT = 1 << 20
@@ -26,7 +23,7 @@ class CappedLog(io.RawIOBase):
         """Tell that it takes bytes."""
         return True
 
-    def write(self, content: "Buffer", /) -> int:
+    def write(self, content: Any, /) -> int:
         """Append bytes, and drop the middle where they are too many."""
         view = memoryview(content)
         for start in range(0, len(view), KEPT):
