@@ -19,23 +19,37 @@ class _Work:
     """A piece of work; began: when it was first heard of, on the monotonic clock [s], with first_done done."""
 
     what: str
+    total: float
     began: float
     first_done: float
     done: float = 0.0
-    total: float = 1.0
     detail: str = ""
 
-    def line(self) -> str:
+    def now(self) -> str:
         """How far it is, how fast it goes and how long it will take."""
-        if self.detail:
-            return f"{self.what}: {self.detail.partition(chr(10))[0]}"
-        seconds, fresh = time.monotonic() - self.began, self.done - self.first_done
-        parts = [counted(self.done, self.total), f"{duration(seconds)} so far"]
-        if fresh > 0.0 and self.done < self.total:
-            if self.total > 1.0:
-                parts.append(per_time(fresh / seconds))
-            parts.append(f"{duration((self.total - self.done) * seconds / fresh)} left")
-        return f"{self.what}: {', '.join(parts)}"
+        share = (self.done - self.first_done) / (self.total - self.first_done or 1.0)
+        left = f"{duration(self.seconds * (1.0 / share - 1.0))} left" if 0.0 < share < 1.0 else ""
+        return self._line(counted(self.done, self.total), f"{duration(self.seconds)} so far", self._rate, left)
+
+    def end(self) -> str:
+        """What it came to, and how long it took."""
+        how_much = counted(self.done, self.total) if self.total > 1.0 else ""
+        return self._line(how_much, self._rate, f"took {duration(self.seconds)}")
+
+    @property
+    def seconds(self) -> float:
+        """Since it began [s]."""
+        return max(time.monotonic() - self.began, 1e-9)
+
+    @property
+    def _rate(self) -> str:
+        fresh = self.done - self.first_done
+        return per_time(fresh / self.seconds) if self.total > 1.0 and fresh > 0.0 else ""
+
+    def _line(self, *parts: str) -> str:
+        # Work that says more about itself tells rate and time left better than they can be told here.
+        told = [self.detail.partition("\n")[0]] if self.detail else filter(None, parts)
+        return f"  {self.what}: {', '.join(told)}"
 
 
 class ProgressLog:
@@ -70,9 +84,10 @@ class ProgressLog:
     def progress(self, done: float, total: float, what: str, detail: str = "", /) -> None:
         """Remember how far the work of the stage is, for the next line about it."""
         with self._lock:
-            if self._work is None or self._work.what != what:
-                self._work = _Work(what, time.monotonic(), done)
-            self._work.done, self._work.total, self._work.detail = done, total, detail
+            if self._work is None or (self._work.what, self._work.total) != (what, total):
+                self._end_work()
+                self._work = _Work(what, total, time.monotonic(), done)
+            self._work.done, self._work.detail = done, detail
 
     def _write_now_and_then(self) -> None:
         while not self._closed:
@@ -83,19 +98,19 @@ class ProgressLog:
             with self._lock:
                 # Another stage may have begun between the waking and the lock.
                 if time.monotonic() >= self._due:
-                    self._write(f"  {self._state()}")
+                    stage = f"  {self._title}: {duration(time.monotonic() - self._began)} so far"
+                    self._write(self._work.now() if self._work else stage)
                     self._due = time.monotonic() + self._every
 
-    def _state(self) -> str:
-        so_far = f"{duration(time.monotonic() - self._began)} so far"
-        return self._work.line() if self._work else f"{self._title}: {so_far}"
+    def _end_work(self) -> None:
+        """Write how a piece of work ended, if it took long enough to be waited for."""
+        if self._work and self._work.seconds > self._first:
+            self._write(self._work.end())
 
     def _end_stage(self) -> None:
-        """Write the last state of a stage that did something, and how long it took."""
-        seconds = time.monotonic() - self._began
-        if self._work or seconds > self._first:
-            state = f"{self._work.line()}; " if self._work else ""
-            self._write(f"  {state}{self._title} took {duration(seconds)}")
+        self._end_work()
+        if self._work or time.monotonic() - self._began > self._first:
+            self._write(f"  {self._title} took {duration(time.monotonic() - self._began)}")
 
     def _write(self, line: str) -> None:
         self._file.write(f"{plain(line)}\n")

@@ -63,20 +63,25 @@ def logged(*works: tuple[float, float, str, str], until: str) -> str:
     return file.getvalue()
 
 
-def test_a_log_file_has_stages_and_sentences_and_how_each_stage_ended() -> None:
+def test_a_log_file_has_stages_and_their_work_and_how_both_ended() -> None:
     shown = logged((23, 61, "screening runs", DETAIL), until="19 s left").splitlines()
-    assert shown[0] == "stage 3 of 9: screening"
     # One line, not all that a terminal has room for.
     line = "  screening runs: 61 runs: 22 done, 2 running, 1 failed, 2.1 runs/s, 19 s left"
-    assert shown[1] == line
-    assert shown[-2:] == [f"{line}; screening took 0 s", "stage 4 of 9: refinement"]
+    assert shown[:2] == ["stage 3 of 9: screening", line]
+    assert shown[-3:] == [line, "  screening took 0 s", "stage 4 of 9: refinement"]
 
 
 def test_a_log_file_tells_done_rate_and_time_left_of_work_that_gives_numbers_alone() -> None:
     shown = logged((100, 400, "flights", ""), (200, 400, "flights", ""), until="left")
-    assert re.search(r"^  flights: 200/400, \d+ s so far, [\d.e+]+/(s|min), \d+ s left$", shown, re.MULTILINE)
-    assert re.search(r"^  pouring: 40 %, 0 s so far", logged((0.4, 1, "pouring", ""), until="so far"), re.MULTILINE)
+    rate = r"[\d.e+]+/(s|min)"
+    assert re.search(rf"^  flights: 200/400, \d+ s so far, {rate}, \d+ s left$", shown, re.MULTILINE)
+    assert re.search(rf"^  flights: 200/400, {rate}, took \d+ s$", shown, re.MULTILINE)
+    shown = logged((0.2, 1, "pouring", ""), (0.4, 1, "pouring", ""), until="left")
+    assert re.search(r"^  pouring: 40 %, \d+ s so far, \d+ s left$", shown, re.MULTILINE)
+    assert re.search(r"^  pouring: took \d+ s$", shown, re.MULTILINE)
 
 
 def test_a_log_file_shows_life_where_the_work_tells_nothing() -> None:
-    assert logged(until="so far").splitlines()[1] == "  screening: 0 s so far"
+    shown = logged(until="so far").splitlines()
+    assert shown[1] == "  screening: 0 s so far"
+    assert "  screening took 0 s" in shown

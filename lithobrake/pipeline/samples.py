@@ -89,6 +89,7 @@ def draw_samples(job: Job) -> None:
     refined = load(job.folder / "refined.json")
     x = sample_inputs(inputs, study.monte_carlo.sample_count, sampling_seed(study, "samples"))
     smooth = _evaluate(refined, x[:, [list(inputs).index(name) for name in refined.input_names]], job)
+    job.progress(0, 1, "chance of capture")
     probability = capture_model(job, refined).probability(x)
     draws = np.random.Generator(np.random.PCG64(sampling_seed(study, "capture"))).random(len(x))
     is_captured, outputs, without_scatter = draws < probability, smooth, None

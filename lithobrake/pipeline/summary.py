@@ -43,8 +43,8 @@ def write_summary(job: Job) -> None:
         "node_counts": _node_counts(job.study, len(screening.input_names)),
         "designs": {design: _design(runs[design], replicate_count(job.study, design)) for design in DESIGNS},
         "outputs_of_runs": _outputs_of_runs(runs),
-        "screening": _expansion(screening, runs["screening"]),
-        "refined": _expansion(refined, runs["refined"]),
+        "screening": _expansion(job, "screening", screening, runs["screening"]),
+        "refined": _expansion(job, "refined", refined, runs["refined"]),
         "kept_inputs": list(kept),
         "kept_share": _by_output(screening, np.asarray(screening.sobol_group(kept))),
         "scores": {
@@ -141,10 +141,11 @@ def _outputs_of_runs(runs: dict[str, DesignRuns]) -> dict[str, Any]:
     return table
 
 
-def _expansion(surrogate: "Surrogate", runs: DesignRuns) -> dict[str, Any]:
+def _expansion(job: Job, design: str, surrogate: "Surrogate", runs: DesignRuns) -> dict[str, Any]:
     """What an expansion says, with 95 % intervals [lower, upper] of its Sobol indices from the runs behind it."""
     from lithobrake.chaos import sobol_intervals
 
+    job.progress(0, 1, f"intervals of the {design} indices")
     inputs = surrogate.input_names
     first, total = np.asarray(surrogate.sobol_first), np.asarray(surrogate.sobol_total)
     intervals = sobol_intervals(surrogate, runs.columns(inputs), runs.y)

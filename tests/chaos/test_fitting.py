@@ -229,3 +229,13 @@ def test_scores_of_wrong_shapes_are_refused():
     for points, y in ((x, x[:5, 0]), (x, np.zeros((10, 2))), (np.zeros((0, 1)), np.zeros(0))):
         with pytest.raises(ValueError, match="y has shape"):
             surrogate.score(points, y)
+
+
+@pytest.mark.parametrize("method", ["omp", "lars"])
+def test_an_output_whose_mean_is_off_it_by_rounding_is_constant(method):
+    inputs = {"a": Uniform(0.0, 1.0)}
+    values = np.full(5, 0.013)
+    assert values.mean() != 0.013
+    surrogate = fit(inputs, smolyak(inputs, 2), values, None, method)
+    assert surrogate.mean == pytest.approx(0.013, rel=1e-15)
+    assert surrogate.variance == 0.0
