@@ -3,6 +3,7 @@
 import errno
 import os
 import shlex
+import shutil
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -137,18 +138,23 @@ def status(folder: StudyDirectory) -> None:
 def runs(
     folder: StudyDirectory, csv: Annotated[bool, typer.Option("--csv", help="Every column, as CSV.")] = False
 ) -> None:
-    """List the runs of a study."""
+    """List the runs of a study, with the inputs that differ between them."""
     with _one_sentence():
-        from lithobrake.campaign import read_records, write_csv
+        from lithobrake.campaign import read_records, run_lines, write_csv
 
         records = read_records(folder / "runs.sqlite")
+        units: dict[str, str] = {}
+        # The names of a campaign that is no study are its author's, and so are their units.
+        if (folder / "study.toml").is_file():
+            from lithobrake.study_units import OUTPUT_UNITS, input_units
+
+            units = input_units() | OUTPUT_UNITS
     # A reader that has enough (`| head`) closes the pipe, which is nobody's mistake: so this stands outside.
     if csv:
-        write_csv(records, sys.stdout)
+        write_csv(records, sys.stdout, units)
         return
-    for entry in records:
-        wall = "" if entry.wall_s is None else f"{entry.wall_s:.4g} s"
-        print(f"{entry.key[:12]}  {entry.status:<8} {wall:>10}  {entry.outcome or entry.reason or ''}")
+    width = shutil.get_terminal_size().columns if sys.stdout.isatty() else None
+    print(plain("\n".join(run_lines(records, units, width))))
 
 
 @app.command(epilog="Example: lithobrake view runs/study")

@@ -25,15 +25,16 @@ ALLOWED: dict[str, set[str]] = {
     "study": {"study_campaign", "study_design", "study_flight", "quantity"},
     "site": {"study", "quantity", "smallbody"},
     "study_file": {"site", "study", "quantity", "wording", "chaos", "campaign", "touchdown"},
-    "study_template": {"study", "quantity"},
+    "study_template": {"study", "study_units", "quantity"},
+    "study_units": {"study", "quantity"},
     "pipeline": {
         *("dem", "touchdown", "chaos", "campaign", "smallbody", "analysis", "report"),
-        *("study", "study_file", "quantity", "site"),
+        *("study", "study_file", "study_units", "quantity", "site"),
     },
     "progress": {"progress_log"},
     "progress_log": {"campaign"},
     "__main__": {"cli"},
-    "cli": {"study_file", "pipeline", "campaign", "progress", "study_template", "report"},
+    "cli": {"study_file", "study_units", "pipeline", "campaign", "progress", "study_template", "report"},
 }
 
 

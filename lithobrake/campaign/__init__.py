@@ -5,9 +5,10 @@ from lithobrake.campaign.command import Command, absolute_words
 from lithobrake.campaign.identity import run_key, run_seed
 from lithobrake.campaign.ledger import Ledger
 from lithobrake.campaign.limits import Limits
+from lithobrake.campaign.listing import run_lines, write_csv
 from lithobrake.campaign.local import LocalExecutor, WorkerDiedError
 from lithobrake.campaign.missing import missing
-from lithobrake.campaign.record import Record, campaign_began, read_records, write_csv
+from lithobrake.campaign.record import Record, campaign_began, read_records
 from lithobrake.campaign.runs import Runs, run
 from lithobrake.campaign.tally import Tally, duration, ledger_tally, per_time
 
@@ -30,6 +31,7 @@ __all__ = [
     "read_records",
     "run",
     "run_key",
+    "run_lines",
     "run_seed",
     "write_csv",
 ]

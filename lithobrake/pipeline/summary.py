@@ -16,16 +16,13 @@ from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.samples import Samples
 from lithobrake.pipeline.surface import bed_files
 from lithobrake.site import push_at_site, site_body, site_medians, site_warning
-from lithobrake.study import BUILT_IN_BODIES, Study
+from lithobrake.study import BUILT_IN_BODIES, OUTPUTS, Study
+from lithobrake.study_units import OUTPUT_UNITS
 
 if TYPE_CHECKING:
     from lithobrake.chaos import Surrogate
 
 FORMAT_VERSION = 1
-UNITS = {
-    "speed_out": "m/s", "elevation_out": "rad", "spin_out": "rad/s",
-    "velocity_out_x": "m/s", "velocity_out_y": "m/s", "velocity_out_z": "m/s",
-}  # fmt: skip
 QUANTILES = (0.05, 0.5, 0.95)
 
 
@@ -38,7 +35,7 @@ def write_summary(job: Job) -> None:
     samples, scores = Samples.load(job.folder), job.folder.read_json("scores.json")
     kept, flights = kept_inputs(job.study, screening), read_table(job.folder, "flights.csv")
     results = {
-        "units": UNITS,
+        "units": {name: OUTPUT_UNITS[name] for name in OUTPUTS},
         "beds": [_bed(job, name) for name in bed_files(job.study)],
         "node_counts": _node_counts(job.study, len(screening.input_names)),
         "designs": {design: _design(runs[design], replicate_count(job.study, design)) for design in DESIGNS},
@@ -129,14 +126,14 @@ def _design(design: DesignRuns, replicate_count: int) -> dict[str, Any]:
 
 def _outputs_of_runs(runs: dict[str, DesignRuns]) -> dict[str, Any]:
     """What else the touchdowns gave, over all distinct runs: median, smallest and largest."""
-    units = {"contact_duration": "s", "penetration": "m", "peak_acceleration": "m/s2", "energy_lost": "J"}
     distinct = {record.key: record for design in runs.values() for record in design.runs.records}
     table: dict[str, Any] = {}
-    for name, unit in units.items():
+    for name in ("contact_duration", "penetration", "peak_acceleration", "energy_lost"):
         values = [record.outputs[name] for record in distinct.values() if name in record.outputs]
         if values:
             table[name] = {
-                "median": float(np.median(values)), "smallest": min(values), "largest": max(values), "unit": unit
+                "median": float(np.median(values)), "smallest": min(values), "largest": max(values),
+                "unit": OUTPUT_UNITS[name],
             }  # fmt: skip
     return table
 
