@@ -3,6 +3,7 @@
 import errno
 import os
 import shlex
+import shutil
 import sys
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
@@ -11,10 +12,12 @@ from typing import Annotated, NoReturn
 
 import typer
 
+from lithobrake import __version__
+from lithobrake.plain import plain
+
 app = typer.Typer(
-    help="Where does a lander end up on a small body whose soil nobody knows, and how sure are we?",
     no_args_is_help=True,
-    add_completion=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
     pretty_exceptions_enable=False,
 )
 
@@ -35,21 +38,43 @@ StudyDirectory = Annotated[Path, typer.Argument(metavar="DIR", help="The folder 
 BAD_INPUT, INTERRUPTED = 2, 130
 
 
-@app.command()
+def _show_version(asked: bool) -> None:
+    if asked:
+        print(f"lithobrake {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def main(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_show_version, is_eager=True, help="Show the version and exit.")
+    ] = False,
+) -> None:
+    """Where does a lander end up on a small body whose soil nobody knows, and how sure are we?"""
+
+
+@app.command(epilog="Example: lithobrake new bennu")
 def new(name: Annotated[str, typer.Argument(metavar="NAME", help="Name of the study.", show_default=False)]) -> None:
     """Write a commented study file, NAME.toml."""
     with _one_sentence():
+        path = Path(name if name.endswith(".toml") else f"{name}.toml")
+        # The stem also names the folder of the study, and stands in commands that are pasted.
+        odd = path.stem in ("", ".toml", ".", "..") or path.stem[0] == "-" or path.stem != path.stem.strip()
+        if odd or not name.isprintable():
+            raise ValueError(f"NAME is {name!r}; allowed: a name, or a path that ends in one; write, say, bennu")
         from lithobrake.study_template import template
 
-        path = Path(name if name.endswith(".toml") else f"{name}.toml")
         try:
             with path.open("x", encoding="utf-8") as file:
                 file.write(template())
         except FileExistsError:
             raise ValueError(f"{path} exists; choose another name or remove it") from None
         except OSError as error:
-            raise ValueError(f"{path} cannot be written ({error}); choose a folder that exists") from error
-        print(f"Wrote {path}. Change what you like, then: lithobrake run {path}")
+            reason = error.strerror or error
+            raise ValueError(
+                f"{path} cannot be written ({reason}); choose another name, or a folder that exists"
+            ) from error
+        print(f"Wrote {path}. Change what you like, then: {_command('run', path)}")
 
 
 def _study_command(name: str, what: str, until: str | None = None) -> None:
@@ -68,7 +93,7 @@ def _study_command(name: str, what: str, until: str | None = None) -> None:
         _make(study, folder, last, workers, _scheduler(executor, scheduler), logs)
         _tell(_results(folder) if last == "report" else [f"Done: {folder}"])
 
-    app.command(name, help=what)(command)
+    app.command(name, help=what, epilog=f"Example: lithobrake {name} study.toml --out results --workers 4")(command)
 
 
 BEFORE = "What comes before is made too, where it is missing."
@@ -82,7 +107,7 @@ _study_command("fly", f"Fly the samples that leave the surface. {BEFORE}")
 _study_command("rest", f"Follow samples from bounce to bounce until they rest. {BEFORE}")
 
 
-@app.command()
+@app.command(epilog="Example: lithobrake report runs/study")
 def report(folder: StudyDirectory) -> None:
     """Write the report of a study again."""
     with _one_sentence():
@@ -92,7 +117,7 @@ def report(folder: StudyDirectory) -> None:
     _tell(_results(folder))
 
 
-@app.command()
+@app.command(epilog="Example: lithobrake status runs/study")
 def status(folder: StudyDirectory) -> None:
     """Say where a study is; from any terminal, also while it runs."""
     with _one_sentence():
@@ -102,27 +127,30 @@ def status(folder: StudyDirectory) -> None:
     _tell(lines)
 
 
-@app.command()
+@app.command(epilog="Example: lithobrake runs runs/study --csv > runs.csv")
 def runs(
     folder: StudyDirectory, csv: Annotated[bool, typer.Option("--csv", help="Every column, as CSV.")] = False
 ) -> None:
-    """List the runs of a study."""
+    """List the runs of a study, with the inputs that differ between them."""
     with _one_sentence():
-        from lithobrake.campaign import read_records, write_csv
+        from lithobrake.campaign import read_records, run_lines, write_csv
 
         records = read_records(folder / "runs.sqlite")
+        units: dict[str, str] = {}
+        # The names of a campaign that is no study are its author's, and so are their units.
+        if (folder / "study.toml").is_file():
+            from lithobrake.study_units import OUTPUT_UNITS, input_units
+
+            units = input_units() | OUTPUT_UNITS
     if csv:
         with _reader_may_leave():
-            write_csv(records, sys.stdout)
+            write_csv(records, sys.stdout, units)
         return
-    walls = ["" if entry.wall_s is None else f"{entry.wall_s:.4g} s" for entry in records]
-    _tell(
-        f"{entry.key[:12]}  {entry.status:<8} {wall:>10}  {entry.outcome or entry.reason or ''}"
-        for entry, wall in zip(records, walls, strict=True)
-    )
+    width = shutil.get_terminal_size().columns if sys.stdout.isatty() else None
+    _tell(run_lines(records, units, width))
 
 
-@app.command()
+@app.command(epilog="Example: lithobrake view runs/study")
 def view(folder: StudyDirectory) -> None:
     """Open the report of a study in the browser."""
     with _one_sentence():
@@ -163,10 +191,14 @@ def _make(study: Path, out: Path, until: str, workers: int | None, scheduler: st
     # The bits of a least-squares fit depend on the threads of the linear algebra, which reads this when it is loaded.
     os.environ.update(OPENBLAS_NUM_THREADS="1", MKL_NUM_THREADS="1")
     with _one_sentence():
-        from lithobrake.pipeline import run_study
-        from lithobrake.progress import StudyProgress
+        from lithobrake import study_file
 
-        with StudyProgress() as shown:
+        # A study that is refused is refused at once: what follows brings NumPy and the compiler.
+        study_file.read(study)
+        from lithobrake.pipeline import run_study
+        from lithobrake.progress import study_progress
+
+        with study_progress() as shown:
             run_study(
                 study,
                 out,
@@ -194,7 +226,7 @@ def _results(folder: Path) -> list[str]:
 def _tell(lines: Iterable[str]) -> None:
     with _reader_may_leave():
         for line in lines:
-            print(line)
+            print(plain(line))
 
 
 @contextmanager
@@ -218,10 +250,15 @@ def _one_sentence() -> Iterator[None]:
         remedy = "; all that was finished is kept: make room on the disk, and give the same command again"
         _leave(f"{error}{remedy if full else ''}", BAD_INPUT)
     except KeyboardInterrupt:
-        command = shlex.join(["lithobrake", *sys.argv[1:]])
+        command = _command(*sys.argv[1:])
         _leave(f"Stopped. Every finished run is kept; the same command goes on from there: {command}", INTERRUPTED)
 
 
+def _command(*words: str | Path) -> str:
+    """A command line that a shell takes as it stands, blanks in paths included."""
+    return shlex.join(["lithobrake", *map(str, words)])
+
+
 def _leave(sentence: str, code: int) -> NoReturn:
-    print(sentence, file=sys.stderr)
+    print(plain(sentence), file=sys.stderr)
     raise typer.Exit(code)

@@ -1,6 +1,6 @@
-"""Two lines that show where a study is: the stage, and what is done in it."""
+"""Two lines on a terminal that show where a study is: the stage, and what is done in it."""
 
-import time
+import sys
 from collections.abc import Iterable
 from types import TracebackType
 from typing import Self
@@ -9,8 +9,8 @@ from rich.console import Console, RenderableType
 from rich.progress import BarColumn, Progress, Task, TaskID, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 from rich.text import Text
 
-# Where no terminal shows the lines, say in a log file, they are written this often [s].
-_WRITTEN_EVERY = 60.0
+from lithobrake.plain import plain
+from lithobrake.progress_log import ProgressLog, counted
 
 
 class _TimeLeft(TimeRemainingColumn):
@@ -30,58 +30,55 @@ class _Lines(Progress):
         """Give what is drawn."""
         yield from super().get_renderables()
         if self.detail:
-            yield Text(self.detail, style="dim")
+            yield Text(plain(self.detail), style="dim")
 
 
-class StudyProgress:
-    """Progress of a study on standard error: stages on the first line, the work within the stage on the second."""
+class ProgressBars:
+    """Progress of a study on a terminal: stages on the first line, the work within the stage on the second.
 
-    def __init__(self) -> None:
+    All words are shown as they are: square brackets in them are no markup.
+    """
+
+    def __init__(self, console: Console) -> None:
         """Prepare the lines; they appear with the first stage."""
         self._progress = _Lines(
-            TextColumn("{task.description:<28}"),
+            TextColumn("{task.description:<28}", markup=False),
             BarColumn(),
-            TextColumn("{task.fields[count]:>11}"),
+            TextColumn("{task.fields[count]:>11}", markup=False),
             TimeElapsedColumn(),
             _TimeLeft(),
-            console=Console(stderr=True),
+            console=console,
         )
         self._stages = self._progress.add_task("study", total=None, count="", tells_time_left=False)
         self._work: TaskID | None = None
-        self._written = time.monotonic()
 
     def begin(self, title: str, number: int, count: int) -> None:
         """Start a stage; the first one makes the lines appear, so a refusal before it stands alone."""
         self._progress.start()
-        if self._work is not None:
-            self._progress.remove_task(self._work)
-            self._work = None
+        self._end_work()
         self._progress.detail = ""
         self._progress.update(
             self._stages, description=f"stage: {title}", completed=number - 1, total=count, count=f"{number}/{count}"
         )
-        if not self._progress.console.is_terminal:
-            self._progress.console.print(f"stage {number} of {count}: {title}")
 
     def say(self, sentence: str) -> None:
         """Write a sentence that stays."""
-        # A file takes lines as long as they are.
-        console = self._progress.console
-        console.print(sentence, highlight=False, soft_wrap=not console.is_terminal)
+        self._progress.console.print(Text(plain(sentence)))
 
     def progress(self, done: float, total: float, what: str, detail: str = "", /) -> None:
         """Show how far the work of the stage is, and more about it; a change of `what` starts a new bar."""
-        count = f"{done:.0f}/{total:.0f}" if total > 1 else f"{100 * done / max(total, 1e-300):.0f} %"
+        count = counted(done, total)
         if self._work is not None and self._progress.tasks[-1].description != f"  {what}":
-            self._progress.remove_task(self._work)
-            self._work = None
+            self._end_work()
         if self._work is None:
             self._work = self._progress.add_task(f"  {what}", total=total, count=count, tells_time_left=not detail)
         self._progress.update(self._work, completed=done, total=total, count=count)
         self._progress.detail = detail
-        if not self._progress.console.is_terminal and time.monotonic() > self._written + _WRITTEN_EVERY:
-            self._written = time.monotonic()
-            self.say(f"  {what}: {detail.partition(chr(10))[0] or count}")
+
+    def _end_work(self) -> None:
+        if self._work is not None:
+            self._progress.remove_task(self._work)
+            self._work = None
 
     def __enter__(self) -> Self:
         """Give the lines."""
@@ -95,3 +92,10 @@ class StudyProgress:
             self._progress.detail = ""
             self._progress.update(self._stages, completed=self._progress.tasks[0].total)
         self._progress.stop()
+
+
+def study_progress() -> ProgressBars | ProgressLog:
+    """Progress of a study on standard error: bars on a terminal that can redraw a line, and else what a file takes."""
+    console = Console(stderr=True)
+    moves = console.is_terminal and not console.is_dumb_terminal
+    return ProgressBars(console) if moves else ProgressLog(sys.stderr)

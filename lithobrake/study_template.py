@@ -1,13 +1,14 @@
 """A commented study file, written from the schema itself, so that the two never differ."""
 
 import textwrap
-from typing import Any, get_args
+from typing import Any
 
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
-from lithobrake.quantity import DISTRIBUTIONS, MaybeUncertain, Number
+from lithobrake.quantity import DISTRIBUTIONS, MaybeUncertain
 from lithobrake.study import Study
+from lithobrake.study_units import limits, table
 
 _HEAD = """\
 # A landing study. A key marked "number or table" takes a distribution in place of the number, as in
@@ -24,16 +25,9 @@ def template() -> str:
     kinds = "".join(f"#     {kind}: {', '.join(names)}\n" for kind, names in DISTRIBUTIONS.items())
     parts = [_HEAD + kinds + "# (mean and std of log_normal are those of ln x)\n"]
     for name, field in Study.model_fields.items():
-        model = _model(field)
+        model = table(field)
         parts.append(_section(name, model) if model else _key(name, field))
     return "\n".join(parts)
-
-
-def _model(field: FieldInfo) -> type[BaseModel] | None:
-    """The table that a field takes, if it takes exactly one kind of table."""
-    kinds = [field.annotation, *get_args(field.annotation)]
-    models = [kind for kind in kinds if isinstance(kind, type) and issubclass(kind, BaseModel)]
-    return models[0] if len(models) == 1 else None
 
 
 def _section(name: str, model: type[BaseModel]) -> str:
@@ -42,13 +36,13 @@ def _section(name: str, model: type[BaseModel]) -> str:
 
 
 def _key(name: str, field: FieldInfo) -> str:
-    limits = _limits(field)
+    allowed = limits(field)
     notes = [" ".join((field.description or "").split())]
-    if limits is not None:
-        notes.append(f"Allowed: {limits}" + ("; number or table." if isinstance(limits, MaybeUncertain) else "."))
+    if allowed is not None:
+        notes.append(f"Allowed: {allowed}" + ("; number or table." if isinstance(allowed, MaybeUncertain) else "."))
     if not field.is_required() and field.default is not None:
         notes.append(f"Default: {_toml(field.default)}.")
-    inner = _model(field)
+    inner = table(field)
     if inner:
         keys = ", ".join(f"{key} = {'[-0.1, 0.1]' if _is_pair(inner, key) else '0.0'}" for key in inner.model_fields)
         line = f"# {name} = {{ {keys} }}"
@@ -61,16 +55,8 @@ def _key(name: str, field: FieldInfo) -> str:
 
 def _is_pair(model: type[BaseModel], key: str) -> bool:
     """Tell whether a key takes two numbers."""
-    limits = _limits(model.model_fields[key])
-    return limits is not None and not isinstance(limits, MaybeUncertain)
-
-
-def _limits(field: FieldInfo) -> Number | None:
-    """The range of a field, wherever in its annotation it stands."""
-    found = [entry for entry in field.metadata if isinstance(entry, Number)]
-    for kind in get_args(field.annotation):
-        found += [entry for entry in getattr(kind, "__metadata__", ()) if isinstance(entry, Number)]
-    return found[0] if found else None
+    allowed = limits(model.model_fields[key])
+    return allowed is not None and not isinstance(allowed, MaybeUncertain)
 
 
 def _comment(text: str) -> str:

@@ -8,7 +8,9 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
+from lithobrake import __version__
 from lithobrake.cli import app
+from lithobrake.study_template import template
 
 RUNNER = CliRunner()
 
@@ -18,6 +20,39 @@ def test_help_names_the_commands() -> None:
     assert shown.exit_code == 0
     for name in ("new", "run", "status", "runs", "bed", "screen", "refine", "test", "sample", "fly", "report", "view"):
         assert f" {name} " in shown.stdout
+
+
+@pytest.mark.parametrize("arguments", [["-h"], ["run", "-h"], ["runs", "-h"]])
+def test_help_has_a_short_name_too(arguments: list[str]) -> None:
+    assert RUNNER.invoke(app, arguments).output == RUNNER.invoke(app, [*arguments[:-1], "--help"]).output
+
+
+@pytest.mark.parametrize("command", ["new", "run", "status", "runs", "bed", "fly", "rest", "report", "view"])
+def test_the_help_of_each_command_ends_in_an_example(command: str) -> None:
+    shown = RUNNER.invoke(app, [command, "--help"])
+    assert f"Example: lithobrake {command} " in shown.output
+
+
+def test_the_version_is_told() -> None:
+    shown = RUNNER.invoke(app, ["--version"])
+    assert (shown.exit_code, shown.output) == (0, f"lithobrake {__version__}\n")
+
+
+@pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
+def test_the_script_of_a_shell_that_completes_is_given(shell: str) -> None:
+    code = "from lithobrake.cli import app; app(prog_name='lithobrake')"
+
+    def said(**variables: str) -> str:
+        environment = os.environ | variables
+        done = subprocess.run(
+            [sys.executable, "-c", code], capture_output=True, text=True, check=False, env=environment
+        )
+        return done.stdout
+
+    assert f"_LITHOBRAKE_COMPLETE=complete_{shell}" in said(_LITHOBRAKE_COMPLETE=f"source_{shell}")
+    words = {"COMP_WORDS": "lithobrake sta", "COMP_CWORD": "1", "_TYPER_COMPLETE_ARGS": "lithobrake sta"}
+    words["_TYPER_COMPLETE_FISH_ACTION"] = "get-args"
+    assert "status" in said(_LITHOBRAKE_COMPLETE=f"complete_{shell}", **words)
 
 
 def test_help_imports_nothing_heavy() -> None:
@@ -36,12 +71,60 @@ def test_new_writes_a_study_and_does_not_overwrite_one(tmp_path: Path, monkeypat
     assert "bennu.toml exists" in again.stderr
 
 
+@pytest.mark.parametrize(
+    "name", ["", " ", ".", "..", "/", "folder/", ".toml", "folder/.toml", "a\nb", " a", "a\x1b[2J", "-x"]
+)
+def test_a_study_needs_a_name_that_can_be_written_and_pasted(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "folder").mkdir()
+    assert "allowed: a name, or a path that ends in one; write, say, bennu" in refused(["new", "--", name])
+    assert [path.name for path in tmp_path.rglob("*")] == ["folder"]
+
+
+def test_the_name_of_a_study_with_blanks_is_quoted_where_it_is_to_be_pasted(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert RUNNER.invoke(app, ["new", "two words"]).output.endswith("then: lithobrake run 'two words.toml'\n")
+    assert "--out 'two words'" in refused(["view", "two words"])
+
+
+def test_a_name_that_no_file_can_have_is_one_sentence(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert "cannot be written (File name too long)" in refused(["new", "x" * 300])
+    assert "cannot be written (No such file or directory)" in refused(["new", "nowhere/x"])
+
+
 def refused(arguments: list[str]) -> str:
     """What is said on standard error; there is no traceback, and the exit code is 2."""
     shown = RUNNER.invoke(app, arguments)
     assert shown.exit_code == 2
     assert "Traceback" not in shown.output
     return shown.stderr
+
+
+SCHEMA = ("mass = 2.6", "mas = 2.6")
+BETWEEN_KEYS = ("screening_level = 2", "screening_level = 1")
+
+
+@pytest.mark.parametrize(("old", "new"), [SCHEMA, BETWEEN_KEYS], ids=["schema", "between keys"])
+def test_a_study_is_refused_before_anything_heavy_is_imported(old: str, new: str, tmp_path: Path) -> None:
+    text = template()
+    assert old in text
+    (tmp_path / "wrong.toml").write_text(text.replace(old, new))
+    heavy = "{'numpy', 'numba', 'scipy', 'sklearn', 'matplotlib', 'h5py', 'rich.progress', 'distributed'}"
+    code = f"""
+import atexit, sys
+atexit.register(lambda: print(sorted({heavy} & set(sys.modules))))
+from lithobrake.cli import app
+app(["run", sys.argv[1], "--out", sys.argv[2]])
+"""
+    command = [sys.executable, "-c", code, str(tmp_path / "wrong.toml"), str(tmp_path / "out")]
+    shown = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert "wrong.toml: " in shown.stderr
+    assert (shown.returncode, shown.stdout.strip()) == (2, "[]")
 
 
 def test_a_missing_study_file_is_one_sentence(tmp_path: Path) -> None:

@@ -7,7 +7,7 @@ import pytest
 
 PACKAGE = Path(__file__).parents[1] / "lithobrake"
 # Anyone may import these: they know nothing of the rest.
-LEAVES = {"compiled", "atomic", "mesh", "mesh_files", "outputs", "reading", "__init__"}
+LEAVES = {"compiled", "atomic", "mesh", "mesh_files", "outputs", "plain", "reading", "__init__"}
 # What each part may import beside the leaves and itself.
 ALLOWED: dict[str, set[str]] = {
     "dem": set(),
@@ -29,14 +29,16 @@ ALLOWED: dict[str, set[str]] = {
     "study_contact": {"study", "quantity"},
     "study_checks": {"study", "study_body", "study_contact", "quantity", "wording", "chaos", "touchdown"},
     "study_file": {"study", "study_body", "study_checks", "site", "wording", "campaign"},
-    "study_template": {"study", "quantity"},
+    "study_template": {"study", "study_units", "quantity"},
+    "study_units": {"study", "quantity"},
     "pipeline": {
         *("dem", "touchdown", "chaos", "campaign", "smallbody", "analysis", "report"),
-        *("study", "study_file", "quantity", "site"),
+        *("study", "study_file", "study_units", "quantity", "site"),
     },
-    "progress": set(),
+    "progress": {"progress_log"},
+    "progress_log": {"campaign"},
     "__main__": {"cli"},
-    "cli": {"pipeline", "campaign", "progress", "study_template", "report"},
+    "cli": {"study_file", "study_units", "pipeline", "campaign", "progress", "study_template", "report"},
 }
 
 

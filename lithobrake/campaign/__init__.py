@@ -5,11 +5,12 @@ from lithobrake.campaign.command import Command, absolute_words
 from lithobrake.campaign.identity import run_key, run_seed
 from lithobrake.campaign.ledger import Ledger
 from lithobrake.campaign.limits import Limits
+from lithobrake.campaign.listing import run_lines, write_csv
 from lithobrake.campaign.local import LocalExecutor, WorkerDiedError
 from lithobrake.campaign.missing import missing
-from lithobrake.campaign.record import Record, campaign_began, read_records, write_csv
+from lithobrake.campaign.record import Record, campaign_began, read_records
 from lithobrake.campaign.runs import Runs, run
-from lithobrake.campaign.tally import Tally, ledger_tally
+from lithobrake.campaign.tally import Tally, duration, ledger_tally, per_time
 
 __all__ = [
     "Command",
@@ -23,11 +24,14 @@ __all__ = [
     "WorkerDiedError",
     "absolute_words",
     "campaign_began",
+    "duration",
     "ledger_tally",
     "missing",
+    "per_time",
     "read_records",
     "run",
     "run_key",
+    "run_lines",
     "run_seed",
     "write_csv",
 ]

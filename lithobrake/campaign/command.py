@@ -7,13 +7,18 @@ import shlex
 import shutil
 import subprocess
 import tempfile
+import threading
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from hashlib import file_digest
 from pathlib import Path
 from typing import Any
 
+from lithobrake.campaign.capped_log import CappedLog, last_words
 from lithobrake.campaign.identity import run_key
+
+# How long to wait for the last of what a program printed, where something that it left running may print on [s].
+_LINGER = 1.0
 
 
 @dataclass(frozen=True)
@@ -26,7 +31,7 @@ class Command:
 
     The program reads `inputs.json`: {"inputs": numbers by name, "seed": whole number}, and writes `outputs.json`: its
     outputs by name, or {"outcome": how the run ended, "outputs": numbers by name, "draws": what it drew by chance}.
-    What it prints goes to `log.txt`.
+    What it prints goes to `log.txt`, of much the beginning and the end.
     """
 
     command: str
@@ -49,14 +54,10 @@ class Command:
         with self._run_folder(run_key(question["inputs"], question["seed"], 0, {})[:16]) as folder:
             text = json.dumps(question, indent=2, allow_nan=False)
             (folder / "inputs.json").write_text(text + "\n", encoding="utf-8")
-            with (folder / "log.txt").open("wb") as log:
-                done = subprocess.run(
-                    self.words(), cwd=folder, stdin=subprocess.DEVNULL, stdout=log, stderr=log, check=False
-                )
-            if done.returncode:
-                lines = (folder / "log.txt").read_text(encoding="utf-8", errors="replace").split("\n")
-                last = next((line.strip() for line in reversed(lines) if line.strip()), "it printed nothing")
-                raise RuntimeError(f"the program ended with {_how(done.returncode)}; its last words: {last[-200:]}")
+            code = _made(self.words(), folder)
+            if code:
+                said = last_words(folder / "log.txt")
+                raise RuntimeError(f"the program ended with {_how(code)}; its last words: {said}")
             return _answer(folder / "outputs.json")
 
     def words(self) -> list[str]:
@@ -87,6 +88,44 @@ class Command:
             if final.exists():
                 shutil.rmtree(final)
             draft.rename(final)
+
+
+def _made(words: list[str], folder: Path) -> int:
+    """Start a program in a folder, keep what it prints in `log.txt`, and give its exit code.
+
+    Raises OSError when it cannot be started or the log cannot be written.
+    """
+    program = subprocess.Popen(
+        words, cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, bufsize=0
+    )
+    copying = _Copying(program.stdout, CappedLog(folder / "log.txt"))
+    copying.start()
+    code = program.wait()
+    copying.join(_LINGER)
+    if copying.error:
+        raise copying.error
+    return code
+
+
+class _Copying(threading.Thread):
+    """Copies what a program prints into its log until nobody prints any more, and closes both.
+
+    What a program leaves running may print for long after it; this goes on as long, and nobody waits for it.
+    """
+
+    def __init__(self, printed: Any, log: CappedLog) -> None:
+        super().__init__(name="log of a program", daemon=True)
+        self.printed, self.log = printed, log
+        self.error: OSError | None = None
+
+    def run(self) -> None:
+        """Copy; an error is kept for who started this, and then the program cannot print any more either."""
+        try:
+            with self.printed, self.log:
+                while piece := self.printed.read(1 << 16):
+                    self.log.write(piece)
+        except OSError as error:
+            self.error = error
 
 
 def absolute_words(command: str, folder: Path) -> list[str]:

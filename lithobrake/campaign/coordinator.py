@@ -14,12 +14,16 @@ from lithobrake.campaign.ledger import Ledger
 from lithobrake.campaign.limits import Limits
 from lithobrake.campaign.local import WorkerDiedError
 from lithobrake.campaign.one_run import Model, perform
-from lithobrake.campaign.tally import Tally
+from lithobrake.campaign.tally import Tally, common_reasons
 
 # Runs handed out for each worker: enough that none waits for the coordinator.
 _AHEAD = 2
 # Workers to expect of an executor that does not say how many it has.
 _UNKNOWN_COUNT = 32
+# When so many runs, drawn by chance from all new ones, fail and none succeeds, the model does not work. Were half of
+# the runs good, that would happen in one campaign of 1024; were 19 of 20 good, as they must be for a fit unless the
+# study allows fewer, in one of 1e13. A smaller number would save little: what fails at once is cheap.
+_TRIAL_RUNS = 10
 # Progress is shown at least this often, and which runs are under way is looked at [s].
 _LOOK = 0.5
 
@@ -48,19 +52,27 @@ class Coordinator:
     progress: Callable[[Tally], None]
 
     def __post_init__(self) -> None:
-        self.waiting = deque(self.jobs)
+        # Keys are hashes: in their order the first runs are a random part of all, wherever in the design each stands.
+        self.waiting = deque(sorted(self.jobs))
+        fresh = [key for key in self.waiting if not self.tried.get(key)]
+        self._trial = set(fresh[:_TRIAL_RUNS]) if len(fresh) > _TRIAL_RUNS else set()
+        self._failed: set[str] = set()
         self.flying: dict[Future[Any], str] = {}
         self._unmarked: list[Future[Any]] = []
         self._ended: queue.SimpleQueue[Future[Any]] = queue.SimpleQueue()
 
     def compute(self) -> None:
-        """Make all runs. Raises OSError when the ledger cannot be written or the executor gives up."""
+        """Make all runs.
+
+        Raises OSError when the ledger cannot be written or the executor gives up, ValueError when nothing succeeds.
+        """
         began = time.monotonic()
         self.progress(self.state)
         try:
             while self.waiting or self.flying:
                 self._hand_out()
                 self._collect()
+                self._end_what_never_works()
                 self.state.seconds = time.monotonic() - began
                 self.progress(self.state)
         except KeyboardInterrupt:
@@ -101,10 +113,31 @@ class Coordinator:
     def _take(self, key: str, result: Mapping[str, Any]) -> None:
         self.tried[key] = self.tried.get(key, 0) + 1
         if result["status"] == "failed" and self.tried[key] <= self.retry_count:
-            self.waiting.append(key)
+            # Until something succeeds, its next try shows whether anything does.
+            (self.waiting.appendleft if self._trial else self.waiting.append)(key)
             return
         self.ledger.finish(key, {**result, "attempts": self.tried[key]})
         self.state.add(result["status"], result.get("outputs", {}))
+        if result["status"] == "failed":
+            self._failed.add(key)
+        else:
+            self._trial.clear()
+
+    def _end_what_never_works(self) -> None:
+        """Give up when the trial runs have all failed, their tries used up, and no other run has succeeded.
+
+        Not their number but which ones counts: runs that fail may end long before those that do not.
+        """
+        left = len(self.waiting) + len(self.flying)
+        if not self._trial or not self._trial <= self._failed or not left:
+            return
+        self.ledger.forget_tries(self._failed)
+        reasons = common_reasons(record.reason for record in self.ledger.find(self._failed).values())
+        raise ValueError(
+            f"the first {len(self._failed)} runs have all failed ({reasons}), so the {left} that are left are not "
+            "made; mend what makes them fail and give the same command again: it tries these anew and keeps what had "
+            "ended before"
+        )
 
 
 def _result(future: "Future[Any]") -> Mapping[str, Any]:

@@ -15,8 +15,11 @@ from typing import Any, Self
 
 from lithobrake.atomic import locked
 from lithobrake.campaign.record import COLUMNS, LEFT, Record, lock_path, reading_ledger, record, utc_now
+from lithobrake.plain import one_line
 
 FORMAT_VERSION = 2
+# Characters of a reason, of a word for an outcome: more would be the whole log of a program.
+_REASON_LENGTH, _OUTCOME_LENGTH = 1000, 100
 
 # status    queued, running (handed to a worker), done, or failed (then `reason` says why, `attempts` how often tried)
 # outcome   how the run ended, in the model's own words; inputs, outputs and draws are JSON objects (draws = what the
@@ -120,13 +123,21 @@ class Ledger:
     def finish(self, key: str, result: Mapping[str, Any]) -> None:
         """Enter the result of a queued run: what `perform` gives, and attempts."""
         texts = {name: json.dumps(result.get(name, {}), allow_nan=False) for name in ("outputs", "draws")}
-        plain = [result.get(name) for name in ("outcome", "reason", "wall_s", "cpu_s", "host", "started")]
+        # Both are in the words of a model, or of a program that it started.
+        lengths = {"outcome": _OUTCOME_LENGTH, "reason": _REASON_LENGTH}
+        words = [result.get(name) and one_line(str(result[name]), length) for name, length in lengths.items()]
+        plain = [*words, *(result.get(name) for name in ("wall_s", "cpu_s", "host", "started"))]
         with self._transaction():
             self._database.execute(
                 "UPDATE runs SET status = ?, outputs = ?, draws = ?, outcome = ?, reason = ?, wall_s = ?, cpu_s = ?, "
                 "host = ?, started = coalesce(?, started), attempts = ?, ended = ? WHERE key = ?",
                 (result["status"], texts["outputs"], texts["draws"], *plain, result.get("attempts", 1), utc_now(), key),
             )
+
+    def forget_tries(self, keys: Iterable[str]) -> None:
+        """Count failed runs as never tried, so that the next campaign tries them whatever its number of retries."""
+        with self._transaction():
+            self._database.executemany("UPDATE runs SET attempts = 0 WHERE key = ?", [(key,) for key in keys])
 
     def find(self, keys: Iterable[str]) -> dict[str, Record]:
         """The runs with these keys that have ended, by key."""

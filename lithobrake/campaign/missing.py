@@ -1,10 +1,11 @@
 """Runs that failed: how many are missing, and whether they leave a hole in the design."""
 
-from collections import Counter
 from collections.abc import Iterator, Sequence
 from itertools import combinations, product
 from math import comb
 from typing import TYPE_CHECKING
+
+from lithobrake.campaign.tally import common_reasons
 
 if TYPE_CHECKING:
     import numpy as np
@@ -28,9 +29,7 @@ def missing(x: "np.ndarray", reasons: Sequence[str | None], names: Sequence[str]
     count, total = int(failed.sum()), len(failed)
     if count == 0:
         return ""
-    common = Counter(reason for reason in reasons if reason).most_common(3)
-    said = "; ".join(f"{number} x {reason}" for reason, number in common)
-    sentence = f"{count} of {total} runs failed ({said})"
+    sentence = f"{count} of {total} runs failed ({common_reasons(reasons)})"
     corner = _corner(x, failed, names)
     if count > largest_share * total:
         place = "" if corner is None else f", {corner[0]} of them where {corner[1]}"

@@ -1,6 +1,7 @@
 """One run: a model, its inputs and its seed, in the process that this is called in."""
 
 import contextlib
+import io
 import json
 import math
 import os
@@ -11,6 +12,7 @@ from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
+from lithobrake.campaign.capped_log import CappedLog
 from lithobrake.campaign.record import utc_now
 
 # A model takes its inputs by name and a seed. It gives its outputs by name, or {"outcome": text, "outputs": numbers by
@@ -64,7 +66,7 @@ def _logged(log: Path | None, inputs: Mapping[str, float], seed: int) -> Iterato
         return
     log.parent.mkdir(parents=True, exist_ok=True)
     with (
-        log.open("w", encoding="utf-8", buffering=1) as file,
+        io.TextIOWrapper(io.BufferedWriter(CappedLog(log)), "utf-8", "backslashreplace", line_buffering=True) as file,
         contextlib.redirect_stdout(file),
         contextlib.redirect_stderr(file),
     ):

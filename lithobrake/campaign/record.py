@@ -1,13 +1,12 @@
 """One run as the ledger keeps it, and the ledger as another process reads it."""
 
-import csv
 import sqlite3
 from contextlib import AbstractContextManager, closing
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from os import PathLike
 from pathlib import Path
-from typing import Any, TextIO
+from typing import Any
 
 from lithobrake.atomic import lock_holder
 from lithobrake.reading import NUMBER, check, parsed, reading
@@ -38,7 +37,7 @@ class Record:
 COLUMNS = tuple(Record.__dataclass_fields__)
 # Runs may have taken days: no damage is a reason to write over them.
 LEFT = "it is left as it is: put a copy of it back, or move it away to have all its runs made again"
-_OBJECTS = ("inputs", "outputs", "draws")
+OBJECTS = ("inputs", "outputs", "draws")
 _FORM = {
     "key": str, "status": str, "outcome": str | None, "inputs": {str: NUMBER}, "outputs": {str: NUMBER}, "draws": dict,
     "seed": int, "replicate": int, "attempts": int, "reason": str | None, "wall_s": NUMBER | None,
@@ -54,7 +53,7 @@ def reading_ledger(path: Path) -> AbstractContextManager[None]:
 def record(row: tuple[Any, ...]) -> Record:
     """A row of the ledger, its columns in the order of COLUMNS. Raises ValueError for one that no campaign wrote."""
     values = dict(zip(COLUMNS, row, strict=True))
-    values |= {name: parsed(values[name] or "{}", dict) for name in _OBJECTS}
+    values |= {name: parsed(values[name] or "{}", dict) for name in OBJECTS}
     check(values, _FORM, f"run {values['key']}")
     return Record(**values)
 
@@ -91,16 +90,3 @@ def campaign_began(path: str | PathLike[str]) -> str | None:
     """When the campaign that is at work on a ledger began (ISO, UTC); None when none is."""
     holder = lock_holder(lock_path(Path(path)))
     return holder.get("began") if holder else None
-
-
-def write_csv(records: list[Record], file: TextIO) -> None:
-    """Write runs as CSV, one row a run: its columns, then one for each input, output and draw, by its name."""
-    plain = [name for name in COLUMNS if name not in _OBJECTS]
-    tables = [[getattr(entry, name) for name in _OBJECTS] for entry in records]
-    names = [list(dict.fromkeys(name for row in tables for name in row[part])) for part in range(len(_OBJECTS))]
-    titles = [f"{part.rstrip('s')}:{name}" for part, group in zip(_OBJECTS, names, strict=True) for name in group]
-    writer = csv.writer(file)
-    writer.writerow([*plain, *titles])
-    for entry, row in zip(records, tables, strict=True):
-        values = [table.get(name, "") for table, group in zip(row, names, strict=True) for name in group]
-        writer.writerow([*(getattr(entry, name) for name in plain), *values])

@@ -69,6 +69,7 @@ def run(
     concurrent.futures (None: the cores of this machine). limits: of one run. retry_count: how often a failed run is
     tried again. progress: called as the campaign goes on.
     A run that raises, or whose process dies, is recorded as failed with its reason, and the campaign goes on.
+    Raises ValueError when the first ten of more than ten new runs all fail, so that nothing is known to work.
     """
     rows = _inputs_of(x, names, fixed or {})
     keys = [run_key(row, seed, replicate, context or {}) for row in rows]

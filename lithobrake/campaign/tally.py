@@ -1,6 +1,7 @@
 """Where a campaign stands: counts, rate, time left, and the spread of each output so far."""
 
 import math
+from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
@@ -79,8 +80,7 @@ class Tally:
         if self.reused:
             parts[0] += f" ({self.reused} known before)"
         if math.isfinite(self.rate):
-            per = f"{self.rate:.3g} runs/s" if self.rate >= 1 else f"{60 * self.rate:.3g} runs/min"
-            parts += [per, f"{duration(self.time_left)} left"]
+            parts += [per_time(self.rate, " runs"), f"{duration(self.time_left)} left"]
         return f"{self.total} runs: {', '.join(parts)}"
 
     def spread_lines(self, names: Iterable[str]) -> list[str]:
@@ -91,6 +91,17 @@ class Tally:
             for name, spread in ((name, self.spreads.get(name, Spread())) for name in names)
             if spread.count > 1
         ]
+
+
+def common_reasons(reasons: Iterable[str | None]) -> str:
+    """The commonest reasons of failed runs with their counts; None, where a run has not failed, counts for nothing."""
+    common = Counter(reason for reason in reasons if reason is not None).most_common(3)
+    return "; ".join(f"{number} x {reason}" for reason, number in common)
+
+
+def per_time(rate: float, things: str = "") -> str:
+    """A rate [1/s] of things in the unit that suits it."""
+    return f"{rate:.3g}{things}/s" if rate >= 1 else f"{60 * rate:.3g}{things}/min"
 
 
 def duration(seconds: float) -> str:

@@ -1,81 +1,16 @@
 """Polynomial chaos for any model: inputs with distributions, designs, fits, moments, sensitivity indices."""
 
-from lithobrake.chaos.basis import condition_number
-from lithobrake.chaos.bounded import Beta, LogUniform, Uniform
-from lithobrake.chaos.computed import Empirical, TruncatedNormal
-from lithobrake.chaos.dependence import DependentSurrogate, GaussianCopula, fit_dependent, load_dependent
-from lithobrake.chaos.design import latin_hypercube, sobol_sequence, tensor_count, tensor_grid
-from lithobrake.chaos.exploration import (
-    density,
-    gradient,
-    main_effect,
-    marginal,
-    output_correlation,
-    quantiles,
-    sampled_outputs,
-)
-from lithobrake.chaos.fitting import fit
-from lithobrake.chaos.germ import Distribution
-from lithobrake.chaos.kinds import distribution
-from lithobrake.chaos.moments import shape_moments
-from lithobrake.chaos.noise import replicates
-from lithobrake.chaos.optimal import christoffel, christoffel_weights, d_optimal, fekete
-from lithobrake.chaos.resampling import score_intervals, sobol_estimates, sobol_intervals
-from lithobrake.chaos.scores import absolute_percentage_error
-from lithobrake.chaos.sparse_grid import smolyak, smolyak_count
-from lithobrake.chaos.stochastic import StochasticSurrogate, fit_stochastic, joint_scatter, load_stochastic
-from lithobrake.chaos.storage import load
-from lithobrake.chaos.surrogate import Surrogate
-from lithobrake.chaos.terms import multi_index_set, term_count
-from lithobrake.chaos.unbounded import Exponential, Gamma, LogNormal, Normal
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
 
-__all__ = [
-    "Beta",
-    "DependentSurrogate",
-    "Distribution",
-    "Empirical",
-    "Exponential",
-    "Gamma",
-    "GaussianCopula",
-    "LogNormal",
-    "LogUniform",
-    "Normal",
-    "StochasticSurrogate",
-    "Surrogate",
-    "TruncatedNormal",
-    "Uniform",
-    "absolute_percentage_error",
-    "christoffel",
-    "christoffel_weights",
-    "condition_number",
-    "d_optimal",
-    "density",
-    "distribution",
-    "fekete",
-    "fit",
-    "fit_dependent",
-    "fit_stochastic",
-    "gradient",
-    "joint_scatter",
-    "latin_hypercube",
-    "load",
-    "load_dependent",
-    "load_stochastic",
-    "main_effect",
-    "marginal",
-    "multi_index_set",
-    "output_correlation",
-    "quantiles",
-    "replicates",
-    "sampled_outputs",
-    "score_intervals",
-    "shape_moments",
-    "smolyak",
-    "smolyak_count",
-    "sobol_estimates",
-    "sobol_intervals",
-    "sobol_sequence",
-    "tensor_count",
-    "tensor_grid",
-    "term_count",
-]
+# Counting needs no arrays: a study file is refused without a wait for them.
+from lithobrake.chaos.counts import smolyak_count as smolyak_count
+from lithobrake.chaos.counts import term_count as term_count
+
+if TYPE_CHECKING:
+    from lithobrake.chaos.public import *  # noqa: F403
+
+
+def __getattr__(name: str) -> Any:
+    """Import the rest when the first of it is asked for."""
+    return getattr(import_module("lithobrake.chaos.public"), name)

@@ -1,5 +1,6 @@
 """The default way of fitting: every output takes the expansion that promises the smallest error at new points."""
 
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
@@ -8,7 +9,7 @@ import numpy as np
 from lithobrake.chaos.gaussian_process import Process, expansion_of, families_for, fresh_germs, learn
 from lithobrake.chaos.germ import Distribution
 from lithobrake.chaos.regression import ols_by_degree
-from lithobrake.chaos.solution import Solution
+from lithobrake.chaos.solution import Solution, told
 from lithobrake.chaos.sparse import is_structured, solve_sparse
 from lithobrake.chaos.training import Training
 
@@ -73,7 +74,7 @@ def _preferred(candidates: list[Solution], margin: float) -> Solution:
     return best if best.expected_error < margin * process.expected_error else process
 
 
-def best_solutions(training: Training) -> tuple[list[Solution], dict[str, Any]]:
+def best_solutions(training: Training, progress: Callable[[int, int], None]) -> tuple[list[Solution], dict[str, Any]]:
     """The best solution of each output, and for the report all candidates and the challenger, scored alike.
 
     Candidates are least squares of every degree that the points determine and the projections of the processes, scored
@@ -88,7 +89,8 @@ def best_solutions(training: Training) -> tuple[list[Solution], dict[str, Any]]:
     chosen: list[Solution] = []
     table: dict[str, dict[str, float]] = {}
     challenger: dict[str, float | None] = {}
-    for output, name in enumerate(training.output_names):
+    for output in told(range(len(training.output_names)), progress):
+        name = training.output_names[output]
         scores = {f"ols degree {degree}": row[output] for degree, row in enumerate(ladder)}
         challenger[name] = None
         if use_processes and not _constant(training, output):

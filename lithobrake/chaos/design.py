@@ -6,9 +6,9 @@ from itertools import product
 
 import numpy as np
 
+from lithobrake.chaos.counts import whole_number
 from lithobrake.chaos.germ import Distribution, checked_inputs
 from lithobrake.chaos.polynomials import Array
-from lithobrake.chaos.terms import whole_number
 
 
 def checked_count(count: int) -> int:

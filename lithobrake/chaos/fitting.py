@@ -1,6 +1,6 @@
 """The one entry: from runs to an expansion."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -10,7 +10,7 @@ from lithobrake.chaos.automatic import best_solutions, process_solution
 from lithobrake.chaos.germ import Distribution
 from lithobrake.chaos.noise import replicates, with_noise
 from lithobrake.chaos.regression import best_terms, solve_ols
-from lithobrake.chaos.solution import Solution, joined, summary
+from lithobrake.chaos.solution import Solution, joined, summary, told
 from lithobrake.chaos.sparse import solve_sparse
 from lithobrake.chaos.storage import data_hash
 from lithobrake.chaos.surrogate import Surrogate
@@ -33,6 +33,7 @@ def fit(
     max_degrees: Sequence[int] | None = None,
     weights: ArrayLike | None = None,
     output_names: Sequence[str] | None = None,
+    progress: Callable[[int, int], None] = lambda done, total: None,
 ) -> Surrogate:
     """Fit an expansion to runs: x [count, input_count] physical units, y [count] or [count, output_count].
 
@@ -41,6 +42,7 @@ def fit(
     takes for each output whichever of least squares, pursuit and processes promises the smallest error at new points.
     q_norm: hyperbolic index set, None is 1 (sparse methods without a degree choose). max_degrees: highest degree of
     each input, and weights: of the points [count], both for "ols". Rows of y that are all NaN are dropped and counted.
+    progress: called with the number of outputs that are fitted, and that of all.
     Raises ValueError for fewer points than terms, rank deficiency and data that `checked_training` refuses.
     Source: the paper, Eqs 13 to 17.
     """
@@ -48,10 +50,10 @@ def fit(
         method = "ols"
     _check_request(degree, method, max_degrees, weights)
     training = checked_training(inputs, x, y, output_names=output_names, weights=weights)
-    outputs = range(training.y.shape[1])
+    outputs = told(range(training.y.shape[1]), progress)
     extra: dict[str, Any] = {}
     if method is None:
-        solutions, extra = best_solutions(training)
+        solutions, extra = best_solutions(training, progress)
     elif method == "ols":
         norm = 1.0 if q_norm is None else q_norm
         if degree is None:

@@ -6,10 +6,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from lithobrake.chaos.basis import germs_of
+from lithobrake.chaos.counts import term_count
 from lithobrake.chaos.covariance import Covariance, PolynomialCovariance, ProductCovariance, RadialMatern
 from lithobrake.chaos.germ import Distribution
 from lithobrake.chaos.polynomials import Array
-from lithobrake.chaos.terms import Indices, multi_index_set, term_count
+from lithobrake.chaos.terms import Indices, multi_index_set
 from lithobrake.chaos.training import Training
 
 FAMILIES: tuple[type[Covariance], ...] = (PolynomialCovariance, ProductCovariance, RadialMatern)

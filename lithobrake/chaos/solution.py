@@ -1,6 +1,6 @@
 """What one way of fitting gives for one output, so that ways can be compared and joined."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -25,6 +25,14 @@ class Solution:
     error_estimate: str
     facts: dict[str, Any] = field(default_factory=dict)
     residuals: Array | None = None
+
+
+def told(outputs: range, progress: Callable[[int, int], None]) -> Iterator[int]:
+    """The outputs one by one, with how many are done told before each and at the end."""
+    for output in outputs:
+        progress(output, len(outputs))
+        yield output
+    progress(len(outputs), len(outputs))
 
 
 def joined(solutions: Sequence[Solution]) -> tuple[Indices, Array]:

@@ -152,6 +152,9 @@ def _order(matrix: Array, y: Array, method: str) -> Rows:
             return (usable[np.asarray(active, dtype=np.int64)] + 1).astype(np.int64)
         path = orthogonal_mp(scaled, centred, n_nonzero_coefs=limit, return_path=True)
     path = np.asarray(path).reshape(len(usable), -1)
+    if path.shape[1] == 0:
+        # An output that varies by rounding alone: no column explains any of it.
+        return np.zeros(0, dtype=np.int64)
     entered = np.where((path != 0.0).any(axis=1), (path != 0.0).argmax(axis=1), path.shape[1])
     order = np.argsort(entered, kind="stable")
     return (usable[order[entered[order] < path.shape[1]]] + 1).astype(np.int64)

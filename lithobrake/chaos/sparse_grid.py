@@ -2,13 +2,12 @@
 
 from collections.abc import Mapping
 from itertools import product
-from math import comb
 
 import numpy as np
 
+from lithobrake.chaos.counts import check_level
 from lithobrake.chaos.germ import Distribution, checked_inputs
 from lithobrake.chaos.polynomials import Array
-from lithobrake.chaos.terms import whole_number
 
 
 def new_nodes(level: int) -> Array:
@@ -33,26 +32,6 @@ def _levels_of(input_count: int, total: int) -> list[tuple[int, ...]]:
     return [(first, *rest) for first in range(total, -1, -1) for rest in _levels_of(input_count - 1, total - first)]
 
 
-def smolyak_count(input_count: int, level: int) -> int:
-    """Number of distinct nodes of the sparse grid, counted by the nodes that each level adds. Source: Smolyak, 1963."""
-    _check_level(level)
-    # The number of nodes with k inputs away from the middle, summed over ways to share the levels among them.
-    total = 0
-    ways = {0: 1}
-    for inputs_moved in range(min(input_count, level) + 1):
-        total += comb(input_count, inputs_moved) * sum(ways.values())
-        following: dict[int, int] = {}
-        for spent, count in ways.items():
-            for extra in range(1, level - spent + 1):
-                following[spent + extra] = following.get(spent + extra, 0) + count * len(new_nodes(extra))
-        ways = following
-    return total
-
-
-def _check_level(level: int) -> None:
-    whole_number("level", level, 0, 20)
-
-
 def smolyak(inputs: Mapping[str, Distribution], level: int) -> Array:
     """Sparse-grid nodes in physical units, shape [node_count, input_count].
 
@@ -60,7 +39,7 @@ def smolyak(inputs: Mapping[str, Distribution], level: int) -> Array:
     Raises ValueError for an unbounded input (limit it, or choose another design) and for a level out of range.
     Source: Smolyak, 1963; the paper, "Polynomial chaos expansion" and Fig 3.
     """
-    _check_level(level)
+    check_level(level)
     distributions = checked_inputs(inputs)
     for name, entry in distributions.items():
         if not entry.bounded:

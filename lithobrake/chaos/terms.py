@@ -1,30 +1,17 @@
 """Which products of polynomials an expansion holds: sets of multi-indices."""
 
 from collections.abc import Sequence
-from math import comb
 from numbers import Real
 
 import numpy as np
 from numpy.typing import NDArray
 
+from lithobrake.chaos.counts import whole_number
+
 Indices = NDArray[np.int64]
 
 # Terms that are looked at for one more input: with more, neither they nor any matrix of them would fit into memory.
 LOOKED_AT = 20_000_000
-
-
-def whole_number(name: str, value: object, at_least: int, at_most: int | None = None) -> int:
-    """Check a whole number and give it back; raises ValueError for anything else, with its name and range."""
-    whole = isinstance(value, Real) and not isinstance(value, bool) and value % 1 == 0
-    if not whole or value < at_least or (at_most is not None and value > at_most):  # type: ignore[operator]
-        allowed = f"of at least {at_least}" if at_most is None else f"from {at_least} to {at_most}"
-        raise ValueError(f"{name} is {value!r}, but must be a whole number {allowed}")
-    return int(value)  # type: ignore[call-overload]
-
-
-def term_count(input_count: int, degree: int) -> int:
-    """Number of terms of total degree up to `degree`, C(n + d, d). Source: the paper, below Eq 14."""
-    return comb(input_count + degree, degree)
 
 
 def multi_index_set(

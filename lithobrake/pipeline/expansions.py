@@ -147,24 +147,26 @@ def fit_screening(job: Job) -> None:
         job.say(warning)
     design = design_runs(job, "screening")
     account(job, "screening", design)
-    _fit(job.study, "screening", design, list(design_inputs(job.study))).save(job.folder / "screening.json")
+    _fit(job, "screening", design, list(design_inputs(job.study))).save(job.folder / "screening.json")
 
 
 def fit_refined(job: Job) -> None:
     """Choose the inputs that matter, run the refined design and fit them at higher order."""
     from lithobrake.chaos import load
 
+    job.progress(0, 1, "inputs that matter")
     kept = kept_inputs(job.study, load(job.folder / "screening.json"))
     design = design_runs(job, "refined", kept)
     account(job, "refined", design)
-    _fit(job.study, "refined", design, kept).save(job.folder / "refined.json")
+    _fit(job, "refined", design, kept).save(job.folder / "refined.json")
 
 
-def _fit(study: Study, design: str, runs: DesignRuns, names: Sequence[str]) -> "Surrogate":
+def _fit(job: Job, design: str, runs: DesignRuns, names: Sequence[str]) -> "Surrogate":
     """The expansion of the runs that have outputs. Raises ValueError, with the outcomes, when they are too few."""
     from lithobrake.chaos import fit, term_count
 
-    degree, found = getattr(study.design, f"{design}_degree"), int(runs.has_outputs.sum())
+    study, found = job.study, int(runs.has_outputs.sum())
+    degree = getattr(study.design, f"{design}_degree")
     least_squares = study.design.fit == "ols"
     terms = term_count(len(names), degree) if least_squares else 1
     if found < terms:
@@ -176,10 +178,19 @@ def _fit(study: Study, design: str, runs: DesignRuns, names: Sequence[str]) -> "
             f"fitted; raise design.{design}_{measure}, lower design.{design}_degree, or choose an impact that rebounds"
             f"{reason}"
         )
-    inputs = design_inputs(study)
+    inputs, what = design_inputs(study), f"{design} fit, outputs"
+    job.progress(0, len(OUTPUTS), what)
     chosen = {name: inputs[name] for name in names}
     method = None if study.design.fit == "best" else study.design.fit
-    return fit(chosen, runs.columns(names), runs.y, degree if least_squares else None, method, output_names=OUTPUTS)
+    return fit(
+        chosen,
+        runs.columns(names),
+        runs.y,
+        degree if least_squares else None,
+        method,
+        output_names=OUTPUTS,
+        progress=lambda done, total: job.progress(done, total, what),
+    )
 
 
 def score_all(job: Job) -> None:
@@ -191,6 +202,7 @@ def score_all(job: Job) -> None:
     runs = {design: design_runs(job, design, kept) for design in DESIGNS}
     for design in ("test_kept", "test_all"):
         account(job, design, runs[design])
+    job.progress(0, 1, "scores with their intervals")
     scores = {design: _score(screening if design == "screening" else refined, runs[design]) for design in DESIGNS}
     scores["test_screening"] = _score(screening, runs["test_all"])
     job.folder.write_json("scores.json", scores)

@@ -94,11 +94,11 @@ def fly_samples(job: Job) -> None:
         job.say(warning)
     job.folder.write_json("flights.json", _checks(body, start, study, job))
     _write_shape(body, job.folder)
-    write_table(job.folder, "flights.csv", COLUMNS, _rows(start, fly_starts(body, start, study, job)))
+    write_table(job.folder, "flights.csv", COLUMNS, _rows(start, fly_starts(body, start, study, job, "flights")))
     alone: Iterable[list[Any]] = ()
     if samples.without_scatter is not None:
         start = starts(study, samples.expansion_alone())
-        alone = _rows(start, fly_starts(body, start, study, job))
+        alone = _rows(start, fly_starts(body, start, study, job, "flights without scatter"))
     write_table(job.folder, "flights_without_scatter.csv", COLUMNS, alone)
 
 
@@ -110,7 +110,7 @@ def write_table(folder: StudyFolder, name: str, columns: Sequence[str], rows: It
         table.writerows(rows)
 
 
-def fly_starts(body: "Body", start: Starts, study: Study, job: Job) -> "Flights":
+def fly_starts(body: "Body", start: Starts, study: Study, job: Job, what: str) -> "Flights":
     """Fly on as many threads as the study has workers; the result does not depend on their number."""
     from lithobrake.smallbody import fly
 
@@ -126,7 +126,7 @@ def fly_starts(body: "Body", start: Starts, study: Study, job: Job) -> "Flights"
         mass=start.site["mass"],
         spin_period=start.site["spin_period"],
         threads=getattr(job.executor, "worker_count", None),
-        progress=lambda share: job.progress(round(share * count), count, "flights"),
+        progress=lambda share: job.progress(round(share * count), count, what),
     )
 
 
@@ -136,7 +136,7 @@ def _checks(body: "Body", start: Starts, study: Study, job: Job) -> dict[str, An
     With a partner there is no such constant, so these flights are made once more without it.
     """
     part = Starts(start.sample[:CHECKED], start.velocity[:CHECKED], {k: v[:CHECKED] for k, v in start.site.items()})
-    drift = np.abs(fly_starts(replace(body, partner=None), part, study, job).jacobi_drift)
+    drift = np.abs(fly_starts(replace(body, partner=None), part, study, job, "checks of flights").jacobi_drift)
     table = study.flight.gravity == "table"
     return {
         "gravity": study.flight.gravity,

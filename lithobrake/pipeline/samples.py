@@ -123,6 +123,7 @@ def draw_samples(job: Job) -> None:
     refined = load(job.folder / "refined.json")
     x = sample_inputs(inputs, study.monte_carlo.sample_count, sampling_seed(study, "samples"))
     smooth = _evaluate(refined, x[:, [list(inputs).index(name) for name in refined.input_names]], job)
+    job.progress(0, 1, "chances of the outcomes")
     random = np.random.Generator(np.random.PCG64(sampling_seed(study, "capture")))
     drawn = outcome_model(job, refined).draw(x, random)
     outputs, without_scatter = smooth, None

@@ -56,7 +56,7 @@ def _nothing(study: Study) -> Any:
 def _write_report(job: Job) -> None:
     from lithobrake.report import write_report
 
-    write_report(job.folder.path)
+    write_report(job.folder.path, lambda done, total: job.progress(done, total, "figures"))
 
 
 FIT, FLY = ("pipeline", "chaos", "analysis"), ("pipeline", "smallbody", "site.py", "mesh.py", "mesh_files.py")

@@ -28,16 +28,13 @@ from lithobrake.site import (
     site_medians,
     site_warning,
 )
-from lithobrake.study import BUILT_IN_BODIES, Study
+from lithobrake.study import BUILT_IN_BODIES, OUTPUTS, Study
+from lithobrake.study_units import OUTPUT_UNITS
 
 if TYPE_CHECKING:
     from lithobrake.chaos import Surrogate
 
 FORMAT_VERSION = 2
-UNITS = {
-    "speed_out": "m/s", "elevation_out": "rad", "spin_out": "rad/s",
-    "velocity_out_x": "m/s", "velocity_out_y": "m/s", "velocity_out_z": "m/s",
-}  # fmt: skip
 QUANTILES = (0.05, 0.5, 0.95)
 
 
@@ -50,13 +47,13 @@ def write_summary(job: Job) -> None:
     samples, scores = Samples.load(job.folder), job.folder.read_json("scores.json")
     kept, flights = kept_inputs(job.study, screening), read_table(job.folder, "flights.csv")
     results = {
-        "units": UNITS,
+        "units": {name: OUTPUT_UNITS[name] for name in OUTPUTS},
         "beds": [_bed(job, name) for name in bed_files(job.study)],
         "node_counts": _node_counts(job.study, len(screening.input_names)),
         "designs": {design: _design(runs[design], replicate_count(job.study, design)) for design in DESIGNS},
         "outputs_of_runs": _outputs_of_runs(runs),
-        "screening": _expansion(screening, runs["screening"]),
-        "refined": _expansion(refined, runs["refined"]),
+        "screening": _expansion(job, "screening", screening, runs["screening"]),
+        "refined": _expansion(job, "refined", refined, runs["refined"]),
         "kept_inputs": list(kept),
         "kept_share": _by_output(screening, np.asarray(screening.sobol_group(kept))),
         "scores": {
@@ -148,25 +145,26 @@ def _run_outcomes(runs: dict[str, DesignRuns]) -> Counter[str]:
 
 def _outputs_of_runs(runs: dict[str, DesignRuns]) -> dict[str, Any]:
     """What else the touchdowns gave, over all distinct runs: median, smallest and largest."""
-    units = {"contact_duration": "s", "penetration": "m", "peak_acceleration": "m/s2", "energy_lost": "J"}
     distinct = {record.key: record for design in runs.values() for record in design.runs.records}
     table: dict[str, Any] = {}
-    for name, unit in units.items():
+    for name in ("contact_duration", "penetration", "peak_acceleration", "energy_lost"):
         values = [record.outputs[name] for record in distinct.values() if name in record.outputs]
         if values:
             table[name] = {
-                "median": float(np.median(values)), "smallest": min(values), "largest": max(values), "unit": unit
+                "median": float(np.median(values)), "smallest": min(values), "largest": max(values),
+                "unit": OUTPUT_UNITS[name],
             }  # fmt: skip
     return table
 
 
-def _expansion(surrogate: "Surrogate", runs: DesignRuns) -> dict[str, Any]:
+def _expansion(job: Job, design: str, surrogate: "Surrogate", runs: DesignRuns) -> dict[str, Any]:
     """What an expansion says, with its Sobol indices freed of scatter, and their 95 % intervals [lower, upper].
 
     An index is a share of the variance that the inputs give the expansion, not of that of the runs.
     """
     from lithobrake.chaos import sobol_estimates
 
+    job.progress(0, 1, f"intervals of the {design} indices")
     inputs = surrogate.input_names
     estimates = sobol_estimates(surrogate, runs.columns(inputs), runs.y)
 

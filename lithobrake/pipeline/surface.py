@@ -58,7 +58,8 @@ def pour_beds(job: Job) -> None:
             continue
 
         def show(done: float, what: str, index: int = index) -> None:
-            job.progress(index + done, study.bed.bed_count, what)
+            numbered = f"bed {index + 1} of {study.bed.bed_count}: " if study.bed.bed_count > 1 else ""
+            job.progress(done, 1.0, f"{numbered}{what}")
 
         with in_words_of_the_study():
             recipe = BedRecipe(
@@ -107,5 +108,5 @@ def land_once(job: Job) -> None:
     bed = stored_bed(job.folder / bed_files(job.study)[round(values["bed"])])
     with in_words_of_the_study():
         body, arrival = lander(job.study, values), landing(job.study, values)
-        outcome = land(bed, body, arrival, frame_count=SNAPSHOT_FRAMES)
+        outcome = land(bed, body, arrival, SNAPSHOT_FRAMES, lambda share, what: job.progress(share, 1.0, what))
     outcome.save_frames(job.folder / "landing.h5", bed, body, arrival)

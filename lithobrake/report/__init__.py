@@ -1,16 +1,18 @@
 """The report of a study: reads the files of its folder, draws the figures, writes one page. Computes nothing new."""
 
+from collections.abc import Callable
 from pathlib import Path
 
 __all__ = ["write_report"]
 
 
-def write_report(folder: Path) -> Path:
+def write_report(folder: Path, progress: Callable[[int, int], None] = lambda done, total: None) -> Path:
     """Write report/index.html of a study's folder, and its figures as PNG files; returns the path of the page.
 
+    progress: called with the number of figures that are drawn, and that of all.
     Raises ValueError when a file that the report reads is missing.
     """
     # matplotlib is imported only when a report is made, so that the command line starts at once.
     from lithobrake.report.study_report import write_report as write
 
-    return write(folder)
+    return write(folder, progress)

@@ -42,15 +42,16 @@ SHORT_END_WORDS = {
 }
 
 
-def write_report(folder: Path) -> Path:
+def write_report(folder: Path, progress: Callable[[int, int], None]) -> Path:
     """Write report/index.html of a study's folder, and its figures as PNG files; returns the path of the page.
 
     Raises ValueError when a file that the report reads is missing.
     """
     data = read_results(folder)
     (folder / "report").mkdir(exist_ok=True)
-    panels, pictures = [], []
-    for number, (name, title, sentence, draw) in enumerate(_figures(data), start=1):
+    panels, pictures, figures = [], [], _figures(data)
+    for number, (name, title, sentence, draw) in enumerate(figures, start=1):
+        progress(number - 1, len(figures))
         with figure_style():
             figure = draw()
             picture = None if figure is None else _png(figure)

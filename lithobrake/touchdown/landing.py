@@ -1,7 +1,9 @@
 """One landing: a lander meets a bed, and what becomes of it."""
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field
+from itertools import count
 
 import numpy as np
 from numpy.typing import NDArray
@@ -64,9 +66,16 @@ class Landing:
         )
 
 
-def land(bed: Bed, lander: Lander, landing: Landing, frame_count: int = 0) -> Outcome:
+def land(
+    bed: Bed,
+    lander: Lander,
+    landing: Landing,
+    frame_count: int = 0,
+    progress: Callable[[float, str], None] = lambda share, what: None,
+) -> Outcome:
     """Let a lander meet a bed whose grains have taken on the landing's material, until its fate is clear.
 
+    progress: called with the share that is done of what is being done; a landing may end long before its time limit.
     Raises ValueError where bed and landing do not fit and where the lander goes through the floor, FloatingPointError
     where the motion diverged.
     """
@@ -78,7 +87,7 @@ def land(bed: Bed, lander: Lander, landing: Landing, frame_count: int = 0) -> Ou
             f"{min(bed.width)} m: make the bed wider"
         )
     world = bed.world(landing.grain, bed.gravity, landing.contact)
-    relax(world, bed, landing)
+    relax(world, bed, landing, lambda share: progress(share, "bed taking on the soil of the landing"))
     number = release(world, bed, lander, landing)
     world.time_step = world.shortest_contact(landing.speed) / landing.contact.steps_per_contact
     world.watch(number)
@@ -87,10 +96,13 @@ def land(bed: Bed, lander: Lander, landing: Landing, frame_count: int = 0) -> Ou
     while line.fate is None:
         world.run(steps=chunk)
         line.look()
+        progress(min((world.time - line.start_time) / landing.time_limit, 1.0), "landing, up to its time limit")
     return line.outcome()
 
 
-def relax(world: World, bed: Bed, landing: Landing) -> None:
+def relax(
+    world: World, bed: Bed, landing: Landing, tell: Callable[[float], None] = lambda share: None
+) -> None:  # fmt: skip
     """Let the stored bed find its rest under the landing's material and gravity, under damping that fades.
 
     Where the site's acceleration vanishes or points outward nothing settles: the bed rests under the gravity it was
@@ -102,9 +114,13 @@ def relax(world: World, bed: Bed, landing: Landing) -> None:
     period = settling.rest_period(landing.grain, bed.grain_diameter, strength)
     lasting = settling.free_fall_drag(strength, bed.grain_diameter)
     world.drag = settling.contact_drag(period)
+    tell(0.0)
     settling.ramp(world, rests_under, period)
+    checks = count(1)
 
     def fade(_: float) -> None:
+        # How long it takes is not known before: the share grows ever slower.
+        tell(1.0 - math.exp(-next(checks) / (settling.PERIODS_HELD * settling.CHECKS_PER_PERIOD)))
         world.drag = max(lasting, world.drag * math.exp(-1.0 / (RELAX_FADING * settling.CHECKS_PER_PERIOD)))
 
     def at_rest() -> bool:

@@ -22,14 +22,15 @@ from lithobrake.campaign import (
     missing,
     read_records,
     run,
+    run_key,
 )
 
 X = np.array([[1.0, 0.5], [2.0, 0.5], [3.0, 0.5], [4.0, 0.5]])
 
 
-def campaign(path: Path, model: Any, limits: Limits | None = None, **options: Any) -> Runs:
+def campaign(path: Path, model: Any, limits: Limits | None = None, x: np.ndarray = X, **options: Any) -> Runs:
     with Ledger(path / "runs.sqlite") as ledger, LocalExecutor(2) as executor:
-        return run(model, X, names=("a", "b"), ledger=ledger, executor=executor, limits=limits, **options)
+        return run(model, x, names=("a", "b"), ledger=ledger, executor=executor, limits=limits, **options)
 
 
 def test_a_run_over_its_wall_limit_is_ended_and_the_others_go_on(tmp_path: Path) -> None:
@@ -73,6 +74,44 @@ def test_a_retry_within_one_campaign(tmp_path: Path) -> None:
     runs = campaign(tmp_path, models.FailsOnce(tmp_path, "dies"), retry_count=1)
     assert runs.outcomes == ["clear"] * 4
     assert [entry.attempts for entry in runs.records] == [2] * 4
+
+
+MANY = np.column_stack([np.linspace(0.5, 41.0, 82), np.full(82, 0.5)])
+
+
+def tries(folder: Path) -> int:
+    return sum(int(mark.read_text()) for mark in folder.glob("tried_*"))
+
+
+@pytest.mark.parametrize("retry_count", [0, 1])
+def test_a_model_that_never_works_is_given_up_after_the_first_runs_and_their_retries(
+    retry_count: int, tmp_path: Path
+) -> None:
+    model = models.WorksAbove(1000.0, tmp_path)
+    said = r"the first (1\d) runs have all failed \(1\d x OSError: no \[/licence\]\), so the (6|7)\d that are left"
+    with pytest.raises(ValueError, match=said):
+        campaign(tmp_path, model, x=MANY, retry_count=retry_count)
+    # Beside the ten only what was under way meanwhile: four at most, two for each of two workers.
+    assert 10 * (retry_count + 1) <= tries(tmp_path) <= 14 * (retry_count + 1)
+    failed = [entry for entry in read_records(tmp_path / "runs.sqlite") if entry.status == "failed"]
+    assert 10 <= len(failed) <= 14
+    # Nothing of it counts: mended, the same command makes all runs.
+    assert campaign(tmp_path, models.WorksAbove(-1.0, tmp_path), x=MANY).outcomes == ["clear"] * 82
+
+
+def test_a_campaign_goes_on_when_one_of_its_first_runs_succeeds(tmp_path: Path) -> None:
+    # Ten of 82 succeed, the first trial run among them.
+    keys = {run_key({"a": a, "b": 0.5}, 0, 0, {}): a for a in MANY[:, 0].tolist()}
+    lucky = keys[min(keys)]
+    runs = campaign(tmp_path, models.WorksAbove(lucky - 0.25, tmp_path, lucky + 0.25), x=MANY)
+    assert [row[0] for row, outcome in zip(MANY, runs.outcomes, strict=True) if outcome == "clear"] == [lucky]
+
+
+def test_runs_that_fail_again_when_they_are_tried_once_more_end_no_campaign(tmp_path: Path) -> None:
+    model = models.WorksAbove(10.0, tmp_path)
+    first = campaign(tmp_path, model, x=MANY)
+    assert first.outcomes.count("failed") == 20
+    assert campaign(tmp_path, model, x=MANY, retry_count=1).outcomes == first.outcomes
 
 
 def test_a_log_of_each_run_on_demand(tmp_path: Path) -> None:

@@ -94,6 +94,17 @@ def test_a_ledger_of_the_first_format_keeps_its_runs(tmp_path: Path) -> None:
     assert [entry.attempts for entry in runs.records] == [1, 1, 1]
 
 
+def test_the_words_of_a_model_enter_as_plain_text_on_one_line(tmp_path: Path) -> None:
+    path, red = tmp_path / "runs.sqlite", "\x1b[31m[/red]\x1b]0;title\x07 no\n licence\x00 \udce4\u202e"
+    with Ledger(path) as ledger:
+        ledger.queue([("first", {"a": 1.0}, 1, 0), ("second", {"a": 2.0}, 1, 0)], "7")
+        ledger.finish("first", {"status": "failed", "reason": red})
+        ledger.finish("second", {"status": "done", "outcome": red + "x" * 2000})
+    first, second = read_records(path)
+    assert (first.outcome, first.reason) == (None, "[/red] no licence")
+    assert second.outcome == f"[/red] no licence {'x' * 79}..."
+
+
 def test_runs_as_csv(tmp_path: Path) -> None:
     fill(tmp_path / "runs.sqlite")
     text = io.StringIO()

@@ -246,3 +246,13 @@ def test_a_degree_beyond_all_memory_is_refused_before_anything_is_made(degree, s
     many = {name: Uniform(0.0, 1.0) for name in "abcdef"}
     with pytest.raises(ValueError, match="too many terms to look at"):
         fit(many, sobol_sequence(many, 50), np.arange(50.0), degree=1000)
+
+
+@pytest.mark.parametrize("method", ["omp", "lars"])
+def test_an_output_whose_mean_is_off_it_by_rounding_is_constant(method):
+    inputs = {"a": Uniform(0.0, 1.0)}
+    values = np.full(5, 0.013)
+    assert values.mean() != 0.013
+    surrogate = fit(inputs, smolyak(inputs, 2), values, None, method)
+    assert surrogate.mean == pytest.approx(0.013, rel=1e-15)
+    assert surrogate.variance == 0.0

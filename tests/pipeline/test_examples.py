@@ -63,8 +63,15 @@ def test_the_runs_are_told_from_another_terminal(plate: Path) -> None:
     assert "speed_out" in said
     rows = list(csv.DictReader(io.StringIO(lithobrake("runs", plate, "--csv").stdout)))
     assert [row["key"] for row in rows] == [entry.key for entry in records]
-    assert float(rows[0]["input:impact.speed"]) == 0.15
-    assert len(lithobrake("runs", plate).stdout.splitlines()) == len(records)
+    assert float(rows[0]["input:impact.speed [m/s]"]) == 0.15
+    assert {"input:lander.friction [-]", "input:solver.inputs.plate_tilt_deg", "output:spin_out [rad/s]"} <= set(
+        rows[0]
+    )
+    sections, names, units, *lines = lithobrake("runs", plate).stdout.splitlines()
+    assert sections.split() == ["lander", "lander", "impact", "solver.inputs"]
+    assert names.split() == ["wall", "restitution", "friction", "incidence_deg", "plate_tilt_deg"]
+    assert units.split() == ["key", "status", "[s]", "[-]", "[-]", "[deg]", "outcome", "or", "reason"]
+    assert [line.split()[0] for line in lines] == [entry.key[:12] for entry in records]
 
 
 def test_a_higher_order_and_more_test_runs_reuse_what_is_still_valid_and_say_so(plate: Path, tmp_path: Path) -> None:

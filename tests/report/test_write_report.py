@@ -22,8 +22,10 @@ from lithobrake.report.study_files import size
 @pytest.fixture(scope="module")
 def report(study_folder: Path) -> str:
     """Text of the page."""
-    path = write_report(study_folder)
+    told: list[tuple[int, int]] = []
+    path = write_report(study_folder, lambda done, total: told.append((done, total)))
     assert path == study_folder / "report" / "index.html"
+    assert told == [(number, 9) for number in range(9)]
     return path.read_text(encoding="utf-8")
 
 

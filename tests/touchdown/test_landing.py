@@ -69,6 +69,16 @@ def test_time_limit_is_an_outcome(bed):
     assert outcome.status == "time_limit"
 
 
+def test_a_landing_tells_how_far_it_is(bed):
+    told = {}
+    land(bed, ball(), landing(), progress=lambda share, what: told.setdefault(what, []).append(share))
+    assert list(told) == ["bed taking on the soil of the landing", "landing, up to its time limit"]
+    for shares in told.values():
+        assert shares == sorted(shares)
+        assert len(shares) > 5
+        assert 0.0 <= shares[0] < shares[-1] <= 1.0
+
+
 def test_same_landing_same_bits(bed):
     first, second = (land(bed, ball(), landing(speed=0.1)) for _ in range(2))
     assert first.outputs == second.outputs or str(first.outputs) == str(second.outputs)

@@ -1,0 +1,82 @@
+"""Every public name of the part, from the file that it stands in."""
+
+from lithobrake.chaos.basis import condition_number
+from lithobrake.chaos.bounded import Beta, LogUniform, Uniform
+from lithobrake.chaos.computed import Empirical, TruncatedNormal
+from lithobrake.chaos.counts import smolyak_count, term_count
+from lithobrake.chaos.dependence import DependentSurrogate, GaussianCopula, fit_dependent, load_dependent
+from lithobrake.chaos.design import latin_hypercube, sobol_sequence, tensor_count, tensor_grid
+from lithobrake.chaos.exploration import (
+    density,
+    gradient,
+    main_effect,
+    marginal,
+    output_correlation,
+    quantiles,
+    sampled_outputs,
+)
+from lithobrake.chaos.fitting import fit
+from lithobrake.chaos.germ import Distribution
+from lithobrake.chaos.kinds import distribution
+from lithobrake.chaos.moments import shape_moments
+from lithobrake.chaos.noise import replicates
+from lithobrake.chaos.optimal import christoffel, christoffel_weights, d_optimal, fekete
+from lithobrake.chaos.resampling import score_intervals, sobol_estimates, sobol_intervals
+from lithobrake.chaos.scores import absolute_percentage_error
+from lithobrake.chaos.sparse_grid import smolyak
+from lithobrake.chaos.stochastic import StochasticSurrogate, fit_stochastic, joint_scatter, load_stochastic
+from lithobrake.chaos.storage import load
+from lithobrake.chaos.surrogate import Surrogate
+from lithobrake.chaos.terms import multi_index_set
+from lithobrake.chaos.unbounded import Exponential, Gamma, LogNormal, Normal
+
+__all__ = [
+    "Beta",
+    "DependentSurrogate",
+    "Distribution",
+    "Empirical",
+    "Exponential",
+    "Gamma",
+    "GaussianCopula",
+    "LogNormal",
+    "LogUniform",
+    "Normal",
+    "StochasticSurrogate",
+    "Surrogate",
+    "TruncatedNormal",
+    "Uniform",
+    "absolute_percentage_error",
+    "christoffel",
+    "christoffel_weights",
+    "condition_number",
+    "d_optimal",
+    "density",
+    "distribution",
+    "fekete",
+    "fit",
+    "fit_dependent",
+    "fit_stochastic",
+    "gradient",
+    "joint_scatter",
+    "latin_hypercube",
+    "load",
+    "load_dependent",
+    "load_stochastic",
+    "main_effect",
+    "marginal",
+    "multi_index_set",
+    "output_correlation",
+    "quantiles",
+    "replicates",
+    "sampled_outputs",
+    "score_intervals",
+    "shape_moments",
+    "smolyak",
+    "smolyak_count",
+    "sobol_estimates",
+    "sobol_intervals",
+    "sobol_sequence",
+    "tensor_count",
+    "tensor_grid",
+    "term_count",
+]

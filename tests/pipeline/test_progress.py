@@ -1,0 +1,59 @@
+"""What a study tells of its long pieces of work while it runs."""
+
+import sys
+from pathlib import Path
+
+import pytest
+
+from lithobrake.pipeline import run_study
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+FEW = {
+    "python3 ball_on_plate.py": f"{sys.executable} {EXAMPLES / 'ball_on_plate.py'}",
+    "screening_level = 2\nscreening_degree = 2": "screening_level = 1\nscreening_degree = 1\nfit = 'omp'",
+    "refined_level = 3\nrefined_degree = 3": "refined_level = 2\nrefined_degree = 1",
+    "test_count = 10": "test_count = 6",
+    "sample_count = 10_000": "sample_count = 200\nscatter = true",
+    "flight_count = 50\nduration = 7200.0": "flight_count = 5\nduration = 600.0",
+    "count = 200 ": "count = 5 ",
+}
+# Which pieces of work each stage tells of, in their order.
+WORKS = {
+    "screening": ["screening runs", "screening fit, outputs"],
+    "refinement": ["inputs that matter", "refined runs", "refined fit, outputs"],
+    "test runs": ["screening runs", "refined runs", "test kept runs", "test all runs", "scores with their intervals"],
+    "flights": ["gravity table", "checks of flights", "flights", "flights without scatter"],
+    "bounces until rest": ["bounces, hard ground"],
+}
+
+
+@pytest.fixture(scope="module")
+def told(tmp_path_factory: pytest.TempPathFactory) -> dict[str, dict[str, list[tuple[float, float]]]]:
+    """What was done of how much, by stage and piece of work."""
+    folder = tmp_path_factory.mktemp("told")
+    text = (EXAMPLES / "ball_on_plate.toml").read_text()
+    for old, new in FEW.items():
+        assert old in text
+        text = text.replace(old, new)
+    (folder / "study.toml").write_text(text)
+    stages: dict[str, dict[str, list[tuple[float, float]]]] = {}
+
+    def begin(title: str, number: int, count: int) -> None:
+        stages[title] = {}
+
+    def progress(done: float, total: float, what: str, detail: str = "", /) -> None:
+        stages[list(stages)[-1]].setdefault(what, []).append((done, total))
+
+    run_study(folder / "study.toml", folder / "out", worker_count=1, until="rest", begin=begin, progress=progress)
+    return stages
+
+
+@pytest.mark.parametrize("stage", list(WORKS))
+def test_every_long_piece_of_work_is_told_of(stage: str, told: dict[str, dict[str, list[tuple[float, float]]]]) -> None:
+    assert list(told[stage]) == WORKS[stage]
+
+
+def test_a_fit_is_counted_from_none_to_all(
+    told: dict[str, dict[str, list[tuple[float, float]]]],
+) -> None:
+    assert [done for done, _ in told["screening"]["screening fit, outputs"]] == [0, *range(7)]
