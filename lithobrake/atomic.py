@@ -9,6 +9,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+from lithobrake.reading import parsed, reading
+
 # A reader of a lock holds it for microseconds; only a coordinator holds it for longer than this [s].
 _PATIENCE, _PAUSE = 0.5, 0.02
 _NOTE_LENGTH = 1024
@@ -81,6 +83,7 @@ def _taken(file: int, kind: int) -> bool:
 
 
 def _noted(path: Path) -> dict[str, Any]:
-    text = path.read_text(encoding="utf-8").strip()
-    note: dict[str, Any] = json.loads(text) if text else {}
+    with reading(path, "what is at work notes it anew at its next stage"):
+        text = path.read_text(encoding="utf-8").strip()
+        note: dict[str, Any] = parsed(text, {"process": int, "host": str}) if text else {}
     return note

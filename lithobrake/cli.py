@@ -157,10 +157,11 @@ def view(folder: StudyDirectory) -> None:
         from lithobrake.pipeline import report_page
 
         page, doubt = report_page(folder)
-        import webbrowser
+    _tell([doubt] if doubt else [])
+    import webbrowser
 
-        opened = webbrowser.open(page.as_uri())
-    _tell([*([doubt] if doubt else []), *([] if opened else [f"No browser answers here; open this file: {page}"])])
+    if not webbrowser.open(page.as_uri()):
+        _tell([f"No browser answers here; open this file: {page}"])
 
 
 def _default_folder(study: Path) -> Path:

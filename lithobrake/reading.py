@@ -15,7 +15,7 @@ from typing import Any
 Form = Any
 NUMBER = int | float
 # What readers of text, JSON, CSV and HDF5 raise over a file that is not what they expect.
-UNREADABLE = (OSError, ValueError, TypeError, LookupError, AttributeError, ArithmeticError, RecursionError)
+UNREADABLE = (OSError, ValueError, TypeError, LookupError, AttributeError, ArithmeticError, RuntimeError, csv.Error)
 
 
 class DamagedFileError(ValueError):
@@ -31,8 +31,9 @@ def reading(path: str | PathLike[str], remedy: str, *also: type[Exception]) -> I
     except DamagedFileError:
         raise
     except kinds as error:
-        # A missing key is all that its error says, in quotation marks.
-        said = f"lacks {error.args[0]}" if type(error) is KeyError and error.args else str(error)
+        # A KeyError says the bare key, or a sentence in quotation marks.
+        said = str(error.args[0]) if type(error) is KeyError and error.args else str(error)
+        said = f"it lacks {said}" if type(error) is KeyError and " " not in said else said
         words = " ".join(said.split()) or type(error).__name__
         raise DamagedFileError(f"{path} cannot be read ({words}); {remedy}") from error
 

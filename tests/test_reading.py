@@ -74,12 +74,10 @@ def test_a_truncated_hdf5_file_and_one_without_a_dataset_are_one_sentence(tmp_pa
         h5py.File(path)
 
 
-@pytest.mark.parametrize("text", ["", "a\n1\n", "a,b\n1,2\n3\n", "a,b\n1,2,3\n"])
+@pytest.mark.parametrize("text", ["", "a\n1\n", "a,b\n1,2\n3\n", "a,b\n1,2,3\n", 'a,b\n1,"2\n'])
 def test_a_table_without_its_columns_or_with_half_a_row_is_one_sentence(text: str, tmp_path: Path) -> None:
     (tmp_path / "flights.csv").write_text(text)
-    with pytest.raises(
-        DamagedFileError, match=r"flights\.csv cannot be read \((it lacks the columns|row \d has another)"
-    ):
+    with pytest.raises(DamagedFileError, match=r"flights\.csv cannot be read \((it lacks|row \d has|unexpected end)"):
         read_rows(tmp_path / "flights.csv", ("a", "b"), "run again")
 
 

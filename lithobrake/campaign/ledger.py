@@ -14,7 +14,7 @@ from types import TracebackType
 from typing import Any, Self
 
 from lithobrake.atomic import locked
-from lithobrake.campaign.record import COLUMNS, LEFT, Record, lock_path, reading_ledger, record, utc_now
+from lithobrake.campaign.record import COLUMNS, LEFT, OF_FIRST, Record, lock_path, reading_ledger, record, utc_now
 from lithobrake.plain import one_line
 
 FORMAT_VERSION = 2
@@ -75,7 +75,7 @@ class Ledger:
             )
         tables = self._database.execute("SELECT name FROM sqlite_master WHERE type = 'table'").fetchall()
         columns = {row[1] for row in self._database.execute("PRAGMA table_info(runs)")}
-        lacking = sorted(set(COLUMNS) - columns - ({"attempts", "started"} if version == 1 else set()))
+        lacking = sorted(set(COLUMNS) - columns - (set(OF_FIRST) if version == 1 else set()))
         if lacking and (version or tables):
             raise ValueError(f"{self.path} cannot be used as a ledger (it lacks {', '.join(lacking)}); {LEFT}")
         return version

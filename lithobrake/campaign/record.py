@@ -35,6 +35,8 @@ class Record:
 
 
 COLUMNS = tuple(Record.__dataclass_fields__)
+# What stands for the columns that a ledger of the first format lacks: its runs were each tried once.
+OF_FIRST = {"attempts": "1", "started": "NULL"}
 # Runs may have taken days: no damage is a reason to write over them.
 LEFT = "it is left as it is: put a copy of it back, or move it away to have all its runs made again"
 OBJECTS = ("inputs", "outputs", "draws")
@@ -78,7 +80,9 @@ def read_records(path: str | PathLike[str]) -> list[Record]:
         reading_ledger(path),
         closing(sqlite3.connect(f"{path.absolute().as_uri()}?mode=ro{whole}", uri=True)) as database,
     ):
-        return [record(row) for row in database.execute(f"SELECT {', '.join(COLUMNS)} FROM runs ORDER BY {order}")]
+        first = database.execute("PRAGMA user_version").fetchone()[0] == 1
+        columns = ", ".join(OF_FIRST.get(name, name) if first else name for name in COLUMNS)
+        return [record(row) for row in database.execute(f"SELECT {columns} FROM runs ORDER BY {order}")]
 
 
 def lock_path(path: Path) -> Path:

@@ -86,6 +86,7 @@ def test_a_ledger_of_the_first_format_keeps_its_runs(tmp_path: Path) -> None:
             database.execute(f"ALTER TABLE runs DROP COLUMN {column}")
         database.execute("PRAGMA user_version = 1")
     database.close()
+    assert [(entry.status, entry.attempts, entry.started) for entry in read_records(path)] == [("done", 1, None)] * 3
     with Ledger(path) as ledger, LocalExecutor(1) as executor:
         runs = run(
             models.parabola, X, names=("a", "b"), ledger=ledger, executor=executor, context={"version": "7"}

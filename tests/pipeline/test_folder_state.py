@@ -146,6 +146,8 @@ def test_while_a_study_is_at_work_what_is_not_current_is_still_to_come(home: Pat
         note(stage="samples", number=6, count=10)
         lines = said_by("status", home).splitlines()
         assert "another lithobrake is at work" in said_by("report", home, code=2)
+        (home / "out" / ".lock").write_text("{")
+        assert f"{home / 'out' / '.lock'} cannot be read (" in said_by("status", home, code=2)
     assert ": stage 6 of 10, samples (process " in lines[0]
     assert lines[2] == "to come: samples, flights"
 
