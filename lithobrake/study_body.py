@@ -33,8 +33,8 @@ def body_problems(study: Study) -> Iterator[str]:
     except (ValueError, OSError) as error:
         yield f"site.body: {error}"
         return
-    yield from _bulk_problems(study, volume)
-    yield from _delivery_problems(study, _ball_radius(volume))
+    # In a wrong unit every delivery would be too wide, too.
+    yield from list(_bulk_problems(study, volume)) or _delivery_problems(study, _ball_radius(volume))
 
 
 def _unit_problems(study: Study) -> Iterator[str]:

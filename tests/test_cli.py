@@ -141,7 +141,7 @@ def test_all_errors_of_a_study_are_listed_before_anything_runs(tmp_path: Path, m
     said = refused(["run", "wrong.toml"])
     assert "wrong.toml: lander.mas is not a known key; did you mean mass?" in said
     assert "wrong.toml: lander.mass is missing" in said
-    assert "wrong.toml: impact.speed is 0; allowed: above 0 [m/s]" in said
+    assert "wrong.toml: impact.speed is 0; allowed: above 0 and at most 1000 [m/s]" in said
     assert not (tmp_path / "runs").exists()
 
 
