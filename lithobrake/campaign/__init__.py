@@ -5,7 +5,7 @@ from lithobrake.campaign.command import Command, absolute_words
 from lithobrake.campaign.identity import run_key, run_seed
 from lithobrake.campaign.ledger import Ledger
 from lithobrake.campaign.limits import Limits
-from lithobrake.campaign.local import LocalExecutor, WorkerDiedError
+from lithobrake.campaign.local import LocalExecutor, WorkerDiedError, available_cores
 from lithobrake.campaign.missing import missing
 from lithobrake.campaign.record import Record, campaign_began, read_records, write_csv
 from lithobrake.campaign.runs import Runs, run
@@ -22,6 +22,7 @@ __all__ = [
     "Tally",
     "WorkerDiedError",
     "absolute_words",
+    "available_cores",
     "campaign_began",
     "ledger_tally",
     "missing",

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from lithobrake.campaign import Ledger, Limits, Runs, Tally, run_seed
+from lithobrake.campaign import Ledger, Limits, Runs, Tally, run_key, run_seed
 from lithobrake.campaign import run as run_campaign
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.landings import TouchdownModel, draw, engine_hash, medians
@@ -15,16 +15,30 @@ from lithobrake.pipeline.surface import bed_files, touchdown_reads
 from lithobrake.study import OUTPUTS, Study
 
 
-def touchdowns(job: Job, names: Sequence[str], x: np.ndarray, title: str, replicate: int = 0) -> Runs:
-    """Make the touchdowns at the rows of x, shape [run_count, len(names)]; those that the ledger has are read from it.
+def drawn_rows(study: Study, names: Sequence[str], x: np.ndarray, replicate: int) -> list[dict[str, float]]:
+    """All inputs of the runs at the rows of x, shape [run_count, len(names)], with what each draws by chance.
 
     replicate: another number gives the same rows other draws.
 
     What a run draws is drawn here and counts among its inputs, so that a run depends on nothing else: another bed, or
     a wider region, leaves every run as it was whose draws remain.
     """
+    return [_drawn(study, names, row, replicate) for row in x.tolist()]
+
+
+def touchdown_keys(study: Study, rows: Sequence[dict[str, float]], replicate: int) -> list[str]:
+    """The keys of these runs in the ledger."""
+    context = touchdown_reads(study)
+    return [run_key(row, study.seed, replicate, context) for row in rows]
+
+
+def touchdowns(job: Job, names: Sequence[str], x: np.ndarray, title: str, replicate: int = 0) -> Runs:
+    """Make the touchdowns at the rows of x, shape [run_count, len(names)]; those that the ledger has are read from it.
+
+    replicate: another number gives the same rows other draws.
+    """
     study = job.study
-    rows = [_drawn(study, names, row, replicate) for row in x.tolist()]
+    rows = drawn_rows(study, names, x, replicate)
 
     def show(state: Tally) -> None:
         job.progress(state.ended, state.total, title, "\n".join([state.sentence(), *state.spread_lines(OUTPUTS)]))
