@@ -86,6 +86,26 @@ _study_command("rest", f"Follow samples from bounce to bounce until they rest. {
 
 
 @app.command()
+def plan(
+    study: StudyPath,
+    out: OutPath = None,
+    workers: Workers = None,
+    json: Annotated[bool, typer.Option("--json", help="As JSON, all numbers in SI.")] = False,
+) -> None:
+    """Say what a study will make, how long that takes and what to know of it; nothing is made."""
+    with _one_sentence():
+        from lithobrake.pipeline import plan_study
+
+        found = plan_study(study, out or _default_folder(study), workers)
+    if json:
+        from json import dumps
+
+        print(dumps(found.to_json(), indent=2))
+        return
+    print("\n".join(found.lines()))
+
+
+@app.command()
 def report(folder: StudyDirectory) -> None:
     """Write the report of a study again."""
     with _one_sentence():

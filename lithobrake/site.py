@@ -121,6 +121,14 @@ def site_warning(study: Study) -> str | None:
     )
 
 
+def gravity_warning(study: Study) -> str | None:
+    """What it means that the touchdown and the site differ in their acceleration; None where they hardly do."""
+    felt, given = -float(push_at_site(study)[2]), median(study.touchdown_values()["surface.gravity"])
+    if felt <= 0.0 or 0.5 * felt <= given <= 2.0 * felt:
+        return None
+    return f'surface.gravity is {given:.2g} m/s2 and at the site it is {felt:.2g} m/s2: write "site" to take that.'
+
+
 def with_site_gravity(study: Study) -> Study:
     """The study with surface.gravity = "site" replaced by the acceleration there; negative points outward."""
     if study.surface.gravity != "site":

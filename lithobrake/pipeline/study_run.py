@@ -8,7 +8,9 @@ from lithobrake.atomic import atomic_path
 from lithobrake.campaign import DaskExecutor, LocalExecutor
 from lithobrake.pipeline.folder import StudyFolder
 from lithobrake.pipeline.job import Job, Progress
+from lithobrake.pipeline.plan import plan_of
 from lithobrake.pipeline.stages import make
+from lithobrake.study import Study
 
 
 def run_study(
@@ -36,6 +38,9 @@ def run_study(
         with atomic_path(folder / "study.toml") as draft:
             draft.write_bytes(path.read_bytes())
 
+        if until == "report":
+            _say_plan(study, path, folder, worker_count, scheduler, say)
+
         def begin_and_note(title: str, number: int, count: int) -> None:
             note(stage=title, number=number, count=count)
             begin(title, number, count)
@@ -46,3 +51,13 @@ def run_study(
             # What is under way would be waited for otherwise; every finished run is in the ledger already.
             executor.shutdown(cancel_futures=True)
             raise
+
+
+def _say_plan(
+    study: Study, path: Path, folder: StudyFolder, worker_count: int | None, scheduler: str | None,
+    say: Callable[[str], None],
+) -> None:  # fmt: skip
+    """Say what will be made, where anything is left to be."""
+    plan = plan_of(study, path.stem, folder, worker_count, on_cluster=scheduler is not None)
+    for line in plan.brief(f"lithobrake plan {path}") if plan.stages else ():
+        say(line)
