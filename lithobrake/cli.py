@@ -107,6 +107,27 @@ _study_command("fly", f"Fly the samples that leave the surface. {BEFORE}")
 _study_command("rest", f"Follow samples from bounce to bounce until they rest. {BEFORE}")
 
 
+@app.command(epilog="Example: lithobrake plan study.toml")
+def plan(
+    study: StudyPath,
+    out: OutPath = None,
+    workers: Workers = None,
+    json: Annotated[bool, typer.Option("--json", help="As JSON, all numbers in SI.")] = False,
+) -> None:
+    """Say what a study will make, how long that takes and what to know of it; nothing is made."""
+    folder = _default_folder(study) if out is None else _given_folder(out)
+    with _one_sentence():
+        from lithobrake.pipeline import plan_study
+
+        found = plan_study(study, folder, workers)
+    if json:
+        from json import dumps
+
+        _tell([dumps(found.to_json(), indent=2)])
+        return
+    _tell(found.lines())
+
+
 @app.command(epilog="Example: lithobrake report runs/study")
 def report(folder: StudyDirectory) -> None:
     """Write the report of a study again."""

@@ -6,7 +6,7 @@ from lithobrake.campaign.identity import run_key, run_seed
 from lithobrake.campaign.ledger import Ledger
 from lithobrake.campaign.limits import Limits
 from lithobrake.campaign.listing import run_lines, write_csv
-from lithobrake.campaign.local import LocalExecutor, WorkerDiedError
+from lithobrake.campaign.local import LocalExecutor, WorkerDiedError, available_cores
 from lithobrake.campaign.missing import missing
 from lithobrake.campaign.record import Record, campaign_began, read_records
 from lithobrake.campaign.runs import Runs, run
@@ -23,6 +23,7 @@ __all__ = [
     "Tally",
     "WorkerDiedError",
     "absolute_words",
+    "available_cores",
     "campaign_began",
     "duration",
     "ledger_tally",

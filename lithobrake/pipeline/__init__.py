@@ -6,19 +6,20 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from lithobrake.pipeline.folder import StudyFolder
     from lithobrake.pipeline.job import Job
+    from lithobrake.pipeline.plan import Plan, plan_study
     from lithobrake.pipeline.stages import STAGES, Stage, make, stage_keys
     from lithobrake.pipeline.state import report_page
     from lithobrake.pipeline.status import study_status
     from lithobrake.pipeline.study_run import run_study, write_report_again
 
 _HOME = {
-    "STAGES": "stages", "Job": "job", "Stage": "stages", "StudyFolder": "folder", "make": "stages",
-    "report_page": "state", "run_study": "study_run", "stage_keys": "stages", "study_status": "status",
-    "write_report_again": "study_run",
+    "STAGES": "stages", "Job": "job", "Plan": "plan", "Stage": "stages", "StudyFolder": "folder", "make": "stages",
+    "plan_study": "plan", "report_page": "state", "run_study": "study_run", "stage_keys": "stages",
+    "study_status": "status", "write_report_again": "study_run",
 }  # fmt: skip
 __all__ = [
-    "STAGES", "Job", "Stage", "StudyFolder", "make", "report_page", "run_study", "stage_keys", "study_status",
-    "write_report_again",
+    "STAGES", "Job", "Plan", "Stage", "StudyFolder", "make", "plan_study", "report_page", "run_study", "stage_keys",
+    "study_status", "write_report_again",
 ]  # fmt: skip
 
 

@@ -59,6 +59,13 @@ class StudyFolder:
         except OSError as error:
             raise ValueError(f"{path} cannot be written ({error}); {remedy}") from error
 
+    @classmethod
+    def only_read(cls, path: Path) -> "StudyFolder":
+        """A folder in which nothing is made or written; it need not be there."""
+        folder = cls.__new__(cls)
+        folder.path = path
+        return folder
+
     def alone(self) -> AbstractContextManager[Callable[..., None]]:
         """Work in the folder while nobody else does, and note at what. Raises ValueError when another process does."""
         refusal = (

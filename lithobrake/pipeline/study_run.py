@@ -10,8 +10,10 @@ from lithobrake.pipeline.folder import StudyFolder
 from lithobrake.pipeline.job import Job, Progress
 from lithobrake.pipeline.notes import NAME
 from lithobrake.pipeline.owner import refuse_others_folder
+from lithobrake.pipeline.plan import plan_of
 from lithobrake.pipeline.stages import make, setting
 from lithobrake.pipeline.state import grouped, read_state
+from lithobrake.study import Study
 
 
 def run_study(
@@ -39,6 +41,9 @@ def run_study(
     folder = StudyFolder(out)
     with folder.alone() as note, DaskExecutor(scheduler) if scheduler else LocalExecutor(worker_count) as executor:
         folder.begin(path, setting(study), say)
+
+        if until == "report":
+            _say_plan(study, path, folder, worker_count, scheduler, say)
 
         def begin_and_note(title: str, number: int, count: int) -> None:
             note(stage=title, number=number, count=count)
@@ -69,3 +74,13 @@ def write_report_again(path: Path) -> None:
         started, stage = time.perf_counter(), state.notes.stages["report"]
         write_report(path)
         folder.note("report", stage["files"], stage["key"], time.perf_counter() - started)
+
+
+def _say_plan(
+    study: Study, path: Path, folder: StudyFolder, worker_count: int | None, scheduler: str | None,
+    say: Callable[[str], None],
+) -> None:  # fmt: skip
+    """Say what will be made, where anything is left to be."""
+    plan = plan_of(study, path.stem, folder, worker_count, on_cluster=scheduler is not None)
+    for line in plan.brief(f"lithobrake plan {path}") if plan.stages else ():
+        say(line)

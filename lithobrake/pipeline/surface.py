@@ -1,7 +1,7 @@
 """The beds, and one landing on the first of them to look at."""
 
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from lithobrake import __version__
 from lithobrake.pipeline.folder import content_hash, json_hash
@@ -20,6 +20,9 @@ from lithobrake.pipeline.landings import (
 )
 from lithobrake.pipeline.solver import solver_reads
 from lithobrake.study import Study
+
+if TYPE_CHECKING:
+    from lithobrake.touchdown import BedRecipe
 
 SNAPSHOT_FRAMES = 120
 
@@ -45,14 +48,10 @@ def bed_reads(study: Study) -> dict[str, Any]:
 
 def pour_beds(job: Job) -> None:
     """Pour and settle every bed that is not there yet, or no longer good."""
-    from lithobrake.touchdown import BedRecipe, GrainSizes, pour_bed
+    from lithobrake.touchdown import pour_bed
 
-    study, values = job.study, medians(job.study)
-    sizes = study.bed.diameter.model_dump()
-    if sizes["distribution"] == "constant":
-        sizes = {"distribution": "constant", "lower": sizes["value"], "upper": sizes["value"]}
+    study = job.study
     (job.folder / "beds").mkdir(exist_ok=True)
-    settle_gravity = study.bed.settle_gravity or values["surface.gravity"]
     for index, name in enumerate(bed_files(study)):
         if name not in job.wanted:
             continue
@@ -62,19 +61,28 @@ def pour_beds(job: Job) -> None:
             job.progress(done, 1.0, f"{numbered}{what}")
 
         with in_words_of_the_study():
-            recipe = BedRecipe(
-                grain_count=study.bed.grain_count,
-                sizes=GrainSizes(**sizes),
-                cloud_point_count=study.bed.cloud_point_count,
-                width=study.bed.width,
-                material=grain(values),
-                gravity=acceleration(values, settle_gravity),
-                pour_gravity=study.bed.pour_gravity,
-                seed=int(json_hash([study.seed, "bed", index])[:12], 16),
-                contact=contact(study),
-            )
-            bed = pour_bed(recipe, progress=show)
+            bed = pour_bed(bed_recipe(study, index), progress=show)
         bed.save(job.folder / name)
+
+
+def bed_recipe(study: Study, index: int) -> "BedRecipe":
+    """What the bed of a number follows from, uncertain quantities at their median."""
+    from lithobrake.touchdown import BedRecipe, GrainSizes
+
+    values, sizes = medians(study), study.bed.diameter.model_dump()
+    if sizes["distribution"] == "constant":
+        sizes = {"distribution": "constant", "lower": sizes["value"], "upper": sizes["value"]}
+    return BedRecipe(
+        grain_count=study.bed.grain_count,
+        sizes=GrainSizes(**sizes),
+        cloud_point_count=study.bed.cloud_point_count,
+        width=study.bed.width,
+        material=grain(values),
+        gravity=acceleration(values, study.bed.settle_gravity or values["surface.gravity"]),
+        pour_gravity=study.bed.pour_gravity,
+        seed=int(json_hash([study.seed, "bed", index])[:12], 16),
+        contact=contact(study),
+    )
 
 
 def landing_files(study: Study) -> list[str]:

@@ -1,0 +1,48 @@
+"""How much room the files of a study will take on the disk; sizes measured on scenarios/quick.toml and bounces.toml."""
+
+from lithobrake.pipeline.expansions import design_inputs
+from lithobrake.pipeline.expected_steps import ExpectedSoil
+from lithobrake.pipeline.planned_runs import PlannedRuns
+from lithobrake.site import site_body
+from lithobrake.study import OUTPUTS, Study
+
+NUMBER = 8
+# A bed: hulls, poses and frames of a grain, and the history, a row in every eight steps.
+BED_GRAIN, BED_STEP = 1400, 4
+LANDING_BODY = 10_300  # poses of a body in all frames of a landing
+LEDGER_RUN = 5_000
+FLIGHT_ROW, JOURNEY_ROW = 270, 120
+SHAPE_FACET = 45
+REPORT = 7_500_000  # page and figures, with expansions, scores and summary
+
+
+def expected_bytes(study: Study, runs: PlannedRuns, soil: ExpectedSoil | None) -> dict[str, int]:
+    """Bytes at most of the files of a finished study, by what they hold; what a program of one's own leaves apart."""
+    samples, flights, journeys = study.monte_carlo, flight_count(study), journey_count(study)
+    # Captured and staying are a byte each.
+    row = NUMBER * (len(design_inputs(study)) + len(OUTPUTS) * (1 + samples.scatter) + 1) + 2
+    found = {
+        "runs": LEDGER_RUN * runs.total,
+        "samples": samples.sample_count * row,
+        "flights": FLIGHT_ROW * flights + JOURNEY_ROW * journeys + SHAPE_FACET * len(site_body(study).shape.faces),
+        "report": REPORT,
+    }
+    if soil is not None:
+        grains = soil.recipe.grain_count
+        one = BED_GRAIN * grains + BED_STEP * round(soil.pour_steps())
+        found["beds"] = study.bed.bed_count * one + LANDING_BODY * (grains + 1)
+    return found
+
+
+def flight_count(study: Study) -> int:
+    """Flights at most, with those of the expansion alone beside those with scatter."""
+    count = min(study.flight.flight_count or study.monte_carlo.sample_count, study.monte_carlo.sample_count)
+    return count * (1 + study.monte_carlo.scatter)
+
+
+def journey_count(study: Study) -> int:
+    """Journeys from bounce to bounce, on hard ground and, where it can be asked, on the soil."""
+    from lithobrake.pipeline.soil import why_no_soil
+
+    count = min(study.rest.count, study.monte_carlo.sample_count)
+    return count if why_no_soil(study) else 2 * count

@@ -1,0 +1,132 @@
+"""How many time steps a bed and a touchdown will take, told before either is made.
+
+What follows from the study is worked out as the engine does it: the shortest contact, from which a step follows, the
+time of a fall, the period of a grain at rest. What cannot be known beforehand, how long grains take to come to rest and
+a lander to leave, is a multiple of these that was measured (benchmarks/plan_estimate.json).
+"""
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from lithobrake.pipeline.expansions import design_inputs
+from lithobrake.pipeline.landings import draw, lander, landing, medians
+from lithobrake.pipeline.planned_runs import planned_points
+from lithobrake.pipeline.surface import bed_recipe
+from lithobrake.study import Study
+
+if TYPE_CHECKING:
+    from lithobrake.dem import ConvexHull
+    from lithobrake.touchdown import BedRecipe, Lander, Landing
+
+# Grains that are made to learn the shape of all.
+GRAIN_COUNT = 12
+# Landings that are looked at to learn how long all take in the mean.
+LANDING_COUNT = 40
+RAIN_FRACTION = 0.31  # of the rain is bounding spheres
+SOLID_FRACTION = 0.6  # of a settled bed
+FALLS = 1.4  # until poured grains lie, in the time that the highest falls
+SETTLING = 3.5  # steps that a bed settles for, over the fewest that its criteria of rest ask for
+RELAXING = 5.5  # likewise, for a bed that takes on the material of a landing
+CROSSINGS = 3.0  # until a lander is clear, in the time in which it crosses itself and a grain at the speed of impact
+OUTGOING = 0.5  # speed of a lander that leaves, over that of its impact
+HELD_CROSSINGS = 0.4  # likewise, where it comes too slowly to leave and is soon captured
+# Fewest steps in which a period of a grain is settled through (settling.run_quietly).
+STEPS_PER_PERIOD = 80.0
+
+
+@dataclass(frozen=True)
+class ExpectedSoil:
+    """A bed that has yet to be poured, and landings on it.
+
+    grains: some, of all sizes. landings: some of those that the study makes; the first is that at the medians.
+    """
+
+    recipe: "BedRecipe"
+    grains: "tuple[ConvexHull, ...]"
+    landings: "tuple[tuple[Lander, Landing], ...]"
+
+    @classmethod
+    def of(cls, study: Study, kept_count: int) -> "ExpectedSoil":
+        """That of a study in which so many inputs are kept."""
+        from lithobrake.touchdown.grains import make_grain
+
+        recipe = bed_recipe(study, 0)
+        generator = np.random.default_rng(recipe.seed)
+        diameters = recipe.sizes.draw((np.arange(GRAIN_COUNT) + 0.5) / GRAIN_COUNT).tolist()
+        grains = tuple(make_grain(generator, recipe.cloud_point_count, size) for size in diameters)
+        x, inputs, middle = planned_points(study, kept_count, LANDING_COUNT), design_inputs(study), medians(study)
+        values = [middle, *(middle | dict(zip(inputs, row, strict=True)) for row in x.tolist())]
+        drawn = [draw(study, one, study.seed) for one in values]
+        return cls(recipe, grains, tuple((lander(study, one), landing(study, one)) for one in drawn))
+
+    @property
+    def diameter(self) -> float:
+        """Mean diameter of the grains [m], of the spheres of equal volume."""
+        return float(np.mean([math.cbrt(6.0 / math.pi * grain.volume) for grain in self.grains]))
+
+    @property
+    def depth(self) -> float:
+        """Depth [m]."""
+        volume = self.recipe.grain_count * float(np.mean([grain.volume for grain in self.grains]))
+        return volume / (SOLID_FRACTION * math.prod(self.recipe.width))
+
+    def pour_steps(self) -> float:
+        """Steps to pour and settle it."""
+        from lithobrake.touchdown.pouring import FALL_STEPS
+
+        recipe = self.recipe
+        spheres = recipe.grain_count * float(np.mean([4.0 * grain.bounding_radius**3 for grain in self.grains]))
+        height = math.pi / 3.0 * spheres / (RAIN_FRACTION * math.prod(recipe.width))
+        contact = self._shortest_contact(math.sqrt(2.0 * height * recipe.pour_gravity))
+        steps = (
+            math.sqrt(2.0 * height / recipe.pour_gravity) / contact * min(FALL_STEPS, recipe.contact.steps_per_contact)
+        )
+        return FALLS * steps + SETTLING * STEPS_PER_PERIOD * self._settling_periods()
+
+    def _settling_periods(self) -> float:
+        """The fewest periods of a grain in which it can settle; touchdown/pouring.py has the parts."""
+        from lithobrake.touchdown import pouring, settling
+
+        recipe, local = self.recipe, math.hypot(*self.recipe.gravity)
+        rung = min(pouring.RUNG * local, recipe.pour_gravity)
+        lowered = max(rung / local - 1.0, settling.RAMP_LEFT)
+        periods = settling.RAMP_PERIODS * math.log(lowered / settling.RAMP_LEFT)
+        for gravity in (recipe.pour_gravity, rung):
+            toppling = pouring.TOPPLING_TIMES * math.sqrt(self.diameter / gravity)
+            period = settling.rest_period(recipe.material, self.diameter, gravity)
+            periods += max(toppling / period, settling.PERIODS_RELAXED)
+        return periods + pouring.PERIODS_LOOSENED + settling.PERIODS_RELAXED + settling.PERIODS_HELD
+
+    def landing_steps(self, lander: "Lander", landing: "Landing") -> tuple[float, float]:
+        """Steps in which it takes on the material of a landing, and steps of the touchdown itself."""
+        from lithobrake.touchdown import settling
+
+        lasting = min(self.touchdown_time(lander, landing), landing.time_limit)
+        step = self._shortest_contact(landing.speed, lander, landing) / landing.contact.steps_per_contact
+        return RELAXING * STEPS_PER_PERIOD * settling.PERIODS_RELAXED, lasting / step
+
+    def touchdown_time(self, lander: "Lander", landing: "Landing") -> float:
+        """Time [s] until the fate of a lander is clear, were there no limit."""
+        from lithobrake.touchdown.flightline import CAPTURED_APEX
+
+        rise = -landing.gravity[2] * CAPTURED_APEX * lander.smallest_edge
+        leaves = 0.5 * (OUTGOING * landing.speed) ** 2 > rise
+        size = 2.0 * lander.shape.bounding_radius + self.diameter
+        return (CROSSINGS if leaves else HELD_CROSSINGS) * size / landing.speed
+
+    def _shortest_contact(
+        self, speed: float, lander: "Lander | None" = None, landing: "Landing | None" = None
+    ) -> float:  # fmt: skip
+        """Duration [s] of the shortest collision at a speed [m/s] in the box, with a lander in it or without."""
+        recipe = self.recipe
+        rock, contact = (recipe.material, recipe.contact) if landing is None else (landing.grain, landing.contact)
+        world = contact.world(recipe.gravity)
+        world.add_plane((0.0, 0.0, 0.0), (0.0, 0.0, 1.0), rock)
+        for grain in self.grains:
+            world.add_body(grain, rock, (0.0, 0.0, 0.0))
+        if lander is not None:
+            world.add_body(lander.shape, lander.material, (0.0, 0.0, 0.0), mass=lander.mass, inertia=lander.inertia)
+        return world.shortest_contact(speed)

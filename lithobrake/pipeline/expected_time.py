@@ -1,0 +1,148 @@
+"""How long a study will take, from its steps, what a step costs, and the speed of this machine.
+
+Times are CPU times of one core of the reference machine, measured by benchmarks/plan_estimate.py and kept in
+benchmarks/plan_estimate.json; here they are taken times the pace of this machine (pace.py).
+"""
+
+import math
+import os
+import statistics
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+from lithobrake.campaign import Record, available_cores
+from lithobrake.pipeline.expected_disk import flight_count, journey_count
+from lithobrake.pipeline.expected_steps import ExpectedSoil
+from lithobrake.pipeline.pace import engine_is_compiled, machine_pace
+from lithobrake.site import site_body
+from lithobrake.study import Study
+
+if TYPE_CHECKING:
+    from lithobrake.touchdown import Lander, Landing
+
+Span = tuple[float, float]
+
+# A step of a landing, and of grains that settle, which are looked at more often: of the bed, and of each grain [s].
+LANDING_STEP, LANDING_GRAIN = 4.0e-5, 4.5e-7
+SETTLING_STEP, SETTLING_GRAIN = 8.0e-5, 6.0e-7
+COMPILING = 60.0  # s
+# Flights and journeys over a body of FACETS facets [s]: by the table, once it is built, and by the facets' sum.
+FACETS, TABLE, FLIGHT, EXACT_FLIGHT, JOURNEY, EXACT_JOURNEY = 1920, 10.0, 2.0e-4, 3.5e-3, 1.1e-3, 2.0e-2
+REPORT = 15.0  # s: fits, scores, samples, summary and page
+# An estimate and the time that it then took differ by this factor, either way.
+SPREAD = 1.6
+# So many runs of a study tell how long the others take, to this factor at best.
+RUNS_THAT_TELL, SPREAD_OF_RUNS = 5, 1.15
+BUSY = 0.7  # of the cores: a load above this is other work
+
+
+def expected_seconds(
+    study: Study,
+    made: Mapping[str, tuple[int, int]],
+    soil: ExpectedSoil | None,
+    ended: Sequence[Record],
+    workers: int | None,
+) -> dict[str, Span | None]:
+    """From and to [s], by what takes it; None where nobody knows.
+
+    made: how many of each are to be made, at least and at most. ended: runs of this study that have. workers: None for
+    a cluster, of which nobody knows the pace.
+    """
+    cores, pace = min(workers or 1, available_cores()), _pace(made, soil) or 1.0
+    found: dict[str, Span | None] = {}
+    if soil is not None and _engine_works(made) and not engine_is_compiled():
+        found["compiling the engine, once"] = spread(COMPILING)
+    if soil is not None and (made["beds"][1] or made["landings"][1]):
+        pours = made["beds"][1] * pour_time(soil) + made["landings"][1] * landing_time(soil, *soil.landings[0])
+        found["beds, and the landing at the medians"] = spread(pace * pours)
+    if made["touchdowns"][1]:
+        one, (fewest, most) = run_time(soil, ended, pace), made["touchdowns"]
+        found["touchdowns"] = (fewest * one[0] / cores, most * one[1] / cores) if one and workers else None
+    flying = flights_time(study) if made["flights"][1] else 0.0
+    flying += journeys_time(study) if made["journeys"][1] else 0.0
+    if flying:
+        found["flights and bounces"] = spread(pace * flying / cores)
+    return found | {"fits, samples and report": spread(pace * REPORT)}
+
+
+def basis(made: Mapping[str, tuple[int, int]], soil: ExpectedSoil | None, ended: Sequence[Record]) -> str:
+    """Where the expected times come from, in a sentence."""
+    if made["touchdowns"][1] and len(walls_of(ended)) >= RUNS_THAT_TELL:
+        said = f"Touchdowns as the {len(walls_of(ended))} that have ended took, all else estimated"
+    elif _engine_works(made) and soil is not None:
+        said = "Estimated from the steps that contacts of this stiffness and speed take"
+    elif made["touchdowns"][1]:
+        said = "How long your program takes is not known before it has made some touchdowns; all else is estimated"
+    else:
+        said = "Estimated"
+    pace = _pace(made, soil)
+    if pace is None:
+        said += ", at the pace of the reference machine"
+    else:
+        said += f"; a step takes {pace:.2g} times as long here as on the reference machine"
+    load = os.getloadavg()[0] if hasattr(os, "getloadavg") else 0.0
+    if load > BUSY * available_cores():
+        said += f". Other work is on these cores (load {load:.1f} on {available_cores()}), which makes it longer"
+    return f"{said}."
+
+
+def _pace(made: Mapping[str, tuple[int, int]], soil: ExpectedSoil | None) -> float | None:
+    """Time of this machine over that of the reference machine, where it is worth a look and can be had at once."""
+    return machine_pace() if soil is not None and _engine_works(made) else None
+
+
+def _engine_works(made: Mapping[str, tuple[int, int]]) -> bool:
+    return any(made[what][1] for what in ("beds", "landings", "touchdowns"))
+
+
+def walls_of(ended: Sequence[Record]) -> list[float]:
+    """Times by the clock [s] of runs that have ended."""
+    return [record.wall_s for record in ended if record.wall_s]
+
+
+def pour_time(soil: ExpectedSoil) -> float:
+    """Time [s] to pour a bed."""
+    return soil.pour_steps() * (SETTLING_STEP + SETTLING_GRAIN * soil.recipe.grain_count)
+
+
+def run_time(soil: ExpectedSoil | None, ended: Sequence[Record], pace: float) -> Span | None:
+    """Time [s] of one touchdown in the mean, by the clock: as those that have ended took, else as expected of the soil.
+
+    None where nobody knows: a program of one's own that has not yet run.
+    """
+    walls = walls_of(ended)
+    if len(walls) >= RUNS_THAT_TELL:
+        mean = statistics.fmean(walls)
+        factor = max(SPREAD_OF_RUNS, 1.0 + 2.0 * statistics.stdev(walls) / (mean * math.sqrt(len(walls))))
+        return mean / factor, mean * factor
+    if soil is None:
+        return None
+    return spread(pace * statistics.fmean(landing_time(soil, *landing) for landing in soil.landings[1:]))
+
+
+def landing_time(soil: ExpectedSoil, lander: "Lander", landing: "Landing") -> float:
+    """Time [s] of one landing."""
+    grains = soil.recipe.grain_count
+    relaxing, touching = soil.landing_steps(lander, landing)
+    settling = relaxing * (SETTLING_STEP + SETTLING_GRAIN * grains)
+    return settling + touching * (LANDING_STEP + LANDING_GRAIN * grains)
+
+
+def flights_time(study: Study) -> float:
+    """Time [s] of all flights, with the table of gravity where it has to be built."""
+    facets = len(site_body(study).shape.faces) / FACETS
+    if study.flight.gravity == "exact":
+        return facets * EXACT_FLIGHT * flight_count(study)
+    return facets * TABLE + FLIGHT * flight_count(study)
+
+
+def journeys_time(study: Study) -> float:
+    """Time [s] of all journeys from bounce to bounce."""
+    if study.flight.gravity == "exact":
+        return len(site_body(study).shape.faces) / FACETS * EXACT_JOURNEY * journey_count(study)
+    return JOURNEY * journey_count(study)
+
+
+def spread(seconds: float) -> Span:
+    """The range in which an estimated time lies."""
+    return seconds / SPREAD, seconds * SPREAD

@@ -1,0 +1,130 @@
+"""What a study will make, how long that takes and how much room, and what to know of it, before it runs."""
+
+import shutil
+from collections.abc import Mapping, Set
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+from lithobrake import study_file
+from lithobrake.campaign import available_cores
+from lithobrake.pipeline.expected_disk import expected_bytes, flight_count, journey_count
+from lithobrake.pipeline.expected_steps import ExpectedSoil
+from lithobrake.pipeline.expected_time import Span, basis, expected_seconds
+from lithobrake.pipeline.folder import StudyFolder
+from lithobrake.pipeline.plan_lines import brief_lines, plan_lines
+from lithobrake.pipeline.planned_runs import PlannedRuns, known_runs, possible_runs
+from lithobrake.pipeline.stages import STAGES, stage_keys
+from lithobrake.pipeline.study_warnings import study_warnings
+from lithobrake.pipeline.surface import bed_files
+from lithobrake.study import Study
+
+# Stages that go through the runs.
+READ_RUNS = frozenset({"screen", "refine", "test", "sample", "rest", "summary"})
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What a study will do.
+
+    study           its title
+    folder          where
+    stages          titles of those that are to be made
+    made            how many beds, touchdowns, samples, ... are to be made, at least and at most
+    runs            the touchdowns with the fewest and with the most kept inputs; one, where these are known
+    process_count   here; None for a cluster
+    seconds         from and to, by what takes them; None where nobody knows
+    basis           where the seconds come from, in a sentence
+    bytes           of all files when finished, by what they hold
+    free_bytes      where the folder is
+    warnings        in sentences, the most important first
+    """
+
+    study: str
+    folder: str
+    stages: tuple[str, ...]
+    made: Mapping[str, tuple[int, int]]
+    runs: tuple[PlannedRuns, ...]
+    process_count: int | None
+    seconds: Mapping[str, Span | None]
+    basis: str
+    bytes: Mapping[str, int]
+    free_bytes: int
+    warnings: tuple[str, ...]
+
+    @property
+    def time(self) -> Span:
+        """Time of all that is known [s], from and to."""
+        spans = [span for span in self.seconds.values() if span is not None]
+        return sum(lower for lower, _ in spans), sum(upper for _, upper in spans)
+
+    def lines(self) -> list[str]:
+        """All of it in words."""
+        return plan_lines(self)
+
+    def brief(self, command: str) -> list[str]:
+        """Three lines of it; command: what says all."""
+        return brief_lines(self, command)
+
+    def to_json(self) -> dict[str, Any]:
+        """All of it as JSON values."""
+        runs = [asdict(one) | {"known": len(one.known), "new": one.new, "total": one.total} for one in self.runs]
+        return asdict(self) | {"runs": runs, "time": self.time}
+
+
+def plan_study(path: Path, out: Path, worker_count: int | None = None) -> Plan:
+    """Say what `run_study` would do with the same arguments; nothing is written.
+
+    Raises ValueError for a study file that is refused, a mesh that cannot be read, a ledger that is none.
+    """
+    study = study_file.read(path)
+    return plan_of(study, study.title or path.stem, StudyFolder.only_read(out), worker_count)
+
+
+def plan_of(
+    study: Study, name: str, folder: StudyFolder, worker_count: int | None, *, on_cluster: bool = False
+) -> Plan:
+    """The plan of a study that has been read."""
+    keys = stage_keys(study)
+    stale = {stage.name: stage.title for stage in STAGES if not folder.is_current(stage.files(study), keys[stage.name])}
+    known = known_runs(study, folder)
+    runs = tuple(possible_runs(study, folder, "screen" not in stale, known))
+    beds = sum(not folder.is_current([file], keys["bed"]) for file in bed_files(study))
+    made = _made(study, stale.keys(), runs, beds)
+    soil = None if study.solver.command else ExpectedSoil.of(study, runs[-1].kept_count)
+    workers = None if on_cluster else worker_count or available_cores()
+    ended = [known[key] for key in runs[-1].known]
+    sizes, free = expected_bytes(study, runs[-1], soil), _free(folder.path)
+    return Plan(
+        study=name,
+        folder=str(folder.path),
+        stages=tuple(stale.values()),
+        made=made,
+        runs=runs,
+        process_count=workers,
+        seconds=expected_seconds(study, made, soil, ended, workers) if stale else {},
+        basis=basis(made, soil, ended),
+        bytes=sizes,
+        free_bytes=free,
+        warnings=tuple(study_warnings(study, soil)),
+    )
+
+
+def _made(study: Study, stale: Set[str], runs: tuple[PlannedRuns, ...], beds: int) -> dict[str, tuple[int, int]]:
+    """How many of each are to be made, at least and at most."""
+    new = [one.new for one in runs] if stale & READ_RUNS else [0]
+    landings = int("landing" in stale and not study.solver.command)
+    return {
+        "beds": (beds, beds),
+        "landings": (landings, landings),
+        "touchdowns": (min(new), max(new)),
+        "samples": (study.monte_carlo.sample_count,) * 2 if "sample" in stale else (0, 0),
+        "flights": (0, flight_count(study) if "fly" in stale else 0),
+        "journeys": (journey_count(study),) * 2 if "rest" in stale else (0, 0),
+    }
+
+
+def _free(path: Path) -> int:
+    """Free bytes where a folder is, or will be."""
+    place = next(parent for parent in (path.absolute(), *path.absolute().parents) if parent.is_dir())
+    return shutil.disk_usage(place).free

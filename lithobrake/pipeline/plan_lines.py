@@ -1,0 +1,105 @@
+"""A plan in words."""
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from lithobrake.pipeline.plan import Plan
+
+# One, and more.
+NAMES = {
+    "beds": ("bed", "beds"),
+    "landings": ("landing at the medians",) * 2,
+    "touchdowns": ("touchdown", "touchdowns"),
+    "samples": ("sample", "samples"),
+    "flights": ("flight", "flights"),
+    "journeys": ("journey from bounce to bounce", "journeys from bounce to bounce"),
+}
+
+
+def plan_lines(plan: "Plan") -> list[str]:
+    """All that a plan says, in lines."""
+    lines = [f"{plan.study}, in {plan.folder}"]
+    if not plan.stages:
+        lines += ["Nothing is left to make: every file is there and still good."]
+    else:
+        lines += [f"To make: {_made(plan)}.", f"Touchdowns: {_designs(plan)}.", f"Time: {_time(plan)}."]
+        lines += [f"  {what}: {_seconds(*part)}" for what, part in plan.seconds.items() if part is not None]
+        lines += [f"  {plan.basis}"]
+    lines += [f"Disk: about {_bytes(sum(plan.bytes.values()))} when finished; {_bytes(plan.free_bytes)} are free."]
+    lines += [f"Warnings: {len(plan.warnings) or 'none'}."]
+    return lines + [f"  {number}. {warning}" for number, warning in enumerate(plan.warnings, start=1)]
+
+
+def brief_lines(plan: "Plan", command: str) -> list[str]:
+    """A plan in three lines; command: what says all of it."""
+    count = len(plan.warnings)
+    said = "No warnings." if count == 0 else f"{count} warning{'s, the first' * (count > 1)}: {plan.warnings[0]}"
+    return [
+        f"To make: {_made(plan)}.",
+        f"Expected: {_time(plan)}; {_bytes(sum(plan.bytes.values()))} on the disk when finished.",
+        f"{said} All of the plan: {command}",
+    ]
+
+
+def _made(plan: "Plan") -> str:
+    """Beds, touchdowns and what follows, in numbers."""
+    counts = [f"{_range(*ends)} {NAMES[what][ends[1] > 1]}" for what, ends in plan.made.items() if ends[1]]
+    return ", ".join(counts) or "summary and report"
+
+
+def _designs(plan: "Plan") -> str:
+    """How many touchdowns each design asks for, and how many of all are there."""
+    fewest, most = plan.runs[0], plan.runs[-1]
+    kept = (
+        f"{_range(fewest.kept_count, most.kept_count)} kept inputs" if fewest is not most else f"{most.kept_count} kept"
+    )
+    asked = (
+        f"{most.screening} screening, {_range(fewest.refined, most.refined)} refined ({kept}), {most.test} test runs"
+    )
+    return f"{asked}; {_range(fewest.total, most.total)} in all, of which {len(most.known)} are known and reused"
+
+
+def _time(plan: "Plan") -> str:
+    """The expected time in all."""
+    workers = plan.process_count
+    where = f" on {workers} process{'es' * (workers != 1)}" if workers else ""
+    if None not in plan.seconds.values():
+        return f"about {_seconds(*plan.time)}{where}"
+    why = "before some have been made" if workers else "on a cluster"
+    return f"about {_seconds(*plan.time)}{where}, and the touchdowns, whose time is not known {why}"
+
+
+def _seconds(lower: float, upper: float) -> str:
+    """A span of time, each end in the unit that suits it."""
+    (first, unit), (last, other) = (_in_unit(seconds) for seconds in (lower, upper))
+    if unit == other:
+        return f"{_range(first, last)} {unit}"
+    return f"{_rounded(first)} {unit} to {_rounded(last)} {other}"
+
+
+def _in_unit(seconds: float) -> tuple[float, str]:
+    for limit, unit, size in ((100.0, "s", 1.0), (6000.0, "min", 60.0), (172_800.0, "h", 3600.0)):
+        if seconds < limit:
+            return seconds / size, unit
+    return seconds / 86_400.0, "days"
+
+
+def _bytes(count: float) -> str:
+    """A size on the disk."""
+    for limit, unit, size in ((1e6, "kB", 1e3), (1e9, "MB", 1e6), (1e12, "GB", 1e9)):
+        if count < limit:
+            return f"{_rounded(count / size)} {unit}"
+    return f"{_rounded(count / 1e12)} TB"
+
+
+def _range(lower: float, upper: float) -> str:
+    """Two numbers, or one where they read the same; without a lower end where that is none."""
+    ends = [f"{end:,}".replace(",", " ") if isinstance(end, int) else _rounded(end) for end in (lower, upper)]
+    if ends[0] == ends[1]:
+        return ends[0]
+    return f"up to {ends[1]}" if lower == 0 else f"{ends[0]} to {ends[1]}"
+
+
+def _rounded(number: float) -> str:
+    """Two digits, never in powers of ten."""
+    return f"{float(f'{number:.2g}'):.15g}"

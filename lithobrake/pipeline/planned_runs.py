@@ -1,0 +1,111 @@
+"""How many touchdowns a study asks for, and how many of them its folder has already."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from lithobrake.campaign import Record, read_records
+from lithobrake.pipeline.expansions import DESIGNS, design_inputs, kept_inputs, points, replicate_count
+from lithobrake.pipeline.folder import StudyFolder
+from lithobrake.pipeline.touchdowns import drawn_rows, touchdown_keys
+from lithobrake.study import Study
+
+# Designs with more runs are not gone through run by run: that would take longer than a second or two.
+MOST_NAMED = 10_000
+
+
+@dataclass(frozen=True)
+class PlannedRuns:
+    """Distinct touchdowns of a study in which so many inputs are kept after the screening.
+
+    A touchdown that several designs share counts for the first of them. known: keys of those that have ended already.
+    """
+
+    kept_count: int
+    screening: int
+    refined: int
+    test: int
+    known: frozenset[str]
+
+    @property
+    def total(self) -> int:
+        """All of them."""
+        return self.screening + self.refined + self.test
+
+    @property
+    def new(self) -> int:
+        """Those that are to be made."""
+        return self.total - len(self.known)
+
+
+def known_runs(study: Study, folder: StudyFolder) -> dict[str, Record]:
+    """Runs of the folder's ledger, by key, that are not made again; none where there is no ledger.
+
+    Raises ValueError for a file that is no ledger.
+    """
+    path = folder / "runs.sqlite"
+    records = read_records(path) if path.is_file() else []
+    tries = study.campaign.retry_count
+    return {
+        entry.key: entry
+        for entry in records
+        if entry.status == "done" or (entry.status == "failed" and entry.attempts > tries)
+    }
+
+
+def possible_runs(study: Study, folder: StudyFolder, screened: bool, known: Iterable[str]) -> list[PlannedRuns]:
+    """The touchdowns with the inputs that the screening keeps; before it, those with one input and with all of them.
+
+    screened: the folder has the screening of this study. known: keys of runs that have ended.
+    """
+    inputs = tuple(design_inputs(study))
+    if screened:
+        from lithobrake.chaos import load
+
+        choices = [kept_inputs(study, load(folder / "screening.json"))]
+    else:
+        choices = [inputs[:1], inputs] if len(inputs) > 1 else [inputs]
+    ended = set(known)
+    return [_planned(study, kept, ended) for kept in choices]
+
+
+def planned_points(study: Study, kept_count: int, most: int) -> np.ndarray:
+    """Up to `most` of the points at which touchdowns are made, drawn by chance, shape [point_count, input_count]."""
+    from lithobrake.analysis import sample_inputs
+
+    kept = tuple(design_inputs(study))[:kept_count]
+    parts = [points(study, one, kept) for one in DESIGNS if _point_count(study, one, kept_count) <= MOST_NAMED]
+    if not parts:
+        return sample_inputs(design_inputs(study), most, seed=0)
+    return np.random.default_rng(0).permutation(np.concatenate(parts))[:most]
+
+
+def _planned(study: Study, kept: Sequence[str], ended: set[str]) -> PlannedRuns:
+    inputs, seen = tuple(design_inputs(study)), set[str]()
+    counts = dict.fromkeys(DESIGNS, 0)
+    for design in DESIGNS:
+        replicates = range(replicate_count(study, design))
+        counts[design] = len(replicates) * _point_count(study, design, len(kept))
+        if counts[design] > MOST_NAMED:
+            continue
+        x = points(study, design, kept)
+        rows = [(drawn_rows(study, inputs, x, replicate), replicate) for replicate in replicates]
+        keys = {key for drawn, replicate in rows for key in touchdown_keys(study, drawn, replicate)} - seen
+        counts[design] = len(keys)
+        seen |= keys
+    test = counts["test_kept"] + counts["test_all"]
+    return PlannedRuns(len(kept), counts["screening"], counts["refined"], test, frozenset(seen & ended))
+
+
+def _point_count(study: Study, design: str, kept_count: int) -> int:
+    """Points of a design, counted without making them."""
+    from lithobrake.chaos import smolyak_count
+
+    section = study.design
+    if design.startswith("test"):
+        return section.test_count
+    if section.method != "smolyak":
+        return int(getattr(section, f"{design}_count"))
+    input_count = kept_count if design == "refined" else len(design_inputs(study))
+    return smolyak_count(input_count, getattr(section, f"{design}_level"))

@@ -1,0 +1,130 @@
+"""What a user should know of a study before it runs: nothing here is an error, and all of it may be meant."""
+
+from collections.abc import Iterator
+
+from lithobrake.pipeline.expansions import design_inputs
+from lithobrake.pipeline.expected_steps import ExpectedSoil
+from lithobrake.pipeline.landings import PLACE
+from lithobrake.pipeline.soil import why_no_soil
+from lithobrake.quantity import Scalar, Uncertain, uncertain
+from lithobrake.site import gravity_warning, site_warning
+from lithobrake.study import Study
+
+# A share of touchdowns that may be cut off without a word [-].
+CUT_OFF = 0.05
+# A uniform distribution over more than this, largest over smallest value, hardly ever draws what is small.
+WIDE = 100.0
+# Fewer runs a term than this, and a least-squares fit follows single runs.
+RUNS_A_TERM = 1.5
+# Properties of a contact that the rule "smaller" takes from one of its two materials.
+SHARED = ("restitution", "friction", "rolling_friction", "spinning_friction", "cohesion_force", "surface_energy")
+
+
+def study_warnings(study: Study, soil: ExpectedSoil | None) -> list[str]:
+    """What to know before the study runs, in sentences, the most important first."""
+    site = [warning for warning in (site_warning(study), gravity_warning(study)) if warning]
+    touchdown = (
+        [] if soil is None else [*_bed(soil), *_rim(study, soil), *_time_limit(study, soil), *_never_count(study)]
+    )
+    return [*site, *touchdown, *_wide(study), *_terms(study), *_bounces(study), *_one_place(study)]
+
+
+def _bed(soil: ExpectedSoil) -> Iterator[str]:
+    """A bed whose walls or floor answer."""
+    from lithobrake.touchdown import smallest_bed
+
+    body, landing = soil.landings[0]
+    width, depth = smallest_bed(body, landing.grain, soil.diameter, landing.speed)
+    here = min(soil.recipe.width)
+    if here < width or soil.depth < depth:
+        yield (
+            f"The bed will be about {soil.depth:.2g} m deep and is {here:g} m wide, and so that walls and floor do not "
+            f"answer the first blow {depth:.2g} m and {width:.2g} m are needed: add grains, or widen the bed."
+        )
+
+
+def _rim(study: Study, soil: ExpectedSoil) -> Iterator[str]:
+    """A lander that comes down over the rim of the bed."""
+    reach, region = soil.landings[0][0].shape.bounding_radius, study.impact.region
+    for axis, name, width in zip("xy", PLACE, soil.recipe.width, strict=True):
+        low, high = getattr(region, axis) if region else _reach(study.touchdown_values()[name])
+        room = 0.5 * width - reach
+        if max(-low, high) > room:
+            yield (
+                f"The lander reaches {reach:.2g} m to each side, so along {axis} it may come down over the rim of the "
+                f"bed: keep impact.{'region' if region else 'place'}.{axis} within {room:.2g} m of the middle, or "
+                "widen the bed."
+            )
+
+
+def _time_limit(study: Study, soil: ExpectedSoil) -> Iterator[str]:
+    """Touchdowns that may be cut off."""
+    times = [soil.touchdown_time(*landing) for landing in soil.landings[1:]]
+    share = sum(time > study.landing.time_limit for time in times) / len(times)
+    if share > CUT_OFF:
+        yield (
+            f"About {100 * share:.0f} % of the touchdowns may last longer than landing.time_limit, "
+            f"{study.landing.time_limit:g} s, and say nothing then (the longest about {max(times):.2g} s): raise it."
+        )
+
+
+def _never_count(study: Study) -> Iterator[str]:
+    """Properties of the lander that no contact takes."""
+    values = study.touchdown_values() if study.contact.pair_rule == "smaller" else {}
+    for name in SHARED:
+        own, rock = values.get(f"lander.{name}"), values.get(f"grain.{name}")
+        if own is not None and rock is not None and own != rock and _reach(own)[0] >= _reach(rock)[1]:
+            yield (
+                f'lander.{name} never counts: contact.pair_rule = "smaller" takes grain.{name}, which is always less; '
+                'take "mean" or "geometric", or leave it out.'
+            )
+
+
+def _wide(study: Study) -> Iterator[str]:
+    """Uniform distributions over decades."""
+    for name, value in uncertain(study.touchdown_values() | study.site_values()).items():
+        lower, upper = _reach(value)
+        if value.distribution == "uniform" and lower > 0.0 and upper > WIDE * lower:
+            yield (
+                f"{name} is uniform from {lower:g} to {upper:g}: nine tenths of its values are above {upper / 10:.2g}; "
+                "write log_uniform where all its decades count alike."
+            )
+
+
+def _terms(study: Study) -> Iterator[str]:
+    """Fits with hardly more runs than terms."""
+    from lithobrake.chaos import smolyak_count, term_count
+
+    design, count = study.design, len(design_inputs(study))
+    if design.fit != "ols":
+        return
+    runs = design.screening_count or smolyak_count(count, design.screening_level)
+    terms = term_count(count, design.screening_degree)
+    if runs < RUNS_A_TERM * terms:
+        yield (
+            f"The screening fits {terms} terms to {runs} runs, and those that stay on the ground do not count: a fit "
+            f"with less than {RUNS_A_TERM:g} runs a term follows single runs; lower design.screening_degree, or add "
+            "runs."
+        )
+
+
+def _bounces(study: Study) -> Iterator[str]:
+    """Journeys that the soil cannot answer."""
+    why = why_no_soil(study)
+    if study.rest.count and why:
+        yield f"Bounce after bounce on hard ground only: {why}."
+
+
+def _one_place(study: Study) -> Iterator[str]:
+    """An answer that holds for one place of one bed."""
+    places = study.impact.region or any(isinstance(study.touchdown_values().get(name), Uncertain) for name in PLACE)
+    if study.bed.bed_count == 1 and not places and not study.solver.command:
+        yield (
+            "All runs come down on the same place of the same bed, so the answer holds for these stones only: raise "
+            "bed.bed_count, or draw the place in impact.region."
+        )
+
+
+def _reach(value: Scalar) -> tuple[float, float]:
+    """Smallest and largest possible value."""
+    return value.support() if isinstance(value, Uncertain) else (value, value)

@@ -1,0 +1,256 @@
+"""What `lithobrake plan` says of a study before it runs, beside what then comes of it."""
+
+import json
+import os
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from lithobrake import study_file
+from lithobrake.campaign import Record, available_cores, read_records
+from lithobrake.cli import app
+from lithobrake.pipeline import Plan, StudyFolder, plan_study
+from lithobrake.pipeline.expansions import design_inputs
+from lithobrake.pipeline.expected_disk import expected_bytes
+from lithobrake.pipeline.expected_steps import ExpectedSoil
+from lithobrake.pipeline.expected_time import run_time
+from lithobrake.pipeline.plan import plan_of
+from lithobrake.pipeline.planned_runs import PlannedRuns
+from lithobrake.pipeline.samples import Samples
+from lithobrake.pipeline.study_run import run_study
+from lithobrake.pipeline.study_warnings import study_warnings
+from lithobrake.study import OUTPUTS, Study
+
+HERE = Path(__file__).parents[2]
+EXAMPLES, SCENARIOS = HERE / "examples", HERE / "scenarios"
+FEW = {
+    "lower = 0.05, upper = 0.4": "lower = 0.1, upper = 0.3",
+    "python3 ball_on_plate.py": f"{sys.executable} {EXAMPLES / 'ball_on_plate.py'}",
+    "screening_level = 2": "screening_level = 1",
+    "screening_degree = 2": "screening_degree = 1",
+    "refined_level = 3": "refined_level = 2",
+    "refined_degree = 3": "refined_degree = 1",
+    "test_count = 10": "test_count = 3",
+}
+
+
+def written(folder: Path, changes: dict[str, str], source: Path = EXAMPLES / "ball_on_plate.toml") -> Path:
+    """A study file of the repository with these changes of its text."""
+    text = source.read_text()
+    for old, new in changes.items():
+        assert old in text
+        text = text.replace(old, new)
+    (folder / "study.toml").write_text(text)
+    return folder / "study.toml"
+
+
+def soft(**changes: dict[str, Any]) -> Study:
+    """The quick study with these keys of its sections changed."""
+    tables = study_file.load(SCENARIOS / "quick.toml")
+    for section, keys in changes.items():
+        tables[section] = tables.get(section, {}) | keys
+    return study_file.check(tables, SCENARIOS)
+
+
+def soil_of(study: Study) -> ExpectedSoil:
+    return ExpectedSoil.of(study, len(design_inputs(study)))
+
+
+def test_the_runs_that_are_counted_are_those_that_are_made(tmp_path: Path) -> None:
+    study, out = written(tmp_path, FEW), tmp_path / "out"
+    before = plan_study(study, out)
+    fewest, most = before.runs
+    assert (fewest.kept_count, most.kept_count, most.screening, most.test) == (1, 4, 9, 6)
+    # Of the 41 nodes of level 2 nine are those of level 1; of the five of one input three.
+    assert (fewest.refined, most.refined) == (2, 32)
+    assert before.made["touchdowns"] == (fewest.total, most.total) == (17, 47)
+    run_study(study, out, worker_count=1, until="screen")
+    screened = plan_study(study, out)
+    (left,) = screened.runs
+    assert (len(left.known), left.total) == (9, screened.made["touchdowns"][0] + 9)
+    assert fewest.total <= left.total <= most.total
+    run_study(study, out, worker_count=1, until="test")
+    assert len(read_records(out / "runs.sqlite")) == left.total
+    tested = plan_study(study, out)
+    assert tested.made["touchdowns"] == (0, 0)
+    assert (tested.runs[0].new, tested.stages[0]) == (0, "samples")
+    # One more test run in each set, and all others as before.
+    more = written(tmp_path, FEW | {"test_count = 10": "test_count = 4"})
+    assert plan_study(more, out).made["touchdowns"] == (2, 2)
+
+
+def test_planning_makes_and_changes_nothing(tmp_path: Path) -> None:
+    study, out = written(tmp_path, FEW), tmp_path / "out"
+    plan_study(study, out)
+    assert [path.name for path in tmp_path.iterdir()] == ["study.toml"]
+    run_study(study, out, worker_count=1, until="screen")
+
+    def everything() -> dict[Path, tuple[int, bytes]]:
+        return {path: (path.stat().st_mtime_ns, path.read_bytes()) for path in out.rglob("*") if path.is_file()}
+
+    before = everything()
+    plan_study(study, out)
+    assert everything() == before
+
+
+def test_the_command_says_what_is_planned(tmp_path: Path) -> None:
+    study, out = written(tmp_path, FEW), tmp_path / "out"
+    said = CliRunner().invoke(app, ["plan", str(study), "--out", str(out), "--workers", "1"])
+    assert said.exit_code == 0, said.output
+    assert "To make: 17 to 47 touchdowns, 10 000 samples, up to 50 flights, 200 journeys" in said.stdout
+    assert "on 1 process, and the touchdowns, whose time is not known before some have been made" in said.stdout
+    shown = CliRunner().invoke(app, ["plan", str(study), "--out", str(out), "--json"])
+    content = json.loads(shown.stdout)
+    assert [one["total"] for one in content["runs"]] == [17, 47]
+    assert content["seconds"]["touchdowns"] is None
+    assert content["warnings"] == list(plan_study(study, out).warnings)
+
+
+def test_a_run_begins_with_its_plan_in_three_lines(tmp_path: Path) -> None:
+    study, said = written(tmp_path, FEW), list[str]()
+
+    class Begun(Exception):
+        """The first stage."""
+
+    def begin(*stage: object) -> None:
+        raise Begun
+
+    with pytest.raises(Begun):
+        run_study(study, tmp_path / "out", worker_count=1, begin=begin, say=said.append)
+    assert len(said) == 3
+    assert said[0].startswith("To make: 17 to 47 touchdowns")
+    assert said[1].startswith("Expected: about ")
+    assert said[2].startswith("2 warnings, the first: At the site gravity")
+    assert said[2].endswith(f"lithobrake plan {study}")
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({"speed = 0.15": "speed = 0"}, "impact.speed is 0; allowed: above 0 [m/s]"),
+        ({"mass = 1.0": "mas = 1.0"}, "lander.mas is not a known key; did you mean mass?"),
+        ({"[flight]": '[site]\nbody = "open.obj"\nmass = 1e11\nspin_period = 8e3\n[flight]'}, "open.obj"),
+    ],
+)
+def test_what_a_run_refuses_the_plan_refuses_with_the_same_words(
+    changes: dict[str, str], said: str, tmp_path: Path
+) -> None:
+    (tmp_path / "open.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\nf 2 3 4\n")
+    study = str(written(tmp_path, FEW | changes))
+    plan, run = (
+        CliRunner().invoke(app, [word, study, "--out", str(tmp_path / word)]) for word in ("plan", "run")
+    )  # fmt: skip
+    assert (plan.exit_code, run.exit_code) == (2, 2)
+    assert said in plan.stderr
+    assert plan.stderr.strip() == run.stderr.strip()
+    assert not (tmp_path / "plan").exists()
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({"site": {"latitude_deg": 0.0}}, "push outwards"),
+        ({"site": {"latitude_deg": 80.0}}, 'surface.gravity is 5e-05 m/s2 and at the site'),
+        ({"bed": {"width": [0.55, 0.55], "grain_count": 30}}, "so that walls and floor do not answer"),
+        ({"impact": {"place": {"x": -0.25}}}, "keep impact.place.x within 0.22 m"),
+        ({"landing": {"time_limit": 1.0}}, "100 % of the touchdowns may last longer than landing.time_limit, 1 s"),
+        ({"lander": {"restitution": 0.95}}, 'lander.restitution never counts: contact.pair_rule = "smaller"'),
+        (
+            {"grain": {"young_modulus": {"distribution": "uniform", "lower": 1e5, "upper": 1e8}}},
+            "grain.young_modulus is uniform from 100000 to 1e+08: nine tenths of its values are above 1e+07",
+        ),
+        ({"design": {"screening_level": 1, "screening_degree": 1, "screening_count": None}}, None),
+        ({"design": {"screening_level": 2, "screening_degree": 3}}, "The screening fits 56 terms to 61 runs"),
+        ({"rest": {"count": 10}}, "Bounce after bounce on hard ground only"),
+        ({"bed": {"bed_count": 1}}, "All runs come down on the same place of the same bed"),
+    ],
+)  # fmt: skip
+def test_what_an_analyst_should_know_is_said(changes: dict[str, Any], said: str | None) -> None:
+    kept = {
+        section: {key: value for key, value in keys.items() if value is not None} for section, keys in changes.items()
+    }
+    study = soft(**kept)
+    found = " ".join(study_warnings(study, soil_of(study)))
+    assert said in found if said else "The screening fits" not in found
+
+
+def test_a_study_that_has_all_it_needs_is_not_warned_of() -> None:
+    study = study_file.read(SCENARIOS / "bounces.toml")
+    assert study_warnings(study, soil_of(study)) == []
+
+
+def test_a_touchdown_is_expected_to_take_the_steps_of_its_contacts() -> None:
+    study = soft(grain={"young_modulus": 1e6})
+    soil = soil_of(study)
+    lander, landing = soil.landings[0]
+    stiff = replace(landing, grain=replace(landing.grain, young_modulus=1e8))
+    stiff_lander = replace(lander, material=replace(lander.material, young_modulus=1e8))
+    # Hertz (1882): the time of a contact goes with the modulus to the power of -2/5, and with speed to that of -1/5.
+    ratio = soil.landing_steps(stiff_lander, stiff)[1] / soil.landing_steps(lander, landing)[1]
+    assert ratio == pytest.approx(100.0**0.4, rel=1e-9)
+    slow = replace(landing, speed=0.5 * landing.speed)
+    ratio = soil.landing_steps(lander, slow)[1] / soil.landing_steps(lander, landing)[1]
+    assert ratio == pytest.approx(2.0 * 2.0**-0.2, rel=1e-9)
+    brief = replace(landing, time_limit=0.5 * soil.touchdown_time(lander, landing))
+    assert soil.landing_steps(lander, brief)[1] == pytest.approx(0.5 * soil.landing_steps(lander, landing)[1])
+
+
+def test_a_bed_is_expected_as_deep_as_its_grains_fill_it() -> None:
+    # 150 grains of .09 m as spheres of equal volume, three fifths of what they fill.
+    depth = 150 * np.pi / 6.0 * 0.09**3 / 0.6 / 0.7**2
+    assert soil_of(soft()).depth == pytest.approx(depth, rel=1e-9)
+    assert soil_of(soft(bed={"grain_count": 300})).pour_steps() > soil_of(soft()).pour_steps()
+
+
+def record(wall_s: float) -> Record:
+    empty: dict[str, float] = {}
+    return Record("", "done", "clear", empty, empty, {}, 0, 0, 1, None, wall_s, wall_s, None, "", None, None)
+
+
+def test_runs_that_have_ended_tell_how_long_the_others_take() -> None:
+    assert run_time(None, [record(2.0)] * 4, 1.0) is None
+    lower, upper = run_time(None, [record(2.0)] * 5, 1.0) or (0.0, 0.0)
+    assert lower < 2.0 < upper < 1.2 * 2.0
+    # Five runs of 1 to 9 s have a mean of 5 s that is known to 2.8 s.
+    wide = run_time(None, [record(wall) for wall in (1.0, 3.0, 5.0, 7.0, 9.0)], 1.0) or (0.0, 0.0)
+    assert wide == pytest.approx((5.0 / 1.5657, 5.0 * 1.5657), rel=1e-3)
+
+
+def test_more_processes_than_cores_are_no_faster_and_a_cluster_has_no_known_time(tmp_path: Path) -> None:
+    study, folder = soft(), StudyFolder.only_read(tmp_path / "out")
+    cores = available_cores()
+
+    def touchdowns(plan: Plan) -> Any:
+        return plan.seconds["touchdowns"]
+
+    one, all_cores, many = (plan_of(study, "quick", folder, count) for count in (1, cores, 8 * cores))
+    assert touchdowns(one)[1] == pytest.approx(cores * touchdowns(all_cores)[1])
+    assert touchdowns(many) == touchdowns(all_cores)
+    cluster = plan_of(study, "quick", folder, None, on_cluster=True)
+    assert touchdowns(cluster) is None
+    assert "whose time is not known on a cluster" in cluster.brief("")[1]
+
+
+def test_without_a_compiled_engine_the_pace_is_that_of_the_reference_machine(tmp_path: Path) -> None:
+    code = "from lithobrake.pipeline.pace import machine_pace; print(machine_pace())"
+    environment = os.environ | {"LITHOBRAKE_CACHE": str(tmp_path)}
+    shown = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, env=environment)
+    assert shown.stdout.strip() == "None"
+    assert list(tmp_path.rglob("*.nbi")) == []
+
+
+def test_the_samples_take_the_room_that_is_expected(tmp_path: Path) -> None:
+    study = study_file.read(EXAMPLES / "ball_on_plate.toml")
+    names, count = list(design_inputs(study)), study.monte_carlo.sample_count
+    inputs, outputs = np.zeros((count, len(names))), np.zeros((count, len(OUTPUTS)))
+    one, truth = np.zeros(count), np.zeros(count, dtype=bool)
+    Samples(names, list(OUTPUTS), inputs, outputs, one, truth, truth).save(StudyFolder(tmp_path))
+    expected = expected_bytes(study, PlannedRuns(4, 41, 96, 20, frozenset()), None)["samples"]
+    # Names and the layout of the file come on top.
+    assert 0.0 < (tmp_path / "samples.h5").stat().st_size - expected < 2e4
