@@ -14,7 +14,7 @@ from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.samples import Samples, sampling_seed
 from lithobrake.quantity import uncertain
 from lithobrake.reading import read_rows
-from lithobrake.site import SITE_KEYS, frames, gravity_warning, site_body, site_medians, site_values, site_warning
+from lithobrake.site import SITE_KEYS, frames, site_body, site_medians, site_values, site_warning
 from lithobrake.study import BUILT_IN_BODIES, Study
 
 if TYPE_CHECKING:
@@ -89,9 +89,9 @@ def fly_samples(job: Job) -> None:
             f"Gravity table: {error.median:.1e} of the surface gravity off the facets' sum in the median, "
             f"{error.p95:.1e} at the 95th percentile of {error.point_count} points."
         )
-    for warning in (site_warning(study), gravity_warning(study)):
-        if warning:
-            job.say(warning)
+    warning = site_warning(study)
+    if warning:
+        job.say(warning)
     job.folder.write_json("flights.json", _checks(body, start, study, job))
     _write_shape(body, job.folder)
     write_table(job.folder, "flights.csv", COLUMNS, _rows(start, fly_starts(body, start, study, job, "flights")))
