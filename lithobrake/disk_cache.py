@@ -31,23 +31,24 @@ class DiskCache:
 
     def __init__(self, name: str) -> None:
         """Take the folder of this name, which is made when it is first needed."""
-        self._name, self._told, self._thread = name, False, threading.Lock()
+        root = os.environ.get("LITHOBRAKE_CACHE") or os.environ.get("XDG_CACHE_HOME") or "~/.cache"
+        self._path = Path(root) / "lithobrake" / name
+        self._told, self._thread = False, threading.Lock()
 
     @cached_property
     def folder(self) -> Path | None:
         """The folder, or None where there is none to be trusted."""
         try:
-            root = os.environ.get("LITHOBRAKE_CACHE") or os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
-            folder = Path(root) / "lithobrake" / self._name
+            folder = self._path.expanduser()
             folder.parent.parent.mkdir(parents=True, exist_ok=True)
             for path in (folder.parent, folder):
                 path.mkdir(mode=0o700, exist_ok=True)
             if not _is_ours(folder.stat()):
-                self._do_without(f"{folder} belongs to another user or is open to writers")
+                self._do_without(f"{folder} belongs to another user or can be written by others")
                 return None
-        # The latter where this user has no home.
+        # A RuntimeError where this user has no home.
         except (OSError, RuntimeError) as error:
-            self._do_without(str(error))
+            self._do_without(f"no folder for a cache can be made ({error})")
             return None
         return folder
 
@@ -78,9 +79,10 @@ class DiskCache:
 
     def write(self, name: str, content: bytes) -> None:
         """Keep a file, for this user alone, where that is possible."""
-        if self.folder is None or not self.keeps:
-            if self.folder is not None:
-                self._do_without(f"{self.folder} cannot be written")
+        if self.folder is None:
+            return
+        if not self.keeps:
+            self._do_without(f"{self.folder} cannot be written")
             return
         try:
             with (
@@ -91,7 +93,7 @@ class DiskCache:
                 file.write(_digest(name, content))
         except OSError as error:
             self.keeps = False
-            self._do_without(str(error))
+            self._do_without(f"{self.folder} cannot be written ({error})")
 
     def has(self, name: str) -> bool:
         """Whether there is such a file, whole or not."""

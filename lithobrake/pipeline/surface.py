@@ -6,6 +6,7 @@ from typing import Any
 from lithobrake import __version__
 from lithobrake.pipeline.folder import content_hash, json_hash
 from lithobrake.pipeline.job import Job
+from lithobrake.pipeline.kernels import compile_kernels
 from lithobrake.pipeline.landings import (
     acceleration,
     contact,
@@ -46,6 +47,7 @@ def pour_beds(job: Job) -> None:
     """Pour and settle every bed that is not there yet, or no longer good."""
     from lithobrake.touchdown import BedRecipe, GrainSizes, pour_bed
 
+    compile_kernels(job)
     study, values = job.study, medians(job.study)
     sizes = study.bed.diameter.model_dump()
     if sizes["distribution"] == "constant":
@@ -96,9 +98,10 @@ def landing_reads(study: Study) -> dict[str, Any]:
 
 
 def land_once(job: Job) -> None:
-    """Land at the medians of all inputs and keep the pictures; this compiles the kernels once for all workers."""
+    """Land at the medians of all inputs and keep the pictures."""
     from lithobrake.touchdown import land
 
+    compile_kernels(job)
     values = draw(job.study, medians(job.study), job.study.seed)
     bed, body = stored_bed(job.folder / bed_files(job.study)[round(values["bed"])]), lander(job.study, values)
     arrival = landing(job.study, values)
