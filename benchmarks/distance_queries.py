@@ -9,7 +9,7 @@ import numba
 import numpy as np
 from distance_pairs import Floats, Integers, Library, Poses, units
 
-from lithobrake.compiled import cache_folder
+from lithobrake.compiled import disk_cache
 from lithobrake.dem import Material, World
 from lithobrake.dem.arrays import Bodies, Cores, Pairs, Planes
 from lithobrake.dem.body import Body, bodies_of
@@ -31,10 +31,10 @@ DISTANCE, NORMAL, FIRST, SECOND, STEPS = 0, slice(1, 4), slice(4, 7), slice(7, 1
 
 def cached(function: Callable[..., Any]) -> Callable[..., Any]:
     """Compile a function, kept on disk beside the kernels it calls: that folder changes with their sources."""
-    outside = numba.config.CACHE_DIR
-    numba.config.CACHE_DIR = str(cache_folder("dem"))
+    outside, folder = numba.config.CACHE_DIR, disk_cache("dem").folder
+    numba.config.CACHE_DIR = str(folder)
     try:
-        return numba.njit(function, cache=True, error_model="numpy")
+        return numba.njit(function, cache=folder is not None, error_model="numpy")
     finally:
         numba.config.CACHE_DIR = outside
 

@@ -42,7 +42,7 @@ def end_step(bodies: Bodies, step: Step, start: int, stop: int) -> None:
     kick(bodies, step, start, stop)
 
 
-@kernel
+@large_kernel
 def advance(
     step_count: int, drifted: bool, bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, laws: Laws, step: Step,
     half_skin: float, search: Search, reactions: Reactions, whole: Share, probe: int, probed: Floats,

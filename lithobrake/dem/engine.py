@@ -4,7 +4,6 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 
-from lithobrake.compiled import announce
 from lithobrake.dem.advance import DONE, LIST_USED_UP, NAMES_OVERFLOW, advance
 from lithobrake.dem.arrays import Bodies, Cores, Floats, Laws, Pairs, Planes, Step
 from lithobrake.dem.body import Body, Plane, bodies_of, cores_of, laws_of, planes_of
@@ -50,7 +49,6 @@ class Engine:
         probed: Floats,
         thread_count: int,
     ) -> None:
-        announce("dem", "the soft-surface engine")
         self.shapes: list[Shape] = list({id(body.shape): body.shape for body in bodies}.values())
         made_of = [body.material for body in bodies] + [plane.material for plane in planes]
         self.materials: list[Material] = list(dict.fromkeys(made_of))

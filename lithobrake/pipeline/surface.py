@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 from lithobrake import __version__
 from lithobrake.pipeline.folder import content_hash, json_hash
 from lithobrake.pipeline.job import Job
+from lithobrake.pipeline.kernels import compile_kernels
 from lithobrake.pipeline.landings import (
     acceleration,
     contact,
@@ -50,6 +51,7 @@ def pour_beds(job: Job) -> None:
     """Pour and settle every bed that is not there yet, or no longer good."""
     from lithobrake.touchdown import pour_bed
 
+    compile_kernels(job)
     study = job.study
     (job.folder / "beds").mkdir(exist_ok=True)
     for index, name in enumerate(bed_files(study)):
@@ -109,9 +111,10 @@ def landing_reads(study: Study) -> dict[str, Any]:
 
 
 def land_once(job: Job) -> None:
-    """Land at the medians of all inputs and keep the pictures; this compiles the kernels once for all workers."""
+    """Land at the medians of all inputs and keep the pictures."""
     from lithobrake.touchdown import land
 
+    compile_kernels(job)
     values = draw(job.study, medians(job.study), job.study.seed)
     bed = stored_bed(job.folder / bed_files(job.study)[round(values["bed"])])
     with in_words_of_the_study():

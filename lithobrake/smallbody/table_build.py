@@ -1,19 +1,18 @@
 """Filling the gravity table of a shape, measuring its error, and keeping it on disk."""
 
 import hashlib
+import io
 import logging
 import math
 import os
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import fields, replace
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from lithobrake.atomic import atomic_path
-from lithobrake.compiled import cache_folder, compiled
+from lithobrake.compiled import compiled, disk_cache
 from lithobrake.smallbody import attraction
 from lithobrake.smallbody.grid import Grid
 from lithobrake.smallbody.multipole import Multipole
@@ -48,18 +47,19 @@ def table_of(
     """
     mesh = polyhedron.vertices.tobytes() + polyhedron.facet_corners.tobytes()
     digest = hashlib.sha256(repr(levels).encode() + mesh).hexdigest()[:24]
-    path = cache_folder("smallbody") / f"gravity-{digest}.npz"
-    if path.is_file():
-        with np.load(path) as stored:
+    disk, name = disk_cache("smallbody"), f"gravity-{digest}.npz"
+    kept = disk.read(name)
+    if kept is not None:
+        with np.load(io.BytesIO(kept), allow_pickle=False) as stored:
             table = GravityTable(*(_plain(stored[field.name]) for field in fields(GravityTable)))
             median, p95, largest, count = stored["error"].tolist()
             return table, TableError(median, p95, largest, int(count))
     table = _build(polyhedron, multipole, volume, levels)
     error = _measure(table, polyhedron, multipole)
-    _store(path, table, error)
+    disk.write(name, _file(table, error))
     log.info(
         "gravity table of %d facets: error %.1e median, %.1e p95, %.1e largest of surface gravity at %d points; %s",
-        *(len(polyhedron.facet_corners), error.median, error.p95, error.largest, error.point_count, path),
+        *(len(polyhedron.facet_corners), error.median, error.p95, error.largest, error.point_count, name),
     )
     return table, error
 
@@ -68,11 +68,12 @@ def _plain(array: NDArray[Any]) -> Any:
     return float(array) if array.ndim == 0 else array
 
 
-def _store(path: Path, table: GravityTable, error: TableError) -> None:
-    path.parent.mkdir(parents=True, exist_ok=True)
-    with atomic_path(path) as draft, open(draft, "wb") as file:
-        arrays = {field.name: getattr(table, field.name) for field in fields(GravityTable)}
-        np.savez(file, error=np.array(error, dtype=np.float64), **arrays)
+def _file(table: GravityTable, error: TableError) -> bytes:
+    """What is kept of a table."""
+    file = io.BytesIO()
+    arrays = {field.name: getattr(table, field.name) for field in fields(GravityTable)}
+    np.savez(file, error=np.array(error, dtype=np.float64), **arrays)
+    return file.getvalue()
 
 
 def _build(polyhedron: Polyhedron, multipole: Multipole, volume: float, levels: Levels) -> GravityTable:
@@ -152,7 +153,9 @@ def _continuation(nodes: NDArray[np.float64], polyhedron: Polyhedron, skin: floa
     corner = np.ascontiguousarray(polyhedron.vertices[faces])
     grid = Grid.of(polyhedron.vertices, faces, edge=skin)
     height, facet = np.empty(len(nodes)), np.empty(len(nodes), dtype=np.int64)
-    near_heights(grid.arrays, corner, pseudonormals(polyhedron.vertices, faces, normals), nodes, height, facet)
+    # Flights ask with points in rows, one after the other; other strides would be compiled for themselves.
+    rows, outward = np.ascontiguousarray(nodes), pseudonormals(polyhedron.vertices, faces, normals)
+    near_heights(grid.arrays, corner, outward, rows, height, facet)
     result = np.zeros_like(nodes)
     under = np.flatnonzero((height < 0.0) & (height > -skin))
     normal = normals[facet[under]]

@@ -1,36 +1,177 @@
-"""The folder of compiled kernels follows their sources."""
+"""Kernels are compiled once, and kept where only this user writes; what is damaged is made again."""
 
 import os
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
 
 import lithobrake.compiled as compiled
+import lithobrake.disk_cache as disk_cache
+from lithobrake.dem.motion import write_rotations
+
+QUARTER_TURN = np.array([[0.5, 0.5, -0.5, 0.5]])
+TURNED = [0.0, -1.0, 0.0, 0.0, 0.0, -1.0, 1.0, 0.0, 0.0]
+
+
+@pytest.fixture
+def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """An empty cache in the place of the user's."""
+    monkeypatch.setenv("LITHOBRAKE_CACHE", str(tmp_path))
+    compiled.disk_cache.cache_clear()
+    compiled.announce.cache_clear()
+    yield tmp_path
+    compiled.disk_cache.cache_clear()
+
+
+def rotation() -> list[float]:
+    """A quarter turn, by a kernel that this process has not compiled yet."""
+    compiled.disk_cache.cache_clear()
+    result = np.zeros((1, 3, 3))
+    compiled.kernel(write_rotations.py_func)(QUARTER_TURN, result)
+    return result.ravel().tolist()
+
+
+def kept(cache: Path) -> list[Path]:
+    """The kernel of `rotation` in the cache."""
+    return sorted(cache.rglob("dem.motion.write_rotations-*"))
 
 
 def test_cache_folder_changes_with_any_source_of_the_part(tmp_path, monkeypatch):
     package = tmp_path / "package"
     (package / "dem").mkdir(parents=True)
-    (package / "compiled.py").write_text("")
+    for name in ("compiled.py", "disk_cache.py"):
+        (package / name).write_text("")
     callee = package / "dem" / "callee.py"
     callee.write_text("a = 1\n")
     monkeypatch.setattr(compiled, "__file__", str(package / "compiled.py"))
-    compiled.cache_folder.cache_clear()
-    before = compiled.cache_folder("dem")
+    monkeypatch.setenv("LITHOBRAKE_CACHE", str(tmp_path))
+    compiled.disk_cache.cache_clear()
+    before = compiled.disk_cache("dem").folder
     callee.write_text("a = 2\n")
-    compiled.cache_folder.cache_clear()
-    after = compiled.cache_folder("dem")
-    compiled.cache_folder.cache_clear()
+    compiled.disk_cache.cache_clear()
+    after = compiled.disk_cache("dem").folder
+    compiled.disk_cache.cache_clear()
     assert isinstance(before, Path)
     assert before != after
+
+
+def test_kernel_is_kept_for_this_user_alone(cache):
+    assert rotation() == TURNED
+    (file,) = kept(cache)
+    assert [path.stat().st_mode & 0o777 for path in (file.parent.parent, file.parent, file)] == [0o700, 0o700, 0o600]
+    before = file.stat()
+    assert rotation() == TURNED
+    assert file.stat().st_mtime_ns == before.st_mtime_ns
+
+
+def spoil_by_another(file: Path) -> None:
+    compiled.disk_cache("dem").write("another", b"a whole file")
+    (file.parent / "another").rename(file)
+
+
+def spoil_by_loop(file: Path) -> None:
+    file.unlink()
+    file.symlink_to(file)
+
+
+@pytest.mark.parametrize(
+    ("spoil", "word"),
+    [
+        (lambda file: file.write_bytes(file.read_bytes()[:-1000]), "is damaged"),
+        (lambda file: file.write_bytes(b""), "is damaged"),
+        (lambda file: file.write_bytes(b"\0" * 5000), "is damaged"),
+        (spoil_by_another, "is damaged"),
+        (lambda file: file.chmod(0o666), "another user"),
+        (spoil_by_loop, "cannot be read"),
+    ],
+    ids=["truncated", "empty", "garbage", "another's", "open to all", "unreadable"],
+)
+def test_damaged_kernel_is_made_again(cache, caplog, spoil: Callable[[Path], Any], word: str):
+    assert rotation() == TURNED
+    (file,) = kept(cache)
+    spoil(file)
+    caplog.clear()
+    assert rotation() == TURNED
+    (told,) = caplog.messages
+    assert str(file) in told
+    assert word in told
+    assert told.endswith("it is made again.")
+    caplog.clear()
+    assert rotation() == TURNED
+    assert caplog.messages == []
+
+
+def refuse_owner(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    other = os.geteuid() + 1
+    monkeypatch.setattr(os, "geteuid", lambda: other)
+
+
+def refuse_mode(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    folder = compiled.disk_cache("dem").folder
+    assert folder is not None
+    folder.chmod(0o777)
+
+
+def refuse_place(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (cache / "lithobrake").write_text("a file")
+
+
+def refuse_all(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(path: Path) -> Path:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(disk_cache, "atomic_path", full)
+
+
+@pytest.mark.parametrize(
+    ("refuse", "word"),
+    [
+        (refuse_owner, "another user"),
+        (refuse_mode, "can be written by others"),
+        (refuse_place, "no folder for a cache can be made"),
+        (refuse_all, "No space left on device"),
+    ],
+)
+def test_without_a_trusted_cache_kernels_are_compiled_each_time(cache, monkeypatch, caplog, refuse, word):
+    refuse(cache, monkeypatch)
+    package = Path(compiled.__file__).parent
+    before = {path for path in package.rglob("*") if path.suffix != ".pyc"}
+    caplog.clear()
+    assert rotation() == TURNED
+    compiled.announce.cache_clear()
+    compiled.announce("dem")
+    told = [message for message in caplog.messages if "LITHOBRAKE_CACHE" in message]
+    assert len(told) == 1
+    assert word in told[0]
+    assert kept(cache) == []
+    assert {path for path in package.rglob("*") if path.suffix != ".pyc"} == before
+    assert caplog.messages[-1] == "Compiling the soft-surface engine for this processor: about a minute."
+
+
+def test_kernel_that_only_kernels_call_has_no_wrapper_and_one_form_for_all_constants(cache):
+    scaled = compiled.kernel(lambda factor, value: factor * value)
+    scaled.py_func.__module__ = "lithobrake.dem.test"
+
+    def doubled_and_tripled(value: float) -> float:
+        return scaled(2, value) + scaled(3, value)
+
+    doubled_and_tripled.__module__ = "lithobrake.dem.test"
+    assert compiled.kernel(doubled_and_tripled)(1.5) == 7.5
+    assert scaled.signatures == []
+    assert [str(types) for types in scaled.within.signatures] == ["(int64, float64)"]
+    # It can still be called from Python.
+    assert scaled(2, 1.5) == 3.0
 
 
 TURN = """
 import sys
 import numpy as np
-from lithobrake.compiled import announce
 from lithobrake.dem.motion import write_rotations
-announce("dem", "a kernel")
 print("ready", flush=True)
 sys.stdin.readline()
 rotation = np.zeros((1, 3, 3))
@@ -39,8 +180,8 @@ print(rotation.ravel().tolist())
 """
 
 
-def test_processes_that_compile_at_once_do_no_harm(tmp_path):
-    """Three start into an empty cache together, a fourth finds it filled: all with the same numbers, and told so."""
+def test_processes_that_start_together_compile_once(tmp_path):
+    """Three start into an empty cache together, a fourth finds it filled: all with the same numbers, one compiles."""
     environment = {**os.environ, "LITHOBRAKE_CACHE": str(tmp_path)}
 
     def process() -> subprocess.Popen[str]:
@@ -58,8 +199,12 @@ def test_processes_that_compile_at_once_do_no_harm(tmp_path):
         one.stdin.write("go\n")
         one.stdin.flush()
     told = [one.communicate() for one in together]
-    assert {out for out, _ in told} == {"[0.0, -1.0, 0.0, 0.0, 0.0, -1.0, 1.0, 0.0, 0.0]\n"}
-    assert all("Compiling a kernel" in message for _, message in told)
+    assert {out for out, _ in told} == {f"{TURNED}\n"}
+    assert sum("Compiling the soft-surface engine for this processor, once" in message for _, message in told) == 1
+    assert {message for _, message in told if "Compiling" not in message} <= {
+        "",
+        "Waiting for another process that compiles the soft-surface engine: about a minute.\n",
+    }
     out, message = process().communicate("go\n")
     assert out == "ready\n" + told[0][0]
-    assert "Compiling" not in message
+    assert message == ""
