@@ -31,6 +31,8 @@ def run_study(
     Raises ValueError for a study file that is refused, a folder that cannot be written, too few runs with outputs.
     """
     study, tables = study_file.read(path), study_file.load(path)
+    if study.solver.command:
+        say(f"This study names a program, which every run that is still to be made starts: {study.solver.command}")
     folder = StudyFolder(out)
     with folder.alone() as note, DaskExecutor(scheduler) if scheduler else LocalExecutor(worker_count) as executor:
         with atomic_path(folder / "study.toml") as draft:
