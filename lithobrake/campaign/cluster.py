@@ -1,5 +1,6 @@
 """Runs on a Dask cluster that is there already, behind the interface of concurrent.futures."""
 
+import re
 import time
 from collections.abc import Callable
 from concurrent.futures import BrokenExecutor, Executor, Future
@@ -20,17 +21,23 @@ class DaskExecutor(Executor):
     """The workers of a Dask cluster. A call whose worker is lost goes to another one."""
 
     def __init__(self, scheduler: str) -> None:
-        """Connect to a scheduler (`tcp://host:port`).
+        """Connect to a scheduler (`tcp://host:port`, or `tls://host:port` with the certificates of Dask's settings).
 
-        Raises ValueError when Dask is not installed or no scheduler answers.
+        Raises ValueError when Dask is not installed, no scheduler answers, or the certificates do not do.
         """
+        if not re.fullmatch(r"(tcp|tls)://[^\s/]+:\d+", scheduler):
+            raise ValueError(
+                f"the address of the Dask scheduler is {scheduler!r}; allowed: tcp://HOST:PORT or tls://HOST:PORT, as "
+                "`dask scheduler` prints it"
+            )
         try:
             from distributed import Client
         except ImportError as error:
             raise ValueError("the executor dask needs Dask; install it with: pip install lithobrake[dask]") from error
         try:
-            self._client = Client(scheduler, timeout=_PATIENCE, set_as_default=False)
-        except (OSError, ValueError) as error:
+            security = _security(scheduler)
+            self._client = Client(scheduler, timeout=_PATIENCE, security=security, set_as_default=False)
+        except OSError as error:
             raise ValueError(
                 f"no Dask scheduler answers at {scheduler} ({error}); start one with: dask scheduler"
             ) from error
@@ -73,6 +80,30 @@ class DaskExecutor(Executor):
         if cancel_futures and self._client.status == "running":
             self._client.cancel(list(self._flying))
         self._client.close()
+
+
+def _security(scheduler: str) -> "distributed.Security":
+    """What Dask's settings say of certificates. Raises ValueError when they do not go with the scheduler's address."""
+    from distributed import Security
+
+    security = Security()
+    try:
+        settings = security.get_connection_args("client")
+    except OSError as error:
+        raise ValueError(
+            f"the certificates in Dask's settings cannot be used ({error}); mend distributed.comm.tls"
+        ) from error
+    encrypted = scheduler.startswith("tls://")
+    if encrypted and settings["ssl_context"] is None:
+        raise ValueError(
+            f"{scheduler} asks for certificates, and Dask's settings name none; set distributed.comm.tls.ca-file, "
+            "client.cert and client.key (docs/cluster.md)"
+        )
+    if settings["require_encryption"] and not encrypted:
+        raise ValueError(
+            f"Dask's settings require encryption, and {scheduler} has none; give an address tls://HOST:PORT"
+        )
+    return security
 
 
 def _reason(error: BaseException) -> BaseException:

@@ -3,6 +3,7 @@
 import contextlib
 import json
 import math
+import os
 import shlex
 import shutil
 import subprocess
@@ -133,7 +134,8 @@ def absolute_words(command: str, folder: Path) -> list[str]:
 
     Raises ValueError for a command whose quotes do not match.
     """
-    return [str((folder / word).resolve()) if (folder / word).is_file() else word for word in shlex.split(command)]
+    # A link stays one: the interpreter of a virtual environment is a link, and finds its packages from where it lies.
+    return [os.path.abspath(folder / word) if (folder / word).is_file() else word for word in shlex.split(command)]
 
 
 def _content_hash(path: Path) -> str:

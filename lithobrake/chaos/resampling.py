@@ -119,27 +119,27 @@ def _debiased(refit: Refit, coefficients: Array, level: float) -> tuple[Array, A
     an effect. Source: Searle, Casella and McCulloch, 1992, "Variance Components", section 3.5 (analysis of variance).
     """
     noise = coefficients.var(axis=1, ddof=1, keepdims=True)
+    parts, variance = _debiased_parts(refit.indices, coefficients, noise)
     # A draw that leaves no variance says nothing: every second one counts as none, the others as all of it.
-    shares = _debiased_shares(refit.indices, coefficients, noise, np.resize([0.0, 1.0], coefficients.shape[1]))
+    shares = np.broadcast_to(np.resize([0.0, 1.0], len(variance)), parts.shape).copy()
+    np.divide(parts, variance, out=shares, where=variance > 0.0)
     low, high = np.quantile(shares, [0.5 - 0.5 * level, 0.5 + 0.5 * level], axis=-1)
-    estimate = _debiased_shares(refit.indices, refit.coefficients(refit.observed[:, None]), noise, np.zeros(1))
-    return estimate[..., 0], low, high
+    parts, variance = _debiased_parts(refit.indices, refit.coefficients(refit.observed[:, None]), noise)
+    # Where interactions come out below nothing, inputs alone would explain more than there is.
+    whole = max(float(variance[0]), float(np.maximum(parts[0], 0.0).sum()))
+    return (parts[..., 0] / whole if whole > 0.0 else np.zeros_like(parts[..., 0])), low, high
 
 
-def _debiased_shares(indices: Indices, coefficients: Array, noise: Array, without: Array) -> Array:
-    """First-order and total shares [2, input_count, draw_count] of squared coefficients less their noise.
+def _debiased_parts(indices: Indices, coefficients: Array, noise: Array) -> tuple[Array, Array]:
+    """Variance of each input alone and with all interactions, [2, input_count, draw_count], and in all, [draw_count].
 
-    noise: variance of each coefficient [term_count, 1]; without [draw_count]: what a draw counts as whose squares leave
-    no variance.
+    Sums of squared coefficients [term_count, draw_count], less the variance `noise` [term_count, 1] that scatter gives.
     """
     active = (indices > 0).T
     squares = coefficients**2 - noise
     squares[indices.sum(axis=1) == 0] = 0.0
-    variance = squares.sum(axis=0)
     chosen = np.stack([active & (active.sum(axis=0) == 1), active]).astype(float)
-    shares = np.broadcast_to(without, (*chosen.shape[:2], len(variance))).copy()
-    np.divide(chosen @ squares, variance, out=shares, where=variance > 0.0)
-    return shares
+    return chosen @ squares, squares.sum(axis=0)
 
 
 def _indices_of(indices: Indices, coefficients: Array) -> Array:

@@ -38,6 +38,8 @@ def run_study(
     """
     study, tables = study_file.read(path), study_file.load(path)
     refuse_others_folder(path, out)
+    if study.solver.command:
+        say(f"This study names a program, which every run that is still to be made starts: {study.solver.command}")
     folder = StudyFolder(out)
     with folder.alone() as note, DaskExecutor(scheduler) if scheduler else LocalExecutor(worker_count) as executor:
         folder.begin(path, setting(study), say)

@@ -152,3 +152,28 @@ def test_a_scheduler_that_goes_away_is_one_sentence_and_what_had_ended_is_kept(t
 def test_no_scheduler_is_one_sentence() -> None:
     with pytest.raises(ValueError, match=r"no Dask scheduler answers at tcp://127\.0\.0\.1:9"):
         DaskExecutor("tcp://127.0.0.1:9")
+
+
+@pytest.mark.parametrize("address", ["nonsense", "127.0.0.1:8786", "tcp://127.0.0.1", "", "tcp:// x:1"])
+def test_an_address_that_is_none_is_refused_at_once(address: str) -> None:
+    with pytest.raises(ValueError, match="allowed: tcp://HOST:PORT or tls://HOST:PORT"):
+        DaskExecutor(address)
+
+
+def test_certificates_that_do_not_go_with_the_address_are_refused_at_once(tmp_path: Path) -> None:
+    import dask
+
+    with pytest.raises(ValueError, match="asks for certificates, and Dask's settings name none"):
+        DaskExecutor("tls://127.0.0.1:9")
+    with (
+        dask.config.set({"distributed.comm.require-encryption": True}),
+        pytest.raises(ValueError, match=r"require encryption, and tcp://127\.0\.0\.1:9 has none"),
+    ):
+        DaskExecutor("tcp://127.0.0.1:9")
+    (tmp_path / "none.pem").write_text("no certificate")
+    tls = {f"distributed.comm.tls.{key}": str(tmp_path / "none.pem") for key in ("ca-file", "client.cert")}
+    with (
+        dask.config.set(tls),
+        pytest.raises(ValueError, match=r"the certificates in Dask's settings cannot be used \("),
+    ):
+        DaskExecutor("tls://127.0.0.1:9")

@@ -95,6 +95,11 @@ def test_words_that_name_files_become_absolute_and_no_shell_reads_the_others(tmp
     assert words == ["python3", str((tmp_path / "my model.py").resolve()), "--speed", "$HOME", "*.py"]
 
 
+def test_a_link_to_a_program_stays_a_link(tmp_path: Path) -> None:
+    (tmp_path / "python").symlink_to(sys.executable)
+    assert absolute_words("./python -V", tmp_path) == [str(tmp_path / "python"), "-V"]
+
+
 @pytest.mark.skipif(os.name != "posix", reason="the command is a POSIX one")
 def test_a_program_that_is_not_there_is_the_reason(tmp_path: Path) -> None:
     model = Command("no-such-program", tmp_path / "solver")

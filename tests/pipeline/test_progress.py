@@ -17,6 +17,8 @@ FEW = {
     "flight_count = 50\nduration = 7200.0": "flight_count = 5\nduration = 600.0",
     "count = 200 ": "count = 5 ",
 }
+# What was done of how much, by stage and piece of work.
+Told = dict[str, dict[str, list[tuple[float, float]]]]
 # Which pieces of work each stage tells of, in their order.
 WORKS = {
     "screening": ["screening runs", "screening fit, outputs"],
@@ -28,15 +30,20 @@ WORKS = {
 
 
 @pytest.fixture(scope="module")
-def told(tmp_path_factory: pytest.TempPathFactory) -> dict[str, dict[str, list[tuple[float, float]]]]:
-    """What was done of how much, by stage and piece of work."""
+def study(tmp_path_factory: pytest.TempPathFactory) -> tuple[Told, list[str]]:
+    """What a study has told of its work, and what it has said before the first stage."""
     folder = tmp_path_factory.mktemp("told")
     text = (EXAMPLES / "ball_on_plate.toml").read_text()
     for old, new in FEW.items():
         assert old in text
         text = text.replace(old, new)
     (folder / "study.toml").write_text(text)
-    stages: dict[str, dict[str, list[tuple[float, float]]]] = {}
+    stages: Told = {}
+    said_first: list[str] = []
+
+    def say(sentence: str) -> None:
+        if not stages:
+            said_first.append(sentence)
 
     def begin(title: str, number: int, count: int) -> None:
         stages[title] = {}
@@ -44,16 +51,27 @@ def told(tmp_path_factory: pytest.TempPathFactory) -> dict[str, dict[str, list[t
     def progress(done: float, total: float, what: str, detail: str = "", /) -> None:
         stages[list(stages)[-1]].setdefault(what, []).append((done, total))
 
-    run_study(folder / "study.toml", folder / "out", worker_count=1, until="rest", begin=begin, progress=progress)
-    return stages
+    shown = {"begin": begin, "progress": progress, "say": say}
+    run_study(folder / "study.toml", folder / "out", worker_count=1, until="rest", **shown)  # type: ignore[arg-type]
+    return stages, said_first
+
+
+@pytest.fixture
+def told(study: tuple[Told, list[str]]) -> Told:
+    return study[0]
+
+
+def test_the_program_of_a_study_is_named_before_anything_starts_it(study: tuple[Told, list[str]]) -> None:
+    (said,) = study[1]
+    assert said.endswith(f"every run that is still to be made starts: {sys.executable} {EXAMPLES / 'ball_on_plate.py'}")
 
 
 @pytest.mark.parametrize("stage", list(WORKS))
-def test_every_long_piece_of_work_is_told_of(stage: str, told: dict[str, dict[str, list[tuple[float, float]]]]) -> None:
+def test_every_long_piece_of_work_is_told_of(stage: str, told: Told) -> None:
     assert list(told[stage]) == WORKS[stage]
 
 
 def test_a_fit_is_counted_from_none_to_all(
-    told: dict[str, dict[str, list[tuple[float, float]]]],
+    told: Told,
 ) -> None:
     assert [done for done, _ in told["screening"]["screening fit, outputs"]] == [0, *range(7)]
