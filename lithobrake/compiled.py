@@ -2,7 +2,8 @@
 
 Numba's own cache looks only at the file a function stands in, so an edited function in another file would go unnoticed.
 Here the cache folder is named by a hash of all sources of the part that it belongs to, and the compiler's version.
-Where that cannot be written Numba would go on beside the sources; here it does without.
+Numba would also read what anybody wrote, fail on what is damaged, and write beside the sources where its folder cannot
+be written: see disk_cache.py.
 """
 
 import hashlib
@@ -15,11 +16,11 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 import numba
+from numba import types
 from numba.core.caching import NullCache
 from numba.core.compiler import CompileResult
 from numba.core.registry import CPUDispatcher
 from numba.core.serialize import dumps
-from numba.core.types import unliteral
 
 from lithobrake.disk_cache import DiskCache
 
@@ -70,11 +71,11 @@ def _compile(function: Function, options: dict[str, bool]) -> Function:
     return result
 
 
-class Kernel(CPUDispatcher):  # type: ignore[misc]
+class Kernel(CPUDispatcher):
     """A function compiled twice, if need be: for Python, and for other kernels.
 
     What Python calls has a wrapper that takes a hundred arrays from their objects, and holds a copy of all that is
-    compiled into it. Most kernels are never called so, and half of the compilation was for such wrappers.
+    compiled into it. Most kernels are never called so, and half of the compilation would be for such wrappers.
     """
 
     def __init__(self, py_func: Callable[..., Any], *others: Any, **options: Any) -> None:
@@ -91,7 +92,7 @@ class Kernel(CPUDispatcher):  # type: ignore[misc]
 
     def get_call_template(self, args: Any, kws: Any) -> Any:
         """Tell a kernel what a call gives. Constants count as numbers: each would be compiled for itself otherwise."""
-        return self.within.get_call_template([unliteral(arg) for arg in args], kws)
+        return self.within.get_call_template([types.unliteral(arg) for arg in args], kws)
 
     def get_overload(self, sig: Any) -> Any:
         """Give a kernel what it calls."""
@@ -99,17 +100,17 @@ class Kernel(CPUDispatcher):  # type: ignore[misc]
 
     def compile(self, sig: Any) -> Any:
         """Compile for a call from Python, where neither this process nor another one has done so yet."""
-        part = _part_of(self.py_func)
-        what, time = _WHAT.get(part, (f"kernels of {part}", "a moment"))
         if self._cache.has(sig, self.targetctx):
             return super().compile(sig)
+        part = _part_of(self.py_func)
+        what, time = _WHAT.get(part, (f"kernels of {part}", "a moment"))
         with disk_cache(part).turn(f"Waiting for another process that compiles {what}: about {time}."):
             if part in _WHAT and not self._cache.has(sig, self.targetctx):
                 announce(part)
             return super().compile(sig)
 
 
-class KernelCache(NullCache):  # type: ignore[misc]
+class KernelCache(NullCache):
     """The compiled forms of one function on disk, in Numba's eyes."""
 
     def __init__(self, function: Callable[..., Any], caller: str) -> None:

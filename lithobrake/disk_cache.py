@@ -106,7 +106,7 @@ class DiskCache:
         Where nothing can be kept no process waits: there would be nothing to find.
         """
         with self._thread, ExitStack() as held:
-            if os.name != "posix" or not self.keeps:
+            if os.name != "posix" or self.folder is None or not self.keeps:
                 yield
                 return
             import fcntl

@@ -4,6 +4,8 @@ The way out of a convex difference set leads through one of its faces, and these
 edge pairs whose arcs on the sphere of normals intersect. Source: Gregorius, "The separating axis test" (2013).
 """
 
+import math
+
 from lithobrake.compiled import kernel, large_kernel
 from lithobrake.dem.arrays import Cores, Floats
 from lithobrake.dem.distance import Search
@@ -26,10 +28,10 @@ def shortest_way(
     """
     write_relative(rotation, bodies[0], bodies[1], search.relative)
     there = transposed_times(rotation, bodies[0], apart)
-    best = (float("-inf"), (0.0, 0.0, 1.0))
+    best = (-math.inf, (0.0, 0.0, 1.0))
     best = through_first(search, cores, shapes, there, best)
     best = through_second(search, cores, shapes, there, best)
-    if best[0] == float("-inf"):
+    if best[0] == -math.inf:
         # Two points at one place: every way out is as good as another.
         return 0.0, best[1]
     return through_edges(search, cores, shapes, there, best)
