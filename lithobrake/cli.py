@@ -202,7 +202,7 @@ def _given_folder(out: str) -> Path:
 def _scheduler(executor: str, scheduler: str | None) -> str | None:
     """The address of the Dask scheduler, or None for runs made here."""
     if executor not in ("local", "dask"):
-        _leave(f"--executor is {executor}; allowed: local, dask", BAD_INPUT)
+        _leave(f"--executor is {executor!r}; allowed: local, dask", BAD_INPUT)
     if (executor == "dask") != (scheduler is not None):
         _leave("--executor dask and --scheduler tcp://HOST:PORT go together; give both, or neither", BAD_INPUT)
     return scheduler

@@ -186,5 +186,8 @@ def _solver_problems(study: Study) -> Iterator[str]:
     except ValueError as error:
         yield f"solver.command is {solver.command!r}; {str(error).lower()}: close every quotation mark"
         return
+    if not solver.command.isprintable():
+        yield f"solver.command is {solver.command!r}; allowed: what can be shown on one line; write plain words"
+        return
     if not words or shutil.which(words[0]) is None:
         yield f'solver.command begins with "{" ".join(words[:1])}", which is no program here; give its path'

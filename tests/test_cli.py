@@ -190,7 +190,7 @@ def test_a_folder_without_results_says_how_to_make_them(command: str, tmp_path: 
     [
         (["--executor", "dask"], "--executor dask and --scheduler tcp://HOST:PORT go together"),
         (["--scheduler", "tcp://127.0.0.1:9"], "--executor dask and --scheduler tcp://HOST:PORT go together"),
-        (["--executor", "mpi"], "--executor is mpi; allowed: local, dask"),
+        (["--executor", "mpi"], "--executor is 'mpi'; allowed: local, dask"),
     ],
 )
 def test_an_executor_that_does_not_exist_is_refused(options: list[str], said: str) -> None:

@@ -54,6 +54,8 @@ class CappedLog(io.RawIOBase):
 
 def last_words(path: Path) -> str:
     """The last line of a log that is not blank, at most 200 characters of it."""
+    if not path.is_file():
+        return "its log is no longer there"
     with path.open("rb") as file:
         size = file.seek(0, io.SEEK_END)
         file.seek(max(size - KEPT, 0))

@@ -2,11 +2,11 @@
 
 import contextlib
 import json
-import math
 import os
 import shlex
 import shutil
 import subprocess
+import sys
 import tempfile
 import threading
 from collections.abc import Iterator, Mapping
@@ -70,7 +70,7 @@ class Command:
 
         It belongs into the context of a campaign, so that runs of a changed program are other runs.
         """
-        return [_content_hash(Path(word)) if Path(word).is_file() else word for word in self.words()]
+        return [_content_hash(Path(word)) if os.path.isfile(word) else word for word in self.words()]
 
     @contextlib.contextmanager
     def _run_folder(self, name: str) -> Iterator[Path]:
@@ -135,7 +135,7 @@ def absolute_words(command: str, folder: Path) -> list[str]:
     Raises ValueError for a command whose quotes do not match.
     """
     # A link stays one: the interpreter of a virtual environment is a link, and finds its packages from where it lies.
-    return [os.path.abspath(folder / word) if (folder / word).is_file() else word for word in shlex.split(command)]
+    return [os.path.abspath(folder / word) if os.path.isfile(folder / word) else word for word in shlex.split(command)]
 
 
 def _content_hash(path: Path) -> str:
@@ -152,16 +152,27 @@ def _answer(path: Path) -> dict[str, Any]:
     if not path.is_file():
         raise ValueError("the program wrote no outputs.json; it has to write one into the folder that it is started in")
     try:
-        content = json.loads(path.read_text(encoding="utf-8"))
-    except ValueError as error:
+        # Some editors and languages begin a text with a mark of its encoding.
+        content = json.loads(path.read_text(encoding="utf-8-sig"))
+    except (ValueError, RecursionError) as error:
         raise ValueError(f"outputs.json is not JSON ({error}); the program has to write one JSON object") from error
     if not isinstance(content, dict) or not isinstance(content.get("outputs", {}), dict):
         raise ValueError("outputs.json is no JSON object of numbers by name; mend what the program writes")
     answer = content if "outputs" in content or "outcome" in content else {"outputs": content}
     outputs = answer.setdefault("outputs", {})
     for name, value in outputs.items():
-        if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+        if not _is_number(value):
             raise ValueError(
                 f"outputs.json has {value!r} for {name}; allowed: a finite number; leave out what has none"
             )
+    for name, kind, words in (("outcome", str, "a word"), ("draws", dict, "a JSON object")):
+        if not isinstance(answer.get(name, kind()), kind):
+            raise ValueError(f"outputs.json has {answer[name]!r} for {name}; allowed: {words}; mend it or leave it out")
     return answer
+
+
+def _is_number(value: Any) -> bool:
+    """Tell whether a value is a number that a float can hold."""
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return False
+    return abs(value) <= sys.float_info.max

@@ -2,9 +2,10 @@
 
 import csv
 from collections.abc import Mapping, Sequence
-from typing import TextIO
+from typing import Any, TextIO
 
 from lithobrake.campaign.record import COLUMNS, OBJECTS, Record
+from lithobrake.plain import plain
 
 # Characters of a key that are shown; two runs of a campaign that share them are not met.
 _KEY_LENGTH = 12
@@ -18,19 +19,24 @@ def write_csv(records: Sequence[Record], file: TextIO, units: Mapping[str, str] 
 
     units: of inputs and outputs by name, for the headers.
     """
-    plain = [name for name in COLUMNS if name not in OBJECTS]
+    columns = [name for name in COLUMNS if name not in OBJECTS]
     tables = [[getattr(entry, name) for name in OBJECTS] for entry in records]
     names = [list(dict.fromkeys(name for row in tables for name in row[part])) for part in range(len(OBJECTS))]
     titles = [
-        " ".join([f"{part.rstrip('s')}:{name}", *_unit(name, units or {})])
+        plain(" ".join([f"{part.rstrip('s')}:{name}", *_unit(name, units or {})]))
         for part, group in zip(OBJECTS, names, strict=True)
         for name in group
     ]
     writer = csv.writer(file)
-    writer.writerow([*plain, *titles])
+    writer.writerow([*columns, *titles])
     for entry, row in zip(records, tables, strict=True):
-        values = [table.get(name, "") for table, group in zip(row, names, strict=True) for name in group]
-        writer.writerow([*(getattr(entry, name) for name in plain), *values])
+        values = [_shown(table.get(name, "")) for table, group in zip(row, names, strict=True) for name in group]
+        writer.writerow([*(getattr(entry, name) for name in columns), *values])
+
+
+def _shown(value: Any) -> Any:
+    """A value as a cell; the words that a model drew are its own."""
+    return value if isinstance(value, int | float) else plain(str(value))
 
 
 def run_lines(records: Sequence[Record], units: Mapping[str, str], width: int | None) -> list[str]:

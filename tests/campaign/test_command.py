@@ -15,6 +15,11 @@ X = np.array([[1.0], [2.0]])
 
 PROGRAM = """
 import json, os, sys, time
+
+def leave(text):
+    open("outputs.json", "w").write(text)
+    sys.exit(0)
+
 question = json.load(open("inputs.json"))
 a = question["inputs"]["a"]
 print("rolling on", a)
@@ -46,10 +51,15 @@ FAILURES = [
     ("os.kill(os.getpid(), 9)", "RuntimeError: the program ended with signal 9; its last words: "),
     ("raise OSError('no licence')", "ended with exit code 1; its last words: OSError: no licence"),
     ("sys.exit(0)", "ValueError: the program wrote no outputs.json"),
-    ("open('outputs.json', 'w').write('{\"height\": 1.0'); sys.exit(0)", "outputs.json is not JSON"),
+    ("leave('{\"height\": 1.0')", "outputs.json is not JSON"),
     ("json.dump([1.0], open('outputs.json', 'w')); sys.exit(0)", "is no JSON object of numbers by name"),
     ("json.dump({'height': float('nan')}, open('outputs.json', 'w')); sys.exit(0)", "has nan for height"),
     ("json.dump({'height': None}, open('outputs.json', 'w')); sys.exit(0)", "has None for height"),
+    ("leave('[' * 100_000)", "outputs.json is not JSON (maximum recursion depth"),
+    ("leave('{\"height\": 1' + '0' * 400 + '}')", "000 for height; allowed: a finite number"),
+    ('leave(\'{"outputs": {"height": 1}, "outcome": [1]}\')', "has [1] for outcome; allowed: a word"),
+    ('leave(\'{"outputs": {"height": 1}, "draws": [1]}\')', "has [1] for draws; allowed: a JSON object"),
+    ("os.remove('log.txt'); sys.exit(3)", "exit code 3; its last words: its log is no longer there"),
     ("json.dump({'depth': 1.0}, open('outputs.json', 'w')); sys.exit(0)", "outputs.json lacks height"),
 ]
 
@@ -60,6 +70,11 @@ def test_a_program_that_fails_is_a_failed_run_with_its_reason(do: str, reason: s
     assert runs.outcomes == ["done", "failed"]
     assert reason in str(runs.records[1].reason)
     assert runs.records[0].outputs == {"height": 2.0}
+
+
+def test_a_text_that_begins_with_a_mark_of_its_encoding_is_read(tmp_path: Path) -> None:
+    runs = campaign(tmp_path, "leave('\\ufeff{\"height\": 7}')")
+    assert runs.outputs(["height"])[:, 0].tolist() == [2.0, 7.0]
 
 
 def test_a_program_over_its_wall_limit_is_ended_with_all_that_it_started(tmp_path: Path) -> None:

@@ -59,3 +59,15 @@ def test_names_without_a_unit_stand_alone_in_csv(records: list[Record]) -> None:
     assert titles[-4:] == [
         "input:grain.young_modulus [Pa]", "input:grain.density", "input:grain.friction [-]", "output:height [m]",
     ]  # fmt: skip
+
+
+def test_names_and_draws_of_a_program_enter_the_csv_as_plain_text(tmp_path: Path) -> None:
+    with Ledger(tmp_path / "runs.sqlite") as ledger:
+        ledger.queue([("first", {"a": 1.0}, 1, 0)], "7")
+        outputs, draws = {"\x1b[31mheight\ud800": 1.0}, {"licence": "\x1b]0;title\x07B"}
+        ledger.finish("first", {"status": "done", "outcome": "clear", "outputs": outputs, "draws": draws})
+    text = io.StringIO()
+    write_csv(read_records(tmp_path / "runs.sqlite"), text)
+    (row,) = csv.DictReader(io.StringIO(text.getvalue()))
+    assert (row["output:height "], row["draw:licence"]) == ("1.0", "B")
+    assert text.getvalue().isascii()

@@ -150,6 +150,8 @@ def test_the_place_of_a_study_does_not_name_its_runs(tmp_path: Path) -> None:
     [
         ("no-such-program x", 'solver.command begins with "no-such-program", which is no program here; give its path'),
         ("python3 'x", "close every quotation mark"),
+        (r"python3 \u0000x", r"allowed: what can be shown on one line; write plain words"),
+        ("/" + "x" * 300, "which is no program here; give its path"),
     ],
 )
 def test_a_command_that_cannot_be_started_is_refused(command: str, said: str, tmp_path: Path) -> None:
