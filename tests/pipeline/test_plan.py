@@ -128,7 +128,7 @@ def test_a_run_begins_with_its_plan_in_three_lines(tmp_path: Path) -> None:
     assert said[0].startswith("To make: 17 to 47 touchdowns")
     assert said[1].startswith("Expected: about ")
     assert said[2].startswith("2 warnings, the first: At the site gravity")
-    assert said[2].endswith(f"lithobrake plan {study}")
+    assert said[2].endswith(f"lithobrake plan {study} --out {tmp_path / 'out'}")
 
 
 @pytest.mark.parametrize(
