@@ -84,5 +84,5 @@ def _say_plan(
 ) -> None:  # fmt: skip
     """Say what will be made, where anything is left to be."""
     plan = plan_of(study, path.stem, folder, worker_count, on_cluster=scheduler is not None)
-    for line in plan.brief(f"lithobrake plan {path}") if plan.stages else ():
+    for line in plan.brief(f"lithobrake plan {path} --out {folder.path}") if plan.stages else ():
         say(line)

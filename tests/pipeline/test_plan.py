@@ -2,6 +2,7 @@
 
 import json
 import os
+import shutil
 import subprocess
 import sys
 from dataclasses import replace
@@ -127,7 +128,7 @@ def test_a_run_begins_with_its_plan_in_three_lines(tmp_path: Path) -> None:
     assert said[0].startswith("To make: 17 to 47 touchdowns")
     assert said[1].startswith("Expected: about ")
     assert said[2].startswith("2 warnings, the first: At the site gravity")
-    assert said[2].endswith(f"lithobrake plan {study}")
+    assert said[2].endswith(f"lithobrake plan {study} --out {tmp_path / 'out'}")
 
 
 @pytest.mark.parametrize(
@@ -178,6 +179,14 @@ def test_what_an_analyst_should_know_is_said(changes: dict[str, Any], said: str 
     study = soft(**kept)
     found = " ".join(study_warnings(study, soil_of(study)))
     assert said in found if said else "The screening fits" not in found
+
+
+def test_a_disk_that_is_too_small_is_the_first_warning(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    room = shutil.disk_usage(tmp_path)
+    monkeypatch.setattr(shutil, "disk_usage", lambda place: room._replace(free=2_000_000))
+    plan = plan_study(written(tmp_path, FEW), tmp_path / "not" / "yet")
+    assert plan.warnings[0].startswith("The files will take about ")
+    assert "only 2 MB are free" in plan.warnings[0]
 
 
 def test_a_study_that_has_all_it_needs_is_not_warned_of() -> None:
