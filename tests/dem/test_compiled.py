@@ -122,6 +122,11 @@ def refuse_place(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (cache / "lithobrake").write_text("a file")
 
 
+def refuse_writing(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    # What a file system says that is mounted for reading alone.
+    monkeypatch.setattr(os, "access", lambda path, mode: False)
+
+
 def refuse_all(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def full(path: Path) -> Path:
         raise OSError(28, "No space left on device")
@@ -135,6 +140,7 @@ def refuse_all(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         (refuse_owner, "another user"),
         (refuse_mode, "can be written by others"),
         (refuse_place, "no folder for a cache can be made"),
+        (refuse_writing, "cannot be written, so"),
         (refuse_all, "No space left on device"),
     ],
 )
