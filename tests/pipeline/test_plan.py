@@ -124,11 +124,13 @@ def test_a_run_begins_with_its_plan_in_three_lines(tmp_path: Path) -> None:
 
     with pytest.raises(Begun):
         run_study(study, tmp_path / "out", worker_count=1, begin=begin, say=said.append)
-    assert len(said) == 3
-    assert said[0].startswith("To make: 17 to 47 touchdowns")
-    assert said[1].startswith("Expected: about ")
-    assert said[2].startswith("2 warnings, the first: At the site gravity")
-    assert said[2].endswith(f"lithobrake plan {study} --out {tmp_path / 'out'}")
+    program, *plan = said
+    assert program.startswith("This study names a program")
+    assert len(plan) == 3
+    assert plan[0].startswith("To make: 17 to 47 touchdowns")
+    assert plan[1].startswith("Expected: about ")
+    assert plan[2].startswith("2 warnings, the first: At the site gravity")
+    assert plan[2].endswith(f"lithobrake plan {study} --out {tmp_path / 'out'}")
 
 
 @pytest.mark.parametrize(
