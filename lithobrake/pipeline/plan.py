@@ -12,6 +12,7 @@ from lithobrake.pipeline.expected_disk import expected_bytes, flight_count, jour
 from lithobrake.pipeline.expected_steps import ExpectedSoil
 from lithobrake.pipeline.expected_time import Span, basis, expected_seconds
 from lithobrake.pipeline.folder import StudyFolder
+from lithobrake.pipeline.owner import refuse_others_folder
 from lithobrake.pipeline.plan_lines import brief_lines, bytes_in_words, plan_lines
 from lithobrake.pipeline.planned_runs import PlannedRuns, known_runs, possible_runs
 from lithobrake.pipeline.stages import STAGES, stage_keys
@@ -75,9 +76,11 @@ class Plan:
 def plan_study(path: Path, out: Path, worker_count: int | None = None) -> Plan:
     """Say what `run_study` would do with the same arguments; nothing is written.
 
-    Raises ValueError for a study file that is refused, a mesh that cannot be read, a ledger that is none.
+    Raises ValueError for a study file that is refused, a folder of something else, a mesh that cannot be read, a ledger
+    that is none.
     """
     study = study_file.read(path)
+    refuse_others_folder(path, out)
     return plan_of(study, study.title or path.stem, StudyFolder.only_read(out), worker_count)
 
 

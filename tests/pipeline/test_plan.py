@@ -100,6 +100,14 @@ def test_planning_makes_and_changes_nothing(tmp_path: Path) -> None:
     assert everything() == before
 
 
+def test_a_folder_that_a_run_refuses_is_refused_by_its_plan(tmp_path: Path) -> None:
+    study, out = written(tmp_path, FEW), tmp_path / "out"
+    out.mkdir()
+    (out / "thesis.tex").touch()
+    with pytest.raises(ValueError, match=r"holds thesis\.tex, and no study made it; choose another folder"):
+        plan_study(study, out)
+
+
 def test_the_command_says_what_is_planned(tmp_path: Path) -> None:
     study, out = written(tmp_path, FEW), tmp_path / "out"
     said = CliRunner().invoke(app, ["plan", str(study), "--out", str(out), "--workers", "1"])
@@ -136,7 +144,7 @@ def test_a_run_begins_with_its_plan_in_three_lines(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("changes", "said"),
     [
-        ({"speed = 0.15": "speed = 0"}, "impact.speed is 0; allowed: above 0 [m/s]"),
+        ({"speed = 0.15": "speed = 0"}, "impact.speed is 0; allowed: above 0 and at most 1000 [m/s]"),
         ({"mass = 1.0": "mas = 1.0"}, "lander.mas is not a known key; did you mean mass?"),
         ({"[flight]": '[site]\nbody = "open.obj"\nmass = 1e11\nspin_period = 8e3\n[flight]'}, "open.obj"),
     ],
@@ -159,7 +167,7 @@ def test_what_a_run_refuses_the_plan_refuses_with_the_same_words(
     ("changes", "said"),
     [
         ({"site": {"latitude_deg": 0.0}}, "push outwards"),
-        ({"site": {"latitude_deg": 80.0}}, 'surface.gravity is 5e-05 m/s2 and at the site'),
+        ({"site": {"latitude_deg": 80.0}}, "surface.gravity is 5e-05 m/s2 inwards, and at the site"),
         ({"bed": {"width": [0.55, 0.55], "grain_count": 30}}, "so that walls and floor do not answer"),
         ({"impact": {"place": {"x": -0.25}}}, "keep impact.place.x within 0.22 m"),
         ({"landing": {"time_limit": 1.0}}, "100 % of the touchdowns may last longer than landing.time_limit, 1 s"),
@@ -260,8 +268,7 @@ def test_the_samples_take_the_room_that_is_expected(tmp_path: Path) -> None:
     study = study_file.read(EXAMPLES / "ball_on_plate.toml")
     names, count = list(design_inputs(study)), study.monte_carlo.sample_count
     inputs, outputs = np.zeros((count, len(names))), np.zeros((count, len(OUTPUTS)))
-    one, truth = np.zeros(count), np.zeros(count, dtype=bool)
-    Samples(names, list(OUTPUTS), inputs, outputs, one, truth, truth).save(StudyFolder(tmp_path))
+    Samples(names, list(OUTPUTS), inputs, outputs, np.zeros(count, dtype=np.uint8)).save(StudyFolder(tmp_path))
     expected = expected_bytes(study, PlannedRuns(4, 41, 96, 20, frozenset()), None)["samples"]
     # Names and the layout of the file come on top.
     assert 0.0 < (tmp_path / "samples.h5").stat().st_size - expected < 2e4
