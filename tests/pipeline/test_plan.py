@@ -137,7 +137,7 @@ def test_a_run_begins_with_its_plan_in_three_lines(tmp_path: Path) -> None:
     assert len(plan) == 3
     assert plan[0].startswith("To make: 17 to 47 touchdowns")
     assert plan[1].startswith("Expected: about ")
-    assert plan[2].startswith("2 warnings, the first: At the site gravity")
+    assert plan[2].startswith("3 warnings, the first: At the site gravity")
     assert plan[2].endswith(f"lithobrake plan {study} --out {tmp_path / 'out'}")
 
 
