@@ -21,10 +21,10 @@ from typing import Any
 
 import numpy as np
 
-from lithobrake import study_file
 from lithobrake.campaign import DaskExecutor, Ledger, LocalExecutor, Runs, run
 from lithobrake.pipeline import run_study
 from lithobrake.pipeline.landings import TouchdownModel, draw, engine_hash, medians
+from lithobrake.study import read_study
 
 STUDY = Path(__file__).parents[1] / "scenarios" / "quick.toml"
 
@@ -33,7 +33,7 @@ class EqualLandings:
     """The landing at the medians of a study, again and again; its only input is a number that it does not look at."""
 
     def __init__(self, folder: Path) -> None:
-        study = study_file.read(STUDY)
+        study = read_study(STUDY)
         self.model = TouchdownModel(study, (folder / "beds" / "bed_0.h5",), engine_hash())
         self.values = draw(study, medians(study), study.seed)
 

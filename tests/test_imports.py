@@ -18,27 +18,16 @@ ALLOWED: dict[str, set[str]] = {
     "analysis": {"chaos"},
     "results": set(),
     "report": {"chaos"},
-    "wording": set(),
-    "quantity": {"wording", "chaos"},
-    "study_campaign": {"quantity"},
-    "study_design": {"study_campaign", "quantity"},
-    "study_flight": {"study_campaign", "quantity"},
-    "study": {"study_campaign", "study_design", "study_flight", "quantity"},
-    "site": {"study", "quantity", "smallbody"},
-    "study_body": {"study", "quantity", "wording", "site"},
-    "study_contact": {"study", "quantity"},
-    "study_checks": {"study", "study_body", "study_contact", "quantity", "wording", "chaos", "touchdown"},
-    "study_file": {"study", "study_body", "study_checks", "site", "wording", "campaign"},
-    "study_template": {"study", "study_units", "quantity"},
-    "study_units": {"study", "quantity"},
+    # The reader makes words of a command absolute as the campaign starts them.
+    "study": {"chaos", "campaign", "smallbody", "touchdown"},
     "pipeline": {
         *("dem", "touchdown", "chaos", "campaign", "smallbody", "analysis", "report"),
-        *("study", "study_file", "study_units", "quantity", "site"),
+        "study",
     },
     "progress": {"progress_log"},
     "progress_log": {"campaign"},
     "__main__": {"cli"},
-    "cli": {"study_file", "study_units", "pipeline", "campaign", "progress", "study_template", "report"},
+    "cli": {"study", "pipeline", "campaign", "progress", "report"},
 }
 
 

@@ -8,13 +8,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from lithobrake.campaign import Runs, missing
+from lithobrake.outputs import OUTPUTS
 from lithobrake.pipeline.folder import json_hash
 from lithobrake.pipeline.job import Job
+from lithobrake.pipeline.site import gravity_warning
 from lithobrake.pipeline.surface import touchdown_reads
 from lithobrake.pipeline.touchdowns import drawn_reads, drawn_rows, touchdown_keys, touchdowns
-from lithobrake.quantity import uncertain
-from lithobrake.site import gravity_warning
-from lithobrake.study import OUTPUTS, Study
+from lithobrake.study import Study
+from lithobrake.study.quantity import uncertain
 
 if TYPE_CHECKING:
     from lithobrake.chaos import Distribution, Surrogate

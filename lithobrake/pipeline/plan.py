@@ -6,7 +6,6 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from lithobrake import study_file
 from lithobrake.campaign import available_cores
 from lithobrake.pipeline.expected_disk import expected_bytes, flight_count, journey_count
 from lithobrake.pipeline.expected_steps import ExpectedSoil
@@ -14,10 +13,11 @@ from lithobrake.pipeline.expected_time import Span, basis, expected_seconds
 from lithobrake.pipeline.folder import StudyFolder
 from lithobrake.pipeline.plan_lines import brief_lines, plan_lines
 from lithobrake.pipeline.planned_runs import PlannedRuns, known_runs, possible_runs
+from lithobrake.pipeline.site import with_site_gravity
 from lithobrake.pipeline.stages import STAGES, stage_keys
 from lithobrake.pipeline.study_warnings import study_warnings
 from lithobrake.pipeline.surface import bed_files
-from lithobrake.study import Study
+from lithobrake.study import Study, read_study
 
 # Stages that go through the runs.
 READ_RUNS = frozenset({"screen", "refine", "test", "sample", "rest", "summary"})
@@ -77,7 +77,7 @@ def plan_study(path: Path, out: Path, worker_count: int | None = None) -> Plan:
 
     Raises ValueError for a study file that is refused, a mesh that cannot be read, a ledger that is none.
     """
-    study = study_file.read(path)
+    study = with_site_gravity(read_study(path), path.name)
     return plan_of(study, study.title or path.stem, StudyFolder.only_read(out), worker_count)
 
 

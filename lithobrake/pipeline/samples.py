@@ -13,9 +13,9 @@ from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.outgoing import outgoing
 from lithobrake.pipeline.scatter import Scatter
 from lithobrake.pipeline.solver import OUTCOMES
-from lithobrake.quantity import median
 from lithobrake.reading import reading
 from lithobrake.study import Study
+from lithobrake.study.quantity import median
 
 if TYPE_CHECKING:
     from lithobrake.analysis import OutcomeModel

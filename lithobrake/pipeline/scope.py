@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass
 
-from lithobrake.quantity import Uncertain
 from lithobrake.study import Study
+from lithobrake.study.quantity import Uncertain
 
 
 @dataclass(frozen=True)

@@ -8,8 +8,9 @@ from typing import Any
 
 from lithobrake import __version__
 from lithobrake.campaign import Command
+from lithobrake.outputs import OUTPUTS
 from lithobrake.pipeline.folder import content_hash
-from lithobrake.study import OUTPUTS, Study
+from lithobrake.study import Study
 
 # How a touchdown may end; one that is clear has outputs.
 OUTCOMES = ("clear", "captured", "left_sideways", "time_limit")

@@ -4,16 +4,16 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
-from lithobrake import study_file
 from lithobrake.campaign import DaskExecutor, LocalExecutor
 from lithobrake.pipeline.folder import StudyFolder
 from lithobrake.pipeline.job import Job, Progress
 from lithobrake.pipeline.notes import NAME
 from lithobrake.pipeline.owner import refuse_others_folder
 from lithobrake.pipeline.plan import plan_of
+from lithobrake.pipeline.site import with_site_gravity
 from lithobrake.pipeline.stages import make, setting
 from lithobrake.pipeline.state import grouped, read_state
-from lithobrake.study import Study
+from lithobrake.study import Study, load_tables, read_study
 
 
 def run_study(
@@ -36,7 +36,7 @@ def run_study(
     Raises ValueError for a study file that is refused, a folder that is not the study's or cannot be written, too few
     runs with outputs.
     """
-    study, tables = study_file.read(path), study_file.load(path)
+    study, tables = with_site_gravity(read_study(path), path.name), load_tables(path)
     refuse_others_folder(path, out)
     if study.solver.command:
         say(f"This study names a program, which every run that is still to be made starts: {study.solver.command}")

@@ -11,15 +11,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from lithobrake.outputs import OUTPUTS
 from lithobrake.pipeline.expansions import DESIGNS, DesignRuns, design_runs, kept_inputs, replicate_count
 from lithobrake.pipeline.fates import landing_results
 from lithobrake.pipeline.flights import read_table
 from lithobrake.pipeline.headline import answer, headline
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.samples import Samples
-from lithobrake.pipeline.solver import OUTCOMES
-from lithobrake.pipeline.surface import bed_files
-from lithobrake.site import (
+from lithobrake.pipeline.site import (
     escape_speed,
     gravity_warning,
     has_heading,
@@ -28,8 +27,10 @@ from lithobrake.site import (
     site_medians,
     site_warning,
 )
-from lithobrake.study import BUILT_IN_BODIES, OUTPUTS, Study
-from lithobrake.study_units import OUTPUT_UNITS
+from lithobrake.pipeline.solver import OUTCOMES
+from lithobrake.pipeline.surface import bed_files
+from lithobrake.study import BUILT_IN_BODIES, Study
+from lithobrake.study.units import OUTPUT_UNITS
 
 if TYPE_CHECKING:
     from lithobrake.chaos import Surrogate

@@ -13,9 +13,9 @@ from typing import Any
 
 import pytest
 
-from lithobrake import study_file
 from lithobrake.atomic import lock_holder
 from lithobrake.pipeline import STAGES
+from lithobrake.study import read_study
 
 STUDY = """
 seed = 2
@@ -144,7 +144,7 @@ def test_a_study_killed_at_20_random_moments_ends_with_the_same_bits(tmp_path: P
     for out in (tmp_path / "first", calm):
         end(study, out, worker_count=2)
     durations = json.loads((calm / "keys.json").read_text())["wall_s"]
-    files = {stage.name: stage.files(study_file.read(study)) for stage in STAGES}
+    files = {stage.name: stage.files(read_study(study)) for stage in STAGES}
     assert set(MOMENTS) == set(files)
     chance, kills, process = random.Random(6), 0, start(study, killed)
     while kills < len(MOMENTS):

@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from lithobrake import study_file
 from lithobrake.campaign import Record, available_cores, read_records
 from lithobrake.cli import app
+from lithobrake.outputs import OUTPUTS
 from lithobrake.pipeline import Plan, StudyFolder, plan_study
 from lithobrake.pipeline.expansions import design_inputs
 from lithobrake.pipeline.expected_disk import expected_bytes
@@ -25,7 +25,7 @@ from lithobrake.pipeline.planned_runs import PlannedRuns
 from lithobrake.pipeline.samples import Samples
 from lithobrake.pipeline.study_run import run_study
 from lithobrake.pipeline.study_warnings import study_warnings
-from lithobrake.study import OUTPUTS, Study
+from lithobrake.study import Study, check_tables, load_tables, read_study
 
 HERE = Path(__file__).parents[2]
 EXAMPLES, SCENARIOS = HERE / "examples", HERE / "scenarios"
@@ -52,10 +52,10 @@ def written(folder: Path, changes: dict[str, str], source: Path = EXAMPLES / "ba
 
 def soft(**changes: dict[str, Any]) -> Study:
     """The quick study with these keys of its sections changed."""
-    tables = study_file.load(SCENARIOS / "quick.toml")
+    tables = load_tables(SCENARIOS / "quick.toml")
     for section, keys in changes.items():
         tables[section] = tables.get(section, {}) | keys
-    return study_file.check(tables, SCENARIOS)
+    return check_tables(tables, SCENARIOS)
 
 
 def soil_of(study: Study) -> ExpectedSoil:
@@ -181,7 +181,7 @@ def test_what_an_analyst_should_know_is_said(changes: dict[str, Any], said: str 
 
 
 def test_a_study_that_has_all_it_needs_is_not_warned_of() -> None:
-    study = study_file.read(SCENARIOS / "bounces.toml")
+    study = read_study(SCENARIOS / "bounces.toml")
     assert study_warnings(study, soil_of(study)) == []
 
 
@@ -246,7 +246,7 @@ def test_without_a_compiled_engine_the_pace_is_that_of_the_reference_machine(tmp
 
 
 def test_the_samples_take_the_room_that_is_expected(tmp_path: Path) -> None:
-    study = study_file.read(EXAMPLES / "ball_on_plate.toml")
+    study = read_study(EXAMPLES / "ball_on_plate.toml")
     names, count = list(design_inputs(study)), study.monte_carlo.sample_count
     inputs, outputs = np.zeros((count, len(names))), np.zeros((count, len(OUTPUTS)))
     one, truth = np.zeros(count), np.zeros(count, dtype=bool)

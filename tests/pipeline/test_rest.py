@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from lithobrake import study_file
 from lithobrake.analysis import OutcomeModel
 from lithobrake.chaos import Uniform, fit, smolyak
+from lithobrake.outputs import OUTPUTS
 from lithobrake.pipeline import Job, StudyFolder
 from lithobrake.pipeline.fates import ENDS, landing_results, proportion
 from lithobrake.pipeline.flights import COLUMNS, read_table, write_table
@@ -22,8 +22,8 @@ from lithobrake.pipeline.scatter import Scatter
 from lithobrake.pipeline.soil import SoilBounce, rolling_spin, trained_ranges, why_no_soil
 from lithobrake.pipeline.solver import OUTCOMES
 from lithobrake.smallbody import Impacts
-from lithobrake.study import OUTPUTS, Study
-from lithobrake.study_template import template
+from lithobrake.study import Study, check_tables
+from lithobrake.study.template import template
 
 INPUTS = {
     "grain.friction": Uniform(0.2, 0.8),
@@ -125,7 +125,7 @@ def changed(**sections: dict[str, Any]) -> Study:
     tables = tomllib.loads(template())
     for section, keys in sections.items():
         tables.setdefault(section, {}).update(keys)
-    return study_file.check(tables, Path())
+    return check_tables(tables, Path())
 
 
 def test_the_soil_is_asked_where_speed_and_incidence_are_uncertain() -> None:

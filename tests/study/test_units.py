@@ -3,16 +3,16 @@
 import tomllib
 from pathlib import Path
 
-from lithobrake import study_file
+from lithobrake.outputs import OUTPUTS
 from lithobrake.pipeline.landings import draw, medians
-from lithobrake.study import OUTPUTS
-from lithobrake.study_template import template
-from lithobrake.study_units import OUTPUT_UNITS, input_units
+from lithobrake.study import check_tables
+from lithobrake.study.template import template
+from lithobrake.study.units import OUTPUT_UNITS, input_units
 from lithobrake.touchdown import OUTPUTS as OUTPUTS_OF_A_TOUCHDOWN
 
 
 def test_every_input_of_a_run_has_its_unit() -> None:
-    study = study_file.check(tomllib.loads(template()), Path())
+    study = check_tables(tomllib.loads(template()), Path())
     inputs, units = draw(study, medians(study), 1), input_units()
     # The number of the bed that a run draws counts nothing.
     assert set(inputs) - set(units) == {"bed"}

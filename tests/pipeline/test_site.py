@@ -8,12 +8,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from lithobrake import study_file
-from lithobrake.site import escape_speed, frames, gravity_warning, site_body
+from lithobrake.pipeline.site import escape_speed, frames, gravity_warning, site_body
 from lithobrake.smallbody import Body
 from lithobrake.smallbody.didymos import top_shape
-from lithobrake.study import Study
-from lithobrake.study_template import template
+from lithobrake.study import Study, check_tables
+from lithobrake.study.template import template
 
 
 def changed(**sections: dict[str, Any]) -> Study:
@@ -21,7 +20,7 @@ def changed(**sections: dict[str, Any]) -> Study:
     tables = tomllib.loads(template())
     for section, keys in sections.items():
         tables.setdefault(section, {}).update(keys)
-    return study_file.check(tables, Path())
+    return check_tables(tables, Path())
 
 
 @pytest.mark.parametrize("latitude", [0.0, 60.0, 90.0])

@@ -10,10 +10,10 @@ from typing import Any, get_args
 from pydantic import BaseModel, ValidationError
 
 from lithobrake.campaign import absolute_words
-from lithobrake.study import BUILT_IN_BODIES, Study
-from lithobrake.study_body import body_problems
-from lithobrake.study_checks import problems
-from lithobrake.wording import sentences
+from lithobrake.study.checks import problems
+from lithobrake.study.flight_sections import BUILT_IN_BODIES
+from lithobrake.study.refusals import sentences
+from lithobrake.study.study import Study
 
 
 class StudyError(ValueError):
@@ -25,15 +25,15 @@ class StudyError(ValueError):
         self.problems = problems
 
 
-def read(path: Path) -> Study:
+def read_study(path: Path) -> Study:
     """Read and check a study file; paths of meshes in it become absolute.
 
     Raises StudyError with one sentence for each problem.
     """
-    return check(load(path), folder=path.resolve().parent, name=path.name)
+    return check_tables(load_tables(path), folder=path.resolve().parent, name=path.name)
 
 
-def load(path: Path) -> dict[str, Any]:
+def load_tables(path: Path) -> dict[str, Any]:
     """Read the tables of a TOML file as they stand. Raises StudyError when it is not there or is not TOML."""
     try:
         # Some editors begin a file with a mark of its encoding, which "utf-8-sig" takes off.
@@ -53,7 +53,7 @@ def load(path: Path) -> dict[str, Any]:
         ) from error
 
 
-def check(tables: Mapping[str, Any], folder: Path, name: str = "study.toml") -> Study:
+def check_tables(tables: Mapping[str, Any], folder: Path, name: str = "study.toml") -> Study:
     """Make a study of the tables; `folder` is where relative paths in it count from.
 
     Raises StudyError with one sentence for each problem.
@@ -62,27 +62,10 @@ def check(tables: Mapping[str, Any], folder: Path, name: str = "study.toml") -> 
         study = Study.model_validate(_absolute(tables, folder))
     except ValidationError as error:
         raise StudyError([f"{name}: {text}" for text in sentences(error.errors(), known_keys())]) from error
-    study, in_the_way = _with_site_gravity(study)
-    found = [f"{name}: {text}" for text in (*in_the_way, *problems(study))]
+    found = [f"{name}: {text}" for text in problems(study)]
     if found:
         raise StudyError(found)
     return study
-
-
-def _with_site_gravity(study: Study) -> tuple[Study, list[str]]:
-    """The study with the acceleration at its site where it asks for that, and what stands in the way."""
-    if study.surface.gravity != "site":
-        return study, []
-    from lithobrake.site import with_site_gravity
-
-    # A stand-in, so that the other checks can go on.
-    stand_in = study.model_copy(update={"surface": study.surface.model_copy(update={"gravity": 1.0})})
-    if list(body_problems(study)):
-        return stand_in, []
-    try:
-        return with_site_gravity(study), []
-    except ValueError as error:
-        return stand_in, [f"surface.gravity: {error}"]
 
 
 def known_keys() -> dict[str, tuple[str, ...]]:

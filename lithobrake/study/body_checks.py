@@ -7,9 +7,10 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from lithobrake.mesh_files import UNITS, read_mesh
-from lithobrake.quantity import Scalar, usual_reach
-from lithobrake.study import BUILT_IN_BODIES, Study
-from lithobrake.wording import closest, show
+from lithobrake.study.flight_sections import BUILT_IN_BODIES
+from lithobrake.study.quantity import Scalar, usual_reach
+from lithobrake.study.refusals import closest, show
+from lithobrake.study.study import Study
 
 # Bulk density [kg/m3]: nuclei of comets are near 500 (67P: 533, Paetzold et al. 2016, Nature 530), iron-nickel is 7900.
 LIGHTEST, HEAVIEST = 300.0, 8000.0
@@ -58,9 +59,9 @@ def _volume(study: Study) -> float:
     """Volume of the body [m3]. Raises ValueError for a mesh that is no body, OSError for one that may not be read."""
     site = study.site
     if site.body in BUILT_IN_BODIES:
-        from lithobrake.site import site_shape
+        from lithobrake import smallbody
 
-        return site_shape(study).volume
+        return float(getattr(smallbody, site.body)(partner=False).shape.volume)
     from lithobrake.mesh import closed_faces, holds_origin, volume_of
 
     vertices, faces = read_mesh(site.body, site.unit)

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lithobrake.quantity import Scalar, Uncertain, median, usual_reach
-from lithobrake.study import BUILT_IN_BODIES, Study
+from lithobrake.study import BUILT_IN_BODIES, Study, StudyError
+from lithobrake.study.checks import settling_problems
+from lithobrake.study.quantity import Scalar, Uncertain, median, usual_reach
 
 if TYPE_CHECKING:
     from lithobrake.smallbody import Body, Shape
@@ -62,11 +63,6 @@ def site_body(study: Study) -> "Body":
     """The body of the study with its shape and partner, at the medians of its mass and spin period."""
     values = site_medians(study)
     return replace(_body(study), mass=values["mass"], spin_period=values["spin_period"])
-
-
-def site_shape(study: Study) -> "Shape":
-    """The shape of the body of the study."""
-    return _body(study).shape
 
 
 def _body(study: Study) -> "Body":
@@ -185,11 +181,17 @@ def escape_speed(study: Study) -> float:
     return math.sqrt(2.0 * float(body.potential(origin[0])))
 
 
-def with_site_gravity(study: Study) -> Study:
-    """The study with surface.gravity = "site" replaced by the acceleration there; negative points outward."""
+def with_site_gravity(study: Study, name: str = "study.toml") -> Study:
+    """The study with surface.gravity = "site" replaced by the acceleration there; negative points outward.
+
+    Raises StudyError, with the name of the study file, where no bed would settle under it.
+    """
     if study.surface.gravity != "site":
         return study
     gravity = -float(push_at_site(study)[2])
+    problems = [f"{name}: {text}" for text in settling_problems(study, gravity)]
     if not math.isfinite(gravity):
-        raise ValueError("the acceleration at the site is not finite")
+        problems = [f"{name}: surface.gravity: the acceleration at the site is not finite; mend site.mass or its mesh"]
+    if problems:
+        raise StudyError(problems)
     return study.model_copy(update={"surface": study.surface.model_copy(update={"gravity": gravity})})

@@ -9,11 +9,11 @@ import math
 import sys
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic_core import PydanticCustomError, core_schema
 
-from lithobrake.wording import closest, show
+from lithobrake.study.refusals import closest, show
 
 if TYPE_CHECKING:
     from lithobrake.chaos import Distribution
@@ -197,3 +197,7 @@ def is_number(value: object) -> bool:
     """Tell whether a value read from TOML is a number that a float can hold (true, false and infinity are not)."""
     largest = sys.float_info.max
     return isinstance(value, int | float) and not isinstance(value, bool) and -largest <= value <= largest
+
+
+Angle = Annotated[Scalar, MaybeUncertain("deg", at_least=-360, at_most=360)]
+LengthUnit = Literal["m", "km", "cm", "mm"]

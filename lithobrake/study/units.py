@@ -5,8 +5,8 @@ from typing import get_args
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
-from lithobrake.quantity import Number
-from lithobrake.study import Study
+from lithobrake.study.quantity import Number
+from lithobrake.study.study import Study
 
 # Of what a touchdown gives; a program of the user's own is asked for the same units.
 OUTPUT_UNITS = {

@@ -1,16 +1,11 @@
-"""The table of the study file that says how runs are made, and what every table of the file has in common."""
+"""The tables of the study file that say how runs are made, and by which program."""
 
 from typing import Annotated
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
-from lithobrake.quantity import MaybeUncertain, Number, Scalar, Whole
-
-
-class Section(BaseModel):
-    """One table of the study file; a key that it does not know is refused."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True, use_attribute_docstrings=True)
+from lithobrake.study.quantity import MaybeUncertain, Number, Scalar, Whole
+from lithobrake.study.section import Section
 
 
 class CampaignSection(Section):

@@ -8,11 +8,11 @@ import shutil
 from collections.abc import Iterator
 from pathlib import Path
 
-from lithobrake.quantity import reach, uncertain
-from lithobrake.study import Study
-from lithobrake.study_body import body_problems
-from lithobrake.study_contact import contact_problems, inertia_problems
-from lithobrake.wording import show
+from lithobrake.study.body_checks import body_problems
+from lithobrake.study.contact_checks import contact_problems, inertia_problems
+from lithobrake.study.quantity import reach, uncertain
+from lithobrake.study.refusals import show
+from lithobrake.study.study import Study
 
 # A bed narrower than this many lander diameters would hold the lander between its walls.
 BED_WIDTH_PER_LANDER = 2.0
@@ -31,12 +31,18 @@ def problems(study: Study) -> Iterator[str]:
     if study.solver.command is None:
         yield from contact_problems(study)
     gravity = study.surface.gravity
-    if study.bed.settle_gravity is None and not isinstance(gravity, str) and reach(gravity)[0] <= 0:
+    if not isinstance(gravity, str):
+        yield from settling_problems(study, reach(gravity)[0])
+    yield from body_problems(study)
+
+
+def settling_problems(study: Study, gravity: float) -> Iterator[str]:
+    """A bed that is to settle under the acceleration of the touchdown [m/s2], which does not press it down."""
+    if study.bed.settle_gravity is None and gravity <= 0.0:
         yield (
             "surface.gravity reaches zero or points outward, and no bed settles under that; "
             "give bed.settle_gravity an inward value, say 2e-5 m/s2 (the touchdown keeps surface.gravity)"
         )
-    yield from body_problems(study)
 
 
 def _grain_problems(study: Study) -> Iterator[str]:

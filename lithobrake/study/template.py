@@ -6,9 +6,9 @@ from typing import Any
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
-from lithobrake.quantity import DISTRIBUTIONS, MaybeUncertain
-from lithobrake.study import Study
-from lithobrake.study_units import limits, table
+from lithobrake.study.quantity import DISTRIBUTIONS, MaybeUncertain
+from lithobrake.study.study import Study
+from lithobrake.study.units import limits, table
 
 _HEAD = """\
 # A landing study. A key marked "number or table" takes a distribution in place of the number, as in

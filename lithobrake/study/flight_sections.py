@@ -4,11 +4,8 @@ from typing import Annotated, Literal
 
 from pydantic import Field, Strict
 
-from lithobrake.quantity import MaybeUncertain, Number, Scalar, Whole
-from lithobrake.study_campaign import Section
-
-Angle = Annotated[Scalar, MaybeUncertain("deg", at_least=-360, at_most=360)]
-LengthUnit = Literal["m", "km", "cm", "mm"]
+from lithobrake.study.quantity import Angle, LengthUnit, MaybeUncertain, Number, Scalar, Whole
+from lithobrake.study.section import Section
 
 BUILT_IN_BODIES = ("didymos", "dimorphos")
 

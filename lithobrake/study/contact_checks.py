@@ -3,8 +3,9 @@
 import math
 from collections.abc import Iterator
 
-from lithobrake.quantity import usual_reach
-from lithobrake.study import Constant, Study
+from lithobrake.study.bed_section import Constant
+from lithobrake.study.quantity import usual_reach
+from lithobrake.study.study import Study
 
 # A lander heavier than so many of the largest grains outweighs every bed that a study may have; one lighter than the
 # same part of the smallest grain bounces off as from a rock. Neither says anything about a soil.

@@ -5,8 +5,8 @@ from typing import Annotated, Literal
 from pydantic import Field, StrictBool
 
 from lithobrake.outputs import OUTPUTS, OutputName
-from lithobrake.quantity import Number, Whole
-from lithobrake.study_campaign import Section
+from lithobrake.study.quantity import Number, Whole
+from lithobrake.study.section import Section
 
 Level = Annotated[int, Whole("", at_least=1, at_most=8)]
 Degree = Annotated[int, Whole("", at_least=1, at_most=15)]
