@@ -52,10 +52,14 @@ def parsed(text: str | bytes, form: Form) -> Any:
 
 
 def read_rows(path: str | PathLike[str], columns: Iterable[str], remedy: str) -> list[dict[str, str]]:
-    """The rows of a CSV file by column. Raises DamagedFileError when it lacks one of these columns, or half a row."""
+    """The rows of a CSV file by column, whose name ends before its unit in brackets.
+
+    Raises DamagedFileError when the file lacks one of these columns, or half a row.
+    """
     with reading(path, remedy), open(path, newline="", encoding="utf-8") as file:
         table = csv.DictReader(file, restkey="", strict=True)
-        lacking = [name for name in columns if name not in (table.fieldnames or ())]
+        table.fieldnames = [title.partition(" [")[0] for title in table.fieldnames or ()]
+        lacking = [name for name in columns if name not in table.fieldnames]
         if lacking:
             raise ValueError(f"it lacks the columns {', '.join(lacking)}")
         rows = list(table)

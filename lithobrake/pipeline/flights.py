@@ -29,6 +29,12 @@ COLUMNS = (
     *(f"site_{key}" for key in SITE_KEYS),
     "status", "time_s", "latitude_deg", "longitude_deg", "facet", "impact_speed", "impact_incidence_deg",
 )  # fmt: skip
+# Of the columns here and in rest.csv whose names do not say it; readers drop it from the headers.
+UNITS = {
+    **dict.fromkeys(("start_speed", "velocity_x", "velocity_y", "velocity_z", "impact_speed"), "m/s"),
+    **dict.fromkeys(("site_north_error", "site_east_error", "path_length"), "m"),
+    "site_mass": "kg", "site_spin_period": "s",
+}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -103,10 +109,10 @@ def fly_samples(job: Job) -> None:
 
 
 def write_table(folder: StudyFolder, name: str, columns: Sequence[str], rows: Iterable[list[Any]]) -> None:
-    """Write a CSV file of the folder."""
+    """Write a CSV file of the folder, with the unit behind each name that does not hold it."""
     with atomic_path(folder / name) as draft, draft.open("w", newline="", encoding="utf-8") as file:
         table = csv.writer(file)
-        table.writerow(columns)
+        table.writerow(f"{column} [{UNITS[column]}]" if column in UNITS else column for column in columns)
         table.writerows(rows)
 
 

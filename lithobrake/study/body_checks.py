@@ -6,7 +6,6 @@ import warnings
 from collections.abc import Iterator
 from pathlib import Path
 
-from lithobrake.mesh_files import UNITS, read_mesh
 from lithobrake.study.flight_sections import BUILT_IN_BODIES
 from lithobrake.study.quantity import Scalar, usual_reach
 from lithobrake.study.refusals import closest, show
@@ -62,7 +61,9 @@ def _volume(study: Study) -> float:
         from lithobrake import smallbody
 
         return float(getattr(smallbody, site.body)(partner=False).shape.volume)
+    # Only a mesh needs arrays: whatever else is refused is refused before they are imported.
     from lithobrake.mesh import closed_faces, holds_origin, volume_of
+    from lithobrake.mesh_files import read_mesh
 
     vertices, faces = read_mesh(site.body, site.unit)
     with warnings.catch_warnings():
@@ -81,6 +82,8 @@ def _bulk_problems(study: Study, volume: float) -> Iterator[str]:
     """A body that is too light, too heavy, too small or too large, with the unit that was likely meant."""
     if study.site.mass is None:
         return
+    from lithobrake.mesh_files import UNITS
+
     low, high = (mass / volume for mass in usual_reach(study.site.mass))
     diameter, here = 2.0 * _ball_radius(volume), UNITS[study.site.unit]
     fitting = [unit for unit, length in UNITS.items() if _is_a_body(low, high, diameter, length / here)]

@@ -9,7 +9,6 @@ from typing import Any, get_args
 
 from pydantic import BaseModel, ValidationError
 
-from lithobrake.campaign import absolute_words
 from lithobrake.study.checks import problems
 from lithobrake.study.flight_sections import BUILT_IN_BODIES
 from lithobrake.study.refusals import sentences
@@ -94,6 +93,8 @@ def _absolute(tables: Mapping[str, Any], folder: Path) -> dict[str, Any]:
             table[key] = str(folder / table[key])
     solver = result.get("solver")
     if isinstance(solver, dict) and isinstance(solver.get("command"), str):
+        from lithobrake.campaign import absolute_words
+
         # Quotes that do not match are told by study_checks.
         with contextlib.suppress(ValueError):
             solver["command"] = shlex.join(absolute_words(solver["command"], folder))

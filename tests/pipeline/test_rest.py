@@ -157,6 +157,13 @@ def test_hard_ground_is_followed_from_the_first_impact_and_the_summary_adds_up(t
     assert table["hard"]["sample_count"] == 60
     assert sum(table["hard"][name]["count"] for name in ENDS) == 60
     assert table["hard"]["settled"] == proportion(60, 60)
+    assert (folder / "rest.csv").read_text().splitlines()[0] == (
+        "ground,sample,status,time_s,latitude_deg,longitude_deg,rebounds,path_length [m],impact_speed [m/s],"
+        "impact_incidence_deg"
+    )
+    titles = (folder / "flights.csv").read_text().strip().split(",")
+    assert titles[1:4] == ["start_speed [m/s]", "start_elevation_deg", "velocity_x [m/s]"]
+    assert {"site_mass [kg]", "site_spin_period [s]", "site_north_error [m]", "time_s"} <= set(titles)
     rows = read_table(folder, "rest.csv")
     assert [row["sample"] for row in rows] == [str(sample) for sample in range(60)]
     # Every sample has the same first impact, and hard ground no scatter.

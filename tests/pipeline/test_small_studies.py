@@ -122,6 +122,18 @@ def test_runs_that_fail_in_a_corner_are_not_fitted_around(share: str, said: str,
     assert not (tmp_path / "out" / "screening.json").exists()
 
 
+def test_a_program_that_never_works_ends_the_study_soon_and_so_does_its_restart(tmp_path: Path) -> None:
+    (tmp_path / "never.py").write_text("import sys; sys.exit('\\x1b[31mno [/licence]')")
+    study = write_study(tmp_path, {"screening_level = 1": "screening_level = 2"}, tmp_path / "never.py")
+    for _ in range(2):
+        said = said_by("screen", study, "--out", tmp_path / "out", "--workers", 1, code=2)
+        assert "x RuntimeError: the program ended with exit code 1; its last words: no [/licence]), so the" in said
+        assert "give the same command again" in said
+        # Ten runs, and what was under way beside them.
+        assert 10 <= sum(entry.status == "failed" for entry in read_records(tmp_path / "out" / "runs.sqlite")) <= 12
+    assert "\x1b" not in lithobrake("runs", tmp_path / "out").stdout
+
+
 def test_a_second_coordinator_is_refused_while_the_first_goes_on(tmp_path: Path) -> None:
     study = write_study(tmp_path, {})
     command = [sys.executable, "-m", "lithobrake", "screen", str(study), "--out", str(tmp_path / "out")]
