@@ -61,8 +61,9 @@ def test_every_part_named_in_the_readme_is_a_package() -> None:
 def test_imports_of_third_parties_are_declared() -> None:
     """Each package that `lithobrake` imports is among the core dependencies, or an extra."""
     project = _project()
-    # Dask is imported only by who asks for a cluster.
-    entries = [*project["dependencies"], *project["optional-dependencies"]["dask"]]
+    # Dask is imported only by who asks for a cluster, pandas and xarray by who asks for their tables.
+    extras = project["optional-dependencies"]
+    entries = [*project["dependencies"], *extras["dask"], *extras["data"]]
     declared = {re.split(r"[>=<\[]", entry)[0] for entry in entries}
     # The last two come with the package that they belong to, which asks for the exact one it needs.
     names_on_index = {
