@@ -13,7 +13,7 @@ import pytest
 from lithobrake.chaos import Uniform, fit, smolyak
 from lithobrake.outputs import OUTPUTS
 from lithobrake.pipeline import STAGES, StudyFolder, rest, stage_keys
-from lithobrake.pipeline.expansions import design_inputs, kept_inputs, points
+from lithobrake.pipeline.designs import design_inputs, kept_inputs, points
 from lithobrake.pipeline.fates import shares, stays
 from lithobrake.pipeline.flights import COLUMNS, partner_time, starts
 from lithobrake.pipeline.landings import ORIENTATION, PLACE, acceleration, draw, in_words_of_the_study, medians

@@ -1,7 +1,7 @@
-"""The runs of a design: made by a campaign, kept as a table of the folder, and read from there by whatever comes after.
+"""The runs of a design as a table of the folder, from which every later stage reads them.
 
-Runs are made here and nowhere else. The ledger knows every run that was ever made; `designs/NAME.csv` holds those that
-this design asks for, in its order, so that later stages need neither the ledger nor the model.
+The ledger knows every run that was ever made; `designs/NAME.csv` holds those that a design asks for, in its order, so
+that what comes after needs neither the ledger nor the model.
 """
 
 import csv
@@ -11,12 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from lithobrake.atomic import atomic_path
-from lithobrake.campaign import Runs, missing
+from lithobrake.campaign import Runs
 from lithobrake.outputs import OUTPUTS
-from lithobrake.pipeline.designs import design_inputs, points, replicate_count
 from lithobrake.pipeline.folder import AGAIN, StudyFolder
-from lithobrake.pipeline.job import Job
-from lithobrake.pipeline.touchdowns import drawn_rows, touchdown_keys, touchdowns
 from lithobrake.reading import read_rows
 from lithobrake.study.units import OUTPUT_UNITS, input_units
 
@@ -29,7 +26,7 @@ class DesignRuns:
     """The runs of one design, in its order; all arrays of shape [run_count], NaN where a run has no such number.
 
     keys: of the ledger; the same where a point occurs twice. outcomes: how each ended, "failed" among them; reasons:
-    why those failed. inputs: all that a run was given and drew, in the file's units; outputs [SI]; wall_s, cpu_s: times.
+    why those failed. inputs: all that a run was given and drew, in the file's units; outputs [SI]; wall_s, cpu_s [s].
     """
 
     keys: list[str]
@@ -44,18 +41,43 @@ class DesignRuns:
     def of(cls, runs: Runs) -> "DesignRuns":
         """Those of a campaign."""
         records = runs.records
-        names = {part: dict.fromkeys(name for one in records for name in getattr(one, part)) for part in _PARTS}
-        inputs, outputs = (
-            {name: np.array([getattr(one, part).get(name, np.nan) for one in records]) for name in names[part]}
-            for part in _PARTS
-        )
         return cls(
-            [one.key for one in records],
-            runs.outcomes,
-            [reason or "" for reason in runs.reasons],
-            *(np.array([_number(getattr(one, name)) for one in records]) for name in ("wall_s", "cpu_s")),
-            inputs,
-            outputs,
+            keys=[one.key for one in records],
+            outcomes=runs.outcomes,
+            reasons=[reason or "" for reason in runs.reasons],
+            wall_s=np.array([one.wall_s for one in records], dtype=float),
+            cpu_s=np.array([one.cpu_s for one in records], dtype=float),
+            inputs=_by_name([one.inputs for one in records]),
+            outputs=_by_name([one.outputs for one in records]),
+        )
+
+    @classmethod
+    def distinct(cls, designs: Sequence["DesignRuns"]) -> "DesignRuns":
+        """Every run of several designs once."""
+        first = np.sort(np.unique([key for one in designs for key in one.keys], return_index=True)[1])
+
+        def words(name: str) -> list[str]:
+            return np.concatenate([np.array(getattr(one, name), dtype=object) for one in designs])[first].tolist()
+
+        def numbers(name: str) -> np.ndarray:
+            return np.concatenate([getattr(one, name) for one in designs])[first]
+
+        def tables(part: str) -> dict[str, np.ndarray]:
+            found = [getattr(one, part) for one in designs]
+            absent = [np.full(one.run_count, np.nan) for one in designs]
+            return {
+                name: np.concatenate([one.get(name, nan) for one, nan in zip(found, absent, strict=True)])[first]
+                for name in dict.fromkeys(name for one in found for name in one)
+            }
+
+        return cls(
+            keys=words("keys"),
+            outcomes=words("outcomes"),
+            reasons=words("reasons"),
+            wall_s=numbers("wall_s"),
+            cpu_s=numbers("cpu_s"),
+            inputs=tables("inputs"),
+            outputs=tables("outputs"),
         )
 
     @property
@@ -64,17 +86,9 @@ class DesignRuns:
         return len(self.keys)
 
     @property
-    def first_of_each(self) -> np.ndarray:
-        """Which runs come first of those that are the same, shape [run_count]."""
-        first = np.zeros(self.run_count, dtype=bool)
-        first[np.unique(self.keys, return_index=True)[1]] = True
-        return first
-
-    @property
     def y(self) -> np.ndarray:
         """Fitted outputs, shape [run_count, output_count]; a row of NaN where the lander did not leave."""
-        absent = np.full(self.run_count, np.nan)
-        y = np.column_stack([self.outputs.get(name, absent) for name in OUTPUTS])
+        y = np.column_stack([self.output(name) for name in OUTPUTS])
         clear = np.array(self.outcomes) == "clear"
         return np.where((clear & ~np.isnan(y).any(axis=1))[:, None], y, np.nan)
 
@@ -82,6 +96,10 @@ class DesignRuns:
     def has_outputs(self) -> np.ndarray:
         """Which runs have outputs, shape [run_count]."""
         return np.isfinite(self.y).all(axis=1)
+
+    def output(self, name: str) -> np.ndarray:
+        """One output, shape [run_count]."""
+        return self.outputs.get(name, np.full(self.run_count, np.nan))
 
     def columns(self, names: Sequence[str]) -> np.ndarray:
         """These inputs in columns, shape [run_count, len(names)]."""
@@ -109,20 +127,19 @@ class DesignRuns:
     def load(cls, folder: StudyFolder, design: str) -> "DesignRuns":
         """Read what `save` wrote. Raises DamagedFileError for another file."""
         rows = read_rows(folder / file_of(design), PLAIN_COLUMNS, AGAIN)
-        tables: dict[str, dict[str, np.ndarray]] = {"input": {}, "output": {}}
-        for title in rows[0] if rows else ():
-            part, colon, name = title.partition(":")
-            if colon:
-                tables[part][name.partition(" [")[0]] = _numbers(rows, title)
-        return cls(
-            *([row[name] for row in rows] for name in PLAIN_COLUMNS[:3]),
-            *(_numbers(rows, name) for name in PLAIN_COLUMNS[3:]),
-            tables["input"],
-            tables["output"],
+        inputs, outputs = (
+            {title.removeprefix(part): _numbers(rows, title) for title in rows[0] if title.startswith(part)}
+            for part in ("input:", "output:")
         )
-
-
-_PARTS = ("inputs", "outputs")
+        return cls(
+            keys=[row["key"] for row in rows],
+            outcomes=[row["outcome"] for row in rows],
+            reasons=[row["reason"] for row in rows],
+            wall_s=_numbers(rows, "wall_s"),
+            cpu_s=_numbers(rows, "cpu_s"),
+            inputs=inputs,
+            outputs=outputs,
+        )
 
 
 def file_of(design: str) -> str:
@@ -130,40 +147,14 @@ def file_of(design: str) -> str:
     return f"designs/{design}.csv"
 
 
-def make_runs(job: Job, design: str, kept: Sequence[str] = ()) -> None:
-    """Make the runs of a design, all points once, then again if asked; those that the ledger has are read from it.
-
-    Which runs they are is noted before they are made, so that whoever looks can tell them from all others.
-    Raises ValueError when too many have failed, or those that failed lie together.
-    """
-    inputs, x = tuple(design_inputs(job.study)), points(job.study, design, kept)
-    count, title = replicate_count(job.study, design), f"{design.replace('_', ' ')} runs"
-    titles = [f"{title}, {number} of {count} times" if count > 1 else title for number in range(1, count + 1)]
-    rows = [drawn_rows(job.study, inputs, x, replicate) for replicate in range(count)]
-    keys = [key for replicate, one in enumerate(rows) for key in touchdown_keys(job.study, one, replicate)]
-    job.folder.note_runs(design, keys)
-    made = [touchdowns(job, rows[replicate], words, replicate) for replicate, words in enumerate(titles)]
-    runs = Runs([record for one in made for record in one.records], sum(one.reused_count for one in made))
-    _account(job, design, runs, np.tile(x, (count, 1)), inputs)
-    DesignRuns.of(runs).save(job.folder, design)
-
-
-def _account(job: Job, design: str, runs: Runs, x: np.ndarray, inputs: Sequence[str]) -> None:
-    """Say what of a design was known before, and what is missing. Raises ValueError when too much is."""
-    name, distinct = design.replace("_", " "), len({record.key for record in runs.records})
-    if runs.reused_count:
-        job.say(f"{name}: {runs.reused_count} of {distinct} runs were known and are reused")
-    lost = missing(x, runs.reasons, inputs, job.study.campaign.failed_share)
-    if lost:
-        job.say(f"{name}: {lost}")
-
-
 def _numbers(rows: Sequence[Mapping[str, str]], title: str) -> np.ndarray:
     return np.array([float(row[title]) if row[title] else np.nan for row in rows])
 
 
-def _number(value: float | None) -> float:
-    return np.nan if value is None else value
+def _by_name(rows: Sequence[Mapping[str, float]]) -> dict[str, np.ndarray]:
+    """Numbers by name, shape [row_count], NaN where a row has none."""
+    names = dict.fromkeys(name for row in rows for name in row)
+    return {name: np.array([row.get(name, np.nan) for row in rows], dtype=float) for name in names}
 
 
 def _unit(name: str, units: Mapping[str, str]) -> str:

@@ -1,7 +1,7 @@
 """How much room the files of a study will take on the disk; sizes measured on scenarios/quick.toml and bounces.toml."""
 
 from lithobrake.outputs import OUTPUTS
-from lithobrake.pipeline.expansions import design_inputs
+from lithobrake.pipeline.designs import design_inputs
 from lithobrake.pipeline.expected_steps import ExpectedSoil
 from lithobrake.pipeline.planned_runs import PlannedRuns
 from lithobrake.pipeline.site import site_body

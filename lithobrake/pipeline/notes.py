@@ -17,7 +17,7 @@ from lithobrake.atomic import atomic_path
 from lithobrake.reading import NUMBER, check, read_json, reading
 
 NAME = "keys.json"
-FORMAT_VERSION = 2
+FORMAT_VERSION = 3
 REMEDY = "have the files of this folder made again with: lithobrake run STUDY.toml --out DIR"
 _FORM = {
     "study": {"file": str, "sha256": str},
@@ -29,7 +29,9 @@ _FORM = {
 # Format 1 had files and wall_s alone.
 _ABSENT: dict[str, Any] = {name: {} for name in _FORM} | {"study": {"file": "", "sha256": ""}}
 # The stage whose key says whether a design is still what the study asks for.
-_STAGE_OF_DESIGN = {"screening": "screen", "refined": "refine", "test_kept": "test", "test_all": "test"}
+_STAGE_OF_DESIGN = {
+    "screening": "screening_runs", "refined": "refined_runs", "test_kept": "test_runs", "test_all": "test_runs"
+}  # fmt: skip
 
 
 @dataclass(frozen=True)

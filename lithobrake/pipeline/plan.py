@@ -19,8 +19,7 @@ from lithobrake.pipeline.study_warnings import study_warnings
 from lithobrake.pipeline.surface import bed_files
 from lithobrake.study import Study, read_study
 
-# Stages that go through the runs.
-READ_RUNS = frozenset({"screen", "refine", "test", "sample", "rest", "summary"})
+MAKE_RUNS = frozenset({"screening_runs", "refined_runs", "test_runs"})
 
 
 @dataclass(frozen=True)
@@ -112,7 +111,7 @@ def plan_of(
 
 def _made(study: Study, stale: Set[str], runs: tuple[PlannedRuns, ...], beds: int) -> dict[str, tuple[int, int]]:
     """How many of each are to be made, at least and at most."""
-    new = [one.new for one in runs] if stale & READ_RUNS else [0]
+    new = [one.new for one in runs] if stale & MAKE_RUNS else [0]
     landings = int("landing" in stale and not study.solver.command)
     return {
         "beds": (beds, beds),

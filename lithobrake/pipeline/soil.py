@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lithobrake.pipeline.expansions import design_inputs, points
+from lithobrake.pipeline.designs import design_inputs, points
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.outgoing import VELOCITY, outgoing
 from lithobrake.pipeline.samples import CLEAR, outcome_model
@@ -117,4 +117,4 @@ def soil_bounce(job: Job, inputs: dict[str, np.ndarray]) -> SoilBounce:
 
     study, refined = job.study, load(job.folder / "refined.json")
     scatter = Scatter.of(job, refined) if study.monte_carlo.scatter else None
-    return SoilBounce(refined, outcome_model(job, refined), inputs, trained_ranges(study), scatter)
+    return SoilBounce(refined, outcome_model(job), inputs, trained_ranges(study), scatter)

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from lithobrake.pipeline.expansions import design_inputs
+from lithobrake.pipeline.designs import design_inputs
 from lithobrake.pipeline.expected_steps import ExpectedSoil
 from lithobrake.pipeline.landings import PLACE
 from lithobrake.pipeline.site import gravity_warning, site_warning

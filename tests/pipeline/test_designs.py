@@ -13,7 +13,7 @@ import pytest
 
 from lithobrake.outputs import OUTPUTS
 from lithobrake.pipeline import stage_keys
-from lithobrake.pipeline.expansions import points
+from lithobrake.pipeline.designs import points
 from lithobrake.study import Study, check_tables
 from lithobrake.study.template import template
 

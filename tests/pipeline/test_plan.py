@@ -16,7 +16,7 @@ from lithobrake.campaign import Record, available_cores, read_records
 from lithobrake.cli import app
 from lithobrake.outputs import OUTPUTS
 from lithobrake.pipeline import Plan, StudyFolder, plan_study
-from lithobrake.pipeline.expansions import design_inputs
+from lithobrake.pipeline.designs import design_inputs
 from lithobrake.pipeline.expected_disk import expected_bytes
 from lithobrake.pipeline.expected_steps import ExpectedSoil
 from lithobrake.pipeline.expected_time import run_time
