@@ -213,25 +213,15 @@ def _make(study: Path, out: Path, until: str, workers: int | None, scheduler: st
     # The bits of a least-squares fit depend on the threads of the linear algebra, which reads this when it is loaded.
     os.environ.update(OPENBLAS_NUM_THREADS="1", MKL_NUM_THREADS="1")
     with _one_sentence():
-        from lithobrake.study import read_study
+        from lithobrake.study import StudySource
 
         # A study that is refused is refused at once: what follows brings NumPy and the compiler.
-        read_study(study)
+        source = StudySource.read(study)
         from lithobrake.pipeline import run_study
         from lithobrake.progress import study_progress
 
         with study_progress() as shown:
-            run_study(
-                study,
-                out,
-                worker_count=workers,
-                scheduler=scheduler,
-                until=until,
-                begin=shown.begin,
-                progress=shown.progress,
-                say=shown.say,
-                keeps_logs=logs,
-            )
+            run_study(source, out, until=until, worker_count=workers, scheduler=scheduler, shown=shown, keeps_logs=logs)
 
 
 def _results(folder: Path) -> list[str]:

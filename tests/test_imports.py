@@ -16,12 +16,12 @@ ALLOWED: dict[str, set[str]] = {
     "campaign": set(),
     "smallbody": set(),
     "analysis": {"chaos"},
-    "results": set(),
+    "results": {"chaos", "study"},
     "report": {"chaos"},
     # The reader makes words of a command absolute as the campaign starts them.
     "study": {"chaos", "campaign", "smallbody", "touchdown"},
     "pipeline": {
-        *("dem", "touchdown", "chaos", "campaign", "smallbody", "analysis", "report"),
+        *("dem", "touchdown", "chaos", "campaign", "smallbody", "analysis", "report", "results"),
         "study",
     },
     "progress": {"progress_log"},

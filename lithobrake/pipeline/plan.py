@@ -90,7 +90,7 @@ def plan_of(
     runs = tuple(possible_runs(study, folder, "screen" not in stale, known))
     beds = sum(not folder.is_current([file], keys["bed"]) for file in bed_files(study))
     made = _made(study, stale.keys(), runs, beds)
-    soil = None if study.solver.command else ExpectedSoil.of(study, runs[-1].kept_count)
+    soil = None if not study.has_soil else ExpectedSoil.of(study, runs[-1].kept_count)
     workers = None if on_cluster else worker_count or available_cores()
     ended = [known[key] for key in runs[-1].known]
     sizes, free = expected_bytes(study, runs[-1], soil), _free(folder.path)
@@ -112,7 +112,7 @@ def plan_of(
 def _made(study: Study, stale: Set[str], runs: tuple[PlannedRuns, ...], beds: int) -> dict[str, tuple[int, int]]:
     """How many of each are to be made, at least and at most."""
     new = [one.new for one in runs] if stale & MAKE_RUNS else [0]
-    landings = int("landing" in stale and not study.solver.command)
+    landings = int("landing" in stale and study.has_soil)
     return {
         "beds": (beds, beds),
         "landings": (landings, landings),

@@ -125,16 +125,17 @@ def setting(study: Study) -> dict[str, dict[str, Any]]:
     }
 
 
-def make(job: Job, until: str, begin: Callable[[str, int, int], None]) -> None:
+def make(job: Job, until: str, note: Callable[..., None]) -> None:
     """Make every file up to and with a stage that is not there, or no longer what the study says.
 
-    begin: called with the title, the number and the count of the stages as each begins.
+    note: notes for other processes which stage is being made.
     """
     keys = stage_keys(job.study)
     last = [stage.name for stage in STAGES].index(until)
     kept: list[str] = []
     for number, stage in enumerate(STAGES[: last + 1], start=1):
-        begin(stage.title, number, last + 1)
+        note(stage=stage.title, number=number, count=last + 1)
+        job.shown.begin(stage.title, number, last + 1)
         files = stage.files(job.study)
         wanted = tuple(name for name in files if not job.folder.is_current([name], keys[stage.name]))
         if not wanted:

@@ -11,7 +11,7 @@ from lithobrake.campaign import run as run_campaign
 from lithobrake.outputs import OUTPUTS
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.landings import TouchdownModel, draw, engine_hash, medians
-from lithobrake.pipeline.solver import SolverModel, solver_command, solver_setting
+from lithobrake.pipeline.solver import FunctionModel, SolverModel, solver_command, solver_setting
 from lithobrake.pipeline.surface import bed_files, touchdown_reads
 from lithobrake.study import Study
 
@@ -72,7 +72,9 @@ def _drawn(study: Study, names: Sequence[str], row: Sequence[float], replicate: 
     return {name: float(value) for name, value in drawn.items()}
 
 
-def _model(job: Job) -> TouchdownModel | SolverModel:
+def _model(job: Job) -> TouchdownModel | SolverModel | FunctionModel:
+    if job.model is not None:
+        return FunctionModel(job.model)
     # Workers may have another working directory.
     folder = job.folder.path.absolute()
     if job.study.solver.command:

@@ -28,7 +28,7 @@ def problems(study: Study) -> Iterator[str]:
     yield from _place_problems(study)
     yield from _design_problems(study)
     yield from _solver_problems(study)
-    if study.solver.command is None:
+    if study.has_soil:
         yield from contact_problems(study)
     gravity = study.surface.gravity
     if not isinstance(gravity, str):
@@ -170,7 +170,7 @@ def _replicate_problems(study: Study) -> Iterator[str]:
     """Runs that would be made several times to the same end."""
     impact, count = study.impact, study.design.replicate_count
     drawn = study.bed.bed_count > 1 or impact.region or "random" in (impact.azimuth_deg, impact.orientation)
-    if count > 1 and not drawn and not study.solver.command:
+    if count > 1 and not drawn and study.has_soil:
         yield (
             f"design.replicate_count is {count}, but runs draw nothing by chance, so all {count} would be equal; "
             'give them something to draw (bed.bed_count, impact.region, azimuth_deg or orientation "random") or write 1'
@@ -180,7 +180,7 @@ def _replicate_problems(study: Study) -> Iterator[str]:
 def _solver_problems(study: Study) -> Iterator[str]:
     solver = study.solver
     if solver.command is None:
-        if solver.inputs:
+        if solver.inputs and study.has_soil:
             yield "solver.inputs has numbers, and solver.command is missing; give the command that reads them"
         return
     for name in solver.inputs:

@@ -45,6 +45,11 @@ class Study(Section):
     flight: FlightSection = FlightSection()
     rest: RestSection = RestSection()
 
+    @property
+    def has_soil(self) -> bool:
+        """Whether this program's own soil makes the touchdowns, and not a program or function of the user's own."""
+        return self.solver.command is None and self.solver.function is None
+
     def touchdown_values(self) -> dict[str, Scalar]:
         """Every scalar that the touchdown reads, by dotted key, in the units of the file; absent ones are left out."""
         values: dict[str, Scalar] = {}

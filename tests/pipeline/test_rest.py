@@ -16,6 +16,7 @@ from lithobrake.outputs import OUTPUTS
 from lithobrake.pipeline import Job, StudyFolder
 from lithobrake.pipeline.fates import ENDS, landing_results, proportion
 from lithobrake.pipeline.flights import COLUMNS, read_table, write_table
+from lithobrake.pipeline.job import Silent
 from lithobrake.pipeline.rest import follow_samples
 from lithobrake.pipeline.samples import SAMPLE_OUTCOMES, Samples
 from lithobrake.pipeline.scatter import Scatter
@@ -147,7 +148,9 @@ def test_hard_ground_is_followed_from_the_first_impact_and_the_summary_adds_up(t
     Samples.of([], OUTPUTS, np.zeros((100, 0)), outputs, drawn).save(folder)
     said: list[str] = []
     with ThreadPoolExecutor(1) as executor:
-        job = Job(study, {}, folder, executor, lambda *_: None, said.append)
+        shown = Silent()
+        shown.say = said.append  # type: ignore[method-assign]
+        job = Job(study, {}, folder, executor, shown)
         follow_samples(job)
         write_table(folder, "flights.csv", COLUMNS, [])
         folder.write_json("flights.json", {})
