@@ -17,7 +17,7 @@ from typing import Any
 from grains_beds import origin
 
 from lithobrake.dem import World
-from lithobrake.pipeline.expected_steps import CROSSINGS, FALLS, SETTLING, STEPS_PER_PERIOD, ExpectedSoil
+from lithobrake.pipeline.expected_steps import FALLS, SETTLING, STEPS_PER_PERIOD, ExpectedSoil
 from lithobrake.pipeline.expected_time import landing_time, pour_time
 from lithobrake.pipeline.pace import REFERENCE, probe
 from lithobrake.study import read_study
@@ -91,7 +91,7 @@ def landed(bed: Bed, soil: ExpectedSoil, clock: Clock) -> list[dict[str, Any]]:
             {
                 "status": outcome.status,
                 "speed_m_s": event.speed,
-                "crossings": CROSSINGS * outcome.simulated_time / soil.touchdown_time(body, event),
+                "crossings": outcome.simulated_time * event.speed / (2.0 * body.shape.bounding_radius + soil.diameter),
                 "relaxing": steps["relaxing"] / (STEPS_PER_PERIOD * PERIODS_RELAXED),
                 "relaxing_us_a_step": 1e6 * clock.seconds["relaxing"] / steps["relaxing"],
                 "touching_us_a_step": 1e6 * clock.seconds["touching"] / steps["touching"],

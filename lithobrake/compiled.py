@@ -121,6 +121,11 @@ class KernelCache(NullCache):
         """Whether a form lies on disk."""
         return self._disk.has(self._file(sig, target_context.codegen()))
 
+    def has_any(self) -> bool:
+        """Whether any form lies on disk."""
+        folder = self._disk.folder
+        return folder is not None and any(folder.glob(f"{self._name}-*"))
+
     def load_overload(self, sig: Any, target_context: Any) -> CompileResult | None:
         """Read a form, if it lies on disk."""
         target_context.refresh()
@@ -135,6 +140,11 @@ class KernelCache(NullCache):
     def _file(self, sig: Any, codegen: Any) -> str:
         form = hashlib.sha256(f"{sig} {codegen.magic_tuple()}".encode()).hexdigest()[:16]
         return f"{self._name}-{form}"
+
+
+def lies_on_disk(function: Any) -> bool:
+    """Whether a compiled function, called from Python, lies on disk in some form."""
+    return isinstance(function, Kernel) and function._cache.has_any()
 
 
 @cache

@@ -33,7 +33,7 @@ class DiskCache:
         """Take the folder of this name, which is made when it is first needed."""
         root = os.environ.get("LITHOBRAKE_CACHE") or os.environ.get("XDG_CACHE_HOME") or "~/.cache"
         self._path = Path(root) / "lithobrake" / name
-        self._told, self._thread = False, threading.Lock()
+        self._told, self._waited, self._thread = False, False, threading.Lock()
 
     @cached_property
     def folder(self) -> Path | None:
@@ -101,7 +101,7 @@ class DiskCache:
 
     @contextmanager
     def turn(self, meanwhile: str) -> Iterator[None]:
-        """Wait until no other thread or process is in its turn; for a process say the sentence `meanwhile`.
+        """Wait until no other thread or process is in its turn; for a process say the sentence `meanwhile`, once.
 
         Where nothing can be kept no process waits: there would be nothing to find.
         """
@@ -116,7 +116,9 @@ class DiskCache:
                 try:
                     fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
                 except BlockingIOError:
-                    log.warning(meanwhile)
+                    if not self._waited:
+                        log.warning(meanwhile)
+                    self._waited = True
                     fcntl.flock(lock, fcntl.LOCK_EX)
             # Some file systems have no locks: the work is then done by each, as it would be without a cache.
             except OSError as error:

@@ -40,7 +40,8 @@ def closed_faces(vertices: Vertices, faces: Faces, where: str) -> Faces:
 
 def volume_of(vertices: Vertices, faces: Faces) -> float:
     """Volume inside a closed surface [m3], negative where its facets face inwards."""
-    corner = vertices[faces] - vertices.mean(axis=0)
+    # A vertex that no facet uses may lie so far off that nothing is left of the digits.
+    corner = vertices[faces] - vertices[np.unique(faces)].mean(axis=0)
     return float(np.einsum("fi,fi->", corner[:, 0], np.cross(corner[:, 1], corner[:, 2])) / 6.0)
 
 

@@ -40,8 +40,8 @@ def _read_obj(path: Path) -> Mesh:
             if words[0].lower() == "v":
                 vertices.append([float(word) for word in words[1:4]])
                 continue
-            given = [int(word.split("/")[0]) for word in words[1:]]
-        except ValueError as error:
+            given = np.array([int(word.split("/")[0]) for word in words[1:]], dtype=np.int64).tolist()
+        except (ValueError, OverflowError) as error:
             raise ValueError(f"{path}: line {number}, {line.strip()!r} is not a vertex or a facet.") from error
         # Negative numbers count back from the newest vertex; zero names none and is refused with the others later.
         corners = [len(vertices) + corner if corner < 0 else corner - 1 for corner in given]
@@ -60,7 +60,9 @@ def _read_stl(path: Path) -> Mesh:
     if corners is None:
         corners = _stl_text(path, data)
     if not len(corners):
-        raise ValueError(f"{path}: holds no facets.")
+        raise ValueError(
+            f"{path}: has no facets: neither 'vertex' lines of a text STL nor the length of a binary one; export anew."
+        )
     vertices, index = np.unique(corners.reshape(-1, 3) + 0.0, axis=0, return_inverse=True)
     return vertices, index.reshape(-1, 3).astype(np.int64)
 
@@ -100,6 +102,7 @@ def _read_plates(path: Path) -> Mesh:
     rows = [row for row in rows if row]
     if rows and rows[0][0].lower() == "v":
         return _read_obj(path)
+    layout = "give the number of vertices, a line a vertex, the number of plates, a line a plate"
     try:
         counts = [int(word) for word in rows[0]]
         vertices = np.array([row[-3:] for row in rows[1 : counts[0] + 1]], dtype=np.float64)
@@ -108,10 +111,10 @@ def _read_plates(path: Path) -> Mesh:
             counts.append(int(rows[next_row][0]))
             next_row += 1
         plates = np.array([row[-3:] for row in rows[next_row : next_row + counts[1]]], dtype=np.int64) - 1
-    except (ValueError, IndexError) as error:
-        raise ValueError(
-            f"{path}: not a plate model, {error}; its first line must give the number of vertices."
-        ) from error
+    except IndexError as error:
+        raise ValueError(f"{path}: not a plate model, it ends after {len(rows)} lines; {layout}.") from error
+    except (ValueError, OverflowError) as error:
+        raise ValueError(f"{path}: not a plate model, {error}; {layout}.") from error
     if (len(vertices), len(plates)) != tuple(counts[:2]) or len(rows) != next_row + counts[1]:
         raise ValueError(f"{path}: {len(rows)} lines do not fit {counts[0]} vertices and {counts[1]} plates.")
     return vertices.reshape(-1, 3), plates.reshape(-1, 3)

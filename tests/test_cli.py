@@ -18,7 +18,21 @@ RUNNER = CliRunner()
 def test_help_names_the_commands() -> None:
     shown = RUNNER.invoke(app, ["--help"])
     assert shown.exit_code == 0
-    for name in ("new", "run", "status", "runs", "bed", "screen", "refine", "test", "sample", "fly", "report", "view"):
+    for name in (
+        "new",
+        "plan",
+        "run",
+        "status",
+        "runs",
+        "bed",
+        "screen",
+        "refine",
+        "test",
+        "sample",
+        "fly",
+        "report",
+        "view",
+    ):
         assert f" {name} " in shown.stdout
 
 

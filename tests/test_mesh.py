@@ -18,6 +18,7 @@ OCTAHEDRON = np.array([[0, 1, 2], [1, 3, 2], [3, 4, 2], [4, 0, 2], [1, 0, 5], [3
 def test_a_volume_has_the_sign_of_its_facets() -> None:
     assert volume_of(CUBE, FACES) == pytest.approx(1.0, rel=1e-14)
     assert volume_of(CUBE, FACES[:, ::-1]) == pytest.approx(-1.0, rel=1e-14)
+    assert volume_of(np.concatenate([CUBE, [[1e12] * 3]]), FACES) == volume_of(CUBE, FACES)
     assert volume_of(CUBE + 7.0, FACES) == pytest.approx(mass_properties(CUBE + 7.0, FACES)[0], rel=1e-12)
 
 

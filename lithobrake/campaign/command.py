@@ -159,6 +159,12 @@ def _answer(path: Path) -> dict[str, Any]:
     if not isinstance(content, dict) or not isinstance(content.get("outputs", {}), dict):
         raise ValueError("outputs.json is no JSON object of numbers by name; mend what the program writes")
     answer = content if "outputs" in content or "outcome" in content else {"outputs": content}
+    beside = [name for name in answer if name not in ("outcome", "outputs", "draws")]
+    if beside and "outputs" not in answer:
+        raise ValueError(
+            f"outputs.json has {', '.join(beside)} beside the outcome; allowed: "
+            '{"outcome": a word, "outputs": numbers by name}; put the numbers into outputs'
+        )
     outputs = answer.setdefault("outputs", {})
     for name, value in outputs.items():
         if not _is_number(value):

@@ -6,6 +6,7 @@ import json
 import math
 import os
 import platform
+import reprlib
 import time
 import traceback
 from collections.abc import Callable, Iterator, Mapping
@@ -49,7 +50,10 @@ def _checked(answer: Mapping[str, Any]) -> dict[str, Any]:
         raise FloatingPointError(f"the outputs {', '.join(infinite)} are infinite")
     outcome, draws = str(whole.get("outcome", "done")), dict(whole.get("draws", {}))
     # What the ledger cannot hold is this run's failure, not the campaign's.
-    json.dumps(draws, allow_nan=False)
+    try:
+        json.dumps(draws, allow_nan=False)
+    except (TypeError, ValueError) as error:
+        raise ValueError(f"the draws are {reprlib.repr(draws)}; allowed: finite numbers and texts by name") from error
     return {"status": "done", "outcome": outcome, "outputs": outputs, "draws": draws}
 
 

@@ -110,6 +110,8 @@ def _inputs_of(x: "np.ndarray", names: Sequence[str], fixed: Mapping[str, float]
         raise ValueError(
             f"x has shape {table.shape}; allowed: [run_count, {len(names)}], one column for each of the names"
         )
+    if repeated := [name for number, name in enumerate(names) if name in names[:number]]:
+        raise ValueError(f"names has {repeated[0]!r} twice; allowed: a name of its own for each column of x")
     if not np.isfinite(table).all():
         raise ValueError("x holds values that are not finite; every input of a run must be a number")
     return [{**fixed, **dict(zip(names, row.tolist(), strict=True))} for row in table]

@@ -21,7 +21,8 @@ def expected_bytes(study: Study, runs: PlannedRuns, soil: ExpectedSoil | None) -
     """Bytes at most of the files of a finished study, by what they hold; what a program of one's own leaves apart."""
     samples, flights, journeys = study.monte_carlo, flight_count(study), journey_count(study)
     # Captured and staying are a byte each.
-    row = NUMBER * (len(design_inputs(study)) + len(OUTPUTS) * (1 + samples.scatter) + 1) + 2
+    # The outcome takes one byte.
+    row = NUMBER * (len(design_inputs(study)) + len(OUTPUTS) * (1 + samples.scatter)) + 1
     found = {
         "runs": LEDGER_RUN * runs.total,
         "samples": samples.sample_count * row,

@@ -29,8 +29,10 @@ RAIN_FRACTION = 0.31  # of the rain is bounding spheres
 SOLID_FRACTION = 0.6  # of a settled bed
 FALLS = 1.4  # until poured grains lie, in the time that the highest falls
 SETTLING = 3.5  # steps that a bed settles for, over the fewest that its criteria of rest ask for
-RELAXING = 5.5  # likewise, for a bed that takes on the material of a landing
-CROSSINGS = 3.0  # until a lander is clear, in the time in which it crosses itself and a grain at the speed of impact
+RELAXING = 6.0  # likewise, for a bed that takes on the material of a landing
+# Until a lander is clear, in the time in which it crosses itself and a grain at the speed of impact: the first, and
+# what the square of the depth over the lander's size adds, up to DEEP, since a floor gives back what grains do not.
+CROSSINGS, CROSSINGS_OF_DEPTH, DEEP = 2.0, 2.2, 2.0
 OUTGOING = 0.5  # speed of a lander that leaves, over that of its impact
 HELD_CROSSINGS = 0.4  # likewise, where it comes too slowly to leave and is soon captured
 # Fewest steps in which a period of a grain is settled through (settling.run_quietly).
@@ -114,8 +116,9 @@ class ExpectedSoil:
 
         rise = -landing.gravity[2] * CAPTURED_APEX * lander.smallest_edge
         leaves = 0.5 * (OUTGOING * landing.speed) ** 2 > rise
-        size = 2.0 * lander.shape.bounding_radius + self.diameter
-        return (CROSSINGS if leaves else HELD_CROSSINGS) * size / landing.speed
+        size = 2.0 * lander.shape.bounding_radius
+        crossings = CROSSINGS + CROSSINGS_OF_DEPTH * min(self.depth / size, DEEP) ** 2
+        return (crossings if leaves else HELD_CROSSINGS) * (size + self.diameter) / landing.speed
 
     def _shortest_contact(
         self, speed: float, lander: "Lander | None" = None, landing: "Landing | None" = None

@@ -23,14 +23,14 @@ if TYPE_CHECKING:
 Span = tuple[float, float]
 
 # A step of a landing, and of grains that settle, which are looked at more often: of the bed, and of each grain [s].
-LANDING_STEP, LANDING_GRAIN = 4.0e-5, 4.5e-7
-SETTLING_STEP, SETTLING_GRAIN = 8.0e-5, 6.0e-7
+LANDING_STEP, LANDING_GRAIN = 3.5e-5, 5.0e-7
+SETTLING_STEP, SETTLING_GRAIN = 6.0e-5, 7.0e-7
 COMPILING = 60.0  # s
 # Flights and journeys over a body of FACETS facets [s]: by the table, once it is built, and by the facets' sum.
 FACETS, TABLE, FLIGHT, EXACT_FLIGHT, JOURNEY, EXACT_JOURNEY = 1920, 10.0, 2.0e-4, 3.5e-3, 1.1e-3, 2.0e-2
 REPORT = 15.0  # s: fits, scores, samples, summary and page
-# An estimate and the time that it then took differ by this factor, either way.
-SPREAD = 1.6
+# An estimate and the time that it then took differ by these factors, either way; that of touchdowns by the second.
+SPREAD, SPREAD_OF_TOUCHDOWNS = 1.6, 2.0
 # So many runs of a study tell how long the others take, to this factor at best.
 RUNS_THAT_TELL, SPREAD_OF_RUNS = 5, 1.15
 BUSY = 0.7  # of the cores: a load above this is other work
@@ -117,7 +117,8 @@ def run_time(soil: ExpectedSoil | None, ended: Sequence[Record], pace: float) ->
         return mean / factor, mean * factor
     if soil is None:
         return None
-    return spread(pace * statistics.fmean(landing_time(soil, *landing) for landing in soil.landings[1:]))
+    mean = pace * statistics.fmean(landing_time(soil, *landing) for landing in soil.landings[1:])
+    return mean / SPREAD_OF_TOUCHDOWNS, mean * SPREAD_OF_TOUCHDOWNS
 
 
 def landing_time(soil: ExpectedSoil, lander: "Lander", landing: "Landing") -> float:

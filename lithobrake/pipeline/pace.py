@@ -2,8 +2,6 @@
 
 import time
 from functools import cache
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -20,10 +18,10 @@ def machine_pace() -> float | None:
 
 def engine_is_compiled() -> bool:
     """Whether the compiled engine lies on the disk."""
-    from lithobrake.dem import advance
+    from lithobrake.compiled import lies_on_disk
+    from lithobrake.dem.advance import advance
 
-    time_loop: Any = advance.advance
-    return any(Path(time_loop.stats.cache_path).glob("*advance*.nbi"))
+    return lies_on_disk(advance)
 
 
 def probe() -> float:

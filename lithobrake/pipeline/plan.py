@@ -11,13 +11,14 @@ from lithobrake.pipeline.expected_disk import expected_bytes, flight_count, jour
 from lithobrake.pipeline.expected_steps import ExpectedSoil
 from lithobrake.pipeline.expected_time import Span, basis, expected_seconds
 from lithobrake.pipeline.folder import StudyFolder
-from lithobrake.pipeline.plan_lines import brief_lines, plan_lines
+from lithobrake.pipeline.owner import refuse_others_folder
+from lithobrake.pipeline.plan_lines import brief_lines, bytes_in_words, plan_lines
 from lithobrake.pipeline.planned_runs import PlannedRuns, known_runs, possible_runs
 from lithobrake.pipeline.site import with_site_gravity
 from lithobrake.pipeline.stages import STAGES, stage_keys
 from lithobrake.pipeline.study_warnings import study_warnings
 from lithobrake.pipeline.surface import bed_files
-from lithobrake.study import Study, read_study
+from lithobrake.study import Study, StudySource
 
 MAKE_RUNS = frozenset({"screening_runs", "refined_runs", "test_runs"})
 
@@ -74,9 +75,12 @@ class Plan:
 def plan_study(path: Path, out: Path, worker_count: int | None = None) -> Plan:
     """Say what `run_study` would do with the same arguments; nothing is written.
 
-    Raises ValueError for a study file that is refused, a mesh that cannot be read, a ledger that is none.
+    Raises ValueError for a study file that is refused, a folder of something else, a mesh that cannot be read, a ledger
+    that is none.
     """
-    study = with_site_gravity(read_study(path), path.name)
+    source = StudySource.read(path)
+    study = with_site_gravity(source.study, source.name)
+    refuse_others_folder(source, out)
     return plan_of(study, study.title or path.stem, StudyFolder.only_read(out), worker_count)
 
 
@@ -94,6 +98,7 @@ def plan_of(
     workers = None if on_cluster else worker_count or available_cores()
     ended = [known[key] for key in runs[-1].known]
     sizes, free = expected_bytes(study, runs[-1], soil), _free(folder.path)
+    room = _no_room(sum(sizes.values()), free) if stale else []
     return Plan(
         study=name,
         folder=str(folder.path),
@@ -105,7 +110,7 @@ def plan_of(
         basis=basis(made, soil, ended),
         bytes=sizes,
         free_bytes=free,
-        warnings=tuple(study_warnings(study, soil)),
+        warnings=(*room, *study_warnings(study, soil)),
     )
 
 
@@ -121,6 +126,16 @@ def _made(study: Study, stale: Set[str], runs: tuple[PlannedRuns, ...], beds: in
         "flights": (0, flight_count(study) if "fly" in stale else 0),
         "journeys": (journey_count(study),) * 2 if "rest" in stale else (0, 0),
     }
+
+
+def _no_room(needed: int, free: int) -> list[str]:
+    """A disk that is too small."""
+    if needed <= free:
+        return []
+    return [
+        f"The files will take about {bytes_in_words(needed)} and only {bytes_in_words(free)} are free: make room, or "
+        "choose another folder with --out."
+    ]
 
 
 def _free(path: Path) -> int:

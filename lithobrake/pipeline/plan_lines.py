@@ -25,7 +25,8 @@ def plan_lines(plan: "Plan") -> list[str]:
         lines += [f"To make: {_made(plan)}.", f"Touchdowns: {_designs(plan)}.", f"Time: {_time(plan)}."]
         lines += [f"  {what}: {_seconds(*part)}" for what, part in plan.seconds.items() if part is not None]
         lines += [f"  {plan.basis}"]
-    lines += [f"Disk: about {_bytes(sum(plan.bytes.values()))} when finished; {_bytes(plan.free_bytes)} are free."]
+    size, free = bytes_in_words(sum(plan.bytes.values())), bytes_in_words(plan.free_bytes)
+    lines += [f"Disk: about {size} when finished; {free} are free."]
     lines += [f"Warnings: {len(plan.warnings) or 'none'}."]
     return lines + [f"  {number}. {warning}" for number, warning in enumerate(plan.warnings, start=1)]
 
@@ -36,7 +37,7 @@ def brief_lines(plan: "Plan", command: str) -> list[str]:
     said = "No warnings." if count == 0 else f"{count} warning{'s, the first' * (count > 1)}: {plan.warnings[0]}"
     return [
         f"To make: {_made(plan)}.",
-        f"Expected: {_time(plan)}; {_bytes(sum(plan.bytes.values()))} on the disk when finished.",
+        f"Expected: {_time(plan)}; {bytes_in_words(sum(plan.bytes.values()))} on the disk when finished.",
         f"{said} All of the plan: {command}",
     ]
 
@@ -84,7 +85,7 @@ def _in_unit(seconds: float) -> tuple[float, str]:
     return seconds / 86_400.0, "days"
 
 
-def _bytes(count: float) -> str:
+def bytes_in_words(count: float) -> str:
     """A size on the disk."""
     for limit, unit, size in ((1e6, "kB", 1e3), (1e9, "MB", 1e6), (1e12, "GB", 1e9)):
         if count < limit:

@@ -82,8 +82,8 @@ def checked(what: str, answer: Mapping[str, Any]) -> dict[str, Any]:
 def completed(outputs: Mapping[str, float]) -> dict[str, float]:
     """The outputs with speed [m/s] and elevation [rad], where only the components of the velocity were given."""
     found = {name: float(value) for name, value in outputs.items()}
-    x, y, z = (found.get(f"velocity_out_{axis}", math.nan) for axis in "xyz")
-    if math.isfinite(x + y + z):
+    if all(f"velocity_out_{axis}" in found for axis in "xyz"):
+        x, y, z = (found[f"velocity_out_{axis}"] for axis in "xyz")
         found.setdefault("speed_out", math.hypot(x, y, z))
         found.setdefault("elevation_out", math.atan2(z, math.hypot(x, y)))
     return found

@@ -86,7 +86,8 @@ def run_study(
         folder.begin(source.path, source.content, setting(study), shown.say)
         if until == "report":
             plan = plan_of(study, source.stem, folder, worker_count, on_cluster=scheduler is not None)
-            for line in plan.brief(f"lithobrake plan {source.name}") if plan.stages else ():
+            command = f"lithobrake plan {source.path or 'STUDY.toml'} --out {folder.path}"
+            for line in plan.brief(command) if plan.stages else ():
                 shown.say(line)
         try:
             make(Job(study, source.tables, folder, executor, shown, model, keeps_logs), until, note)

@@ -86,7 +86,7 @@ def bed(data: Results) -> str:
     """Figure 1."""
     if data.bed is None:
         program = data.study["solver"]["command"]
-        return f"The touchdowns were made by {program or 'a function'} of the study's author, which has pictures of its own."
+        return f"The touchdowns were made by {program or 'a function'} of the study's author."
     study, first = data.study["bed"], data.results["beds"][0]
     width = " x ".join(f"{length:g}" for length in study["width"])
     return (

@@ -29,6 +29,7 @@ from lithobrake.smallbody.shape import Shape
 from lithobrake.smallbody.trajectory import FAILED, fly_lanes
 
 CHUNK = 1024  # flights that a thread takes at a time
+FARTHEST = 1e20  # of a start, in m and in m/s
 
 
 def fly(
@@ -186,9 +187,14 @@ def _starts(position: ArrayLike, velocity: ArrayLike) -> NDArray[np.float64]:
     if where.shape != rate.shape or where.ndim != 2 or where.shape[1] != 3:
         raise ValueError(f"position has shape {where.shape} and velocity {rate.shape}; both must be [count, 3].")
     starts = np.concatenate([where, rate], axis=1)
-    if not np.isfinite(starts).all():
-        flight = int(np.flatnonzero(~np.isfinite(starts).all(axis=1))[0])
-        raise ValueError(f"flight {flight} starts from {starts[flight]}; positions and velocities must be finite.")
+    # The square of a much larger number is infinite, and such a flight would never end.
+    far = ~(np.abs(starts) < FARTHEST).all(axis=1)
+    if far.any():
+        flight = int(np.flatnonzero(far)[0])
+        raise ValueError(
+            f"flight {flight} starts from {starts[flight]}; positions and velocities must be finite, and below "
+            f"{FARTHEST:g} m and m/s."
+        )
     return starts
 
 

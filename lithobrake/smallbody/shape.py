@@ -40,7 +40,10 @@ class Shape:
         given = np.asarray(faces)
         if not np.issubdtype(given.dtype, np.integer):
             raise ValueError(f"{name}: faces have the type {given.dtype}; give vertex indices as integers.")
-        self.faces = np.ascontiguousarray(closed_faces(self.vertices, given.astype(np.int64), name))
+        faces = closed_faces(self.vertices, given.astype(np.int64), name)
+        # Vertices that no facet uses are not of the body.
+        used, index = np.unique(faces, return_inverse=True)
+        self.vertices, self.faces = self.vertices[used], np.ascontiguousarray(index.reshape(faces.shape))
         self.volume, self.centroid, self.inertia_per_density = mass_properties(self.vertices, self.faces)
         self.vertices.flags.writeable = self.faces.flags.writeable = False
 

@@ -15,11 +15,14 @@ from lithobrake.study.study import Study
 LIGHTEST, HEAVIEST = 300.0, 8000.0
 # Diameter of the ball of equal volume [m]: from the smallest asteroids seen to Ceres.
 SMALLEST, LARGEST = 1.0, 1e6
+# Spin period [s]: the shortest known is that of 2020 HS7, 3.0 s (Beniyama et al. 2022, PASJ 74, 877).
+FASTEST = 1.0
 
 
 def body_problems(study: Study) -> Iterator[str]:
     """One sentence for each thing wrong; a mesh is read for that, and no kernel is compiled or loaded."""
     site = study.site
+    yield from _spin_problems(study)
     if site.body in BUILT_IN_BODIES:
         yield from _unit_problems(study)
         # Loading a built-in shape takes a second: only where the study changes what is known to be right.
@@ -40,6 +43,15 @@ def body_problems(study: Study) -> Iterator[str]:
 def _unit_problems(study: Study) -> Iterator[str]:
     if study.site.unit != "m":
         yield f'site.unit is "{study.site.unit}", and site.body is built in; a unit goes with a mesh: leave it out'
+
+
+def _spin_problems(study: Study) -> Iterator[str]:
+    shortest = math.inf if study.site.spin_period is None else usual_reach(study.site.spin_period)[0]
+    if shortest < FASTEST:
+        yield (
+            f"site.spin_period reaches down to {shortest:.4g} s; allowed: at least {FASTEST:g} s, as no known body "
+            "turns faster; is it in hours or days? write seconds"
+        )
 
 
 def _lacking(study: Study) -> Iterator[str]:

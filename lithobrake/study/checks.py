@@ -16,6 +16,8 @@ from lithobrake.study.study import Study
 
 # A bed narrower than this many lander diameters would hold the lander between its walls.
 BED_WIDTH_PER_LANDER = 2.0
+# An attitude is scaled to length 1; one so much longer or shorter is a slip, and its square may not be a number.
+LONGEST_QUATERNION = 1e3
 # Fewer grains across are no bed.
 BED_WIDTH_PER_GRAIN = 3.0
 
@@ -104,8 +106,13 @@ def _place_problems(study: Study) -> Iterator[str]:
     impact, half = study.impact, [width / 2 for width in study.bed.width]
     if impact.place is not None and impact.region is not None:
         yield "impact.place and impact.region are both given; keep one: a place for all runs, or a region to draw from"
-    if isinstance(impact.orientation, tuple) and not any(impact.orientation):
-        yield "impact.orientation is [0, 0, 0, 0], which is no rotation; write [1, 0, 0, 0] for none"
+    length = math.hypot(*impact.orientation) if isinstance(impact.orientation, tuple) else 1.0
+    if not 1.0 / LONGEST_QUATERNION <= length <= LONGEST_QUATERNION:
+        yield (
+            f"impact.orientation is {show(impact.orientation)}, a quaternion of length {length:.3g}; "
+            f"allowed: {1.0 / LONGEST_QUATERNION:g} to {LONGEST_QUATERNION:g}, which is then made 1; "
+            "write [1, 0, 0, 0] for no rotation"
+        )
     for key, spot in (("place", impact.place), ("region", impact.region)):
         if spot is None:
             continue

@@ -39,7 +39,10 @@ def load_tables(path: Path) -> dict[str, Any]:
         return tomllib.loads(path.read_text(encoding="utf-8-sig"))
     except tomllib.TOMLDecodeError as error:
         raise StudyError([f"{path.name}: this is not TOML: {error}; mend that line"]) from error
-    except (OSError, UnicodeDecodeError) as error:
+    except UnicodeDecodeError as error:
+        byte = f"byte {error.start + 1} is 0x{error.object[error.start]:02x}"
+        raise StudyError([f"{path.name}: this is not text in UTF-8, {byte}; save it in that encoding"]) from error
+    except OSError as error:
         raise StudyError([f"{path}: the study file cannot be read ({error}); name an existing TOML file"]) from error
     except RecursionError as error:
         raise StudyError(

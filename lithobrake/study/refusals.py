@@ -6,6 +6,12 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 LONGEST = 200  # characters of a value that a sentence shows
+# What a key takes that holds no number, by the error of the schema.
+TYPES = {
+    "string_type": "text; write it in quotation marks",
+    "bool_type": "true or false; write it without quotation marks",
+    "tuple_type": "a list; write its entries in square brackets",
+}
 
 
 def closest(word: object, known: Iterable[str]) -> str:
@@ -44,7 +50,9 @@ def sentences(errors: Sequence[Mapping[str, Any]], known_keys: Mapping[str, tupl
 
     errors: as pydantic lists them. known_keys: names allowed in each table, by the dotted name of the table ("" = top).
     """
-    return [_sentence(error, known_keys) for error in errors]
+    # A list that has lost a wrong entry is told again as one that is too short.
+    within = {error["loc"][:length] for error in errors for length in range(len(error["loc"]))}
+    return [_sentence(error, known_keys) for error in errors if error["loc"] not in within]
 
 
 def _sentence(error: Mapping[str, Any], known_keys: Mapping[str, tuple[str, ...]]) -> str:
@@ -74,4 +82,6 @@ def _sentence(error: Mapping[str, Any], known_keys: Mapping[str, tuple[str, ...]
         return f"{key} is {show(found)}; allowed: at least {least} entry; leave the key out for its default"
     if kind in {"model_type", "model_attributes_type", "dict_type"}:
         return f"{key} is {show(found)}; allowed: a table; write [{key}] with its keys below"
+    if kind in TYPES:
+        return f"{key} is {show(found)}; allowed: {TYPES[kind]}"
     return f"{key} is {show(found)}; {error['msg'].replace('Input should be', 'it must be')}"

@@ -59,6 +59,8 @@ FAILURES = [
     ("leave('{\"height\": 1' + '0' * 400 + '}')", "000 for height; allowed: a finite number"),
     ('leave(\'{"outputs": {"height": 1}, "outcome": [1]}\')', "has [1] for outcome; allowed: a word"),
     ('leave(\'{"outputs": {"height": 1}, "draws": [1]}\')', "has [1] for draws; allowed: a JSON object"),
+    ('leave(\'{"outcome": "up", "height": 1}\')', "has height beside the outcome; allowed"),
+    ('leave(\'{"outputs": {"height": 1}, "draws": {"a": NaN}}\')', "the draws are {'a': nan}; allowed: finite numbers"),
     ("os.remove('log.txt'); sys.exit(3)", "exit code 3; its last words: its log is no longer there"),
     ("json.dump({'depth': 1.0}, open('outputs.json', 'w')); sys.exit(0)", "outputs.json lacks height"),
 ]

@@ -107,6 +107,8 @@ def test_x_must_fit_the_names_and_be_finite(tmp_path: Path) -> None:
         campaign(tmp_path, models.parabola, HereExecutor(), np.ones((2, 3)))
     with pytest.raises(ValueError, match="not finite"):
         campaign(tmp_path, models.parabola, HereExecutor(), np.array([[1.0, np.nan]]))
+    with Ledger(tmp_path / "twice.sqlite") as ledger, pytest.raises(ValueError, match="names has 'a' twice"):
+        run(models.parabola, np.ones((2, 2)), names=("a", "a"), ledger=ledger, executor=HereExecutor())
 
 
 def test_the_ledger_reads_as_plain_sql(tmp_path: Path) -> None:

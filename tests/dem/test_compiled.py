@@ -3,6 +3,7 @@
 import os
 import subprocess
 import sys
+import threading
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -121,6 +122,11 @@ def refuse_place(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (cache / "lithobrake").write_text("a file")
 
 
+def refuse_writing(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    # What a file system says that is mounted for reading alone.
+    monkeypatch.setattr(os, "access", lambda path, mode: False)
+
+
 def refuse_all(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def full(path: Path) -> Path:
         raise OSError(28, "No space left on device")
@@ -134,6 +140,7 @@ def refuse_all(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         (refuse_owner, "another user"),
         (refuse_mode, "can be written by others"),
         (refuse_place, "no folder for a cache can be made"),
+        (refuse_writing, "cannot be written, so"),
         (refuse_all, "No space left on device"),
     ],
 )
@@ -166,6 +173,29 @@ def test_kernel_that_only_kernels_call_has_no_wrapper_and_one_form_for_all_const
     assert [str(types) for types in scaled.within.signatures] == ["(int64, float64)"]
     # It can still be called from Python.
     assert scaled(2, 1.5) == 3.0
+
+
+def test_waiting_for_another_process_is_told_once(cache, caplog):
+    """Kernels are compiled one after the other, each in a turn of its own."""
+    ours, theirs = disk_cache.DiskCache("dem"), disk_cache.DiskCache("dem")
+    order: list[str] = []
+
+    def take_turn() -> None:
+        with ours.turn("Waiting."):
+            order.append("ours")
+
+    for _ in range(2):
+        with theirs.turn("Never said."):
+            other = threading.Thread(target=take_turn)
+            other.start()
+            for _ in range(1000):
+                other.join(0.01)
+                if caplog.messages:
+                    break
+            order.append("theirs")
+        other.join()
+    assert order == ["theirs", "ours", "theirs", "ours"]
+    assert caplog.messages == ["Waiting."]
 
 
 TURN = """

@@ -2,6 +2,7 @@
 
 import json
 import os
+import shutil
 import subprocess
 import sys
 from dataclasses import replace
@@ -99,6 +100,14 @@ def test_planning_makes_and_changes_nothing(tmp_path: Path) -> None:
     assert everything() == before
 
 
+def test_a_folder_that_a_run_refuses_is_refused_by_its_plan(tmp_path: Path) -> None:
+    study, out = written(tmp_path, FEW), tmp_path / "out"
+    out.mkdir()
+    (out / "thesis.tex").touch()
+    with pytest.raises(ValueError, match=r"holds thesis\.tex, and no study made it; choose another folder"):
+        plan_study(study, out)
+
+
 def test_the_command_says_what_is_planned(tmp_path: Path) -> None:
     study, out = written(tmp_path, FEW), tmp_path / "out"
     said = CliRunner().invoke(app, ["plan", str(study), "--out", str(out), "--workers", "1"])
@@ -123,17 +132,19 @@ def test_a_run_begins_with_its_plan_in_three_lines(tmp_path: Path) -> None:
 
     with pytest.raises(Begun):
         run_study(study, tmp_path / "out", worker_count=1, begin=begin, say=said.append)
-    assert len(said) == 3
-    assert said[0].startswith("To make: 17 to 47 touchdowns")
-    assert said[1].startswith("Expected: about ")
-    assert said[2].startswith("2 warnings, the first: At the site gravity")
-    assert said[2].endswith(f"lithobrake plan {study}")
+    program, *plan = said
+    assert program.startswith("This study names a program")
+    assert len(plan) == 3
+    assert plan[0].startswith("To make: 17 to 47 touchdowns")
+    assert plan[1].startswith("Expected: about ")
+    assert plan[2].startswith("3 warnings, the first: At the site gravity")
+    assert plan[2].endswith(f"lithobrake plan {study} --out {tmp_path / 'out'}")
 
 
 @pytest.mark.parametrize(
     ("changes", "said"),
     [
-        ({"speed = 0.15": "speed = 0"}, "impact.speed is 0; allowed: above 0 [m/s]"),
+        ({"speed = 0.15": "speed = 0"}, "impact.speed is 0; allowed: above 0 and at most 1000 [m/s]"),
         ({"mass = 1.0": "mas = 1.0"}, "lander.mas is not a known key; did you mean mass?"),
         ({"[flight]": '[site]\nbody = "open.obj"\nmass = 1e11\nspin_period = 8e3\n[flight]'}, "open.obj"),
     ],
@@ -156,7 +167,7 @@ def test_what_a_run_refuses_the_plan_refuses_with_the_same_words(
     ("changes", "said"),
     [
         ({"site": {"latitude_deg": 0.0}}, "push outwards"),
-        ({"site": {"latitude_deg": 80.0}}, 'surface.gravity is 5e-05 m/s2 and at the site'),
+        ({"site": {"latitude_deg": 80.0}}, "surface.gravity is 5e-05 m/s2 inwards, and at the site"),
         ({"bed": {"width": [0.55, 0.55], "grain_count": 30}}, "so that walls and floor do not answer"),
         ({"impact": {"place": {"x": -0.25}}}, "keep impact.place.x within 0.22 m"),
         ({"landing": {"time_limit": 1.0}}, "100 % of the touchdowns may last longer than landing.time_limit, 1 s"),
@@ -178,6 +189,14 @@ def test_what_an_analyst_should_know_is_said(changes: dict[str, Any], said: str 
     study = soft(**kept)
     found = " ".join(study_warnings(study, soil_of(study)))
     assert said in found if said else "The screening fits" not in found
+
+
+def test_a_disk_that_is_too_small_is_the_first_warning(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    room = shutil.disk_usage(tmp_path)
+    monkeypatch.setattr(shutil, "disk_usage", lambda place: room._replace(free=2_000_000))
+    plan = plan_study(written(tmp_path, FEW), tmp_path / "not" / "yet")
+    assert plan.warnings[0].startswith("The files will take about ")
+    assert "only 2 MB are free" in plan.warnings[0]
 
 
 def test_a_study_that_has_all_it_needs_is_not_warned_of() -> None:
@@ -249,8 +268,7 @@ def test_the_samples_take_the_room_that_is_expected(tmp_path: Path) -> None:
     study = read_study(EXAMPLES / "ball_on_plate.toml")
     names, count = list(design_inputs(study)), study.monte_carlo.sample_count
     inputs, outputs = np.zeros((count, len(names))), np.zeros((count, len(OUTPUTS)))
-    one, truth = np.zeros(count), np.zeros(count, dtype=bool)
-    Samples(names, list(OUTPUTS), inputs, outputs, one, truth, truth).save(StudyFolder(tmp_path))
+    Samples(names, list(OUTPUTS), inputs, outputs, np.zeros(count, dtype=np.uint8)).save(StudyFolder(tmp_path))
     expected = expected_bytes(study, PlannedRuns(4, 41, 96, 20, frozenset()), None)["samples"]
     # Names and the layout of the file come on top.
     assert 0.0 < (tmp_path / "samples.h5").stat().st_size - expected < 2e4

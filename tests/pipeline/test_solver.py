@@ -35,6 +35,10 @@ def test_speed_and_elevation_follow_from_the_components() -> None:
     assert outputs["elevation_out"] == pytest.approx(math.atan2(0.06, math.hypot(0.03, 0.02)), rel=1e-12)
 
 
+def test_components_too_large_for_their_speed_give_no_speed_that_is_missing() -> None:
+    assert made({**CLEAR, **dict.fromkeys(VELOCITY, 1.5e308)})["outputs"]["speed_out"] == math.inf
+
+
 def test_numbers_printed_with_six_digits_agree() -> None:
     outputs = {"velocity_out_x": 1.23456, "velocity_out_y": 0.100005, "velocity_out_z": 0.0100005, "spin_out": 0.0}
     speed, elevation = made(outputs)["outputs"]["speed_out"], made(outputs)["outputs"]["elevation_out"]

@@ -194,6 +194,7 @@ def test_wrong_calls_are_refused(ball):
         ({"start_time": math.inf}, "start_time is inf"),
         ({"start_time": [0.0, 1.0]}, "start_time has shape"),
         ({"position": [math.nan, 0.0, 0.0]}, "must be finite"),
+        ({"velocity": [1e300, 0.0, 0.0]}, r"must be finite, and below 1e\+20 m and m/s"),
         ({"position": [1.0, 2.0]}, "must be"),
     ]:
         arguments = {"position": start, "velocity": rate, "duration": 10.0} | change

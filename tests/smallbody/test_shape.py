@@ -67,9 +67,10 @@ def test_plate_models(tmp_path, numbered, together):
     path.write_text("\n".join(lines[:-1]) + "\n")
     with pytest.raises(ValueError, match="lines do not fit"):
         Shape.read(path)
-    path.write_text("name of a body\n")
-    with pytest.raises(ValueError, match="not a plate model"):
-        Shape.read(path)
+    for text, said in (("name of a body\n", "not a plate model"), ("8\n", "it ends after 1 lines; give the number")):
+        path.write_text(text)
+        with pytest.raises(ValueError, match=said):
+            Shape.read(path)
 
 
 @pytest.mark.parametrize(
@@ -119,9 +120,22 @@ def test_reading_refuses_what_it_cannot_read(tmp_path):
     with pytest.raises(ValueError, match=r"\.ply"):
         Shape.read(tmp_path / "shape.ply")
     bad = tmp_path / "bad.obj"
-    bad.write_text("v 0 0 zero\n")
-    with pytest.raises(ValueError, match="line 1"):
-        Shape.read(bad)
+    for line in ("v 0 0 zero", f"f {10**30} 1 2"):
+        bad.write_text(f"{line}\n")
+        with pytest.raises(ValueError, match="line 1"):
+            Shape.read(bad)
+    half = tmp_path / "half.stl"
+    half.write_bytes(b"solid is how binary files may begin, too".ljust(100))
+    with pytest.raises(ValueError, match="has no facets: neither"):
+        Shape.read(half)
+
+
+def test_vertices_that_no_facet_uses_are_not_of_the_body():
+    shape = Shape(np.concatenate([[[1e12] * 3], cube_vertices(2.0)]), CUBE_FACES + 1)
+    same = Shape(cube_vertices(2.0), CUBE_FACES)
+    assert (shape.vertices == same.vertices).all()
+    assert (shape.faces == same.faces).all()
+    assert (shape.volume, shape.radius) == (same.volume, same.radius)
 
 
 def test_latitude_and_longitude_both_ways():

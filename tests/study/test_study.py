@@ -91,7 +91,7 @@ REFUSED = [
     ("design.replicate_count", 2, ["draw nothing by chance", "impact.region"]),
     ("design.replicate_count", 0, ["at least 1 and at most 1000"]),
     ("design.fit", "least squares", ["allowed: ols, lars, omp, gaussian_process or best"]),
-    ("monte_carlo.scatter", "yes", ['monte_carlo.scatter is "yes"; it must be a valid boolean']),
+    ("monte_carlo.scatter", "yes", ['monte_carlo.scatter is "yes"; allowed: true or false; write it without']),
     ("grain.friction", table("choice", values=[0.3, 0.9]), ["discrete choices are not supported"]),
     (
         "grain.young_modulus",
@@ -123,6 +123,12 @@ REFUSED = [
     ("lander.mass", [[[[[[1]]]]]], ["lander.mass is [[[[...]]]]"]),
     ("lander.mass", table(["uniform"]), ["lander.mass is", "did you mean uniform?"]),  # type: ignore[arg-type]
     ("lander.mass", "x" * 5000, ["(5002 characters)"]),
+    ("design.kept_outputs", "speed_out", ['design.kept_outputs is "speed_out"; allowed: a list', "square brackets"]),
+    ("title", 3, ["title is 3; allowed: text; write it in quotation marks"]),
+    ("impact.orientation", [0, 0, 0, 0], ["a quaternion of length 0", "allowed: 0.001 to 1000", "[1, 0, 0, 0]"]),
+    ("impact.orientation", [1e-300, 0, 0, 0], ["a quaternion of length 1e-300"]),
+    ("impact.orientation", [1e300, 1e300, 0, 0], ["a quaternion of length 1.41e+300"]),
+    ("site.spin_period", 1e-200, ["site.spin_period reaches down to 1e-200 s", "at least 1 s", "write seconds"]),
     ("design.kept_outputs", [], ["design.kept_outputs is []", "at least 1 entry"]),
     ("solver.inputs", {"a$b": 1.0}, ["solver.command is missing"]),
     ("solver", {"command": "python3", "inputs": {"a$b": 1.0}}, ["solver.inputs.a$b is no name", "letters, digits"]),
@@ -179,6 +185,12 @@ def test_all_problems_are_said_at_once() -> None:
     assert len(problems(wrong)) == 4
 
 
+def test_a_list_with_a_wrong_entry_is_told_once() -> None:
+    assert [text.split(" is ")[0] for text in problems({"design.kept_outputs": ["speed"]})] == [
+        "study.toml: design.kept_outputs.0"
+    ]
+
+
 def test_nothing_uncertain_is_refused() -> None:
     certain = {f"grain.{name}": 0.4 for name in ("young_modulus", "poisson_ratio", "restitution", "friction")}
     assert (
@@ -191,11 +203,13 @@ def test_a_broken_file_and_a_missing_file_are_one_sentence(tmp_path: Path) -> No
     (tmp_path / "broken.toml").write_text("bed = [\n")
     (tmp_path / "deep.toml").write_text(f"seed = {'[' * 3000}{']' * 3000}")
     (tmp_path / "long.toml").write_text(f"seed = {'1' * 5000}")
+    (tmp_path / "latin.toml").write_bytes(b'title = "caf\xe9"')
     said = {
         "broken": "not TOML",
         "missing": "cannot be read",
         "deep": "nested too deeply",
         "long": "thousands of digits",
+        "latin": "not text in UTF-8, byte 13 is 0xe9; save it in that encoding",
     }
     for name, word in ((f"{stem}.toml", word) for stem, word in said.items()):
         with pytest.raises(StudyError, match=word) as caught:
