@@ -13,12 +13,13 @@ from lithobrake.compiled import disk_cache
 from lithobrake.dem import Material, World
 from lithobrake.dem.arrays import Bodies, Cores, Pairs, Planes
 from lithobrake.dem.body import Body, bodies_of
-from lithobrake.dem.closest import approach, way_out
-from lithobrake.dem.distance import CROSSING, Search, search_for, weighted
-from lithobrake.dem.listing import list_bodies, list_plane, margin_of
-from lithobrake.dem.names import DEEP, SPHERES, kind_of, name_of
-from lithobrake.dem.neighbours import pairs_of
-from lithobrake.dem.patch import feature
+from lithobrake.dem.closest_points import find_closest_points
+from lithobrake.dem.contact_patch import measure_feature
+from lithobrake.dem.feature_id import ALL_FEATURES, SPHERES, feature_kind, listed_feature
+from lithobrake.dem.feature_list import list_bodies, list_margin, list_plane
+from lithobrake.dem.gjk import PENETRATING, Search, search_for, weighted
+from lithobrake.dem.neighbours import new_pairs
+from lithobrake.dem.penetration import penetration_vector
 from lithobrake.dem.vectors import dot, minus, put, row, scaled
 
 ROCK = Material(young_modulus=1e7, poisson_ratio=0.25, restitution=0.5, friction=0.5, density=2500.0)
@@ -41,8 +42,8 @@ def cached(function: Callable[..., Any]) -> Callable[..., Any]:
 
 def one_pair(second: int) -> Pairs:
     """Return a pair with room for many names."""
-    pair = pairs_of(np.zeros(1, dtype=np.int64), np.full(1, second))
-    return pair._replace(rest_row=np.zeros(1, dtype=np.int64), rest=np.zeros((1, NAMES), dtype=np.int64))
+    pair = new_pairs(np.zeros(1, dtype=np.int64), np.full(1, second))
+    return pair._replace(overflow_row=np.zeros(1, dtype=np.int64), overflow=np.zeros((1, NAMES), dtype=np.int64))
 
 
 def scratch(shapes: Library) -> Search:
@@ -66,10 +67,10 @@ def ask_closest(
     for k in range(len(first)):
         shapes, turned = (first[k], second[k]), rotation[k]
         apart = minus(row(position[k], 1), row(position[k], 0))
-        found, count, _ = approach(search, cores, shapes, turned, (0, 1), apart, math.inf)
+        found, count, _ = find_closest_points(search, cores, shapes, turned, (0, 1), apart, math.inf)
         answer[k, STEPS] = search.steps[0]
-        if found == CROSSING:
-            distance, normal, here, there = way_out(search, cores, shapes, turned, (0, 1), apart)
+        if found == PENETRATING:
+            distance, normal, here, there = penetration_vector(search, cores, shapes, turned, (0, 1), apart)
         else:
             between = weighted(search.difference, search.weight, count)
             distance = dot(between, between) ** 0.5
@@ -105,7 +106,7 @@ def ask_again(cores: Cores, bodies: Bodies, first: Integers, second: Integers, s
     for k in range(count):
         a, b = first[k % len(first)], second[k % len(first)]
         apart = minus(row(bodies.position, b), row(bodies.position, a))
-        approach(search, cores, (bodies.shape[a], bodies.shape[b]), bodies.rotation, (a, b), apart, math.inf)
+        find_closest_points(search, cores, (bodies.shape[a], bodies.shape[b]), bodies.rotation, (a, b), apart, math.inf)
 
 
 def bodies_for(shapes: Library) -> Bodies:
@@ -155,13 +156,13 @@ def ask_kept(
         for body, side in ((one, 0), (two, 1)):
             bodies.position[body], bodies.rotation[body] = position[k, side], rotation[k, side]
         reach[k] = cores.rounding[first[k]] + cores.rounding[second[k]]
-        margin = margin_of(bodies, cores, one, two, 0.0)
+        margin = list_margin(bodies, cores, one, two, 0.0)
         travel, part = margin * moves[k, 6], moves[k, 7]
         bodies.position[one] += part * travel * moves[k, 0:3]
         turn(bodies.rotation[one], moves[k, 3:6], (1.0 - part) * travel / bodies.bounding_radius[one])
         serves = list_bodies(0, bodies, cores, pair, margin, search)
         bodies.position[one], bodies.rotation[one] = position[k, 0], rotation[k, 0]
-        if pair.term_count[0] != DEEP and travel < serves:
+        if pair.feature_count[0] != ALL_FEATURES and travel < serves:
             distance[k] = nearest_named(cores, bodies, one, two, pair, search, reach[k])
 
 
@@ -169,11 +170,11 @@ def ask_kept(
 def nearest_named(cores: Cores, bodies: Bodies, one: int, two: int, pair: Pairs, search: Search, reach: float) -> float:
     """Return the smallest distance of the named features, at most `reach` [m]."""
     apart = minus(row(bodies.position, two), row(bodies.position, one))
-    if pair.term_count[0] > 0 and kind_of(name_of(pair, 0, 0)) == SPHERES:
+    if pair.feature_count[0] > 0 and feature_kind(listed_feature(pair, 0, 0)) == SPHERES:
         return min(reach, dot(apart, apart) ** 0.5)
     smallest = reach
-    for k in range(pair.term_count[0]):
-        smallest = min(smallest, feature(name_of(pair, 0, k), bodies, cores, one, two, apart, reach)[2])
+    for k in range(pair.feature_count[0]):
+        smallest = min(smallest, measure_feature(listed_feature(pair, 0, k), bodies, cores, one, two, apart, reach)[2])
     return smallest
 
 

@@ -92,7 +92,7 @@ def rotation_matrices(quaternions: Floats) -> Floats:
 
 def cores_of(shapes: list[Shape]) -> Cores:
     """Lay the convex cores of shapes one after the other."""
-    vertex, normal, offset, edge, line, fence = [], [], [], [], [], []
+    vertex, normal, offset, edge, line, adjacent_face = [], [], [], [], [], []
     for shape in shapes:
         vertex.append(shape.core)
         if isinstance(shape, ConvexHull):
@@ -101,7 +101,7 @@ def cores_of(shapes: list[Shape]) -> Cores:
             offset.append(core.face_offsets)
             edge.append(core.edges)
             line.append(shape.core[core.edges[:, :2]])
-            fence += [fence_of(core.edges, face) for face in range(len(core.face_normals))]
+            adjacent_face += [adjacent_faces(core.edges, face) for face in range(len(core.face_normals))]
         else:
             normal.append(np.zeros((0, 3)))
             offset.append(np.zeros(0))
@@ -115,11 +115,12 @@ def cores_of(shapes: list[Shape]) -> Cores:
     return Cores(
         np.concatenate(vertex), starts(vertex), np.concatenate(normal), np.concatenate(offset), starts(normal),
         np.concatenate(edge), starts(edge), ends[:, 0].copy(), ends[:, 1] - ends[:, 0],
-        np.concatenate([no_face, *fence]), starts(fence), np.array([shape.rounding for shape in shapes]),
+        np.concatenate([no_face, *adjacent_face]), starts(adjacent_face),
+        np.array([shape.rounding for shape in shapes]),
     )  # fmt: skip
 
 
-def fence_of(edges: Integers, face: int) -> Integers:
+def adjacent_faces(edges: Integers, face: int) -> Integers:
     """Return the faces across the edges [edge_count, 4] of a face."""
     return np.concatenate([edges[edges[:, 2] == face, 3], edges[edges[:, 3] == face, 2]])
 

@@ -11,13 +11,13 @@ from lithobrake.atomic import atomic_path
 from lithobrake.dem.body import Body, Plane
 from lithobrake.dem.material import Material
 from lithobrake.dem.motion import write_matrices
-from lithobrake.dem.neighbours import pairs_of
+from lithobrake.dem.neighbours import new_pairs
 from lithobrake.dem.shape import Box, ConvexHull, Shape, Sphere
 
 if TYPE_CHECKING:
     from lithobrake.dem.world import World
 
-FORMAT_VERSION = 3
+FORMAT_VERSION = 4
 MOVING = ("force", "torque", "half_spin", "travel", "travel_listed", "dragged")
 
 
@@ -50,8 +50,8 @@ def save(world: "World", path: str | os.PathLike[str]) -> None:
         file.attrs["time_step"] = json.dumps(world._time_step)
         file.attrs["time"], file.attrs["drag"], file.attrs["watched"] = world.time, world.drag, world._watched
         file.attrs["skin"] = engine.skin
-        for name in ("gravity", "_lost", "_probed"):
-            file[name.strip("_")] = getattr(world, name)
+        for name in ("gravity", "_lost", "_watch_record"):
+            file[name.removeprefix("_")] = getattr(world, name)
         file["body/shape"], file["body/material"] = engine.bodies.shape, engine.bodies.material
         file["body/mass"] = world.mass
         file["body/inertia"] = np.array([body.inertia for body in world.bodies])
@@ -98,10 +98,10 @@ def load(path: str | os.PathLike[str]) -> "World":
     # Assembling took a step of no duration, which may have rounded the orientations anew.
     engine.bodies.quaternion[:] = data["body/quaternion"]
     write_matrices(engine.bodies)
-    world._lost[:], world._probed[:] = data["lost"], data["probed"]
+    world._lost[:], world._watch_record[:] = data["lost"], data["watch_record"]
     engine.skin = float(attributes["skin"])
     for name in MOVING:
         getattr(engine.bodies, name)[:] = data[f"body/{name}"]
-    pairs = pairs_of(data["pair/first"], data["pair/second"])
+    pairs = new_pairs(data["pair/first"], data["pair/second"])
     engine.gather(pairs._replace(**{name: data[f"pair/{name}"] for name in pairs._fields}))
     return world

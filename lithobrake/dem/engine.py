@@ -4,26 +4,26 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 
-from lithobrake.dem.advance import DONE, LIST_USED_UP, NAMES_OVERFLOW, advance
 from lithobrake.dem.arrays import Bodies, Cores, Floats, Laws, Pairs, Planes, Step
 from lithobrake.dem.body import Body, Plane, bodies_of, cores_of, laws_of, planes_of
-from lithobrake.dem.distance import Search, search_for
+from lithobrake.dem.feature_id import INLINE_FEATURES
+from lithobrake.dem.feature_list import BOUND_SLACK
 from lithobrake.dem.force import DAMPING
-from lithobrake.dem.listing import BOUND_SLACK
+from lithobrake.dem.gjk import Search, search_for
 from lithobrake.dem.material import Material
-from lithobrake.dem.names import NEAR
-from lithobrake.dem.neighbours import neighbours, pairs_of, renewed, roomier
+from lithobrake.dem.neighbours import carry_over, neighbours, new_pairs, with_more_overflow
 from lithobrake.dem.shape import Shape
-from lithobrake.dem.threads import Team, room_for, shares_of
+from lithobrake.dem.threads import Team, new_reactions, partitions_of
+from lithobrake.dem.time_loop import DONE, FEATURES_OVERFLOW, LIST_USED_UP, advance
 
 # Skin of the neighbour list over the smallest bounding radius: costs or saves time, changes no result.
 SKIN = 0.25
-NO_ROOM = room_for(0)
+NO_REACTIONS = new_reactions(0)
 
 
 def no_pairs() -> Pairs:
     """Return the pairs of a world in which nothing has met."""
-    return pairs_of(np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64))
+    return new_pairs(np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64))
 
 
 def pool_of(thread_count: int) -> ThreadPoolExecutor | None:
@@ -35,7 +35,7 @@ class Engine:
     """Arrays of a world in which nothing is added any more.
 
     state holds position, velocity, quaternion and angular_momentum and is advanced in place; pairs carry the history of
-    contacts; lost [3] (see force.py) and probed count on across engines.
+    contacts; lost [3] (see force.py) and watch_record count on across engines.
     """
 
     def __init__(
@@ -46,7 +46,7 @@ class Engine:
         state: dict[str, Floats],
         pairs: Pairs,
         lost: Floats,
-        probed: Floats,
+        watch_record: Floats,
         thread_count: int,
     ) -> None:
         self.shapes: list[Shape] = list({id(body.shape): body.shape for body in bodies}.values())
@@ -59,7 +59,7 @@ class Engine:
         self.pairs: Pairs
         self.search: Search
         self.team: Team | None
-        self.lost, self.probed = lost, probed
+        self.lost, self.watch_record = lost, watch_record
         self.skin = SKIN * float(self.bodies.bounding_radius.min())
         self.thread_count, self.pool = thread_count, pool_of(thread_count)
         self.gather(pairs)
@@ -77,8 +77,8 @@ class Engine:
             left -= taken
             if reason == LIST_USED_UP:
                 self._list_neighbours()
-            elif reason == NAMES_OVERFLOW:
-                self.gather(roomier(self.pairs))
+            elif reason == FEATURES_OVERFLOW:
+                self.gather(with_more_overflow(self.pairs))
             elif reason != DONE:
                 return steps - left, reason
         return steps, DONE
@@ -88,10 +88,10 @@ class Engine:
         if self.team is None:
             return advance(
                 steps, drifted, self.bodies, self.cores, self.planes, self.pairs, self.laws, step, self._way,
-                self.search, NO_ROOM, self.whole, watched, self.probed,
+                self.search, NO_REACTIONS, self.whole, watched, self.watch_record,
             )  # fmt: skip
         return self.team.advance(
-            steps, drifted, self.bodies, self.cores, self.planes, self.laws, step, self._way, watched, self.probed
+            steps, drifted, self.bodies, self.cores, self.planes, self.laws, step, self._way, watched, self.watch_record
         )
 
     def losses(self) -> Floats:
@@ -105,15 +105,15 @@ class Engine:
         self.lost[:] = self.losses()
         self.pairs.lost[:], self.bodies.dragged[:] = 0.0, 0.0
 
-    def share_among(self, thread_count: int) -> None:
+    def use_threads(self, thread_count: int) -> None:
         """Go on with so many threads."""
         self.thread_count, self.pool = thread_count, pool_of(thread_count)
         self.gather(self.pairs)
 
     def gather(self, pairs: Pairs) -> None:
-        """Take on pairs: make scratch for them, and share them out among the threads."""
+        """Take on pairs: make scratch for them, and divide them among the threads."""
         self.pairs, self.search = pairs, self._scratch(pairs)
-        self.whole, *_ = shares_of(pairs, len(self.bodies.mass), 1)
+        self.whole, *_ = partitions_of(pairs, len(self.bodies.mass), 1)
         self.team = None
         if self.pool is not None:
             searches = [self._scratch(pairs) for _ in range(self.thread_count)]
@@ -125,7 +125,7 @@ class Engine:
             np.sort(np.diff(start)[shape])[-2:] for start in (self.cores.vertex_start, self.cores.edge_start)
         )
         # All corners and all pairs of edges of the two largest bodies, should they cross, and a list's worth beside.
-        points = 1 + int(vertices.sum() + 2 * edges.prod()) + NEAR + pairs.rest.shape[1]
+        points = 1 + int(vertices.sum() + 2 * edges.prod()) + INLINE_FEATURES + pairs.overflow.shape[1]
         return search_for(int(vertices.max() + edges.max()), points)
 
     @property
@@ -136,5 +136,5 @@ class Engine:
     def _list_neighbours(self) -> None:
         self.book()
         first, second = neighbours(self.bodies, self.cores, self.planes, self.skin, self.search)
-        self.gather(renewed(self.pairs, first, second))
+        self.gather(carry_over(self.pairs, first, second))
         self.bodies.travel_listed[:] = self.bodies.travel

@@ -7,21 +7,21 @@ that makes up for it, see material.restitution_of.
 from typing import NamedTuple
 
 from lithobrake.compiled import kernel, large_kernel
-from lithobrake.dem.arrays import Bodies, Cores, Floats, Laws, Pairs, Planes, Reactions, Share, Step
-from lithobrake.dem.couples import let_go, resist_rolling, resist_twisting
-from lithobrake.dem.distance import Search
-from lithobrake.dem.masses import inverse_inertia_across, inverse_inertia_along, inverse_mass_at
-from lithobrake.dem.patch import touch
-from lithobrake.dem.shares import EDGES_SUNK, spin_radii
-from lithobrake.dem.spring import across, hold, stored, turned_spring
-from lithobrake.dem.stability import tilting
+from lithobrake.dem.arrays import Bodies, Cores, Floats, Laws, Pairs, Partition, Planes, Reactions, Step
+from lithobrake.dem.contact_patch import find_contact
+from lithobrake.dem.effective_mass import inverse_inertia_across, inverse_inertia_along, inverse_mass_at
+from lithobrake.dem.gjk import Search
+from lithobrake.dem.patch_energy import DEEP_EDGES, spin_radii
+from lithobrake.dem.rolling_resistance import end_couples, resist_rolling, resist_twisting
+from lithobrake.dem.spring import spring_force, stored, tangential_part, turned_spring
+from lithobrake.dem.stability import patch_tilt_stiffness
 from lithobrake.dem.vectors import Vector, add, cross, dot, minus, plus, put, row, scaled
 
 DAMPING, FRICTION, ROLLING = 0, 1, 2  # columns of Pairs.lost
 LOSSES = 3
 
 
-class Pressure(NamedTuple):
+class NormalLoad(NamedTuple):
     """What the points of a patch do together along their normals."""
 
     repulsion: float  # N, along the normal of the patch
@@ -32,7 +32,7 @@ class Pressure(NamedTuple):
     damped: float  # J
 
 
-class Meeting(NamedTuple):
+class RelativeMotion(NamedTuple):
     """How the members of a pair move against each other, second against first, at their centre of pressure."""
 
     inverse_mass: float  # 1/kg, of the pair for a force along the normal
@@ -50,7 +50,9 @@ def point_velocity(linear: Floats, spin: Floats, body: int, arm: Vector) -> Vect
 
 
 @kernel
-def meet(bodies: Bodies, first: int, second: int, point: Vector, normal: Vector, whole_mass: bool) -> Meeting:
+def relative_motion(
+    bodies: Bodies, first: int, second: int, point: Vector, normal: Vector, whole_mass: bool
+) -> RelativeMotion:
     """Return how a body meets another, or a plane (second < 0)."""
     arm = minus(point, row(bodies.position, first))
     inverse_mass = inverse_mass_at(bodies, first, arm, normal, whole_mass)
@@ -67,27 +69,27 @@ def meet(bodies: Bodies, first: int, second: int, point: Vector, normal: Vector,
         moved = plus(moved, point_velocity(bodies.velocity, bodies.half_spin, second, arm))
         spin = plus(spin, row(bodies.half_spin, second))
         twist += 0.5 * dot(row(bodies.half_spin, second), normal)
-    return Meeting(inverse_mass, curvature, now, moved, spin, twist)
+    return RelativeMotion(inverse_mass, curvature, now, moved, spin, twist)
 
 
 @kernel
-def repel(share: float, elastic: float, dashpot: float, speed: float) -> float:
+def repel(weight: float, elastic: float, dashpot: float, speed: float) -> float:
     """Return the repulsion at a point of a patch, which never pulls."""
-    return share * max(0.0, elastic - dashpot * speed)
+    return weight * max(0.0, elastic - dashpot * speed)
 
 
 @kernel
-def press(
-    search: Search, count: int, bodies: Bodies, first: int, second: int, meeting: Meeting, normal: Vector,
+def normal_force(
+    search: Search, count: int, bodies: Bodies, first: int, second: int, motion: RelativeMotion, normal: Vector,
     elastic: float, cohesion: float, dashpot: float, time_step: float,
-) -> Pressure:  # fmt: skip
+) -> NormalLoad:  # fmt: skip
     """Return the normal forces at the points of a patch: repulsion less cohesion."""
-    if count == 1 and search.family[0] != EDGES_SUNK:
-        speed, share = dot(meeting.now, normal), search.share[0]
-        repulsion = repel(share, elastic, dashpot, speed)
-        total = repulsion - share * cohesion
-        damped = (share * elastic - repulsion) * speed * time_step
-        return Pressure(repulsion, total, total, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), damped)
+    if count == 1 and search.family[0] != DEEP_EDGES:
+        speed, weight = dot(motion.now, normal), search.point_weight[0]
+        repulsion = repel(weight, elastic, dashpot, speed)
+        total = repulsion - weight * cohesion
+        damped = (weight * elastic - repulsion) * speed * time_step
+        return NormalLoad(repulsion, total, total, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), damped)
     repulsion, total, damped, force, torque = 0.0, 0.0, 0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
     for k in range(count):
         place, outward = row(search.point, k), row(search.normal, k)
@@ -98,30 +100,30 @@ def press(
             now = plus(now, point_velocity(bodies.velocity_predicted, bodies.spin_predicted, second, other_arm))
         speed = dot(now, outward)
         lever = cross(arm, outward)
-        if search.family[k] == EDGES_SUNK:
+        if search.family[k] == DEEP_EDGES:
             turning = minus(row(bodies.spin_predicted, second), row(bodies.spin_predicted, first))
             speed += dot(turning, row(search.couple, k))
             lever = plus(lever, row(search.couple, k))
-        pushes = repel(search.share[k], elastic, dashpot, speed)
-        damped += (search.share[k] * elastic - pushes) * speed * time_step
+        pushes = repel(search.point_weight[k], elastic, dashpot, speed)
+        damped += (search.point_weight[k] * elastic - pushes) * speed * time_step
         along = dot(outward, normal)
         repulsion += pushes * along
-        pushes -= search.share[k] * cohesion
+        pushes -= search.point_weight[k] * cohesion
         force, torque = plus(force, scaled(pushes, outward)), plus(torque, scaled(pushes, lever))
         total += pushes * along
-    return Pressure(repulsion, total, 0.0, force, torque, damped)
+    return NormalLoad(repulsion, total, 0.0, force, torque, damped)
 
 
 @kernel
-def rub(
-    pair: int, pairs: Pairs, normal: Vector, meeting: Meeting, limit: float, stiffness: float, dashpot: float,
+def friction_force(
+    pair: int, pairs: Pairs, normal: Vector, motion: RelativeMotion, limit: float, stiffness: float, dashpot: float,
     time_step: float,
 ) -> Vector:  # fmt: skip
     """Return the tangential force on the second body, within the Coulomb limit."""
-    before = turned_spring(row(pairs.spring, pair), row(pairs.normal, pair), normal, meeting.twist * time_step)
-    slip = scaled(time_step, across(meeting.moved, normal))
-    held = hold(
-        before, pairs.tangential_stiffness[pair], stiffness, slip, across(meeting.now, normal), dashpot, limit
+    before = turned_spring(row(pairs.spring, pair), row(pairs.normal, pair), normal, motion.twist * time_step)
+    slip = scaled(time_step, tangential_part(motion.moved, normal))
+    held = spring_force(
+        before, pairs.tangential_stiffness[pair], stiffness, slip, tangential_part(motion.now, normal), dashpot, limit
     )  # fmt: skip
     put(pairs.spring, pair, held.spring)
     pairs.tangential_stiffness[pair] = stiffness
@@ -131,12 +133,12 @@ def rub(
 
 
 @kernel
-def part(pairs: Pairs, pair: int) -> None:
+def end_contact(pairs: Pairs, pair: int) -> None:
     """End a contact, if there was one: the springs let go."""
     if pairs.overlap[pair] == 0.0:
         return
     spring = row(pairs.spring, pair)
-    twisted, rolled = let_go(pair, pairs)
+    twisted, rolled = end_couples(pair, pairs)
     pairs.lost[pair, FRICTION] += stored(dot(spring, spring), pairs.tangential_stiffness[pair]) + twisted
     pairs.lost[pair, ROLLING] += rolled
     put(pairs.spring, pair, (0.0, 0.0, 0.0))
@@ -147,14 +149,14 @@ def part(pairs: Pairs, pair: int) -> None:
 
 
 @kernel
-def deliver(bodies: Bodies, body: int, sign: float, force: Vector, torque: Vector) -> None:
+def add_wrench(bodies: Bodies, body: int, sign: float, force: Vector, torque: Vector) -> None:
     """Add what a contact does to one of its bodies."""
     add(bodies.force, body, sign, force)
     add(bodies.torque, body, sign, torque)
 
 
 @kernel
-def act(
+def contact_force(
     pair: int, bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, laws: Laws, step: Step, search: Search,
     reactions: Reactions, kept: bool,
 ) -> float:  # fmt: skip
@@ -164,52 +166,52 @@ def act(
     """
     first, second = pairs.first[pair], pairs.second[pair]
     is_body = second >= 0
-    if pairs.term_count[pair] == 0:
-        part(pairs, pair)
+    if pairs.feature_count[pair] == 0:
+        end_contact(pairs, pair)
         return 0.0
-    count, overlap, point, normal, through_centroids = touch(pair, bodies, cores, planes, pairs, search)
+    count, overlap, point, normal, through_centroids = find_contact(pair, bodies, cores, planes, pairs, search)
     if count == 0:
-        part(pairs, pair)
+        end_contact(pairs, pair)
         return 0.0
     # A force through the centroid turns nothing: it meets the whole mass.
-    meeting = meet(bodies, first, second, point, normal, through_centroids or step.paper_mass)
+    motion = relative_motion(bodies, first, second, point, normal, through_centroids or step.paper_mass)
     here, there = bodies.material[first], bodies.material[second] if is_body else planes.material[-1 - second]
     damping_ratio = laws.damping_ratio[here, there]
-    radius = 1.0 / meeting.curvature
+    radius = 1.0 / motion.curvature
     # The root is taken of the product: a length scaled by a power of two then scales every bit.
     root = (overlap * radius) ** 0.5
     stiffness = 4.0 / 3.0 * laws.young_modulus[here, there] * root
     shear_stiffness = 8.0 * laws.shear_modulus[here, there] * root
-    dashpot = 2.0 * damping_ratio * (1.25 * stiffness * (1.0 / meeting.inverse_mass)) ** 0.5
+    dashpot = 2.0 * damping_ratio * (1.25 * stiffness * (1.0 / motion.inverse_mass)) ** 0.5
     elastic = stiffness * overlap
     cohesion = laws.cohesion_force[here, there] + laws.cohesion_line[here, there] * radius
-    pressure = press(
-        search, count, bodies, first, second, meeting, normal, elastic, cohesion, dashpot, step.time_step
+    load = normal_force(
+        search, count, bodies, first, second, motion, normal, elastic, cohesion, dashpot, step.time_step
     )  # fmt: skip
-    pairs.lost[pair, DAMPING] += pressure.damped
+    pairs.lost[pair, DAMPING] += load.damped
     shear_dashpot = dashpot * laws.shear_damping[here, there]
-    limit = laws.friction[here, there] * pressure.repulsion
-    tangential = rub(pair, pairs, normal, meeting, limit, shear_stiffness, shear_dashpot, step.time_step)
-    central = plus(scaled(pressure.left, normal), tangential)
-    force = plus(pressure.force, central)
-    torque = plus(pressure.torque, cross(minus(point, row(bodies.position, first)), central))
+    limit = laws.friction[here, there] * load.repulsion
+    tangential = friction_force(pair, pairs, normal, motion, limit, shear_stiffness, shear_dashpot, step.time_step)
+    central = plus(scaled(load.left, normal), tangential)
+    force = plus(load.force, central)
+    torque = plus(load.torque, cross(minus(point, row(bodies.position, first)), central))
 
     lever = laws.spinning_friction[here, there] * radius
     square, mean = spin_radii(search, count, point, normal)
     square += lever * lever
     if square > 0.0 or pairs.twist_stiffness[pair] > 0.0:
         couple, slid, damped = resist_twisting(
-            pair, pairs, dot(meeting.spin, normal), limit * mean + pressure.repulsion * lever, shear_stiffness * square,
+            pair, pairs, dot(motion.spin, normal), limit * mean + load.repulsion * lever, shear_stiffness * square,
             damping_ratio, inverse_inertia_along(bodies, first, second, normal), step.time_step,
         )  # fmt: skip
         torque = plus(torque, scaled(couple, normal))
         pairs.lost[pair, FRICTION] += slid
         pairs.lost[pair, DAMPING] += damped
-    pairs.tilt_stiffness[pair] = tilting(search, count, point, normal, overlap, stiffness)
+    pairs.tilt_stiffness[pair] = patch_tilt_stiffness(search, count, point, normal, overlap, stiffness)
     lever = laws.rolling_friction[here, there] * radius
     if lever > 0.0:
         rolling, lost = resist_rolling(
-            pair, pairs, normal, meeting.spin, meeting.twist, lever, pressure.repulsion, stiffness, damping_ratio,
+            pair, pairs, normal, motion.spin, motion.twist, lever, load.repulsion, stiffness, damping_ratio,
             inverse_inertia_across(bodies, first, second, normal), step.time_step,
         )  # fmt: skip
         torque = plus(torque, rolling)
@@ -222,70 +224,73 @@ def act(
         put(reactions.first_torque, pair, torque)
         put(reactions.second_torque, pair, second_torque)
     else:
-        deliver(bodies, first, -1.0, force, torque)
+        add_wrench(bodies, first, -1.0, force, torque)
         if is_body:
-            deliver(bodies, second, 1.0, force, second_torque)
-    pairs.overlap[pair], pairs.normal_force[pair], pairs.elastic_force[pair] = overlap, pressure.total, elastic
+            add_wrench(bodies, second, 1.0, force, second_torque)
+    pairs.overlap[pair], pairs.normal_force[pair], pairs.elastic_force[pair] = overlap, load.total, elastic
     pairs.cohesion[pair] = cohesion
     put(pairs.normal, pair, normal)
     put(pairs.point, pair, point)
     put(pairs.tangential_force, pair, tangential)
-    return 1.5 * stiffness * meeting.inverse_mass * max(1.0, 2.0 * damping_ratio) ** 2
+    return 1.5 * stiffness * motion.inverse_mass * max(1.0, 2.0 * damping_ratio) ** 2
 
 
 @large_kernel
-def act_run(
+def contact_forces(
     bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, laws: Laws, step: Step, search: Search,
     reactions: Reactions, kept: bool, start: int, stop: int,
 ) -> float:  # fmt: skip
     """Compute the contact forces of pairs from start to before stop; return the largest square of a rate [1/s2]."""
     fastest = 0.0
     for pair in range(start, stop):
-        fastest = max(fastest, act(pair, bodies, cores, planes, pairs, laws, step, search, reactions, kept))
+        fastest = max(fastest, contact_force(pair, bodies, cores, planes, pairs, laws, step, search, reactions, kept))
     return fastest
 
 
 @large_kernel
-def act_across(
+def forces_across_partitions(
     bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, laws: Laws, step: Step, search: Search,
-    reactions: Reactions, share: Share,
+    reactions: Reactions, partition: Partition,
 ) -> float:  # fmt: skip
-    """Compute the contact forces of a share's pairs with bodies of later shares, and keep them; return as act_run."""
+    """Compute the contact forces of a partition's pairs with bodies of later partitions, and keep them; return as
+    contact_forces."""
     fastest = 0.0
-    for k in range(len(share.outgoing)):
-        pair = share.outgoing[k]
-        rate = act_run(bodies, cores, planes, pairs, laws, step, search, reactions, True, pair, pair + 1)
+    for k in range(len(partition.outgoing)):
+        pair = partition.outgoing[k]
+        rate = contact_forces(bodies, cores, planes, pairs, laws, step, search, reactions, True, pair, pair + 1)
         fastest = max(fastest, rate)
     return fastest
 
 
 @large_kernel
-def act_within(
+def forces_within_partition(
     bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, laws: Laws, step: Step, search: Search,
-    reactions: Reactions, share: Share,
+    reactions: Reactions, partition: Partition,
 ) -> float:  # fmt: skip
-    """Sum up the contact forces on the bodies of a share, once those across shares are known; return as act_run.
+    """Sum up the contact forces on the bodies of a partition, once those across partitions are known.
 
-    Sums run in the order of the pairs, in one share as in many.
+    Sums run in the order of the pairs, in one partition as in many. Returns as contact_forces.
     """
-    fetch(bodies, pairs, reactions, share)
-    fastest, start = 0.0, share.first_pair
-    for k in range(len(share.outgoing)):
-        pair = share.outgoing[k]
-        rate = act_run(bodies, cores, planes, pairs, laws, step, search, reactions, False, start, pair)
+    gather_reactions(bodies, pairs, reactions, partition)
+    fastest, start = 0.0, partition.first_pair
+    for k in range(len(partition.outgoing)):
+        pair = partition.outgoing[k]
+        rate = contact_forces(bodies, cores, planes, pairs, laws, step, search, reactions, False, start, pair)
         fastest, start = max(fastest, rate), pair + 1
         if pairs.overlap[pair] > 0.0:
-            deliver(bodies, pairs.first[pair], -1.0, row(reactions.force, pair), row(reactions.first_torque, pair))
-    rate = act_run(bodies, cores, planes, pairs, laws, step, search, reactions, False, start, share.last_pair)
+            add_wrench(bodies, pairs.first[pair], -1.0, row(reactions.force, pair), row(reactions.first_torque, pair))
+    rate = contact_forces(
+        bodies, cores, planes, pairs, laws, step, search, reactions, False, start, partition.last_pair
+    )
     return max(fastest, rate)
 
 
 @kernel
-def fetch(bodies: Bodies, pairs: Pairs, reactions: Reactions, share: Share) -> None:
-    """Begin the sums of a share's bodies with what pairs of earlier shares do to them."""
-    bodies.force[share.start : share.stop] = 0.0
-    bodies.torque[share.start : share.stop] = 0.0
-    for k in range(len(share.incoming)):
-        pair = share.incoming[k]
+def gather_reactions(bodies: Bodies, pairs: Pairs, reactions: Reactions, partition: Partition) -> None:
+    """Begin the sums of a partition's bodies with what pairs of earlier partitions do to them."""
+    bodies.force[partition.start : partition.stop] = 0.0
+    bodies.torque[partition.start : partition.stop] = 0.0
+    for k in range(len(partition.incoming)):
+        pair = partition.incoming[k]
         if pairs.overlap[pair] > 0.0:
-            deliver(bodies, pairs.second[pair], 1.0, row(reactions.force, pair), row(reactions.second_torque, pair))
+            add_wrench(bodies, pairs.second[pair], 1.0, row(reactions.force, pair), row(reactions.second_torque, pair))

@@ -127,7 +127,7 @@ def kick(bodies: Bodies, step: Step, start: int, stop: int) -> None:
 
 
 @kernel
-def top_speed(bodies: Bodies, body: int) -> float:
+def surface_speed_bound(bodies: Bodies, body: int) -> float:
     """Return a bound on the speed at which a body's surface comes nearer to anything [m/s]."""
     velocity, spin = row(bodies.velocity, body), row(bodies.half_spin, body)
     return dot(velocity, velocity) ** 0.5 + bodies.turning_radius[body] * dot(spin, spin) ** 0.5
@@ -145,7 +145,7 @@ def drift(bodies: Bodies, step: Step, start: int, stop: int) -> float:
     for body in range(start, stop):
         add(bodies.position, body, step.time_step, row(bodies.velocity, body))
         rotate(body, bodies, step.time_step)
-        bodies.travel[body] += step.time_step * top_speed(bodies, body)
+        bodies.travel[body] += step.time_step * surface_speed_bound(bodies, body)
         gain = scaled(half * bodies.inverse_mass[body], row(bodies.force, body))
         predicted = plus(row(bodies.velocity, body), plus(gain, scaled(half, step.gravity)))
         put(bodies.velocity_predicted, body, predicted)

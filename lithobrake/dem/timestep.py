@@ -63,7 +63,7 @@ def shortest_contact_duration(
     return shortest
 
 
-def top_speed(
+def meeting_speed_bound(
     position: Floats, velocity: Floats, spin: Floats, reach: Floats, places: list[Floats], gravity: Floats
 ) -> float:  # fmt: skip
     """Return a bound on the speeds [m/s] at which bodies meet: now, and after falling through all that there is.

@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lithobrake.dem import energy, timestep
-from lithobrake.dem.advance import DIVERGED, FIRST_CONTACT, LAST_CONTACT, PEAK_FORCE, STEP_TOO_LARGE
 from lithobrake.dem.arrays import Floats, Pairs, Step
 from lithobrake.dem.body import Body, Plane, inverse_inertias, new_body, rotation_matrices, unit, vector
 from lithobrake.dem.contacts import contacts_of
@@ -19,6 +18,7 @@ from lithobrake.dem.material import PAIR_RULES, SHEAR_MODULUS_RULES, Material
 from lithobrake.dem.motion import write_spins
 from lithobrake.dem.shape import Shape, equivalent_radius
 from lithobrake.dem.stability import largest_step
+from lithobrake.dem.time_loop import DIVERGED, FIRST_CONTACT, LAST_CONTACT, PEAK_FORCE, STEP_TOO_LARGE
 
 DAMPING_MASSES = ("contact", "paper")
 
@@ -70,7 +70,7 @@ class World:
         self._lost = np.zeros(LOSSES)
         self._inverse_inertia = np.zeros((0, 3, 3))
         self._watched = -1
-        self._probed = np.zeros(4)
+        self._watch_record = np.zeros(4)
         self._engine: Engine | None = None
         self._thread_count = 1
 
@@ -143,15 +143,15 @@ class World:
     def watch(self, body: int) -> None:
         """Note from now on the contact forces on one body, see `watched`."""
         self._watched = range(len(self.bodies))[body]
-        self._probed[:] = 0.0
+        self._watch_record[:] = 0.0
 
     @property
     def watched(self) -> dict[str, float]:
         """Largest contact force [N] on the watched body; steps from `watch` to its first and last contact (0: none)."""
         return {
-            "peak_force": float(self._probed[PEAK_FORCE]),
-            "first_contact": float(self._probed[FIRST_CONTACT]),
-            "last_contact": float(self._probed[LAST_CONTACT]),
+            "peak_force": float(self._watch_record[PEAK_FORCE]),
+            "first_contact": float(self._watch_record[FIRST_CONTACT]),
+            "last_contact": float(self._watch_record[LAST_CONTACT]),
         }
 
     # --- motion --------------------------------------------------------------------------------------------------
@@ -162,7 +162,7 @@ class World:
         if self._time_step is None:
             reach = np.array([body.shape.bounding_radius for body in self.bodies])
             places = [plane.point for plane in self.planes]
-            speed = timestep.top_speed(self.position, self.velocity, self.spin, reach, places, self.gravity)
+            speed = timestep.meeting_speed_bound(self.position, self.velocity, self.spin, reach, places, self.gravity)
             return self.shortest_contact(speed) / timestep.STEPS_PER_CONTACT
         return self._time_step
 
@@ -174,7 +174,7 @@ class World:
 
     @property
     def thread_count(self) -> int:
-        """Number of threads that share a step; any number gives the same bits. It pays from some thousand bodies on."""
+        """Number of threads that take a step; any number gives the same bits. It pays from some thousand bodies on."""
         return self._thread_count
 
     @thread_count.setter
@@ -183,7 +183,7 @@ class World:
             raise ValueError(f"World thread_count is {value!r}; allowed is a whole number of at least 1: change it")
         self._thread_count = int(value)
         if self._engine is not None:
-            self._engine.share_among(self._thread_count)
+            self._engine.use_threads(self._thread_count)
 
     @property
     def largest_step(self) -> float:
@@ -264,7 +264,7 @@ class World:
         """Return the engine for what is in the world now, with the forces of the state at hand."""
         if self._engine is None:
             self._engine = Engine(
-                self.bodies, self.planes, self.options, self._state, self._pairs, self._lost, self._probed,
+                self.bodies, self.planes, self.options, self._state, self._pairs, self._lost, self._watch_record,
                 self._thread_count,
             )  # fmt: skip
             self._engine.advance(1, self._step(0.0), -1)

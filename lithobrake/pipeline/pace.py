@@ -20,10 +20,10 @@ def machine_pace() -> float | None:
 
 def engine_is_compiled() -> bool:
     """Whether the compiled engine lies on the disk."""
-    from lithobrake.dem import advance
+    from lithobrake.dem import time_loop
 
-    time_loop: Any = advance.advance
-    return any(Path(time_loop.stats.cache_path).glob("*advance*.nbi"))
+    advance: Any = time_loop.advance
+    return any(Path(advance.stats.cache_path).glob("*advance*.nbi"))
 
 
 def probe() -> float:

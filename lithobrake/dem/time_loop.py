@@ -3,15 +3,15 @@
 import numpy as np
 
 from lithobrake.compiled import kernel, large_kernel
-from lithobrake.dem.arrays import Bodies, Cores, Floats, Laws, Pairs, Planes, Reactions, Share, Step
-from lithobrake.dem.distance import Search
-from lithobrake.dem.force import act_within
-from lithobrake.dem.listing import renew
+from lithobrake.dem.arrays import Bodies, Cores, Floats, Laws, Pairs, Partition, Planes, Reactions, Step
+from lithobrake.dem.feature_list import update_feature_lists
+from lithobrake.dem.force import forces_within_partition
+from lithobrake.dem.gjk import Search
 from lithobrake.dem.motion import drift, kick
-from lithobrake.dem.stability import unsteady
+from lithobrake.dem.stability import step_is_too_large
 from lithobrake.dem.vectors import dot, plus, row, scaled
 
-DONE, LIST_USED_UP, NAMES_OVERFLOW, STEP_TOO_LARGE, DIVERGED = 0, 1, 2, 3, 4
+DONE, LIST_USED_UP, FEATURES_OVERFLOW, STEP_TOO_LARGE, DIVERGED = 0, 1, 2, 3, 4
 
 
 @kernel
@@ -45,13 +45,13 @@ def end_step(bodies: Bodies, step: Step, start: int, stop: int) -> None:
 @large_kernel
 def advance(
     step_count: int, drifted: bool, bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, laws: Laws, step: Step,
-    half_skin: float, search: Search, reactions: Reactions, whole: Share, probe: int, probed: Floats,
+    half_skin: float, search: Search, reactions: Reactions, whole: Partition, watched: int, watch_record: Floats,
 ) -> tuple[int, int, bool]:  # fmt: skip
     """Take up to `step_count` steps.
 
     Returns the steps taken, why it stopped, and whether the step in hand has drifted but not yet felt its forces (it
-    goes on from there once the neighbour list is renewed). Body `probe` (none: -1) is watched, see `note`. `whole` is
-    the share of all bodies; there is no room in `reactions`.
+    goes on from there once the neighbour list is renewed). Body `watched` (none: -1) is recorded, see
+    `record_watched`. `whole` is the partition of all bodies; there is no room in `reactions`.
     """
     for taken in range(step_count):
         if not drifted:
@@ -60,14 +60,19 @@ def advance(
                 return taken, DIVERGED, False
             if farthest > half_skin:
                 return taken, LIST_USED_UP, True
-        if renew(bodies, cores, planes, pairs, search, step.time_step, whole.first_pair, whole.last_pair) > 0:
-            return taken, NAMES_OVERFLOW, True
+        if (
+            update_feature_lists(
+                bodies, cores, planes, pairs, search, step.time_step, whole.first_pair, whole.last_pair
+            )
+            > 0
+        ):
+            return taken, FEATURES_OVERFLOW, True
         drifted = False
-        rate = act_within(bodies, cores, planes, pairs, laws, step, search, reactions, whole)
+        rate = forces_within_partition(bodies, cores, planes, pairs, laws, step, search, reactions, whole)
         end_step(bodies, step, whole.start, whole.stop)
-        if probe >= 0:
-            note(probe, bodies, probed)
-        if unsteady(taken, rate, bodies, planes, pairs, laws, step.paper_mass, step.time_step):
+        if watched >= 0:
+            record_watched(watched, bodies, watch_record)
+        if step_is_too_large(taken, rate, bodies, planes, pairs, laws, step.paper_mass, step.time_step):
             return taken + 1, STEP_TOO_LARGE, False
     return step_count, DONE, False
 
@@ -76,13 +81,13 @@ STEPS, PEAK_FORCE, FIRST_CONTACT, LAST_CONTACT = 0, 1, 2, 3
 
 
 @kernel
-def note(probe: int, bodies: Bodies, probed: Floats) -> None:
+def record_watched(watched: int, bodies: Bodies, watch_record: Floats) -> None:
     """Count the step, and note the largest force on a body and the first and last step on which it was touched."""
-    probed[STEPS] += 1.0
-    force = row(bodies.force, probe)
+    watch_record[STEPS] += 1.0
+    force = row(bodies.force, watched)
     size = dot(force, force) ** 0.5
     if size > 0.0:
-        probed[PEAK_FORCE] = max(probed[PEAK_FORCE], size)
-        if probed[FIRST_CONTACT] == 0.0:
-            probed[FIRST_CONTACT] = probed[STEPS]
-        probed[LAST_CONTACT] = probed[STEPS]
+        watch_record[PEAK_FORCE] = max(watch_record[PEAK_FORCE], size)
+        if watch_record[FIRST_CONTACT] == 0.0:
+            watch_record[FIRST_CONTACT] = watch_record[STEPS]
+        watch_record[LAST_CONTACT] = watch_record[STEPS]

@@ -4,9 +4,9 @@ from typing import NamedTuple
 
 from lithobrake.compiled import kernel, large_kernel
 from lithobrake.dem.arrays import Cores, Pairs
-from lithobrake.dem.distance import Search
-from lithobrake.dem.features import edge_of, edge_to_edge, lowest_height, point_to_core
-from lithobrake.dem.names import CORNER_OF_FIRST, CORNER_OF_SECOND, EDGES, note_term
+from lithobrake.dem.feature_distance import edge_of, edge_to_edge, lowest_height, point_to_core
+from lithobrake.dem.feature_id import CORNER_OF_FIRST, CORNER_OF_SECOND, EDGES, add_feature
+from lithobrake.dem.gjk import Search
 from lithobrake.dem.vectors import Vector, dot, minus, plus, put, row, scaled, times, transposed_times
 
 
@@ -51,7 +51,7 @@ def list_corners(
             seen = transposed_times(search.relative, 0, minus(row(cores.vertex, k), there))
             _, _, near, face = point_to_core(cores, shapes[1], seen, band.farthest)
             if near:
-                note_term(pairs, pair, CORNER_OF_FIRST, k - start, face + 1)
+                add_feature(pairs, pair, CORNER_OF_FIRST, k - start, face + 1)
     if not is_point(cores, shapes[0]):
         start = cores.vertex_start[shapes[1]]
         for k in range(start, cores.vertex_start[shapes[1] + 1]):
@@ -60,7 +60,7 @@ def list_corners(
             seen = plus(times(search.relative, 0, row(cores.vertex, k)), there)
             _, _, near, face = point_to_core(cores, shapes[0], seen, band.farthest)
             if near:
-                note_term(pairs, pair, CORNER_OF_SECOND, k - start, face + 1)
+                add_feature(pairs, pair, CORNER_OF_SECOND, k - start, face + 1)
 
 
 @large_kernel
@@ -83,7 +83,7 @@ def list_edges(
             here, hither = edge_to_edge(begin, along, row(search.turned, k), row(search.turned[:, 3:], k))
             between = minus(hither, here)
             if dot(between, between) < band.farthest * band.farthest:
-                note_term(pairs, pair, EDGES, i, search.listed[k])
+                add_feature(pairs, pair, EDGES, i, search.listed[k])
 
 
 @kernel

@@ -6,9 +6,9 @@ from scipy.spatial import ConvexHull as Quickhull
 
 from lithobrake.dem import Box, ConvexHull
 from lithobrake.dem.body import cores_of, rotation_matrices
-from lithobrake.dem.closest import approach
-from lithobrake.dem.distance import CROSSING, search_for, weighted
-from lithobrake.dem.features import edge_to_edge, point_to_core
+from lithobrake.dem.closest_points import find_closest_points
+from lithobrake.dem.feature_distance import edge_to_edge, point_to_core
+from lithobrake.dem.gjk import PENETRATING, search_for, weighted
 from lithobrake.dem.simplex import triangle_weights
 
 
@@ -36,9 +36,9 @@ def test_distance_of_random_pairs(stretch):
         rotation = rotation_matrices(turns / np.linalg.norm(turns, axis=1)[:, None])
         apart = generator.normal(size=3)
         apart *= generator.uniform(0, 0.3) / np.linalg.norm(apart)
-        found, count, _ = approach(search, cores, (0, 1), rotation, (0, 1), tuple(apart), np.inf)
+        found, count, _ = find_closest_points(search, cores, (0, 1), rotation, (0, 1), tuple(apart), np.inf)
         expected = signed_distance(first.core @ rotation[0].T, second.core @ rotation[1].T + apart)
-        if found == CROSSING:
+        if found == PENETRATING:
             assert expected < 1e-10
         else:
             ends = (np.array(weighted(a, search.weight, count)) for a in (search.on_first, search.on_second))

@@ -1,6 +1,6 @@
 """The closest points of two cores, for every input.
 
-The search of distance.py ends with a proof, or says that rounding left it without one: very close faces or edges that
+The search of gjk.py ends with a proof, or says that rounding left it without one: very close faces or edges that
 are almost parallel. Then every feature is looked at.
 """
 
@@ -8,13 +8,11 @@ import math
 
 from lithobrake.compiled import kernel, large_kernel
 from lithobrake.dem.arrays import Cores, Floats
-from lithobrake.dem.crossing import shortest_way
-from lithobrake.dem.distance import APART, CLOSE, CROSSING, UNSURE, Search, descend, weighted
-from lithobrake.dem.features import edge_of, point_to_core
+from lithobrake.dem.feature_distance import edge_of, point_to_core
+from lithobrake.dem.gjk import APART, CLOSE, PENETRATING, UNSURE, Search, closest_simplex
+from lithobrake.dem.separating_axis import largest_separation
 from lithobrake.dem.vectors import Vector, cross, dot, minus, plus, put, row, scaled, times, transposed_times
 
-# What a way out that was found by its normal is looked at from, over the size of the pair: far above round-off.
-STAND_OFF = 0.01
 # Edges must come closer by this part than corners, whose points are the more exact ones where both are the same.
 TIE = 1e-15
 
@@ -23,7 +21,7 @@ Gap = tuple[float, Vector, Vector]
 
 
 @large_kernel
-def approach(
+def find_closest_points(
     search: Search, cores: Cores, shapes: tuple[int, int], rotation: Floats, bodies: tuple[int, int], apart: Vector,
     margin: float,
 ) -> tuple[int, int, float]:  # fmt: skip
@@ -32,39 +30,22 @@ def approach(
     Returns what was found (APART: farther than the margin; CLOSE: points in `search`; CROSSING), the number of weighted
     points, and a lower bound of the distance where they are apart.
     """
-    found, count, bound = descend(search, cores, shapes, rotation, bodies, apart, margin)
+    found, count, bound = closest_simplex(search, cores, shapes, rotation, bodies, apart, margin)
     if found != UNSURE:
         return found, count, bound
-    if shortest_way(search, cores, shapes, rotation, bodies, apart)[0] <= 0.0:
-        return CROSSING, 0, 0.0
+    if largest_separation(search, cores, shapes, rotation, bodies, apart)[0] <= 0.0:
+        return PENETRATING, 0, 0.0
     there = transposed_times(rotation, bodies[0], apart)
     best = corners_to_cores(search, cores, shapes, there)
     distance, on_first, on_second = edges_to_edges(search, cores, shapes, there, best)
     difference = minus(on_first, on_second)
     if dot(difference, difference) == 0.0:
-        return CROSSING, 0, 0.0
+        return PENETRATING, 0, 0.0
     put(search.on_first, 0, times(rotation, bodies[0], on_first))
     put(search.on_second, 0, times(rotation, bodies[0], on_second))
     put(search.difference, 0, times(rotation, bodies[0], difference))
     search.weight[0] = 1.0
     return APART if distance > margin else CLOSE, 1, distance
-
-
-@large_kernel
-def way_out(
-    search: Search, cores: Cores, shapes: tuple[int, int], rotation: Floats, bodies: tuple[int, int], apart: Vector
-) -> tuple[float, Vector, Vector, Vector]:
-    """Return the shortest way out of crossing cores: signed distance, unit normal from first to second, and the points
-    of first and second that lie deepest in each other, relative to the first body's centroid, in the world frame.
-    """
-    distance, normal = shortest_way(search, cores, shapes, rotation, bodies, apart)
-    normal = times(rotation, bodies[0], normal)
-    # Moved apart along the way out, they come closest where they leave each other; faces, somewhere amid both.
-    size = dot(apart, apart) ** 0.5 - distance
-    out = scaled(STAND_OFF * size - distance, normal)
-    _, count, _ = approach(search, cores, shapes, rotation, bodies, plus(apart, out), math.inf)
-    on_second = minus(weighted(search.on_second, search.weight, count), out)
-    return distance, normal, weighted(search.on_first, search.weight, count), on_second
 
 
 @kernel
@@ -98,9 +79,9 @@ def edges_to_edges(search: Search, cores: Cores, shapes: tuple[int, int], there:
             if square == 0.0:
                 continue
             # Written so that round-off counts by the gap of the edges, not by their length over their small angle.
-            share = min(max(dot(normal, cross(between, other)) / square, 0.0), 1.0)
-            share_other = min(max(dot(minus(scaled(share, along), between), other) / dot(other, other), 0.0), 1.0)
-            here, hither = plus(begin, scaled(share, along)), plus(other_begin, scaled(share_other, other))
+            fraction = min(max(dot(normal, cross(between, other)) / square, 0.0), 1.0)
+            other_fraction = min(max(dot(minus(scaled(fraction, along), between), other) / dot(other, other), 0.0), 1.0)
+            here, hither = plus(begin, scaled(fraction, along)), plus(other_begin, scaled(other_fraction, other))
             distance = dot(minus(hither, here), minus(hither, here)) ** 0.5
             if distance < (1.0 - TIE) * best[0]:
                 best = (distance, here, hither)

@@ -21,7 +21,7 @@ EXACT = 1e-13
 TOUCHING = 1e-13
 ITERATIONS = 100
 
-APART, CLOSE, CROSSING, UNSURE = 0, 1, 2, 3
+APART, CLOSE, PENETRATING, UNSURE = 0, 1, 2, 3
 
 
 class Search(NamedTuple):
@@ -30,7 +30,7 @@ class Search(NamedTuple):
     on_first: Floats  # [4, 3]
     on_second: Floats  # [4, 3]
     difference: Floats  # [4, 3]
-    names: Integers  # [4, 2]
+    vertex: Integers  # [4, 2]
     weight: Floats  # [4]
     steps: Integers  # [1], that the last search took
     turned: Floats  # [edge_count_max + vertex_count_max, 12], a core, or edges with their boxes, in the other's frame
@@ -38,10 +38,10 @@ class Search(NamedTuple):
     relative: Floats  # [1, 3, 3]
     point: Floats  # [point_max, 3], of a patch
     normal: Floats  # [point_max, 3], from first to second
-    couple: Floats  # [point_max, 3], of sunk edges, see sunk.note_pair
+    couple: Floats  # [point_max, 3], of deep edges, see deep_edges.py
     depth: Floats  # [point_max], overlap at the point
     family: Integers  # [point_max]
-    share: Floats  # [point_max], derivative of the patch's overlap by that of the point
+    point_weight: Floats  # [point_max], derivative of the patch's overlap by that of the point
 
 
 def search_for(feature_max: int, point_max: int) -> Search:
@@ -67,13 +67,13 @@ def support(cores: Cores, shape: int, direction: Vector) -> int:
 
 
 @kernel
-def place(
+def place_corner(
     search: Search, k: int, cores: Cores, shapes: tuple[int, int], rotation: Floats, bodies: tuple[int, int],
     apart: Vector,
 ) -> None:  # fmt: skip
-    """Compute corner k of the simplex from the two vertex names."""
-    first = times(rotation, bodies[0], row(cores.vertex, cores.vertex_start[shapes[0]] + search.names[k, 0]))
-    second = times(rotation, bodies[1], row(cores.vertex, cores.vertex_start[shapes[1]] + search.names[k, 1]))
+    """Compute corner k of the simplex from its two vertices."""
+    first = times(rotation, bodies[0], row(cores.vertex, cores.vertex_start[shapes[0]] + search.vertex[k, 0]))
+    second = times(rotation, bodies[1], row(cores.vertex, cores.vertex_start[shapes[1]] + search.vertex[k, 1]))
     second = plus(second, apart)
     put(search.on_first, k, first)
     put(search.on_second, k, second)
@@ -102,7 +102,7 @@ def reduce_simplex(search: Search, count: int, closest_before: float) -> tuple[i
     for k in range(count):
         if weights[k] > 0.0:
             search.weight[kept] = weights[k]
-            search.names[kept, 0], search.names[kept, 1] = search.names[k, 0], search.names[k, 1]
+            search.vertex[kept, 0], search.vertex[kept, 1] = search.vertex[k, 0], search.vertex[k, 1]
             put(search.on_first, kept, row(search.on_first, k))
             put(search.on_second, kept, row(search.on_second, k))
             put(d, kept, row(d, k))
@@ -111,7 +111,7 @@ def reduce_simplex(search: Search, count: int, closest_before: float) -> tuple[i
 
 
 @large_kernel
-def descend(
+def closest_simplex(
     search: Search, cores: Cores, shapes: tuple[int, int], rotation: Floats, bodies: tuple[int, int], apart: Vector,
     margin: float,
 ) -> tuple[int, int, float]:  # fmt: skip
@@ -120,23 +120,23 @@ def descend(
     Returns what was found (APART: farther than the margin; CLOSE: points in `search`; CROSSING; UNSURE: rounding ended
     the search without proof), the number of corners, and a lower bound of the distance where they are apart.
     """
-    search.names[0, 0], search.names[0, 1] = 0, 0
-    place(search, 0, cores, shapes, rotation, bodies, apart)
+    search.vertex[0, 0], search.vertex[0, 1] = 0, 0
+    place_corner(search, 0, cores, shapes, rotation, bodies, apart)
     count, _ = reduce_simplex(search, 1, -1.0)
     for step in range(ITERATIONS):
         search.steps[0] = step + 1
         closest = weighted(search.difference, search.weight, count)
         square, size = dot(closest, closest), largest(search.difference, count)
         if square <= TOUCHING * TOUCHING * size:
-            return CROSSING, count, 0.0
+            return PENETRATING, count, 0.0
         if count == 4:
             return UNSURE, count, 0.0
         backward = scaled(-1.0, closest)
-        search.names[count, 0] = support(cores, shapes[0], transposed_times(rotation, bodies[0], backward))
-        search.names[count, 1] = support(cores, shapes[1], transposed_times(rotation, bodies[1], closest))
-        corner = corner_named(search, count)
+        search.vertex[count, 0] = support(cores, shapes[0], transposed_times(rotation, bodies[0], backward))
+        search.vertex[count, 1] = support(cores, shapes[1], transposed_times(rotation, bodies[1], closest))
+        corner = find_corner(search, count)
         if corner == count:
-            place(search, count, cores, shapes, rotation, bodies, apart)
+            place_corner(search, count, cores, shapes, rotation, bodies, apart)
         bound = dot(closest, row(search.difference, corner))
         if bound > 0.0 and bound * bound > margin * margin * square:
             return APART, count, bound / square**0.5
@@ -153,10 +153,10 @@ def descend(
 
 
 @kernel
-def corner_named(search: Search, count: int) -> int:
-    """Return which corner has the same names as the one after the first `count`: that one, if no other has."""
+def find_corner(search: Search, count: int) -> int:
+    """Return which corner has the same vertices as the one after the first `count`: that one, if no other has."""
     for k in range(count):
-        if search.names[k, 0] == search.names[count, 0] and search.names[k, 1] == search.names[count, 1]:
+        if search.vertex[k, 0] == search.vertex[count, 0] and search.vertex[k, 1] == search.vertex[count, 1]:
             return k
     return count
 

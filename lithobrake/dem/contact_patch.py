@@ -1,35 +1,42 @@
 """The points where the members of a pair touch.
 
-The overlap of a feature is what is left of both rounding radii when its distance is taken off (for shares.py). Cores
-that cross go on so: the distance of a corner changes its sign, and pairs of edges have by then passed into sunk ones.
+The overlap of a feature is what is left of both rounding radii when its distance is taken off (for patch_energy.py).
+Cores that penetrate go on so: the distance of a corner changes its sign, and pairs of edges are by then deep edges.
 """
 
 from typing import NamedTuple
 
 from lithobrake.compiled import kernel, large_kernel
 from lithobrake.dem.arrays import Bodies, Cores, Pairs, Planes
-from lithobrake.dem.closest import approach, way_out
-from lithobrake.dem.distance import CROSSING, Search
-from lithobrake.dem.features import edge_of, edge_to_edge, point_to_core, stands_above, write_relative
-from lithobrake.dem.names import (
+from lithobrake.dem.deep_edges import add_deep_edges
+from lithobrake.dem.feature_distance import edge_of, edge_to_edge, point_to_core, stands_above, write_relative
+from lithobrake.dem.feature_id import (
+    ALL_FEATURES,
     CORNER_OF_FIRST,
     CORNER_OF_SECOND,
-    DEEP,
     SPHERES,
-    feature_name,
-    kind_of,
-    name_of,
-    places_of,
+    encode_feature,
+    feature_indices,
+    feature_kind,
+    listed_feature,
 )
-from lithobrake.dem.shares import CORNER, EDGES_APART, SINK_FROM, WAY_OUT, note_point, sinking, spread
-from lithobrake.dem.sunk import note_sunk_edges
+from lithobrake.dem.gjk import Search
+from lithobrake.dem.patch_energy import (
+    CORNER,
+    DEEP_FROM,
+    EDGES_APART,
+    add_point,
+    combine_overlaps,
+    deepening,
+)
+from lithobrake.dem.penetration import add_penetration_point
 from lithobrake.dem.vectors import Vector, dot, minus, plus, put, row, scaled, times, transposed_times
 
 
-class Touch(NamedTuple):
+class Contact(NamedTuple):
     """Where the members of a pair touch."""
 
-    points: int  # number of points of the patch, whose shares are in the scratch; 0 where apart
+    points: int  # number of points of the patch, which lie in the scratch; 0 where apart
     overlap: float  # m
     point: Vector  # m, centre of pressure
     normal: Vector  # from first to second
@@ -37,27 +44,27 @@ class Touch(NamedTuple):
 
 
 @kernel
-def touch(pair: int, bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, search: Search) -> Touch:
+def find_contact(pair: int, bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, search: Search) -> Contact:
     """Return where the members of a pair touch that has features to look at."""
     first, second = pairs.first[pair], pairs.second[pair]
-    if kind_of(pairs.term[pair, 0]) == SPHERES and pairs.term_count[pair] > 0:
-        overlap, point, normal = touch_spheres(bodies, first, second)
-        search.share[0], search.family[0] = 1.0, CORNER
-        return Touch(1 if overlap > 0.0 else 0, overlap, point, normal, True)
+    if feature_kind(pairs.feature[pair, 0]) == SPHERES and pairs.feature_count[pair] > 0:
+        overlap, point, normal = sphere_overlap(bodies, first, second)
+        search.point_weight[0], search.family[0] = 1.0, CORNER
+        return Contact(1 if overlap > 0.0 else 0, overlap, point, normal, True)
     reach = cores.rounding[bodies.shape[first]]
     if second >= 0:
-        count, sunk, slope = touch_bodies(pair, bodies, cores, pairs, search)
+        count, deep, derivative = body_patch(pair, bodies, cores, pairs, search)
         reach += cores.rounding[bodies.shape[second]]
     else:
-        count, sunk, slope = touch_plane(pair, bodies, cores, planes, pairs, search), 0.0, 0.0
+        count, deep, derivative = plane_patch(pair, bodies, cores, planes, pairs, search), 0.0, 0.0
     if count == 0:
-        return Touch(0, 0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), False)
-    overlap, point, normal = spread(search, count, sunk, slope, reach)
-    return Touch(count, overlap, point, normal, False)
+        return Contact(0, 0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), False)
+    overlap, point, normal = combine_overlaps(search, count, deep, derivative, reach)
+    return Contact(count, overlap, point, normal, False)
 
 
 @kernel
-def touch_plane(pair: int, bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, search: Search) -> int:
+def plane_patch(pair: int, bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, search: Search) -> int:
     """Write the points where a body presses on a plane; the normal points into the plane. Returns their number.
 
     The force acts on the surface of the body as if it were not dented, so that a ball rolls with its own radius.
@@ -67,127 +74,105 @@ def touch_plane(pair: int, bodies: Bodies, cores: Cores, planes: Planes, pairs: 
     inward, rounding = scaled(-1.0, outward), cores.rounding[shape]
     down = transposed_times(bodies.rotation, body, outward)
     level = planes.offset[plane] + rounding - dot(outward, row(bodies.position, body))
-    for k in range(pairs.term_count[pair]):
-        corner = row(cores.vertex, cores.vertex_start[shape] + places_of(name_of(pairs, pair, k))[0])
+    for k in range(pairs.feature_count[pair]):
+        corner = row(cores.vertex, cores.vertex_start[shape] + feature_indices(listed_feature(pairs, pair, k))[0])
         depth = level - dot(corner, down)
         foot = plus(row(bodies.position, body), times(bodies.rotation, body, corner))
         point = minus(foot, scaled(rounding, outward))
-        count = note_point(search, count, CORNER, depth, point, inward)
+        count = add_point(search, count, CORNER, depth, point, inward)
     return count
 
 
 @kernel
-def touch_bodies(pair: int, bodies: Bodies, cores: Cores, pairs: Pairs, search: Search) -> tuple[int, float, float]:
+def body_patch(pair: int, bodies: Bodies, cores: Cores, pairs: Pairs, search: Search) -> tuple[int, float, float]:
     """Write the points where two bodies touch. Returns their number, and what `spread` needs to know of edges."""
     first, second = pairs.first[pair], pairs.second[pair]
     apart = minus(row(bodies.position, second), row(bodies.position, first))
-    crossing = pairs.term_count[pair] == DEEP
-    if crossing:
-        count, sunk, slope = note_all_corners(search, bodies, cores, first, second, apart), 1.0, 0.0
+    penetrating = pairs.feature_count[pair] == ALL_FEATURES
+    if penetrating:
+        count, deep, derivative = add_all_corners(search, bodies, cores, first, second, apart), 1.0, 0.0
     else:
-        count, sunk, slope = note_listed(search, pairs, pair, bodies, cores, apart)
-    if sunk > 0.0:
+        count, deep, derivative = add_listed_features(search, pairs, pair, bodies, cores, apart)
+    if deep > 0.0:
         shapes = (bodies.shape[first], bodies.shape[second])
         write_relative(bodies.rotation, first, second, search.relative)
         there = transposed_times(bodies.rotation, first, apart)
-        apart_count, count = count, note_sunk_edges(search, count, cores, shapes, there)
+        apart_count, count = count, add_deep_edges(search, count, cores, shapes, there)
         for k in range(apart_count, count):
             put(search.point, k, plus(row(bodies.position, first), times(bodies.rotation, first, row(search.point, k))))
             put(search.normal, k, times(bodies.rotation, first, row(search.normal, k)))
             put(search.couple, k, times(bodies.rotation, first, row(search.couple, k)))
-    if crossing:
-        count = note_way_out(search, count, bodies, cores, first, second, apart)
-    return count, sunk, slope
-
-
-@large_kernel
-def note_way_out(
-    search: Search, count: int, bodies: Bodies, cores: Cores, first: int, second: int, apart: Vector
-) -> int:
-    """Add the point at the shortest way out, if the cores still cross; return the number of points.
-
-    Its overlap is the depth of the cores and both roundings. It keeps two flat bars apart of which no corner lies in
-    the other: the points at which their edges meet stay on the sides of both, however deep they are. And it pushes out
-    the sharp edge through whose far side another has come, where the nearest points of both edges draw inward.
-    """
-    shapes, members = (bodies.shape[first], bodies.shape[second]), (first, second)
-    found, _, _ = approach(search, cores, shapes, bodies.rotation, members, apart, 0.0)
-    if found != CROSSING:
-        return count
-    distance, normal, on_first, on_second = way_out(search, cores, shapes, bodies.rotation, members, apart)
-    half_difference = 0.5 * (cores.rounding[shapes[0]] - cores.rounding[shapes[1]])
-    middle = plus(scaled(0.5, plus(on_first, on_second)), scaled(half_difference, normal))
-    point = plus(row(bodies.position, first), middle)
-    reach = cores.rounding[shapes[0]] + cores.rounding[shapes[1]]
-    return note_point(search, count, WAY_OUT, reach - distance, point, normal)
+    if penetrating:
+        count = add_penetration_point(search, count, bodies, cores, first, second, apart)
+    return count, deep, derivative
 
 
 @kernel
-def note_listed(
+def add_listed_features(
     search: Search, pairs: Pairs, pair: int, bodies: Bodies, cores: Cores, apart: Vector
 ) -> tuple[int, float, float]:
-    """Write the listed features that overlap; return their number, how far edges have passed into sunk ones, and the
+    """Write the listed features that overlap; return their number, how far edges have passed into deep ones, and the
     derivative of that by the deepest overlap (1/m).
     """
     first, second = pairs.first[pair], pairs.second[pair]
     count, corners, deepest = 0, 0, 0.0
-    for k in range(pairs.term_count[pair]):
-        name = name_of(pairs, pair, k)
-        count = note_feature(search, count, bodies, cores, first, second, apart, name)
+    for k in range(pairs.feature_count[pair]):
+        feature = listed_feature(pairs, pair, k)
+        count = add_feature_point(search, count, bodies, cores, first, second, apart, feature)
         # Corners are listed before edges.
-        if kind_of(name) <= CORNER_OF_SECOND:
+        if feature_kind(feature) <= CORNER_OF_SECOND:
             corners = count
     for k in range(count):
         deepest = max(deepest, search.depth[k])
     reach = cores.rounding[bodies.shape[first]] + cores.rounding[bodies.shape[second]]
-    if deepest <= SINK_FROM * reach:
+    if deepest <= DEEP_FROM * reach:
         return count, 0.0, 0.0
-    sunk, slope = sinking(deepest / reach)
-    return corners if sunk == 1.0 else count, sunk, slope / reach
+    deep, derivative = deepening(deepest / reach)
+    return corners if deep == 1.0 else count, deep, derivative / reach
 
 
 @large_kernel
-def note_all_corners(search: Search, bodies: Bodies, cores: Cores, first: int, second: int, apart: Vector) -> int:
+def add_all_corners(search: Search, bodies: Bodies, cores: Cores, first: int, second: int, apart: Vector) -> int:
     """Write all corners of two bodies that overlap; return their number."""
     count = 0
     for kind in range(2):
         shape = bodies.shape[first if kind == 0 else second]
         for k in range(cores.vertex_start[shape + 1] - cores.vertex_start[shape]):
-            name = feature_name(kind, k, 0)
-            count = note_feature(search, count, bodies, cores, first, second, apart, name)
+            feature = encode_feature(kind, k, 0)
+            count = add_feature_point(search, count, bodies, cores, first, second, apart, feature)
     return count
 
 
 @kernel
-def note_feature(
-    search: Search, count: int, bodies: Bodies, cores: Cores, first: int, second: int, apart: Vector, name: int
+def add_feature_point(
+    search: Search, count: int, bodies: Bodies, cores: Cores, first: int, second: int, apart: Vector, feature: int
 ) -> int:
     """Add a feature to the patch if it overlaps; return the number of points."""
     roundings = (cores.rounding[bodies.shape[first]], cores.rounding[bodies.shape[second]])
     reach, half_difference = roundings[0] + roundings[1], 0.5 * (roundings[0] - roundings[1])
-    on_first, normal, distance = feature(name, bodies, cores, first, second, apart, reach)
+    on_first, normal, distance = measure_feature(feature, bodies, cores, first, second, apart, reach)
     if distance >= reach:
         return count
     middle = plus(on_first, scaled(0.5 * distance + half_difference, normal))
-    family = CORNER if kind_of(name) <= CORNER_OF_SECOND else EDGES_APART
-    return note_point(search, count, family, reach - distance, plus(row(bodies.position, first), middle), normal)
+    family = CORNER if feature_kind(feature) <= CORNER_OF_SECOND else EDGES_APART
+    return add_point(search, count, family, reach - distance, plus(row(bodies.position, first), middle), normal)
 
 
 @kernel
-def feature(
-    name: int, bodies: Bodies, cores: Cores, first: int, second: int, apart: Vector, reach: float
+def measure_feature(
+    feature: int, bodies: Bodies, cores: Cores, first: int, second: int, apart: Vector, reach: float
 ) -> tuple[Vector, Vector, float]:
     """Return point on the first core, about its centroid, normal to the second and distance of a feature."""
-    kind, (i, j), turn = kind_of(name), places_of(name), bodies.rotation
+    kind, (i, j), turn = feature_kind(feature), feature_indices(feature), bodies.rotation
     shape, other_shape = bodies.shape[first], bodies.shape[second]
     if kind == CORNER_OF_FIRST:
         corner = times(turn, first, row(cores.vertex, cores.vertex_start[shape] + i))
         seen = transposed_times(turn, second, minus(corner, apart))
-        distance, outward = over(cores, other_shape, seen, j - 1, reach)
+        distance, outward = corner_over_core(cores, other_shape, seen, j - 1, reach)
         return corner, scaled(-1.0, times(turn, second, outward)), distance
     if kind == CORNER_OF_SECOND:
         corner = plus(times(turn, second, row(cores.vertex, cores.vertex_start[other_shape] + i)), apart)
-        distance, outward = over(cores, shape, transposed_times(turn, first, corner), j - 1, reach)
+        distance, outward = corner_over_core(cores, shape, transposed_times(turn, first, corner), j - 1, reach)
         normal = times(turn, first, outward)
         return minus(corner, scaled(distance, normal)), normal, distance
     begin, along = edge_of(cores, shape, i)
@@ -205,7 +190,7 @@ def feature(
 
 
 @kernel
-def over(cores: Cores, shape: int, point: Vector, face: int, reach: float) -> tuple[float, Vector]:
+def corner_over_core(cores: Cores, shape: int, point: Vector, face: int, reach: float) -> tuple[float, Vector]:
     """Return distance (at most `reach`) and normal of a point over a core that stood over `face` when last listed.
 
     Where it still does, nothing else can be closer; if not, all of the core is searched, with the same result.
@@ -219,7 +204,7 @@ def over(cores: Cores, shape: int, point: Vector, face: int, reach: float) -> tu
 
 
 @kernel
-def touch_spheres(bodies: Bodies, first: int, second: int) -> tuple[float, Vector, Vector]:
+def sphere_overlap(bodies: Bodies, first: int, second: int) -> tuple[float, Vector, Vector]:
     """Return overlap (not above 0: none), middle and normal of two spheres."""
     apart = minus(row(bodies.position, second), row(bodies.position, first))
     distance = dot(apart, apart) ** 0.5

@@ -8,37 +8,39 @@ import math
 
 from lithobrake.compiled import kernel, large_kernel
 from lithobrake.dem.arrays import Cores, Floats
-from lithobrake.dem.distance import Search
-from lithobrake.dem.features import lowest_height, write_relative
+from lithobrake.dem.feature_distance import lowest_height, write_relative
+from lithobrake.dem.gjk import Search
 from lithobrake.dem.vectors import Vector, cross, dot, minus, plus, put, row, scaled, times, transposed_times
 
 # Two edges at a smaller angle (squared) part nowhere farther, to rounding, than faces beside them.
 PARALLEL = 1e-24
 NO_NORMAL = (0.0, 0.0, 0.0)
 # Signed distance, unit normal from first to second.
-Way = tuple[float, Vector]
+Separation = tuple[float, Vector]
 
 
 @large_kernel
-def shortest_way(
+def largest_separation(
     search: Search, cores: Cores, shapes: tuple[int, int], rotation: Floats, bodies: tuple[int, int], apart: Vector
-) -> Way:
+) -> Separation:
     """Return the largest gap of two cores over the normals of all faces and edge pairs, and its normal, in the first
     body's frame. Where they cross, minus the gap is the shortest way out; no gap is larger than the distance.
     """
     write_relative(rotation, bodies[0], bodies[1], search.relative)
     there = transposed_times(rotation, bodies[0], apart)
     best = (-math.inf, (0.0, 0.0, 1.0))
-    best = through_first(search, cores, shapes, there, best)
-    best = through_second(search, cores, shapes, there, best)
+    best = separation_by_first_faces(search, cores, shapes, there, best)
+    best = separation_by_second_faces(search, cores, shapes, there, best)
     if best[0] == -math.inf:
         # Two points at one place: every way out is as good as another.
         return 0.0, best[1]
-    return through_edges(search, cores, shapes, there, best)
+    return separation_by_edges(search, cores, shapes, there, best)
 
 
 @kernel
-def through_first(search: Search, cores: Cores, shapes: tuple[int, int], there: Vector, best: Way) -> Way:
+def separation_by_first_faces(
+    search: Search, cores: Cores, shapes: tuple[int, int], there: Vector, best: Separation
+) -> Separation:
     """Try the faces of the first core."""
     start, end = cores.vertex_start[shapes[1]], cores.vertex_start[shapes[1] + 1]
     for k in range(start, end):
@@ -54,7 +56,9 @@ def through_first(search: Search, cores: Cores, shapes: tuple[int, int], there: 
 
 
 @kernel
-def through_second(search: Search, cores: Cores, shapes: tuple[int, int], there: Vector, best: Way) -> Way:
+def separation_by_second_faces(
+    search: Search, cores: Cores, shapes: tuple[int, int], there: Vector, best: Separation
+) -> Separation:
     """Try the faces of the second core."""
     for face in range(cores.face_start[shapes[1]], cores.face_start[shapes[1] + 1]):
         inward = times(search.relative, 0, row(cores.normal, face))
@@ -65,7 +69,9 @@ def through_second(search: Search, cores: Cores, shapes: tuple[int, int], there:
 
 
 @kernel
-def through_edges(search: Search, cores: Cores, shapes: tuple[int, int], there: Vector, best: Way) -> Way:
+def separation_by_edges(
+    search: Search, cores: Cores, shapes: tuple[int, int], there: Vector, best: Separation
+) -> Separation:
     """Try the pairs of edges that make a face of the difference set."""
     turn_edges(search, cores, shapes[1], there)
     second_count = cores.edge_start[shapes[1] + 1] - cores.edge_start[shapes[1]]

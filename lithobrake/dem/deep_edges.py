@@ -1,4 +1,4 @@
-"""Pairs of edges of cores that may cross.
+"""Pairs of edges of cores that may penetrate each other.
 
 The distance of two edges cannot change its sign, but that of a point to a core can. So a pair of edges is taken by the
 points where the two come closest, each against the other's core: overlaps a and b are what is left of both rounding
@@ -9,14 +9,14 @@ the distance of the edges leaves.
 
 from lithobrake.compiled import kernel, large_kernel
 from lithobrake.dem.arrays import Cores
-from lithobrake.dem.distance import Search
-from lithobrake.dem.features import closest_shares, edge_of, lowest_height, point_to_core
-from lithobrake.dem.shares import EDGES_SUNK, note_point
+from lithobrake.dem.feature_distance import closest_fractions, edge_of, lowest_height, point_to_core
+from lithobrake.dem.gjk import Search
+from lithobrake.dem.patch_energy import DEEP_EDGES, add_point
 from lithobrake.dem.vectors import Vector, cross, dot, minus, plus, put, scaled, times, transposed_times
 
 
 @large_kernel
-def note_sunk_edges(search: Search, count: int, cores: Cores, shapes: tuple[int, int], there: Vector) -> int:
+def add_deep_edges(search: Search, count: int, cores: Cores, shapes: tuple[int, int], there: Vector) -> int:
     """Add all pairs of edges that overlap to the patch, in the first body's frame; return the number of points."""
     reach = cores.rounding[shapes[0]] + cores.rounding[shapes[1]]
     size = dot(there, there) ** 0.5
@@ -35,12 +35,12 @@ def note_sunk_edges(search: Search, count: int, cores: Cores, shapes: tuple[int,
             height = dot(other, turned) + dot(there, along)
             if min(height, height + dot(v, turned)) <= top:
                 other, v = plus(times(search.relative, 0, other), there), times(search.relative, 0, v)
-                count = note_pair(search, count, cores, shapes, there, reach, (begin, u), (other, v))
+                count = add_deep_edge_pair(search, count, cores, shapes, there, reach, (begin, u), (other, v))
     return count
 
 
 @large_kernel
-def note_pair(
+def add_deep_edge_pair(
     search: Search, count: int, cores: Cores, shapes: tuple[int, int], there: Vector, reach: float,
     first: tuple[Vector, Vector], second: tuple[Vector, Vector],
 ) -> int:  # fmt: skip
@@ -49,8 +49,8 @@ def note_pair(
     As the second body moves by v (at the point) and turns by w against the first, the overlap falls by the mean of
     normal . v + couple . w over the two points.
     """
-    share, other_share, parallel = closest_shares(first[0], first[1], second[0], second[1])
-    here, hither = plus(first[0], scaled(share, first[1])), plus(second[0], scaled(other_share, second[1]))
+    fraction, other_fraction, parallel = closest_fractions(first[0], first[1], second[0], second[1])
+    here, hither = plus(first[0], scaled(fraction, first[1])), plus(second[0], scaled(other_fraction, second[1]))
     distance, outward, near, _ = point_to_core(cores, shapes[0], hither, reach)
     if not near:
         return count
@@ -59,7 +59,7 @@ def note_pair(
     if not near:
         return count
     inward = times(search.relative, 0, inward)
-    free, other_free = 0.0 < share < 1.0 and not parallel, 0.0 < other_share < 1.0 and not parallel
+    free, other_free = 0.0 < fraction < 1.0 and not parallel, 0.0 < other_fraction < 1.0 and not parallel
     between = minus(hither, here)
     overlap, gain, other_gain = smooth_minimum(reach - distance, reach - other_distance)
     half_difference = 0.5 * (cores.rounding[shapes[0]] - cores.rounding[shapes[1]])
@@ -67,17 +67,17 @@ def note_pair(
     normal, couple = sliding(first[1], second[1], between, outward, free, other_free)
     point = plus(hither, scaled(half_difference - 0.5 * distance, normal))
     put(search.couple, count, scaled(gain, couple))
-    count = note_point(search, count, EDGES_SUNK, overlap, point, scaled(gain, normal))
+    count = add_point(search, count, DEEP_EDGES, overlap, point, scaled(gain, normal))
 
     normal, couple = sliding(second[1], first[1], scaled(-1.0, between), inward, other_free, free)
     point = minus(here, scaled(half_difference + 0.5 * other_distance, normal))
     put(search.couple, count, scaled(-other_gain, couple))
-    return note_point(search, count, EDGES_SUNK, overlap, point, scaled(-other_gain, normal))
+    return add_point(search, count, DEEP_EDGES, overlap, point, scaled(-other_gain, normal))
 
 
 @kernel
 def smooth_minimum(a: float, b: float) -> tuple[float, float, float]:
-    """Return a smooth minimum of two positive overlaps, and twice its derivatives: two points share the pair."""
+    """Return a smooth minimum of two positive overlaps, and twice its derivatives: the pair stands for two points."""
     least = min(a, b)
     ratio, other = least / a, least / b
     total = 0.5 * (ratio * ratio * ratio * ratio + other * other * other * other)
