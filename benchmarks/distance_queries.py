@@ -12,7 +12,7 @@ from distance_pairs import Floats, Integers, Library, Poses, units
 from lithobrake.compiled import disk_cache
 from lithobrake.dem import Material, World
 from lithobrake.dem.arrays import Bodies, Cores, Pairs, Planes
-from lithobrake.dem.body import Body, bodies_of
+from lithobrake.dem.assembly import bodies_of
 from lithobrake.dem.closest_points import find_closest_points
 from lithobrake.dem.contact_patch import measure_feature
 from lithobrake.dem.feature_id import ALL_FEATURES, SPHERES, feature_kind, listed_feature
@@ -20,6 +20,7 @@ from lithobrake.dem.feature_list import list_bodies, list_margin, list_plane
 from lithobrake.dem.gjk import PENETRATING, Search, search_for, weighted
 from lithobrake.dem.neighbours import new_pairs
 from lithobrake.dem.penetration import penetration_vector
+from lithobrake.dem.rigid_body import RigidBody
 from lithobrake.dem.vectors import dot, minus, put, row, scaled
 
 ROCK = Material(young_modulus=1e7, poisson_ratio=0.25, restitution=0.5, friction=0.5, density=2500.0)
@@ -111,7 +112,7 @@ def ask_again(cores: Cores, bodies: Bodies, first: Integers, second: Integers, s
 
 def bodies_for(shapes: Library) -> Bodies:
     """Return two bodies of every shape, so that a shape can meet itself; they lie wherever."""
-    bodies = [Body(shape, ROCK, 1.0, np.eye(3)) for shape in shapes.shapes * 2]
+    bodies = [RigidBody(shape, ROCK, 1.0, np.eye(3)) for shape in shapes.shapes * 2]
     state = {name: np.zeros((len(bodies), 3)) for name in ("position", "velocity", "angular_momentum")}
     state["quaternion"] = np.tile([1.0, 0.0, 0.0, 0.0], (len(bodies), 1))
     return bodies_of(bodies, shapes.shapes, [ROCK], state)

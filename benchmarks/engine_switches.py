@@ -37,7 +37,7 @@ SWITCHES = {
     "edges by their part in the band": ("feature_culling.py", "    return low[0] - high[0] >= farthest or",
                                         "    if farthest > 0.0:\n        return False\n    return"),
     "skin of the list": ("engine.py", "SKIN = 0.25", "SKIN = 0.025"),
-    "one moment of inertia": ("body.py", "np.array_equal(body.inertia, body.inertia[0, 0] * np.eye(3))", "False"),
+    "one moment of inertia": ("assembly.py", "np.array_equal(body.inertia, body.inertia[0, 0] * np.eye(3))", "False"),
     "look every 16 steps": ("stability.py", "LOOK_STEPS, LOOK_PHASE = 16", "LOOK_STEPS, LOOK_PHASE = 1"),
     "kernels in their callers": ("../compiled.py", '"forceinline": True', '"forceinline": False'),
 }  # fmt: skip

@@ -5,25 +5,25 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 
 from lithobrake.dem.arrays import Bodies, Cores, Floats, Laws, Pairs, Planes, Step
-from lithobrake.dem.body import Body, Plane, bodies_of, cores_of, laws_of, planes_of
+from lithobrake.dem.assembly import bodies_of, cores_of, laws_of, materials_of, planes_of, shapes_of
 from lithobrake.dem.feature_id import INLINE_FEATURES
 from lithobrake.dem.feature_list import BOUND_SLACK
 from lithobrake.dem.force import DAMPING
 from lithobrake.dem.gjk import Search, search_for
-from lithobrake.dem.material import Material
-from lithobrake.dem.neighbours import carry_over, neighbours, new_pairs, with_more_overflow
-from lithobrake.dem.shape import Shape
+from lithobrake.dem.motion import write_matrices
+from lithobrake.dem.neighbours import carry_over, neighbours, with_more_overflow
+from lithobrake.dem.rigid_body import Plane, RigidBody
 from lithobrake.dem.threads import Team, new_reactions, partitions_of
 from lithobrake.dem.time_loop import DONE, FEATURES_OVERFLOW, LIST_USED_UP, advance
 
 # Skin of the neighbour list over the smallest bounding radius: costs or saves time, changes no result.
 SKIN = 0.25
 NO_REACTIONS = new_reactions(0)
-
-
-def no_pairs() -> Pairs:
-    """Return the pairs of a world in which nothing has met."""
-    return new_pairs(np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64))
+# What changes of bodies and does not follow from the rest; what a checkpoint keeps of them.
+MOVING = (
+    "position", "velocity", "quaternion", "angular_momentum", "force", "torque", "half_spin", "travel", "travel_listed",
+    "dragged",
+)  # fmt: skip
 
 
 def pool_of(thread_count: int) -> ThreadPoolExecutor | None:
@@ -34,28 +34,26 @@ def pool_of(thread_count: int) -> ThreadPoolExecutor | None:
 class Engine:
     """Arrays of a world in which nothing is added any more.
 
-    state holds position, velocity, quaternion and angular_momentum and is advanced in place; pairs carry the history of
-    contacts; lost [3] (see force.py) and watch_record count on across engines.
+    motion holds position, velocity, quaternion and angular_momentum and is advanced in place; pairs carry the history
+    of contacts; lost [3] (see force.py) and watch_record count on across engines.
     """
 
     def __init__(
         self,
-        bodies: list[Body],
+        bodies: list[RigidBody],
         planes: list[Plane],
         options: dict[str, str],
-        state: dict[str, Floats],
+        motion: dict[str, Floats],
         pairs: Pairs,
         lost: Floats,
         watch_record: Floats,
         thread_count: int,
     ) -> None:
-        self.shapes: list[Shape] = list({id(body.shape): body.shape for body in bodies}.values())
-        made_of = [body.material for body in bodies] + [plane.material for plane in planes]
-        self.materials: list[Material] = list(dict.fromkeys(made_of))
-        self.cores: Cores = cores_of(self.shapes)
-        self.laws: Laws = laws_of(self.materials, options["shear_modulus_rule"], options["pair_rule"])
-        self.planes: Planes = planes_of(planes, self.materials, len(bodies))
-        self.bodies: Bodies = bodies_of(bodies, self.shapes, self.materials, state)
+        shapes, materials = shapes_of(bodies), materials_of(bodies, planes)
+        self.cores: Cores = cores_of(shapes)
+        self.laws: Laws = laws_of(materials, options["shear_modulus_rule"], options["pair_rule"])
+        self.planes: Planes = planes_of(planes, materials, len(bodies))
+        self.bodies: Bodies = bodies_of(bodies, shapes, materials, motion)
         self.pairs: Pairs
         self.search: Search
         self.team: Team | None
@@ -104,6 +102,14 @@ class Engine:
         """Enter the losses of pairs and bodies into the sums, before these arrays are left."""
         self.lost[:] = self.losses()
         self.pairs.lost[:], self.bodies.dragged[:] = 0.0, 0.0
+
+    def restore(self, moving: dict[str, Floats], pairs: Pairs, skin: float) -> None:
+        """Go on from where another engine for the same bodies stood: its MOVING arrays, pairs, and skin [m]."""
+        for name, values in moving.items():
+            getattr(self.bodies, name)[:] = values
+        write_matrices(self.bodies)
+        self.skin = skin
+        self.gather(pairs)
 
     def use_threads(self, thread_count: int) -> None:
         """Go on with so many threads."""

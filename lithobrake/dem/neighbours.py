@@ -84,6 +84,11 @@ def new_pairs(first: Integers, second: Integers) -> Pairs:
     )  # fmt: skip
 
 
+def no_pairs() -> Pairs:
+    """Return the pairs of a world in which nothing has met."""
+    return new_pairs(np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64))
+
+
 def carry_over(old: Pairs, first: Integers, second: Integers) -> Pairs:
     """Return pairs for a new list that carry on the history of those already in the old one.
 

@@ -77,7 +77,9 @@ def advance(
     return step_count, DONE, False
 
 
+# What is recorded of a watched body, and where.
 STEPS, PEAK_FORCE, FIRST_CONTACT, LAST_CONTACT = 0, 1, 2, 3
+WATCHED = {"peak_force": PEAK_FORCE, "first_contact": FIRST_CONTACT, "last_contact": LAST_CONTACT}
 
 
 @kernel

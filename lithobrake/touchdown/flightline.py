@@ -1,7 +1,6 @@
 """Watching one landing: when it is over, and what is to be told of it."""
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,11 +8,9 @@ from numpy.typing import NDArray
 from lithobrake.dem import World
 from lithobrake.touchdown.bed import Bed
 from lithobrake.touchdown.lander import Lander
+from lithobrake.touchdown.landing import Landing
 from lithobrake.touchdown.outcome import Outcome, outgoing
 from lithobrake.touchdown.surface import rotation_matrix
-
-if TYPE_CHECKING:
-    from lithobrake.touchdown.landing import Landing
 
 Floats = NDArray[np.float64]
 CAPTURED_ENERGY = 1e-4  # of the energy of impact
@@ -27,9 +24,7 @@ SUNK_SHARE = 0.5
 class FlightLine:
     """The lander's way, looked at every few steps."""
 
-    def __init__(
-        self, bed: Bed, lander: Lander, landing: "Landing", world: World, number: int, frame_count: int
-    ) -> None:
+    def __init__(self, bed: Bed, lander: Lander, landing: Landing, world: World, number: int, frame_count: int) -> None:
         self.bed, self.lander, self.landing, self.world, self.number = bed, lander, landing, world, number
         self.start_time = world.time
         self.start_energy = self.energy()

@@ -5,7 +5,7 @@ import pytest
 from scipy.spatial import ConvexHull as Quickhull
 
 from lithobrake.dem import Box, ConvexHull
-from lithobrake.dem.body import cores_of, rotation_matrices
+from lithobrake.dem.assembly import cores_of, rotation_matrices
 from lithobrake.dem.closest_points import find_closest_points
 from lithobrake.dem.feature_distance import edge_to_edge, point_to_core
 from lithobrake.dem.gjk import PENETRATING, search_for, weighted
