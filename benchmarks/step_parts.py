@@ -54,7 +54,7 @@ def parts(world: World) -> Iterator[tuple[str, float, float]]:
     yield "two half kicks", 1.0, 2.0 * nanoseconds(lambda: kick(bodies, still, 0, count))
     yield "drift and rotation", 1.0, nanoseconds(lambda: drift(bodies, still, 0, count))
     whole = len(pairs.first)
-    looks = nanoseconds(lambda: update_feature_lists(bodies, *held, pairs, engine.search, 0.0, 0, whole))
+    looks = nanoseconds(lambda: update_feature_lists(bodies, *held, pairs, engine.scratch, 0.0, 0, whole))
     yield "looks at margins", whole / count, looks
     kind = kinds_of(pairs)
     order = np.argsort(kind, kind="stable")
@@ -62,7 +62,7 @@ def parts(world: World) -> Iterator[tuple[str, float, float]]:
     ends = np.searchsorted(kind[order], np.arange(len(KINDS) + 1))
     for name, start, stop in zip(KINDS, ends[:-1], ends[1:], strict=True):
         if start < stop:
-            rest = (engine.laws, still, engine.search, NO_REACTIONS, False, start, stop)
+            rest = (engine.laws, still, engine.scratch, NO_REACTIONS, False, start, stop)
             spent = nanoseconds(lambda rest=rest: contact_forces(bodies, *held, sorted_pairs, *rest))
             yield f"forces: {name}", (stop - start) / count, spent
     look = nanoseconds(lambda: largest_step(bodies, engine.planes, pairs, engine.laws, False))

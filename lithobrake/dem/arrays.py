@@ -1,4 +1,8 @@
-"""The arrays that kernels work on. Every length is in metres, every frame is the world's unless it says body."""
+"""The arrays that kernels work on. Every length is in metres, every frame is the world's unless it says body.
+
+Kernels take a pair first, then arrays in the order below and those of scratch.py, then all else. They only read, but
+for what their docstrings say they write to.
+"""
 
 from typing import NamedTuple
 

@@ -9,7 +9,8 @@ import math
 from lithobrake.compiled import kernel, large_kernel
 from lithobrake.dem.arrays import Cores, Floats
 from lithobrake.dem.feature_distance import edge_of, point_to_core
-from lithobrake.dem.gjk import APART, CLOSE, PENETRATING, UNSURE, Search, closest_simplex
+from lithobrake.dem.gjk import APART, CLOSE, PENETRATING, UNSURE, closest_simplex
+from lithobrake.dem.scratch import Simplex, TurnedFeatures
 from lithobrake.dem.separating_axis import largest_separation
 from lithobrake.dem.vectors import Vector, cross, dot, minus, plus, put, row, scaled, times, transposed_times
 
@@ -22,58 +23,58 @@ Gap = tuple[float, Vector, Vector]
 
 @large_kernel
 def find_closest_points(
-    search: Search, cores: Cores, shapes: tuple[int, int], rotation: Floats, bodies: tuple[int, int], apart: Vector,
-    margin: float,
+    cores: Cores, simplex: Simplex, turned: TurnedFeatures, relative: Floats, shapes: tuple[int, int], rotation: Floats,
+    members: tuple[int, int], apart: Vector, margin: float,
 ) -> tuple[int, int, float]:  # fmt: skip
     """Find the closest points of the cores of two bodies, the second's centroid `apart` from the first's.
 
-    Returns what was found (APART: farther than the margin; CLOSE: points in `search`; CROSSING), the number of weighted
-    points, and a lower bound of the distance where they are apart.
+    Returns what was found (APART: farther than the margin; CLOSE: points in `simplex`; PENETRATING), the number of
+    weighted points, and a lower bound of the distance where they are apart. Writes to simplex, turned and relative.
     """
-    found, count, bound = closest_simplex(search, cores, shapes, rotation, bodies, apart, margin)
+    found, count, bound = closest_simplex(cores, simplex, shapes, rotation, members, apart, margin)
     if found != UNSURE:
         return found, count, bound
-    if largest_separation(search, cores, shapes, rotation, bodies, apart)[0] <= 0.0:
+    if largest_separation(cores, turned, relative, shapes, rotation, members, apart)[0] <= 0.0:
         return PENETRATING, 0, 0.0
-    there = transposed_times(rotation, bodies[0], apart)
-    best = corners_to_cores(search, cores, shapes, there)
-    distance, on_first, on_second = edges_to_edges(search, cores, shapes, there, best)
+    there = transposed_times(rotation, members[0], apart)
+    best = corners_to_cores(cores, relative, shapes, there)
+    distance, on_first, on_second = edges_to_edges(cores, relative, shapes, there, best)
     difference = minus(on_first, on_second)
     if dot(difference, difference) == 0.0:
         return PENETRATING, 0, 0.0
-    put(search.on_first, 0, times(rotation, bodies[0], on_first))
-    put(search.on_second, 0, times(rotation, bodies[0], on_second))
-    put(search.difference, 0, times(rotation, bodies[0], difference))
-    search.weight[0] = 1.0
+    put(simplex.on_first, 0, times(rotation, members[0], on_first))
+    put(simplex.on_second, 0, times(rotation, members[0], on_second))
+    put(simplex.difference, 0, times(rotation, members[0], difference))
+    simplex.weight[0] = 1.0
     return APART if distance > margin else CLOSE, 1, distance
 
 
 @kernel
-def corners_to_cores(search: Search, cores: Cores, shapes: tuple[int, int], there: Vector) -> Gap:
+def corners_to_cores(cores: Cores, relative: Floats, shapes: tuple[int, int], there: Vector) -> Gap:
     """Return the smallest gap between a corner of one core and the other core, in the first body's frame."""
     best = (math.inf, there, there)
     for k in range(cores.vertex_start[shapes[1]], cores.vertex_start[shapes[1] + 1]):
-        corner = plus(times(search.relative, 0, row(cores.vertex, k)), there)
+        corner = plus(times(relative, 0, row(cores.vertex, k)), there)
         distance, outward, near, _ = point_to_core(cores, shapes[0], corner, best[0])
         if near and distance < best[0]:
             best = (distance, minus(corner, scaled(distance, outward)), corner)
     for k in range(cores.vertex_start[shapes[0]], cores.vertex_start[shapes[0] + 1]):
         corner = row(cores.vertex, k)
-        seen = transposed_times(search.relative, 0, minus(corner, there))
+        seen = transposed_times(relative, 0, minus(corner, there))
         distance, outward, near, _ = point_to_core(cores, shapes[1], seen, best[0])
         if near and distance < best[0]:
-            best = (distance, corner, minus(corner, scaled(distance, times(search.relative, 0, outward))))
+            best = (distance, corner, minus(corner, scaled(distance, times(relative, 0, outward))))
     return best
 
 
 @kernel
-def edges_to_edges(search: Search, cores: Cores, shapes: tuple[int, int], there: Vector, best: Gap) -> Gap:
+def edges_to_edges(cores: Cores, relative: Floats, shapes: tuple[int, int], there: Vector, best: Gap) -> Gap:
     """Return the smallest gap between two edges that meet amid both, where it is smaller than the best so far."""
     for i in range(cores.edge_start[shapes[0] + 1] - cores.edge_start[shapes[0]]):
         begin, along = edge_of(cores, shapes[0], i)
         for j in range(cores.edge_start[shapes[1] + 1] - cores.edge_start[shapes[1]]):
             other_begin, other = edge_of(cores, shapes[1], j)
-            other_begin, other = plus(times(search.relative, 0, other_begin), there), times(search.relative, 0, other)
+            other_begin, other = plus(times(relative, 0, other_begin), there), times(relative, 0, other)
             normal, between = cross(along, other), minus(other_begin, begin)
             square = dot(normal, normal)
             if square == 0.0:

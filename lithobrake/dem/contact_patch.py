@@ -20,7 +20,6 @@ from lithobrake.dem.feature_id import (
     feature_kind,
     listed_feature,
 )
-from lithobrake.dem.gjk import Search
 from lithobrake.dem.patch_energy import (
     CORNER,
     DEEP_FROM,
@@ -30,6 +29,7 @@ from lithobrake.dem.patch_energy import (
     deepening,
 )
 from lithobrake.dem.penetration import add_penetration_point
+from lithobrake.dem.scratch import Patch, Scratch
 from lithobrake.dem.vectors import Vector, dot, minus, plus, put, row, scaled, times, transposed_times
 
 
@@ -44,30 +44,32 @@ class Contact(NamedTuple):
 
 
 @kernel
-def find_contact(pair: int, bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, search: Search) -> Contact:
-    """Return where the members of a pair touch that has features to look at."""
+def find_contact(pair: int, bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, scratch: Scratch) -> Contact:
+    """Return where the members of a pair touch that has features to look at. Writes to scratch."""
+    patch = scratch.patch
     first, second = pairs.first[pair], pairs.second[pair]
     if feature_kind(pairs.feature[pair, 0]) == SPHERES and pairs.feature_count[pair] > 0:
         overlap, point, normal = sphere_overlap(bodies, first, second)
-        search.point_weight[0], search.family[0] = 1.0, CORNER
+        patch.weight[0], patch.family[0] = 1.0, CORNER
         return Contact(1 if overlap > 0.0 else 0, overlap, point, normal, True)
     reach = cores.rounding[bodies.shape[first]]
     if second >= 0:
-        count, deep, derivative = body_patch(pair, bodies, cores, pairs, search)
+        count, deep, derivative = body_patch(pair, bodies, cores, pairs, scratch)
         reach += cores.rounding[bodies.shape[second]]
     else:
-        count, deep, derivative = plane_patch(pair, bodies, cores, planes, pairs, search), 0.0, 0.0
+        count, deep, derivative = plane_patch(pair, bodies, cores, planes, pairs, patch), 0.0, 0.0
     if count == 0:
         return Contact(0, 0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), False)
-    overlap, point, normal = combine_overlaps(search, count, deep, derivative, reach)
+    overlap, point, normal = combine_overlaps(patch, count, deep, derivative, reach)
     return Contact(count, overlap, point, normal, False)
 
 
 @kernel
-def plane_patch(pair: int, bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, search: Search) -> int:
+def plane_patch(pair: int, bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, patch: Patch) -> int:
     """Write the points where a body presses on a plane; the normal points into the plane. Returns their number.
 
     The force acts on the surface of the body as if it were not dented, so that a ball rolls with its own radius.
+    Writes to patch.
     """
     body, plane = pairs.first[pair], -1 - pairs.second[pair]
     outward, shape, count = row(planes.normal, plane), bodies.shape[body], 0
@@ -75,55 +77,61 @@ def plane_patch(pair: int, bodies: Bodies, cores: Cores, planes: Planes, pairs: 
     down = transposed_times(bodies.rotation, body, outward)
     level = planes.offset[plane] + rounding - dot(outward, row(bodies.position, body))
     for k in range(pairs.feature_count[pair]):
-        corner = row(cores.vertex, cores.vertex_start[shape] + feature_indices(listed_feature(pairs, pair, k))[0])
+        corner = row(cores.vertex, cores.vertex_start[shape] + feature_indices(listed_feature(pair, pairs, k))[0])
         depth = level - dot(corner, down)
         foot = plus(row(bodies.position, body), times(bodies.rotation, body, corner))
         point = minus(foot, scaled(rounding, outward))
-        count = add_point(search, count, CORNER, depth, point, inward)
+        count = add_point(patch, count, CORNER, depth, point, inward)
     return count
 
 
 @kernel
-def body_patch(pair: int, bodies: Bodies, cores: Cores, pairs: Pairs, search: Search) -> tuple[int, float, float]:
-    """Write the points where two bodies touch. Returns their number, and what `spread` needs to know of edges."""
+def body_patch(pair: int, bodies: Bodies, cores: Cores, pairs: Pairs, scratch: Scratch) -> tuple[int, float, float]:
+    """Write the points where two bodies touch. Returns their number, and what `spread` needs to know of edges.
+
+    Writes to scratch.
+    """
+    relative, patch = scratch.relative, scratch.patch
     first, second = pairs.first[pair], pairs.second[pair]
     apart = minus(row(bodies.position, second), row(bodies.position, first))
     penetrating = pairs.feature_count[pair] == ALL_FEATURES
     if penetrating:
-        count, deep, derivative = add_all_corners(search, bodies, cores, first, second, apart), 1.0, 0.0
+        count, deep, derivative = add_all_corners(bodies, cores, patch, first, second, apart), 1.0, 0.0
     else:
-        count, deep, derivative = add_listed_features(search, pairs, pair, bodies, cores, apart)
+        count, deep, derivative = add_listed_features(pair, bodies, cores, pairs, patch, apart)
     if deep > 0.0:
         shapes = (bodies.shape[first], bodies.shape[second])
-        write_relative(bodies.rotation, first, second, search.relative)
+        write_relative(bodies.rotation, first, second, relative)
         there = transposed_times(bodies.rotation, first, apart)
-        apart_count, count = count, add_deep_edges(search, count, cores, shapes, there)
+        apart_count, count = count, add_deep_edges(cores, patch, relative, count, shapes, there)
         for k in range(apart_count, count):
-            put(search.point, k, plus(row(bodies.position, first), times(bodies.rotation, first, row(search.point, k))))
-            put(search.normal, k, times(bodies.rotation, first, row(search.normal, k)))
-            put(search.couple, k, times(bodies.rotation, first, row(search.couple, k)))
+            put(patch.point, k, plus(row(bodies.position, first), times(bodies.rotation, first, row(patch.point, k))))
+            put(patch.normal, k, times(bodies.rotation, first, row(patch.normal, k)))
+            put(patch.couple, k, times(bodies.rotation, first, row(patch.couple, k)))
     if penetrating:
-        count = add_penetration_point(search, count, bodies, cores, first, second, apart)
+        count = add_penetration_point(bodies, cores, scratch, count, first, second, apart)
     return count, deep, derivative
 
 
 @kernel
 def add_listed_features(
-    search: Search, pairs: Pairs, pair: int, bodies: Bodies, cores: Cores, apart: Vector
+    pair: int, bodies: Bodies, cores: Cores, pairs: Pairs, patch: Patch, apart: Vector
 ) -> tuple[int, float, float]:
     """Write the listed features that overlap; return their number, how far edges have passed into deep ones, and the
     derivative of that by the deepest overlap (1/m).
+
+    Writes to patch.
     """
     first, second = pairs.first[pair], pairs.second[pair]
     count, corners, deepest = 0, 0, 0.0
     for k in range(pairs.feature_count[pair]):
-        feature = listed_feature(pairs, pair, k)
-        count = add_feature_point(search, count, bodies, cores, first, second, apart, feature)
+        feature = listed_feature(pair, pairs, k)
+        count = add_feature_point(bodies, cores, patch, count, first, second, apart, feature)
         # Corners are listed before edges.
         if feature_kind(feature) <= CORNER_OF_SECOND:
             corners = count
     for k in range(count):
-        deepest = max(deepest, search.depth[k])
+        deepest = max(deepest, patch.depth[k])
     reach = cores.rounding[bodies.shape[first]] + cores.rounding[bodies.shape[second]]
     if deepest <= DEEP_FROM * reach:
         return count, 0.0, 0.0
@@ -132,35 +140,35 @@ def add_listed_features(
 
 
 @large_kernel
-def add_all_corners(search: Search, bodies: Bodies, cores: Cores, first: int, second: int, apart: Vector) -> int:
-    """Write all corners of two bodies that overlap; return their number."""
+def add_all_corners(bodies: Bodies, cores: Cores, patch: Patch, first: int, second: int, apart: Vector) -> int:
+    """Write all corners of two bodies that overlap; return their number. Writes to patch."""
     count = 0
     for kind in range(2):
         shape = bodies.shape[first if kind == 0 else second]
         for k in range(cores.vertex_start[shape + 1] - cores.vertex_start[shape]):
             feature = encode_feature(kind, k, 0)
-            count = add_feature_point(search, count, bodies, cores, first, second, apart, feature)
+            count = add_feature_point(bodies, cores, patch, count, first, second, apart, feature)
     return count
 
 
 @kernel
 def add_feature_point(
-    search: Search, count: int, bodies: Bodies, cores: Cores, first: int, second: int, apart: Vector, feature: int
+    bodies: Bodies, cores: Cores, patch: Patch, count: int, first: int, second: int, apart: Vector, feature: int
 ) -> int:
-    """Add a feature to the patch if it overlaps; return the number of points."""
+    """Add a feature to the patch if it overlaps; return the number of points. Writes to patch."""
     roundings = (cores.rounding[bodies.shape[first]], cores.rounding[bodies.shape[second]])
     reach, half_difference = roundings[0] + roundings[1], 0.5 * (roundings[0] - roundings[1])
-    on_first, normal, distance = measure_feature(feature, bodies, cores, first, second, apart, reach)
+    on_first, normal, distance = measure_feature(bodies, cores, feature, first, second, apart, reach)
     if distance >= reach:
         return count
     middle = plus(on_first, scaled(0.5 * distance + half_difference, normal))
     family = CORNER if feature_kind(feature) <= CORNER_OF_SECOND else EDGES_APART
-    return add_point(search, count, family, reach - distance, plus(row(bodies.position, first), middle), normal)
+    return add_point(patch, count, family, reach - distance, plus(row(bodies.position, first), middle), normal)
 
 
 @kernel
 def measure_feature(
-    feature: int, bodies: Bodies, cores: Cores, first: int, second: int, apart: Vector, reach: float
+    bodies: Bodies, cores: Cores, feature: int, first: int, second: int, apart: Vector, reach: float
 ) -> tuple[Vector, Vector, float]:
     """Return point on the first core, about its centroid, normal to the second and distance of a feature."""
     kind, (i, j), turn = feature_kind(feature), feature_indices(feature), bodies.rotation

@@ -6,13 +6,13 @@ import numpy as np
 
 from lithobrake.dem.arrays import Bodies, Cores, Floats, Laws, Pairs, Planes, Step
 from lithobrake.dem.assembly import bodies_of, cores_of, laws_of, materials_of, planes_of, shapes_of
+from lithobrake.dem.contact_law import DAMPING
 from lithobrake.dem.feature_id import INLINE_FEATURES
 from lithobrake.dem.feature_list import BOUND_SLACK
-from lithobrake.dem.force import DAMPING
-from lithobrake.dem.gjk import Search, search_for
 from lithobrake.dem.motion import write_matrices
-from lithobrake.dem.neighbours import carry_over, neighbours, with_more_overflow
+from lithobrake.dem.neighbours import carry_over, neighbouring_pairs, with_more_overflow
 from lithobrake.dem.rigid_body import Plane, RigidBody
+from lithobrake.dem.scratch import Scratch, scratch_for
 from lithobrake.dem.threads import Team, new_reactions, partitions_of
 from lithobrake.dem.time_loop import DONE, FEATURES_OVERFLOW, LIST_USED_UP, advance
 
@@ -35,7 +35,7 @@ class Engine:
     """Arrays of a world in which nothing is added any more.
 
     motion holds position, velocity, quaternion and angular_momentum and is advanced in place; pairs carry the history
-    of contacts; lost [3] (see force.py) and watch_record count on across engines.
+    of contacts; lost [3] (see contact_law.py) and watch_record count on across engines.
     """
 
     def __init__(
@@ -55,7 +55,7 @@ class Engine:
         self.planes: Planes = planes_of(planes, materials, len(bodies))
         self.bodies: Bodies = bodies_of(bodies, shapes, materials, motion)
         self.pairs: Pairs
-        self.search: Search
+        self.scratch: Scratch
         self.team: Team | None
         self.lost, self.watch_record = lost, watch_record
         self.skin = SKIN * float(self.bodies.bounding_radius.min())
@@ -85,12 +85,13 @@ class Engine:
         """Take steps until the lists have to be renewed, on one thread or on several."""
         if self.team is None:
             return advance(
-                steps, drifted, self.bodies, self.cores, self.planes, self.pairs, self.laws, step, self._way,
-                self.search, NO_REACTIONS, self.whole, watched, self.watch_record,
+                self.bodies, self.cores, self.planes, self.pairs, self.laws, step, self.scratch, NO_REACTIONS,
+                self.whole, steps, drifted, self._travel_limit, watched, self.watch_record,
             )  # fmt: skip
         return self.team.advance(
-            steps, drifted, self.bodies, self.cores, self.planes, self.laws, step, self._way, watched, self.watch_record
-        )
+            self.bodies, self.cores, self.planes, self.laws, step, steps, drifted, self._travel_limit, watched,
+            self.watch_record,
+        )  # fmt: skip
 
     def losses(self) -> Floats:
         """Return what damping, friction and rolling have taken so far [J], shape [3]."""
@@ -118,29 +119,29 @@ class Engine:
 
     def gather(self, pairs: Pairs) -> None:
         """Take on pairs: make scratch for them, and divide them among the threads."""
-        self.pairs, self.search = pairs, self._scratch(pairs)
+        self.pairs, self.scratch = pairs, self._scratch(pairs)
         self.whole, *_ = partitions_of(pairs, len(self.bodies.mass), 1)
         self.team = None
         if self.pool is not None:
-            searches = [self._scratch(pairs) for _ in range(self.thread_count)]
-            self.team = Team(self.pool, searches, len(self.bodies.mass), pairs)
+            scratches = [self._scratch(pairs) for _ in range(self.thread_count)]
+            self.team = Team(self.pool, scratches, len(self.bodies.mass), pairs)
 
-    def _scratch(self, pairs: Pairs) -> Search:
+    def _scratch(self, pairs: Pairs) -> Scratch:
         shape = self.bodies.shape
         vertices, edges = (
             np.sort(np.diff(start)[shape])[-2:] for start in (self.cores.vertex_start, self.cores.edge_start)
         )
         # All corners and all pairs of edges of the two largest bodies, should they cross, and a list's worth beside.
         points = 1 + int(vertices.sum() + 2 * edges.prod()) + INLINE_FEATURES + pairs.overflow.shape[1]
-        return search_for(int(vertices.max() + edges.max()), points)
+        return scratch_for(int(vertices.max() + edges.max()), points)
 
     @property
-    def _way(self) -> float:
+    def _travel_limit(self) -> float:
         """How far a surface may come nearer to others before neighbours are listed anew [m]."""
         return 0.5 * (1.0 - BOUND_SLACK) * self.skin
 
     def _list_neighbours(self) -> None:
         self.book()
-        first, second = neighbours(self.bodies, self.cores, self.planes, self.skin, self.search)
+        first, second = neighbouring_pairs(self.bodies, self.cores, self.planes, self.scratch, self.skin)
         self.gather(carry_over(self.pairs, first, second))
         self.bodies.travel_listed[:] = self.bodies.travel

@@ -150,7 +150,7 @@ def closest_fractions(a: Vector, along_a: Vector, b: Vector, along_b: Vector) ->
 
 @kernel
 def write_relative(rotation: Floats, first: int, second: int, relative: Floats) -> None:
-    """Write the rotation [1, 3, 3] from the second body's frame to the first's."""
+    """Write the rotation [1, 3, 3] from the second body's frame to the first's. Writes to relative."""
     for i in range(3):
         for j in range(3):
             relative[0, i, j] = (

@@ -36,10 +36,10 @@ def feature_indices(feature: int) -> tuple[int, int]:
 
 
 @kernel
-def add_feature(pairs: Pairs, pair: int, kind: int, i: int, j: int) -> None:
-    """Add a feature to the list of a pair; the count goes on where the list is full."""
+def add_feature(pair: int, pairs: Pairs, kind: int, i: int, j: int) -> None:
+    """Add a feature to the list of a pair; the count goes on where the list is full. Writes to pairs."""
     count, feature = pairs.feature_count[pair], encode_feature(kind, i, j)
-    if count < feature_capacity(pairs, pair):
+    if count < feature_capacity(pair, pairs):
         if count < INLINE_FEATURES:
             pairs.feature[pair, count] = feature
         else:
@@ -48,13 +48,13 @@ def add_feature(pairs: Pairs, pair: int, kind: int, i: int, j: int) -> None:
 
 
 @kernel
-def feature_capacity(pairs: Pairs, pair: int) -> int:
+def feature_capacity(pair: int, pairs: Pairs) -> int:
     """Return how many features the list of a pair can hold."""
     return INLINE_FEATURES + pairs.overflow.shape[1] if pairs.overflow_row[pair] >= 0 else INLINE_FEATURES
 
 
 @kernel
-def listed_feature(pairs: Pairs, pair: int, k: int) -> int:
+def listed_feature(pair: int, pairs: Pairs, k: int) -> int:
     """Return feature k of the list of a pair."""
     return (
         pairs.feature[pair, k] if k < INLINE_FEATURES else pairs.overflow[pairs.overflow_row[pair], k - INLINE_FEATURES]

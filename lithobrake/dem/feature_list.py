@@ -5,14 +5,15 @@ difference to any bit when, or how often, a list is renewed.
 """
 
 from lithobrake.compiled import kernel, large_kernel
-from lithobrake.dem.arrays import Bodies, Cores, Pairs, Planes
+from lithobrake.dem.arrays import Bodies, Cores, Floats, Pairs, Planes
 from lithobrake.dem.closest_points import find_closest_points
 from lithobrake.dem.feature_culling import band_along, is_point, list_corners, list_edges
 from lithobrake.dem.feature_distance import write_relative
 from lithobrake.dem.feature_id import ALL_FEATURES, CORNER_OF_FIRST, SPHERES, add_feature, feature_capacity
-from lithobrake.dem.gjk import APART, CLOSE, PENETRATING, Search, weighted
+from lithobrake.dem.gjk import APART, CLOSE, PENETRATING, weighted
 from lithobrake.dem.motion import surface_speed_bound
 from lithobrake.dem.patch_energy import DEEP_TO
+from lithobrake.dem.scratch import Scratch, Simplex, TurnedFeatures
 from lithobrake.dem.vectors import dot, minus, row, scaled, transposed_times
 
 # The margin is this part of the rounding radii, which themselves count for at most this part of the contact radii.
@@ -44,11 +45,12 @@ def list_margin(bodies: Bodies, cores: Cores, first: int, second: int, time_step
 
 @large_kernel
 def update_feature_lists(
-    bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, search: Search, time_step: float, start: int, stop: int
-) -> int:
+    bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, scratch: Scratch, time_step: float, start: int,
+    stop: int,
+) -> int:  # fmt: skip
     """Renew the lists of pairs start to stop whose margin is used up; return how many found too little room.
 
-    Those are listed again at the next call.
+    Those are listed again at the next call. Writes to pairs and scratch.
     """
     lacking = 0
     for pair in range(start, stop):
@@ -60,8 +62,8 @@ def update_feature_lists(
         if second < 0:
             serves = max(margin, list_plane(pair, bodies, cores, planes, pairs, margin))
         else:
-            serves = list_bodies(pair, bodies, cores, pairs, margin, search)
-        if pairs.feature_count[pair] > feature_capacity(pairs, pair):
+            serves = list_bodies(pair, bodies, cores, pairs, scratch.simplex, scratch.turned, scratch.relative, margin)
+        if pairs.feature_count[pair] > feature_capacity(pair, pairs):
             lacking += 1
         else:
             pairs.wake[pair] = travel + (1.0 - BOUND_SLACK) * serves
@@ -70,7 +72,7 @@ def update_feature_lists(
 
 @kernel
 def list_plane(pair: int, bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, margin: float) -> float:
-    """List the corners near a plane; return the gap."""
+    """List the corners near a plane; return the gap. Writes to pairs."""
     body, plane = pairs.first[pair], -1 - pairs.second[pair]
     shape = bodies.shape[body]
     pairs.feature_count[pair] = 0
@@ -83,13 +85,19 @@ def list_plane(pair: int, bodies: Bodies, cores: Cores, planes: Planes, pairs: P
         height = level + dot(row(cores.vertex, k), down)
         gap = min(gap, height)
         if height < margin:
-            add_feature(pairs, pair, CORNER_OF_FIRST, k - start, 0)
+            add_feature(pair, pairs, CORNER_OF_FIRST, k - start, 0)
     return gap
 
 
 @large_kernel
-def list_bodies(pair: int, bodies: Bodies, cores: Cores, pairs: Pairs, margin: float, search: Search) -> float:
-    """List the features of two bodies that are near each other; return the motion for which the list serves."""
+def list_bodies(
+    pair: int, bodies: Bodies, cores: Cores, pairs: Pairs, simplex: Simplex, turned: TurnedFeatures, relative: Floats,
+    margin: float,
+) -> float:  # fmt: skip
+    """List the features of two bodies that are near each other; return the motion for which the list serves.
+
+    Writes to pairs, simplex, turned and relative.
+    """
     first, second = pairs.first[pair], pairs.second[pair]
     shapes, members = (bodies.shape[first], bodies.shape[second]), (first, second)
     pairs.feature_count[pair] = 0
@@ -99,9 +107,11 @@ def list_bodies(pair: int, bodies: Bodies, cores: Cores, pairs: Pairs, margin: f
         return bound
     reach = cores.rounding[shapes[0]] + cores.rounding[shapes[1]]
     if is_point(cores, shapes[0]) and is_point(cores, shapes[1]):
-        add_feature(pairs, pair, SPHERES, 0, 0)
+        add_feature(pair, pairs, SPHERES, 0, 0)
         return margin
-    found, count, bound = find_closest_points(search, cores, shapes, bodies.rotation, members, apart, reach + margin)
+    found, count, bound = find_closest_points(
+        cores, simplex, turned, relative, shapes, bodies.rotation, members, apart, reach + margin
+    )
     if found == APART:
         return bound - reach
     hulls = not (is_point(cores, shapes[0]) or is_point(cores, shapes[1]))
@@ -109,14 +119,16 @@ def list_bodies(pair: int, bodies: Bodies, cores: Cores, pairs: Pairs, margin: f
         # Until they are this far apart again, the listed features and all of them come to the same (contact_patch.py).
         pairs.feature_count[pair] = ALL_FEATURES
         return (1.0 - DEEP_TO) * reach
-    write_relative(bodies.rotation, first, second, search.relative)
+    write_relative(bodies.rotation, first, second, relative)
     there = transposed_times(bodies.rotation, first, apart)
-    between = weighted(search.difference, search.weight, count) if found == CLOSE else (0.0, 0.0, 0.0)
+    between = weighted(simplex.difference, simplex.weight, count) if found == CLOSE else (0.0, 0.0, 0.0)
     distance = dot(between, between) ** 0.5
     direction = scaled(-1.0 / distance, between) if distance > 0.0 else between
-    band = band_along(transposed_times(bodies.rotation, first, direction), cores, shapes, search, there, reach + margin)
-    list_corners(pair, pairs, cores, shapes, search, there, band)
+    band = band_along(
+        cores, relative, shapes, there, transposed_times(bodies.rotation, first, direction), reach + margin
+    )
+    list_corners(pair, cores, pairs, relative, shapes, there, band)
     if not hulls:
         return margin
-    list_edges(pair, pairs, cores, shapes, search, there, band)
+    list_edges(pair, cores, pairs, turned, relative, shapes, there, band)
     return min(margin, distance)

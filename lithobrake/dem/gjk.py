@@ -4,12 +4,9 @@ Source: Gilbert, Johnson and Keerthi (1988). Positions are relative to the first
 not depend on where in the world the pair stands. All tolerances are relative to the sizes met on the way.
 """
 
-from typing import NamedTuple
-
-import numpy as np
-
 from lithobrake.compiled import kernel, large_kernel
-from lithobrake.dem.arrays import Cores, Floats, Integers
+from lithobrake.dem.arrays import Cores, Floats
+from lithobrake.dem.scratch import Simplex
 from lithobrake.dem.simplex import simplex_weights
 from lithobrake.dem.vectors import Vector, dot, minus, plus, put, row, scaled, times, transposed_times
 
@@ -22,36 +19,6 @@ TOUCHING = 1e-13
 ITERATIONS = 100
 
 APART, CLOSE, PENETRATING, UNSURE = 0, 1, 2, 3
-
-
-class Search(NamedTuple):
-    """Scratch: a simplex while it is sought, the points of a contact."""
-
-    on_first: Floats  # [4, 3]
-    on_second: Floats  # [4, 3]
-    difference: Floats  # [4, 3]
-    vertex: Integers  # [4, 2]
-    weight: Floats  # [4]
-    steps: Integers  # [1], that the last search took
-    turned: Floats  # [edge_count_max + vertex_count_max, 12], a core, or edges with their boxes, in the other's frame
-    listed: Integers  # [edge_count_max + vertex_count_max], which edges these are
-    relative: Floats  # [1, 3, 3]
-    point: Floats  # [point_max, 3], of a patch
-    normal: Floats  # [point_max, 3], from first to second
-    couple: Floats  # [point_max, 3], of deep edges, see deep_edges.py
-    depth: Floats  # [point_max], overlap at the point
-    family: Integers  # [point_max]
-    point_weight: Floats  # [point_max], derivative of the patch's overlap by that of the point
-
-
-def search_for(feature_max: int, point_max: int) -> Search:
-    """Return scratch large enough for the corners and edges of a core, and the points of a patch."""
-    return Search(
-        np.zeros((4, 3)), np.zeros((4, 3)), np.zeros((4, 3)), np.zeros((4, 2), dtype=np.int64), np.zeros(4),
-        np.zeros(1, dtype=np.int64), np.zeros((feature_max, 12)), np.zeros(feature_max, dtype=np.int64),
-        np.zeros((1, 3, 3)), np.zeros((point_max, 3)), np.zeros((point_max, 3)), np.zeros((point_max, 3)),
-        np.zeros(point_max), np.zeros(point_max, dtype=np.int64), np.zeros(point_max),
-    )  # fmt: skip
 
 
 @kernel
@@ -68,16 +35,16 @@ def support(cores: Cores, shape: int, direction: Vector) -> int:
 
 @kernel
 def place_corner(
-    search: Search, k: int, cores: Cores, shapes: tuple[int, int], rotation: Floats, bodies: tuple[int, int],
+    cores: Cores, simplex: Simplex, k: int, shapes: tuple[int, int], rotation: Floats, members: tuple[int, int],
     apart: Vector,
 ) -> None:  # fmt: skip
-    """Compute corner k of the simplex from its two vertices."""
-    first = times(rotation, bodies[0], row(cores.vertex, cores.vertex_start[shapes[0]] + search.vertex[k, 0]))
-    second = times(rotation, bodies[1], row(cores.vertex, cores.vertex_start[shapes[1]] + search.vertex[k, 1]))
+    """Compute corner k of the simplex from its two vertices. Writes to simplex."""
+    first = times(rotation, members[0], row(cores.vertex, cores.vertex_start[shapes[0]] + simplex.vertex[k, 0]))
+    second = times(rotation, members[1], row(cores.vertex, cores.vertex_start[shapes[1]] + simplex.vertex[k, 1]))
     second = plus(second, apart)
-    put(search.on_first, k, first)
-    put(search.on_second, k, second)
-    put(search.difference, k, minus(first, second))
+    put(simplex.on_first, k, first)
+    put(simplex.on_second, k, second)
+    put(simplex.difference, k, minus(first, second))
 
 
 @kernel
@@ -90,9 +57,12 @@ def weighted(array: Floats, weight: Floats, count: int) -> Vector:
 
 
 @kernel
-def reduce_simplex(search: Search, count: int, closest_before: float) -> tuple[int, bool]:
-    """Drop the corners that do not carry the closest point; refuse a step that comes no closer (second value False)."""
-    d = search.difference
+def reduce_simplex(simplex: Simplex, count: int, closest_before: float) -> tuple[int, bool]:
+    """Drop the corners that do not carry the closest point; refuse a step that comes no closer (second value False).
+
+    Writes to simplex.
+    """
+    d = simplex.difference
     a, b, c, e = row(d, 0), row(d, 1), row(d, 2), row(d, 3)
     weights = simplex_weights(count, a, b, c, e)
     point = plus(plus(scaled(weights[0], a), scaled(weights[1], b)), plus(scaled(weights[2], c), scaled(weights[3], e)))
@@ -101,10 +71,10 @@ def reduce_simplex(search: Search, count: int, closest_before: float) -> tuple[i
     kept = 0
     for k in range(count):
         if weights[k] > 0.0:
-            search.weight[kept] = weights[k]
-            search.vertex[kept, 0], search.vertex[kept, 1] = search.vertex[k, 0], search.vertex[k, 1]
-            put(search.on_first, kept, row(search.on_first, k))
-            put(search.on_second, kept, row(search.on_second, k))
+            simplex.weight[kept] = weights[k]
+            simplex.vertex[kept, 0], simplex.vertex[kept, 1] = simplex.vertex[k, 0], simplex.vertex[k, 1]
+            put(simplex.on_first, kept, row(simplex.on_first, k))
+            put(simplex.on_second, kept, row(simplex.on_second, k))
             put(d, kept, row(d, k))
             kept += 1
     return kept, True
@@ -112,39 +82,40 @@ def reduce_simplex(search: Search, count: int, closest_before: float) -> tuple[i
 
 @large_kernel
 def closest_simplex(
-    search: Search, cores: Cores, shapes: tuple[int, int], rotation: Floats, bodies: tuple[int, int], apart: Vector,
+    cores: Cores, simplex: Simplex, shapes: tuple[int, int], rotation: Floats, members: tuple[int, int], apart: Vector,
     margin: float,
 ) -> tuple[int, int, float]:  # fmt: skip
     """Search for the simplex of differences that carries the closest points of the cores.
 
-    Returns what was found (APART: farther than the margin; CLOSE: points in `search`; CROSSING; UNSURE: rounding ended
-    the search without proof), the number of corners, and a lower bound of the distance where they are apart.
+    Returns what was found (APART: farther than the margin; CLOSE: points in `simplex`; PENETRATING; UNSURE: rounding
+    ended the search without proof), the number of corners, and a lower bound of the distance where they are apart.
+    Writes to simplex.
     """
-    search.vertex[0, 0], search.vertex[0, 1] = 0, 0
-    place_corner(search, 0, cores, shapes, rotation, bodies, apart)
-    count, _ = reduce_simplex(search, 1, -1.0)
+    simplex.vertex[0, 0], simplex.vertex[0, 1] = 0, 0
+    place_corner(cores, simplex, 0, shapes, rotation, members, apart)
+    count, _ = reduce_simplex(simplex, 1, -1.0)
     for step in range(ITERATIONS):
-        search.steps[0] = step + 1
-        closest = weighted(search.difference, search.weight, count)
-        square, size = dot(closest, closest), largest(search.difference, count)
+        simplex.steps[0] = step + 1
+        closest = weighted(simplex.difference, simplex.weight, count)
+        square, size = dot(closest, closest), largest(simplex.difference, count)
         if square <= TOUCHING * TOUCHING * size:
             return PENETRATING, count, 0.0
         if count == 4:
             return UNSURE, count, 0.0
         backward = scaled(-1.0, closest)
-        search.vertex[count, 0] = support(cores, shapes[0], transposed_times(rotation, bodies[0], backward))
-        search.vertex[count, 1] = support(cores, shapes[1], transposed_times(rotation, bodies[1], closest))
-        corner = find_corner(search, count)
+        simplex.vertex[count, 0] = support(cores, shapes[0], transposed_times(rotation, members[0], backward))
+        simplex.vertex[count, 1] = support(cores, shapes[1], transposed_times(rotation, members[1], closest))
+        corner = find_corner(simplex, count)
         if corner == count:
-            place_corner(search, count, cores, shapes, rotation, bodies, apart)
-        bound = dot(closest, row(search.difference, corner))
+            place_corner(cores, simplex, count, shapes, rotation, members, apart)
+        bound = dot(closest, row(simplex.difference, corner))
         if bound > 0.0 and bound * bound > margin * margin * square:
             return APART, count, bound / square**0.5
         if square - bound <= CONVERGED * square:
             return CLOSE, count, 0.0
         closer = False
         if corner == count:
-            count, closer = reduce_simplex(search, count + 1, square)
+            count, closer = reduce_simplex(simplex, count + 1, square)
         if not closer:
             # Rounding leaves no way to go on: what is missing yet counts by the size, as rounding does.
             gain = (square - bound) / square**0.5
@@ -153,10 +124,10 @@ def closest_simplex(
 
 
 @kernel
-def find_corner(search: Search, count: int) -> int:
+def find_corner(simplex: Simplex, count: int) -> int:
     """Return which corner has the same vertices as the one after the first `count`: that one, if no other has."""
     for k in range(count):
-        if search.vertex[k, 0] == search.vertex[count, 0] and search.vertex[k, 1] == search.vertex[count, 1]:
+        if simplex.vertex[k, 0] == simplex.vertex[count, 0] and simplex.vertex[k, 1] == simplex.vertex[count, 1]:
             return k
     return count
 

@@ -6,7 +6,8 @@ from lithobrake.compiled import kernel, large_kernel
 from lithobrake.dem.arrays import Bodies, Cores, Flags, Floats, Integers, Pairs, Planes
 from lithobrake.dem.closest_points import find_closest_points
 from lithobrake.dem.feature_id import INLINE_FEATURES
-from lithobrake.dem.gjk import APART, Search
+from lithobrake.dem.gjk import APART
+from lithobrake.dem.scratch import Scratch
 from lithobrake.dem.vectors import minus, row
 
 
@@ -15,6 +16,7 @@ def sweep(order: Integers, low: Floats, position: Floats, reach: Floats, first: 
     """Find pairs of bounding spheres that meet, sweeping along x; write as many as fit and return how many there are.
 
     order [body_count] sorts low = x - reach; reach is the bounding radius and half the skin.
+    Writes to first and second.
     """
     count = 0
     for i in range(len(order)):
@@ -35,20 +37,26 @@ def sweep(order: Integers, low: Floats, position: Floats, reach: Floats, first: 
 
 @large_kernel
 def mark_near(
-    bodies: Bodies, cores: Cores, first: Integers, second: Integers, skin: float, search: Search, near: Flags
+    bodies: Bodies, cores: Cores, scratch: Scratch, first: Integers, second: Integers, skin: float, near: Flags
 ) -> None:
-    """Note which pairs of bodies are less than the skin apart: fewer than half of those whose bounding spheres meet."""
+    """Note which pairs of bodies are less than the skin apart: fewer than half of those whose bounding spheres meet.
+
+    Writes to scratch and near.
+    """
     for pair in range(len(first)):
         members = (first[pair], second[pair])
         shapes = (bodies.shape[members[0]], bodies.shape[members[1]])
         apart = minus(row(bodies.position, members[1]), row(bodies.position, members[0]))
         farthest = cores.rounding[shapes[0]] + cores.rounding[shapes[1]] + skin
-        near[pair] = find_closest_points(search, cores, shapes, bodies.rotation, members, apart, farthest)[0] != APART
+        found, _, _ = find_closest_points(
+            cores, scratch.simplex, scratch.turned, scratch.relative, shapes, bodies.rotation, members, apart, farthest
+        )
+        near[pair] = found != APART
 
 
-def neighbours(
-    bodies: Bodies, cores: Cores, planes: Planes, skin: float, search: Search
-) -> tuple[Integers, Integers]:  # fmt: skip
+def neighbouring_pairs(
+    bodies: Bodies, cores: Cores, planes: Planes, scratch: Scratch, skin: float
+) -> tuple[Integers, Integers]:
     """Return first and second of all neighbouring pairs, ordered; plane k stands as second = -1 - k."""
     reach = bodies.bounding_radius + 0.5 * skin
     low = bodies.position[:, 0] - reach
@@ -61,7 +69,7 @@ def neighbours(
             break
         capacity = count
     near = np.zeros(count, dtype=np.bool_)
-    mark_near(bodies, cores, first[:count], second[:count], skin, search, near)
+    mark_near(bodies, cores, scratch, first[:count], second[:count], skin, near)
     gap = planes.normal @ bodies.position.T - planes.offset[:, None] - reach
     plane, body = np.nonzero((gap < 0.0) & planes.meets)
     first = np.concatenate([first[:count][near], body])

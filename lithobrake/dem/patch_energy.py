@@ -6,7 +6,7 @@ pose, move smoothly from corner to corner, and hold a face by all of its corners
 """
 
 from lithobrake.compiled import kernel
-from lithobrake.dem.gjk import Search
+from lithobrake.dem.scratch import Patch
 from lithobrake.dem.vectors import Vector, dot, minus, plus, put, row, scaled
 
 # Families of points: corners, pairs of edges apart, deep pairs of edges (deep_edges.py), and the
@@ -20,13 +20,13 @@ DEEP_FROM, DEEP_TO = 0.5, 0.9
 
 
 @kernel
-def add_point(search: Search, count: int, family: int, depth: float, point: Vector, normal: Vector) -> int:
-    """Add a point to the patch if it overlaps; return the number of points."""
+def add_point(patch: Patch, count: int, family: int, depth: float, point: Vector, normal: Vector) -> int:
+    """Add a point to the patch if it overlaps; return the number of points. Writes to patch."""
     if depth <= 0.0:
         return count
-    put(search.point, count, point)
-    put(search.normal, count, normal)
-    search.depth[count], search.family[count] = depth, family
+    put(patch.point, count, point)
+    put(patch.normal, count, normal)
+    patch.depth[count], patch.family[count] = depth, family
     return count + 1
 
 
@@ -42,11 +42,11 @@ def deepening(progress: float) -> tuple[float, float]:
 
 
 @kernel
-def deepest_shallow_point(search: Search, count: int) -> int:
+def deepest_shallow_point(patch: Patch, count: int) -> int:
     """Return the deepest point of a patch of cores that do not penetrate; it is no deep pair of edges."""
     top = 0
     for k in range(1, count):
-        if search.family[k] != DEEP_EDGES and search.depth[k] > search.depth[top]:
+        if patch.family[k] != DEEP_EDGES and patch.depth[k] > patch.depth[top]:
             top = k
     return top
 
@@ -74,7 +74,7 @@ def power_above_tangent(ratio: float, start: float) -> tuple[float, float]:
 
 @kernel
 def combine_overlaps(
-    search: Search, count: int, deep: float, derivative: float, reach: float
+    patch: Patch, count: int, deep: float, derivative: float, reach: float
 ) -> tuple[float, Vector, Vector]:
     """Combine the overlaps of a patch into one, and write the weight of each point in the force.
 
@@ -82,18 +82,18 @@ def combine_overlaps(
     edges + d^8 of the penetration less its tangent at d = reach, where the cores begin to cross, with `deep` a function
     of the deepest overlap, `derivative` [1/m] its derivative, and `reach` [m] both roundings. One corner is Hertz
     exactly until cores cross, four or eight equal ones are 1.5 or 1.9 times as stiff. Returns D [m], the centre of
-    pressure, and the unit normal of the whole force.
+    pressure, and the unit normal of the whole force. Writes to patch.
     """
-    if count == 1 and (search.family[0] == CORNER or (search.family[0] == EDGES_APART and deep == 0.0)):
-        weight = 1.0 if search.family[0] == CORNER else EDGE_ALONE
-        search.point_weight[0] = weight
-        return weight * search.depth[0], row(search.point, 0), row(search.normal, 0)
+    if count == 1 and (patch.family[0] == CORNER or (patch.family[0] == EDGES_APART and deep == 0.0)):
+        weight = 1.0 if patch.family[0] == CORNER else EDGE_ALONE
+        patch.weight[0] = weight
+        return weight * patch.depth[0], row(patch.point, 0), row(patch.normal, 0)
     deepest, corners, apart, below = 0.0, 0.0, 0.0, 0.0
     centre, force, weight_sum = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), 0.0
     for k in range(count):
-        deepest = max(deepest, search.depth[k])
+        deepest = max(deepest, patch.depth[k])
     for k in range(count):
-        ratio, family = search.depth[k] / deepest, search.family[k]
+        ratio, family = patch.depth[k] / deepest, patch.family[k]
         eighth, seventh = power_eight(ratio)
         family_weight = 1.0
         if family == CORNER:
@@ -109,17 +109,17 @@ def combine_overlaps(
             eighth, seventh = power_above_tangent(ratio, reach / deepest)
             corners += eighth
         weight = family_weight * seventh
-        search.point_weight[k] = weight
-        centre = plus(centre, scaled(weight, row(search.point, k)))
-        force = plus(force, scaled(weight, row(search.normal, k)))
+        patch.weight[k] = weight
+        centre = plus(centre, scaled(weight, row(patch.point, k)))
+        force = plus(force, scaled(weight, row(patch.normal, k)))
         weight_sum += weight
     total = corners + (1.0 - deep) * apart + deep * below
     root = ((total**0.5) ** 0.5) ** 0.5
     for k in range(count):
-        search.point_weight[k] *= root / total
+        patch.weight[k] *= root / total
     if derivative > 0.0:
         # As the patch deepens, edges apart pass into deep ones: that too changes the energy.
-        search.point_weight[deepest_shallow_point(search, count)] += (
+        patch.weight[deepest_shallow_point(patch, count)] += (
             0.125 * (below - apart) * derivative * deepest * root / total
         )
     size = dot(force, force) ** 0.5
@@ -129,15 +129,15 @@ def combine_overlaps(
 
 
 @kernel
-def spin_radii(search: Search, count: int, centre: Vector, normal: Vector) -> tuple[float, float]:
+def spin_radii(patch: Patch, count: int, centre: Vector, normal: Vector) -> tuple[float, float]:
     """Return mean squared and mean distance of a patch's force from the axis through its centre along the normal."""
     square, mean, weight_sum = 0.0, 0.0, 0.0
     if count == 1:
         return 0.0, 0.0
     for k in range(count):
-        arm = minus(row(search.point, k), centre)
+        arm = minus(row(patch.point, k), centre)
         arm = minus(arm, scaled(dot(arm, normal), normal))
-        weight = max(search.point_weight[k], 0.0)
+        weight = max(patch.weight[k], 0.0)
         square += weight * dot(arm, arm)
         mean += weight * dot(arm, arm) ** 0.5
         weight_sum += weight

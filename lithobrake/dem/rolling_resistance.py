@@ -17,7 +17,7 @@ def resist_twisting(
     """Return the couple about the normal on the second body, and what its spring and its dashpot took.
 
     A patch of more than one point resists twisting as its points would, each with its part of the tangential spring;
-    spinning friction is the same with a lever of that coefficient times the contact radius.
+    spinning friction is the same with a lever of that coefficient times the contact radius. Writes to pairs.
     """
     before, stiffness_before = pairs.twist[pair], pairs.twist_stiffness[pair]
     angle = spin * time_step
@@ -39,7 +39,7 @@ def resist_rolling(
 
     A spring of 2.25 times the normal stiffness times the lever squared, the lever being rolling friction times contact
     radius, up to lever times normal force, with a dashpot of the contact's damping ratio.
-    Source: Ai, Chen, Rotter and Ooi (2011), Powder Technology 206, 269-282, model C.
+    Source: Ai, Chen, Rotter and Ooi (2011), Powder Technology 206, 269-282, model C. Writes to pairs.
     """
     before = turned_spring(row(pairs.roll, pair), row(pairs.normal, pair), normal, twist * time_step)
     rolling = ROLLING_STIFFNESS * stiffness * lever * lever
@@ -55,7 +55,7 @@ def resist_rolling(
 
 @kernel
 def end_couples(pair: int, pairs: Pairs) -> tuple[float, float]:
-    """End the couples of a contact; return what the twisting and the rolling spring held."""
+    """End the couples of a contact; return what the twisting and the rolling spring held. Writes to pairs."""
     roll = row(pairs.roll, pair)
     twisted = stored(pairs.twist[pair] ** 2, pairs.twist_stiffness[pair])
     rolled = stored(dot(roll, roll), pairs.roll_stiffness[pair])

@@ -12,9 +12,9 @@ import math
 from typing import NamedTuple
 
 from lithobrake.compiled import kernel, large_kernel
-from lithobrake.dem.arrays import Bodies, Floats, Laws, Pairs, Planes
+from lithobrake.dem.arrays import Bodies, Floats, Laws, Pairs, Planes, Step
 from lithobrake.dem.effective_mass import inverse_inertia_across, inverse_mass_at
-from lithobrake.dem.gjk import Search
+from lithobrake.dem.scratch import Patch
 from lithobrake.dem.spring import tangential_part
 from lithobrake.dem.vectors import Vector, dot, minus, row, times
 
@@ -57,7 +57,7 @@ def inverse_masses(bodies: Bodies, body: int, arm: Vector, normal: Vector) -> tu
 
 @kernel
 def patch_tilt_stiffness(
-    search: Search, count: int, centre: Vector, normal: Vector, overlap: float, stiffness: float
+    patch: Patch, count: int, centre: Vector, normal: Vector, overlap: float, stiffness: float
 ) -> float:
     """Return the stiffness [N m] of a patch against tilting about the stiffest axis through its centre.
 
@@ -68,8 +68,8 @@ def patch_tilt_stiffness(
         return 0.0
     xx, yy, zz, xy, yz, zx = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     for k in range(count):
-        x, y, z = tangential_part(minus(row(search.point, k), centre), normal)
-        weight = max(search.point_weight[k], 0.0) * stiffness * (1.5 + 7.0 * overlap / search.depth[k])
+        x, y, z = tangential_part(minus(row(patch.point, k), centre), normal)
+        weight = max(patch.weight[k], 0.0) * stiffness * (1.5 + 7.0 * overlap / patch.depth[k])
         xx, yy, zz = xx + weight * x * x, yy + weight * y * y, zz + weight * z * z
         xy, yz, zx = xy + weight * x * y, yz + weight * y * z, zx + weight * z * x
     both = xx + yy + zz
@@ -79,7 +79,7 @@ def patch_tilt_stiffness(
 
 @kernel
 def contact_stiffness(
-    bodies: Bodies, pairs: Pairs, pair: int, inverse_mass: float, couple: float, law: Damping
+    pair: int, bodies: Bodies, pairs: Pairs, inverse_mass: float, couple: float, law: Damping
 ) -> ContactStiffness:
     """Return how a pair that touches holds its bodies; inverse_mass and couple are what both show it together."""
     secant = pairs.elastic_force[pair] / pairs.overlap[pair]
@@ -97,7 +97,7 @@ def contact_stiffness(
 def add_contact_rates(
     rates: Floats, body: int, stiffness: ContactStiffness, masses: tuple[float, float, float]
 ) -> None:
-    """Add what a contact does to a body's w^2 and c, in the fastest of its directions."""
+    """Add what a contact does to a body's w^2 and c, in the fastest of its directions. Writes to rates."""
     along, sideways, couple = masses
     rates[body, 0] += max(stiffness.normal * along + stiffness.tilt * couple, stiffness.shear * sideways)
     rates[body, 1] += max(
@@ -107,7 +107,7 @@ def add_contact_rates(
 
 @large_kernel
 def write_rates(bodies: Bodies, planes: Planes, pairs: Pairs, laws: Laws, paper_mass: bool) -> None:
-    """Sum up for every body how its contacts hold it."""
+    """Sum up for every body how its contacts hold it. Writes to bodies."""
     bodies.rates[:] = 0.0
     for pair in range(len(pairs.first)):
         if pairs.overlap[pair] == 0.0:
@@ -123,7 +123,7 @@ def write_rates(bodies: Bodies, planes: Planes, pairs: Pairs, laws: Laws, paper_
             theirs = inverse_masses(bodies, second, minus(point, row(bodies.position, second)), normal)
             inverse_mass += bodies.inverse_mass[second] if paper_mass else theirs[0]
         law = Damping(laws.damping_ratio[here, there], laws.shear_damping[here, there])
-        stiffness = contact_stiffness(bodies, pairs, pair, inverse_mass, ours[2] + theirs[2], law)
+        stiffness = contact_stiffness(pair, bodies, pairs, inverse_mass, ours[2] + theirs[2], law)
         add_contact_rates(bodies.rates, first, stiffness, ours)
         if second >= 0:
             add_contact_rates(bodies.rates, second, stiffness, theirs)
@@ -133,6 +133,8 @@ def write_rates(bodies: Bodies, planes: Planes, pairs: Pairs, laws: Laws, paper_
 def largest_step(bodies: Bodies, planes: Planes, pairs: Pairs, laws: Laws, paper_mass: bool) -> float:
     """Return the largest safe time step [s], infinite where nothing touches: there c dt + (w dt)^2 / 4 of two that
     touch comes to the fraction that is allowed.
+
+    Writes to bodies.
     """
     write_rates(bodies, planes, pairs, laws, paper_mass)
     rates, most = bodies.rates, 0.0
@@ -148,12 +150,13 @@ def largest_step(bodies: Bodies, planes: Planes, pairs: Pairs, laws: Laws, paper
 
 @kernel
 def step_is_too_large(
-    taken: int, rate: float, bodies: Bodies, planes: Planes, pairs: Pairs, laws: Laws, paper_mass: bool,
-    time_step: float,
-) -> bool:  # fmt: skip
+    bodies: Bodies, planes: Planes, pairs: Pairs, laws: Laws, step: Step, taken: int, rate: float
+) -> bool:
     """Whether the step is too large; looks at every so many steps, and where a contact alone turns far in one: `rate`
     is the largest square of a rate [1/s2].
+
+    Writes to bodies.
     """
-    if taken % LOOK_STEPS > 0 and rate * time_step * time_step < LOOK_PHASE * LOOK_PHASE:
+    if taken % LOOK_STEPS > 0 and rate * step.time_step * step.time_step < LOOK_PHASE * LOOK_PHASE:
         return False
-    return time_step > largest_step(bodies, planes, pairs, laws, paper_mass)
+    return step.time_step > largest_step(bodies, planes, pairs, laws, step.paper_mass)

@@ -14,7 +14,7 @@ import numpy as np
 from lithobrake.dem.arrays import Bodies, Cores, Floats, Laws, Pairs, Partition, Planes, Reactions, Step
 from lithobrake.dem.feature_list import update_feature_lists
 from lithobrake.dem.force import forces_across_partitions, forces_within_partition
-from lithobrake.dem.gjk import Search
+from lithobrake.dem.scratch import Scratch
 from lithobrake.dem.stability import step_is_too_large
 from lithobrake.dem.time_loop import (
     DIVERGED,
@@ -52,37 +52,37 @@ def new_reactions(count: int) -> Reactions:
 class Team:
     """Threads that work on the bodies and pairs of an engine together."""
 
-    def __init__(self, pool: ThreadPoolExecutor, searches: list[Search], body_count: int, pairs: Pairs) -> None:
-        self.pool, self.searches = pool, searches  # scratch, one for each thread and for the one that calls
+    def __init__(self, pool: ThreadPoolExecutor, scratches: list[Scratch], body_count: int, pairs: Pairs) -> None:
+        self.pool, self.scratches = pool, scratches  # scratch, one for each thread and for the one that calls
         self.pairs, self.reactions = pairs, new_reactions(len(pairs.first))
-        self.partitions = partitions_of(pairs, body_count, len(searches))
+        self.partitions = partitions_of(pairs, body_count, len(scratches))
 
-    def each(self, work: Callable[[Partition, Search], Any]) -> list[Any]:
+    def each(self, work: Callable[[Partition, Scratch], Any]) -> list[Any]:
         """Do a piece of work for every partition: work(partition, scratch); return what came of it."""
-        parts = list(zip(self.partitions, self.searches, strict=True))
+        parts = list(zip(self.partitions, self.scratches, strict=True))
         others = [self.pool.submit(work, *part) for part in parts[1:]]
         return [work(*parts[0]), *(other.result() for other in others)]
 
     def advance(
-        self, step_count: int, drifted: bool, bodies: Bodies, cores: Cores, planes: Planes, laws: Laws, step: Step,
-        half_skin: float, watched: int, watch_record: Floats,
+        self, bodies: Bodies, cores: Cores, planes: Planes, laws: Laws, step: Step, step_count: int, drifted: bool,
+        travel_limit: float, watched: int, watch_record: Floats,
     ) -> tuple[int, int, bool]:  # fmt: skip
         """Take up to `step_count` steps, see time_loop.advance."""
-        pairs = self.pairs
+        pairs, reactions = self.pairs, self.reactions
 
-        def begin(partition: Partition, _: Search) -> float:
+        def begin(partition: Partition, _: Scratch) -> float:
             return begin_step(bodies, step, partition.start, partition.stop)
 
-        def update_lists(partition: Partition, search: Search) -> int:
+        def update_lists(partition: Partition, scratch: Scratch) -> int:
             return update_feature_lists(
-                bodies, cores, planes, pairs, search, step.time_step, partition.first_pair, partition.last_pair
-            )  # fmt: skip
+                bodies, cores, planes, pairs, scratch, step.time_step, partition.first_pair, partition.last_pair
+            )
 
-        def across(partition: Partition, search: Search) -> float:
-            return forces_across_partitions(bodies, cores, planes, pairs, laws, step, search, self.reactions, partition)
+        def across(partition: Partition, scratch: Scratch) -> float:
+            return forces_across_partitions(bodies, cores, planes, pairs, laws, step, scratch, reactions, partition)
 
-        def end(partition: Partition, search: Search) -> float:
-            rate = forces_within_partition(bodies, cores, planes, pairs, laws, step, search, self.reactions, partition)
+        def end(partition: Partition, scratch: Scratch) -> float:
+            rate = forces_within_partition(bodies, cores, planes, pairs, laws, step, scratch, reactions, partition)
             end_step(bodies, step, partition.start, partition.stop)
             return rate
 
@@ -91,14 +91,14 @@ class Team:
                 ways = self.each(begin)
                 if not np.isfinite(ways).all():
                     return taken, DIVERGED, False
-                if max(ways) > half_skin:
+                if max(ways) > travel_limit:
                     return taken, LIST_USED_UP, True
             if max(self.each(update_lists)) > 0:
                 return taken, FEATURES_OVERFLOW, True
             drifted = False
             rates = self.each(across) + self.each(end)
             if watched >= 0:
-                record_watched(watched, bodies, watch_record)
-            if step_is_too_large(taken, max(rates), bodies, planes, pairs, laws, step.paper_mass, step.time_step):
+                record_watched(bodies, watched, watch_record)
+            if step_is_too_large(bodies, planes, pairs, laws, step, taken, max(rates)):
                 return taken + 1, STEP_TOO_LARGE, False
         return step_count, DONE, False

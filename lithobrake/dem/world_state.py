@@ -7,8 +7,8 @@ import numpy as np
 
 from lithobrake.dem.arrays import Floats, Pairs, Step
 from lithobrake.dem.assembly import inverse_inertias, rotation_matrices
+from lithobrake.dem.contact_law import LOSSES
 from lithobrake.dem.engine import Engine
-from lithobrake.dem.force import LOSSES
 from lithobrake.dem.motion import write_spins
 from lithobrake.dem.neighbours import no_pairs
 from lithobrake.dem.rigid_body import Plane, RigidBody
@@ -29,7 +29,7 @@ class WorldState:
             "angular_momentum": np.zeros((0, 3)),
         }  # fmt: skip
         self.pairs: Pairs = no_pairs()
-        self.lost = np.zeros(LOSSES)  # J, see force.py
+        self.lost = np.zeros(LOSSES)  # J, see contact_law.py
         self.watched, self.watch_record = NOTHING_WATCHED, np.zeros(4)  # see time_loop.py
         self.thread_count = 1
         self.engine: Engine | None = None

@@ -18,7 +18,7 @@ CAPTURED_APEX = 0.5  # of the lander's smallest edge; the apex if all of its ene
 # A lander that turns round passes through rest: only rest that lasts for so many of the shortest contacts is capture.
 CAPTURED_CONTACTS = 10.0
 # Of the lander's smallest edge: deeper in the floor an overlap is no contact, and nothing that follows is a landing.
-SUNK_SHARE = 0.5
+SUNK_FRACTION = 0.5
 
 
 class FlightLine:
@@ -52,7 +52,7 @@ class FlightLine:
         Raises ValueError for a lander that went through the floor: no fate is to be told of that.
         """
         height, touched = self.height(), self.world.watched
-        if height < -SUNK_SHARE * self.lander.smallest_edge:
+        if height < -SUNK_FRACTION * self.lander.smallest_edge:
             raise ValueError(
                 f"the lander went through the floor: it is {-height:.3g} m below it, of {self.lander.mass:.3g} kg and "
                 f"come with {self.landing.speed:.3g} m/s, for which these grains are too soft or too few; raise "

@@ -24,11 +24,11 @@ def land(
     lander: Lander,
     landing: Landing,
     frame_count: int = 0,
-    progress: Callable[[float, str], None] = lambda share, what: None,
+    progress: Callable[[float, str], None] = lambda fraction, what: None,
 ) -> Outcome:
     """Let a lander meet a bed whose grains have taken on the landing's material, until its fate is clear.
 
-    progress: called with the share that is done of what is being done; a landing may end long before its time limit.
+    progress: called with the fraction that is done of what is being done; a landing may end long before its time limit.
     Raises ValueError where bed and landing do not fit and where the lander goes through the floor, FloatingPointError
     where the motion diverged.
     """
@@ -40,7 +40,7 @@ def land(
             f"{min(bed.width)} m: make the bed wider"
         )
     world = bed.world(landing.grain, bed.gravity, landing.contact)
-    relax(world, bed, landing, lambda share: progress(share, "bed taking on the soil of the landing"))
+    relax(world, bed, landing, lambda fraction: progress(fraction, "bed taking on the soil of the landing"))
     number = release(world, bed, lander, landing)
     world.time_step = world.shortest_contact(landing.speed) / landing.contact.steps_per_contact
     world.watch(number)
@@ -54,7 +54,7 @@ def land(
 
 
 def relax(
-    world: World, bed: Bed, landing: Landing, tell: Callable[[float], None] = lambda share: None
+    world: World, bed: Bed, landing: Landing, tell: Callable[[float], None] = lambda fraction: None
 ) -> None:  # fmt: skip
     """Let the stored bed find its rest under the landing's material and gravity, under damping that fades.
 
@@ -72,7 +72,7 @@ def relax(
     checks = count(1)
 
     def fade(_: float) -> None:
-        # How long it takes is not known before: the share grows ever slower.
+        # How long it takes is not known before: the fraction grows ever slower.
         tell(1.0 - math.exp(-next(checks) / (settling.PERIODS_HELD * settling.CHECKS_PER_PERIOD)))
         world.drag = max(lasting, world.drag * math.exp(-1.0 / (RELAX_FADING * settling.CHECKS_PER_PERIOD)))
 
