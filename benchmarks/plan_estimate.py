@@ -21,7 +21,7 @@ from lithobrake.pipeline.expected_steps import FALLS, SETTLING, STEPS_PER_PERIOD
 from lithobrake.pipeline.expected_time import landing_time, pour_time
 from lithobrake.pipeline.pace import REFERENCE, probe
 from lithobrake.study import read_study
-from lithobrake.touchdown import Bed, land, landing, pour_bed
+from lithobrake.touchdown import Bed, Landing, land, pour_bed, simulation
 from lithobrake.touchdown.settling import PERIODS_RELAXED
 
 STUDIES = Path(__file__).parents[1] / "scenarios"
@@ -74,14 +74,14 @@ def poured(soil: ExpectedSoil, clock: Clock) -> tuple[Bed, dict[str, Any]]:
 
 def landed(bed: Bed, soil: ExpectedSoil, clock: Clock) -> list[dict[str, Any]]:
     """Make the landings; say how each was."""
-    relax, rows = landing.relax, []
+    relax, rows = simulation.relax, []
 
-    def watched(world: World, bed: Bed, event: landing.Landing) -> None:
+    def watched(world: World, bed: Bed, event: Landing) -> None:
         clock.begin("relaxing")
         relax(world, bed, event)
         clock.begin("touching")
 
-    landing.relax = watched
+    simulation.relax = watched
     for body, event in soil.landings[1:]:
         clock.steps, clock.seconds = {}, {}
         outcome = land(bed, body, event)

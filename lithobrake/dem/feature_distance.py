@@ -36,8 +36,8 @@ def stands_above(cores: Cores, shape: int, face: int, point: Vector) -> tuple[fl
     if height <= 0.0:
         return height, False
     foot = minus(point, scaled(height, normal))
-    for k in range(cores.fence_start[start + face], cores.fence_start[start + face + 1]):
-        other = start + cores.fence[k]
+    for k in range(cores.adjacent_start[start + face], cores.adjacent_start[start + face + 1]):
+        other = start + cores.adjacent_face[k]
         if dot(row(cores.normal, other), foot) > cores.offset[other]:
             return height, False
     return height, True
@@ -106,8 +106,8 @@ def point_to_edges(cores: Cores, shape: int, point: Vector) -> tuple[Vector, flo
     nearest, square = point, -1.0
     for edge in range(cores.edge_start[shape], cores.edge_start[shape + 1]):
         begin, along = row(cores.edge_begin, edge), row(cores.edge_along, edge)
-        share = min(max(dot(minus(point, begin), along) / dot(along, along), 0.0), 1.0)
-        trial = plus(begin, scaled(share, along))
+        fraction = min(max(dot(minus(point, begin), along) / dot(along, along), 0.0), 1.0)
+        trial = plus(begin, scaled(fraction, along))
         away = minus(point, trial)
         if square < 0.0 or dot(away, away) < square:
             nearest, square = trial, dot(away, away)
@@ -117,12 +117,12 @@ def point_to_edges(cores: Cores, shape: int, point: Vector) -> tuple[Vector, flo
 @kernel
 def edge_to_edge(a: Vector, along_a: Vector, b: Vector, along_b: Vector) -> tuple[Vector, Vector]:
     """Return the closest points of two edges that begin at a and b."""
-    share, other, _ = closest_shares(a, along_a, b, along_b)
-    return plus(a, scaled(share, along_a)), plus(b, scaled(other, along_b))
+    fraction, other, _ = closest_fractions(a, along_a, b, along_b)
+    return plus(a, scaled(fraction, along_a)), plus(b, scaled(other, along_b))
 
 
 @kernel
-def closest_shares(a: Vector, along_a: Vector, b: Vector, along_b: Vector) -> tuple[float, float, bool]:
+def closest_fractions(a: Vector, along_a: Vector, b: Vector, along_b: Vector) -> tuple[float, float, bool]:
     """Return where on two edges (0 at the begin, 1 at the end) they are closest, and whether they are parallel.
 
     Parallel ones meet amid their overlap.
@@ -134,23 +134,23 @@ def closest_shares(a: Vector, along_a: Vector, b: Vector, along_b: Vector) -> tu
     determinant = dot(turn, turn)
     parallel = determinant <= PARALLEL * aa * bb
     if not parallel:
-        share = (ad * bb - bd * ab) / determinant
-        other = (share * ab - bd) / bb
-        if 0.0 < share < 1.0 and 0.0 < other < 1.0:
-            return share, other, False
-        share = min(max(share, 0.0), 1.0)
+        fraction = (ad * bb - bd * ab) / determinant
+        other = (fraction * ab - bd) / bb
+        if 0.0 < fraction < 1.0 and 0.0 < other < 1.0:
+            return fraction, other, False
+        fraction = min(max(fraction, 0.0), 1.0)
     else:
         near, far = ad / aa, (ad + ab) / aa
         low, high = max(0.0, min(near, far)), min(1.0, max(near, far))
-        share = min(max(0.5 * (low + high), 0.0), 1.0)
-    other = min(max((share * ab - bd) / bb, 0.0), 1.0)
-    share = min(max((other * ab + ad) / aa, 0.0), 1.0)
-    return share, other, parallel
+        fraction = min(max(0.5 * (low + high), 0.0), 1.0)
+    other = min(max((fraction * ab - bd) / bb, 0.0), 1.0)
+    fraction = min(max((other * ab + ad) / aa, 0.0), 1.0)
+    return fraction, other, parallel
 
 
 @kernel
 def write_relative(rotation: Floats, first: int, second: int, relative: Floats) -> None:
-    """Write the rotation [1, 3, 3] from the second body's frame to the first's."""
+    """Write the rotation [1, 3, 3] from the second body's frame to the first's. Writes to relative."""
     for i in range(3):
         for j in range(3):
             relative[0, i, j] = (

@@ -5,10 +5,11 @@ import pytest
 from scipy.spatial import ConvexHull as Quickhull
 
 from lithobrake.dem import Box, ConvexHull
-from lithobrake.dem.body import cores_of, rotation_matrices
-from lithobrake.dem.closest import approach
-from lithobrake.dem.distance import CROSSING, search_for, weighted
-from lithobrake.dem.features import edge_to_edge, point_to_core
+from lithobrake.dem.assembly import cores_of, rotation_matrices
+from lithobrake.dem.closest_points import find_closest_points
+from lithobrake.dem.feature_distance import edge_to_edge, point_to_core
+from lithobrake.dem.gjk import PENETRATING, weighted
+from lithobrake.dem.scratch import scratch_for
 from lithobrake.dem.simplex import triangle_weights
 
 
@@ -26,7 +27,7 @@ def signed_distance(first, second):
 @pytest.mark.parametrize("stretch", [1.0, 1e-3])
 def test_distance_of_random_pairs(stretch):
     generator = np.random.default_rng(4)
-    search = search_for(120, 16)
+    simplex, turned, relative, _ = scratch_for(120, 16)
     seen = {}
     for trial in range(150):
         first = ConvexHull(generator.normal(size=(14, 3)) * [0.05, 0.05, 0.05 * stretch])
@@ -36,12 +37,14 @@ def test_distance_of_random_pairs(stretch):
         rotation = rotation_matrices(turns / np.linalg.norm(turns, axis=1)[:, None])
         apart = generator.normal(size=3)
         apart *= generator.uniform(0, 0.3) / np.linalg.norm(apart)
-        found, count, _ = approach(search, cores, (0, 1), rotation, (0, 1), tuple(apart), np.inf)
+        found, count, _ = find_closest_points(
+            cores, simplex, turned, relative, (0, 1), rotation, (0, 1), tuple(apart), np.inf
+        )
         expected = signed_distance(first.core @ rotation[0].T, second.core @ rotation[1].T + apart)
-        if found == CROSSING:
+        if found == PENETRATING:
             assert expected < 1e-10
         else:
-            ends = (np.array(weighted(a, search.weight, count)) for a in (search.on_first, search.on_second))
+            ends = (np.array(weighted(a, simplex.weight, count)) for a in (simplex.on_first, simplex.on_second))
             assert np.linalg.norm(next(ends) - next(ends)) == pytest.approx(expected, abs=1e-10)
         seen[found] = seen.get(found, 0) + 1
     assert min(seen.values()) > 20

@@ -3,10 +3,10 @@
 from typing import NamedTuple
 
 from lithobrake.compiled import kernel, large_kernel
-from lithobrake.dem.arrays import Cores, Pairs
-from lithobrake.dem.distance import Search
-from lithobrake.dem.features import edge_of, edge_to_edge, lowest_height, point_to_core
-from lithobrake.dem.names import CORNER_OF_FIRST, CORNER_OF_SECOND, EDGES, note_term
+from lithobrake.dem.arrays import Cores, Floats, Pairs
+from lithobrake.dem.feature_distance import edge_of, edge_to_edge, lowest_height, point_to_core
+from lithobrake.dem.feature_id import CORNER_OF_FIRST, CORNER_OF_SECOND, EDGES, add_feature
+from lithobrake.dem.scratch import TurnedFeatures
 from lithobrake.dem.vectors import Vector, dot, minus, plus, put, row, scaled, times, transposed_times
 
 
@@ -23,10 +23,10 @@ class Band(NamedTuple):
 
 @kernel
 def band_along(
-    normal: Vector, cores: Cores, shapes: tuple[int, int], search: Search, there: Vector, farthest: float
+    cores: Cores, relative: Floats, shapes: tuple[int, int], there: Vector, normal: Vector, farthest: float
 ) -> Band:
     """Return the gap of two cores along a normal, and what is near it."""
-    turned = transposed_times(search.relative, 0, normal)
+    turned = transposed_times(relative, 0, normal)
     top = -lowest_height(cores, shapes[0], scaled(-1.0, normal))
     bottom = lowest_height(cores, shapes[1], turned)
     return Band(normal, turned, top, bottom, farthest, farthest - (bottom + dot(there, normal) - top))
@@ -40,35 +40,42 @@ def is_point(cores: Cores, shape: int) -> bool:
 
 @kernel
 def list_corners(
-    pair: int, pairs: Pairs, cores: Cores, shapes: tuple[int, int], search: Search, there: Vector, band: Band
+    pair: int, cores: Cores, pairs: Pairs, relative: Floats, shapes: tuple[int, int], there: Vector, band: Band
 ) -> None:
-    """List the corners of either core that are near enough to the other; far ones fall out by their depth."""
+    """List the corners of either core that are near enough to the other; far ones fall out by their depth.
+
+    Writes to pairs.
+    """
     if not is_point(cores, shapes[1]):
         start = cores.vertex_start[shapes[0]]
         for k in range(start, cores.vertex_start[shapes[0] + 1]):
             if band.top - dot(row(cores.vertex, k), band.normal) >= band.depth:
                 continue
-            seen = transposed_times(search.relative, 0, minus(row(cores.vertex, k), there))
+            seen = transposed_times(relative, 0, minus(row(cores.vertex, k), there))
             _, _, near, face = point_to_core(cores, shapes[1], seen, band.farthest)
             if near:
-                note_term(pairs, pair, CORNER_OF_FIRST, k - start, face + 1)
+                add_feature(pair, pairs, CORNER_OF_FIRST, k - start, face + 1)
     if not is_point(cores, shapes[0]):
         start = cores.vertex_start[shapes[1]]
         for k in range(start, cores.vertex_start[shapes[1] + 1]):
             if dot(row(cores.vertex, k), band.turned) - band.bottom >= band.depth:
                 continue
-            seen = plus(times(search.relative, 0, row(cores.vertex, k)), there)
+            seen = plus(times(relative, 0, row(cores.vertex, k)), there)
             _, _, near, face = point_to_core(cores, shapes[0], seen, band.farthest)
             if near:
-                note_term(pairs, pair, CORNER_OF_SECOND, k - start, face + 1)
+                add_feature(pair, pairs, CORNER_OF_SECOND, k - start, face + 1)
 
 
 @large_kernel
 def list_edges(
-    pair: int, pairs: Pairs, cores: Cores, shapes: tuple[int, int], search: Search, there: Vector, band: Band
-) -> None:
-    """List the pairs of edges that are near enough: of those that reach into the band, whose parts in it may meet."""
-    near = edges_in_band(cores, shapes[1], search, there, band)
+    pair: int, cores: Cores, pairs: Pairs, turned: TurnedFeatures, relative: Floats, shapes: tuple[int, int],
+    there: Vector, band: Band,
+) -> None:  # fmt: skip
+    """List the pairs of edges that are near enough: of those that reach into the band, whose parts in it may meet.
+
+    Writes to pairs and turned.
+    """
+    near = edges_in_band(cores, turned, relative, shapes[1], there, band)
     for i in range(cores.edge_start[shapes[0] + 1] - cores.edge_start[shapes[0]]):
         begin, along = edge_of(cores, shapes[0], i)
         depth, climb = band.top - dot(begin, band.normal), -dot(along, band.normal)
@@ -76,32 +83,35 @@ def list_edges(
             continue
         low, high = box_in_band(begin, along, depth, climb, band.depth)
         for k in range(near):
-            if beyond(low, row(search.turned[:, 9:], k), band.farthest):
+            if beyond(low, row(turned.feature[:, 9:], k), band.farthest):
                 continue
-            if beyond(row(search.turned[:, 6:], k), high, band.farthest):
+            if beyond(row(turned.feature[:, 6:], k), high, band.farthest):
                 continue
-            here, hither = edge_to_edge(begin, along, row(search.turned, k), row(search.turned[:, 3:], k))
+            here, hither = edge_to_edge(begin, along, row(turned.feature, k), row(turned.feature[:, 3:], k))
             between = minus(hither, here)
             if dot(between, between) < band.farthest * band.farthest:
-                note_term(pairs, pair, EDGES, i, search.listed[k])
+                add_feature(pair, pairs, EDGES, i, turned.edge[k])
 
 
 @kernel
-def edges_in_band(cores: Cores, shape: int, search: Search, there: Vector, band: Band) -> int:
-    """Write begin, direction and box, in the first's frame, of the second's edges in the band; return their number."""
+def edges_in_band(cores: Cores, turned: TurnedFeatures, relative: Floats, shape: int, there: Vector, band: Band) -> int:
+    """Write begin, direction and box, in the first's frame, of the second's edges in the band; return their number.
+
+    Writes to turned.
+    """
     near = 0
     for j in range(cores.edge_start[shape + 1] - cores.edge_start[shape]):
         begin, along = edge_of(cores, shape, j)
         depth, climb = dot(begin, band.turned) - band.bottom, dot(along, band.turned)
         if min(depth, depth + climb) >= band.depth:
             continue
-        begin, along = plus(times(search.relative, 0, begin), there), times(search.relative, 0, along)
+        begin, along = plus(times(relative, 0, begin), there), times(relative, 0, along)
         low, high = box_in_band(begin, along, depth, climb, band.depth)
-        put(search.turned, near, begin)
-        put(search.turned[:, 3:], near, along)
-        put(search.turned[:, 6:], near, low)
-        put(search.turned[:, 9:], near, high)
-        search.listed[near] = j
+        put(turned.feature, near, begin)
+        put(turned.feature[:, 3:], near, along)
+        put(turned.feature[:, 6:], near, low)
+        put(turned.feature[:, 9:], near, high)
+        turned.edge[near] = j
         near += 1
     return near
 
