@@ -11,7 +11,7 @@ import pytest
 from lithobrake import study_file
 from lithobrake.site import escape_speed, frames, gravity_warning, site_body
 from lithobrake.smallbody import Body
-from lithobrake.smallbody.didymos import top_shape
+from lithobrake.smallbody.built_in_bodies import top_shape
 from lithobrake.study import Study
 from lithobrake.study_template import template
 

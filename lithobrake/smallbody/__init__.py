@@ -2,10 +2,10 @@
 
 from lithobrake.smallbody.body import Body
 from lithobrake.smallbody.bounce import Bounce, HardSurface, Impacts, Rebounds
-from lithobrake.smallbody.didymos import didymos, dimorphos
+from lithobrake.smallbody.built_in_bodies import didymos, dimorphos
 from lithobrake.smallbody.flight import fly
-from lithobrake.smallbody.flights import Flights
-from lithobrake.smallbody.journey import Journeys, hop
+from lithobrake.smallbody.flight_results import Flights
+from lithobrake.smallbody.hopping import Journeys, hop
 from lithobrake.smallbody.partner import Partner
 from lithobrake.smallbody.shape import Shape
 

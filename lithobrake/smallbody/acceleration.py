@@ -10,8 +10,8 @@ import numpy as np
 
 from lithobrake.compiled import kernel, large_kernel
 from lithobrake.smallbody.attraction import attract
-from lithobrake.smallbody.lanes import LANES
 from lithobrake.smallbody.polyhedron import PULL_X
+from lithobrake.smallbody.simd import LANES
 
 # G density and spin rate of the body, G density of its partner, the partner's orbit (partner.Orbit.numbers); then what
 # a step may be wrong by in position [m] and velocity [m/s], the first step [s], the radius of escape [m] and G mass of
@@ -23,9 +23,9 @@ DISTANCE, ANGLE, RATE, ATTITUDE, SWING, PULL, DRIFT, SHARE = 0, 1, 2, 3, 4, 5, 6
 
 @large_kernel
 def accelerate(
-    state: Any, slope: Any, stage: int, count: int, lane: Any, scratch: Any, forces: Any, when: Any, flight: Any
+    state: Any, derivative: Any, stage: int, count: int, lane: Any, scratch: Any, forces: Any, when: Any, flight: Any
 ) -> None:
-    """Write slope [stage, 6, lane] of state [6, lane] of the flights [lane] at the times when [lane] [s].
+    """Write derivative [stage, 6, lane] of state [6, lane] of the flights [lane] at the times when [lane] [s].
 
     lane and scratch are overwritten (see attraction.attract).
     """
@@ -37,18 +37,18 @@ def accelerate(
     for j in range(count):
         strength, spin = worlds[flight[j], STRENGTH], worlds[flight[j], SPIN]
         for i in range(3):
-            slope[stage, i, j] = state[3 + i, j]
-            slope[stage, 3 + i, j] = strength * lane[(PULL_X + i) * LANES + j]
-        slope[stage, 3, j] += spin * (spin * state[0, j] + 2.0 * state[4, j])
-        slope[stage, 4, j] += spin * (spin * state[1, j] - 2.0 * state[3, j])
+            derivative[stage, i, j] = state[3 + i, j]
+            derivative[stage, 3 + i, j] = strength * lane[(PULL_X + i) * LANES + j]
+        derivative[stage, 3, j] += spin * (spin * state[0, j] + 2.0 * state[4, j])
+        derivative[stage, 4, j] += spin * (spin * state[1, j] - 2.0 * state[3, j])
     # Either all flights have a partner or none has.
     if worlds[0, ORBIT + DISTANCE] > 0.0:
-        _add_partner(state, slope, stage, count, lane, scratch, forces, when, flight)
+        _add_partner(state, derivative, stage, count, lane, scratch, forces, when, flight)
 
 
 @large_kernel
 def _add_partner(
-    state: Any, slope: Any, stage: int, count: int, lane: Any, scratch: Any, forces: Any, when: Any, flight: Any
+    state: Any, derivative: Any, stage: int, count: int, lane: Any, scratch: Any, forces: Any, when: Any, flight: Any
 ) -> None:
     """Add the partner's attraction, less the one that it has on the body whose centre the frame follows."""
     worlds, turn = forces[2], scratch[7]
@@ -71,9 +71,9 @@ def _add_partner(
     for j in range(count):
         strength, pull = worlds[flight[j], PARTNER_STRENGTH], worlds[flight[j], ORBIT + PULL]
         x, y = lane[PULL_X * LANES + j], lane[(PULL_X + 1) * LANES + j]
-        slope[stage, 3, j] += strength * (turn[2, j] * x - turn[3, j] * y) - pull * turn[0, j]
-        slope[stage, 4, j] += strength * (turn[3, j] * x + turn[2, j] * y) - pull * turn[1, j]
-        slope[stage, 5, j] += strength * lane[(PULL_X + 2) * LANES + j]
+        derivative[stage, 3, j] += strength * (turn[2, j] * x - turn[3, j] * y) - pull * turn[0, j]
+        derivative[stage, 4, j] += strength * (turn[3, j] * x + turn[2, j] * y) - pull * turn[1, j]
+        derivative[stage, 5, j] += strength * lane[(PULL_X + 2) * LANES + j]
 
 
 @kernel

@@ -6,10 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lithobrake.compiled import compiled, kernel, large_kernel
-from lithobrake.smallbody.lanes import LANES, WIDTH
+from lithobrake.smallbody.gravity_table import level_of, read_table
 from lithobrake.smallbody.multipole import SCRATCH, series_block
 from lithobrake.smallbody.polyhedron import ROWS, field_block
-from lithobrake.smallbody.table import level_of, read_table
+from lithobrake.smallbody.simd import LANES, WIDTH
 
 
 @compiled
@@ -29,7 +29,7 @@ def workspace(vertex_count: int) -> Any:
 
 
 @kernel
-def _fill(block: Any, count: int) -> int:
+def _pad_block(block: Any, count: int) -> int:
     """Repeat the first point up to a multiple of WIDTH points: points left over would be done one at a time."""
     full = (count + WIDTH - 1) // WIDTH * WIDTH
     for j in range(count, full):
@@ -66,12 +66,12 @@ def attract(lane: Any, count: int, scratch: Any, gravity: Any) -> None:
             index[LANES + far_count] = j
             far_count += 1
     if near_count:
-        field_block(near, _fill(near, near_count), distance, polyhedron)
+        field_block(near, _pad_block(near, near_count), distance, polyhedron)
         for k in range(near_count):
             for row in range(3, ROWS):
                 lane[row * LANES + index[k]] = near[row * LANES + k]
     if far_count:
-        series_block(far, _fill(far, far_count), series, multipole)
+        series_block(far, _pad_block(far, far_count), series, multipole)
         for k in range(far_count):
             for row in range(3, ROWS):
                 lane[row * LANES + index[LANES + k]] = far[row * LANES + k]

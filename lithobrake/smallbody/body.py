@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lithobrake.smallbody import attraction
-from lithobrake.smallbody.gradient import gradient
+from lithobrake.smallbody.gravity_gradient import gradient
 from lithobrake.smallbody.partner import Orbit, Partner
 from lithobrake.smallbody.shape import Shape
 

@@ -21,12 +21,12 @@ from lithobrake.smallbody.acceleration import (
     STRENGTH,
 )
 from lithobrake.smallbody.body import GRAVITATIONAL_CONSTANT, Body
-from lithobrake.smallbody.flights import ESCAPE_ORBITS, ESCAPE_RADII, STATUSES, Flights, Starts
+from lithobrake.smallbody.flight_results import ESCAPE_ORBITS, ESCAPE_RADII, STATUSES, Flights, StartStates
 from lithobrake.smallbody.impact import ALOFT, ON_SURFACE
-from lithobrake.smallbody.nearest import near_heights
+from lithobrake.smallbody.integration import FAILED, integrate_flights
 from lithobrake.smallbody.partner import Orbit
 from lithobrake.smallbody.shape import Shape
-from lithobrake.smallbody.trajectory import FAILED, fly_lanes
+from lithobrake.smallbody.signed_distance import near_heights
 
 CHUNK = 1024  # flights that a thread takes at a time
 
@@ -97,12 +97,12 @@ def fly(
         piece = slice(first, first + CHUNK)
         out = (status[piece], time[piece], final[piece], facet[piece], steps[piece])
         forces = (*sources, worlds[piece])
-        fly_lanes(starts[piece], begin[piece], times[piece], phase[piece], forces, grounds, out)
+        integrate_flights(starts[piece], begin[piece], times[piece], phase[piece], forces, grounds, out)
 
     _run(part, count, threads, progress)
     _refuse_failed(starts, status, time, tolerance)
     where, rate = starts[:, :3].copy(), starts[:, 3:].copy()
-    begins = Starts(begin, where, rate, masses, periods)
+    begins = StartStates(begin, where, rate, masses, periods)
     return Flights(body, begins, STATUSES[status], time, final[:, :3], final[:, 3:], facet, steps)
 
 

@@ -88,7 +88,7 @@ def _sort(first: Any, last: Any, plane: Any, size: Any, start: Any, facets: Any)
 
 
 @kernel
-def place(grid: Any, x: float, y: float, z: float) -> Any:
+def cell_of(grid: Any, x: float, y: float, z: float) -> Any:
     """Cell (i, j, k) of a point; outside the grid it lies outside 0 to size - 1."""
     lower, edge = grid[0], grid[1]
     return (
@@ -102,7 +102,7 @@ def place(grid: Any, x: float, y: float, z: float) -> Any:
 def clearance(grid: Any, x: float, y: float, z: float) -> float:
     """A distance [m] within which there is certainly no facet; 0 near the surface."""
     lower, edge, size, _, _, gap = grid
-    i, j, k = place(grid, x, y, z)
+    i, j, k = cell_of(grid, x, y, z)
     if 0 <= i < size[0] and 0 <= j < size[1] and 0 <= k < size[2]:
         return gap[(i * size[1] + j) * size[2] + k] * edge
     # The outermost layer of the grid is empty.

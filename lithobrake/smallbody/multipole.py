@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lithobrake.compiled import compiled
-from lithobrake.smallbody.lanes import LANES
-from lithobrake.smallbody.polyhedron import DEPTH, PULL_X, PULL_Y, PULL_Z, Polyhedron
+from lithobrake.smallbody.polyhedron import POTENTIAL, PULL_X, PULL_Y, PULL_Z, Polyhedron
+from lithobrake.smallbody.simd import LANES
 
 DEGREE = 20
 LARGEST_ERROR = 2e-11  # of the acceleration, at the radius from which the series is used
@@ -131,7 +131,7 @@ def _regular(x: float, y: float, z: float, re: Any, im: Any) -> None:
 
 @compiled
 def series_block(lane: Any, count: int, scratch: Any, multipole: Any) -> None:
-    """As field_block, by the series: reads the first three rows of lane, writes pull and depth. scratch [SCRATCH]."""
+    """As field_block, by the series: reads the first three rows of lane, writes pull, potential. scratch [SCRATCH]."""
     centre, radius, _, real, imaginary = multipole
     for i in range(3):
         for j in range(count):
@@ -141,7 +141,8 @@ def series_block(lane: Any, count: int, scratch: Any, multipole: Any) -> None:
         scratch[_W * LANES + j] = 1.0 / (x * x + y * y + z * z)
         scratch[_DIAGONAL * LANES + j] = np.sqrt(scratch[_W * LANES + j])
         scratch[(_DIAGONAL + 1) * LANES + j] = 0.0
-        lane[PULL_X * LANES + j] = lane[PULL_Y * LANES + j] = lane[PULL_Z * LANES + j] = lane[DEPTH * LANES + j] = 0.0
+        for row in (PULL_X, PULL_Y, PULL_Z, POTENTIAL):
+            lane[row * LANES + j] = 0.0
     top = len(real) - 1
     for m in range(top + 1):
         if m > 0:
@@ -157,7 +158,7 @@ def series_block(lane: Any, count: int, scratch: Any, multipole: Any) -> None:
         for i in range(3):
             lane[(PULL_X + i) * LANES + j] *= radius
         # A block holds twice the potential.
-        lane[DEPTH * LANES + j] *= 2.0 * radius * radius
+        lane[POTENTIAL * LANES + j] *= 2.0 * radius * radius
 
 
 @compiled
@@ -195,7 +196,7 @@ def _add_harmonic(lane: Any, count: int, scratch: Any, n: int, m: int, real: Any
             e, f = real[n - 1, m - 1], imaginary[n - 1, m - 1]
     for j in range(count):
         re, im = scratch[_NEW * LANES + j], scratch[(_NEW + 1) * LANES + j]
-        lane[DEPTH * LANES + j] += a * re - b * im
+        lane[POTENTIAL * LANES + j] += a * re - b * im
         lane[PULL_Z * LANES + j] -= c * re - d * im
         lane[PULL_X * LANES + j] += (e - g) * re - (f - h) * im
         lane[PULL_Y * LANES + j] += (e + g) * im + (f + h) * re
@@ -214,5 +215,5 @@ def _series(points: Any, result: Any, multipole: Any) -> None:
         for j in range(count):
             for i in range(3):
                 result[start + j, i] = lane[(PULL_X + i) * LANES + j]
-            result[start + j, 3] = 0.5 * lane[DEPTH * LANES + j]
+            result[start + j, 3] = 0.5 * lane[POTENTIAL * LANES + j]
             result[start + j, 4] = 0.0

@@ -126,13 +126,13 @@ def motion_over(orbit: Any, time: float, step: float) -> Any:
 
 
 @kernel
-def into_partner(point: Any, motion: Any, share: float) -> None:
-    """Turn a point [3] of the body's frame, at a share of the step, into the partner's frame."""
+def into_partner(point: Any, motion: Any, fraction: float) -> None:
+    """Turn a point [3] of the body's frame, at a fraction of the step, into the partner's frame."""
     distance, angle, turn, attitude, swing = motion
     if distance == 0.0:
         return
-    place = angle + share * turn
+    place = angle + fraction * turn
     x, y = point[0] - distance * np.cos(place), point[1] - distance * np.sin(place)
-    facing = attitude + share * swing
+    facing = attitude + fraction * swing
     c, s = np.cos(facing), np.sin(facing)
     point[0], point[1] = c * x + s * y, c * y - s * x

@@ -12,10 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lithobrake.compiled import compiled
-from lithobrake.smallbody.lanes import LANES, angle, fma, log_ratio
+from lithobrake.smallbody.simd import LANES, angle, fma, log_ratio
 
 # Rows of a block of points: `lane[row * LANES + j]` belongs to point j. The first three are read, the others written.
-X, Y, Z, PULL_X, PULL_Y, PULL_Z, DEPTH, TURN = 0, 1, 2, 3, 4, 5, 6, 7
+X, Y, Z, PULL_X, PULL_Y, PULL_Z, POTENTIAL, SOLID_ANGLE = 0, 1, 2, 3, 4, 5, 6, 7
 ROWS = 8
 
 
@@ -113,7 +113,7 @@ def _add_edges(lane: Any, count: int, distance: Any, vertices: Any, ends: Any, t
             lane[PULL_X * LANES + j] -= px
             lane[PULL_Y * LANES + j] -= py
             lane[PULL_Z * LANES + j] -= pz
-            lane[DEPTH * LANES + j] += fma(x, px, fma(y, py, z * pz))
+            lane[POTENTIAL * LANES + j] += fma(x, px, fma(y, py, z * pz))
 
 
 @compiled
@@ -145,15 +145,15 @@ def _add_facets(lane: Any, count: int, distance: Any, vertices: Any, corners: An
             lane[PULL_X * LANES + j] = fma(pull, nx, lane[PULL_X * LANES + j])
             lane[PULL_Y * LANES + j] = fma(pull, ny, lane[PULL_Y * LANES + j])
             lane[PULL_Z * LANES + j] = fma(pull, nz, lane[PULL_Z * LANES + j])
-            lane[DEPTH * LANES + j] -= pull * height
-            lane[TURN * LANES + j] += solid
+            lane[POTENTIAL * LANES + j] -= pull * height
+            lane[SOLID_ANGLE * LANES + j] += solid
 
 
 @compiled
 def field_block(lane: Any, count: int, distance: Any, polyhedron: Any) -> None:
     """Field of one block. lane [ROWS * LANES]: reads X, Y, Z of the first `count` points, writes the other rows.
 
-    distance [vertex_count * LANES] is scratch. The pull is acceleration / (G density), DEPTH twice the potential.
+    distance [vertex_count * LANES] is scratch. The pull is acceleration / (G density), POTENTIAL twice the potential.
     """
     vertices, ends, edge_terms, corners, facet_terms = polyhedron
     for row in range(PULL_X, ROWS):
@@ -178,5 +178,5 @@ def _field(points: Any, result: Any, polyhedron: Any) -> None:
         for j in range(count):
             for i in range(3):
                 result[start + j, i] = lane[(PULL_X + i) * LANES + j]
-            result[start + j, 3] = 0.5 * lane[DEPTH * LANES + j]
-            result[start + j, 4] = lane[TURN * LANES + j]
+            result[start + j, 3] = 0.5 * lane[POTENTIAL * LANES + j]
+            result[start + j, 4] = lane[SOLID_ANGLE * LANES + j]

@@ -10,13 +10,13 @@ from numpy.typing import ArrayLike, NDArray
 
 from lithobrake.mesh import closed_faces, mass_properties
 from lithobrake.mesh_files import read_mesh
-from lithobrake.smallbody.crossing import outermost
+from lithobrake.smallbody.gravity_table import LEVELS, GravityTable
+from lithobrake.smallbody.gravity_table_build import TableError, gravity_table_of
 from lithobrake.smallbody.grid import Grid
 from lithobrake.smallbody.multipole import Multipole
-from lithobrake.smallbody.nearest import heights, pseudonormals
 from lithobrake.smallbody.polyhedron import Polyhedron
-from lithobrake.smallbody.table import LEVELS, GravityTable
-from lithobrake.smallbody.table_build import TableError, table_of
+from lithobrake.smallbody.ray_facet import outermost_hit
+from lithobrake.smallbody.signed_distance import heights, pseudonormals
 
 OFF_CENTRE = 1e-3  # of the radius: how far the centre of mass may lie from the origin without a word
 
@@ -94,11 +94,11 @@ class Shape:
 
     @cached_property
     def _table(self) -> tuple[GravityTable, TableError]:
-        return table_of(self.polyhedron, self.multipole, self.volume, LEVELS)
+        return gravity_table_of(self.polyhedron, self.multipole, self.volume, LEVELS)
 
     @cached_property
     def _coarse_table(self) -> tuple[GravityTable, TableError]:
-        return table_of(self.polyhedron, self.multipole, self.volume, LEVELS[2:])
+        return gravity_table_of(self.polyhedron, self.multipole, self.volume, LEVELS[2:])
 
     @cached_property
     def corners(self) -> NDArray[np.float64]:
@@ -169,7 +169,7 @@ class Shape:
         direction = np.stack([across * np.cos(longitude), across * np.sin(longitude), np.sin(latitude)], axis=-1)
         rays = np.ascontiguousarray(direction.reshape(-1, 3))
         distance, facet = np.empty(len(rays)), np.empty(len(rays), dtype=np.int64)
-        outermost(self.corners, rays, distance, facet)
+        outermost_hit(self.corners, rays, distance, facet)
         if (facet < 0).any():
             raise ValueError(
                 f"{self.name}: no surface at latitude_deg {latitude_deg!r}, longitude_deg {longitude_deg!r}; "

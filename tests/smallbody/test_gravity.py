@@ -7,7 +7,7 @@ import pytest
 
 from lithobrake.smallbody import Body, Shape, didymos
 from lithobrake.smallbody.body import GRAVITATIONAL_CONSTANT
-from lithobrake.smallbody.lanes import angle, log_ratio
+from lithobrake.smallbody.simd import angle, log_ratio
 
 from .meshes import CUBE_FACES, cube_vertices, sphere_mesh
 

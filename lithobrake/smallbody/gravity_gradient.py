@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lithobrake.compiled import compiled
-from lithobrake.smallbody.lanes import angle, log_ratio
 from lithobrake.smallbody.multipole import Multipole
 from lithobrake.smallbody.polyhedron import Polyhedron
+from lithobrake.smallbody.simd import angle, log_ratio
 
 # Place of xx, yy, zz, xy, xz, yz in a 3 x 3 matrix.
 MATRIX = np.array([[0, 3, 4], [3, 1, 5], [4, 5, 2]])
@@ -30,13 +30,13 @@ def gradient(points: NDArray[np.float64], polyhedron: Polyhedron, multipole: Mul
     six = np.zeros((int((~far).sum()), 6))
     _near(np.ascontiguousarray(points[~far]), six, polyhedron.arrays)
     result[~far] = six[:, MATRIX]
-    for axis, part in enumerate(_slopes(multipole)):
+    for axis, part in enumerate(_acceleration_series(multipole)):
         result[far, axis] = part.field(points[far])[:, :3] / multipole.radius
     # Each of the two ways to a mixed derivative rounds on its own.
     return 0.5 * (result + result.transpose(0, 2, 1))
 
 
-def _slopes(multipole: Multipole) -> list[Multipole]:
+def _acceleration_series(multipole: Multipole) -> list[Multipole]:
     """The series whose potentials are the accelerations x, y, z of a series, in units of its radius.
 
     The acceleration from moment (n - 1, m) is a sum of harmonics (n, m - 1), (n, m), (n, m + 1), as in

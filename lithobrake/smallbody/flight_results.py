@@ -15,7 +15,7 @@ ESCAPE_ORBITS = 4.0  # the same for a binary, in distances of the centres
 
 
 @dataclass(frozen=True)
-class Starts:
+class StartStates:
     """How flights began; every array has one entry or row a flight.
 
     time            [s] (see fly)
@@ -51,7 +51,7 @@ class Flights:
     """
 
     body: Body
-    start: Starts
+    start: StartStates
     status: NDArray[np.str_]
     time: NDArray[np.float64]
     position: NDArray[np.float64]

@@ -83,10 +83,10 @@ def level_of(x: float, y: float, z: float, table: Any) -> int:
 
 
 @kernel
-def _weights(share: float, weight: Any, i: int) -> int:
+def _spline_weights(offset: float, weight: Any, i: int) -> int:
     """Write the four cubic B-spline weights of axis i for an offset in cells; gives the first of the four nodes."""
-    node = int(np.floor(share))
-    t = share - node
+    node = int(np.floor(offset))
+    t = offset - node
     s = 1.0 - t
     weight[i, 0] = s * s * s / 6.0
     weight[i, 1] = (4.0 - 3.0 * t * t * (1.0 + s)) / 6.0
@@ -99,19 +99,19 @@ def _weights(share: float, weight: Any, i: int) -> int:
 def read_table(x: float, y: float, z: float, level: int, table: Any, weight: Any, total: Any) -> Any:
     """Field sum x, y, z [m] at a point [m] of a level. weight [3, 4] and total [12] are scratch."""
     centre, volume, core, lower, edge, size, start, values, _, _ = table
-    i = _weights((x - lower[level, 0]) / edge[level], weight, 0)
-    j = _weights((y - lower[level, 1]) / edge[level], weight, 1)
-    k = _weights((z - lower[level, 2]) / edge[level], weight, 2)
+    i = _spline_weights((x - lower[level, 0]) / edge[level], weight, 0)
+    j = _spline_weights((y - lower[level, 1]) / edge[level], weight, 1)
+    k = _spline_weights((z - lower[level, 2]) / edge[level], weight, 2)
     for c in range(12):
         total[c] = 0.0
     for a in range(4):
         for b in range(4):
             # Four nodes along z, three components each, stand side by side.
             first = start[level] + 3 * (((i + a) * size[level, 1] + j + b) * size[level, 2] + k)
-            share = weight[0, a] * weight[1, b]
+            product = weight[0, a] * weight[1, b]
             row = values[first : first + 12]
             for c in range(12):
-                total[c] += share * row[c]
+                total[c] += product * row[c]
     px, py, pz = point_mass(x, y, z, centre, volume, core)
     for d in range(4):
         px += weight[2, d] * total[3 * d]

@@ -14,11 +14,11 @@ from numpy.typing import NDArray
 
 from lithobrake.compiled import compiled, disk_cache
 from lithobrake.smallbody import attraction
+from lithobrake.smallbody.gravity_table import CORE, MARGIN, RIM, GravityTable, point_mass, spline_coefficients
 from lithobrake.smallbody.grid import Grid
 from lithobrake.smallbody.multipole import Multipole
-from lithobrake.smallbody.nearest import near_heights, pseudonormals
 from lithobrake.smallbody.polyhedron import Polyhedron
-from lithobrake.smallbody.table import CORE, MARGIN, RIM, GravityTable, point_mass, spline_coefficients
+from lithobrake.smallbody.signed_distance import near_heights, pseudonormals
 
 SKIN = 6  # cells below the surface over which the continued field goes over into the one inside
 PIECE = 8192  # points that a thread takes at a time
@@ -38,12 +38,12 @@ class TableError(NamedTuple):
 Levels = tuple[tuple[float, float], ...]
 
 
-def table_of(
+def gravity_table_of(
     polyhedron: Polyhedron, multipole: Multipole, volume: float, levels: Levels
 ) -> tuple[GravityTable, TableError]:
     """The table of a shape and its error, from disk where it was built before; the name there is a hash of the mesh.
 
-    levels: cells and reach of each grid (see table.LEVELS).
+    levels: cells and reach of each grid (see gravity_table.LEVELS).
     """
     mesh = polyhedron.vertices.tobytes() + polyhedron.facet_corners.tobytes()
     digest = hashlib.sha256(repr(levels).encode() + mesh).hexdigest()[:24]

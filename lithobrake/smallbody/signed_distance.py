@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lithobrake.compiled import compiled, kernel, large_kernel
-from lithobrake.smallbody.grid import place
+from lithobrake.smallbody.grid import cell_of
 
 
 def pseudonormals(
@@ -41,7 +41,7 @@ def pseudonormals(
 
 
 @kernel
-def _feature(p: Any, a: Any, b: Any, c: Any) -> Any:
+def _closest_feature(p: Any, a: Any, b: Any, c: Any) -> Any:
     """Closest point of triangle a, b, c to p as weights of b and c, and its feature (as in pseudonormals)."""
     d1 = d2 = d3 = d4 = d5 = d6 = 0.0
     for i in range(3):
@@ -73,9 +73,9 @@ def _feature(p: Any, a: Any, b: Any, c: Any) -> Any:
 
 
 @kernel
-def _signed(corner: Any, outward: Any, f: int, p: Any) -> Any:
+def _facet_distance(corner: Any, outward: Any, f: int, p: Any) -> Any:
     """Distance of p to facet f [m] and the same with the sign of the side of its nearest feature."""
-    v, w, feature = _feature(p, corner[f, 0], corner[f, 1], corner[f, 2])
+    v, w, feature = _closest_feature(p, corner[f, 0], corner[f, 1], corner[f, 2])
     square = side = 0.0
     for i in range(3):
         a = corner[f, 0, i]
@@ -93,14 +93,14 @@ def height_near(grid: Any, corner: Any, outward: Any, p: Any) -> Any:
     outward: pseudonormals [facet_count, 7, 3].
     """
     edge, size, start, facets = grid[1], grid[2], grid[3], grid[4]
-    i, j, k = place(grid, p[0], p[1], p[2])
+    i, j, k = cell_of(grid, p[0], p[1], p[2])
     best, height, nearest = edge, np.inf, -1
     for a in range(max(i - 1, 0), min(i + 2, size[0])):
         for b in range(max(j - 1, 0), min(j + 2, size[1])):
             for c in range(max(k - 1, 0), min(k + 2, size[2])):
                 cell = (a * size[1] + b) * size[2] + c
                 for entry in range(start[cell], start[cell + 1]):
-                    distance, signed = _signed(corner, outward, facets[entry], p)
+                    distance, signed = _facet_distance(corner, outward, facets[entry], p)
                     if distance < best:
                         best, height, nearest = distance, signed, facets[entry]
     return height, nearest
@@ -112,7 +112,7 @@ def heights(corner: Any, outward: Any, points: Any, height: Any, nearest: Any) -
     for r in range(len(points)):
         best = np.inf
         for f in range(len(corner)):
-            distance, signed = _signed(corner, outward, f, points[r])
+            distance, signed = _facet_distance(corner, outward, f, points[r])
             if distance < best:
                 best, height[r], nearest[r] = distance, signed, f
 
