@@ -1,6 +1,7 @@
 """Imports run one way: dem <- touchdown <- pipeline <- cli; chaos, campaign and smallbody stand alone."""
 
 import ast
+from graphlib import TopologicalSorter
 from pathlib import Path
 
 import pytest
@@ -40,6 +41,8 @@ ALLOWED: dict[str, set[str]] = {
     "__main__": {"cli"},
     "cli": {"study_file", "study_units", "pipeline", "campaign", "progress", "study_template", "report"},
 }
+# Parts within which imports run one way from file to file, too.
+ONE_WAY = ("smallbody",)
 
 
 def part_of(path: Path) -> str:
@@ -48,22 +51,31 @@ def part_of(path: Path) -> str:
     return inside.parts[0] if len(inside.parts) > 1 else inside.stem
 
 
-def imported_parts(path: Path) -> set[str]:
-    """The parts that a file imports, wherever in the file it does so."""
+def imported_names(path: Path) -> set[str]:
+    """The modules and names that a file imports from the package, with dots, wherever in the file it does so."""
     found = set()
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
         if isinstance(node, ast.ImportFrom):
             assert node.level == 0, f"{path} imports by dots; write the full name"
-            names = [
-                f"{node.module}.{alias.name}" if node.module == "lithobrake" else str(node.module)
-                for alias in node.names
-            ]
+            found |= {f"{node.module}.{alias.name}" for alias in node.names}
         elif isinstance(node, ast.Import):
-            names = [alias.name for alias in node.names]
-        else:
-            continue
-        found |= {name.split(".")[1] for name in names if name.startswith("lithobrake.")}
-    return {name for name in found if not name.startswith("__")}
+            found |= {alias.name for alias in node.names}
+    return {name for name in found if name.startswith("lithobrake.")}
+
+
+def imported_parts(path: Path) -> set[str]:
+    """The parts that a file imports."""
+    return {part for name in imported_names(path) if not (part := name.split(".")[1]).startswith("__")}
+
+
+def imported_files(path: Path) -> set[Path]:
+    """The files of its own part that a file imports; for a name that is no file, the __init__ that it comes from."""
+    found = set()
+    for part, *inside in (name.split(".")[1:] for name in imported_names(path)):
+        if part == path.parent.name:
+            file = path.with_name(f"{[*inside, '__init__'][0]}.py")
+            found.add(file if file.exists() else path.with_name("__init__.py"))
+    return found
 
 
 SOURCES = sorted(PACKAGE.rglob("*.py"))
@@ -78,3 +90,10 @@ def test_a_file_imports_only_what_its_part_may(path: Path) -> None:
 
 def test_every_part_has_its_rule() -> None:
     assert {part_of(path) for path in SOURCES} - LEAVES == set(ALLOWED)
+
+
+@pytest.mark.parametrize("part", ONE_WAY)
+def test_no_two_files_import_each_other(part: str) -> None:
+    """Neither directly nor by way of others: that raises CycleError, with their names."""
+    imports = {path: imported_files(path) for path in (PACKAGE / part).glob("*.py")}
+    assert set(TopologicalSorter(imports).static_order()) == set(imports)

@@ -1,12 +1,11 @@
 """Small bodies: shape, gravity, rotation and flight."""
 
-from lithobrake.smallbody.body import Body
+from lithobrake.smallbody.body import Body, Partner
 from lithobrake.smallbody.bounce import Bounce, HardSurface, Impacts, Rebounds
 from lithobrake.smallbody.built_in_bodies import didymos, dimorphos
 from lithobrake.smallbody.flight import fly
 from lithobrake.smallbody.flight_results import Flights
 from lithobrake.smallbody.hopping import Journeys, hop
-from lithobrake.smallbody.partner import Partner
 from lithobrake.smallbody.shape import Shape
 
 __all__ = [

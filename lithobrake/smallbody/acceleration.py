@@ -13,12 +13,12 @@ from lithobrake.smallbody.attraction import attract
 from lithobrake.smallbody.polyhedron import PULL_X
 from lithobrake.smallbody.simd import LANES
 
-# G density and spin rate of the body, G density of its partner, the partner's orbit (partner.Orbit.numbers); then what
+# G density and spin rate of the body, G density of its partner, the partner's orbit (orbit.Orbit.numbers); then what
 # a step may be wrong by in position [m] and velocity [m/s], the first step [s], the radius of escape [m] and G mass of
 # both [m3/s2].
 STRENGTH, SPIN, PARTNER_STRENGTH, ORBIT, LENGTH, SPEED, FIRST_STEP, FAR, PARAMETER = 0, 1, 2, 3, 11, 12, 13, 14, 15
 COLUMNS = 16
-DISTANCE, ANGLE, RATE, ATTITUDE, SWING, PULL, DRIFT, SHARE = 0, 1, 2, 3, 4, 5, 6, 7
+DISTANCE, ANGLE, RATE, ATTITUDE, SWING, PULL, DRIFT, MASS_FRACTION = 0, 1, 2, 3, 4, 5, 6, 7
 
 
 @large_kernel
@@ -84,7 +84,7 @@ def has_escaped(state: Any, j: int, world: Any, time: float) -> bool:
     u, v, w = state[3, j] - spin * y, state[4, j] + spin * x, state[5, j]
     if orbit[DISTANCE] > 0.0:
         # The common centre lies between the two and goes round with the partner.
-        place, apart = orbit[ANGLE] + orbit[RATE] * time, orbit[SHARE] * orbit[DISTANCE]
+        place, apart = orbit[ANGLE] + orbit[RATE] * time, orbit[MASS_FRACTION] * orbit[DISTANCE]
         c, s = np.cos(place), np.sin(place)
         x, y = x - apart * c, y - apart * s
         u, v = u + orbit[DRIFT] * s, v - orbit[DRIFT] * c

@@ -24,7 +24,7 @@ from lithobrake.smallbody.body import GRAVITATIONAL_CONSTANT, Body
 from lithobrake.smallbody.flight_results import ESCAPE_ORBITS, ESCAPE_RADII, STATUSES, Flights, StartStates
 from lithobrake.smallbody.impact import ALOFT, ON_SURFACE
 from lithobrake.smallbody.integration import FAILED, integrate_flights
-from lithobrake.smallbody.partner import Orbit
+from lithobrake.smallbody.orbit import Orbit
 from lithobrake.smallbody.shape import Shape
 from lithobrake.smallbody.signed_distance import near_heights
 
@@ -127,7 +127,7 @@ def _worlds(
     worlds = np.zeros((len(mass), COLUMNS))
     radius, parameter = body.shape.radius, GRAVITATIONAL_CONSTANT * mass
     spin_rate = 2.0 * np.pi / spin_period
-    orbit = Orbit.of(body, parameter, spin_rate)
+    orbit = body.orbit_with(parameter, spin_rate)
     worlds[:, STRENGTH], worlds[:, SPIN] = parameter / body.shape.volume, spin_rate
     for column, numbers in enumerate(orbit.numbers):
         worlds[:, ORBIT + column] = numbers

@@ -7,7 +7,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lithobrake.smallbody.body import GRAVITATIONAL_CONSTANT, Body
-from lithobrake.smallbody.partner import Orbit
 
 STATUSES = np.array(["flying", "impact", "escaped", "partner"])
 ESCAPE_RADII = 10.0  # radii of the body beyond which a flight with positive energy has escaped
@@ -69,7 +68,7 @@ class Flights:
         hit = self.status == "partner"
         if hit.any():
             parameter, spin_rate = GRAVITATIONAL_CONSTANT * self.start.mass, 2.0 * np.pi / self.start.spin_period
-            orbit = Orbit.of(self.body, parameter[hit], spin_rate[hit])
+            orbit = self.body.orbit_with(parameter[hit], spin_rate[hit])
             time = (self.start.time + self.time)[hit]
             position[hit], velocity[hit] = orbit.seen_from_partner(position[hit], velocity[hit], time)
         return position, velocity

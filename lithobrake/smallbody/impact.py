@@ -4,7 +4,7 @@ The curve of a step is cut into chords that leave it by no more than five times 
 are as long as the distance allows; near it each is tried against the facets around it, for entries from outside only. A
 flight that starts on the surface is watched by its height instead, until it has risen by more than `slack`.
 
-The ground may be that of a partner: the curve is then looked at from the partner's frame (motion, see partner; its
+The ground may be that of a partner: the curve is then looked at from the partner's frame (motion, see orbit; its
 distance is zero for the body itself).
 """
 
@@ -15,7 +15,7 @@ import numpy as np
 from lithobrake.compiled import kernel, large_kernel
 from lithobrake.smallbody.dormand_prince import dense_output
 from lithobrake.smallbody.grid import clearance
-from lithobrake.smallbody.partner import into_partner
+from lithobrake.smallbody.orbit import into_partner
 from lithobrake.smallbody.ray_facet import first_entry
 from lithobrake.smallbody.signed_distance import height_near
 

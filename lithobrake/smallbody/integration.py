@@ -21,7 +21,7 @@ from lithobrake.smallbody.dormand_prince import (
     step_error,
 )
 from lithobrake.smallbody.impact import find_impact
-from lithobrake.smallbody.partner import motion_over
+from lithobrake.smallbody.orbit import motion_over
 from lithobrake.smallbody.polyhedron import ROWS
 from lithobrake.smallbody.simd import LANES
 
