@@ -2,14 +2,13 @@
 
 import math
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lithobrake.smallbody import attraction
 from lithobrake.smallbody.gravity_gradient import gradient
-from lithobrake.smallbody.orbit import Orbit
+from lithobrake.smallbody.orbit import Entry, Orbit
 from lithobrake.smallbody.shape import Shape
 
 GRAVITATIONAL_CONSTANT = 6.67430e-11  # m3/(kg s2), CODATA 2018
@@ -49,13 +48,15 @@ class Body:
                 )
 
     @property
-    def orbit(self) -> Orbit:
+    def orbit(self) -> Orbit[float]:
         """How the partner moves in the frame of this body."""
         return self.orbit_with(self.gravitational_parameter, self.spin_rate)
 
-    def orbit_with(self, parameter: Any, spin_rate: Any) -> Orbit:
+    def orbit_with(self, parameter: Entry, spin_rate: Entry) -> Orbit[Entry]:
         """As orbit, with a G mass [m3/s2] and spin rate [rad/s] in place of the body's own; all 0 without a partner."""
-        return Orbit() if self.partner is None else self.partner.orbit(parameter, spin_rate)
+        if self.partner is None:
+            return Orbit(*(0.0 * parameter,) * 8)
+        return self.partner.orbit(parameter, spin_rate)
 
     @property
     def density(self) -> float:
@@ -188,12 +189,13 @@ class Partner:
         if self.body.partner is not None:
             raise ValueError(f"{self.body.name}: a partner has no partner of its own; give it partner=None.")
 
-    def orbit(self, parameter: Any, spin_rate: Any) -> Orbit:
+    def orbit(self, parameter: Entry, spin_rate: Entry) -> Orbit[Entry]:
         """Its motion in the frame of a body of this G mass [m3/s2] and spin rate [rad/s]: numbers, or one a flight."""
         total = parameter + self.body.gravitational_parameter
         mean_motion = 2.0 * math.pi / self.period
         distance = (total / mean_motion**2) ** (1.0 / 3.0)
-        angle, mass_fraction = math.radians(self.longitude_deg), self.body.gravitational_parameter / total
+        angle = 0.0 * parameter + math.radians(self.longitude_deg)
+        mass_fraction = self.body.gravitational_parameter / total
         return Orbit(
             distance=distance,
             angle=angle,

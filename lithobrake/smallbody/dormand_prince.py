@@ -7,11 +7,10 @@ A state is x, y, z [m] and their rates [m/s]; `derivative` holds that of each st
 [6, lane], derivative [7, 6, lane].
 """
 
-from typing import Any
-
 import numpy as np
 
 from lithobrake.compiled import kernel
+from lithobrake.smallbody.arrays import Floats
 
 STAGES = 7
 NODES = np.array([0, 1 / 5, 3 / 10, 4 / 5, 8 / 9, 1, 1])
@@ -41,7 +40,7 @@ DENSE = np.array(
 
 
 @kernel
-def stage_state(state: Any, derivative: Any, step: Any, stage: int, count: int, result: Any) -> None:
+def stage_state(state: Floats, derivative: Floats, step: Floats, stage: int, count: int, result: Floats) -> None:
     """Write into result [6, lane] the state where a stage takes its derivative; stage 6 gives the end of the step."""
     for i in range(6):
         row = result[i]
@@ -56,7 +55,7 @@ def stage_state(state: Any, derivative: Any, step: Any, stage: int, count: int, 
 
 
 @kernel
-def step_error(derivative: Any, step: float, j: int, length: float, speed: float) -> float:
+def step_error(derivative: Floats, step: float, j: int, length: float, speed: float) -> float:
     """Largest error of lane j over its step, position in units of `length` [m], velocity of `speed` [m/s]."""
     worst = 0.0
     for i in range(6):
@@ -79,7 +78,7 @@ def next_step(step: float, error: float) -> float:
 
 
 @kernel
-def dense_coefficients(state: Any, end: Any, derivative: Any, step: float, j: int, curve: Any) -> None:
+def dense_coefficients(state: Floats, end: Floats, derivative: Floats, step: float, j: int, curve: Floats) -> None:
     """Write the coefficients curve [5, 6] of the polynomial of lane j between state and end [6, lane]."""
     for i in range(6):
         change = end[i, j] - state[i, j]
@@ -95,7 +94,7 @@ def dense_coefficients(state: Any, end: Any, derivative: Any, step: float, j: in
 
 
 @kernel
-def dense_output(curve: Any, fraction: float, i: int) -> float:
+def dense_output(curve: Floats, fraction: float, i: int) -> float:
     """Component i of the state at a fraction of the step."""
     remaining = 1.0 - fraction
     inner = curve[3, i] + remaining * curve[4, i]

@@ -8,14 +8,15 @@ The ground may be that of a partner: the curve is then looked at from the partne
 distance is zero for the body itself).
 """
 
-from typing import Any
+from typing import NamedTuple
 
 import numpy as np
 
 from lithobrake.compiled import kernel, large_kernel
+from lithobrake.smallbody.arrays import Floats
 from lithobrake.smallbody.dormand_prince import dense_output
-from lithobrake.smallbody.grid import clearance
-from lithobrake.smallbody.orbit import into_partner
+from lithobrake.smallbody.grid import Grid, clearance
+from lithobrake.smallbody.orbit import Motion, into_partner
 from lithobrake.smallbody.ray_facet import first_entry
 from lithobrake.smallbody.signed_distance import height_near
 
@@ -24,8 +25,18 @@ BISECTIONS = 48
 SAGITTA = 5.0  # slacks by which a chord may leave the curve: a graze not deeper than that may be passed over
 
 
+class Ground(NamedTuple):
+    """What a flight may hit: a surface in its own frame."""
+
+    grid: Grid
+    corners: Floats  # [facet_count, 3, 3], vertices of the facets [m]
+    pseudonormals: Floats  # [facet_count, 7, 3], see signed_distance
+    slack: float  # distance [m] that counts as none
+    radius: float  # of the farthest vertex [m]
+
+
 @kernel
-def _position_at(curve: Any, fraction: float, motion: Any, point: Any) -> None:
+def _position_at(curve: Floats, fraction: float, motion: Motion, point: Floats) -> None:
     """Write the position [m] at a fraction of the step, in the frame of the ground."""
     for i in range(3):
         point[i] = dense_output(curve, fraction, i)
@@ -33,7 +44,7 @@ def _position_at(curve: Any, fraction: float, motion: Any, point: Any) -> None:
 
 
 @kernel
-def _motion_bounds(curve: Any, derivative: Any, step: float, j: int, motion: Any) -> Any:
+def _motion_bounds(curve: Floats, derivative: Floats, step: float, j: int, motion: Motion) -> tuple[float, float]:
     """Larger speed of the two ends [m/s], and a bound of the acceleration [m/s2], over lane j's step of `step` [s].
 
     Half as much again as the largest of seven stages stands for the largest acceleration.
@@ -43,13 +54,13 @@ def _motion_bounds(curve: Any, derivative: Any, step: float, j: int, motion: Any
         acceleration = max(acceleration, derivative[m, 3, j] ** 2 + derivative[m, 4, j] ** 2 + derivative[m, 5, j] ** 2)
     acceleration = 1.5 * np.sqrt(acceleration)
     pace = reach = 0.0
-    distance, angle, rate, swing = motion[0], motion[1], motion[2] / step, motion[4] / step
+    distance, rate, swing = motion.distance, motion.turn / step, motion.swing / step
     for fraction in (0.0, 1.0):
         x, y = dense_output(curve, fraction, 0), dense_output(curve, fraction, 1)
         u, v = dense_output(curve, fraction, 3), dense_output(curve, fraction, 4)
         if distance > 0.0:
             # Against the partner's ground: less the motion of its centre, less the turning about it.
-            place = angle + fraction * motion[2]
+            place = motion.angle + fraction * motion.turn
             centre_x, centre_y = distance * np.cos(place), distance * np.sin(place)
             x, y = x - centre_x, y - centre_y
             u, v = u + rate * centre_y + swing * y, v - rate * centre_x - swing * x
@@ -65,7 +76,7 @@ def _motion_bounds(curve: Any, derivative: Any, step: float, j: int, motion: Any
 
 
 @kernel
-def _closest_approach(here: Any, there: Any) -> float:
+def _closest_approach(here: Floats, there: Floats) -> float:
     """Smallest distance [m] of the straight line between two points from the origin."""
     along_line = square = 0.0
     for i in range(3):
@@ -79,9 +90,11 @@ def _closest_approach(here: Any, there: Any) -> float:
 
 
 @large_kernel
-def _fraction_at_plane(curve: Any, ground: Any, motion: Any, facet: int, point: Any, low: float, high: float) -> float:
+def _fraction_at_plane(
+    curve: Floats, ground: Ground, motion: Motion, facet: int, point: Floats, low: float, high: float
+) -> float:
     """Fraction between low and high at which the curve passes the plane of a facet."""
-    corner, outward = ground[1], ground[2]
+    corner, outward = ground.corners, ground.pseudonormals
     for _ in range(BISECTIONS):
         middle = 0.5 * (low + high)
         _position_at(curve, middle, motion, point)
@@ -96,14 +109,15 @@ def _fraction_at_plane(curve: Any, ground: Any, motion: Any, facet: int, point: 
 
 
 @large_kernel
-def _fraction_at_surface(curve: Any, ground: Any, motion: Any, point: Any, low: float, high: float) -> Any:
+def _fraction_at_surface(
+    curve: Floats, ground: Ground, motion: Motion, point: Floats, low: float, high: float
+) -> tuple[float, int]:
     """Fraction between low (above) and high (below) at which the height is zero, and the facet there."""
-    grid, corner, outward = ground[0], ground[1], ground[2]
     facet = -1
     for _ in range(BISECTIONS):
         middle = 0.5 * (low + high)
         _position_at(curve, middle, motion, point)
-        height, facet = height_near(grid, corner, outward, point)
+        height, facet = height_near(ground.grid, ground.corners, ground.pseudonormals, point)
         if height > 0.0:
             low = middle
         else:
@@ -113,27 +127,26 @@ def _fraction_at_surface(curve: Any, ground: Any, motion: Any, point: Any, low: 
 
 @large_kernel
 def find_impact(
-    curve: Any, derivative: Any, step: float, j: int, phase: int, ground: Any, motion: Any, room: Any
-) -> Any:
+    curve: Floats, derivative: Floats, step: float, j: int, phase: int, ground: Ground, motion: Motion, room: Floats
+) -> tuple[float, int, int]:
     """Fraction of lane j's step [step s] at which it meets the ground, the facet (-1: it does not), and the phase after
     it.
 
-    ground: (grid arrays, corners [facet_count, 3, 3], pseudonormals [facet_count, 7, 3], slack [m], radius [m]).
     room [3, 3] is scratch.
     """
-    grid, corner, outward, slack, radius = ground
+    grid, corner, outward, slack = ground.grid, ground.corners, ground.pseudonormals, ground.slack
     here, there, chord = room[0], room[1], room[2]
     pace, acceleration = _motion_bounds(curve, derivative, step, j, motion)
     _position_at(curve, 0.0, motion, here)
     if phase == ALOFT:
         _position_at(curve, 1.0, motion, there)
-        if _closest_approach(here, there) > radius + 0.125 * acceleration * step * step:
+        if _closest_approach(here, there) > ground.radius + 0.125 * acceleration * step * step:
             return 1.0, -1, phase
     fastest = pace + 0.5 * acceleration * step
     # Half a cell keeps a chord among few cells; the sagitta of a chord of time t is at most acceleration t**2 / 8.
     longest = min(
         np.sqrt(8.0 * SAGITTA * slack / acceleration) if acceleration > 0.0 else step,
-        0.5 * grid[1] / fastest if fastest > 0.0 else step,
+        0.5 * grid.edge / fastest if fastest > 0.0 else step,
     )
     stride = min(longest, 4.0 * slack / pace) if pace > 0.0 else longest
     time, height = 0.0, 0.0

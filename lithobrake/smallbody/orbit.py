@@ -1,21 +1,20 @@
 """How the other body of a binary moves: on a circle in the equatorial plane.
 
-All kernels take its motion as (distance [m], angle, turn, attitude, swing [rad], pull [m/s2]): the longitude of its
-centre at the start of a step and its change over the step, the same for its own prime meridian, and the acceleration
-that it gives to the body whose frame flights use. A distance of zero stands for no partner.
+A distance of zero stands for no partner.
 """
 
-from dataclasses import astuple, dataclass
-from typing import Any
+from typing import Any, Generic, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lithobrake.compiled import kernel
+from lithobrake.smallbody.arrays import Floats
+
+Entry = TypeVar("Entry", float, Floats)
 
 
-@dataclass(frozen=True)
-class Orbit:
+class Orbit(NamedTuple, Generic[Entry]):
     """How a partner moves in the turning frame of the body that holds it; each entry a number, or one a flight.
 
     distance   of the centres [m]
@@ -26,22 +25,17 @@ class Orbit:
     mass_fraction   of the partner in both masses
     """
 
-    distance: Any = 0.0
-    angle: Any = 0.0
-    rate: Any = 0.0
-    attitude: Any = 0.0
-    swing: Any = 0.0
-    pull: Any = 0.0
-    drift: Any = 0.0
-    mass_fraction: Any = 0.0
-
-    @property
-    def numbers(self) -> tuple[Any, ...]:
-        """The numbers in the order in which kernels take them."""
-        return astuple(self)
+    distance: Entry
+    angle: Entry
+    rate: Entry
+    attitude: Entry
+    swing: Entry
+    pull: Entry
+    drift: Entry
+    mass_fraction: Entry
 
     def seen_from_partner(
-        self, position: ArrayLike, velocity: ArrayLike, time: ArrayLike
+        self: "Orbit[Any]", position: ArrayLike, velocity: ArrayLike, time: ArrayLike
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """States of the body's turning frame at times [s], shape [count], in the partner's own turning frame.
 
@@ -62,20 +56,37 @@ class Orbit:
         return p, v
 
 
-@kernel
-def motion_over(orbit: Any, time: float, step: float) -> Any:
-    """Motion of the partner over a step that begins at a time [s]; orbit: Orbit.numbers."""
-    return orbit[0], orbit[1] + orbit[2] * time, orbit[2] * step, orbit[3] + orbit[4] * time, orbit[4] * step
+class Motion(NamedTuple):
+    """How the partner moves over a step in the turning frame of the body."""
+
+    distance: float  # of the centres [m]
+    angle: float  # longitude of its centre at the start [rad]
+    turn: float  # change of that over the step [rad]
+    attitude: float  # longitude at which its own x axis points at the start [rad]
+    swing: float  # change of that over the step [rad]
 
 
 @kernel
-def into_partner(point: Any, motion: Any, fraction: float) -> None:
+def motion_over(orbit: Orbit[Floats], flight: int, time: float, step: float) -> Motion:
+    """Motion of a flight's partner over a step [s] that begins at a time [s]."""
+    rate, swing = orbit.rate[flight], orbit.swing[flight]
+    return Motion(
+        orbit.distance[flight],
+        orbit.angle[flight] + rate * time,
+        rate * step,
+        orbit.attitude[flight] + swing * time,
+        swing * step,
+    )
+
+
+@kernel
+def into_partner(point: Floats, motion: Motion, fraction: float) -> None:
     """Turn a point [3] of the body's frame, at a fraction of the step, into the partner's frame."""
-    distance, angle, turn, attitude, swing = motion
+    distance = motion.distance
     if distance == 0.0:
         return
-    place = angle + fraction * turn
+    place = motion.angle + fraction * motion.turn
     x, y = point[0] - distance * np.cos(place), point[1] - distance * np.sin(place)
-    facing = attitude + fraction * swing
+    facing = motion.attitude + fraction * motion.swing
     c, s = np.cos(facing), np.sin(facing)
     point[0], point[1] = c * x + s * y, c * y - s * x

@@ -4,18 +4,17 @@ Source: Moeller and Trumbore (1997), Fast, minimum storage ray-triangle intersec
 21-28.
 """
 
-from typing import Any
-
 import numpy as np
 
 from lithobrake.compiled import compiled, kernel, large_kernel
-from lithobrake.smallbody.grid import cell_of
+from lithobrake.smallbody.arrays import Floats, Integers
+from lithobrake.smallbody.grid import Grid, cell_of
 
 RIM = 1e-9  # part of a facet by which it is widened, so that a line through a common edge meets at least one facet
 
 
 @kernel
-def intersect_facet(corner: Any, f: int, origin: Any, along: Any) -> Any:
+def intersect_facet(corner: Floats, f: int, origin: Floats, along: Floats) -> tuple[float, float]:
     """Multiple of `along` at which the line meets facet f (nan: it does not), and the side it comes from.
 
     corner: vertices of the facets [m], [facet_count, 3, 3]; the side is positive where the line goes from outside
@@ -40,12 +39,12 @@ def intersect_facet(corner: Any, f: int, origin: Any, along: Any) -> Any:
 
 
 @large_kernel
-def first_entry(grid: Any, corner: Any, origin: Any, along: Any) -> Any:
+def first_entry(grid: Grid, corner: Floats, origin: Floats, along: Floats) -> tuple[float, int]:
     """Where the chord from origin to origin + along first goes from outside inwards: fraction of the chord, and facet.
 
     The facet is -1 where it does not. Meant for chords no longer than a few cells.
     """
-    size, start, facets = grid[2], grid[3], grid[4]
+    size, start, facets = grid.size, grid.start, grid.facets
     i, j, k = cell_of(grid, origin[0], origin[1], origin[2])
     u, v, w = cell_of(grid, origin[0] + along[0], origin[1] + along[1], origin[2] + along[2])
     best, hit = np.inf, -1
@@ -61,7 +60,7 @@ def first_entry(grid: Any, corner: Any, origin: Any, along: Any) -> Any:
 
 
 @compiled
-def outermost_hit(corner: Any, directions: Any, distance: Any, facet: Any) -> None:
+def outermost_hit(corner: Floats, directions: Floats, distance: Floats, facet: Integers) -> None:
     """Write the farthest hit of rays from the origin along `directions` [count, 3]: distance [m] (nan: none), facet."""
     origin = np.zeros(3)
     for r in range(len(directions)):

@@ -3,13 +3,13 @@
 import os
 import warnings
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lithobrake.mesh import closed_faces, mass_properties
 from lithobrake.mesh_files import read_mesh
+from lithobrake.smallbody.attraction import Gravity
 from lithobrake.smallbody.gravity_table import LEVELS, GravityTable
 from lithobrake.smallbody.gravity_table_build import TableError, gravity_table_of
 from lithobrake.smallbody.grid import Grid
@@ -73,19 +73,19 @@ class Shape:
         return Multipole.of(self.polyhedron, self.centroid)
 
     @property
-    def gravity(self) -> tuple[Any, ...]:
+    def gravity(self) -> Gravity:
         """What the gravity kernels read."""
-        return self.polyhedron.arrays, self.multipole.arrays, GravityTable.empty().arrays
+        return Gravity(self.polyhedron, self.multipole, GravityTable.empty())
 
     @property
-    def tabled_gravity(self) -> tuple[Any, ...]:
+    def tabled_gravity(self) -> Gravity:
         """The same with the table, which serves all points but the farthest."""
-        return self.polyhedron.arrays, self.multipole.arrays, self._table[0].arrays
+        return Gravity(self.polyhedron, self.multipole, self._table[0])
 
     @property
-    def distant_gravity(self) -> tuple[Any, ...]:
+    def distant_gravity(self) -> Gravity:
         """The same for a body that flights hardly come near: from a coarser table, which takes a tenth of the time."""
-        return self.polyhedron.arrays, self.multipole.arrays, self._coarse_table[0].arrays
+        return Gravity(self.polyhedron, self.multipole, self._coarse_table[0])
 
     @property
     def table_error(self) -> TableError:
