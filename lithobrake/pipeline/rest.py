@@ -107,17 +107,15 @@ class Sites:
 
     def follow(self, job: Job, ground: str, first: "Rebounds", bounce: "Bounce") -> list[list[Any]]:
         """A row of rest.csv for each sample, in their order: from how it leaves the first impact to where it ends."""
-        from lithobrake.smallbody import hop
+        from lithobrake.smallbody import Launch, hop
 
         going = np.flatnonzero(~(first.captured | first.outside))
         site = {key: values[going] for key, values in self.site.items()}
         velocity, spin = (np.einsum("nij,ni->nj", self.axes[going], v[going]) for v in (first.velocity, first.spin))
+        time = partner_time(self.body, site)
+        launch = Launch(self.origin[going], velocity, spin, time, site["mass"], site["spin_period"])
         ends = hop(
-            *(self.body, self.origin[going], velocity, bounce, job.study.rest.duration),
-            spin=spin,
-            start_time=partner_time(self.body, site),
-            mass=site["mass"],
-            spin_period=site["spin_period"],
+            *(self.body, launch, bounce, job.study.rest.duration),
             gravity=job.study.flight.gravity,
             seed=sampling_seed(job.study, f"rest on {ground} ground"),
             threads=getattr(job.executor, "worker_count", None),

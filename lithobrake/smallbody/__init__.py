@@ -5,7 +5,7 @@ from lithobrake.smallbody.bounce import Bounce, HardSurface, Impacts, Rebounds
 from lithobrake.smallbody.built_in_bodies import didymos, dimorphos
 from lithobrake.smallbody.flight import fly
 from lithobrake.smallbody.flight_results import Flights
-from lithobrake.smallbody.hopping import Journeys, hop
+from lithobrake.smallbody.hopping import Journeys, Launch, hop
 from lithobrake.smallbody.shape import Shape
 
 __all__ = [
@@ -15,6 +15,7 @@ __all__ = [
     "HardSurface",
     "Impacts",
     "Journeys",
+    "Launch",
     "Partner",
     "Rebounds",
     "Shape",
