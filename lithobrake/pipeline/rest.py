@@ -100,9 +100,7 @@ class Sites:
         body, samples = site_body(job.study), Samples.load(job.folder).first(job.study.rest.count)
         site = sample_sites(job.study, len(samples.outcome))
         origin, axes = frames(body, site)
-        spin_rate = 2.0 * np.pi / site["spin_period"]
-        push = body.acceleration(origin) * (site["mass"] / body.mass)[:, None]
-        push += (spin_rate**2)[:, None] * origin * np.array([1.0, 1.0, 0.0])
+        push = body.effective_acceleration(origin, mass=site["mass"], spin_period=site["spin_period"])
         return cls(body, samples, site, origin, axes, np.einsum("ni,ni->n", push, axes[:, 2]))
 
     def follow(self, job: Job, ground: str, first: "Rebounds", bounce: "Bounce") -> list[list[Any]]:

@@ -7,13 +7,16 @@ from lithobrake.smallbody.flight import fly
 from lithobrake.smallbody.flight_results import Flights
 from lithobrake.smallbody.hopping import Journeys, Launch, hop
 from lithobrake.smallbody.shape import Shape
+from lithobrake.smallbody.status import FlightStatus, JourneyStatus
 
 __all__ = [
     "Body",
     "Bounce",
+    "FlightStatus",
     "Flights",
     "HardSurface",
     "Impacts",
+    "JourneyStatus",
     "Journeys",
     "Launch",
     "Partner",

@@ -107,10 +107,17 @@ class Body:
         sums = gradient(p.reshape(-1, 3), self.shape.polyhedron, self.shape.multipole)
         return (sums * (GRAVITATIONAL_CONSTANT * self.density)).reshape(*p.shape, 3)
 
-    def effective_acceleration(self, points: ArrayLike) -> NDArray[np.float64]:
-        """Gravity and centrifugal acceleration [m/s2] of a point at rest in the body-fixed frame, shape [..., 3]."""
+    def effective_acceleration(
+        self, points: ArrayLike, *, mass: ArrayLike | None = None, spin_period: ArrayLike | None = None
+    ) -> NDArray[np.float64]:
+        """Gravity and centrifugal acceleration [m/s2] of points at rest in the body-fixed frame, both [..., 3].
+
+        mass [kg] and spin_period [s], of shape [...], stand in place of the body's own.
+        """
         p = np.asarray(points, dtype=np.float64)
-        return self.acceleration(p) + self.spin_rate**2 * p * np.array([1.0, 1.0, 0.0])
+        ratio = np.asarray(self.mass if mass is None else mass)[..., None] / self.mass
+        spin_rate = self.spin_rate if spin_period is None else 2.0 * math.pi / np.asarray(spin_period)[..., None]
+        return self.acceleration(p) * ratio + spin_rate**2 * p * np.array([1.0, 1.0, 0.0])
 
     def slope(self, latitude_deg: ArrayLike, longitude_deg: ArrayLike) -> NDArray[np.float64]:
         """Angle between the outward normal and the upward plumb line, gravity and rotation together [rad], shape [...].
@@ -118,8 +125,8 @@ class Body:
         Above a right angle the ground does not hold what lies on it.
         """
         points, facets = self.shape.locate(latitude_deg, longitude_deg)
-        push = self.effective_acceleration(points)
-        along = -(push * self.shape.normals[facets]).sum(axis=-1) / np.linalg.norm(push, axis=-1)
+        felt = self.effective_acceleration(points)
+        along = -(felt * self.shape.normals[facets]).sum(axis=-1) / np.linalg.norm(felt, axis=-1)
         slope: NDArray[np.float64] = np.arccos(np.clip(along, -1.0, 1.0))
         return slope
 

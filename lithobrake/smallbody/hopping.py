@@ -11,6 +11,7 @@ from lithobrake.smallbody.body import Body
 from lithobrake.smallbody.bounce import Bounce, Impacts
 from lithobrake.smallbody.flight import fly
 from lithobrake.smallbody.flight_results import Flights
+from lithobrake.smallbody.status import FlightStatus, JourneyStatus
 
 GRAZE = 1e-5  # cosine of the incidence below which a lander does not hit the ground but slides along it
 
@@ -19,10 +20,7 @@ GRAZE = 1e-5  # cosine of the incidence below which a lander does not hit the gr
 class Journeys:
     """Where each lander ended; every array has one entry or row a lander.
 
-    status         "settled": captured where the ground holds it; "lofted": captured where gravity and rotation together
-                   push outwards; "flying": the time was over; "escaped"; "partner": on the partner, where no bounce is
-                   followed; "outside": an impact that the bounce does not know; "sliding": it moves along the ground,
-                   which is not followed; "bouncing": bounce_limit was reached
+    status         words of JourneyStatus
     time           from the start to the end [s]; of a settled lander, to rest
     position       at the end, body-fixed [m], [count, 3]
     latitude       planetocentric [deg], longitude east in (-180, 180] [deg], of that position
@@ -104,15 +102,16 @@ def hop(
             threads=threads,
         )
         state.advance(going, flights)
-        slides = (flights.status == "impact") & (np.cos(flights.incidence) < GRAZE)
-        state.status[going[slides]] = "sliding"
-        bounces = (flights.status == "impact") & ~slides
+        hits = flights.status == FlightStatus.IMPACT
+        slides = hits & (np.cos(flights.incidence) < GRAZE)
+        state.status[going[slides]] = JourneyStatus.SLIDING
+        bounces = hits & ~slides
         going, facet = going[bounces], flights.facet[bounces]
         if number < bounce_limit and len(going):
             going = state.rebound(going, facet, bounce, np.random.default_rng([seed, number]))
             going = going[state.time[going] < duration]
         elif len(going):
-            state.status[going] = "bouncing"
+            state.status[going] = JourneyStatus.BOUNCING
             going = going[:0]
         if progress:
             progress(1.0 - len(going) / max(count, 1))
@@ -163,7 +162,7 @@ class _State:
             velocity=each("velocity", launch.velocity, 3),
             spin=each("spin", launch.spin, 3),
             time=np.zeros(count),
-            status=np.full(count, "flying", dtype="<U8"),
+            status=np.full(count, JourneyStatus.FLYING.value, dtype="<U8"),
             bounce_count=np.zeros(count, dtype=np.int64),
             path_length=np.zeros(count),
             impact_speed=np.full(count, np.nan),
@@ -180,7 +179,7 @@ class _State:
         self.path_length[going] += np.linalg.norm(flights.position - self.position[going], axis=1)
         self.position[going], self.velocity[going] = flights.position, flights.velocity
         self.time[going] += flights.time
-        self.status[going] = np.where(flights.status == "impact", "flying", flights.status)
+        self.status[going] = np.where(flights.status == FlightStatus.IMPACT, JourneyStatus.FLYING, flights.status)
         hit = flights.facet >= 0
         self.impact_speed[going[hit]], self.incidence[going[hit]] = flights.impact_speed[hit], flights.incidence[hit]
         # The body turns on while a spin stays among the stars.
@@ -188,14 +187,6 @@ class _State:
         c, s = np.cos(turn), np.sin(turn)
         x, y = self.spin[going, 0], self.spin[going, 1]
         self.spin[going, 0], self.spin[going, 1] = c * x + s * y, c * y - s * x
-
-    def _push(self, going: NDArray[np.int64]) -> NDArray[np.float64]:
-        """Gravity and centrifugal acceleration [m/s2] at the landers `going`, [count, 3]."""
-        place = self.position[going]
-        gravity = self.body.acceleration(place) * (self.mass[going] / self.body.mass)[:, None]
-        spin_rate = 2.0 * np.pi / self.spin_period[going]
-        push: NDArray[np.float64] = gravity + (spin_rate**2)[:, None] * place * np.array([1.0, 1.0, 0.0])
-        return push
 
     def rebound(
         self, going: NDArray[np.int64], facet: NDArray[np.int64], bounce: Bounce, random: np.random.Generator
@@ -205,12 +196,15 @@ class _State:
         velocity = self.velocity[going]
         axes = impact_frame(velocity, up)
         speed, incidence = self.impact_speed[going], self.incidence[going]
-        push = np.einsum("ni,ni->n", self._push(going), up)
+        felt = self.body.effective_acceleration(
+            self.position[going], mass=self.mass[going], spin_period=self.spin_period[going]
+        )
+        outward = np.einsum("ni,ni->n", felt, up)
         local_spin = np.einsum("nij,nj->ni", axes, self.spin[going])
-        result = bounce(Impacts(speed, incidence, local_spin, push, going), random)
+        result = bounce(Impacts(speed, incidence, local_spin, outward, going), random)
         stays = result.captured & ~result.outside
-        self.status[going[result.outside]] = "outside"
-        self.status[going[stays]] = np.where(push[stays] < 0.0, "settled", "lofted")
+        self.status[going[result.outside]] = JourneyStatus.OUTSIDE
+        self.status[going[stays]] = np.where(outward[stays] < 0.0, JourneyStatus.SETTLED, JourneyStatus.LOFTED)
         on = ~(stays | result.outside)
         if not (result.velocity[on, 2] > 0.0).all():
             raise ValueError("a bounce sent a lander into the ground; it must call it captured or outside instead.")

@@ -26,7 +26,7 @@ from lithobrake.smallbody.orbit import Motion, motion_over
 from lithobrake.smallbody.polyhedron import ROWS
 from lithobrake.smallbody.simd import LANES
 
-FLYING, IMPACT, ESCAPED, PARTNER, FAILED = 0, 1, 2, 3, 4
+FLYING, IMPACT, ESCAPED, PARTNER, FAILED = range(5)  # the first four in the order of FlightStatus
 
 
 class Lanes(NamedTuple):

@@ -16,8 +16,8 @@ def plain() -> Body:
     return Body(Shape(cube_vertices(200.0), CUBE_FACES), mass=2e10, spin_period=math.inf)
 
 
-def impacts(speed: float, incidence: float, push: float = -1e-4) -> Impacts:
-    return Impacts(np.array([speed]), np.array([incidence]), np.zeros((1, 3)), np.array([push]), np.arange(1))
+def impacts(speed: float, incidence: float, outward: float = -1e-4) -> Impacts:
+    return Impacts(np.array([speed]), np.array([incidence]), np.zeros((1, 3)), np.array([outward]), np.arange(1))
 
 
 def test_hard_surface_limits_the_tangential_impulse_by_friction():
@@ -32,7 +32,7 @@ def test_hard_surface_limits_the_tangential_impulse_by_friction():
     assert flat.velocity[0] == pytest.approx([along - 0.3 * 1.6 * down, 0.0, 0.6 * down])
     assert not steep.captured[0]
     assert HardSurface(0.6)(impacts(1e-4, 0.0), random).captured[0]
-    assert not HardSurface(0.6)(impacts(1e-4, 0.0, push=1e-5), random).captured[0]
+    assert not HardSurface(0.6)(impacts(1e-4, 0.0, outward=1e-5), random).captured[0]
     with pytest.raises(ValueError, match="normal_restitution is"):
         HardSurface(1.2)
 
