@@ -89,7 +89,7 @@ class SoilBounce:
         Those outside have the inputs of the first impact in place of theirs.
         """
         felt = {"impact.speed": impacts.speed, "impact.incidence_deg": np.degrees(impacts.incidence)}
-        felt |= dict(zip(SPIN, impacts.spin.T, strict=True)) | {"surface.gravity": -impacts.push}
+        felt |= dict(zip(SPIN, impacts.spin.T, strict=True)) | {"surface.gravity": -impacts.effective_acceleration}
         x = np.column_stack([values[impacts.lander] for values in self.inputs.values()])
         outside = np.zeros(len(x), dtype=bool)
         for index, name in enumerate(self.inputs):

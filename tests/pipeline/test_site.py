@@ -10,7 +10,7 @@ import pytest
 
 from lithobrake.pipeline.site import escape_speed, frames, gravity_warning, site_body
 from lithobrake.smallbody import Body
-from lithobrake.smallbody.didymos import top_shape
+from lithobrake.smallbody.built_in_bodies import top_shape
 from lithobrake.study import Study, check_tables
 from lithobrake.study.template import template
 

@@ -5,15 +5,14 @@ Sources: Werner and Scheeres (1996), Exterior gravitation of a polyhedron, Celes
 angles); far away the harmonics of multipole.py, whose derivative is a series again, with shifted moments.
 """
 
-from typing import Any
-
 import numpy as np
 from numpy.typing import NDArray
 
 from lithobrake.compiled import compiled
-from lithobrake.smallbody.lanes import angle, log_ratio
+from lithobrake.smallbody.arrays import Floats
 from lithobrake.smallbody.multipole import Multipole
 from lithobrake.smallbody.polyhedron import Polyhedron
+from lithobrake.smallbody.simd import angle, log_ratio
 
 # Place of xx, yy, zz, xy, xz, yz in a 3 x 3 matrix.
 MATRIX = np.array([[0, 3, 4], [3, 1, 5], [4, 5, 2]])
@@ -28,15 +27,15 @@ def gradient(points: NDArray[np.float64], polyhedron: Polyhedron, multipole: Mul
     result = np.empty((len(points), 3, 3))
     far = np.linalg.norm(points - multipole.centre, axis=1) >= multipole.nearest
     six = np.zeros((int((~far).sum()), 6))
-    _near(np.ascontiguousarray(points[~far]), six, polyhedron.arrays)
+    _near(np.ascontiguousarray(points[~far]), six, polyhedron)
     result[~far] = six[:, MATRIX]
-    for axis, part in enumerate(_slopes(multipole)):
+    for axis, part in enumerate(_acceleration_series(multipole)):
         result[far, axis] = part.field(points[far])[:, :3] / multipole.radius
     # Each of the two ways to a mixed derivative rounds on its own.
     return 0.5 * (result + result.transpose(0, 2, 1))
 
 
-def _slopes(multipole: Multipole) -> list[Multipole]:
+def _acceleration_series(multipole: Multipole) -> list[Multipole]:
     """The series whose potentials are the accelerations x, y, z of a series, in units of its radius.
 
     The acceleration from moment (n - 1, m) is a sum of harmonics (n, m - 1), (n, m), (n, m + 1), as in
@@ -67,9 +66,10 @@ def _slopes(multipole: Multipole) -> list[Multipole]:
 
 
 @compiled
-def _near(points: Any, result: Any, polyhedron: Any) -> None:
+def _near(points: Floats, result: Floats, polyhedron: Polyhedron) -> None:
     """Add to result [count, 6], point by point, the edges' sums E L less the facets' sums n n omega."""
-    vertices, ends, edge_terms, corners, facet_terms = polyhedron
+    vertices, ends, edge_terms = polyhedron.vertices, polyhedron.edge_ends, polyhedron.edge_terms
+    corners, facet_terms = polyhedron.facet_corners, polyhedron.facet_terms
     distance, offset = np.empty(len(vertices)), np.empty((len(vertices), 3))
     for p in range(len(points)):
         for v in range(len(vertices)):

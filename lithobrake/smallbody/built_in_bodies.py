@@ -5,8 +5,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from lithobrake.smallbody.body import Body
-from lithobrake.smallbody.partner import Partner
+from lithobrake.smallbody.body import Body, Partner
 from lithobrake.smallbody.shape import Shape
 
 # Ecliptic longitude and latitude of the pole [deg], of spin and mutual orbit: right ascension 69.327 and declination

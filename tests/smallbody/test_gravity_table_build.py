@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from lithobrake.disk_cache import DiskCache
-from lithobrake.smallbody import Shape, table_build
-from lithobrake.smallbody.table_build import table_of
+from lithobrake.smallbody import Shape, gravity_table_build
+from lithobrake.smallbody.gravity_table_build import gravity_table_of
 
 # Coarse, for a table of some kilobytes.
 LEVELS = ((0.25, 0.0), (1.0, 6.0))
@@ -19,12 +19,12 @@ LEVELS = ((0.25, 0.0), (1.0, 6.0))
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """An empty cache in the place of the user's, for tables alone."""
     monkeypatch.setenv("LITHOBRAKE_CACHE", str(tmp_path))
-    monkeypatch.setattr(table_build, "disk_cache", DiskCache)
+    monkeypatch.setattr(gravity_table_build, "disk_cache", DiskCache)
     return tmp_path
 
 
 def built(cube: Shape) -> tuple[np.ndarray, tuple[float, ...]]:
-    table, error = table_of(cube.polyhedron, cube.multipole, cube.volume, LEVELS)
+    table, error = gravity_table_of(cube.polyhedron, cube.multipole, cube.volume, LEVELS)
     return table.values, tuple(error)
 
 

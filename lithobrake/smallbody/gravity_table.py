@@ -8,23 +8,23 @@ Source of the coefficients: the quasi-interpolant that reproduces cubics, de Boo
 chapter XII.
 """
 
-from dataclasses import dataclass
-from typing import Any
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lithobrake.compiled import kernel
+from lithobrake.smallbody.arrays import Floats
 
 # Edge of the cells and reach of each grid in radii of the body; the first reaches MARGIN cells beyond the bounding box.
 LEVELS = ((1 / 40, 0.0), (1 / 20, 1.6), (1 / 10, 3.0), (1 / 3, 8.0), (1.0, 24.0), (4.0, 80.0))
 MARGIN = 8
 CORE = 0.3  # of the radius of a sphere of the same volume: inside it the point mass is a homogeneous sphere
+Vector = tuple[float, float, float]
 RIM = 2  # nodes along the sides of a grid that only serve the cells within
 
 
-@dataclass(frozen=True)
-class GravityTable:
+class GravityTable(NamedTuple):
     """Splines of the field sums (without the factor G density) of one shape.
 
     centre    of the point mass [m], [3]
@@ -35,6 +35,7 @@ class GravityTable:
     size      nodes along x, y, z, [level, 3]
     start     place of the grid's first number in values, [level]
     values    coefficients x, y, z [m] node by node, z fastest, flat
+    first, last   corners between which the grid serves points [m], [level, 3]
     """
 
     centre: NDArray[np.float64]
@@ -45,20 +46,17 @@ class GravityTable:
     size: NDArray[np.int64]
     start: NDArray[np.int64]
     values: NDArray[np.float64]
+    first: NDArray[np.float64]
+    last: NDArray[np.float64]
 
     @classmethod
     def empty(cls) -> "GravityTable":
         """A table without grids: nothing is read from it."""
         none = np.zeros(0, dtype=np.int64)
-        return cls(np.zeros(3), 0.0, 0.0, np.zeros((0, 3)), np.zeros(0), none.reshape(0, 3), none, np.zeros(0))
-
-    @property
-    def arrays(self) -> tuple[Any, ...]:
-        """The table in the order in which kernels take it, then the first and last corner [m] that each grid serves."""
-        rim = RIM * self.edge[:, None]
-        served = self.lower + rim, self.lower + (self.size - 1) * self.edge[:, None] - rim
-        table = self.centre, self.volume, self.core, self.lower, self.edge, self.size, self.start, self.values
-        return *table, *served
+        nowhere = np.zeros((0, 3))
+        return cls(
+            *(np.zeros(3), 0.0, 0.0, nowhere, np.zeros(0), none.reshape(0, 3), none, np.zeros(0), nowhere, nowhere)
+        )
 
 
 def spline_coefficients(samples: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -72,21 +70,20 @@ def spline_coefficients(samples: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 @kernel
-def level_of(x: float, y: float, z: float, table: Any) -> int:
+def level_of(x: float, y: float, z: float, table: GravityTable) -> int:
     """Finest grid that can serve a point [m]; -1 where none does."""
-    first, last = table[8], table[9]
-    for level in range(len(first)):
-        a, b = first[level], last[level]
+    for level in range(len(table.first)):
+        a, b = table.first[level], table.last[level]
         if a[0] <= x < b[0] and a[1] <= y < b[1] and a[2] <= z < b[2]:
             return level
     return -1
 
 
 @kernel
-def _weights(share: float, weight: Any, i: int) -> int:
+def _spline_weights(offset: float, weight: Floats, i: int) -> int:
     """Write the four cubic B-spline weights of axis i for an offset in cells; gives the first of the four nodes."""
-    node = int(np.floor(share))
-    t = share - node
+    node = int(np.floor(offset))
+    t = offset - node
     s = 1.0 - t
     weight[i, 0] = s * s * s / 6.0
     weight[i, 1] = (4.0 - 3.0 * t * t * (1.0 + s)) / 6.0
@@ -96,23 +93,23 @@ def _weights(share: float, weight: Any, i: int) -> int:
 
 
 @kernel
-def read_table(x: float, y: float, z: float, level: int, table: Any, weight: Any, total: Any) -> Any:
+def read_table(x: float, y: float, z: float, level: int, table: GravityTable, weight: Floats, total: Floats) -> Vector:
     """Field sum x, y, z [m] at a point [m] of a level. weight [3, 4] and total [12] are scratch."""
-    centre, volume, core, lower, edge, size, start, values, _, _ = table
-    i = _weights((x - lower[level, 0]) / edge[level], weight, 0)
-    j = _weights((y - lower[level, 1]) / edge[level], weight, 1)
-    k = _weights((z - lower[level, 2]) / edge[level], weight, 2)
+    lower, edge, size = table.lower, table.edge, table.size
+    i = _spline_weights((x - lower[level, 0]) / edge[level], weight, 0)
+    j = _spline_weights((y - lower[level, 1]) / edge[level], weight, 1)
+    k = _spline_weights((z - lower[level, 2]) / edge[level], weight, 2)
     for c in range(12):
         total[c] = 0.0
     for a in range(4):
         for b in range(4):
             # Four nodes along z, three components each, stand side by side.
-            first = start[level] + 3 * (((i + a) * size[level, 1] + j + b) * size[level, 2] + k)
-            share = weight[0, a] * weight[1, b]
-            row = values[first : first + 12]
+            first = table.start[level] + 3 * (((i + a) * size[level, 1] + j + b) * size[level, 2] + k)
+            product = weight[0, a] * weight[1, b]
+            row = table.values[first : first + 12]
             for c in range(12):
-                total[c] += share * row[c]
-    px, py, pz = point_mass(x, y, z, centre, volume, core)
+                total[c] += product * row[c]
+    px, py, pz = point_mass(x, y, z, table.centre, table.volume, table.core)
     for d in range(4):
         px += weight[2, d] * total[3 * d]
         py += weight[2, d] * total[3 * d + 1]
@@ -121,7 +118,7 @@ def read_table(x: float, y: float, z: float, level: int, table: Any, weight: Any
 
 
 @kernel
-def point_mass(x: float, y: float, z: float, centre: Any, volume: float, core: float) -> Any:
+def point_mass(x: float, y: float, z: float, centre: Floats, volume: float, core: float) -> Vector:
     """Field sum x, y, z [m] of the volume [m3] in the centre, a homogeneous sphere of radius core [m] within that."""
     dx, dy, dz = x - centre[0], y - centre[1], z - centre[2]
     r = max(np.sqrt(dx * dx + dy * dy + dz * dz), core)

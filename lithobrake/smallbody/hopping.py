@@ -1,9 +1,8 @@
 """From bounce to bounce until a lander rests, escapes, or the time is over."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -11,7 +10,8 @@ from numpy.typing import ArrayLike, NDArray
 from lithobrake.smallbody.body import Body
 from lithobrake.smallbody.bounce import Bounce, Impacts
 from lithobrake.smallbody.flight import fly
-from lithobrake.smallbody.flights import Flights
+from lithobrake.smallbody.flight_results import Flights
+from lithobrake.smallbody.status import FlightStatus, JourneyStatus
 
 GRAZE = 1e-5  # cosine of the incidence below which a lander does not hit the ground but slides along it
 
@@ -20,10 +20,7 @@ GRAZE = 1e-5  # cosine of the incidence below which a lander does not hit the gr
 class Journeys:
     """Where each lander ended; every array has one entry or row a lander.
 
-    status         "settled": captured where the ground holds it; "lofted": captured where gravity and rotation together
-                   push outwards; "flying": the time was over; "escaped"; "partner": on the partner, where no bounce is
-                   followed; "outside": an impact that the bounce does not know; "sliding": it moves along the ground,
-                   which is not followed; "bouncing": bounce_limit was reached
+    status         words of JourneyStatus
     time           from the start to the end [s]; of a settled lander, to rest
     position       at the end, body-fixed [m], [count, 3]
     latitude       planetocentric [deg], longitude east in (-180, 180] [deg], of that position
@@ -55,64 +52,69 @@ class Journeys:
         return self.body.shape.latitude_longitude(self.position)[1]
 
 
+@dataclass(frozen=True)
+class Launch:
+    """How landers start: one row or entry a lander, or one for all.
+
+    position       [m] and velocity [m/s], body-fixed as of `fly`, [count, 3] or [3]
+    spin           angular velocity, body-fixed axes, relative to the stars [rad/s], [count, 3] or [3]
+    time           of the start [s]: start_time of `fly`
+    mass           of the body [kg] and spin_period [s], in place of its own: for a body that is not well known
+    """
+
+    position: ArrayLike
+    velocity: ArrayLike
+    spin: ArrayLike = (0.0, 0.0, 0.0)
+    time: ArrayLike = 0.0
+    mass: ArrayLike | None = None
+    spin_period: ArrayLike | None = None
+
+
 def hop(
     body: Body,
-    position: ArrayLike,
-    velocity: ArrayLike,
+    launch: Launch,
     bounce: Bounce,
     duration: float,
     *,
-    spin: ArrayLike = (0.0, 0.0, 0.0),
-    start_time: ArrayLike = 0.0,
-    mass: ArrayLike | None = None,
-    spin_period: ArrayLike | None = None,
     gravity: str = "table",
     bounce_limit: int = 1000,
     seed: int = 0,
     threads: int | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> Journeys:
-    """Fly, bounce and fly again from start states as of `fly`, for at most `duration` [s] in all.
+    """Fly, bounce and fly again, for at most `duration` [s] in all.
 
     bounce     called once a round with the impacts of all landers still under way and a generator of random numbers
-    spin       angular velocity at the start, body-fixed axes, relative to the stars [rad/s], [count, 3] or [3]
-    start_time   as of `fly`, and so are mass and spin_period
+    gravity    as of `fly`, and so are threads
     seed       of the generator: the same call gives the same result
     progress   called with the share of landers that have ended
     """
-    start = np.array(np.atleast_2d(np.asarray(position, dtype=np.float64)))
-    masses, periods = (
-        np.array(np.broadcast_to(np.asarray(own if given is None else given, dtype=np.float64), len(start)))
-        for own, given in ((body.mass, mass), (body.spin_period, spin_period))
-    )
-    state = _State(body, start, np.array(np.atleast_2d(np.asarray(velocity, dtype=np.float64))), masses, periods)
-    state.spin[:] = np.asarray(spin, dtype=np.float64)
-    begin = np.array(np.broadcast_to(np.asarray(start_time, dtype=np.float64), len(start)))
-    going = np.arange(len(start))
+    state = _State.of(body, launch)
+    count = len(state.time)
+    going = np.arange(count)
     for number in range(bounce_limit + 1):
-        where, rate, left = state.position[going], state.velocity[going], duration - state.time[going]
-        now = begin[going] + state.time[going]
         flights = fly(
-            *(body, where, rate, left),
+            *(body, state.position[going], state.velocity[going], duration - state.time[going]),
             gravity=gravity,
-            start_time=now,
-            mass=masses[going],
-            spin_period=periods[going],
+            start_time=state.begin[going] + state.time[going],
+            mass=state.mass[going],
+            spin_period=state.spin_period[going],
             threads=threads,
         )
         state.advance(going, flights)
-        slides = (flights.status == "impact") & (np.cos(flights.incidence) < GRAZE)
-        state.status[going[slides]] = "sliding"
-        bounces = (flights.status == "impact") & ~slides
+        hits = flights.status == FlightStatus.IMPACT
+        slides = hits & (np.cos(flights.incidence) < GRAZE)
+        state.status[going[slides]] = JourneyStatus.SLIDING
+        bounces = hits & ~slides
         going, facet = going[bounces], flights.facet[bounces]
         if number < bounce_limit and len(going):
             going = state.rebound(going, facet, bounce, np.random.default_rng([seed, number]))
             going = going[state.time[going] < duration]
         elif len(going):
-            state.status[going] = "bouncing"
+            state.status[going] = JourneyStatus.BOUNCING
             going = going[:0]
         if progress:
-            progress(1.0 - len(going) / len(start))
+            progress(1.0 - len(going) / max(count, 1))
         if not len(going):
             break
     return state.journeys()
@@ -120,26 +122,52 @@ def hop(
 
 @dataclass
 class _State:
-    """Where all landers are now."""
+    """Where all landers are now; arrays as in Journeys, begin, mass and spin_period as in Launch."""
 
     body: Body
-    position: NDArray[np.float64]
-    velocity: NDArray[np.float64]
+    begin: NDArray[np.float64]
     mass: NDArray[np.float64]
     spin_period: NDArray[np.float64]
-    spin: NDArray[np.float64] = field(init=False)
-    time: NDArray[np.float64] = field(init=False)
-    status: NDArray[Any] = field(init=False)
-    bounce_count: NDArray[np.int64] = field(init=False)
-    path_length: NDArray[np.float64] = field(init=False)
-    impact_speed: NDArray[np.float64] = field(init=False)
-    incidence: NDArray[np.float64] = field(init=False)
+    position: NDArray[np.float64]
+    velocity: NDArray[np.float64]
+    spin: NDArray[np.float64]
+    time: NDArray[np.float64]
+    status: NDArray[np.str_]
+    bounce_count: NDArray[np.int64]
+    path_length: NDArray[np.float64]
+    impact_speed: NDArray[np.float64]
+    incidence: NDArray[np.float64]
 
-    def __post_init__(self) -> None:
-        count = len(self.position)
-        self.spin, self.time, self.path_length = np.zeros((count, 3)), np.zeros(count), np.zeros(count)
-        self.status, self.bounce_count = np.full(count, "flying", dtype="<U8"), np.zeros(count, dtype=np.int64)
-        self.impact_speed, self.incidence = np.full(count, np.nan), np.full(count, np.nan)
+    @classmethod
+    def of(cls, body: Body, launch: Launch) -> "_State":
+        """The landers at the start."""
+        position = np.array(np.atleast_2d(np.asarray(launch.position, dtype=np.float64)))
+        count = len(position)
+
+        def each(name: str, given: ArrayLike, *shape: int) -> NDArray[np.float64]:
+            array = np.asarray(given, dtype=np.float64)
+            if array.shape not in (shape, (count, *shape)):
+                raise ValueError(
+                    f"launch: {name} has shape {array.shape} for {count} landers; it must be {shape}, for all of them, "
+                    f"or {(count, *shape)}."
+                )
+            return np.array(np.broadcast_to(array, (count, *shape)))
+
+        return cls(
+            body=body,
+            begin=each("time", launch.time),
+            mass=each("mass", body.mass if launch.mass is None else launch.mass),
+            spin_period=each("spin_period", body.spin_period if launch.spin_period is None else launch.spin_period),
+            position=position,
+            velocity=each("velocity", launch.velocity, 3),
+            spin=each("spin", launch.spin, 3),
+            time=np.zeros(count),
+            status=np.full(count, JourneyStatus.FLYING.value, dtype="<U8"),
+            bounce_count=np.zeros(count, dtype=np.int64),
+            path_length=np.zeros(count),
+            impact_speed=np.full(count, np.nan),
+            incidence=np.full(count, np.nan),
+        )
 
     def journeys(self) -> Journeys:
         """What has become of the landers."""
@@ -151,7 +179,7 @@ class _State:
         self.path_length[going] += np.linalg.norm(flights.position - self.position[going], axis=1)
         self.position[going], self.velocity[going] = flights.position, flights.velocity
         self.time[going] += flights.time
-        self.status[going] = np.where(flights.status == "impact", "flying", flights.status)
+        self.status[going] = np.where(flights.status == FlightStatus.IMPACT, JourneyStatus.FLYING, flights.status)
         hit = flights.facet >= 0
         self.impact_speed[going[hit]], self.incidence[going[hit]] = flights.impact_speed[hit], flights.incidence[hit]
         # The body turns on while a spin stays among the stars.
@@ -159,14 +187,6 @@ class _State:
         c, s = np.cos(turn), np.sin(turn)
         x, y = self.spin[going, 0], self.spin[going, 1]
         self.spin[going, 0], self.spin[going, 1] = c * x + s * y, c * y - s * x
-
-    def _push(self, going: NDArray[np.int64]) -> NDArray[np.float64]:
-        """Gravity and centrifugal acceleration [m/s2] at the landers `going`, [count, 3]."""
-        place = self.position[going]
-        gravity = self.body.acceleration(place) * (self.mass[going] / self.body.mass)[:, None]
-        spin_rate = 2.0 * np.pi / self.spin_period[going]
-        push: NDArray[np.float64] = gravity + (spin_rate**2)[:, None] * place * np.array([1.0, 1.0, 0.0])
-        return push
 
     def rebound(
         self, going: NDArray[np.int64], facet: NDArray[np.int64], bounce: Bounce, random: np.random.Generator
@@ -176,12 +196,15 @@ class _State:
         velocity = self.velocity[going]
         axes = impact_frame(velocity, up)
         speed, incidence = self.impact_speed[going], self.incidence[going]
-        push = np.einsum("ni,ni->n", self._push(going), up)
+        felt = self.body.effective_acceleration(
+            self.position[going], mass=self.mass[going], spin_period=self.spin_period[going]
+        )
+        outward = np.einsum("ni,ni->n", felt, up)
         local_spin = np.einsum("nij,nj->ni", axes, self.spin[going])
-        result = bounce(Impacts(speed, incidence, local_spin, push, going), random)
+        result = bounce(Impacts(speed, incidence, local_spin, outward, going), random)
         stays = result.captured & ~result.outside
-        self.status[going[result.outside]] = "outside"
-        self.status[going[stays]] = np.where(push[stays] < 0.0, "settled", "lofted")
+        self.status[going[result.outside]] = JourneyStatus.OUTSIDE
+        self.status[going[stays]] = np.where(outward[stays] < 0.0, JourneyStatus.SETTLED, JourneyStatus.LOFTED)
         on = ~(stays | result.outside)
         if not (result.velocity[on, 2] > 0.0).all():
             raise ValueError("a bounce sent a lander into the ground; it must call it captured or outside instead.")

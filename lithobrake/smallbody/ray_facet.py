@@ -4,18 +4,17 @@ Source: Moeller and Trumbore (1997), Fast, minimum storage ray-triangle intersec
 21-28.
 """
 
-from typing import Any
-
 import numpy as np
 
 from lithobrake.compiled import compiled, kernel, large_kernel
-from lithobrake.smallbody.grid import place
+from lithobrake.smallbody.arrays import Floats, Integers
+from lithobrake.smallbody.grid import Grid, cell_of
 
-RIM = 1e-9  # share of a facet by which it is widened, so that a line through a common edge meets at least one facet
+RIM = 1e-9  # part of a facet by which it is widened, so that a line through a common edge meets at least one facet
 
 
 @kernel
-def meet(corner: Any, f: int, origin: Any, along: Any) -> Any:
+def intersect_facet(corner: Floats, f: int, origin: Floats, along: Floats) -> tuple[float, float]:
     """Multiple of `along` at which the line meets facet f (nan: it does not), and the side it comes from.
 
     corner: vertices of the facets [m], [facet_count, 3, 3]; the side is positive where the line goes from outside
@@ -40,34 +39,34 @@ def meet(corner: Any, f: int, origin: Any, along: Any) -> Any:
 
 
 @large_kernel
-def first_entry(grid: Any, corner: Any, origin: Any, along: Any) -> Any:
-    """Where the chord from origin to origin + along first goes from outside inwards: share of the chord, and facet.
+def first_entry(grid: Grid, corner: Floats, origin: Floats, along: Floats) -> tuple[float, int]:
+    """Where the chord from origin to origin + along first goes from outside inwards: fraction of the chord, and facet.
 
     The facet is -1 where it does not. Meant for chords no longer than a few cells.
     """
-    size, start, facets = grid[2], grid[3], grid[4]
-    i, j, k = place(grid, origin[0], origin[1], origin[2])
-    u, v, w = place(grid, origin[0] + along[0], origin[1] + along[1], origin[2] + along[2])
+    size, start, facets = grid.size, grid.start, grid.facets
+    i, j, k = cell_of(grid, origin[0], origin[1], origin[2])
+    u, v, w = cell_of(grid, origin[0] + along[0], origin[1] + along[1], origin[2] + along[2])
     best, hit = np.inf, -1
     for a in range(max(min(i, u), 0), min(max(i, u), size[0] - 1) + 1):
         for b in range(max(min(j, v), 0), min(max(j, v), size[1] - 1) + 1):
             for c in range(max(min(k, w), 0), min(max(k, w), size[2] - 1) + 1):
                 cell = (a * size[1] + b) * size[2] + c
                 for entry in range(start[cell], start[cell + 1]):
-                    share, side = meet(corner, facets[entry], origin, along)
-                    if side > 0.0 and 0.0 <= share <= 1.0 and share < best:
-                        best, hit = share, facets[entry]
+                    fraction, side = intersect_facet(corner, facets[entry], origin, along)
+                    if side > 0.0 and 0.0 <= fraction <= 1.0 and fraction < best:
+                        best, hit = fraction, facets[entry]
     return best, hit
 
 
 @compiled
-def outermost(corner: Any, directions: Any, distance: Any, facet: Any) -> None:
+def outermost_hit(corner: Floats, directions: Floats, distance: Floats, facet: Integers) -> None:
     """Write the farthest hit of rays from the origin along `directions` [count, 3]: distance [m] (nan: none), facet."""
     origin = np.zeros(3)
     for r in range(len(directions)):
         distance[r], facet[r] = np.nan, -1
         for f in range(len(corner)):
-            t, side = meet(corner, f, origin, directions[r])
+            t, side = intersect_facet(corner, f, origin, directions[r])
             # Going outwards the line leaves the body: the side is negative.
             if side < 0.0 and t > 0.0 and not t <= distance[r]:
                 distance[r], facet[r] = t, f

@@ -7,15 +7,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lithobrake.smallbody.body import GRAVITATIONAL_CONSTANT, Body
-from lithobrake.smallbody.partner import Orbit
+from lithobrake.smallbody.status import FlightStatus
 
-STATUSES = np.array(["flying", "impact", "escaped", "partner"])
+STATUSES = np.array([status.value for status in FlightStatus])
 ESCAPE_RADII = 10.0  # radii of the body beyond which a flight with positive energy has escaped
 ESCAPE_ORBITS = 4.0  # the same for a binary, in distances of the centres
 
 
 @dataclass(frozen=True)
-class Starts:
+class StartStates:
     """How flights began; every array has one entry or row a flight.
 
     time            [s] (see fly)
@@ -35,11 +35,10 @@ class Flights:
     """How each flight ended; every array has one entry or row a flight.
 
     start           how they began
-    status          "impact", "flying" (still, at the end of the duration), "partner" (an impact on the partner) or
-                    "escaped": farther from the origin than ESCAPE_RADII times the farthest vertex, moving outwards,
-                    with positive two-body energy in the inertial frame. In a binary: also farther from the common
-                    centre of mass than ESCAPE_ORBITS times the distance of the two, with the energy of both masses
-                    there
+    status          words of FlightStatus. "escaped": farther from the origin than ESCAPE_RADII times the farthest
+                    vertex, moving outwards, with positive two-body energy in the inertial frame. In a binary: also
+                    farther from the common centre of mass than ESCAPE_ORBITS times the distance of the two, with the
+                    energy of both masses there
     time            from the start to the end of the flight [s]
     position        [m], velocity [m/s], at that time in the body-fixed frame, shape [count, 3]
     latitude        planetocentric [deg], longitude east in (-180, 180] [deg], of that position; of an impact on the
@@ -51,7 +50,7 @@ class Flights:
     """
 
     body: Body
-    start: Starts
+    start: StartStates
     status: NDArray[np.str_]
     time: NDArray[np.float64]
     position: NDArray[np.float64]
@@ -66,10 +65,10 @@ class Flights:
     def _on_ground(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Position [m] and velocity [m/s] at the end in the frame of the ground: the partner's where that was hit."""
         position, velocity = self.position.copy(), self.velocity.copy()
-        hit = self.status == "partner"
+        hit = self.status == FlightStatus.PARTNER
         if hit.any():
             parameter, spin_rate = GRAVITATIONAL_CONSTANT * self.start.mass, 2.0 * np.pi / self.start.spin_period
-            orbit = Orbit.of(self.body, parameter[hit], spin_rate[hit])
+            orbit = self.body.orbit_with(parameter[hit], spin_rate[hit])
             time = (self.start.time + self.time)[hit]
             position[hit], velocity[hit] = orbit.seen_from_partner(position[hit], velocity[hit], time)
         return position, velocity
@@ -93,10 +92,10 @@ class Flights:
     def incidence(self) -> NDArray[np.float64]:
         """Angle of the incoming velocity from the facet's inward normal [rad], nan without an impact."""
         normals = np.full((len(self), 3), np.nan)
-        hit = self.status == "impact"
+        hit = self.status == FlightStatus.IMPACT
         normals[hit] = self.body.shape.normals[self.facet[hit]]
         if self.body.partner is not None:
-            hit = self.status == "partner"
+            hit = self.status == FlightStatus.PARTNER
             normals[hit] = self.body.partner.body.shape.normals[self.facet[hit]]
         inward = -np.einsum("fi,fi->f", self._on_ground[1], normals)
         with np.errstate(invalid="ignore", divide="ignore"):

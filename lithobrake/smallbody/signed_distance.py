@@ -5,13 +5,12 @@ Aanaes (2005), Signed distance computation using the angle weighted pseudonormal
 243-253.
 """
 
-from typing import Any
-
 import numpy as np
 from numpy.typing import NDArray
 
 from lithobrake.compiled import compiled, kernel, large_kernel
-from lithobrake.smallbody.grid import place
+from lithobrake.smallbody.arrays import Floats, Integers
+from lithobrake.smallbody.grid import Grid, cell_of
 
 
 def pseudonormals(
@@ -41,7 +40,7 @@ def pseudonormals(
 
 
 @kernel
-def _feature(p: Any, a: Any, b: Any, c: Any) -> Any:
+def _closest_feature(p: Floats, a: Floats, b: Floats, c: Floats) -> tuple[float, float, int]:
     """Closest point of triangle a, b, c to p as weights of b and c, and its feature (as in pseudonormals)."""
     d1 = d2 = d3 = d4 = d5 = d6 = 0.0
     for i in range(3):
@@ -73,9 +72,9 @@ def _feature(p: Any, a: Any, b: Any, c: Any) -> Any:
 
 
 @kernel
-def _signed(corner: Any, outward: Any, f: int, p: Any) -> Any:
+def _facet_distance(corner: Floats, outward: Floats, f: int, p: Floats) -> tuple[float, float]:
     """Distance of p to facet f [m] and the same with the sign of the side of its nearest feature."""
-    v, w, feature = _feature(p, corner[f, 0], corner[f, 1], corner[f, 2])
+    v, w, feature = _closest_feature(p, corner[f, 0], corner[f, 1], corner[f, 2])
     square = side = 0.0
     for i in range(3):
         a = corner[f, 0, i]
@@ -87,38 +86,40 @@ def _signed(corner: Any, outward: Any, f: int, p: Any) -> Any:
 
 
 @large_kernel
-def height_near(grid: Any, corner: Any, outward: Any, p: Any) -> Any:
+def height_near(grid: Grid, corner: Floats, outward: Floats, p: Floats) -> tuple[float, int]:
     """Signed distance [m] and nearest facet, for a p whose distance is below a cell's edge; else inf and -1.
 
     outward: pseudonormals [facet_count, 7, 3].
     """
-    edge, size, start, facets = grid[1], grid[2], grid[3], grid[4]
-    i, j, k = place(grid, p[0], p[1], p[2])
-    best, height, nearest = edge, np.inf, -1
+    size, start, facets = grid.size, grid.start, grid.facets
+    i, j, k = cell_of(grid, p[0], p[1], p[2])
+    best, height, nearest = grid.edge, np.inf, -1
     for a in range(max(i - 1, 0), min(i + 2, size[0])):
         for b in range(max(j - 1, 0), min(j + 2, size[1])):
             for c in range(max(k - 1, 0), min(k + 2, size[2])):
                 cell = (a * size[1] + b) * size[2] + c
                 for entry in range(start[cell], start[cell + 1]):
-                    distance, signed = _signed(corner, outward, facets[entry], p)
+                    distance, signed = _facet_distance(corner, outward, facets[entry], p)
                     if distance < best:
                         best, height, nearest = distance, signed, facets[entry]
     return height, nearest
 
 
 @compiled
-def heights(corner: Any, outward: Any, points: Any, height: Any, nearest: Any) -> None:
+def heights(corner: Floats, outward: Floats, points: Floats, height: Floats, nearest: Integers) -> None:
     """Write signed distance [m] and nearest facet of points [count, 3], anywhere."""
     for r in range(len(points)):
         best = np.inf
         for f in range(len(corner)):
-            distance, signed = _signed(corner, outward, f, points[r])
+            distance, signed = _facet_distance(corner, outward, f, points[r])
             if distance < best:
                 best, height[r], nearest[r] = distance, signed, f
 
 
 @compiled
-def near_heights(grid: Any, corner: Any, outward: Any, points: Any, height: Any, nearest: Any) -> None:
+def near_heights(
+    grid: Grid, corner: Floats, outward: Floats, points: Floats, height: Floats, nearest: Integers
+) -> None:
     """Write height_near of points [count, 3]: inf and -1 where the surface is farther than a cell's edge."""
     for r in range(len(points)):
         height[r], nearest[r] = height_near(grid, corner, outward, points[r])

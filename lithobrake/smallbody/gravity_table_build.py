@@ -6,7 +6,6 @@ import logging
 import math
 import os
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import fields, replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -14,11 +13,13 @@ from numpy.typing import NDArray
 
 from lithobrake.compiled import compiled, disk_cache
 from lithobrake.smallbody import attraction
+from lithobrake.smallbody.arrays import Floats
+from lithobrake.smallbody.attraction import Gravity
+from lithobrake.smallbody.gravity_table import CORE, MARGIN, RIM, GravityTable, point_mass, spline_coefficients
 from lithobrake.smallbody.grid import Grid
 from lithobrake.smallbody.multipole import Multipole
-from lithobrake.smallbody.nearest import near_heights, pseudonormals
 from lithobrake.smallbody.polyhedron import Polyhedron
-from lithobrake.smallbody.table import CORE, MARGIN, RIM, GravityTable, point_mass, spline_coefficients
+from lithobrake.smallbody.signed_distance import near_heights, pseudonormals
 
 SKIN = 6  # cells below the surface over which the continued field goes over into the one inside
 PIECE = 8192  # points that a thread takes at a time
@@ -38,12 +39,12 @@ class TableError(NamedTuple):
 Levels = tuple[tuple[float, float], ...]
 
 
-def table_of(
+def gravity_table_of(
     polyhedron: Polyhedron, multipole: Multipole, volume: float, levels: Levels
 ) -> tuple[GravityTable, TableError]:
     """The table of a shape and its error, from disk where it was built before; the name there is a hash of the mesh.
 
-    levels: cells and reach of each grid (see table.LEVELS).
+    levels: cells and reach of each grid (see gravity_table.LEVELS).
     """
     mesh = polyhedron.vertices.tobytes() + polyhedron.facet_corners.tobytes()
     digest = hashlib.sha256(repr(levels).encode() + mesh).hexdigest()[:24]
@@ -51,7 +52,7 @@ def table_of(
     kept = disk.read(name)
     if kept is not None:
         with np.load(io.BytesIO(kept), allow_pickle=False) as stored:
-            table = GravityTable(*(_plain(stored[field.name]) for field in fields(GravityTable)))
+            table = GravityTable(*(_plain(stored[name]) for name in GravityTable._fields))
             median, p95, largest, count = stored["error"].tolist()
             return table, TableError(median, p95, largest, int(count))
     table = _build(polyhedron, multipole, volume, levels)
@@ -71,16 +72,15 @@ def _plain(array: NDArray[Any]) -> Any:
 def _file(table: GravityTable, error: TableError) -> bytes:
     """What is kept of a table."""
     file = io.BytesIO()
-    arrays = {field.name: getattr(table, field.name) for field in fields(GravityTable)}
-    np.savez(file, error=np.array(error, dtype=np.float64), **arrays)
+    np.savez(file, error=np.array(error, dtype=np.float64), **table._asdict())
     return file.getvalue()
 
 
 def _build(polyhedron: Polyhedron, multipole: Multipole, volume: float, levels: Levels) -> GravityTable:
     """Sample each grid with the facets' sums or the series, continue below the surface, turn into splines."""
     # From two radii on the series is off by 1e-7 or less, far below what the splines lose, and ten times faster.
-    closer = replace(multipole, nearest=min(multipole.nearest, 2.0 * multipole.radius))
-    gravity = (polyhedron.arrays, closer.arrays, GravityTable.empty().arrays)
+    closer = multipole._replace(nearest=min(multipole.nearest, 2.0 * multipole.radius))
+    gravity = Gravity(polyhedron, closer, GravityTable.empty())
     core = CORE * (3.0 * volume / (4.0 * math.pi)) ** (1.0 / 3.0)
     lower, upper = polyhedron.vertices.min(axis=0), polyhedron.vertices.max(axis=0)
     corners: list[NDArray[np.float64]] = []
@@ -111,13 +111,16 @@ def _build(polyhedron: Polyhedron, multipole: Multipole, volume: float, levels: 
         sizes.append(size)
         served = first + RIM * edge, first + (size - 1 - RIM) * edge
     starts = np.cumsum([0, *(len(level) for level in values[:-1])])
+    corner, cells, cell = np.array(corners), np.array(sizes), np.array(edges)
+    rim = RIM * cell[:, None]
     return GravityTable(
-        *(multipole.centre, volume, core, np.array(corners), np.array(edges), np.array(sizes)),
-        *(starts, np.concatenate(values)),
+        *(multipole.centre, volume, core, corner, cell, cells, starts, np.concatenate(values)),
+        first=corner + rim,
+        last=corner + (cells - 1) * cell[:, None] - rim,
     )
 
 
-def _sample(points: NDArray[np.float64], gravity: Any, centre: Any, volume: float, core: float) -> NDArray[np.float64]:
+def _sample(points: Floats, gravity: Gravity, centre: Floats, volume: float, core: float) -> Floats:
     """Field sums less the point mass at points [m], shape [count, 3], on all cores."""
     result = np.empty((len(points), 3))
 
@@ -132,7 +135,7 @@ def _sample(points: NDArray[np.float64], gravity: Any, centre: Any, volume: floa
 
 
 @compiled
-def _subtract(points: Any, sample: Any, centre: Any, volume: float, core: float) -> None:
+def _subtract(points: Floats, sample: Floats, centre: Floats, volume: float, core: float) -> None:
     """Take the point mass out of sample [count, 3]."""
     for i in range(len(points)):
         x, y, z = point_mass(points[i, 0], points[i, 1], points[i, 2], centre, volume, core)
@@ -155,7 +158,7 @@ def _continuation(nodes: NDArray[np.float64], polyhedron: Polyhedron, skin: floa
     height, facet = np.empty(len(nodes)), np.empty(len(nodes), dtype=np.int64)
     # Flights ask with points in rows, one after the other; other strides would be compiled for themselves.
     rows, outward = np.ascontiguousarray(nodes), pseudonormals(polyhedron.vertices, faces, normals)
-    near_heights(grid.arrays, corner, outward, rows, height, facet)
+    near_heights(grid, corner, outward, rows, height, facet)
     result = np.zeros_like(nodes)
     under = np.flatnonzero((height < 0.0) & (height > -skin))
     normal = normals[facet[under]]
@@ -168,7 +171,7 @@ def _continuation(nodes: NDArray[np.float64], polyhedron: Polyhedron, skin: floa
 
 def _measure(table: GravityTable, polyhedron: Polyhedron, multipole: Multipole) -> TableError:
     """Compare on points from the surface out to the last grid, most of them near the surface."""
-    exact = (polyhedron.arrays, multipole.arrays, GravityTable.empty().arrays)
+    exact = Gravity(polyhedron, multipole, GravityTable.empty())
     random = np.random.default_rng(0)
     area = polyhedron.facet_terms[:, 3]
     facet = random.choice(len(area), 6000, p=area / area.sum())
@@ -178,7 +181,7 @@ def _measure(table: GravityTable, polyhedron: Polyhedron, multipole: Multipole) 
     points = ground + rise[:, None] * polyhedron.facet_terms[facet, :3]
     outside = attraction.field(points, exact)
     free = outside[:, 4] < 1e-3
-    difference = attraction.field(points, (polyhedron.arrays, multipole.arrays, table.arrays))[:, :3] - outside[:, :3]
+    difference = attraction.field(points, Gravity(polyhedron, multipole, table))[:, :3] - outside[:, :3]
     scale = np.linalg.norm(attraction.field(ground, exact)[:, :3], axis=1).mean()
     error = np.linalg.norm(difference[free], axis=1) / scale
     return TableError(float(np.median(error)), float(np.quantile(error, 0.95)), float(error.max()), len(error))
