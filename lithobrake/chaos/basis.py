@@ -5,9 +5,9 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lithobrake.chaos.germ import Distribution
+from lithobrake.chaos.abstract_distribution import Distribution
+from lithobrake.chaos.multi_index import Indices, multi_index_set
 from lithobrake.chaos.polynomials import Array, Recurrence
-from lithobrake.chaos.terms import Indices, multi_index_set
 
 # Limits computed by a user in another order of operations may differ from ours in the last digits.
 ROUNDING = 1e-12

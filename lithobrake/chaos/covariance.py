@@ -10,10 +10,15 @@ from typing import ClassVar
 
 import numpy as np
 
-from lithobrake.chaos.covariance_parts import GaussianPart, Part, PolynomialPart, gaussian_means
-from lithobrake.chaos.germ import Distribution
+from lithobrake.chaos.abstract_distribution import Distribution
+from lithobrake.chaos.multi_index import Indices
 from lithobrake.chaos.polynomials import Array
-from lithobrake.chaos.terms import Indices
+from lithobrake.chaos.univariate_covariance import (
+    UnivariateCovariance,
+    UnivariateGaussian,
+    UnivariatePolynomial,
+    gaussian_means,
+)
 
 Gradient = Callable[[Array], Array]
 # The squared lengths of the Gaussians that make up a Matern covariance.
@@ -67,22 +72,22 @@ class ProductCovariance(Covariance):
     def __init__(self, entries: Sequence[Distribution], degrees: Sequence[int]) -> None:
         super().__init__(entries, degrees)
         pairs = zip(self.entries, self.degrees, strict=True)
-        self.parts: list[Part] = [self.part_of(entry, degree) for entry, degree in pairs]
+        self.parts: list[UnivariateCovariance] = [self.part_of(entry, degree) for entry, degree in pairs]
 
-    def part_of(self, entry: Distribution, degree: int) -> Part:
+    def part_of(self, entry: Distribution, degree: int) -> UnivariateCovariance:
         """The factor of one input."""
-        return GaussianPart(entry, degree)
+        return UnivariateGaussian(entry, degree)
 
     def start(self) -> tuple[Array, list[tuple[float, float]]]:
         start = [part.start[which] for which in (0, 1) for part in self.parts]
         bounds = [part.bounds[which] for which in (0, 1) for part in self.parts]
         return np.array([*start, 0.0]), [*bounds, (-8.0, 12.0)]
 
-    def _split(self, theta: Array) -> list[tuple[Part, Array]]:
+    def _split(self, theta: Array) -> list[tuple[UnivariateCovariance, Array]]:
         return list(zip(self.parts, theta[:-1].reshape(2, -1).T, strict=True))
 
     def with_gradient(self, theta: Array, germs: Array) -> tuple[Array, Gradient]:
-        rows = [part.with_slopes(one, germ) for (part, one), germ in zip(self._split(theta), germs, strict=True)]
+        rows = [part.with_derivatives(one, germ) for (part, one), germ in zip(self._split(theta), germs, strict=True)]
         factors = [1.0 + row[0] for row in rows]
         scale = float(np.exp(theta[-1]))
         total = scale * np.prod(factors, axis=0)
@@ -132,9 +137,9 @@ class PolynomialCovariance(ProductCovariance):
 
     name = "polynomial"
 
-    def part_of(self, entry: Distribution, degree: int) -> Part:
+    def part_of(self, entry: Distribution, degree: int) -> UnivariateCovariance:
         """The factor of one input."""
-        return PolynomialPart(entry, degree) if entry.bounded else GaussianPart(entry, degree)
+        return UnivariatePolynomial(entry, degree) if entry.bounded else UnivariateGaussian(entry, degree)
 
 
 class RadialMatern(Covariance):
@@ -155,10 +160,10 @@ class RadialMatern(Covariance):
         distance = np.sqrt(5.0 * np.sum(squares, axis=0))
         fade = np.exp(theta[-1] - distance)
         total = (1.0 + distance + distance**2 / 3.0) * fade
-        slope = (5.0 / 3.0) * (1.0 + distance) * fade
+        derivative = (5.0 / 3.0) * (1.0 + distance) * fade
 
         def gradient(weight: Array) -> Array:
-            inner = weight * slope
+            inner = weight * derivative
             return np.array([*(np.vdot(inner, one) for one in squares), np.vdot(weight, total)])
 
         return total, gradient

@@ -6,8 +6,8 @@ from itertools import product
 
 import numpy as np
 
+from lithobrake.chaos.abstract_distribution import Distribution, checked_inputs
 from lithobrake.chaos.counts import whole_number
-from lithobrake.chaos.germ import Distribution, checked_inputs
 from lithobrake.chaos.polynomials import Array
 
 

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from lithobrake.chaos.multi_index import Indices
 from lithobrake.chaos.polynomials import Array
-from lithobrake.chaos.terms import Indices
 
 # Singular values below this share of the largest are rank loss: far below any usable condition number,
 # far above the rounding of an exactly deficient system.
@@ -67,7 +67,7 @@ def _lost_terms(triangle: Array, values: Array, indices: Indices, names: Sequenc
     )
 
 
-def least_squares(
+def solve_least_squares(
     matrix: Array, y: Array, *, indices: Indices, names: Sequence[str], weights: Array | None = None
 ) -> LeastSquares:
     """Solve min sum w_k (y_k - H_k c)**2 by QR; matrix H [count, term_count], y [count, output_count].

@@ -5,8 +5,8 @@ from typing import Any
 import numpy as np
 
 from lithobrake.chaos.design import sobol_sequence
+from lithobrake.chaos.polynomial_products import central_moments, product_count
 from lithobrake.chaos.polynomials import Array
-from lithobrake.chaos.products import central_moments, product_count
 from lithobrake.chaos.surrogate import Surrogate
 from lithobrake.chaos.threads import one_thread
 

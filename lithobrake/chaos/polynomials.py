@@ -37,15 +37,15 @@ class Recurrence:
             table[k + 1] /= self.spread[k]
         return table
 
-    def slopes(self, germ: Array) -> Array:
+    def derivatives(self, germ: Array) -> Array:
         """Evaluate the first derivatives of all degrees at germ values [count]; result [degree + 1, count]."""
-        table, slope = self.values(germ), np.zeros((self.degree + 1, germ.size))
+        table, derivatives = self.values(germ), np.zeros((self.degree + 1, germ.size))
         for k in range(self.degree):
-            slope[k + 1] = table[k] + (germ - self.center[k]) * slope[k]
+            derivatives[k + 1] = table[k] + (germ - self.center[k]) * derivatives[k]
             if k > 0:
-                slope[k + 1] -= self.spread[k - 1] * slope[k - 1]
-            slope[k + 1] /= self.spread[k]
-        return slope
+                derivatives[k + 1] -= self.spread[k - 1] * derivatives[k - 1]
+            derivatives[k + 1] /= self.spread[k]
+        return derivatives
 
     def gauss_rule(self) -> tuple[Array, Array]:
         """Nodes [degree] and weights [degree] (summing to 1) of the Gauss rule, exact up to degree 2 degree - 1.

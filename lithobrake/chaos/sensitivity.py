@@ -5,8 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from lithobrake.chaos.multi_index import Indices
 from lithobrake.chaos.polynomials import Array
-from lithobrake.chaos.terms import Indices
 
 
 def _shares(indices: Indices, coefficients: Array, chosen: NDArray[np.bool_]) -> Array:

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from lithobrake.chaos.multi_index import Indices
 from lithobrake.chaos.polynomials import Array
-from lithobrake.chaos.terms import Indices
 
 
 @dataclass(frozen=True)
@@ -27,7 +27,7 @@ class Solution:
     residuals: Array | None = None
 
 
-def told(outputs: range, progress: Callable[[int, int], None]) -> Iterator[int]:
+def with_progress(outputs: range, progress: Callable[[int, int], None]) -> Iterator[int]:
     """The outputs one by one, with how many are done told before each and at the end."""
     for output in outputs:
         progress(output, len(outputs))

@@ -5,8 +5,8 @@ from itertools import product
 
 import numpy as np
 
+from lithobrake.chaos.abstract_distribution import Distribution, checked_inputs
 from lithobrake.chaos.counts import check_level
-from lithobrake.chaos.germ import Distribution, checked_inputs
 from lithobrake.chaos.polynomials import Array
 
 

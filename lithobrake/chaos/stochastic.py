@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy import special
 
-from lithobrake.chaos.automatic import PROCESS_FROM, PROCESS_LIMIT
+from lithobrake.chaos.abstract_distribution import Distribution
 from lithobrake.chaos.fitting import fit
-from lithobrake.chaos.germ import Distribution
+from lithobrake.chaos.model_selection import PROCESS_FROM, PROCESS_LIMIT
 from lithobrake.chaos.noise import equal_rows, replicates
 from lithobrake.chaos.polynomials import Array
 from lithobrake.chaos.storage import content_of, numbers, read, surrogate_of, write

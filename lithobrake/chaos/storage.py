@@ -10,11 +10,11 @@ from typing import Any, TypeVar
 import numpy as np
 
 from lithobrake.atomic import atomic_path
-from lithobrake.chaos.germ import Distribution
-from lithobrake.chaos.kinds import distribution
+from lithobrake.chaos.abstract_distribution import Distribution
+from lithobrake.chaos.distribution_registry import distribution
+from lithobrake.chaos.multi_index import LOOKED_AT, Indices
 from lithobrake.chaos.polynomials import Array
 from lithobrake.chaos.surrogate import Surrogate
-from lithobrake.chaos.terms import LOOKED_AT, Indices
 from lithobrake.reading import UNREADABLE
 
 Kept = TypeVar("Kept")

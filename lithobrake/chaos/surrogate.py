@@ -10,11 +10,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from lithobrake.chaos import noise, scores, sensitivity
+from lithobrake.chaos.abstract_distribution import Distribution, checked_inputs
 from lithobrake.chaos.basis import outside_count, points_of
 from lithobrake.chaos.evaluation import Plan, evaluate, make_plan
-from lithobrake.chaos.germ import Distribution, checked_inputs
+from lithobrake.chaos.multi_index import Indices
 from lithobrake.chaos.polynomials import Array
-from lithobrake.chaos.terms import Indices
 from lithobrake.chaos.threads import one_thread
 
 

@@ -5,10 +5,10 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from lithobrake.chaos.germ import Distribution
+from lithobrake.chaos.abstract_distribution import Distribution
+from lithobrake.chaos.multi_index import Indices
 from lithobrake.chaos.polynomials import Array
 from lithobrake.chaos.surrogate import Surrogate
-from lithobrake.chaos.terms import Indices
 
 Whole = NDArray[np.int64]
 

@@ -5,12 +5,12 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import ArrayLike
 
+from lithobrake.chaos.abstract_distribution import Distribution, checked_inputs
 from lithobrake.chaos.basis import basis_matrix, points_of
 from lithobrake.chaos.counts import term_count
 from lithobrake.chaos.design import checked_count
-from lithobrake.chaos.germ import Distribution, checked_inputs
+from lithobrake.chaos.multi_index import Indices, multi_index_set
 from lithobrake.chaos.polynomials import Array
-from lithobrake.chaos.terms import Indices, multi_index_set
 from lithobrake.chaos.threads import one_thread
 
 # Gauss nodes that stand for the density of one input when points are drawn from it times a squared polynomial.

@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lithobrake.chaos.basis import basis_matrix
+from lithobrake.chaos.degree_selection import solve_ols, terms_to_try
+from lithobrake.chaos.multi_index import Indices, multi_index_set
 from lithobrake.chaos.polynomials import Array
-from lithobrake.chaos.regression import solve_ols, terms_to_try
 from lithobrake.chaos.solution import Solution
-from lithobrake.chaos.terms import Indices, multi_index_set
 from lithobrake.chaos.training import Training
 
 Rows = NDArray[np.int64]

@@ -9,13 +9,13 @@ from numpy.typing import ArrayLike, NDArray
 
 from lithobrake.chaos import sensitivity
 from lithobrake.chaos.basis import basis_matrix, condition_number
-from lithobrake.chaos.gaussian_process import FAMILIES, learn
+from lithobrake.chaos.degree_selection import best_terms, terms_to_try
+from lithobrake.chaos.gaussian_process import FAMILIES, fit_process
 from lithobrake.chaos.least_squares import RANK_TOLERANCE
+from lithobrake.chaos.multi_index import Indices
 from lithobrake.chaos.polynomials import Array
-from lithobrake.chaos.regression import best_terms, terms_to_try
 from lithobrake.chaos.scores import absolute_percentage_error
 from lithobrake.chaos.surrogate import Surrogate
-from lithobrake.chaos.terms import Indices
 from lithobrake.chaos.threads import one_thread
 from lithobrake.chaos.training import Training, checked_training
 
@@ -218,7 +218,7 @@ def _with_low_degrees(kept: Indices, training: Training) -> Indices:
 
 def _process_refit(training: Training, output: int, entry: dict[str, Any], indices: Indices) -> Refit:
     """The process with its parameters kept, which is linear in the outputs."""
-    process = learn(training, output, next(one for one in FAMILIES if one.name == entry["covariance"]))
+    process = fit_process(training, output, next(one for one in FAMILIES if one.name == entry["covariance"]))
     errors = process.leave_one_out
 
     def coefficients(values: Array) -> Array:
@@ -276,5 +276,5 @@ def _log_scores(predicted: Array, y: Array) -> Array:
     with np.errstate(divide="ignore", invalid="ignore"):
         sizes = np.array([percentage.mean(), np.sqrt(mean_square), np.sqrt(mean_square / deviation.mean())])
         share, spread = square / mean_square, deviation / deviation.mean()
-        slopes = np.stack([percentage / sizes[0], 0.5 * share, 0.5 * (share - spread)])
-        return np.stack([np.log(sizes), slopes.std(axis=1) / np.sqrt(max(len(y) - 1, 1))])
+        derivatives = np.stack([percentage / sizes[0], 0.5 * share, 0.5 * (share - spread)])
+        return np.stack([np.log(sizes), derivatives.std(axis=1) / np.sqrt(max(len(y) - 1, 1))])

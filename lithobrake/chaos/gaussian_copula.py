@@ -8,15 +8,15 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy import special
 
+from lithobrake.chaos.abstract_distribution import Distribution, checked_inputs
 from lithobrake.chaos.basis import outside_count, points_of
 from lithobrake.chaos.design import sobol_sequence
 from lithobrake.chaos.fitting import fit
-from lithobrake.chaos.germ import Distribution, checked_inputs
 from lithobrake.chaos.polynomials import Array
 from lithobrake.chaos.storage import content_of, inputs_from_json, inputs_to_json, read, surrogate_of, write
 from lithobrake.chaos.surrogate import Surrogate
 from lithobrake.chaos.threads import one_thread
-from lithobrake.chaos.unbounded import Normal
+from lithobrake.chaos.unbounded_distributions import Normal
 
 FORMAT = "lithobrake expansion of dependent inputs"
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy import special
 
-from lithobrake.chaos.germ import NO_CHOICES, Distribution, Support
+from lithobrake.chaos.abstract_distribution import NO_CHOICES, Distribution, Support
 from lithobrake.chaos.polynomials import Array, Recurrence, discretised
 
 # Densities below exp(-350) of the largest cannot be felt by polynomials of the degrees in use.
@@ -93,7 +93,7 @@ class TruncatedNormal(Distribution):
         share = np.exp(special.log_ndtr(z) - end) if share is None else share
         return share if sign > 0.0 else 1.0 - share
 
-    def slope(self, x: Array) -> Array:
+    def germ_derivative(self, x: Array) -> Array:
         return np.full_like(x, 1.0 / self._frame[1])
 
     def recurrence(self, degree: int) -> Recurrence:
@@ -155,7 +155,7 @@ class Empirical(Distribution):
         count = len(self.samples)
         return np.clip(0.5 * (below + upto) / count, 0.5 / count, 1.0 - 0.5 / count)
 
-    def slope(self, x: Array) -> Array:
+    def germ_derivative(self, x: Array) -> Array:
         return np.full_like(x, 2.0 / (self.samples[-1] - self.samples[0]))
 
     def _measure(self) -> tuple[Array, Array]:

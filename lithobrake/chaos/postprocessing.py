@@ -1,4 +1,4 @@
-"""What an expansion tells beyond its moments: effects, slopes, expansions in fewer inputs, distributions."""
+"""What an expansion tells beyond its moments: effects, gradients, expansions in fewer inputs, distributions."""
 
 from collections.abc import Sequence
 
@@ -48,7 +48,7 @@ def main_effect(surrogate: Surrogate, name: str, points: ArrayLike | int = 50) -
 
 @one_thread()
 def gradient(surrogate: Surrogate, x: ArrayLike) -> Array:
-    """Slopes at points x [count, input_count]; result [count, output_count, input_count] or [count, input_count].
+    """Gradient at points x [count, input_count]; result [count, output_count, input_count] or [count, input_count].
 
     In units of the output over those of the input.
     """
@@ -60,7 +60,7 @@ def gradient(surrogate: Surrogate, x: ArrayLike) -> Array:
     values = [one.values(germ)[indices[:, k]] for k, (one, germ) in enumerate(zip(recurrences, germs, strict=True))]
     result = np.empty((len(points), coefficients.shape[1], len(values)))
     for k, entry in enumerate(surrogate.inputs.values()):
-        product = recurrences[k].slopes(germs[k])[indices[:, k]] * entry.slope(points[:, k])
+        product = recurrences[k].derivatives(germs[k])[indices[:, k]] * entry.germ_derivative(points[:, k])
         for other in range(len(values)):
             if other != k:
                 product *= values[other]
