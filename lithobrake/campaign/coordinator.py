@@ -9,15 +9,15 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from lithobrake.campaign.beside import submit_limited
 from lithobrake.campaign.ledger import Ledger
+from lithobrake.campaign.limited_calls import submit_limited
 from lithobrake.campaign.limits import Limits
-from lithobrake.campaign.local import WorkerDiedError
-from lithobrake.campaign.one_run import Model, perform
-from lithobrake.campaign.tally import Tally, common_reasons
+from lithobrake.campaign.local_executor import WorkerDiedError
+from lithobrake.campaign.run_counts import Tally, common_reasons
+from lithobrake.campaign.single_run import Model, run_model
 
 # Runs handed out for each worker: enough that none waits for the coordinator.
-_AHEAD = 2
+_SUBMITTED_PER_WORKER = 2
 # Workers to expect of an executor that does not say how many it has.
 _UNKNOWN_COUNT = 32
 # When so many runs, drawn by chance from all new ones, fail and none succeeds, the model does not work. Were half of
@@ -25,7 +25,7 @@ _UNKNOWN_COUNT = 32
 # study allows fewer, in one of 1e13. A smaller number would save little: what fails at once is cheap.
 _TRIAL_RUNS = 10
 # Progress is shown at least this often, and which runs are under way is looked at [s].
-_LOOK = 0.5
+_POLL_INTERVAL = 0.5
 
 
 @dataclass(frozen=True)
@@ -40,7 +40,7 @@ class Job:
 
 @dataclass
 class Coordinator:
-    """A campaign under way; jobs, and how often each was tried in this campaign and before, by the key of the run."""
+    """A campaign under way; jobs, and attempts at each so far, by the key of the run."""
 
     ledger: Ledger
     executor: Executor
@@ -48,17 +48,17 @@ class Coordinator:
     state: Tally
     limits: Limits
     retry_count: int
-    tried: dict[str, int]
+    attempts: dict[str, int]
     progress: Callable[[Tally], None]
 
     def __post_init__(self) -> None:
         # Keys are hashes: in their order the first runs are a random part of all, wherever in the design each stands.
         self.waiting = deque(sorted(self.jobs))
-        fresh = [key for key in self.waiting if not self.tried.get(key)]
+        fresh = [key for key in self.waiting if not self.attempts.get(key)]
         self._trial = set(fresh[:_TRIAL_RUNS]) if len(fresh) > _TRIAL_RUNS else set()
         self._failed: set[str] = set()
-        self.flying: dict[Future[Any], str] = {}
-        self._unmarked: list[Future[Any]] = []
+        self.submitted: dict[Future[Any], str] = {}
+        self._not_begun: list[Future[Any]] = []
         self._ended: queue.SimpleQueue[Future[Any]] = queue.SimpleQueue()
 
     def compute(self) -> None:
@@ -69,54 +69,54 @@ class Coordinator:
         began = time.monotonic()
         self.progress(self.state)
         try:
-            while self.waiting or self.flying:
-                self._hand_out()
+            while self.waiting or self.submitted:
+                self._submit()
                 self._collect()
                 self._end_what_never_works()
                 self.state.seconds = time.monotonic() - began
                 self.progress(self.state)
         except KeyboardInterrupt:
             # A run may have ended between two looks; it is kept too.
-            for future, key in self.flying.items():
+            for future, key in self.submitted.items():
                 if future.done() and not future.cancelled() and future.exception() is None:
                     self.ledger.finish(key, future.result())
             raise
 
-    def _hand_out(self) -> None:
-        window = _AHEAD * getattr(self.executor, "capacity", _UNKNOWN_COUNT)
-        while self.waiting and len(self.flying) < window:
+    def _submit(self) -> None:
+        window = _SUBMITTED_PER_WORKER * getattr(self.executor, "capacity", _UNKNOWN_COUNT)
+        while self.waiting and len(self.submitted) < window:
             key = self.waiting.popleft()
             job = self.jobs[key]
-            future = submit_limited(self.executor, self.limits, perform, job.model, job.inputs, job.seed, job.log)
-            self.flying[future] = key
-            self._unmarked.append(future)
+            future = submit_limited(self.executor, self.limits, run_model, job.model, job.inputs, job.seed, job.log)
+            self.submitted[future] = key
+            self._not_begun.append(future)
             future.add_done_callback(self._ended.put)
 
     def _collect(self) -> None:
         """Wait for a run to end, or for a moment, and take in all that have ended."""
         try:
-            ended = [self._ended.get(timeout=_LOOK)]
+            ended = [self._ended.get(timeout=_POLL_INTERVAL)]
         except queue.Empty:
             ended = []
         while not self._ended.empty():
             ended.append(self._ended.get())
         for future in ended:
-            self._take(self.flying[future], _result(future))
-            del self.flying[future]
-        flying = [future for future in self._unmarked if future in self.flying]
-        running = [future for future in flying if future.running()]
+            self._finish(self.submitted[future], _result(future))
+            del self.submitted[future]
+        pending = [future for future in self._not_begun if future in self.submitted]
+        running = [future for future in pending if future.running()]
         if running:
-            self.ledger.start(self.flying[future] for future in running)
-        self._unmarked = [future for future in flying if not future.running()]
-        self.state.running = len(self.flying) - len(self._unmarked)
+            self.ledger.start(self.submitted[future] for future in running)
+        self._not_begun = [future for future in pending if not future.running()]
+        self.state.running = len(self.submitted) - len(self._not_begun)
 
-    def _take(self, key: str, result: Mapping[str, Any]) -> None:
-        self.tried[key] = self.tried.get(key, 0) + 1
-        if result["status"] == "failed" and self.tried[key] <= self.retry_count:
+    def _finish(self, key: str, result: Mapping[str, Any]) -> None:
+        self.attempts[key] = self.attempts.get(key, 0) + 1
+        if result["status"] == "failed" and self.attempts[key] <= self.retry_count:
             # Until something succeeds, its next try shows whether anything does.
             (self.waiting.appendleft if self._trial else self.waiting.append)(key)
             return
-        self.ledger.finish(key, {**result, "attempts": self.tried[key]})
+        self.ledger.finish(key, {**result, "attempts": self.attempts[key]})
         self.state.add(result["status"], result.get("outputs", {}))
         if result["status"] == "failed":
             self._failed.add(key)
@@ -128,7 +128,7 @@ class Coordinator:
 
         Not their number but which ones counts: runs that fail may end long before those that do not.
         """
-        left = len(self.waiting) + len(self.flying)
+        left = len(self.waiting) + len(self.submitted)
         if not self._trial or not self._trial <= self._failed or not left:
             return
         self.ledger.forget_tries(self._failed)

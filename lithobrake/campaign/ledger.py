@@ -14,7 +14,16 @@ from types import TracebackType
 from typing import Any, Self
 
 from lithobrake.atomic import locked
-from lithobrake.campaign.record import COLUMNS, LEFT, OF_FIRST, Record, lock_path, reading_ledger, record, utc_now
+from lithobrake.campaign.record import (
+    COLUMNS,
+    LEFT,
+    OF_FIRST,
+    Record,
+    lock_path,
+    reading_ledger,
+    record_from_row,
+    utc_now,
+)
 from lithobrake.plain import one_line
 
 FORMAT_VERSION = 2
@@ -121,7 +130,7 @@ class Ledger:
             self._database.execute("PRAGMA synchronous = FULL")
 
     def finish(self, key: str, result: Mapping[str, Any]) -> None:
-        """Enter the result of a queued run: what `perform` gives, and attempts."""
+        """Enter the result of a queued run: what `run_model` gives, and attempts."""
         texts = {name: json.dumps(result.get(name, {}), allow_nan=False) for name in ("outputs", "draws")}
         # Both are in the words of a model, or of a program that it started.
         lengths = {"outcome": _OUTCOME_LENGTH, "reason": _REASON_LENGTH}
@@ -144,7 +153,7 @@ class Ledger:
         wanted = set(keys)
         with reading_ledger(self.path):
             rows = self._database.execute(f"SELECT {', '.join(COLUMNS)} FROM runs WHERE status IN ('done', 'failed')")
-            return {row[0]: record(row) for row in rows if row[0] in wanted}
+            return {row[0]: record_from_row(row) for row in rows if row[0] in wanted}
 
     @contextmanager
     def _transaction(self) -> Iterator[None]:

@@ -52,7 +52,7 @@ def reading_ledger(path: Path) -> AbstractContextManager[None]:
     return reading(path, LEFT, sqlite3.Error)
 
 
-def record(row: tuple[Any, ...]) -> Record:
+def record_from_row(row: tuple[Any, ...]) -> Record:
     """A row of the ledger, its columns in the order of COLUMNS. Raises ValueError for one that no campaign wrote."""
     values = dict(zip(COLUMNS, row, strict=True))
     values |= {name: parsed(values[name] or "{}", dict) for name in OBJECTS}
@@ -82,7 +82,7 @@ def read_records(path: str | PathLike[str]) -> list[Record]:
     ):
         first = database.execute("PRAGMA user_version").fetchone()[0] == 1
         columns = ", ".join(OF_FIRST.get(name, name) if first else name for name in COLUMNS)
-        return [record(row) for row in database.execute(f"SELECT {columns} FROM runs ORDER BY {order}")]
+        return [record_from_row(row) for row in database.execute(f"SELECT {columns} FROM runs ORDER BY {order}")]
 
 
 def lock_path(path: Path) -> Path:

@@ -12,10 +12,10 @@ from lithobrake.campaign.coordinator import Coordinator, Job
 from lithobrake.campaign.identity import run_key, run_seed
 from lithobrake.campaign.ledger import Ledger
 from lithobrake.campaign.limits import Limits
-from lithobrake.campaign.local import LocalExecutor
-from lithobrake.campaign.one_run import Model
+from lithobrake.campaign.local_executor import LocalExecutor
 from lithobrake.campaign.record import Record
-from lithobrake.campaign.tally import Tally
+from lithobrake.campaign.run_counts import Tally
+from lithobrake.campaign.single_run import Model
 
 if TYPE_CHECKING:
     import numpy as np

@@ -20,7 +20,7 @@ from lithobrake.campaign.record import utc_now
 Model = Callable[[dict[str, float], int], Mapping[str, Any]]
 
 
-def perform(model: Model, inputs: dict[str, float], seed: int, log: Path | None = None) -> dict[str, Any]:
+def run_model(model: Model, inputs: dict[str, float], seed: int, log: Path | None = None) -> dict[str, Any]:
     """Make one run; what it raises becomes the reason of a failed run.
 
     log: file that takes what the model prints, and where in it an error arose.
