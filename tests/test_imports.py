@@ -78,3 +78,36 @@ def test_a_file_imports_only_what_its_part_may(path: Path) -> None:
 
 def test_every_part_has_its_rule() -> None:
     assert {part_of(path) for path in SOURCES} - LEAVES == set(ALLOWED)
+
+
+# Parts in which no file reaches itself by its imports.
+WITHOUT_CIRCLES = (
+    "campaign",
+    "chaos",
+)
+
+
+def imported_files(path: Path) -> set[Path]:
+    """The files of the package that a file imports, inside functions and for type checkers too."""
+    found = set()
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            found |= {file_of(alias.name) for alias in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            found |= {file_of(f"{node.module}.{alias.name}") or file_of(str(node.module)) for alias in node.names}
+    return {file for file in found if file}
+
+
+def file_of(module: str) -> Path | None:
+    """The file of a module of the package; None for what is no module, or another package's."""
+    place = PACKAGE.parent.joinpath(*module.split("."))
+    return next((file for file in (place.with_suffix(".py"), place / "__init__.py") if file in SOURCES), None)
+
+
+@pytest.mark.parametrize("part", WITHOUT_CIRCLES)
+def test_no_two_files_import_each_other(part: str) -> None:
+    left = {path: imported_files(path) - {path} for path in SOURCES if part_of(path) == part}
+    # A file without imports among those that are left is in no circle; what never gets there is in one, or behind it.
+    while free := {path for path, imported in left.items() if not imported & left.keys()}:
+        left = {path: imported for path, imported in left.items() if path not in free}
+    assert not left, f"these import each other: {', '.join(sorted(path.name for path in left))}"

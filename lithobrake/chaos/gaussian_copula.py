@@ -13,7 +13,7 @@ from lithobrake.chaos.basis import outside_count, points_of
 from lithobrake.chaos.design import sobol_sequence
 from lithobrake.chaos.fitting import fit
 from lithobrake.chaos.polynomials import Array
-from lithobrake.chaos.storage import content_of, inputs_from_json, inputs_to_json, read, surrogate_of, write
+from lithobrake.chaos.storage import inputs_from_json, inputs_to_json, read, write
 from lithobrake.chaos.surrogate import Surrogate
 from lithobrake.chaos.threads import one_thread
 from lithobrake.chaos.unbounded_distributions import Normal
@@ -101,7 +101,7 @@ class DependentSurrogate:
             "dependent_inputs": inputs_to_json(self.copula.inputs),
             "rank_correlation": self.copula.rank_correlation.tolist(),
         }
-        write(FORMAT, {**copula, "independent": content_of(self.independent)}, path)
+        write(FORMAT, {**copula, "independent": self.independent.content()}, path)
 
     def _refuse(self) -> NoReturn:
         raise ValueError(
@@ -125,7 +125,7 @@ def load_dependent(path: str | os.PathLike[str]) -> DependentSurrogate:
 
     def build(content: dict[str, Any]) -> DependentSurrogate:
         copula = GaussianCopula(inputs_from_json(content["dependent_inputs"]), content["rank_correlation"])
-        independent = surrogate_of(content["independent"])
+        independent = Surrogate.from_content(content["independent"])
         if independent.inputs != copula.germ_inputs:
             raise ValueError("the inputs of independent are not the germs of dependent_inputs")
         return DependentSurrogate(copula, independent)

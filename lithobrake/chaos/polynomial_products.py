@@ -1,6 +1,6 @@
 """Third and fourth moments of an expansion from the products of its terms, exact for any number of inputs."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 from numpy.typing import NDArray
@@ -8,7 +8,6 @@ from numpy.typing import NDArray
 from lithobrake.chaos.abstract_distribution import Distribution
 from lithobrake.chaos.multi_index import Indices
 from lithobrake.chaos.polynomials import Array
-from lithobrake.chaos.surrogate import Surrogate
 
 Whole = NDArray[np.int64]
 
@@ -42,21 +41,22 @@ class Linearisation:
         self.count = self.count.reshape(degree + 1, degree + 1)
 
 
-def _varying(surrogate: Surrogate) -> tuple[Indices, Array, list[Distribution]]:
+def _varying(
+    inputs: Mapping[str, Distribution], indices: Indices, coefficients: Array
+) -> tuple[Indices, Array, list[Distribution]]:
     """Terms other than the constant, their coefficients, and inputs that occur: what the moments are made of."""
-    entries = list(surrogate.inputs.values())
-    active = np.nonzero(surrogate.multi_indices.max(axis=0) > 0)[0]
-    kept = surrogate.multi_indices.sum(axis=1) > 0
-    coefficients = surrogate.coefficients.reshape(surrogate.term_count, -1)[kept]
-    return surrogate.multi_indices[kept][:, active], coefficients, [entries[k] for k in active]
+    entries = list(inputs.values())
+    active = np.nonzero(indices.max(axis=0) > 0)[0]
+    kept = indices.sum(axis=1) > 0
+    return indices[kept][:, active], coefficients[kept], [entries[k] for k in active]
 
 
-def product_count(surrogate: Surrogate) -> float:
-    """Shares of products that `central_moments` adds up; infinite where it cannot be used.
+def product_count(inputs: Mapping[str, Distribution], indices: Indices, coefficients: Array) -> float:
+    """Entries of products that `central_moments` adds up; infinite where it cannot be used.
 
     Samples may not determine polynomials of twice the degree, in which products are written.
     """
-    indices, _, entries = _varying(surrogate)
+    indices, _, entries = _varying(inputs, indices, coefficients)
     degrees = indices.max(axis=0, initial=0)
     known = all(2 * int(degree) <= entry.highest_degree for entry, degree in zip(entries, degrees, strict=True))
     # A multi-index of the square is kept as one whole number.
@@ -77,13 +77,15 @@ def _pair_counts(indices: Indices, tables: list[Linearisation]) -> Whole:
     return counts
 
 
-def central_moments(surrogate: Surrogate) -> tuple[Array, Array]:
+def central_moments(inputs: Mapping[str, Distribution], indices: Indices, coefficients: Array) -> tuple[Array, Array]:
     """Third and fourth central moments of each output, [output_count] each.
+
+    indices [term_count, input_count]; coefficients [term_count, output_count] of the orthonormal terms.
 
     The square of the expansion without its mean is expanded itself; its product with the expansion and its own square
     have the means that are wanted, since the polynomials are orthonormal.
     """
-    indices, coefficients, entries = _varying(surrogate)
+    indices, coefficients, entries = _varying(inputs, indices, coefficients)
     if not len(indices):
         return np.zeros(coefficients.shape[1]), np.zeros(coefficients.shape[1])
     tables = [Linearisation(entry, int(degree)) for entry, degree in zip(entries, indices.max(axis=0), strict=True)]

@@ -1,15 +1,36 @@
-"""What an expansion tells beyond its moments: effects, gradients, expansions in fewer inputs, distributions."""
+"""What an expansion tells beyond mean and variance: effects, gradients, expansions in fewer inputs, distributions."""
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from lithobrake.chaos.basis import germs_of, recurrences_of
 from lithobrake.chaos.design import checked_count
+from lithobrake.chaos.moments import SAMPLE_COUNT, skewness_and_kurtosis
 from lithobrake.chaos.polynomials import Array
 from lithobrake.chaos.surrogate import Surrogate
 from lithobrake.chaos.threads import one_thread
+
+
+def shape_moments(surrogate: Surrogate, *, count: int = SAMPLE_COUNT, seed: int = 0) -> dict[str, Any]:
+    """Skewness and kurtosis (3 for a normal) of each output, [output_count] or numbers; 0 where nothing varies.
+
+    "exact" says whether they are; where not, they come from `count` points, and `skewness_and_kurtosis` says when.
+    """
+    found = skewness_and_kurtosis(
+        surrogate.inputs,
+        surrogate.multi_indices,
+        surrogate.coefficients.reshape(surrogate.term_count, -1),
+        count=count,
+        seed=seed,
+    )
+    return {
+        "skewness": surrogate.shaped(found.skewness),
+        "kurtosis": surrogate.shaped(found.kurtosis),
+        "exact": found.exact,
+    }
 
 
 def marginal(surrogate: Surrogate, names: Sequence[str]) -> Surrogate:

@@ -9,7 +9,6 @@ from lithobrake.chaos.design import latin_hypercube, sobol_sequence, tensor_coun
 from lithobrake.chaos.distribution_registry import distribution
 from lithobrake.chaos.fitting import fit
 from lithobrake.chaos.gaussian_copula import DependentSurrogate, GaussianCopula, fit_dependent, load_dependent
-from lithobrake.chaos.moments import shape_moments
 from lithobrake.chaos.multi_index import multi_index_set
 from lithobrake.chaos.noise import replicates
 from lithobrake.chaos.numerical_distributions import Empirical, TruncatedNormal
@@ -22,12 +21,12 @@ from lithobrake.chaos.postprocessing import (
     output_correlation,
     quantiles,
     sampled_outputs,
+    shape_moments,
 )
 from lithobrake.chaos.scores import absolute_percentage_error
 from lithobrake.chaos.sparse_grid import smolyak
 from lithobrake.chaos.stochastic import StochasticSurrogate, fit_stochastic, joint_scatter, load_stochastic
-from lithobrake.chaos.storage import load
-from lithobrake.chaos.surrogate import Surrogate
+from lithobrake.chaos.surrogate import Surrogate, load
 from lithobrake.chaos.unbounded_distributions import Exponential, Gamma, LogNormal, Normal
 
 __all__ = [

@@ -4,7 +4,7 @@ import os
 import warnings
 from collections.abc import Mapping, Sequence
 from functools import cached_property
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,9 +13,21 @@ from lithobrake.chaos import noise, scores, sensitivity
 from lithobrake.chaos.abstract_distribution import Distribution, checked_inputs
 from lithobrake.chaos.basis import outside_count, points_of
 from lithobrake.chaos.evaluation import Plan, evaluate, make_plan
+from lithobrake.chaos.moments import ShapeMoments, skewness_and_kurtosis
 from lithobrake.chaos.multi_index import Indices
 from lithobrake.chaos.polynomials import Array
+from lithobrake.chaos.storage import (
+    indices_from_json,
+    inputs_from_json,
+    inputs_to_json,
+    names_from_json,
+    numbers_from_json,
+    read,
+    write,
+)
 from lithobrake.chaos.threads import one_thread
+
+FORMAT = "lithobrake expansion"
 
 
 class Surrogate:
@@ -125,20 +137,18 @@ class Surrogate:
         return self.shaped(sensitivity.variance_of(self.multi_indices, self._coefficients))
 
     @cached_property
-    def _shape(self) -> dict[str, Any]:
-        from lithobrake.chaos.moments import shape_moments
-
-        return shape_moments(self)
+    def _shape_moments(self) -> ShapeMoments:
+        return skewness_and_kurtosis(self.inputs, self.multi_indices, self._coefficients)
 
     @property
     def skewness(self) -> Any:
         """Skewness of each output [output_count], or a number; `shape_moments` says how, and whether exactly."""
-        return self._shape["skewness"]
+        return self.shaped(self._shape_moments.skewness)
 
     @property
     def kurtosis(self) -> Any:
         """Kurtosis of each output (3 for a normal) [output_count], or a number; as for the skewness."""
-        return self._shape["kurtosis"]
+        return self.shaped(self._shape_moments.kurtosis)
 
     @property
     def sobol_first(self) -> Array:
@@ -191,6 +201,43 @@ class Surrogate:
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write everything into one readable JSON file."""
-        from lithobrake.chaos.storage import save
+        write(FORMAT, self.content(), path)
 
-        save(self, path)
+    def content(self) -> dict[str, Any]:
+        """Everything that makes the expansion, as plain JSON values."""
+        return {
+            "inputs": inputs_to_json(self.inputs),
+            "output_names": self.output_names,
+            "one_dimensional": self.one_dimensional,
+            "multi_indices": self.multi_indices.tolist(),
+            "coefficients": self._coefficients.tolist(),
+            "report": self.report,
+            "residuals": self.residuals.tolist(),
+        }
+
+    @classmethod
+    def from_content(cls, content: Mapping[str, Any]) -> Self:
+        """Make the expansion that `content` gave. Raises ValueError for content that is none."""
+        inputs, names = inputs_from_json(content["inputs"]), names_from_json(content["output_names"])
+        indices = indices_from_json(content["multi_indices"], len(inputs))
+        coefficients = numbers_from_json("coefficients", content["coefficients"], len(names))
+        if len(coefficients) != len(indices):
+            raise ValueError(f"there are {len(coefficients)} coefficients for {len(indices)} multi_indices")
+        one_dimensional, report = content["one_dimensional"], content["report"]
+        if type(one_dimensional) is not bool or (one_dimensional and len(names) > 1) or not isinstance(report, dict):
+            raise ValueError("one_dimensional must be true or false, true for one output only, and report a table")
+        residuals = numbers_from_json("residuals", content["residuals"], len(names))
+        return cls(
+            inputs,
+            indices,
+            coefficients,
+            output_names=names,
+            one_dimensional=one_dimensional,
+            residuals=residuals,
+            report=report,
+        )
+
+
+def load(path: str | os.PathLike[str]) -> Surrogate:
+    """Read an expansion that `Surrogate.save` wrote. Raises ValueError if the file is another thing or damaged."""
+    return read(FORMAT, Surrogate.from_content, path)
