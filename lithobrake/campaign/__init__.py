@@ -7,10 +7,10 @@ from lithobrake.campaign.ledger import Ledger
 from lithobrake.campaign.limits import Limits
 from lithobrake.campaign.local_executor import LocalExecutor, WorkerDiedError, available_cores
 from lithobrake.campaign.missing_runs import missing
-from lithobrake.campaign.record import Record, campaign_began, read_records
+from lithobrake.campaign.record import Record, RunStatus, campaign_began, read_records
 from lithobrake.campaign.run_counts import Tally, duration, ledger_tally, per_time
 from lithobrake.campaign.run_table import run_lines, write_csv
-from lithobrake.campaign.runs import Runs, run
+from lithobrake.campaign.runs import RunOptions, Runs, run
 
 __all__ = [
     "Command",
@@ -19,6 +19,8 @@ __all__ = [
     "Limits",
     "LocalExecutor",
     "Record",
+    "RunOptions",
+    "RunStatus",
     "Runs",
     "Tally",
     "WorkerDiedError",

@@ -13,6 +13,7 @@ from lithobrake.campaign.ledger import Ledger
 from lithobrake.campaign.limited_calls import submit_limited
 from lithobrake.campaign.limits import Limits
 from lithobrake.campaign.local_executor import WorkerDiedError
+from lithobrake.campaign.record import RunStatus
 from lithobrake.campaign.run_counts import Tally, common_reasons
 from lithobrake.campaign.single_run import Model, run_model
 
@@ -29,32 +30,33 @@ _POLL_INTERVAL = 0.5
 
 
 @dataclass(frozen=True)
-class Job:
-    """A run that is to be made."""
+class PendingRun:
+    """A run that is to be made; attempts: how often it was tried in earlier campaigns."""
 
     model: Model
     inputs: dict[str, float]
     seed: int
-    log: Path | None = None
+    log: Path | None
+    attempts: int
 
 
 @dataclass
 class Coordinator:
-    """A campaign under way; jobs, and attempts at each so far, by the key of the run."""
+    """A campaign under way; pending: the runs to make, by their keys; retry_count: further tries of a failed one."""
 
     ledger: Ledger
     executor: Executor
-    jobs: dict[str, Job]
+    pending: dict[str, PendingRun]
     state: Tally
     limits: Limits
     retry_count: int
-    attempts: dict[str, int]
     progress: Callable[[Tally], None]
 
     def __post_init__(self) -> None:
         # Keys are hashes: in their order the first runs are a random part of all, wherever in the design each stands.
-        self.waiting = deque(sorted(self.jobs))
-        fresh = [key for key in self.waiting if not self.attempts.get(key)]
+        self.waiting = deque(sorted(self.pending))
+        self.attempts = {key: run.attempts for key, run in self.pending.items()}
+        fresh = [key for key in self.waiting if not self.attempts[key]]
         self._trial = set(fresh[:_TRIAL_RUNS]) if len(fresh) > _TRIAL_RUNS else set()
         self._failed: set[str] = set()
         self.submitted: dict[Future[Any], str] = {}
@@ -86,8 +88,8 @@ class Coordinator:
         window = _SUBMITTED_PER_WORKER * getattr(self.executor, "capacity", _UNKNOWN_COUNT)
         while self.waiting and len(self.submitted) < window:
             key = self.waiting.popleft()
-            job = self.jobs[key]
-            future = submit_limited(self.executor, self.limits, run_model, job.model, job.inputs, job.seed, job.log)
+            run = self.pending[key]
+            future = submit_limited(self.executor, self.limits, run_model, run.model, run.inputs, run.seed, run.log)
             self.submitted[future] = key
             self._not_begun.append(future)
             future.add_done_callback(self._ended.put)
@@ -103,22 +105,22 @@ class Coordinator:
         for future in ended:
             self._finish(self.submitted[future], _result(future))
             del self.submitted[future]
-        pending = [future for future in self._not_begun if future in self.submitted]
-        running = [future for future in pending if future.running()]
+        under_way = [future for future in self._not_begun if future in self.submitted]
+        running = [future for future in under_way if future.running()]
         if running:
             self.ledger.start(self.submitted[future] for future in running)
-        self._not_begun = [future for future in pending if not future.running()]
+        self._not_begun = [future for future in under_way if not future.running()]
         self.state.running = len(self.submitted) - len(self._not_begun)
 
     def _finish(self, key: str, result: Mapping[str, Any]) -> None:
-        self.attempts[key] = self.attempts.get(key, 0) + 1
-        if result["status"] == "failed" and self.attempts[key] <= self.retry_count:
+        self.attempts[key] += 1
+        if result["status"] == RunStatus.FAILED and self.attempts[key] <= self.retry_count:
             # Until something succeeds, its next try shows whether anything does.
             (self.waiting.appendleft if self._trial else self.waiting.append)(key)
             return
         self.ledger.finish(key, {**result, "attempts": self.attempts[key]})
         self.state.add(result["status"], result.get("outputs", {}))
-        if result["status"] == "failed":
+        if result["status"] == RunStatus.FAILED:
             self._failed.add(key)
         else:
             self._trial.clear()
@@ -151,7 +153,7 @@ def _result(future: "Future[Any]") -> Mapping[str, Any]:
         answer: Mapping[str, Any] = future.result()
         return answer
     if isinstance(error, WorkerDiedError):
-        return {"status": "failed", "reason": str(error), "wall_s": error.wall_s, "host": error.host}
+        return {"status": RunStatus.FAILED, "reason": str(error), "wall_s": error.wall_s, "host": error.host}
     raise ConnectionError(
         f"the executor cannot make the runs ({type(error).__name__}: {error}); every run that had ended is kept: see "
         "that its workers are there and have the same code, and give the same command again"

@@ -16,9 +16,12 @@ from typing import Any, Self
 from lithobrake.atomic import locked
 from lithobrake.campaign.record import (
     COLUMNS,
+    ENDED,
     LEFT,
     OF_FIRST,
+    UNENDED,
     Record,
+    RunStatus,
     lock_path,
     reading_ledger,
     record_from_row,
@@ -106,13 +109,16 @@ class Ledger:
 
         What was queued before and never ended is forgotten: whoever still wants it asks for it again.
         """
-        rows = [(key, json.dumps(dict(inputs)), seed, replicate, version) for key, inputs, seed, replicate in runs]
+        rows = [
+            (key, RunStatus.QUEUED, json.dumps(dict(inputs)), seed, replicate, version)
+            for key, inputs, seed, replicate in runs
+        ]
         self._note(began=utc_now())
         with self._transaction():
-            self._database.execute("DELETE FROM runs WHERE status IN ('queued', 'running')")
+            self._database.execute("DELETE FROM runs WHERE status IN (?, ?)", UNENDED)
             self._database.executemany(
-                "INSERT INTO runs (key, status, inputs, seed, replicate, version) VALUES (?, 'queued', ?, ?, ?, ?) "
-                "ON CONFLICT (key) DO UPDATE SET status = 'queued'",
+                "INSERT INTO runs (key, status, inputs, seed, replicate, version) VALUES (?, ?, ?, ?, ?, ?) "
+                "ON CONFLICT (key) DO UPDATE SET status = excluded.status",
                 rows,
             )
 
@@ -123,8 +129,8 @@ class Ledger:
         try:
             with self._transaction():
                 self._database.executemany(
-                    "UPDATE runs SET status = 'running', started = ? WHERE key = ? AND status = 'queued'",
-                    [(utc_now(), key) for key in keys],
+                    "UPDATE runs SET status = ?, started = ? WHERE key = ? AND status = ?",
+                    [(RunStatus.RUNNING, utc_now(), key, RunStatus.QUEUED) for key in keys],
                 )
         finally:
             self._database.execute("PRAGMA synchronous = FULL")
@@ -152,7 +158,7 @@ class Ledger:
         """The runs with these keys that have ended, by key."""
         wanted = set(keys)
         with reading_ledger(self.path):
-            rows = self._database.execute(f"SELECT {', '.join(COLUMNS)} FROM runs WHERE status IN ('done', 'failed')")
+            rows = self._database.execute(f"SELECT {', '.join(COLUMNS)} FROM runs WHERE status IN (?, ?)", ENDED)
             return {row[0]: record_from_row(row) for row in rows if row[0] in wanted}
 
     @contextmanager

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from lithobrake.campaign import Record, Runs
+from lithobrake.campaign import Record, Runs, RunStatus
 from lithobrake.pipeline.expansions import DesignRuns
 from lithobrake.pipeline.solver import SolverModel
 
@@ -66,7 +66,9 @@ def test_only_a_lander_that_is_clear_counts_as_leaving_whatever_else_is_told_of_
     answers = [made(CLEAR), made(CLEAR, outcome), made({"penetration": 0.01}, outcome)]
     assert answers[1]["outputs"]["spin_out"] == CLEAR["spin_out"]
     records = [
-        Record("", "done", answer["outcome"], {}, answer["outputs"], {}, 1, 0, 1, None, *[None] * 3, "", None, None)
+        Record(
+            "", RunStatus.DONE, answer["outcome"], {}, answer["outputs"], {}, 1, 0, 1, None, *[None] * 3, "", None, None
+        )
         for answer in answers
     ]
     design = DesignRuns(("a",), np.zeros((3, 1)), Runs(records, 0))
