@@ -19,8 +19,8 @@ from lithobrake.chaos.surrogate import Surrogate
 from lithobrake.chaos.threads import one_thread
 from lithobrake.chaos.training import Training, checked_training
 
-# With more terms than this share of the points the residuals say too little about the error.
-TERM_SHARE = 0.7
+# With more terms for each point than this the residuals say too little about the error.
+TERMS_PER_POINT = 0.7
 SMALLEST_FREEDOM = 0.05
 # Above this share of scatter in the variance a process has settled what matters too firmly to be drawn from.
 SCATTER_SHARE = 0.05
@@ -168,8 +168,8 @@ def _refit_of(surrogate: Surrogate, training: Training, output: int) -> Refit:
             constant = np.zeros((1, len(training.inputs)), dtype=np.int64)
             return _least_squares_refit(training, output, _with_low_degrees(constant, training))
         return _process_refit(training, output, entry, indices)
-    if method != "ols" or len(indices) > TERM_SHARE * training.count:
-        indices = best_terms(training, term_limit=TERM_SHARE * training.count)
+    if method != "ols" or len(indices) > TERMS_PER_POINT * training.count:
+        indices = best_terms(training, term_limit=TERMS_PER_POINT * training.count)
     return _least_squares_refit(training, output, indices)
 
 
@@ -275,6 +275,6 @@ def _log_scores(predicted: Array, y: Array) -> Array:
     mean_square = float(square.mean())
     with np.errstate(divide="ignore", invalid="ignore"):
         sizes = np.array([percentage.mean(), np.sqrt(mean_square), np.sqrt(mean_square / deviation.mean())])
-        share, spread = square / mean_square, deviation / deviation.mean()
-        derivatives = np.stack([percentage / sizes[0], 0.5 * share, 0.5 * (share - spread)])
+        error, deviation = square / mean_square, deviation / deviation.mean()
+        derivatives = np.stack([percentage / sizes[0], 0.5 * error, 0.5 * (error - deviation)])
         return np.stack([np.log(sizes), derivatives.std(axis=1) / np.sqrt(max(len(y) - 1, 1))])

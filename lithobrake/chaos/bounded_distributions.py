@@ -113,8 +113,8 @@ class Beta(Distribution):
         return self._clip(0.5 * ((1.0 - germ) * self.lower + (1.0 + germ) * self.upper))
 
     def ppf(self, u: ArrayLike) -> Array:
-        share = special.betaincinv(self.alpha, self.beta, np.asarray(u, dtype=float))
-        return self._clip(self.lower + share * (self.upper - self.lower))
+        fraction = special.betaincinv(self.alpha, self.beta, np.asarray(u, dtype=float))
+        return self._clip(self.lower + fraction * (self.upper - self.lower))
 
     def cdf(self, x: Array) -> Array:
         return special.betainc(self.alpha, self.beta, 0.5 * (1.0 + self.germ(x)))

@@ -186,11 +186,11 @@ class RadialMatern(Covariance):
 
     def projection(self, theta: Array, germs: Array, indices: Indices, weights: Array) -> Array:
         total = np.zeros((len(indices), *weights.shape[1:]))
-        for v, share in self._mixture():
+        for v, weight in self._mixture():
             lengths = np.exp(theta[:-1]) * np.sqrt(v)
             rows = zip(self.entries, self.degrees, germs, lengths, strict=True)
             tables = [gaussian_means(entry, degree, germ, float(length)) for entry, degree, germ, length in rows]
-            total += share * contracted(tables, indices, weights)
+            total += weight * contracted(tables, indices, weights)
         return float(np.exp(theta[-1])) * total
 
 

@@ -17,19 +17,19 @@ FAMILIES: tuple[type[Covariance], ...] = (PolynomialCovariance, ProductCovarianc
 # Parameters are learnt from at most so many points: a step costs their number cubed, and they are few.
 LEARN_FROM = 256
 ITERATIONS = 100
-# The nugget, as a share of the variance of the outputs: from rounding to everything.
+# The nugget, relative to the variance of the outputs: from rounding to everything.
 LOG_NOISE = (-23.0, 1.0)
 TERM_LIMIT = 12000
 KEPT_LIMIT = 3000
-# Terms are dropped while their sum of squares stays below this share of the expected squared error.
-DROPPED_SHARE = 0.002
+# Terms are dropped while their sum of squares stays below this times the expected squared error.
+DROPPED_FRACTION = 0.002
 
 
 @dataclass(frozen=True)
 class GaussianProcess:
     """A learnt Gaussian process of one output, standardised as (y - shift) / scale.
 
-    theta: log parameters; noise: nugget variance, as a share of scale**2; weights [count]: K**-1 y; factor: lower
+    theta: log parameters; noise: nugget variance, relative to scale**2; weights [count]: K**-1 y; factor: lower
     Cholesky factor of K [count, count]; germs of the points [input_count, count];
     leave_one_out [count]: error at each point predicted from the others (equal runs left out together), in the unit of
     the output.
@@ -194,7 +194,7 @@ def expansion_of(process: GaussianProcess, inputs: dict[str, Distribution]) -> t
     coefficients = process.coefficients(indices)
     order = np.argsort(-np.where(indices.sum(axis=1) == 0, np.inf, coefficients**2), kind="stable")
     tail = np.cumsum(coefficients[order][::-1] ** 2)[::-1]
-    allowed = DROPPED_SHARE * float(np.mean(process.leave_one_out**2))
+    allowed = DROPPED_FRACTION * float(np.mean(process.leave_one_out**2))
     kept = np.sort(order[: max(1, min(KEPT_LIMIT, int(np.sum(tail > allowed))))])
     points, germs = fresh_germs(inputs)
     difference = basis_matrix(inputs, indices[kept], points) @ coefficients[kept]

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from lithobrake.chaos.multi_index import Indices
 from lithobrake.chaos.polynomials import Array
 
-# Singular values below this share of the largest are rank loss: far below any usable condition number,
+# Singular values below this times the largest are rank loss: far below any usable condition number,
 # far above the rounding of an exactly deficient system.
 RANK_TOLERANCE = 1e-10
 # Lost terms that a refusal names.

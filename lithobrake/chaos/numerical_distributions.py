@@ -69,16 +69,16 @@ class TruncatedNormal(Distribution):
         return self._clip(middle + half * germ)
 
     def ppf(self, u: ArrayLike) -> Array:
-        share = np.asarray(u, dtype=float)
+        probability = np.asarray(u, dtype=float)
         low, high = (self.lower - self.mean) / self.std, (self.upper - self.mean) / self.std
         # In the right tail the mirrored problem keeps all digits; logarithms keep the far tail from underflow.
         sign = -1.0 if low + high > 0.0 else 1.0
         if sign < 0.0:
-            low, high, share = -high, -low, 1.0 - share
+            low, high, probability = -high, -low, 1.0 - probability
         with np.errstate(divide="ignore"):
             logarithm = np.logaddexp(
-                special.log_ndtr(low) + np.log1p(-share),
-                special.log_ndtr(high) + np.log(share),
+                special.log_ndtr(low) + np.log1p(-probability),
+                special.log_ndtr(high) + np.log(probability),
             )
         return self._clip(self.mean + self.std * sign * special.ndtri_exp(logarithm))
 
@@ -89,9 +89,9 @@ class TruncatedNormal(Distribution):
         if low + high > 0.0:
             low, high, z, sign = -high, -low, -z, -1.0
         start, end = special.log_ndtr(low), special.log_ndtr(high)
-        share = np.expm1(special.log_ndtr(z) - start) / np.expm1(end - start) if np.isfinite(start) else None
-        share = np.exp(special.log_ndtr(z) - end) if share is None else share
-        return share if sign > 0.0 else 1.0 - share
+        probability = np.expm1(special.log_ndtr(z) - start) / np.expm1(end - start) if np.isfinite(start) else None
+        probability = np.exp(special.log_ndtr(z) - end) if probability is None else probability
+        return probability if sign > 0.0 else 1.0 - probability
 
     def germ_derivative(self, x: Array) -> Array:
         return np.full_like(x, 1.0 / self._frame[1])

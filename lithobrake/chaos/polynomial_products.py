@@ -16,7 +16,7 @@ BLOCK_ROWS = 400_000
 # With more terms even counting their products takes long.
 TERM_LIMIT = 2500
 LARGEST_KEY = float(2**62)
-# Shares of a product below this are rounding: polynomials of even measures have every second one zero.
+# Entries of a product below this times the largest are rounding: of even measures every second one is zero.
 ROUNDING = 1e-13
 
 
@@ -32,10 +32,10 @@ class Linearisation:
         self.base = 2 * degree + 1
         nodes, weights = entry.gauss(2 * degree + 1)
         table = entry.recurrence(2 * degree).values(nodes)
-        shares = np.einsum("aq,bq,kq->abk", table[: degree + 1], table[: degree + 1], table * weights, optimize=True)
-        largest = np.abs(shares).max(axis=2, keepdims=True)
-        a, b, self.power = np.nonzero(np.abs(shares) > ROUNDING * largest)
-        self.value = shares[a, b, self.power]
+        product = np.einsum("aq,bq,kq->abk", table[: degree + 1], table[: degree + 1], table * weights, optimize=True)
+        largest = np.abs(product).max(axis=2, keepdims=True)
+        a, b, self.power = np.nonzero(np.abs(product) > ROUNDING * largest)
+        self.value = product[a, b, self.power]
         self.count = np.bincount(a * (degree + 1) + b, minlength=(degree + 1) ** 2).astype(np.int64)
         self.first = (np.cumsum(self.count) - self.count).reshape(degree + 1, degree + 1)
         self.count = self.count.reshape(degree + 1, degree + 1)
@@ -67,13 +67,13 @@ def product_count(inputs: Mapping[str, Distribution], indices: Indices, coeffici
 
 
 def _pair_counts(indices: Indices, tables: list[Linearisation]) -> Whole:
-    """Number of shares of the products of each term with itself and later ones, [term_count]."""
+    """Number of entries of the products of each term with itself and later ones, [term_count]."""
     counts = np.empty(len(indices), dtype=np.int64)
     for i, row in enumerate(indices):
-        shares = np.ones(len(indices) - i, dtype=np.int64)
+        entries = np.ones(len(indices) - i, dtype=np.int64)
         for table, power, column in zip(tables, row, indices[i:].T, strict=True):
-            shares *= table.count[power, column]
-        counts[i] = shares.sum()
+            entries *= table.count[power, column]
+        counts[i] = entries.sum()
     return counts
 
 
@@ -114,10 +114,10 @@ def _blocks(counts: Whole) -> Iterator[tuple[int, int]]:
 def _block_products(
     indices: Indices, coefficients: Array, tables: list[Linearisation], first: int, last: int
 ) -> tuple[Whole, Array]:
-    """Keys (one number for each multi-index) and shares of the products of terms first to last with all later ones."""
+    """Keys (a number for each multi-index) and coefficients of products of terms first to last with all later ones."""
     pairs = [np.arange(i, len(indices)) for i in range(first, last)]
     left, right = np.repeat(np.arange(first, last), [len(one) for one in pairs]), np.concatenate(pairs)
-    shares = coefficients[left] * coefficients[right] * np.where(left == right, 1.0, 2.0)[:, None]
+    contributions = coefficients[left] * coefficients[right] * np.where(left == right, 1.0, 2.0)[:, None]
     keys = np.zeros(len(left), dtype=np.int64)
     for table, column in zip(tables, indices.T, strict=True):
         count = table.count[column[left], column[right]]
@@ -125,13 +125,13 @@ def _block_products(
         rows = np.repeat(np.arange(len(left)), count)
         entry = np.arange(len(rows)) + np.repeat(start - np.cumsum(count) + count, count)
         keys = keys[rows] * table.base + table.power[entry]
-        shares = shares[rows] * table.value[entry][:, None]
+        contributions = contributions[rows] * table.value[entry][:, None]
         left, right = left[rows], right[rows]
-    return _summed(keys, shares)
+    return _summed(keys, contributions)
 
 
-def _summed(keys: Whole, shares: Array) -> tuple[Whole, Array]:
-    """Distinct keys in order, and the sums of their shares [key_count, output_count]."""
+def _summed(keys: Whole, contributions: Array) -> tuple[Whole, Array]:
+    """Distinct keys in order, and the sums of their contributions [key_count, output_count]."""
     distinct, group = np.unique(keys, return_inverse=True)
-    columns = [np.bincount(group, weights=column, minlength=len(distinct)) for column in shares.T]
+    columns = [np.bincount(group, weights=column, minlength=len(distinct)) for column in contributions.T]
     return distinct, np.stack(columns, axis=1)

@@ -119,11 +119,11 @@ def density(
     width = 0.9 * spread * count**-0.2
     edges = np.linspace(samples.min() - 4.0 * width, samples.max() + 4.0 * width, 4097)
     # Samples are binned first, so the cost does not grow with their number.
-    shares = np.histogram(samples, edges)[0] / count
+    fractions = np.histogram(samples, edges)[0] / count
     middles = 0.5 * (edges[1:] + edges[:-1])
     points = np.linspace(edges[0], edges[-1], point_count)
     bumps = np.exp(-0.5 * ((points[:, None] - middles) / width) ** 2) / (width * np.sqrt(2.0 * np.pi))
-    return points, bumps @ shares
+    return points, bumps @ fractions
 
 
 def output_correlation(surrogate: Surrogate) -> Array:

@@ -52,7 +52,7 @@ def joined(solutions: Sequence[Solution]) -> tuple[Indices, Array]:
 
 
 def summary(solutions: Sequence[Solution], names: Sequence[str], y: Array) -> dict[str, Any]:
-    """The report of a fit: per output its method and expected error, in its unit and as a share of its spread."""
+    """The report of a fit: per output its method and expected error, in its unit and relative to its spread."""
     outputs = {}
     for name, one, column in zip(names, solutions, y.T, strict=True):
         spread = float(np.std(column)) if np.ptp(column) > 0.0 else 0.0

@@ -33,8 +33,8 @@ def is_structured(x: Array) -> bool:
     Folds of a grid leave out whole faces, so their error is that of extrapolation.
     """
     distinct = np.unique(x, axis=0)
-    shares = [len(np.unique(column)) / len(column) for column in distinct.T]
-    return len(x) > 4 and float(np.median(shares)) < 1.0 / 3.0
+    fractions = [len(np.unique(column)) / len(column) for column in distinct.T]
+    return len(x) > 4 and float(np.median(fractions)) < 1.0 / 3.0
 
 
 @dataclass(frozen=True)

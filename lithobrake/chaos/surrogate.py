@@ -196,7 +196,7 @@ class Surrogate:
         return {name: scores.score_of(predicted[:, k], truth[:, k]) for k, name in columns}
 
     def runs_needed(self, target: float) -> dict[str, dict[str, Any]]:
-        """How many more runs would bring the expected error to `target` (share of the spread), by output name."""
+        """How many more runs would bring the expected error to `target` (in units of the spread), by output name."""
         return noise.runs_needed(self.report, target)
 
     def save(self, path: str | os.PathLike[str]) -> None:

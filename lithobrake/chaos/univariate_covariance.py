@@ -41,7 +41,7 @@ class UnivariateCovariance(ABC):
 
 
 class UnivariateGaussian(UnivariateCovariance):
-    """exp(share) exp(-r**2 / (2 l**2)), parameters (ln l, share)."""
+    """s exp(-r**2 / (2 l**2)), parameters (ln l, ln s)."""
 
     start = (0.0, 0.0)
     bounds = ((-3.0, 5.0), (-10.0, 8.0))
@@ -63,7 +63,7 @@ class UnivariateGaussian(UnivariateCovariance):
 
 
 class UnivariatePolynomial(UnivariateCovariance):
-    """sum_j v_j p_j(t) p_j(t'), v_j = exp(share - decay (j - 1)) from degree 1 on, parameters (ln decay, share)."""
+    """sum_j v_j p_j(t) p_j(t'), v_j = s exp(-decay (j - 1)) from degree 1 on, parameters (ln decay, ln s)."""
 
     start = (0.0, -1.2)
     bounds = ((-2.0, 3.0), (-12.0, 5.0))
