@@ -13,7 +13,7 @@ from lithobrake.campaign.record import ENDED, Record, RunStatus
 class Spread:
     """Count, mean and standard deviation of numbers that come one by one.
 
-    Source: Welford (1962), Technometrics 4, 419.
+    Source: [Welford-1962].
     """
 
     count: int = 0

@@ -62,7 +62,7 @@ def recurrences_of(inputs: Mapping[str, Distribution], indices: Indices) -> list
 
 
 def basis_matrix(inputs: Mapping[str, Distribution], indices: Indices, points: Array) -> Array:
-    """All terms at points in physical units; result [count, term_count] (H of the paper, Eq 17), column-major."""
+    """All terms at points in physical units; result [count, term_count] (H of [Landings-PCE], Eq 17), column-major."""
     germs = germs_of(inputs, points)
     matrix = np.ones((len(indices), len(points)))
     for column, (recurrence, germ) in enumerate(zip(recurrences_of(inputs, indices), germs, strict=True)):

@@ -61,7 +61,7 @@ def sobol_estimates(
     least squares on all terms of low degree: parameters learnt from much scatter rule out inputs that may matter.
     Rows of residuals are drawn jointly for all outputs and are as large as the error at new points, so that they hold
     what the fit left out. Intervals take the runs as independent: they hold for the bed and place of these runs.
-    Source: Davison and Hinkley, 1997, sections 5.2 and 6.2; Dubreuil and others, 2014 (indices from expansions).
+    Source: [Davison-1997], sections 5.2 and 6.2; [Dubreuil-2014] (indices from expansions).
     """
     _check_resampling(count, level)
     training = checked_training(surrogate.inputs, x, y, output_names=surrogate.output_names)
@@ -116,7 +116,7 @@ def _debiased(refit: Refit, coefficients: Array, level: float) -> tuple[Array, A
     """Estimate and bounds [2, input_count] each, from coefficients [term_count, draw_count] of least squares.
 
     Scatter adds its variance to every squared coefficient; it is taken off, so that many small terms do not add up to
-    an effect. Source: Searle, Casella and McCulloch, 1992, "Variance Components", section 3.5 (analysis of variance).
+    an effect. Source: [Searle-1992], section 3.5 (analysis of variance).
     """
     noise = coefficients.var(axis=1, ddof=1, keepdims=True)
     parts, variance = _debiased_parts(refit.indices, coefficients, noise)
@@ -174,7 +174,7 @@ def _refit_of(surrogate: Surrogate, training: Training, output: int) -> Refit:
 
 
 def _least_squares_refit(training: Training, output: int, indices: Indices) -> Refit:
-    """Source of the residuals: MacKinnon and White, 1985 (HC3: the full leverage, as for left-out points)."""
+    """Source of the residuals: [MacKinnon-1985] (HC3: the full leverage, as for left-out points)."""
     orthogonal, triangle = np.linalg.qr(basis_matrix(training.inputs, indices, training.x))
     y = training.y[:, output]
     fitted = orthogonal @ (orthogonal.T @ y)
@@ -237,7 +237,7 @@ def score_intervals(
 
     Studentised, in the logarithms of the errors: a mean of squares is skewed, and plain percentiles of it are too low
     and too narrow. Fewer than five runs tell nothing; a score of 0 or infinity is its own interval.
-    Source: Davison and Hinkley, 1997, section 5.2 (studentised bootstrap).
+    Source: [Davison-1997], section 5.2 (studentised bootstrap).
     """
     _check_resampling(count, level)
     training = checked_training(surrogate.inputs, x, y, output_names=surrogate.output_names)

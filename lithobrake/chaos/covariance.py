@@ -64,7 +64,7 @@ class Covariance(ABC):
 class ProductCovariance(Covariance):
     """s prod_k (1 + part_k): each input may act alone or in products with others.
 
-    Source: Durrande, Ginsbourger and Roustant, 2012, "Additive covariance kernels" (ANOVA form).
+    Source: [Durrande-2012] (ANOVA form).
     """
 
     name = "gaussian"
@@ -132,7 +132,7 @@ class PolynomialCovariance(ProductCovariance):
 
     Without limits polynomials grow in the tails, and a process made of them returns to no mean far from the data, with
     a leave-one-out error far too low; unbounded inputs keep the Gaussian part.
-    Source: Xiu, 2010, "Numerical Methods for Stochastic Computations", section 3.3 (decay of coefficients).
+    Source: [Xiu-2010], section 3.3 (decay of coefficients).
     """
 
     name = "polynomial"
@@ -146,7 +146,7 @@ class RadialMatern(Covariance):
     """s M(r), r**2 = sum_k (t_k - t'_k)**2 / l_k**2, Matern of order 5/2: rougher, with kinks in any direction.
 
     Learnt in closed form; used as a mixture of products, by the Gaussians exp(-r**2 / (2 v)) over v ~ Gamma(5/2).
-    Source: Rasmussen and Williams, 2006, Eqs 4.14 to 4.17.
+    Source: [Rasmussen-2006], Eqs 4.14 to 4.17.
     """
 
     name = "matern"

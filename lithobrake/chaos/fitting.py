@@ -44,7 +44,7 @@ def fit(
     each input, and weights: of the points [count], both for "ols". Rows of y that are all NaN are dropped and counted.
     progress: called with the number of outputs that are fitted, and that of all.
     Raises ValueError for fewer points than terms, rank deficiency and data that `checked_training` refuses.
-    Source: the paper, Eqs 13 to 17.
+    Source: [Landings-PCE], Eqs 13 to 17.
     """
     if method is None and any(one is not None for one in (degree, q_norm, max_degrees, weights)):
         method = "ols"

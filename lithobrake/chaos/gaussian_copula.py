@@ -25,7 +25,7 @@ class GaussianCopula:
     """Inputs with given distributions and Spearman rank correlations [input_count, input_count].
 
     Raises ValueError unless the matrix is symmetric with ones on its diagonal and can be that of a Gaussian copula.
-    Source: Nataf, 1962; Lebrun and Dutfoy, 2009; r = 2 sin(pi rho / 6), Kruskal, 1958, for the normal correlation.
+    Source: [Nataf-1962]; [Lebrun-2009]; r = 2 sin(pi rho / 6), [Kruskal-1958], for the normal correlation.
     """
 
     def __init__(self, inputs: Mapping[str, Distribution], rank_correlation: ArrayLike) -> None:

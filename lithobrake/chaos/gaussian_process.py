@@ -54,7 +54,7 @@ class GaussianProcess:
 
         The larger of leave-one-out, which sees what the covariance does not, and the predicted variance averaged over
         germs [input_count, count] of fresh inputs, which sees the tails where no run stands.
-        Source: Rasmussen and Williams, 2006, Eq 2.26.
+        Source: [Rasmussen-2006], Eq 2.26.
         """
         from scipy.linalg import solve_triangular
 
@@ -95,7 +95,7 @@ def highest_degrees(inputs: Sequence[Distribution]) -> list[int]:
 def fit_process(training: Training, output: int, family: type[Covariance]) -> GaussianProcess:
     """Learn one output by maximum likelihood.
 
-    Source: Rasmussen and Williams, 2006, Eqs 5.8, 5.9 (likelihood) and 5.12 (leave-one-out in closed form).
+    Source: [Rasmussen-2006], Eqs 5.8, 5.9 (likelihood) and 5.12 (leave-one-out in closed form).
     """
     from scipy.linalg import cho_solve
 

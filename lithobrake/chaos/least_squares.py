@@ -31,7 +31,7 @@ class LeastSquares:
     def left_out(self, groups: Sequence[NDArray[np.int64]]) -> Array:
         """Error at each point of the fit without it (or without its group of rows), [count, output_count].
 
-        Source: Allen, 1974 (PRESS); Cook and Weisberg, 1982, section 3.6 (groups).
+        Source: [Allen-1974] (PRESS); [Cook-1982], section 3.6 (groups).
         """
         if not groups:
             leverage = np.einsum("ij,ij->i", self.orthogonal, self.orthogonal)
@@ -74,7 +74,7 @@ def solve_least_squares(
 
     It takes at least as many points as terms. Raises ValueError for rank deficiency, naming terms that cannot be told
     apart.
-    Source: the paper, Eqs 15 and 16; Golub and Van Loan, 2013, section 5.5.
+    Source: [Landings-PCE], Eqs 15 and 16; [Golub-2013], section 5.5.
     """
     from scipy.linalg import solve_triangular
 

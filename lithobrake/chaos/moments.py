@@ -46,7 +46,7 @@ def skewness_and_kurtosis(
     Two ways are exact, and the cheaper is taken: the square of the expansion written as an expansion, and a full grid
     of Gauss nodes, of which 2 d + 1 an input integrate a fourth power without error. Beyond twenty million entries of
     products and thirty million nodes, `count` points of a scrambled Sobol sequence stand in.
-    Source: Xiu, 2010, "Numerical Methods for Stochastic Computations", section 5.3 (moments from an expansion).
+    Source: [Xiu-2010], section 5.3 (moments from an expansion).
     """
     degrees = indices.max(axis=0)
     rules = [entry.gauss(2 * int(d) + 1) for entry, d in zip(inputs.values(), degrees, strict=True) if d > 0]

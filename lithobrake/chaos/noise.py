@@ -39,7 +39,7 @@ def equal_rows(x: Array) -> NDArray[np.int64]:
 def replicates(x: Array, y: Array) -> Replicates | None:
     """Find repeated rows of x [count, input_count] and pool the scatter of y [count, output_count]; None if no repeats.
 
-    Source: Montgomery, 2012, "Design and Analysis of Experiments", pure error.
+    Source: [Montgomery-2012], pure error.
     """
     group = equal_rows(x)
     sizes = np.bincount(group).astype(np.int64)

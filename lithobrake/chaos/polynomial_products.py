@@ -25,7 +25,7 @@ class Linearisation:
 
     first, count [degree + 1, degree + 1]: where the entries of a pair (a, b) begin, and how many there are;
     power, value [entry_count]: k and L_abk; base: number of powers that a product can have.
-    Source: Xiu, 2010, "Numerical Methods for Stochastic Computations", section 6.1 (triple products).
+    Source: [Xiu-2010], section 6.1 (triple products).
     """
 
     def __init__(self, entry: Distribution, degree: int) -> None:

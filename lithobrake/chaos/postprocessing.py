@@ -34,7 +34,7 @@ def shape_moments(surrogate: Surrogate, *, count: int = SAMPLE_COUNT, seed: int 
 
 
 def marginal(surrogate: Surrogate, names: Sequence[str]) -> Surrogate:
-    """The mean over all other inputs, as an expansion in the named inputs only. Source: Sudret, 2008, section 3.
+    """The mean over all other inputs, as an expansion in the named inputs only. Source: [Sudret-2008], section 3.
 
     Raises ValueError for an unknown name or none.
     """
@@ -107,7 +107,7 @@ def density(
 ) -> tuple[Array, Array]:
     """Values of one output [point_count] and their probability density, by a Gaussian kernel over samples.
 
-    output: its name, None is the first. Source: Silverman, 1986, Eq 3.31 (width of the kernel).
+    output: its name, None is the first. Source: [Silverman-1986], Eq 3.31 (width of the kernel).
     """
     names = surrogate.output_names
     if output is not None and output not in names:

@@ -49,7 +49,7 @@ class Candidates:
 def solve_sparse(training: Training, output: int, method: str, *, degree: int | None, q_norm: float | None) -> Solution:
     """Fit one output by "lars" or "omp"; degree and q_norm None are chosen by the same folds.
 
-    Source: Blatman and Sudret, 2011 (hybrid LARS); Pati and others, 1993 (OMP).
+    Source: [Blatman-2011] (hybrid LARS); [Pati-1993] (OMP).
     """
     y = training.y[:, output]
     ladders = _candidate_ladders(training, degree, q_norm)

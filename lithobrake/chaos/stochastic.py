@@ -72,7 +72,7 @@ def fit_stochastic(
 
     The logarithm of a sample variance is too low on average by a known amount, which is added; groups of at least
     two runs enter. Raises ValueError without repeated points, or for an output that does not scatter.
-    Source: Bartlett and Kendall, 1946 (logarithm of a variance); Zhu and Sudret, 2020 (stochastic expansions).
+    Source: [Bartlett-1946] (logarithm of a variance); [Zhu-2020] (stochastic expansions).
     """
     training = checked_training(inputs, x, y, output_names=output_names)
     pooled = replicates(training.x, training.y)

@@ -36,7 +36,7 @@ class Surrogate:
     inputs: name -> distribution, in column order; multi_indices [term_count, input_count]; coefficients of the
     orthonormal terms [term_count, output_count] ([term_count] for a one-dimensional y); report: how it was fitted,
     plain JSON values; residuals of the training points [count, output_count], kept jointly over outputs.
-    Source: the paper, Eq 13; Xiu and Karniadakis, 2002.
+    Source: [Landings-PCE], Eq 13; [Xiu-2002].
     """
 
     def __init__(
@@ -128,12 +128,12 @@ class Surrogate:
 
     @property
     def mean(self) -> Any:
-        """Mean of each output [output_count], or a number. Source: the paper, Eq 18."""
+        """Mean of each output [output_count], or a number. Source: [Landings-PCE], Eq 18."""
         return self.shaped(sensitivity.mean_of(self.multi_indices, self._coefficients))
 
     @property
     def variance(self) -> Any:
-        """Variance of each output [output_count], or a number. Source: the paper, Eq 21."""
+        """Variance of each output [output_count], or a number. Source: [Landings-PCE], Eq 21."""
         return self.shaped(sensitivity.variance_of(self.multi_indices, self._coefficients))
 
     @cached_property
@@ -179,7 +179,7 @@ class Surrogate:
     def score(self, x: ArrayLike, y: ArrayLike) -> dict[str, scores.Score]:
         """Scores at points x with known outputs y, by output name: mape, ape [%], q2, rrmse, rmse, std.
 
-        Raises ValueError for NaN in y. Source: the paper, Eq 24; `score_of` has the definitions.
+        Raises ValueError for NaN in y. Source: [Landings-PCE], Eq 24; `score_of` has the definitions.
         """
         truth, count = np.asarray(y, dtype=float), len(points_of(self.inputs, x))
         if truth.ndim == 1 and len(self.output_names) == 1:
