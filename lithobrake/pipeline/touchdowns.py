@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from lithobrake.campaign import Ledger, Limits, Runs, Tally, run_key, run_seed
+from lithobrake.campaign import Ledger, Limits, RunOptions, Runs, Tally, run_key, run_seed
 from lithobrake.campaign import run as run_campaign
 from lithobrake.outputs import OUTPUTS
 from lithobrake.pipeline.job import Job
@@ -47,12 +47,14 @@ def touchdowns(job: Job, rows: Sequence[dict[str, float]], title: str, replicate
             names=list(rows[0]),
             context=touchdown_reads(study),
             ledger=ledger,
-            seed=study.seed,
-            replicate=replicate,
             executor=job.executor,
             limits=Limits(study.campaign.wall_limit or math.inf, study.campaign.memory_limit or math.inf),
-            retry_count=study.campaign.retry_count,
-            log_folder=job.folder.path.absolute() / "logs" if job.keeps_logs else None,
+            options=RunOptions(
+                seed=study.seed,
+                replicate=replicate,
+                retry_count=study.campaign.retry_count,
+                log_folder=job.folder.path.absolute() / "logs" if job.keeps_logs else None,
+            ),
             progress=show,
         )
 

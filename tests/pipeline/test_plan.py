@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from lithobrake.campaign import Record, available_cores, read_records
+from lithobrake.campaign import Record, RunStatus, available_cores, read_records
 from lithobrake.cli import app
 from lithobrake.outputs import OUTPUTS
 from lithobrake.pipeline import Plan, StudyFolder, plan_study
@@ -229,7 +229,7 @@ def test_a_bed_is_expected_as_deep_as_its_grains_fill_it() -> None:
 
 def record(wall_s: float) -> Record:
     empty: dict[str, float] = {}
-    return Record("", "done", "clear", empty, empty, {}, 0, 0, 1, None, wall_s, wall_s, None, "", None, None)
+    return Record("", RunStatus.DONE, "clear", empty, empty, {}, 0, 0, 1, None, wall_s, wall_s, None, "", None, None)
 
 
 def test_runs_that_have_ended_tell_how_long_the_others_take() -> None:

@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from lithobrake.campaign import Record, Runs
+from lithobrake.campaign import Record, Runs, RunStatus
 from lithobrake.pipeline.design_runs import DesignRuns
 from lithobrake.pipeline.solver import SolverModel
 
@@ -69,7 +69,9 @@ def test_only_a_lander_that_is_clear_counts_as_leaving_whatever_else_is_told_of_
     answers = [made(CLEAR), made(CLEAR, outcome), made({"penetration": 0.01}, outcome)]
     assert answers[1]["outputs"]["spin_out"] == CLEAR["spin_out"]
     records = [
-        Record("", "done", answer["outcome"], {}, answer["outputs"], {}, 1, 0, 1, None, *[None] * 3, "", None, None)
+        Record(
+            "", RunStatus.DONE, answer["outcome"], {}, answer["outputs"], {}, 1, 0, 1, None, *[None] * 3, "", None, None
+        )
         for answer in answers
     ]
     design = DesignRuns.of(Runs(records, 0))

@@ -14,14 +14,14 @@ from pathlib import Path
 from typing import Any
 
 from lithobrake.campaign.capped_log import CappedLog
-from lithobrake.campaign.record import utc_now
+from lithobrake.campaign.record import RunStatus, utc_now
 
 # A model takes its inputs by name and a seed. It gives its outputs by name, or {"outcome": text, "outputs": numbers by
 # name, "draws": JSON values}; an output that is NaN has no value.
 Model = Callable[[dict[str, float], int], Mapping[str, Any]]
 
 
-def perform(model: Model, inputs: dict[str, float], seed: int, log: Path | None = None) -> dict[str, Any]:
+def run_model(model: Model, inputs: dict[str, float], seed: int, log: Path | None = None) -> dict[str, Any]:
     """Make one run; what it raises becomes the reason of a failed run.
 
     log: file that takes what the model prints, and where in it an error arose.
@@ -32,7 +32,7 @@ def perform(model: Model, inputs: dict[str, float], seed: int, log: Path | None 
             result = _checked(model(inputs, seed))
         # Whatever a user's model raises is the reason of that run's failure, and no reason to end the campaign.
         except (Exception, SystemExit) as error:
-            result = {"status": "failed", "reason": f"{type(error).__name__}: {error}"}
+            result = {"status": RunStatus.FAILED, "reason": f"{type(error).__name__}: {error}"}
             if log is not None:
                 traceback.print_exc()
         result |= {"wall_s": time.perf_counter() - wall, "cpu_s": _cpu_time() - cpu}
@@ -54,7 +54,7 @@ def _checked(answer: Mapping[str, Any]) -> dict[str, Any]:
         json.dumps(draws, allow_nan=False)
     except (TypeError, ValueError) as error:
         raise ValueError(f"the draws are {reprlib.repr(draws)}; allowed: finite numbers and texts by name") from error
-    return {"status": "done", "outcome": outcome, "outputs": outputs, "draws": draws}
+    return {"status": RunStatus.DONE, "outcome": outcome, "outputs": outputs, "draws": draws}
 
 
 def _cpu_time() -> float:

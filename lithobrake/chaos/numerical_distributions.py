@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy import special
 
-from lithobrake.chaos.germ import NO_CHOICES, Distribution, Support
+from lithobrake.chaos.abstract_distribution import NO_CHOICES, Distribution, Support
 from lithobrake.chaos.polynomials import Array, Recurrence, discretised
 
 # Densities below exp(-350) of the largest cannot be felt by polynomials of the degrees in use.
@@ -69,16 +69,16 @@ class TruncatedNormal(Distribution):
         return self._clip(middle + half * germ)
 
     def ppf(self, u: ArrayLike) -> Array:
-        share = np.asarray(u, dtype=float)
+        probability = np.asarray(u, dtype=float)
         low, high = (self.lower - self.mean) / self.std, (self.upper - self.mean) / self.std
         # In the right tail the mirrored problem keeps all digits; logarithms keep the far tail from underflow.
         sign = -1.0 if low + high > 0.0 else 1.0
         if sign < 0.0:
-            low, high, share = -high, -low, 1.0 - share
+            low, high, probability = -high, -low, 1.0 - probability
         with np.errstate(divide="ignore"):
             logarithm = np.logaddexp(
-                special.log_ndtr(low) + np.log1p(-share),
-                special.log_ndtr(high) + np.log(share),
+                special.log_ndtr(low) + np.log1p(-probability),
+                special.log_ndtr(high) + np.log(probability),
             )
         return self._clip(self.mean + self.std * sign * special.ndtri_exp(logarithm))
 
@@ -89,11 +89,11 @@ class TruncatedNormal(Distribution):
         if low + high > 0.0:
             low, high, z, sign = -high, -low, -z, -1.0
         start, end = special.log_ndtr(low), special.log_ndtr(high)
-        share = np.expm1(special.log_ndtr(z) - start) / np.expm1(end - start) if np.isfinite(start) else None
-        share = np.exp(special.log_ndtr(z) - end) if share is None else share
-        return share if sign > 0.0 else 1.0 - share
+        probability = np.expm1(special.log_ndtr(z) - start) / np.expm1(end - start) if np.isfinite(start) else None
+        probability = np.exp(special.log_ndtr(z) - end) if probability is None else probability
+        return probability if sign > 0.0 else 1.0 - probability
 
-    def slope(self, x: Array) -> Array:
+    def germ_derivative(self, x: Array) -> Array:
         return np.full_like(x, 1.0 / self._frame[1])
 
     def recurrence(self, degree: int) -> Recurrence:
@@ -155,7 +155,7 @@ class Empirical(Distribution):
         count = len(self.samples)
         return np.clip(0.5 * (below + upto) / count, 0.5 / count, 1.0 - 0.5 / count)
 
-    def slope(self, x: Array) -> Array:
+    def germ_derivative(self, x: Array) -> Array:
         return np.full_like(x, 2.0 / (self.samples[-1] - self.samples[0]))
 
     def _measure(self) -> tuple[Array, Array]:

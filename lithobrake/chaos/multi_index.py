@@ -21,7 +21,7 @@ def multi_index_set(
 
     q_norm: 1 is the total degree; smaller drops interactions. max_degrees: highest degree of each input, [input_count].
     Raises ValueError for a negative degree or q_norm outside (0, 1], and for more terms than a fit could ever have.
-    Source: the paper, Eq 13; Blatman and Sudret, 2011, Eq 22 (hyperbolic sets).
+    Source: [Landings-PCE], Eq 13; [Blatman-2011], Eq 22 (hyperbolic sets).
     """
     total = whole_number("degree", degree, 0, LOOKED_AT)
     if not isinstance(q_norm, Real) or not 0.0 < q_norm <= 1.0:

@@ -9,18 +9,18 @@ from numpy.typing import ArrayLike, NDArray
 
 from lithobrake.chaos import sensitivity
 from lithobrake.chaos.basis import basis_matrix, condition_number
-from lithobrake.chaos.gaussian_process import FAMILIES, learn
+from lithobrake.chaos.degree_selection import best_terms, terms_to_try
+from lithobrake.chaos.gaussian_process import FAMILIES, fit_process
 from lithobrake.chaos.least_squares import RANK_TOLERANCE
+from lithobrake.chaos.multi_index import Indices
 from lithobrake.chaos.polynomials import Array
-from lithobrake.chaos.regression import best_terms, terms_to_try
 from lithobrake.chaos.scores import absolute_percentage_error
 from lithobrake.chaos.surrogate import Surrogate
-from lithobrake.chaos.terms import Indices
 from lithobrake.chaos.threads import one_thread
 from lithobrake.chaos.training import Training, checked_training
 
-# With more terms than this share of the points the residuals say too little about the error.
-TERM_SHARE = 0.7
+# With more terms for each point than this the residuals say too little about the error.
+TERMS_PER_POINT = 0.7
 SMALLEST_FREEDOM = 0.05
 # Above this share of scatter in the variance a process has settled what matters too firmly to be drawn from.
 SCATTER_SHARE = 0.05
@@ -61,7 +61,7 @@ def sobol_estimates(
     least squares on all terms of low degree: parameters learnt from much scatter rule out inputs that may matter.
     Rows of residuals are drawn jointly for all outputs and are as large as the error at new points, so that they hold
     what the fit left out. Intervals take the runs as independent: they hold for the bed and place of these runs.
-    Source: Davison and Hinkley, 1997, sections 5.2 and 6.2; Dubreuil and others, 2014 (indices from expansions).
+    Source: [Davison-1997], sections 5.2 and 6.2; [Dubreuil-2014] (indices from expansions).
     """
     _check_resampling(count, level)
     training = checked_training(surrogate.inputs, x, y, output_names=surrogate.output_names)
@@ -116,7 +116,7 @@ def _debiased(refit: Refit, coefficients: Array, level: float) -> tuple[Array, A
     """Estimate and bounds [2, input_count] each, from coefficients [term_count, draw_count] of least squares.
 
     Scatter adds its variance to every squared coefficient; it is taken off, so that many small terms do not add up to
-    an effect. Source: Searle, Casella and McCulloch, 1992, "Variance Components", section 3.5 (analysis of variance).
+    an effect. Source: [Searle-1992], section 3.5 (analysis of variance).
     """
     noise = coefficients.var(axis=1, ddof=1, keepdims=True)
     parts, variance = _debiased_parts(refit.indices, coefficients, noise)
@@ -168,13 +168,13 @@ def _refit_of(surrogate: Surrogate, training: Training, output: int) -> Refit:
             constant = np.zeros((1, len(training.inputs)), dtype=np.int64)
             return _least_squares_refit(training, output, _with_low_degrees(constant, training))
         return _process_refit(training, output, entry, indices)
-    if method != "ols" or len(indices) > TERM_SHARE * training.count:
-        indices = best_terms(training, term_limit=TERM_SHARE * training.count)
+    if method != "ols" or len(indices) > TERMS_PER_POINT * training.count:
+        indices = best_terms(training, term_limit=TERMS_PER_POINT * training.count)
     return _least_squares_refit(training, output, indices)
 
 
 def _least_squares_refit(training: Training, output: int, indices: Indices) -> Refit:
-    """Source of the residuals: MacKinnon and White, 1985 (HC3: the full leverage, as for left-out points)."""
+    """Source of the residuals: [MacKinnon-1985] (HC3: the full leverage, as for left-out points)."""
     orthogonal, triangle = np.linalg.qr(basis_matrix(training.inputs, indices, training.x))
     y = training.y[:, output]
     fitted = orthogonal @ (orthogonal.T @ y)
@@ -218,7 +218,7 @@ def _with_low_degrees(kept: Indices, training: Training) -> Indices:
 
 def _process_refit(training: Training, output: int, entry: dict[str, Any], indices: Indices) -> Refit:
     """The process with its parameters kept, which is linear in the outputs."""
-    process = learn(training, output, next(one for one in FAMILIES if one.name == entry["covariance"]))
+    process = fit_process(training, output, next(one for one in FAMILIES if one.name == entry["covariance"]))
     errors = process.leave_one_out
 
     def coefficients(values: Array) -> Array:
@@ -237,7 +237,7 @@ def score_intervals(
 
     Studentised, in the logarithms of the errors: a mean of squares is skewed, and plain percentiles of it are too low
     and too narrow. Fewer than five runs tell nothing; a score of 0 or infinity is its own interval.
-    Source: Davison and Hinkley, 1997, section 5.2 (studentised bootstrap).
+    Source: [Davison-1997], section 5.2 (studentised bootstrap).
     """
     _check_resampling(count, level)
     training = checked_training(surrogate.inputs, x, y, output_names=surrogate.output_names)
@@ -275,6 +275,6 @@ def _log_scores(predicted: Array, y: Array) -> Array:
     mean_square = float(square.mean())
     with np.errstate(divide="ignore", invalid="ignore"):
         sizes = np.array([percentage.mean(), np.sqrt(mean_square), np.sqrt(mean_square / deviation.mean())])
-        share, spread = square / mean_square, deviation / deviation.mean()
-        slopes = np.stack([percentage / sizes[0], 0.5 * share, 0.5 * (share - spread)])
-        return np.stack([np.log(sizes), slopes.std(axis=1) / np.sqrt(max(len(y) - 1, 1))])
+        error, deviation = square / mean_square, deviation / deviation.mean()
+        derivatives = np.stack([percentage / sizes[0], 0.5 * error, 0.5 * (error - deviation)])
+        return np.stack([np.log(sizes), derivatives.std(axis=1) / np.sqrt(max(len(y) - 1, 1))])

@@ -47,7 +47,7 @@ class Distribution(ABC):
         """Polynomials in the germ, orthonormal in this distribution, up to a degree."""
 
     @abstractmethod
-    def slope(self, x: Array) -> Array:
+    def germ_derivative(self, x: Array) -> Array:
         """Derivative of the germ with respect to x [1 / unit of the input]."""
 
     def gauss(self, count: int) -> tuple[Array, Array]:

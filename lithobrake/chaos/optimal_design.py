@@ -5,12 +5,12 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import ArrayLike
 
+from lithobrake.chaos.abstract_distribution import Distribution, checked_inputs
 from lithobrake.chaos.basis import basis_matrix, points_of
 from lithobrake.chaos.counts import term_count
 from lithobrake.chaos.design import checked_count
-from lithobrake.chaos.germ import Distribution, checked_inputs
+from lithobrake.chaos.multi_index import Indices, multi_index_set
 from lithobrake.chaos.polynomials import Array
-from lithobrake.chaos.terms import Indices, multi_index_set
 from lithobrake.chaos.threads import one_thread
 
 # Gauss nodes that stand for the density of one input when points are drawn from it times a squared polynomial.
@@ -21,7 +21,7 @@ CANDIDATES_PER_TERM = 15
 def christoffel_weights(inputs: Mapping[str, Distribution], x: Array, indices: Indices) -> Array:
     """Least-squares weights term_count / sum_i Psi_i(x)**2 at points x [count, input_count]; result [count].
 
-    Source: Narayan, Jakeman and Zhou, 2017, "A Christoffel function weighted least squares algorithm", Eq 9.
+    Source: [Narayan-2017], Eq 9.
     """
     matrix = basis_matrix(inputs, indices, points_of(inputs, x))
     return len(indices) / np.einsum("ij,ij->i", matrix, matrix)
@@ -31,7 +31,7 @@ def christoffel(inputs: Mapping[str, Distribution], count: int, seed: int = 0, *
     """Random points with density (mean of Psi_i**2) times that of the inputs, physical units, [count, input_count].
 
     Few of them suffice for weighted least squares; take the weights from `christoffel_weights`.
-    Source: Cohen and Migliorati, 2017, "Optimal weighted least-squares methods", section 5.
+    Source: [Cohen-2017], section 5.
     """
     distributions = checked_inputs(inputs)
     size, generator = checked_count(count), np.random.default_rng(seed)
@@ -70,7 +70,7 @@ def fekete(
     the number of terms repeat the choice among the remaining candidates. All are chosen from Christoffel-weighted
     candidates by QR with column pivoting, which keeps the determinant of the weighted basis large; unbounded inputs
     are allowed. Raises ValueError for fewer points than terms.
-    Source: Sommariva and Vianello, 2009, "Computing approximate Fekete points by QR factorizations".
+    Source: [Sommariva-2009].
     """
     distributions = checked_inputs(inputs)
     if count is None and degree is None:
@@ -121,7 +121,7 @@ def d_optimal(
     existing: points already run [any, input_count], which the new ones complete. candidates: points to choose from
     (each at most once), None is Christoffel-weighted random ones. The determinant of the information matrix grows as
     fast as one point at a time can make it. Result [count, input_count]. Raises ValueError for too few candidates.
-    Source: Fedorov, 1972, "Theory of Optimal Experiments" (greedy exchange of D-optimality).
+    Source: [Fedorov-1972] (greedy exchange of D-optimality).
     """
     distributions = checked_inputs(inputs)
     indices = multi_index_set(len(distributions), degree)

@@ -94,7 +94,7 @@ COORDINATE = """
 import sys
 from pathlib import Path
 sys.path.insert(0, sys.argv[1])
-from test_cluster import campaign, DaskExecutor
+from test_dask_executor import campaign, DaskExecutor
 campaign(Path(sys.argv[2]), DaskExecutor(sys.argv[3]))
 """
 

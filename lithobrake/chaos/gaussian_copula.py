@@ -8,15 +8,15 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy import special
 
+from lithobrake.chaos.abstract_distribution import Distribution, checked_inputs
 from lithobrake.chaos.basis import outside_count, points_of
 from lithobrake.chaos.design import sobol_sequence
 from lithobrake.chaos.fitting import fit
-from lithobrake.chaos.germ import Distribution, checked_inputs
 from lithobrake.chaos.polynomials import Array
-from lithobrake.chaos.storage import content_of, inputs_from_json, inputs_to_json, read, surrogate_of, write
+from lithobrake.chaos.storage import inputs_from_json, inputs_to_json, read, write
 from lithobrake.chaos.surrogate import Surrogate
 from lithobrake.chaos.threads import one_thread
-from lithobrake.chaos.unbounded import Normal
+from lithobrake.chaos.unbounded_distributions import Normal
 
 FORMAT = "lithobrake expansion of dependent inputs"
 
@@ -25,7 +25,7 @@ class GaussianCopula:
     """Inputs with given distributions and Spearman rank correlations [input_count, input_count].
 
     Raises ValueError unless the matrix is symmetric with ones on its diagonal and can be that of a Gaussian copula.
-    Source: Nataf, 1962; Lebrun and Dutfoy, 2009; r = 2 sin(pi rho / 6), Kruskal, 1958, for the normal correlation.
+    Source: [Nataf-1962]; [Lebrun-2009]; r = 2 sin(pi rho / 6), [Kruskal-1958], for the normal correlation.
     """
 
     def __init__(self, inputs: Mapping[str, Distribution], rank_correlation: ArrayLike) -> None:
@@ -101,7 +101,7 @@ class DependentSurrogate:
             "dependent_inputs": inputs_to_json(self.copula.inputs),
             "rank_correlation": self.copula.rank_correlation.tolist(),
         }
-        write(FORMAT, {**copula, "independent": content_of(self.independent)}, path)
+        write(FORMAT, {**copula, "independent": self.independent.content()}, path)
 
     def _refuse(self) -> NoReturn:
         raise ValueError(
@@ -125,7 +125,7 @@ def load_dependent(path: str | os.PathLike[str]) -> DependentSurrogate:
 
     def build(content: dict[str, Any]) -> DependentSurrogate:
         copula = GaussianCopula(inputs_from_json(content["dependent_inputs"]), content["rank_correlation"])
-        independent = surrogate_of(content["independent"])
+        independent = Surrogate.from_content(content["independent"])
         if independent.inputs != copula.germ_inputs:
             raise ValueError("the inputs of independent are not the germs of dependent_inputs")
         return DependentSurrogate(copula, independent)

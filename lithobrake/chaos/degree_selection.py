@@ -5,9 +5,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from lithobrake.chaos.basis import basis_matrix
-from lithobrake.chaos.least_squares import least_squares
+from lithobrake.chaos.least_squares import solve_least_squares
+from lithobrake.chaos.multi_index import Indices, multi_index_set
 from lithobrake.chaos.solution import Solution
-from lithobrake.chaos.terms import Indices, multi_index_set
 from lithobrake.chaos.training import Training
 
 HIGHEST_DEGREE = 15
@@ -26,7 +26,7 @@ def solve_ols(training: Training, indices: Indices) -> list[Solution]:
         )
     matrix = basis_matrix(training.inputs, indices, training.x)
     names = list(training.inputs)
-    solved = least_squares(matrix, training.y, indices=indices, names=names, weights=training.weights)
+    solved = solve_least_squares(matrix, training.y, indices=indices, names=names, weights=training.weights)
     squares = np.mean(solved.left_out(training.groups) ** 2, axis=0)
     # Leave-one-out does not see the tails where no run stands; the residuals carried through the basis do.
     residual = np.sum(solved.residuals**2, axis=0) / max(training.count - len(indices), 1)

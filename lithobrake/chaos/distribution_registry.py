@@ -3,10 +3,10 @@
 from dataclasses import fields
 from typing import Any
 
-from lithobrake.chaos.bounded import Beta, LogUniform, Uniform
-from lithobrake.chaos.computed import Empirical, TruncatedNormal
-from lithobrake.chaos.germ import NO_CHOICES, Distribution
-from lithobrake.chaos.unbounded import Exponential, Gamma, LogNormal, Normal
+from lithobrake.chaos.abstract_distribution import NO_CHOICES, Distribution
+from lithobrake.chaos.bounded_distributions import Beta, LogUniform, Uniform
+from lithobrake.chaos.numerical_distributions import Empirical, TruncatedNormal
+from lithobrake.chaos.unbounded_distributions import Exponential, Gamma, LogNormal, Normal
 
 KINDS: dict[str, type[Distribution]] = {
     entry.kind: entry

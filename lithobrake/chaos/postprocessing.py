@@ -1,19 +1,40 @@
-"""What an expansion tells beyond its moments: effects, slopes, expansions in fewer inputs, distributions."""
+"""What an expansion tells beyond mean and variance: effects, gradients, expansions in fewer inputs, distributions."""
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from lithobrake.chaos.basis import germs_of, recurrences_of
 from lithobrake.chaos.design import checked_count
+from lithobrake.chaos.moments import SAMPLE_COUNT, skewness_and_kurtosis
 from lithobrake.chaos.polynomials import Array
 from lithobrake.chaos.surrogate import Surrogate
 from lithobrake.chaos.threads import one_thread
 
 
+def shape_moments(surrogate: Surrogate, *, count: int = SAMPLE_COUNT, seed: int = 0) -> dict[str, Any]:
+    """Skewness and kurtosis (3 for a normal) of each output, [output_count] or numbers; 0 where nothing varies.
+
+    "exact" says whether they are; where not, they come from `count` points, and `skewness_and_kurtosis` says when.
+    """
+    found = skewness_and_kurtosis(
+        surrogate.inputs,
+        surrogate.multi_indices,
+        surrogate.coefficients.reshape(surrogate.term_count, -1),
+        count=count,
+        seed=seed,
+    )
+    return {
+        "skewness": surrogate.shaped(found.skewness),
+        "kurtosis": surrogate.shaped(found.kurtosis),
+        "exact": found.exact,
+    }
+
+
 def marginal(surrogate: Surrogate, names: Sequence[str]) -> Surrogate:
-    """The mean over all other inputs, as an expansion in the named inputs only. Source: Sudret, 2008, section 3.
+    """The mean over all other inputs, as an expansion in the named inputs only. Source: [Sudret-2008], section 3.
 
     Raises ValueError for an unknown name or none.
     """
@@ -48,7 +69,7 @@ def main_effect(surrogate: Surrogate, name: str, points: ArrayLike | int = 50) -
 
 @one_thread()
 def gradient(surrogate: Surrogate, x: ArrayLike) -> Array:
-    """Slopes at points x [count, input_count]; result [count, output_count, input_count] or [count, input_count].
+    """Gradient at points x [count, input_count]; result [count, output_count, input_count] or [count, input_count].
 
     In units of the output over those of the input.
     """
@@ -60,7 +81,7 @@ def gradient(surrogate: Surrogate, x: ArrayLike) -> Array:
     values = [one.values(germ)[indices[:, k]] for k, (one, germ) in enumerate(zip(recurrences, germs, strict=True))]
     result = np.empty((len(points), coefficients.shape[1], len(values)))
     for k, entry in enumerate(surrogate.inputs.values()):
-        product = recurrences[k].slopes(germs[k])[indices[:, k]] * entry.slope(points[:, k])
+        product = recurrences[k].derivatives(germs[k])[indices[:, k]] * entry.germ_derivative(points[:, k])
         for other in range(len(values)):
             if other != k:
                 product *= values[other]
@@ -86,7 +107,7 @@ def density(
 ) -> tuple[Array, Array]:
     """Values of one output [point_count] and their probability density, by a Gaussian kernel over samples.
 
-    output: its name, None is the first. Source: Silverman, 1986, Eq 3.31 (width of the kernel).
+    output: its name, None is the first. Source: [Silverman-1986], Eq 3.31 (width of the kernel).
     """
     names = surrogate.output_names
     if output is not None and output not in names:
@@ -98,11 +119,11 @@ def density(
     width = 0.9 * spread * count**-0.2
     edges = np.linspace(samples.min() - 4.0 * width, samples.max() + 4.0 * width, 4097)
     # Samples are binned first, so the cost does not grow with their number.
-    shares = np.histogram(samples, edges)[0] / count
+    fractions = np.histogram(samples, edges)[0] / count
     middles = 0.5 * (edges[1:] + edges[:-1])
     points = np.linspace(edges[0], edges[-1], point_count)
     bumps = np.exp(-0.5 * ((points[:, None] - middles) / width) ** 2) / (width * np.sqrt(2.0 * np.pi))
-    return points, bumps @ shares
+    return points, bumps @ fractions
 
 
 def output_correlation(surrogate: Surrogate) -> Array:

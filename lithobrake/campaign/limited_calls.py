@@ -7,7 +7,7 @@ from functools import cache
 from typing import Any
 
 from lithobrake.campaign.limits import Limits
-from lithobrake.campaign.local import LocalExecutor, available_cores
+from lithobrake.campaign.local_executor import LocalExecutor, available_cores
 
 
 def submit_limited(executor: Executor, limits: Limits, function: Callable[..., Any], *args: Any) -> "Future[Any]":
@@ -21,11 +21,11 @@ def submit_limited(executor: Executor, limits: Limits, function: Callable[..., A
 
 def limited(limits: Limits, function: Callable[..., Any], *args: Any) -> Any:
     """Make a call in a process of its own, from the worker that this is called in."""
-    return _beside().submit_limited(limits, function, *args).result()
+    return _own_executor().submit_limited(limits, function, *args).result()
 
 
 @cache
-def _beside() -> LocalExecutor:
+def _own_executor() -> LocalExecutor:
     # Some executors start their workers as daemons, which may have no children; these end with their parent anyway.
     multiprocessing.current_process().daemon = False
     return LocalExecutor(available_cores())

@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from lithobrake.chaos.gaussian_process import Process, expansion_of, families_for, fresh_germs, learn
-from lithobrake.chaos.germ import Distribution
-from lithobrake.chaos.regression import ols_by_degree
-from lithobrake.chaos.solution import Solution, told
-from lithobrake.chaos.sparse import is_structured, solve_sparse
+from lithobrake.chaos.abstract_distribution import Distribution
+from lithobrake.chaos.degree_selection import ols_by_degree
+from lithobrake.chaos.gaussian_process import GaussianProcess, expansion_of, families_for, fit_process, fresh_germs
+from lithobrake.chaos.solution import Solution, with_progress
+from lithobrake.chaos.sparse_regression import is_structured, solve_sparse
 from lithobrake.chaos.training import Training
 
 # A process costs the cube of the number of points; with more of them least squares is accurate enough.
@@ -23,7 +23,7 @@ TAIL_DEGREE, TAIL_GROWTH, TAIL_DISTANCE = 10, 2000.0, 3.0
 CHALLENGER = "gaussian process with nugget, radial Matern 5/2"
 
 
-def _as_solution(process: Process, training: Training) -> Solution:
+def _as_solution(process: GaussianProcess, training: Training) -> Solution:
     indices, coefficients, cut = expansion_of(process, training.inputs)
     # The error of cutting the projection adds to that of the process.
     expected = float(np.hypot(process.expected_error(fresh_germs(training.inputs)[1]), cut))
@@ -44,7 +44,7 @@ def process_solution(training: Training, output: int) -> Solution:
     if _constant(training, output):
         return ols_by_degree(training)[0][output]
     candidates = [
-        _as_solution(learn(training, output, family), training)
+        _as_solution(fit_process(training, output, family), training)
         for family in families_for(list(training.inputs.values()))
     ]
     return min(candidates, key=lambda one: one.expected_error)
@@ -89,13 +89,13 @@ def best_solutions(training: Training, progress: Callable[[int, int], None]) -> 
     chosen: list[Solution] = []
     table: dict[str, dict[str, float]] = {}
     challenger: dict[str, float | None] = {}
-    for output in told(range(len(training.output_names)), progress):
+    for output in with_progress(range(len(training.output_names)), progress):
         name = training.output_names[output]
         scores = {f"ols degree {degree}": row[output] for degree, row in enumerate(ladder)}
         challenger[name] = None
         if use_processes and not _constant(training, output):
             for family in families_for(list(training.inputs.values())):
-                process = learn(training, output, family)
+                process = fit_process(training, output, family)
                 scores[f"gaussian_process {family.name}"] = _as_solution(process, training)
                 if family.name == "matern":
                     challenger[name] = process.expected_error(fresh_germs(training.inputs)[1])

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy import special
 
-from lithobrake.chaos.germ import Distribution, Support
+from lithobrake.chaos.abstract_distribution import Distribution, Support
 from lithobrake.chaos.polynomials import Array, Recurrence, jacobi, legendre
 
 
@@ -38,7 +38,7 @@ class Uniform(Distribution):
     def cdf(self, x: Array) -> Array:
         return 0.5 * (1.0 + self.germ(x))
 
-    def slope(self, x: Array) -> Array:
+    def germ_derivative(self, x: Array) -> Array:
         return np.full_like(x, 2.0 / (self.upper - self.lower))
 
     def recurrence(self, degree: int) -> Recurrence:
@@ -79,7 +79,7 @@ class LogUniform(Distribution):
     def cdf(self, x: Array) -> Array:
         return 0.5 * (1.0 + self.germ(x))
 
-    def slope(self, x: Array) -> Array:
+    def germ_derivative(self, x: Array) -> Array:
         low, high = self._logarithms
         return 2.0 / ((high - low) * x)
 
@@ -113,13 +113,13 @@ class Beta(Distribution):
         return self._clip(0.5 * ((1.0 - germ) * self.lower + (1.0 + germ) * self.upper))
 
     def ppf(self, u: ArrayLike) -> Array:
-        share = special.betaincinv(self.alpha, self.beta, np.asarray(u, dtype=float))
-        return self._clip(self.lower + share * (self.upper - self.lower))
+        fraction = special.betaincinv(self.alpha, self.beta, np.asarray(u, dtype=float))
+        return self._clip(self.lower + fraction * (self.upper - self.lower))
 
     def cdf(self, x: Array) -> Array:
         return special.betainc(self.alpha, self.beta, 0.5 * (1.0 + self.germ(x)))
 
-    def slope(self, x: Array) -> Array:
+    def germ_derivative(self, x: Array) -> Array:
         return np.full_like(x, 2.0 / (self.upper - self.lower))
 
     def recurrence(self, degree: int) -> Recurrence:

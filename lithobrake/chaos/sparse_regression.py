@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lithobrake.chaos.basis import basis_matrix
+from lithobrake.chaos.degree_selection import solve_ols, terms_to_try
+from lithobrake.chaos.multi_index import Indices, multi_index_set
 from lithobrake.chaos.polynomials import Array
-from lithobrake.chaos.regression import solve_ols, terms_to_try
 from lithobrake.chaos.solution import Solution
-from lithobrake.chaos.terms import Indices, multi_index_set
 from lithobrake.chaos.training import Training
 
 Rows = NDArray[np.int64]
@@ -33,8 +33,8 @@ def is_structured(x: Array) -> bool:
     Folds of a grid leave out whole faces, so their error is that of extrapolation.
     """
     distinct = np.unique(x, axis=0)
-    shares = [len(np.unique(column)) / len(column) for column in distinct.T]
-    return len(x) > 4 and float(np.median(shares)) < 1.0 / 3.0
+    fractions = [len(np.unique(column)) / len(column) for column in distinct.T]
+    return len(x) > 4 and float(np.median(fractions)) < 1.0 / 3.0
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ class Candidates:
 def solve_sparse(training: Training, output: int, method: str, *, degree: int | None, q_norm: float | None) -> Solution:
     """Fit one output by "lars" or "omp"; degree and q_norm None are chosen by the same folds.
 
-    Source: Blatman and Sudret, 2011 (hybrid LARS); Pati and others, 1993 (OMP).
+    Source: [Blatman-2011] (hybrid LARS); [Pati-1993] (OMP).
     """
     y = training.y[:, output]
     ladders = _candidate_ladders(training, degree, q_norm)

@@ -21,9 +21,9 @@ from lithobrake.campaign.limits import Limits, memory_by_session
 from lithobrake.campaign.worker import BEGUN, Call, Worker
 
 # How often running calls are looked at when they have limits [s].
-_LOOK = 0.2
+_POLL_INTERVAL = 0.2
 # So many processes in a row that die before they begin with a call are no accident.
-_STILLBORN = 3
+_STILLBORN_LIMIT = 3
 
 
 class WorkerDiedError(RuntimeError):
@@ -59,7 +59,7 @@ class LocalExecutor(Executor):
         self.worker_count = available_cores() if worker_count is None else int(worker_count)
         self._waiting: deque[Call] = deque()
         self._workers: list[Worker] = []
-        self._ear, self._bell = Pipe(duplex=False)
+        self._wake_receiver, self._wake_sender = Pipe(duplex=False)
         self._lock = threading.Lock()
         self._thread: threading.Thread | None = None
         self._closing = False
@@ -89,7 +89,7 @@ class LocalExecutor(Executor):
             if self._thread is None:
                 self._thread = threading.Thread(target=self._serve, name="local executor", daemon=True)
                 self._thread.start()
-        self._bell.send_bytes(b"call")
+        self._wake_sender.send_bytes(b"call")
         return future
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
@@ -107,7 +107,7 @@ class LocalExecutor(Executor):
         if self._thread is not None:
             # Where the thread has ended already, nobody listens.
             with contextlib.suppress(OSError):
-                self._bell.send_bytes(b"end")
+                self._wake_sender.send_bytes(b"end")
             if wait:
                 self._thread.join()
 
@@ -117,13 +117,13 @@ class LocalExecutor(Executor):
             while self._hand_out():
                 busy = [worker for worker in self._workers if worker.call]
                 has_limits = any(worker.call.limits != Limits() for worker in busy if worker.call)
-                pipes = [self._ear, *(worker.connection for worker in busy)]
-                ready = wait(pipes, timeout=_LOOK if has_limits else None)
-                if self._ear in ready:
-                    self._ear.recv_bytes()
+                pipes = [self._wake_receiver, *(worker.connection for worker in busy)]
+                ready = wait(pipes, timeout=_POLL_INTERVAL if has_limits else None)
+                if self._wake_receiver in ready:
+                    self._wake_receiver.recv_bytes()
                 for worker in busy:
                     if worker.connection in ready:
-                        self._hear(worker)
+                        self._receive(worker)
                 if has_limits:
                     self._end_those_over_their_limits()
         # Say, no process can be started: whoever waits for a future has to hear of it.
@@ -152,7 +152,7 @@ class LocalExecutor(Executor):
                 with self._lock:
                     self._waiting.appendleft(call)
 
-    def _hear(self, worker: Worker) -> None:
+    def _receive(self, worker: Worker) -> None:
         """Take in what a process says: that it has begun, or how its call ended."""
         try:
             said = worker.connection.recv_bytes()
@@ -184,7 +184,7 @@ class LocalExecutor(Executor):
         if worker.call:
             with self._lock:
                 self._waiting.appendleft(worker.call)
-        if self._stillborn_count >= _STILLBORN:
+        if self._stillborn_count >= _STILLBORN_LIMIT:
             raise BrokenExecutor(
                 f"processes end before they begin with a run ({worker.ended()}); in a script of your own, what starts "
                 'the campaign belongs under: if __name__ == "__main__":'

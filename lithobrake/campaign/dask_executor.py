@@ -6,15 +6,15 @@ from collections.abc import Callable
 from concurrent.futures import BrokenExecutor, Executor, Future
 from typing import TYPE_CHECKING, Any
 
-from lithobrake.campaign.local import WorkerDiedError
+from lithobrake.campaign.local_executor import WorkerDiedError
 
 if TYPE_CHECKING:
     import distributed
 
 # How long to look for the scheduler, and how often the size of the cluster is asked for [s].
-_PATIENCE, _LOOK = 10.0, 5.0
+_CONNECT_TIMEOUT, _POLL_INTERVAL = 10.0, 5.0
 # Calls are handed out for so many workers at least: a cluster that is still empty will grow.
-_FEWEST = 16
+_SMALLEST_CAPACITY = 16
 
 
 class DaskExecutor(Executor):
@@ -36,34 +36,34 @@ class DaskExecutor(Executor):
             raise ValueError("the executor dask needs Dask; install it with: pip install lithobrake[dask]") from error
         try:
             security = _security(scheduler)
-            self._client = Client(scheduler, timeout=_PATIENCE, security=security, set_as_default=False)
+            self._client = Client(scheduler, timeout=_CONNECT_TIMEOUT, security=security, set_as_default=False)
         except OSError as error:
             raise ValueError(
                 f"no Dask scheduler answers at {scheduler} ({error}); start one with: dask scheduler"
             ) from error
         self._scheduler = scheduler
-        self._flying: dict[distributed.Future[Any], Future[Any]] = {}
-        self._thread_count, self._asked = 0, -_LOOK
+        self._submitted: dict[distributed.Future[Any], Future[Any]] = {}
+        self._thread_count, self._asked = 0, -_POLL_INTERVAL
 
     @property
     def capacity(self) -> int:
         """Calls that the cluster makes at once, as it was a few seconds ago."""
-        if time.monotonic() > self._asked + _LOOK:
+        if time.monotonic() > self._asked + _POLL_INTERVAL:
             self._asked, self._thread_count = time.monotonic(), sum(self._client.nthreads().values())
-        return max(self._thread_count, _FEWEST)
+        return max(self._thread_count, _SMALLEST_CAPACITY)
 
     def submit(self, function: Callable[..., Any], /, *args: Any, **kwargs: Any) -> "Future[Any]":
         """Send a call to the scheduler; it counts as running from then on."""
         # Impure: a call that is made a second time must not get the answer to the first.
         there, here = self._client.submit(function, *args, **kwargs, pure=False), Future[Any]()
         here.set_running_or_notify_cancel()
-        self._flying[there] = here
-        there.add_done_callback(self._pass_on)
+        self._submitted[there] = here
+        there.add_done_callback(self._forward_result)
         return here
 
-    def _pass_on(self, there: "distributed.Future[Any]") -> None:
+    def _forward_result(self, there: "distributed.Future[Any]") -> None:
         """Hand the answer of the cluster to whoever waits for it; Dask calls this in a thread of its own."""
-        here = self._flying.pop(there)
+        here = self._submitted.pop(there)
         try:
             if there.status == "finished":
                 here.set_result(there.result())
@@ -78,7 +78,7 @@ class DaskExecutor(Executor):
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
         """Leave the cluster; with cancel_futures, calls that have not begun are taken back."""
         if cancel_futures and self._client.status == "running":
-            self._client.cancel(list(self._flying))
+            self._client.cancel(list(self._submitted))
         self._client.close()
 
 

@@ -6,14 +6,14 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 
-from lithobrake.campaign.record import Record
+from lithobrake.campaign.record import ENDED, Record, RunStatus
 
 
 @dataclass
 class Spread:
     """Count, mean and standard deviation of numbers that come one by one.
 
-    Source: Welford (1962), Technometrics 4, 419.
+    Source: [Welford-1962].
     """
 
     count: int = 0
@@ -65,9 +65,9 @@ class Tally:
         """Time until all have ended, at the rate so far [s]; NaN before the first has."""
         return (self.total - self.ended) / self.rate
 
-    def add(self, status: str, outputs: dict[str, float]) -> None:
+    def add(self, status: RunStatus, outputs: dict[str, float]) -> None:
         """Count a run that has ended."""
-        if status == "failed":
+        if status == RunStatus.FAILED:
             self.failed += 1
         else:
             self.done += 1
@@ -120,8 +120,8 @@ def ledger_tally(records: Iterable[Record], began: str | None = None) -> Tally:
     result = Tally(0)
     for entry in records:
         result.total += 1
-        result.running += began is not None and entry.status == "running"
-        if entry.status in ("done", "failed"):
+        result.running += began is not None and entry.status == RunStatus.RUNNING
+        if entry.status in ENDED:
             result.add(entry.status, entry.outputs)
             result.reused += began is not None and (entry.ended or "") < began
     if began is not None:

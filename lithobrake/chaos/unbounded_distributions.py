@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy import special
 
-from lithobrake.chaos.germ import Distribution, Support
+from lithobrake.chaos.abstract_distribution import Distribution, Support
 from lithobrake.chaos.polynomials import Array, Recurrence, hermite, laguerre
 
 
@@ -38,7 +38,7 @@ class Normal(Distribution):
     def cdf(self, x: Array) -> Array:
         return special.ndtr(self.germ(x))
 
-    def slope(self, x: Array) -> Array:
+    def germ_derivative(self, x: Array) -> Array:
         return np.full_like(x, 1.0 / self.std)
 
     def recurrence(self, degree: int) -> Recurrence:
@@ -73,7 +73,7 @@ class LogNormal(Distribution):
     def cdf(self, x: Array) -> Array:
         return special.ndtr(self.germ(x))
 
-    def slope(self, x: Array) -> Array:
+    def germ_derivative(self, x: Array) -> Array:
         return 1.0 / (self.std * x)
 
     def recurrence(self, degree: int) -> Recurrence:
@@ -108,7 +108,7 @@ class Gamma(Distribution):
     def cdf(self, x: Array) -> Array:
         return special.gammainc(self.shape, self.germ(x))
 
-    def slope(self, x: Array) -> Array:
+    def germ_derivative(self, x: Array) -> Array:
         return np.full_like(x, 1.0 / self.scale)
 
     def recurrence(self, degree: int) -> Recurrence:
@@ -141,7 +141,7 @@ class Exponential(Distribution):
     def cdf(self, x: Array) -> Array:
         return -np.expm1(-self.germ(x))
 
-    def slope(self, x: Array) -> Array:
+    def germ_derivative(self, x: Array) -> Array:
         return np.full_like(x, self.rate)
 
     def recurrence(self, degree: int) -> Recurrence:

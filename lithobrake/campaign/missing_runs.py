@@ -5,7 +5,7 @@ from itertools import combinations, product
 from math import comb
 from typing import TYPE_CHECKING
 
-from lithobrake.campaign.tally import common_reasons
+from lithobrake.campaign.run_counts import common_reasons
 
 if TYPE_CHECKING:
     import numpy as np

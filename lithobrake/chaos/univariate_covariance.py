@@ -6,14 +6,14 @@ from typing import ClassVar
 
 import numpy as np
 
-from lithobrake.chaos.germ import Distribution
+from lithobrake.chaos.abstract_distribution import Distribution
 from lithobrake.chaos.polynomials import Array
 
 # Nodes of the quadrature that projects a bump on polynomials.
 RULE_NODES = 160
 
 
-class Part(ABC):
+class UnivariateCovariance(ABC):
     """Covariance of one input with two log parameters, in units of its germ; degree: highest of polynomials."""
 
     start: ClassVar[tuple[float, float]]
@@ -28,7 +28,7 @@ class Part(ABC):
         """Covariance of germs [a] and [b]; result [a, b]."""
 
     @abstractmethod
-    def with_slopes(self, parameters: Array, germ: Array) -> tuple[Array, Array, Array]:
+    def with_derivatives(self, parameters: Array, germ: Array) -> tuple[Array, Array, Array]:
         """Covariance of germs [count] with themselves and its derivatives by both parameters, each [count, count]."""
 
     @abstractmethod
@@ -40,8 +40,8 @@ class Part(ABC):
         """Mean over the input of p_j(t) times the covariance of t and a germ, [degree + 1, count]."""
 
 
-class GaussianPart(Part):
-    """exp(share) exp(-r**2 / (2 l**2)), parameters (ln l, share)."""
+class UnivariateGaussian(UnivariateCovariance):
+    """s exp(-r**2 / (2 l**2)), parameters (ln l, ln s)."""
 
     start = (0.0, 0.0)
     bounds = ((-3.0, 5.0), (-10.0, 8.0))
@@ -50,7 +50,7 @@ class GaussianPart(Part):
         squares = ((first[:, None] - second[None, :]) / np.exp(parameters[0])) ** 2
         return np.exp(parameters[1] - 0.5 * squares)
 
-    def with_slopes(self, parameters: Array, germ: Array) -> tuple[Array, Array, Array]:
+    def with_derivatives(self, parameters: Array, germ: Array) -> tuple[Array, Array, Array]:
         squares = ((germ[:, None] - germ[None, :]) / np.exp(parameters[0])) ** 2
         part = np.exp(parameters[1] - 0.5 * squares)
         return part, part * squares, part
@@ -62,8 +62,8 @@ class GaussianPart(Part):
         return np.exp(parameters[1]) * gaussian_means(self.entry, self.degree, germ, float(np.exp(parameters[0])))
 
 
-class PolynomialPart(Part):
-    """sum_j v_j p_j(t) p_j(t'), v_j = exp(share - decay (j - 1)) from degree 1 on, parameters (ln decay, share)."""
+class UnivariatePolynomial(UnivariateCovariance):
+    """sum_j v_j p_j(t) p_j(t'), v_j = s exp(-decay (j - 1)) from degree 1 on, parameters (ln decay, ln s)."""
 
     start = (0.0, -1.2)
     bounds = ((-2.0, 3.0), (-12.0, 5.0))
@@ -79,11 +79,11 @@ class PolynomialPart(Part):
     def between(self, parameters: Array, first: Array, second: Array) -> Array:
         return (self._table(first).T * self._variances(parameters)[0]) @ self._table(second)
 
-    def with_slopes(self, parameters: Array, germ: Array) -> tuple[Array, Array, Array]:
+    def with_derivatives(self, parameters: Array, germ: Array) -> tuple[Array, Array, Array]:
         table = self._table(germ)
-        variances, slopes = self._variances(parameters)
+        variances, derivatives = self._variances(parameters)
         part = (table.T * variances) @ table
-        return part, (table.T * slopes) @ table, part
+        return part, (table.T * derivatives) @ table, part
 
     def variance(self, parameters: Array, germ: Array) -> Array:
         return self._variances(parameters)[0] @ self._table(germ) ** 2
