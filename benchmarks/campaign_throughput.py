@@ -24,7 +24,7 @@ import numpy as np
 from lithobrake.campaign import DaskExecutor, Ledger, LocalExecutor, Runs, run
 from lithobrake.pipeline import run_study
 from lithobrake.pipeline.landings import TouchdownModel, draw, engine_hash, medians
-from lithobrake.study import read_study
+from lithobrake.study import StudySource, read_study
 
 STUDY = Path(__file__).parents[1] / "scenarios" / "quick.toml"
 
@@ -56,7 +56,7 @@ def busy_time() -> float:
 
 def landings(study: Path, folder: Path, count: int) -> None:
     """Time equal landings on one worker and on two; study: folder that has the bed, or gets it."""
-    run_study(STUDY, study, until="landing")
+    run_study(StudySource.read(STUDY), study, until="landing")
     model, x = EqualLandings(study), np.arange(count, dtype=float)[:, None]
     walls, cpus = dict[int, float](), dict[int, float]()
     for workers in (1, 2):

@@ -17,8 +17,8 @@ from lithobrake.pipeline.folder import AGAIN, StudyFolder
 from lithobrake.reading import read_rows
 from lithobrake.study.units import OUTPUT_UNITS, input_units
 
-# What is known of every run, whatever its inputs and outputs; times [s].
-PLAIN_COLUMNS = ("key", "outcome", "reason", "wall_s", "cpu_s")
+# What is known of every run, whatever its inputs and outputs; times stand in the ledger alone: they never repeat.
+PLAIN_COLUMNS = ("key", "outcome", "reason")
 
 
 @dataclass(frozen=True)
@@ -26,14 +26,12 @@ class DesignRuns:
     """The runs of one design, in its order; all arrays of shape [run_count], NaN where a run has no such number.
 
     keys: of the ledger; the same where a point occurs twice. outcomes: how each ended, "failed" among them; reasons:
-    why those failed. inputs: all that a run was given and drew, in the file's units; outputs [SI]; wall_s, cpu_s [s].
+    why those failed. inputs: all that a run was given and drew, in the file's units; outputs [SI].
     """
 
     keys: list[str]
     outcomes: list[str]
     reasons: list[str]
-    wall_s: np.ndarray
-    cpu_s: np.ndarray
     inputs: Mapping[str, np.ndarray]
     outputs: Mapping[str, np.ndarray]
 
@@ -45,8 +43,6 @@ class DesignRuns:
             keys=[one.key for one in records],
             outcomes=runs.outcomes,
             reasons=[reason or "" for reason in runs.reasons],
-            wall_s=np.array([one.wall_s for one in records], dtype=float),
-            cpu_s=np.array([one.cpu_s for one in records], dtype=float),
             inputs=_by_name([one.inputs for one in records]),
             outputs=_by_name([one.outputs for one in records]),
         )
@@ -58,9 +54,6 @@ class DesignRuns:
 
         def words(name: str) -> list[str]:
             return np.concatenate([np.array(getattr(one, name), dtype=object) for one in designs])[first].tolist()
-
-        def numbers(name: str) -> np.ndarray:
-            return np.concatenate([getattr(one, name) for one in designs])[first]
 
         def tables(part: str) -> dict[str, np.ndarray]:
             found = [getattr(one, part) for one in designs]
@@ -74,8 +67,6 @@ class DesignRuns:
             keys=words("keys"),
             outcomes=words("outcomes"),
             reasons=words("reasons"),
-            wall_s=numbers("wall_s"),
-            cpu_s=numbers("cpu_s"),
             inputs=tables("inputs"),
             outputs=tables("outputs"),
         )
@@ -114,7 +105,7 @@ class DesignRuns:
         units = input_units() | OUTPUT_UNITS
         head = [f"input:{name}" + _unit(name, units) for name in self.inputs]
         head += [f"output:{name}" + _unit(name, units) for name in self.outputs]
-        columns = [self.wall_s, self.cpu_s, *self.inputs.values(), *self.outputs.values()]
+        columns = [*self.inputs.values(), *self.outputs.values()]
         cells = [["" if np.isnan(value) else repr(value) for value in column.tolist()] for column in columns]
         path = folder / file_of(design)
         path.parent.mkdir(exist_ok=True)
@@ -135,8 +126,6 @@ class DesignRuns:
             keys=[row["key"] for row in rows],
             outcomes=[row["outcome"] for row in rows],
             reasons=[row["reason"] for row in rows],
-            wall_s=_numbers(rows, "wall_s"),
-            cpu_s=_numbers(rows, "cpu_s"),
             inputs=inputs,
             outputs=outputs,
         )

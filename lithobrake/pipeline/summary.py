@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from lithobrake.campaign import read_records
 from lithobrake.outputs import OUTPUTS
 from lithobrake.pipeline.design_runs import DesignRuns
 from lithobrake.pipeline.designs import DESIGNS, kept_inputs, replicate_count
@@ -239,6 +240,8 @@ def _site(study: Study) -> dict[str, Any]:
 
 def _provenance(job: Job, asked: int, runs: DesignRuns) -> dict[str, Any]:
     """Where it all comes from; asked: runs of all designs, of which `runs` are the distinct ones."""
+    ledger, keys = job.folder / "runs.sqlite", set(runs.keys)
+    records = [one for one in (read_records(ledger) if ledger.is_file() else []) if one.key in keys]
     packages = ("lithobrake", "numpy", "scipy", "numba", "scikit-learn", "h5py")
     return {
         "date": datetime.now(UTC).isoformat(timespec="seconds"),
@@ -252,8 +255,8 @@ def _provenance(job: Job, asked: int, runs: DesignRuns) -> dict[str, Any]:
         "runs": {
             "asked": asked,
             "distinct": runs.run_count,
-            "wall_s": float(np.nansum(runs.wall_s)),
-            "cpu_s": float(np.nansum(runs.cpu_s)),
-            "longest_wall_s": float(np.nanmax(runs.wall_s, initial=0.0)),
+            "wall_s": sum(one.wall_s or 0.0 for one in records),
+            "cpu_s": sum(one.cpu_s or 0.0 for one in records),
+            "longest_wall_s": max((one.wall_s or 0.0 for one in records), default=0.0),
         },
     }

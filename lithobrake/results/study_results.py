@@ -49,7 +49,7 @@ class StudyResults:
 
     @cached_property
     def runs(self) -> Table:
-        """Every touchdown of the study once: outcome, times, inputs in the file's units, outputs [SI]."""
+        """Every touchdown of the study once: outcome, inputs in the file's units, outputs [SI]."""
         rows: dict[str, dict[str, str]] = {}
         for design in DESIGNS:
             path = self.folder / "designs" / f"{design}.csv"

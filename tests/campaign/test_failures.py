@@ -29,8 +29,10 @@ from lithobrake.campaign import (
 X = np.array([[1.0, 0.5], [2.0, 0.5], [3.0, 0.5], [4.0, 0.5]])
 
 
-def campaign(path: Path, model: Any, limits: Limits | None = None, x: np.ndarray = X, **options: Any) -> Runs:
-    with Ledger(path / "runs.sqlite") as ledger, LocalExecutor(2) as executor:
+def campaign(
+    path: Path, model: Any, limits: Limits | None = None, x: np.ndarray = X, workers: int = 2, **options: Any
+) -> Runs:
+    with Ledger(path / "runs.sqlite") as ledger, LocalExecutor(workers) as executor:
         return run(model, x, names=("a", "b"), ledger=ledger, executor=executor, limits=limits, **options)
 
 
@@ -91,11 +93,12 @@ def test_a_model_that_never_works_is_given_up_after_the_first_runs_and_their_ret
     model = models.WorksAbove(1000.0, tmp_path)
     said = r"the first (1\d) runs have all failed \(1\d x OSError: no \[/licence\]\), so the (6|7)\d that are left"
     with pytest.raises(ValueError, match=said):
-        campaign(tmp_path, model, x=MANY, options=RunOptions(retry_count=retry_count))
-    # Beside the ten only what was under way meanwhile: four at most, two for each of two workers.
-    assert 10 * (retry_count + 1) <= tries(tmp_path) <= 14 * (retry_count + 1)
+        # With two, the one that starts first may be through with many runs before the other has begun with its first.
+        campaign(tmp_path, model, x=MANY, workers=1, options=RunOptions(retry_count=retry_count))
+    # Beside the ten only what was under way meanwhile: two at most.
+    assert 10 * (retry_count + 1) <= tries(tmp_path) <= 12 * (retry_count + 1)
     failed = [entry for entry in read_records(tmp_path / "runs.sqlite") if entry.status == "failed"]
-    assert 10 <= len(failed) <= 14
+    assert 10 <= len(failed) <= 12
     # Nothing of it counts: mended, the same command makes all runs.
     assert campaign(tmp_path, models.WorksAbove(-1.0, tmp_path), x=MANY).outcomes == ["clear"] * 82
 

@@ -65,10 +65,11 @@ count = 10
 DETERMINED = "key, status, outcome, inputs, draws, outputs, seed, replicate, reason, version"
 # Stages in which to kill; each is hit, those in which much is made several times.
 MOMENTS = (
-    "bed", "bed", "bed", "bed", "landing", "screen", "screen", "screen", "screen", "screen", "refine", "refine", "test",
-    "test", "test", "sample", "fly", "rest", "summary", "report",
+    *["bed"] * 3, "landing", *["screening_runs"] * 4, "screen", *["refined_runs"] * 2, "refine", *["test_runs"] * 2,
+    "test", "sample", "fly", "rest", "summary", "report",
 )  # fmt: skip
-MAKE_RUNS, LEDGER = ("screen", "refine", "test"), ("runs.sqlite", "runs.sqlite-wal", "runs.sqlite-shm")
+MAKE_RUNS = ("screening_runs", "refined_runs", "test_runs")
+LEDGER = ("runs.sqlite", "runs.sqlite-wal", "runs.sqlite-shm")
 VICTIMS = ("coordinator", "worker", "both")
 
 pytestmark = pytest.mark.skipif(not Path("/proc").is_dir(), reason="the processes are found in /proc (Linux)")

@@ -21,12 +21,13 @@ from lithobrake.pipeline.designs import design_inputs
 from lithobrake.pipeline.expected_disk import expected_bytes
 from lithobrake.pipeline.expected_steps import ExpectedSoil
 from lithobrake.pipeline.expected_time import run_time
+from lithobrake.pipeline.job import Silent
 from lithobrake.pipeline.plan import plan_of
 from lithobrake.pipeline.planned_runs import PlannedRuns
 from lithobrake.pipeline.samples import Samples
 from lithobrake.pipeline.study_run import run_study
 from lithobrake.pipeline.study_warnings import study_warnings
-from lithobrake.study import Study, check_tables, load_tables, read_study
+from lithobrake.study import Study, StudySource, check_tables, load_tables, read_study
 
 HERE = Path(__file__).parents[2]
 EXAMPLES, SCENARIOS = HERE / "examples", HERE / "scenarios"
@@ -71,12 +72,12 @@ def test_the_runs_that_are_counted_are_those_that_are_made(tmp_path: Path) -> No
     # Of the 41 nodes of level 2 nine are those of level 1; of the five of one input three.
     assert (fewest.refined, most.refined) == (2, 32)
     assert before.made["touchdowns"] == (fewest.total, most.total) == (17, 47)
-    run_study(study, out, worker_count=1, until="screen")
+    run_study(StudySource.read(study), out, worker_count=1, until="screen")
     screened = plan_study(study, out)
     (left,) = screened.runs
     assert (len(left.known), left.total) == (9, screened.made["touchdowns"][0] + 9)
     assert fewest.total <= left.total <= most.total
-    run_study(study, out, worker_count=1, until="test")
+    run_study(StudySource.read(study), out, worker_count=1, until="test")
     assert len(read_records(out / "runs.sqlite")) == left.total
     tested = plan_study(study, out)
     assert tested.made["touchdowns"] == (0, 0)
@@ -90,7 +91,7 @@ def test_planning_makes_and_changes_nothing(tmp_path: Path) -> None:
     study, out = written(tmp_path, FEW), tmp_path / "out"
     plan_study(study, out)
     assert [path.name for path in tmp_path.iterdir()] == ["study.toml"]
-    run_study(study, out, worker_count=1, until="screen")
+    run_study(StudySource.read(study), out, worker_count=1, until="screen")
 
     def everything() -> dict[Path, tuple[int, bytes]]:
         return {path: (path.stat().st_mtime_ns, path.read_bytes()) for path in out.rglob("*") if path.is_file()}
@@ -127,11 +128,17 @@ def test_a_run_begins_with_its_plan_in_three_lines(tmp_path: Path) -> None:
     class Begun(Exception):
         """The first stage."""
 
-    def begin(*stage: object) -> None:
-        raise Begun
+    class Shown(Silent):
+        """Keeps what is said."""
+
+        def begin(self, title: str, number: int, count: int) -> None:
+            raise Begun
+
+        def say(self, sentence: str) -> None:
+            said.append(sentence)
 
     with pytest.raises(Begun):
-        run_study(study, tmp_path / "out", worker_count=1, begin=begin, say=said.append)
+        run_study(StudySource.read(study), tmp_path / "out", worker_count=1, shown=Shown())
     program, *plan = said
     assert program.startswith("This study names a program")
     assert len(plan) == 3
