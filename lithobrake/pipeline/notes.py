@@ -17,7 +17,7 @@ from lithobrake.atomic import atomic_path
 from lithobrake.reading import NUMBER, check, read_json, reading
 
 NAME = "keys.json"
-FORMAT_VERSION = 3
+FORMAT_VERSION = 2
 REMEDY = "have the files of this folder made again with: lithobrake run STUDY.toml --out DIR"
 _FORM = {
     "study": {"file": str, "sha256": str},

@@ -11,7 +11,9 @@ from lithobrake.pipeline import StudyFolder
 from lithobrake.pipeline.owner import refuse_others_folder
 from lithobrake.study import StudySource
 
-STAGES = {name: {"title": name, "key": "1", "files": []} for name in ("screen", "refine", "test", "report")}
+STAGES = {
+    name: {"title": name, "key": "1", "files": []} for name in ("screening_runs", "refined_runs", "test_runs", "report")
+}
 
 
 def write_study(path: Path, text: str = "seed = 1") -> Path:
@@ -125,7 +127,7 @@ def test_a_folder_of_a_later_format_is_refused(tmp_path: Path) -> None:
     folder = begun(study, tmp_path / "out")
     keys = json.loads((folder / "keys.json").read_text()) | {"format_version": 9}
     (folder / "keys.json").write_text(json.dumps(keys))
-    with pytest.raises(ValueError, match=r"keys\.json has format 9; this version reads 1 to 3"):
+    with pytest.raises(ValueError, match=r"keys\.json has format 9; this version reads 1 to 2"):
         refuse_others_folder(source(study), tmp_path / "out")
 
 
@@ -149,5 +151,7 @@ def test_runs_of_a_design_are_forgotten_when_its_stage_changes(tmp_path: Path) -
     folder = begun(study, tmp_path / "out")
     for design in ("screening", "refined", "test_all"):
         folder.note_runs(design, ["1f", "2e"])
-    folder.begin(study, study.read_bytes(), STAGES | {"test": STAGES["test"] | {"key": "2"}}, lambda sentence: None)
+    folder.begin(
+        study, study.read_bytes(), STAGES | {"test_runs": STAGES["test_runs"] | {"key": "2"}}, lambda sentence: None
+    )
     assert set(json.loads((folder / "keys.json").read_text())["designs"]) == {"screening", "refined"}
