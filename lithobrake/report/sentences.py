@@ -86,7 +86,9 @@ def bed(data: Results) -> str:
     """Figure 1."""
     if data.bed is None:
         program = data.study["solver"]["command"]
-        return f"The touchdowns were made by {program or 'a function'} of the study's author."
+        return "The touchdowns were made by a " + (
+            f"program of the study's author: {program}" if program else "function."
+        )
     study, first = data.study["bed"], data.results["beds"][0]
     width = " x ".join(f"{length:g}" for length in study["width"])
     return (

@@ -240,7 +240,7 @@ def test_a_damaged_ledger_is_one_sentence(damage: Callable[[Path], object], home
 def test_a_damaged_ledger_is_not_written_over(name: str, home: Path) -> None:
     ledger = home / "out" / "runs.sqlite"
     LEDGERS[name](ledger)
-    (home / "out" / "screening.json").unlink()
+    (home / "out" / "designs" / "screening.csv").unlink()
     before = ledger.read_bytes()
     shown = RUNNER.invoke(app, ["screen", str(home / "ball.toml"), "--out", str(home / "out"), "--workers", "1"])
     assert shown.exit_code == 2
