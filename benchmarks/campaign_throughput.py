@@ -21,10 +21,10 @@ from typing import Any
 
 import numpy as np
 
-from lithobrake import study_file
 from lithobrake.campaign import DaskExecutor, Ledger, LocalExecutor, Runs, run
 from lithobrake.pipeline import run_study
 from lithobrake.pipeline.landings import TouchdownModel, draw, engine_hash, medians
+from lithobrake.study import StudySource, read_study
 
 STUDY = Path(__file__).parents[1] / "scenarios" / "quick.toml"
 
@@ -33,7 +33,7 @@ class EqualLandings:
     """The landing at the medians of a study, again and again; its only input is a number that it does not look at."""
 
     def __init__(self, folder: Path) -> None:
-        study = study_file.read(STUDY)
+        study = read_study(STUDY)
         self.model = TouchdownModel(study, (folder / "beds" / "bed_0.h5",), engine_hash())
         self.values = draw(study, medians(study), study.seed)
 
@@ -56,7 +56,7 @@ def busy_time() -> float:
 
 def landings(study: Path, folder: Path, count: int) -> None:
     """Time equal landings on one worker and on two; study: folder that has the bed, or gets it."""
-    run_study(STUDY, study, until="landing")
+    run_study(StudySource.read(STUDY), study, until="landing")
     model, x = EqualLandings(study), np.arange(count, dtype=float)[:, None]
     walls, cpus = dict[int, float](), dict[int, float]()
     for workers in (1, 2):

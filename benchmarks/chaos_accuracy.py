@@ -12,7 +12,7 @@ import numpy as np
 from lithobrake.chaos import Uniform, fit, smolyak, sobol_sequence
 from lithobrake.chaos.basis import germs_of
 from lithobrake.chaos.covariance import RadialMatern
-from lithobrake.chaos.gaussian_process import learn
+from lithobrake.chaos.gaussian_process import fit_process
 from lithobrake.chaos.training import checked_training
 
 INPUTS = {f"x{k}": Uniform(0.0, 1.0) for k in range(1, 6)}
@@ -57,7 +57,7 @@ def errors_of_case(model: Model, noise: float, count: int, seed: int) -> tuple[f
     x = sobol_sequence(INPUTS, count, seed=seed)
     y = runs(x)
     default = fit(INPUTS, x, y)
-    process = learn(checked_training(INPUTS, x, y), 0, RadialMatern)
+    process = fit_process(checked_training(INPUTS, x, y), 0, RadialMatern)
     alone = share(process.predict(germs_of(INPUTS, test)))
     return share(default(test)), alone, paper, float(default.report["rrmse_estimate"][0])
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from lithobrake.dem import Box, ConvexHull, Shape, Sphere
 from lithobrake.dem.arrays import Cores
-from lithobrake.dem.body import cores_of, rotation_matrices
+from lithobrake.dem.assembly import cores_of, rotation_matrices
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]

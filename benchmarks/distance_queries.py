@@ -12,13 +12,16 @@ from distance_pairs import Floats, Integers, Library, Poses, units
 from lithobrake.compiled import disk_cache
 from lithobrake.dem import Material, World
 from lithobrake.dem.arrays import Bodies, Cores, Pairs, Planes
-from lithobrake.dem.body import Body, bodies_of
-from lithobrake.dem.closest import approach, way_out
-from lithobrake.dem.distance import CROSSING, Search, search_for, weighted
-from lithobrake.dem.listing import list_bodies, list_plane, margin_of
-from lithobrake.dem.names import DEEP, SPHERES, kind_of, name_of
-from lithobrake.dem.neighbours import pairs_of
-from lithobrake.dem.patch import feature
+from lithobrake.dem.assembly import bodies_of
+from lithobrake.dem.closest_points import find_closest_points
+from lithobrake.dem.contact_patch import measure_feature
+from lithobrake.dem.feature_id import ALL_FEATURES, SPHERES, feature_kind, listed_feature
+from lithobrake.dem.feature_list import list_bodies, list_margin, list_plane
+from lithobrake.dem.gjk import PENETRATING, weighted
+from lithobrake.dem.neighbours import new_pairs
+from lithobrake.dem.penetration import penetration_vector
+from lithobrake.dem.rigid_body import RigidBody
+from lithobrake.dem.scratch import Scratch, scratch_for
 from lithobrake.dem.vectors import dot, minus, put, row, scaled
 
 ROCK = Material(young_modulus=1e7, poisson_ratio=0.25, restitution=0.5, friction=0.5, density=2500.0)
@@ -41,14 +44,14 @@ def cached(function: Callable[..., Any]) -> Callable[..., Any]:
 
 def one_pair(second: int) -> Pairs:
     """Return a pair with room for many names."""
-    pair = pairs_of(np.zeros(1, dtype=np.int64), np.full(1, second))
-    return pair._replace(rest_row=np.zeros(1, dtype=np.int64), rest=np.zeros((1, NAMES), dtype=np.int64))
+    pair = new_pairs(np.zeros(1, dtype=np.int64), np.full(1, second))
+    return pair._replace(overflow_row=np.zeros(1, dtype=np.int64), overflow=np.zeros((1, NAMES), dtype=np.int64))
 
 
-def scratch(shapes: Library) -> Search:
+def scratch(shapes: Library) -> Scratch:
     """Return scratch for the largest pair."""
     vertices, edges = (int(np.diff(s).max()) for s in (shapes.cores.vertex_start, shapes.cores.edge_start))
-    return search_for(vertices + edges, 1)
+    return scratch_for(vertices + edges, 1)
 
 
 def closest(shapes: Library, poses: Poses) -> Floats:
@@ -60,22 +63,33 @@ def closest(shapes: Library, poses: Poses) -> Floats:
 
 @cached
 def ask_closest(
-    cores: Cores, first: Integers, second: Integers, rotation: Floats, position: Floats, search: Search, answer: Floats
+    cores: Cores,
+    first: Integers,
+    second: Integers,
+    rotation: Floats,
+    position: Floats,
+    scratch: Scratch,
+    answer: Floats,
 ) -> None:
     """Search for closest points; of crossing cores, for the way out."""
+    simplex = scratch.simplex
     for k in range(len(first)):
         shapes, turned = (first[k], second[k]), rotation[k]
         apart = minus(row(position[k], 1), row(position[k], 0))
-        found, count, _ = approach(search, cores, shapes, turned, (0, 1), apart, math.inf)
-        answer[k, STEPS] = search.steps[0]
-        if found == CROSSING:
-            distance, normal, here, there = way_out(search, cores, shapes, turned, (0, 1), apart)
+        found, count, _ = find_closest_points(
+            cores, simplex, scratch.turned, scratch.relative, shapes, turned, (0, 1), apart, math.inf
+        )
+        answer[k, STEPS] = simplex.steps[0]
+        if found == PENETRATING:
+            distance, normal, here, there = penetration_vector(
+                cores, simplex, scratch.turned, scratch.relative, shapes, turned, (0, 1), apart
+            )
         else:
-            between = weighted(search.difference, search.weight, count)
+            between = weighted(simplex.difference, simplex.weight, count)
             distance = dot(between, between) ** 0.5
             normal = scaled(-1.0 / distance, between)
-            here = weighted(search.on_first, search.weight, count)
-            there = weighted(search.on_second, search.weight, count)
+            here = weighted(simplex.on_first, simplex.weight, count)
+            there = weighted(simplex.on_second, simplex.weight, count)
         answer[k, DISTANCE] = distance
         put(answer[k : k + 1, NORMAL], 0, normal)
         put(answer[k : k + 1, FIRST], 0, here)
@@ -92,7 +106,7 @@ def search_bed(world: World, count: int) -> tuple[int, float]:
     reach = engine.bodies.bounding_radius + 0.1 * engine.bodies.bounding_radius.min()
     apart = np.linalg.norm(world.position[:, None] - world.position, axis=2)
     first, second = np.nonzero(np.triu(apart < reach[:, None] + reach, 1))
-    work = engine.cores, engine.bodies, first, second, engine.search
+    work = engine.cores, engine.bodies, first, second, engine.scratch
     ask_again(*work, 1)
     start = time.process_time()
     ask_again(*work, count)
@@ -100,17 +114,20 @@ def search_bed(world: World, count: int) -> tuple[int, float]:
 
 
 @cached
-def ask_again(cores: Cores, bodies: Bodies, first: Integers, second: Integers, search: Search, count: int) -> None:
+def ask_again(cores: Cores, bodies: Bodies, first: Integers, second: Integers, scratch: Scratch, count: int) -> None:
     """Go through the pairs again and again."""
     for k in range(count):
         a, b = first[k % len(first)], second[k % len(first)]
         apart = minus(row(bodies.position, b), row(bodies.position, a))
-        approach(search, cores, (bodies.shape[a], bodies.shape[b]), bodies.rotation, (a, b), apart, math.inf)
+        find_closest_points(
+            cores, scratch.simplex, scratch.turned, scratch.relative, (bodies.shape[a], bodies.shape[b]),
+            bodies.rotation, (a, b), apart, math.inf,
+        )  # fmt: skip
 
 
 def bodies_for(shapes: Library) -> Bodies:
     """Return two bodies of every shape, so that a shape can meet itself; they lie wherever."""
-    bodies = [Body(shape, ROCK, 1.0, np.eye(3)) for shape in shapes.shapes * 2]
+    bodies = [RigidBody(shape, ROCK, 1.0, np.eye(3)) for shape in shapes.shapes * 2]
     state = {name: np.zeros((len(bodies), 3)) for name in ("position", "velocity", "angular_momentum")}
     state["quaternion"] = np.tile([1.0, 0.0, 0.0, 0.0], (len(bodies), 1))
     return bodies_of(bodies, shapes.shapes, [ROCK], state)
@@ -146,7 +163,7 @@ def kept(shapes: Library, poses: Poses, generator: np.random.Generator) -> tuple
 @cached
 def ask_kept(
     cores: Cores, bodies: Bodies, first: Integers, second: Integers, rotation: Floats, position: Floats, pair: Pairs,
-    search: Search, moves: Floats, distance: Floats, reach: Floats,
+    scratch: Scratch, moves: Floats, distance: Floats, reach: Floats,
 ) -> None:  # fmt: skip
     """List features with the first body moved, move it back, and measure them."""
     for k in range(len(first)):
@@ -155,25 +172,25 @@ def ask_kept(
         for body, side in ((one, 0), (two, 1)):
             bodies.position[body], bodies.rotation[body] = position[k, side], rotation[k, side]
         reach[k] = cores.rounding[first[k]] + cores.rounding[second[k]]
-        margin = margin_of(bodies, cores, one, two, 0.0)
+        margin = list_margin(bodies, cores, one, two, 0.0)
         travel, part = margin * moves[k, 6], moves[k, 7]
         bodies.position[one] += part * travel * moves[k, 0:3]
         turn(bodies.rotation[one], moves[k, 3:6], (1.0 - part) * travel / bodies.bounding_radius[one])
-        serves = list_bodies(0, bodies, cores, pair, margin, search)
+        serves = list_bodies(0, bodies, cores, pair, scratch.simplex, scratch.turned, scratch.relative, margin)
         bodies.position[one], bodies.rotation[one] = position[k, 0], rotation[k, 0]
-        if pair.term_count[0] != DEEP and travel < serves:
-            distance[k] = nearest_named(cores, bodies, one, two, pair, search, reach[k])
+        if pair.feature_count[0] != ALL_FEATURES and travel < serves:
+            distance[k] = nearest_listed(cores, bodies, one, two, pair, reach[k])
 
 
 @cached
-def nearest_named(cores: Cores, bodies: Bodies, one: int, two: int, pair: Pairs, search: Search, reach: float) -> float:
+def nearest_listed(cores: Cores, bodies: Bodies, one: int, two: int, pair: Pairs, reach: float) -> float:
     """Return the smallest distance of the named features, at most `reach` [m]."""
     apart = minus(row(bodies.position, two), row(bodies.position, one))
-    if pair.term_count[0] > 0 and kind_of(name_of(pair, 0, 0)) == SPHERES:
+    if pair.feature_count[0] > 0 and feature_kind(listed_feature(0, pair, 0)) == SPHERES:
         return min(reach, dot(apart, apart) ** 0.5)
     smallest = reach
-    for k in range(pair.term_count[0]):
-        smallest = min(smallest, feature(name_of(pair, 0, k), bodies, cores, one, two, apart, reach)[2])
+    for k in range(pair.feature_count[0]):
+        smallest = min(smallest, measure_feature(bodies, cores, listed_feature(0, pair, k), one, two, apart, reach)[2])
     return smallest
 
 

@@ -23,20 +23,20 @@ from grains_speed import cpu_seconds
 
 # Name, file, what stands there, what stands there without the trick.
 SWITCHES = {
-    "sleeping pairs": ("listing.py", "        if travel < pairs.wake[pair]:", "        if False:"),
-    "gaps as margins": ("listing.py", "        return bound - reach\n", "        return margin\n"),
-    "names of faces": ("patch.py", "    if face >= 0:", "    if False:"),
-    "one point pushes once": ("force.py", "    if count == 1 and search.family[0] != EDGES_SUNK:",
+    "sleeping pairs": ("feature_list.py", "        if travel < pairs.wake[pair]:", "        if False:"),
+    "gaps as margins": ("feature_list.py", "        return bound - reach\n", "        return margin\n"),
+    "names of faces": ("contact_patch.py", "    if face >= 0:", "    if False:"),
+    "one point pushes once": ("contact_law.py", "    if count == 1 and patch.family[0] != DEEP_EDGES:",
                               "    if bodies.turning_radius[first] == 0.0:"),
-    "one pair of edges alone": ("shares.py", "(search.family[0] == EDGES_APART and sunk == 0.0)", "False"),
+    "one pair of edges alone": ("patch_energy.py", "(patch.family[0] == EDGES_APART and deep == 0.0)", "False"),
     "spheres met by their mass": ("force.py", "through_centroids or step.paper_mass", "step.paper_mass"),
     "limits by squares": ("spring.py", "    return vector if square <= limit * limit else",
                           "    return vector if square**0.5 <= limit else"),
-    "neighbours by their gap": ("neighbours.py", "near[pair] = approach(", "near[pair] = True or approach("),
-    "edges by their part in the band": ("nearby.py", "    return low[0] - high[0] >= farthest or",
+    "neighbours by their gap": ("neighbours.py", "near[pair] = found != APART", "near[pair] = True"),
+    "edges by their part in the band": ("feature_culling.py", "    return low[0] - high[0] >= farthest or",
                                         "    if farthest > 0.0:\n        return False\n    return"),
     "skin of the list": ("engine.py", "SKIN = 0.25", "SKIN = 0.025"),
-    "one moment of inertia": ("body.py", "np.array_equal(body.inertia, body.inertia[0, 0] * np.eye(3))", "False"),
+    "one moment of inertia": ("assembly.py", "np.array_equal(body.inertia, body.inertia[0, 0] * np.eye(3))", "False"),
     "look every 16 steps": ("stability.py", "LOOK_STEPS, LOOK_PHASE = 16", "LOOK_STEPS, LOOK_PHASE = 1"),
     "kernels in their callers": ("../compiled.py", '"forceinline": True', '"forceinline": False'),
 }  # fmt: skip

@@ -16,12 +16,12 @@ from typing import Any
 
 from grains_beds import origin
 
-from lithobrake import study_file
 from lithobrake.dem import World
 from lithobrake.pipeline.expected_steps import FALLS, SETTLING, STEPS_PER_PERIOD, ExpectedSoil
 from lithobrake.pipeline.expected_time import landing_time, pour_time
 from lithobrake.pipeline.pace import REFERENCE, probe
-from lithobrake.touchdown import Bed, land, landing, pour_bed
+from lithobrake.study import read_study
+from lithobrake.touchdown import Bed, Landing, land, pour_bed, simulation
 from lithobrake.touchdown.settling import PERIODS_RELAXED
 
 STUDIES = Path(__file__).parents[1] / "scenarios"
@@ -74,14 +74,14 @@ def poured(soil: ExpectedSoil, clock: Clock) -> tuple[Bed, dict[str, Any]]:
 
 def landed(bed: Bed, soil: ExpectedSoil, clock: Clock) -> list[dict[str, Any]]:
     """Make the landings; say how each was."""
-    relax, rows = landing.relax, []
+    relax, rows = simulation.relax, []
 
-    def watched(world: World, bed: Bed, event: landing.Landing) -> None:
+    def watched(world: World, bed: Bed, event: Landing) -> None:
         clock.begin("relaxing")
         relax(world, bed, event)
         clock.begin("touching")
 
-    landing.relax = watched
+    simulation.relax = watched
     for body, event in soil.landings[1:]:
         clock.steps, clock.seconds = {}, {}
         outcome = land(bed, body, event)
@@ -107,7 +107,7 @@ def landed(bed: Bed, soil: ExpectedSoil, clock: Clock) -> list[dict[str, Any]]:
 
 def measure(name: str, count: int) -> dict[str, Any]:
     """Pour the bed of a study and make so many of its landings."""
-    study = study_file.read(STUDIES / f"{name}.toml")
+    study = read_study(STUDIES / f"{name}.toml")
     soil = ExpectedSoil.of(study, len(study.touchdown_values()))
     soil = ExpectedSoil(soil.recipe, soil.grains, soil.landings[: count + 1])
     paces, clock = [probe() / REFERENCE], Clock()

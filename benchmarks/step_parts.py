@@ -18,11 +18,11 @@ from grains_speed import RELAX_STEPS, cpu_seconds
 
 from lithobrake.dem import World
 from lithobrake.dem.arrays import Pairs
-from lithobrake.dem.engine import NO_ROOM
-from lithobrake.dem.force import act_run
-from lithobrake.dem.listing import renew
+from lithobrake.dem.engine import NO_REACTIONS
+from lithobrake.dem.feature_id import EDGES, feature_kind
+from lithobrake.dem.feature_list import update_feature_lists
+from lithobrake.dem.force import contact_forces
 from lithobrake.dem.motion import drift, kick
-from lithobrake.dem.names import EDGES, kind_of
 from lithobrake.dem.stability import LOOK_STEPS, largest_step
 
 CALLS = 50
@@ -34,8 +34,8 @@ KINDS = (
 
 def kinds_of(pairs: Pairs) -> np.ndarray:
     """Number in KINDS of every pair."""
-    count = pairs.term_count
-    edges = np.array([kind_of.py_func(int(name)) == EDGES for name in pairs.term[:, 0]])
+    count = pairs.feature_count
+    edges = np.array([feature_kind.py_func(int(name)) == EDGES for name in pairs.feature[:, 0]])
     kind = np.select([count < 0, count == 0, count == 1, count == 2], [5, 0, 1 + edges, 3], 4)
     return np.where(pairs.second < 0, 6, kind)
 
@@ -54,7 +54,7 @@ def parts(world: World) -> Iterator[tuple[str, float, float]]:
     yield "two half kicks", 1.0, 2.0 * nanoseconds(lambda: kick(bodies, still, 0, count))
     yield "drift and rotation", 1.0, nanoseconds(lambda: drift(bodies, still, 0, count))
     whole = len(pairs.first)
-    looks = nanoseconds(lambda: renew(bodies, *held, pairs, engine.search, 0.0, 0, whole))
+    looks = nanoseconds(lambda: update_feature_lists(bodies, *held, pairs, engine.scratch, 0.0, 0, whole))
     yield "looks at margins", whole / count, looks
     kind = kinds_of(pairs)
     order = np.argsort(kind, kind="stable")
@@ -62,8 +62,8 @@ def parts(world: World) -> Iterator[tuple[str, float, float]]:
     ends = np.searchsorted(kind[order], np.arange(len(KINDS) + 1))
     for name, start, stop in zip(KINDS, ends[:-1], ends[1:], strict=True):
         if start < stop:
-            rest = (engine.laws, still, engine.search, NO_ROOM, False, start, stop)
-            spent = nanoseconds(lambda rest=rest: act_run(bodies, *held, sorted_pairs, *rest))
+            rest = (engine.laws, still, engine.scratch, NO_REACTIONS, False, start, stop)
+            spent = nanoseconds(lambda rest=rest: contact_forces(bodies, *held, sorted_pairs, *rest))
             yield f"forces: {name}", (stop - start) / count, spent
     look = nanoseconds(lambda: largest_step(bodies, engine.planes, pairs, engine.laws, False))
     yield f"look at stability, every {LOOK_STEPS} steps", 1.0 / LOOK_STEPS, look / LOOK_STEPS

@@ -62,7 +62,7 @@ def new(name: Annotated[str, typer.Argument(metavar="NAME", help="Name of the st
         odd = path.stem in ("", ".toml", ".", "..") or path.stem[0] == "-" or path.stem != path.stem.strip()
         if odd or not name.isprintable():
             raise ValueError(f"NAME is {name!r}; allowed: a name, or a path that ends in one; write, say, bennu")
-        from lithobrake.study_template import template
+        from lithobrake.study.template import template
 
         try:
             with path.open("x", encoding="utf-8") as file:
@@ -160,7 +160,7 @@ def runs(
         units: dict[str, str] = {}
         # The names of a campaign that is no study are its author's, and so are their units.
         if (folder / "study.toml").is_file():
-            from lithobrake.study_units import OUTPUT_UNITS, input_units
+            from lithobrake.study.units import OUTPUT_UNITS, input_units
 
             units = input_units() | OUTPUT_UNITS
     if csv:
@@ -213,25 +213,15 @@ def _make(study: Path, out: Path, until: str, workers: int | None, scheduler: st
     # The bits of a least-squares fit depend on the threads of the linear algebra, which reads this when it is loaded.
     os.environ.update(OPENBLAS_NUM_THREADS="1", MKL_NUM_THREADS="1")
     with _one_sentence():
-        from lithobrake import study_file
+        from lithobrake.study import StudySource
 
         # A study that is refused is refused at once: what follows brings NumPy and the compiler.
-        study_file.read(study)
+        source = StudySource.read(study)
         from lithobrake.pipeline import run_study
         from lithobrake.progress import study_progress
 
         with study_progress() as shown:
-            run_study(
-                study,
-                out,
-                worker_count=workers,
-                scheduler=scheduler,
-                until=until,
-                begin=shown.begin,
-                progress=shown.progress,
-                say=shown.say,
-                keeps_logs=logs,
-            )
+            run_study(source, out, until=until, worker_count=workers, scheduler=scheduler, shown=shown, keeps_logs=logs)
 
 
 def _results(folder: Path) -> list[str]:

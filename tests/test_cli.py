@@ -10,7 +10,7 @@ from typer.testing import CliRunner
 
 from lithobrake import __version__
 from lithobrake.cli import app
-from lithobrake.study_template import template
+from lithobrake.study.template import template
 
 RUNNER = CliRunner()
 

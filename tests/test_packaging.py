@@ -71,6 +71,7 @@ def test_imports_of_third_parties_are_declared() -> None:
         "mpl_toolkits": "matplotlib",
         "pydantic_core": "pydantic",
         "llvmlite": "numba",
+        "tomli_w": "tomli-w",
     }
     used: set[str] = set()
     for source in (ROOT / "lithobrake").rglob("*.py"):

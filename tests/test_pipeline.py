@@ -10,19 +10,27 @@ from typing import Any
 import numpy as np
 import pytest
 
-from lithobrake import study_file
 from lithobrake.chaos import Uniform, fit, smolyak
+from lithobrake.outputs import OUTPUTS
 from lithobrake.pipeline import STAGES, StudyFolder, rest, stage_keys
-from lithobrake.pipeline.expansions import design_inputs, kept_inputs, points
+from lithobrake.pipeline.designs import design_inputs, kept_inputs, points
 from lithobrake.pipeline.fates import shares, stays
 from lithobrake.pipeline.flights import COLUMNS, partner_time, starts
 from lithobrake.pipeline.landings import ORIENTATION, PLACE, acceleration, draw, in_words_of_the_study, medians
 from lithobrake.pipeline.samples import SAMPLE_OUTCOMES, Samples
 from lithobrake.pipeline.scope import scope
+from lithobrake.pipeline.site import (
+    frames,
+    has_heading,
+    push_at_site,
+    site_body,
+    site_medians,
+    site_warning,
+    with_site_gravity,
+)
 from lithobrake.pipeline.summary import study_tables
-from lithobrake.site import frames, has_heading, push_at_site, site_body, site_medians, site_warning
-from lithobrake.study import OUTPUTS, Study
-from lithobrake.study_template import template
+from lithobrake.study import Study, StudyError, check_tables
+from lithobrake.study.template import template
 
 
 def changed(**sections: dict[str, Any]) -> Study:
@@ -30,7 +38,7 @@ def changed(**sections: dict[str, Any]) -> Study:
     tables = tomllib.loads(template())
     for section, keys in sections.items():
         tables.setdefault(section, {}).update(keys)
-    return study_file.check(tables, Path())
+    return with_site_gravity(check_tables(tables, Path()))
 
 
 UNIFORM = {"distribution": "uniform", "lower": 0.1, "upper": 0.3}
@@ -40,12 +48,12 @@ REMADE = [
     ({"surface": {"gravity": 4e-5}}, "bed"),
     ({"impact": {"speed": 0.25}}, "landing"),
     ({"contact": {"pair_rule": "mean"}}, "bed"),
-    ({"grain": {"friction": {"distribution": "uniform", "lower": 0.4, "upper": 0.8}}}, "screen"),
-    ({"design": {"screening_level": 3}}, "screen"),
+    ({"grain": {"friction": {"distribution": "uniform", "lower": 0.4, "upper": 0.8}}}, "screening_runs"),
+    ({"design": {"screening_level": 3}}, "screening_runs"),
     ({"design": {"fit": "best"}}, "screen"),
-    ({"design": {"method": "sobol_sequence", "screening_count": 40, "refined_count": 60}}, "screen"),
-    ({"design": {"kept_share": 0.8}}, "refine"),
-    ({"design": {"test_count": 11}}, "test"),
+    ({"design": {"method": "sobol_sequence", "screening_count": 40, "refined_count": 60}}, "screening_runs"),
+    ({"design": {"kept_share": 0.8}}, "refined_runs"),
+    ({"design": {"test_count": 11}}, "test_runs"),
     ({"monte_carlo": {"sample_count": 200}}, "sample"),
     ({"monte_carlo": {"scatter": True}}, "sample"),
     ({"site": {"heading_deg": 10.0}}, "fly"),
@@ -269,7 +277,7 @@ def test_the_study_in_the_summary_reads_back_as_the_same_study() -> None:
         key: {name: entry for name, entry in value.items() if entry is not None} if isinstance(value, dict) else value
         for key, value in tables.items()
     }
-    assert study_file.check(without_absent, Path()) == study
+    assert check_tables(without_absent, Path()) == study
 
 
 def test_every_column_of_the_flights_is_documented() -> None:
@@ -331,7 +339,7 @@ def test_the_acceleration_of_the_site_is_offered_to_the_touchdown() -> None:
     assert 1.8e-4 < pole.surface.gravity < 2.6e-4
     assert site_warning(pole) is None
     assert medians(pole)["surface.gravity"] == pole.surface.gravity
-    with pytest.raises(study_file.StudyError, match="settle_gravity"):
+    with pytest.raises(StudyError, match="settle_gravity"):
         changed(surface={"gravity": "site"}, site={"latitude_deg": 0.0})
-    with pytest.raises(study_file.StudyError, match="no such file"):
+    with pytest.raises(StudyError, match="no such file"):
         changed(surface={"gravity": "site"}, site={"body": "absent.obj"})

@@ -25,8 +25,8 @@ from scipy.spatial import cKDTree
 from lithobrake.dem import ConvexHull, Material, Shape, Sphere, World
 from lithobrake.touchdown import Bed, BedRecipe, ContactModel, GrainSizes, Lander, Landing, pour_bed
 from lithobrake.touchdown.grains import make_grain
-from lithobrake.touchdown.landing import relax, release
 from lithobrake.touchdown.pouring import rain
+from lithobrake.touchdown.simulation import relax, release
 from lithobrake.touchdown.surface import rotation_matrix
 
 Floats = NDArray[np.float64]

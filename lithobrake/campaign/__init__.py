@@ -1,16 +1,16 @@
 """Many runs of any model: each is computed once, kept in a ledger the moment it ends, and never lost."""
 
-from lithobrake.campaign.cluster import DaskExecutor
 from lithobrake.campaign.command import Command, absolute_words
+from lithobrake.campaign.dask_executor import DaskExecutor
 from lithobrake.campaign.identity import run_key, run_seed
 from lithobrake.campaign.ledger import Ledger
 from lithobrake.campaign.limits import Limits
-from lithobrake.campaign.listing import run_lines, write_csv
-from lithobrake.campaign.local import LocalExecutor, WorkerDiedError, available_cores
-from lithobrake.campaign.missing import missing
-from lithobrake.campaign.record import Record, campaign_began, read_records
-from lithobrake.campaign.runs import Runs, run
-from lithobrake.campaign.tally import Tally, duration, ledger_tally, per_time
+from lithobrake.campaign.local_executor import LocalExecutor, WorkerDiedError, available_cores
+from lithobrake.campaign.missing_runs import missing
+from lithobrake.campaign.record import Record, RunStatus, campaign_began, read_records
+from lithobrake.campaign.run_counts import Tally, duration, ledger_tally, per_time
+from lithobrake.campaign.run_table import run_lines, write_csv
+from lithobrake.campaign.runs import RunOptions, Runs, run
 
 __all__ = [
     "Command",
@@ -19,6 +19,8 @@ __all__ = [
     "Limits",
     "LocalExecutor",
     "Record",
+    "RunOptions",
+    "RunStatus",
     "Runs",
     "Tally",
     "WorkerDiedError",

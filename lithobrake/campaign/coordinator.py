@@ -9,15 +9,16 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from lithobrake.campaign.beside import submit_limited
 from lithobrake.campaign.ledger import Ledger
+from lithobrake.campaign.limited_calls import submit_limited
 from lithobrake.campaign.limits import Limits
-from lithobrake.campaign.local import WorkerDiedError
-from lithobrake.campaign.one_run import Model, perform
-from lithobrake.campaign.tally import Tally, common_reasons
+from lithobrake.campaign.local_executor import WorkerDiedError
+from lithobrake.campaign.record import RunStatus
+from lithobrake.campaign.run_counts import Tally, common_reasons
+from lithobrake.campaign.single_run import Model, run_model
 
 # Runs handed out for each worker: enough that none waits for the coordinator.
-_AHEAD = 2
+_SUBMITTED_PER_WORKER = 2
 # Workers to expect of an executor that does not say how many it has.
 _UNKNOWN_COUNT = 32
 # When so many runs, drawn by chance from all new ones, fail and none succeeds, the model does not work. Were half of
@@ -25,40 +26,41 @@ _UNKNOWN_COUNT = 32
 # study allows fewer, in one of 1e13. A smaller number would save little: what fails at once is cheap.
 _TRIAL_RUNS = 10
 # Progress is shown at least this often, and which runs are under way is looked at [s].
-_LOOK = 0.5
+_POLL_INTERVAL = 0.5
 
 
 @dataclass(frozen=True)
-class Job:
-    """A run that is to be made."""
+class PendingRun:
+    """A run that is to be made; attempts: how often it was tried in earlier campaigns."""
 
     model: Model
     inputs: dict[str, float]
     seed: int
-    log: Path | None = None
+    log: Path | None
+    attempts: int
 
 
 @dataclass
 class Coordinator:
-    """A campaign under way; jobs, and how often each was tried in this campaign and before, by the key of the run."""
+    """A campaign under way; pending: the runs to make, by their keys; retry_count: further tries of a failed one."""
 
     ledger: Ledger
     executor: Executor
-    jobs: dict[str, Job]
+    pending: dict[str, PendingRun]
     state: Tally
     limits: Limits
     retry_count: int
-    tried: dict[str, int]
     progress: Callable[[Tally], None]
 
     def __post_init__(self) -> None:
         # Keys are hashes: in their order the first runs are a random part of all, wherever in the design each stands.
-        self.waiting = deque(sorted(self.jobs))
-        fresh = [key for key in self.waiting if not self.tried.get(key)]
+        self.waiting = deque(sorted(self.pending))
+        self.attempts = {key: run.attempts for key, run in self.pending.items()}
+        fresh = [key for key in self.waiting if not self.attempts[key]]
         self._trial = set(fresh[:_TRIAL_RUNS]) if len(fresh) > _TRIAL_RUNS else set()
         self._failed: set[str] = set()
-        self.flying: dict[Future[Any], str] = {}
-        self._unmarked: list[Future[Any]] = []
+        self.submitted: dict[Future[Any], str] = {}
+        self._not_begun: list[Future[Any]] = []
         self._ended: queue.SimpleQueue[Future[Any]] = queue.SimpleQueue()
 
     def compute(self) -> None:
@@ -69,56 +71,56 @@ class Coordinator:
         began = time.monotonic()
         self.progress(self.state)
         try:
-            while self.waiting or self.flying:
-                self._hand_out()
+            while self.waiting or self.submitted:
+                self._submit()
                 self._collect()
                 self._end_what_never_works()
                 self.state.seconds = time.monotonic() - began
                 self.progress(self.state)
         except KeyboardInterrupt:
             # A run may have ended between two looks; it is kept too.
-            for future, key in self.flying.items():
+            for future, key in self.submitted.items():
                 if future.done() and not future.cancelled() and future.exception() is None:
                     self.ledger.finish(key, future.result())
             raise
 
-    def _hand_out(self) -> None:
-        window = _AHEAD * getattr(self.executor, "capacity", _UNKNOWN_COUNT)
-        while self.waiting and len(self.flying) < window:
+    def _submit(self) -> None:
+        window = _SUBMITTED_PER_WORKER * getattr(self.executor, "capacity", _UNKNOWN_COUNT)
+        while self.waiting and len(self.submitted) < window:
             key = self.waiting.popleft()
-            job = self.jobs[key]
-            future = submit_limited(self.executor, self.limits, perform, job.model, job.inputs, job.seed, job.log)
-            self.flying[future] = key
-            self._unmarked.append(future)
+            run = self.pending[key]
+            future = submit_limited(self.executor, self.limits, run_model, run.model, run.inputs, run.seed, run.log)
+            self.submitted[future] = key
+            self._not_begun.append(future)
             future.add_done_callback(self._ended.put)
 
     def _collect(self) -> None:
         """Wait for a run to end, or for a moment, and take in all that have ended."""
         try:
-            ended = [self._ended.get(timeout=_LOOK)]
+            ended = [self._ended.get(timeout=_POLL_INTERVAL)]
         except queue.Empty:
             ended = []
         while not self._ended.empty():
             ended.append(self._ended.get())
         for future in ended:
-            self._take(self.flying[future], _result(future))
-            del self.flying[future]
-        flying = [future for future in self._unmarked if future in self.flying]
-        running = [future for future in flying if future.running()]
+            self._finish(self.submitted[future], _result(future))
+            del self.submitted[future]
+        under_way = [future for future in self._not_begun if future in self.submitted]
+        running = [future for future in under_way if future.running()]
         if running:
-            self.ledger.start(self.flying[future] for future in running)
-        self._unmarked = [future for future in flying if not future.running()]
-        self.state.running = len(self.flying) - len(self._unmarked)
+            self.ledger.start(self.submitted[future] for future in running)
+        self._not_begun = [future for future in under_way if not future.running()]
+        self.state.running = len(self.submitted) - len(self._not_begun)
 
-    def _take(self, key: str, result: Mapping[str, Any]) -> None:
-        self.tried[key] = self.tried.get(key, 0) + 1
-        if result["status"] == "failed" and self.tried[key] <= self.retry_count:
+    def _finish(self, key: str, result: Mapping[str, Any]) -> None:
+        self.attempts[key] += 1
+        if result["status"] == RunStatus.FAILED and self.attempts[key] <= self.retry_count:
             # Until something succeeds, its next try shows whether anything does.
             (self.waiting.appendleft if self._trial else self.waiting.append)(key)
             return
-        self.ledger.finish(key, {**result, "attempts": self.tried[key]})
+        self.ledger.finish(key, {**result, "attempts": self.attempts[key]})
         self.state.add(result["status"], result.get("outputs", {}))
-        if result["status"] == "failed":
+        if result["status"] == RunStatus.FAILED:
             self._failed.add(key)
         else:
             self._trial.clear()
@@ -128,7 +130,7 @@ class Coordinator:
 
         Not their number but which ones counts: runs that fail may end long before those that do not.
         """
-        left = len(self.waiting) + len(self.flying)
+        left = len(self.waiting) + len(self.submitted)
         if not self._trial or not self._trial <= self._failed or not left:
             return
         self.ledger.forget_tries(self._failed)
@@ -151,7 +153,7 @@ def _result(future: "Future[Any]") -> Mapping[str, Any]:
         answer: Mapping[str, Any] = future.result()
         return answer
     if isinstance(error, WorkerDiedError):
-        return {"status": "failed", "reason": str(error), "wall_s": error.wall_s, "host": error.host}
+        return {"status": RunStatus.FAILED, "reason": str(error), "wall_s": error.wall_s, "host": error.host}
     raise ConnectionError(
         f"the executor cannot make the runs ({type(error).__name__}: {error}); every run that had ended is kept: see "
         "that its workers are there and have the same code, and give the same command again"

@@ -14,7 +14,19 @@ from types import TracebackType
 from typing import Any, Self
 
 from lithobrake.atomic import locked
-from lithobrake.campaign.record import COLUMNS, LEFT, OF_FIRST, Record, lock_path, reading_ledger, record, utc_now
+from lithobrake.campaign.record import (
+    COLUMNS,
+    ENDED,
+    LEFT,
+    OF_FIRST,
+    UNENDED,
+    Record,
+    RunStatus,
+    lock_path,
+    reading_ledger,
+    record_from_row,
+    utc_now,
+)
 from lithobrake.plain import one_line
 
 FORMAT_VERSION = 2
@@ -97,13 +109,16 @@ class Ledger:
 
         What was queued before and never ended is forgotten: whoever still wants it asks for it again.
         """
-        rows = [(key, json.dumps(dict(inputs)), seed, replicate, version) for key, inputs, seed, replicate in runs]
+        rows = [
+            (key, RunStatus.QUEUED, json.dumps(dict(inputs)), seed, replicate, version)
+            for key, inputs, seed, replicate in runs
+        ]
         self._note(began=utc_now())
         with self._transaction():
-            self._database.execute("DELETE FROM runs WHERE status IN ('queued', 'running')")
+            self._database.execute("DELETE FROM runs WHERE status IN (?, ?)", UNENDED)
             self._database.executemany(
-                "INSERT INTO runs (key, status, inputs, seed, replicate, version) VALUES (?, 'queued', ?, ?, ?, ?) "
-                "ON CONFLICT (key) DO UPDATE SET status = 'queued'",
+                "INSERT INTO runs (key, status, inputs, seed, replicate, version) VALUES (?, ?, ?, ?, ?, ?) "
+                "ON CONFLICT (key) DO UPDATE SET status = excluded.status",
                 rows,
             )
 
@@ -114,14 +129,14 @@ class Ledger:
         try:
             with self._transaction():
                 self._database.executemany(
-                    "UPDATE runs SET status = 'running', started = ? WHERE key = ? AND status = 'queued'",
-                    [(utc_now(), key) for key in keys],
+                    "UPDATE runs SET status = ?, started = ? WHERE key = ? AND status = ?",
+                    [(RunStatus.RUNNING, utc_now(), key, RunStatus.QUEUED) for key in keys],
                 )
         finally:
             self._database.execute("PRAGMA synchronous = FULL")
 
     def finish(self, key: str, result: Mapping[str, Any]) -> None:
-        """Enter the result of a queued run: what `perform` gives, and attempts."""
+        """Enter the result of a queued run: what `run_model` gives, and attempts."""
         texts = {name: json.dumps(result.get(name, {}), allow_nan=False) for name in ("outputs", "draws")}
         # Both are in the words of a model, or of a program that it started.
         lengths = {"outcome": _OUTCOME_LENGTH, "reason": _REASON_LENGTH}
@@ -143,8 +158,8 @@ class Ledger:
         """The runs with these keys that have ended, by key."""
         wanted = set(keys)
         with reading_ledger(self.path):
-            rows = self._database.execute(f"SELECT {', '.join(COLUMNS)} FROM runs WHERE status IN ('done', 'failed')")
-            return {row[0]: record(row) for row in rows if row[0] in wanted}
+            rows = self._database.execute(f"SELECT {', '.join(COLUMNS)} FROM runs WHERE status IN (?, ?)", ENDED)
+            return {row[0]: record_from_row(row) for row in rows if row[0] in wanted}
 
     @contextmanager
     def _transaction(self) -> Iterator[None]:

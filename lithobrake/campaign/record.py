@@ -4,6 +4,7 @@ import sqlite3
 from contextlib import AbstractContextManager, closing
 from dataclasses import dataclass
 from datetime import UTC, datetime
+from enum import StrEnum
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -12,12 +13,25 @@ from lithobrake.atomic import lock_holder
 from lithobrake.reading import NUMBER, check, parsed, reading
 
 
+class RunStatus(StrEnum):
+    """Where a run stands in its ledger; running: handed to a worker. How a run that is done came out is its outcome."""
+
+    QUEUED = "queued"
+    RUNNING = "running"
+    DONE = "done"
+    FAILED = "failed"
+
+
+UNENDED = (RunStatus.QUEUED, RunStatus.RUNNING)
+ENDED = (RunStatus.DONE, RunStatus.FAILED)
+
+
 @dataclass(frozen=True)
 class Record:
     """One run: its state, what determined it, what came out, and where and how long it was made."""
 
     key: str
-    status: str
+    status: RunStatus
     outcome: str | None
     inputs: dict[str, float]
     outputs: dict[str, float]
@@ -52,12 +66,14 @@ def reading_ledger(path: Path) -> AbstractContextManager[None]:
     return reading(path, LEFT, sqlite3.Error)
 
 
-def record(row: tuple[Any, ...]) -> Record:
+def record_from_row(row: tuple[Any, ...]) -> Record:
     """A row of the ledger, its columns in the order of COLUMNS. Raises ValueError for one that no campaign wrote."""
     values = dict(zip(COLUMNS, row, strict=True))
     values |= {name: parsed(values[name] or "{}", dict) for name in OBJECTS}
     check(values, _FORM, f"run {values['key']}")
-    return Record(**values)
+    if values["status"] not in list(RunStatus):
+        raise ValueError(f"run {values['key']}: status is {values['status']!r}; allowed: {', '.join(RunStatus)}")
+    return Record(**{**values, "status": RunStatus(values["status"])})
 
 
 def utc_now() -> str:
@@ -75,14 +91,16 @@ def read_records(path: str | PathLike[str]) -> list[Record]:
         raise ValueError(f"{path} is not there; name the folder of a study that ran")
     # Without a log beside it the file is complete; so it can be read where nothing may be written, too.
     whole = "" if path.with_name(f"{path.name}-wal").exists() else "&immutable=1"
-    order = "ended IS NULL OR status IN ('queued', 'running'), ended, key"
+    order = "ended IS NULL OR status IN (?, ?), ended, key"
     with (
         reading_ledger(path),
         closing(sqlite3.connect(f"{path.absolute().as_uri()}?mode=ro{whole}", uri=True)) as database,
     ):
         first = database.execute("PRAGMA user_version").fetchone()[0] == 1
         columns = ", ".join(OF_FIRST.get(name, name) if first else name for name in COLUMNS)
-        return [record(row) for row in database.execute(f"SELECT {columns} FROM runs ORDER BY {order}")]
+        return [
+            record_from_row(row) for row in database.execute(f"SELECT {columns} FROM runs ORDER BY {order}", UNENDED)
+        ]
 
 
 def lock_path(path: Path) -> Path:

@@ -8,14 +8,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from lithobrake.campaign.coordinator import Coordinator, Job
+from lithobrake.campaign.coordinator import Coordinator, PendingRun
 from lithobrake.campaign.identity import run_key, run_seed
 from lithobrake.campaign.ledger import Ledger
 from lithobrake.campaign.limits import Limits
-from lithobrake.campaign.local import LocalExecutor
-from lithobrake.campaign.one_run import Model
-from lithobrake.campaign.record import Record
-from lithobrake.campaign.tally import Tally
+from lithobrake.campaign.local_executor import LocalExecutor
+from lithobrake.campaign.record import Record, RunStatus
+from lithobrake.campaign.run_counts import Tally
+from lithobrake.campaign.single_run import Model
 
 if TYPE_CHECKING:
     import numpy as np
@@ -31,12 +31,12 @@ class Runs:
     @property
     def outcomes(self) -> list[str]:
         """How each run ended: the model's own word, or "failed"."""
-        return [record.outcome or "failed" for record in self.records]
+        return [record.outcome or RunStatus.FAILED.value for record in self.records]
 
     @property
     def reasons(self) -> list[str | None]:
         """Why each run failed; None where it has not."""
-        return [record.reason if record.status == "failed" else None for record in self.records]
+        return [record.reason if record.status == RunStatus.FAILED else None for record in self.records]
 
     def outputs(self, names: Sequence[str]) -> "np.ndarray":
         """Outputs, shape [run_count, len(names)]; NaN where a run has failed or has no such output."""
@@ -46,45 +46,64 @@ class Runs:
         return np.array(rows, dtype=float).reshape(len(rows), len(names))
 
 
+@dataclass(frozen=True)
+class RunOptions:
+    """What few campaigns set.
+
+    seed: of the random numbers of all runs; replicate: another one repeats the same inputs with other random numbers.
+    retry_count: how often a failed run is tried again. log_folder: takes what each run prints; None keeps nothing.
+    """
+
+    seed: int = 0
+    replicate: int = 0
+    retry_count: int = 0
+    log_folder: Path | None = None
+
+
 def run(
     model: Model,
     x: "np.ndarray",
     *,
     names: Sequence[str],
     ledger: Ledger,
-    fixed: Mapping[str, float] | None = None,
     context: Mapping[str, Any] | None = None,
-    seed: int = 0,
-    replicate: int = 0,
     executor: Executor | None = None,
     limits: Limits | None = None,
-    retry_count: int = 0,
-    log_folder: Path | None = None,
+    options: RunOptions | None = None,
     progress: Callable[[Tally], None] | None = None,
 ) -> Runs:
     """Run a model on every row of an array; runs that the ledger knows are read from it.
 
-    x: inputs, shape [run_count, len(names)]. fixed: inputs that are the same in all rows. context: whatever else the
-    results depend on, as JSON values; "version" stands in the ledger. executor: with the interface of
-    concurrent.futures (None: the cores of this machine). limits: of one run. retry_count: how often a failed run is
-    tried again. progress: called as the campaign goes on.
+    x: inputs, shape [run_count, len(names)]. context: whatever else the results depend on, as JSON values; "version"
+    stands in the ledger. executor: with the interface of concurrent.futures (None: the cores of this machine). limits:
+    of one run. progress: called as the campaign goes on.
     A run that raises, or whose process dies, is recorded as failed with its reason, and the campaign goes on.
     Raises ValueError when the first ten of more than ten new runs all fail, so that nothing is known to work.
     """
-    rows = _inputs_of(x, names, fixed or {})
-    keys = [run_key(row, seed, replicate, context or {}) for row in rows]
+    rows, context, options = _inputs_of(x, names), context or {}, options or RunOptions()
+    keys = [run_key(row, options.seed, options.replicate, context) for row in rows]
     found = ledger.find(keys)
-    known = {key: entry for key, entry in found.items() if entry.status == "done" or entry.attempts > retry_count}
-    jobs = {
-        key: Job(model, row, run_seed(row, seed, replicate), log_folder and log_folder / f"{key}.log")
+    known = {
+        key: entry
+        for key, entry in found.items()
+        if entry.status == RunStatus.DONE or entry.attempts > options.retry_count
+    }
+    pending = {
+        key: PendingRun(
+            model,
+            row,
+            run_seed(row, options.seed, options.replicate),
+            options.log_folder and options.log_folder / f"{key}.log",
+            found[key].attempts if key in found else 0,
+        )
         for key, row in zip(keys, rows, strict=True)
         if key not in known
     }
-    entries = [(key, job.inputs, job.seed, replicate) for key, job in jobs.items()]
-    ledger.queue(entries, version=str((context or {}).get("version", "")))
-    state, tried = _state(keys, known), {key: found[key].attempts for key in jobs if key in found}
+    entries = [(key, entry.inputs, entry.seed, options.replicate) for key, entry in pending.items()]
+    ledger.queue(entries, version=str(context.get("version", "")))
+    state, show = _state(keys, known), progress or _silent
     with _given_or_own(executor) as workers:
-        Coordinator(ledger, workers, jobs, state, limits or Limits(), retry_count, tried, progress or _silent).compute()
+        Coordinator(ledger, workers, pending, state, limits or Limits(), options.retry_count, show).compute()
     records = ledger.find(keys)
     return Runs([records[key] for key in keys], reused_count=len(known))
 
@@ -101,7 +120,7 @@ def _silent(state: Tally) -> None:
     """Show nothing."""
 
 
-def _inputs_of(x: "np.ndarray", names: Sequence[str], fixed: Mapping[str, float]) -> list[dict[str, float]]:
+def _inputs_of(x: "np.ndarray", names: Sequence[str]) -> list[dict[str, float]]:
     """The inputs of each row by name. Raises ValueError for rows that do not fit the names or are not finite."""
     import numpy as np
 
@@ -114,7 +133,7 @@ def _inputs_of(x: "np.ndarray", names: Sequence[str], fixed: Mapping[str, float]
         raise ValueError(f"names has {repeated[0]!r} twice; allowed: a name of its own for each column of x")
     if not np.isfinite(table).all():
         raise ValueError("x holds values that are not finite; every input of a run must be a number")
-    return [{**fixed, **dict(zip(names, row.tolist(), strict=True))} for row in table]
+    return [dict(zip(names, row.tolist(), strict=True)) for row in table]
 
 
 @contextmanager

@@ -1,5 +1,6 @@
 """Polynomial chaos for any model: inputs with distributions, designs, fits, moments, sensitivity indices."""
 
+import sys
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
@@ -13,4 +14,12 @@ if TYPE_CHECKING:
 
 def __getattr__(name: str) -> Any:
     """Import the rest when the first of it is asked for."""
-    return getattr(import_module("lithobrake.chaos.public"), name)
+    public = import_module("lithobrake.chaos.public")
+    if not hasattr(public, name):
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}", name=name, obj=sys.modules[__name__])
+    return getattr(public, name)
+
+
+def __dir__() -> list[str]:
+    """List the public names; they are imported for it."""
+    return list(import_module("lithobrake.chaos.public").__all__)

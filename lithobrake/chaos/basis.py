@@ -5,9 +5,9 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lithobrake.chaos.germ import Distribution
+from lithobrake.chaos.abstract_distribution import Distribution
+from lithobrake.chaos.multi_index import Indices, multi_index_set
 from lithobrake.chaos.polynomials import Array, Recurrence
-from lithobrake.chaos.terms import Indices, multi_index_set
 
 # Limits computed by a user in another order of operations may differ from ours in the last digits.
 ROUNDING = 1e-12
@@ -62,7 +62,7 @@ def recurrences_of(inputs: Mapping[str, Distribution], indices: Indices) -> list
 
 
 def basis_matrix(inputs: Mapping[str, Distribution], indices: Indices, points: Array) -> Array:
-    """All terms at points in physical units; result [count, term_count] (H of the paper, Eq 17), column-major."""
+    """All terms at points in physical units; result [count, term_count] (H of [Landings-PCE], Eq 17), column-major."""
     germs = germs_of(inputs, points)
     matrix = np.ones((len(indices), len(points)))
     for column, (recurrence, germ) in enumerate(zip(recurrences_of(inputs, indices), germs, strict=True)):

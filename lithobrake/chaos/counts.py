@@ -14,12 +14,12 @@ def whole_number(name: str, value: object, at_least: int, at_most: int | None = 
 
 
 def term_count(input_count: int, degree: int) -> int:
-    """Number of terms of total degree up to `degree`, C(n + d, d). Source: the paper, below Eq 14."""
+    """Number of terms of total degree up to `degree`, C(n + d, d). Source: [Landings-PCE], below Eq 14."""
     return comb(input_count + degree, degree)
 
 
 def smolyak_count(input_count: int, level: int) -> int:
-    """Number of distinct nodes of the sparse grid, counted by the nodes that each level adds. Source: Smolyak, 1963."""
+    """Number of distinct nodes of the sparse grid, by the nodes that each level adds. Source: [Smolyak-1963]."""
     check_level(level)
     # The number of nodes with k inputs away from the middle, summed over ways to share the levels among them.
     total = 0

@@ -10,10 +10,15 @@ from typing import ClassVar
 
 import numpy as np
 
-from lithobrake.chaos.covariance_parts import GaussianPart, Part, PolynomialPart, gaussian_means
-from lithobrake.chaos.germ import Distribution
+from lithobrake.chaos.abstract_distribution import Distribution
+from lithobrake.chaos.multi_index import Indices
 from lithobrake.chaos.polynomials import Array
-from lithobrake.chaos.terms import Indices
+from lithobrake.chaos.univariate_covariance import (
+    UnivariateCovariance,
+    UnivariateGaussian,
+    UnivariatePolynomial,
+    gaussian_means,
+)
 
 Gradient = Callable[[Array], Array]
 # The squared lengths of the Gaussians that make up a Matern covariance.
@@ -59,7 +64,7 @@ class Covariance(ABC):
 class ProductCovariance(Covariance):
     """s prod_k (1 + part_k): each input may act alone or in products with others.
 
-    Source: Durrande, Ginsbourger and Roustant, 2012, "Additive covariance kernels" (ANOVA form).
+    Source: [Durrande-2012] (ANOVA form).
     """
 
     name = "gaussian"
@@ -67,22 +72,22 @@ class ProductCovariance(Covariance):
     def __init__(self, entries: Sequence[Distribution], degrees: Sequence[int]) -> None:
         super().__init__(entries, degrees)
         pairs = zip(self.entries, self.degrees, strict=True)
-        self.parts: list[Part] = [self.part_of(entry, degree) for entry, degree in pairs]
+        self.parts: list[UnivariateCovariance] = [self.part_of(entry, degree) for entry, degree in pairs]
 
-    def part_of(self, entry: Distribution, degree: int) -> Part:
+    def part_of(self, entry: Distribution, degree: int) -> UnivariateCovariance:
         """The factor of one input."""
-        return GaussianPart(entry, degree)
+        return UnivariateGaussian(entry, degree)
 
     def start(self) -> tuple[Array, list[tuple[float, float]]]:
         start = [part.start[which] for which in (0, 1) for part in self.parts]
         bounds = [part.bounds[which] for which in (0, 1) for part in self.parts]
         return np.array([*start, 0.0]), [*bounds, (-8.0, 12.0)]
 
-    def _split(self, theta: Array) -> list[tuple[Part, Array]]:
+    def _split(self, theta: Array) -> list[tuple[UnivariateCovariance, Array]]:
         return list(zip(self.parts, theta[:-1].reshape(2, -1).T, strict=True))
 
     def with_gradient(self, theta: Array, germs: Array) -> tuple[Array, Gradient]:
-        rows = [part.with_slopes(one, germ) for (part, one), germ in zip(self._split(theta), germs, strict=True)]
+        rows = [part.with_derivatives(one, germ) for (part, one), germ in zip(self._split(theta), germs, strict=True)]
         factors = [1.0 + row[0] for row in rows]
         scale = float(np.exp(theta[-1]))
         total = scale * np.prod(factors, axis=0)
@@ -127,21 +132,21 @@ class PolynomialCovariance(ProductCovariance):
 
     Without limits polynomials grow in the tails, and a process made of them returns to no mean far from the data, with
     a leave-one-out error far too low; unbounded inputs keep the Gaussian part.
-    Source: Xiu, 2010, "Numerical Methods for Stochastic Computations", section 3.3 (decay of coefficients).
+    Source: [Xiu-2010], section 3.3 (decay of coefficients).
     """
 
     name = "polynomial"
 
-    def part_of(self, entry: Distribution, degree: int) -> Part:
+    def part_of(self, entry: Distribution, degree: int) -> UnivariateCovariance:
         """The factor of one input."""
-        return PolynomialPart(entry, degree) if entry.bounded else GaussianPart(entry, degree)
+        return UnivariatePolynomial(entry, degree) if entry.bounded else UnivariateGaussian(entry, degree)
 
 
 class RadialMatern(Covariance):
     """s M(r), r**2 = sum_k (t_k - t'_k)**2 / l_k**2, Matern of order 5/2: rougher, with kinks in any direction.
 
     Learnt in closed form; used as a mixture of products, by the Gaussians exp(-r**2 / (2 v)) over v ~ Gamma(5/2).
-    Source: Rasmussen and Williams, 2006, Eqs 4.14 to 4.17.
+    Source: [Rasmussen-2006], Eqs 4.14 to 4.17.
     """
 
     name = "matern"
@@ -155,10 +160,10 @@ class RadialMatern(Covariance):
         distance = np.sqrt(5.0 * np.sum(squares, axis=0))
         fade = np.exp(theta[-1] - distance)
         total = (1.0 + distance + distance**2 / 3.0) * fade
-        slope = (5.0 / 3.0) * (1.0 + distance) * fade
+        derivative = (5.0 / 3.0) * (1.0 + distance) * fade
 
         def gradient(weight: Array) -> Array:
-            inner = weight * slope
+            inner = weight * derivative
             return np.array([*(np.vdot(inner, one) for one in squares), np.vdot(weight, total)])
 
         return total, gradient
@@ -181,11 +186,11 @@ class RadialMatern(Covariance):
 
     def projection(self, theta: Array, germs: Array, indices: Indices, weights: Array) -> Array:
         total = np.zeros((len(indices), *weights.shape[1:]))
-        for v, share in self._mixture():
+        for v, weight in self._mixture():
             lengths = np.exp(theta[:-1]) * np.sqrt(v)
             rows = zip(self.entries, self.degrees, germs, lengths, strict=True)
             tables = [gaussian_means(entry, degree, germ, float(length)) for entry, degree, germ, length in rows]
-            total += share * contracted(tables, indices, weights)
+            total += weight * contracted(tables, indices, weights)
         return float(np.exp(theta[-1])) * total
 
 

@@ -6,8 +6,8 @@ from itertools import product
 
 import numpy as np
 
+from lithobrake.chaos.abstract_distribution import Distribution, checked_inputs
 from lithobrake.chaos.counts import whole_number
-from lithobrake.chaos.germ import Distribution, checked_inputs
 from lithobrake.chaos.polynomials import Array
 
 
@@ -17,7 +17,7 @@ def checked_count(count: int) -> int:
 
 
 def tensor_count(input_count: int, level: int) -> int:
-    """Number of nodes of the full tensor grid, (level + 1)**input_count. Source: the paper, Fig 3."""
+    """Number of nodes of the full tensor grid, (level + 1)**input_count. Source: [Landings-PCE], Fig 3."""
     return (int(level) + 1) ** input_count
 
 
@@ -44,7 +44,7 @@ def sobol_sequence(inputs: Mapping[str, Distribution], count: int, seed: int = 0
     """First `count` points of a scrambled Sobol sequence after `skip`, physical units, [count, input_count].
 
     With the same seed a longer sequence starts with the shorter one, so a design can be extended.
-    Source: Owen, 1998, "Scrambling Sobol' and Niederreiter-Xing points", as in scipy.stats.qmc.
+    Source: [Owen-1998], as in scipy.stats.qmc.
     """
     from scipy.stats import qmc
 
@@ -60,7 +60,7 @@ def sobol_sequence(inputs: Mapping[str, Distribution], count: int, seed: int = 0
 
 
 def latin_hypercube(inputs: Mapping[str, Distribution], count: int, seed: int = 0) -> Array:
-    """Latin hypercube in probability, physical units, shape [count, input_count]. Source: McKay and others, 1979."""
+    """Latin hypercube in probability, physical units, shape [count, input_count]. Source: [McKay-1979]."""
     distributions = checked_inputs(inputs)
     generator, size = np.random.default_rng(seed), checked_count(count)
     columns = [(generator.permutation(size) + generator.random(size)) / size for _ in distributions]

@@ -6,15 +6,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lithobrake.chaos.automatic import best_solutions, process_solution
-from lithobrake.chaos.germ import Distribution
+from lithobrake.chaos.abstract_distribution import Distribution
+from lithobrake.chaos.degree_selection import best_terms, solve_ols
+from lithobrake.chaos.model_selection import best_solutions, process_solution
+from lithobrake.chaos.multi_index import multi_index_set
 from lithobrake.chaos.noise import replicates, with_noise
-from lithobrake.chaos.regression import best_terms, solve_ols
-from lithobrake.chaos.solution import Solution, joined, summary, told
-from lithobrake.chaos.sparse import solve_sparse
+from lithobrake.chaos.solution import Solution, joined, summary, with_progress
+from lithobrake.chaos.sparse_regression import solve_sparse
 from lithobrake.chaos.storage import data_hash
 from lithobrake.chaos.surrogate import Surrogate
-from lithobrake.chaos.terms import multi_index_set
 from lithobrake.chaos.threads import one_thread
 from lithobrake.chaos.training import Training, checked_training
 
@@ -44,13 +44,13 @@ def fit(
     each input, and weights: of the points [count], both for "ols". Rows of y that are all NaN are dropped and counted.
     progress: called with the number of outputs that are fitted, and that of all.
     Raises ValueError for fewer points than terms, rank deficiency and data that `checked_training` refuses.
-    Source: the paper, Eqs 13 to 17.
+    Source: [Landings-PCE], Eqs 13 to 17.
     """
     if method is None and any(one is not None for one in (degree, q_norm, max_degrees, weights)):
         method = "ols"
     _check_request(degree, method, max_degrees, weights)
     training = checked_training(inputs, x, y, output_names=output_names, weights=weights)
-    outputs = told(range(training.y.shape[1]), progress)
+    outputs = with_progress(range(training.y.shape[1]), progress)
     extra: dict[str, Any] = {}
     if method is None:
         solutions, extra = best_solutions(training, progress)

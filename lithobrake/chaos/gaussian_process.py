@@ -5,31 +5,31 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from lithobrake.chaos.abstract_distribution import Distribution
 from lithobrake.chaos.basis import germs_of
 from lithobrake.chaos.counts import term_count
 from lithobrake.chaos.covariance import Covariance, PolynomialCovariance, ProductCovariance, RadialMatern
-from lithobrake.chaos.germ import Distribution
+from lithobrake.chaos.multi_index import Indices, multi_index_set
 from lithobrake.chaos.polynomials import Array
-from lithobrake.chaos.terms import Indices, multi_index_set
 from lithobrake.chaos.training import Training
 
 FAMILIES: tuple[type[Covariance], ...] = (PolynomialCovariance, ProductCovariance, RadialMatern)
 # Parameters are learnt from at most so many points: a step costs their number cubed, and they are few.
 LEARN_FROM = 256
 ITERATIONS = 100
-# The nugget, as a share of the variance of the outputs: from rounding to everything.
+# The nugget, relative to the variance of the outputs: from rounding to everything.
 LOG_NOISE = (-23.0, 1.0)
 TERM_LIMIT = 12000
 KEPT_LIMIT = 3000
-# Terms are dropped while their sum of squares stays below this share of the expected squared error.
-DROPPED_SHARE = 0.002
+# Terms are dropped while their sum of squares stays below this times the expected squared error.
+DROPPED_FRACTION = 0.002
 
 
 @dataclass(frozen=True)
-class Process:
+class GaussianProcess:
     """A learnt Gaussian process of one output, standardised as (y - shift) / scale.
 
-    theta: log parameters; noise: nugget variance, as a share of scale**2; weights [count]: K**-1 y; factor: lower
+    theta: log parameters; noise: nugget variance, relative to scale**2; weights [count]: K**-1 y; factor: lower
     Cholesky factor of K [count, count]; germs of the points [input_count, count];
     leave_one_out [count]: error at each point predicted from the others (equal runs left out together), in the unit of
     the output.
@@ -54,7 +54,7 @@ class Process:
 
         The larger of leave-one-out, which sees what the covariance does not, and the predicted variance averaged over
         germs [input_count, count] of fresh inputs, which sees the tails where no run stands.
-        Source: Rasmussen and Williams, 2006, Eq 2.26.
+        Source: [Rasmussen-2006], Eq 2.26.
         """
         from scipy.linalg import solve_triangular
 
@@ -92,10 +92,10 @@ def highest_degrees(inputs: Sequence[Distribution]) -> list[int]:
     return [int(min(cap, entry.highest_degree)) for entry in inputs]
 
 
-def learn(training: Training, output: int, family: type[Covariance]) -> Process:
+def fit_process(training: Training, output: int, family: type[Covariance]) -> GaussianProcess:
     """Learn one output by maximum likelihood.
 
-    Source: Rasmussen and Williams, 2006, Eqs 5.8, 5.9 (likelihood) and 5.12 (leave-one-out in closed form).
+    Source: [Rasmussen-2006], Eqs 5.8, 5.9 (likelihood) and 5.12 (leave-one-out in closed form).
     """
     from scipy.linalg import cho_solve
 
@@ -111,7 +111,7 @@ def learn(training: Training, output: int, family: type[Covariance]) -> Process:
     errors = weights / np.diag(inverse)
     for rows in training.groups:
         errors[rows] = np.linalg.solve(inverse[np.ix_(rows, rows)], weights[rows])
-    return Process(covariance, theta, noise, weights, lower, germs, scale * errors, shift, scale)
+    return GaussianProcess(covariance, theta, noise, weights, lower, germs, scale * errors, shift, scale)
 
 
 def _factor(matrix: Array, noise: float) -> tuple[Array, float]:
@@ -169,9 +169,9 @@ def _negative_likelihood(covariance: Covariance, vector: Array, germs: Array, z:
         return 1e10, np.zeros_like(vector)
     inverse = cho_solve((lower, True), np.eye(len(z)))
     weights = inverse @ z
-    slope = 0.5 * (inverse - np.outer(weights, weights))
+    derivatives = 0.5 * (inverse - np.outer(weights, weights))
     value = 0.5 * float(z @ weights) + float(np.log(np.diag(lower)).sum())
-    return value, np.append(gradient(slope), noise * np.trace(slope))
+    return value, np.append(gradient(derivatives), noise * np.trace(derivatives))
 
 
 def fresh_germs(inputs: dict[str, Distribution]) -> tuple[Array, Array]:
@@ -182,7 +182,7 @@ def fresh_germs(inputs: dict[str, Distribution]) -> tuple[Array, Array]:
     return points, germs_of(inputs, points)
 
 
-def expansion_of(process: Process, inputs: dict[str, Distribution]) -> tuple[Indices, Array, float]:
+def expansion_of(process: GaussianProcess, inputs: dict[str, Distribution]) -> tuple[Indices, Array, float]:
     """Terms [term_count, input_count], coefficients [term_count] and the root-mean-square error of cutting the rest.
 
     The error is measured against the process itself at 500 Sobol points, in the unit of the output.
@@ -194,7 +194,7 @@ def expansion_of(process: Process, inputs: dict[str, Distribution]) -> tuple[Ind
     coefficients = process.coefficients(indices)
     order = np.argsort(-np.where(indices.sum(axis=1) == 0, np.inf, coefficients**2), kind="stable")
     tail = np.cumsum(coefficients[order][::-1] ** 2)[::-1]
-    allowed = DROPPED_SHARE * float(np.mean(process.leave_one_out**2))
+    allowed = DROPPED_FRACTION * float(np.mean(process.leave_one_out**2))
     kept = np.sort(order[: max(1, min(KEPT_LIMIT, int(np.sum(tail > allowed))))])
     points, germs = fresh_germs(inputs)
     difference = basis_matrix(inputs, indices[kept], points) @ coefficients[kept]

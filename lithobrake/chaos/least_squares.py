@@ -6,10 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from lithobrake.chaos.multi_index import Indices
 from lithobrake.chaos.polynomials import Array
-from lithobrake.chaos.terms import Indices
 
-# Singular values below this share of the largest are rank loss: far below any usable condition number,
+# Singular values below this times the largest are rank loss: far below any usable condition number,
 # far above the rounding of an exactly deficient system.
 RANK_TOLERANCE = 1e-10
 # Lost terms that a refusal names.
@@ -31,7 +31,7 @@ class LeastSquares:
     def left_out(self, groups: Sequence[NDArray[np.int64]]) -> Array:
         """Error at each point of the fit without it (or without its group of rows), [count, output_count].
 
-        Source: Allen, 1974 (PRESS); Cook and Weisberg, 1982, section 3.6 (groups).
+        Source: [Allen-1974] (PRESS); [Cook-1982], section 3.6 (groups).
         """
         if not groups:
             leverage = np.einsum("ij,ij->i", self.orthogonal, self.orthogonal)
@@ -67,14 +67,14 @@ def _lost_terms(triangle: Array, values: Array, indices: Indices, names: Sequenc
     )
 
 
-def least_squares(
+def solve_least_squares(
     matrix: Array, y: Array, *, indices: Indices, names: Sequence[str], weights: Array | None = None
 ) -> LeastSquares:
     """Solve min sum w_k (y_k - H_k c)**2 by QR; matrix H [count, term_count], y [count, output_count].
 
     It takes at least as many points as terms. Raises ValueError for rank deficiency, naming terms that cannot be told
     apart.
-    Source: the paper, Eqs 15 and 16; Golub and Van Loan, 2013, section 5.5.
+    Source: [Landings-PCE], Eqs 15 and 16; [Golub-2013], section 5.5.
     """
     from scipy.linalg import solve_triangular
 

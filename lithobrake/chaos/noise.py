@@ -39,7 +39,7 @@ def equal_rows(x: Array) -> NDArray[np.int64]:
 def replicates(x: Array, y: Array) -> Replicates | None:
     """Find repeated rows of x [count, input_count] and pool the scatter of y [count, output_count]; None if no repeats.
 
-    Source: Montgomery, 2012, "Design and Analysis of Experiments", pure error.
+    Source: [Montgomery-2012], pure error.
     """
     group = equal_rows(x)
     sizes = np.bincount(group).astype(np.int64)
@@ -73,15 +73,15 @@ def with_noise(report: dict[str, Any], pooled: Replicates | None) -> dict[str, A
 
 
 def runs_needed(report: dict[str, Any], target: float) -> dict[str, dict[str, Any]]:
-    """How many more runs bring the error at a new run down to `target`, as a share of the spread; by output name.
+    """How many more runs bring the error at a new run down to `target`, relative to the spread; by output name.
 
-    floor: the share that is scatter, which no expansion removes; now: the expected error; more_runs: 0, a number, or
+    floor: the part that is scatter, which no expansion removes; now: the expected error; more_runs: 0, a number, or
     None where none would help; sentence. The squared error above the floor is taken to fall as one over the number of
     runs: so it does where scatter is its cause; a smooth output needs fewer.
     Raises ValueError unless target is above 0, and for a report without error estimates.
     """
     if not target > 0.0:
-        raise ValueError(f"target is {target}, but must be above 0: it is an error as a share of the spread")
+        raise ValueError(f"target is {target}, but must be above 0: it is an error relative to the spread")
     answers = {}
     for name, entry in report.get("outputs", {}).items():
         now = entry["rrmse_estimate"]

@@ -16,7 +16,7 @@ class Recurrence:
     """Polynomials p_0 = 1, p_(k+1) = ((t - center_k) p_k - spread_(k-1) p_(k-1)) / spread_k, orthonormal in a measure.
 
     center: a_k, shape [degree]; spread: sqrt(b_(k+1)), shape [degree]; both in units of the germ t.
-    Source: Gautschi, 2004, "Orthogonal Polynomials: Computation and Approximation", Eq 1.3.13.
+    Source: [Gautschi-2004], Eq 1.3.13.
     """
 
     center: Array
@@ -37,20 +37,20 @@ class Recurrence:
             table[k + 1] /= self.spread[k]
         return table
 
-    def slopes(self, germ: Array) -> Array:
+    def derivatives(self, germ: Array) -> Array:
         """Evaluate the first derivatives of all degrees at germ values [count]; result [degree + 1, count]."""
-        table, slope = self.values(germ), np.zeros((self.degree + 1, germ.size))
+        table, derivatives = self.values(germ), np.zeros((self.degree + 1, germ.size))
         for k in range(self.degree):
-            slope[k + 1] = table[k] + (germ - self.center[k]) * slope[k]
+            derivatives[k + 1] = table[k] + (germ - self.center[k]) * derivatives[k]
             if k > 0:
-                slope[k + 1] -= self.spread[k - 1] * slope[k - 1]
-            slope[k + 1] /= self.spread[k]
-        return slope
+                derivatives[k + 1] -= self.spread[k - 1] * derivatives[k - 1]
+            derivatives[k + 1] /= self.spread[k]
+        return derivatives
 
     def gauss_rule(self) -> tuple[Array, Array]:
         """Nodes [degree] and weights [degree] (summing to 1) of the Gauss rule, exact up to degree 2 degree - 1.
 
-        Source: Golub and Welsch, 1969, "Calculation of Gauss quadrature rules", Math. Comp. 23.
+        Source: [Golub-1969].
         """
         from scipy.linalg import eigh_tridiagonal
 
@@ -61,20 +61,20 @@ class Recurrence:
 
 
 def legendre(degree: int) -> Recurrence:
-    """Polynomials of the uniform measure on [-1, 1]. Source: Xiu and Karniadakis, 2002, Table 4.1."""
+    """Polynomials of the uniform measure on [-1, 1]. Source: [Xiu-2002], Table 4.1."""
     k = np.arange(1.0, degree + 1)
     return Recurrence(np.zeros(degree), k / np.sqrt(4.0 * k * k - 1.0))
 
 
 def hermite(degree: int) -> Recurrence:
-    """Polynomials of the standard normal measure. Source: Xiu and Karniadakis, 2002, Table 4.1."""
+    """Polynomials of the standard normal measure. Source: [Xiu-2002], Table 4.1."""
     return Recurrence(np.zeros(degree), np.sqrt(np.arange(1.0, degree + 1)))
 
 
 def laguerre(degree: int, shape: float) -> Recurrence:
     """Polynomials of the gamma measure t**(shape - 1) exp(-t) / Gamma(shape) on t >= 0.
 
-    Source: Xiu and Karniadakis, 2002, Table 4.1; recurrence of Gautschi, 2004, Table 1.1.
+    Source: [Xiu-2002], Table 4.1; recurrence of [Gautschi-2004], Table 1.1.
     """
     k = np.arange(float(degree))
     return Recurrence(2.0 * k + shape, np.sqrt((k + 1.0) * (k + shape)))
@@ -83,7 +83,7 @@ def laguerre(degree: int, shape: float) -> Recurrence:
 def jacobi(degree: int, left: float, right: float) -> Recurrence:
     """Polynomials of the beta measure on [-1, 1], density proportional to (1 + t)**(left - 1) (1 - t)**(right - 1).
 
-    Source: Gautschi, 2004, Table 1.1, with exponents right - 1 of (1 - t) and left - 1 of (1 + t).
+    Source: [Gautschi-2004], Table 1.1, with exponents right - 1 of (1 - t) and left - 1 of (1 + t).
     """
     a, b = right - 1.0, left - 1.0
     center, square = np.empty(degree), np.empty(degree)
@@ -104,7 +104,7 @@ def discretised(degree: int, nodes: Array, weights: Array) -> Recurrence:
 
     The Lanczos vectors are orthogonalised twice against all earlier ones, or orthogonality is lost at high degree.
     Raises ValueError when the measure has too few distinct nodes for the degree.
-    Source: Gautschi, 2004, section 2.2.3 (Stieltjes and Lanczos).
+    Source: [Gautschi-2004], section 2.2.3 (Stieltjes and Lanczos).
     """
     distinct = len(np.unique(nodes))
     if distinct <= degree:

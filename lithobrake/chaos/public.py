@@ -1,12 +1,19 @@
 """Every public name of the part, from the file that it stands in."""
 
+from lithobrake.chaos.abstract_distribution import Distribution
 from lithobrake.chaos.basis import condition_number
-from lithobrake.chaos.bounded import Beta, LogUniform, Uniform
-from lithobrake.chaos.computed import Empirical, TruncatedNormal
+from lithobrake.chaos.bootstrap import score_intervals, sobol_estimates, sobol_intervals
+from lithobrake.chaos.bounded_distributions import Beta, LogUniform, Uniform
 from lithobrake.chaos.counts import smolyak_count, term_count
-from lithobrake.chaos.dependence import DependentSurrogate, GaussianCopula, fit_dependent, load_dependent
 from lithobrake.chaos.design import latin_hypercube, sobol_sequence, tensor_count, tensor_grid
-from lithobrake.chaos.exploration import (
+from lithobrake.chaos.distribution_registry import distribution
+from lithobrake.chaos.fitting import fit
+from lithobrake.chaos.gaussian_copula import DependentSurrogate, GaussianCopula, fit_dependent, load_dependent
+from lithobrake.chaos.multi_index import multi_index_set
+from lithobrake.chaos.noise import replicates
+from lithobrake.chaos.numerical_distributions import Empirical, TruncatedNormal
+from lithobrake.chaos.optimal_design import christoffel, christoffel_weights, d_optimal, fekete
+from lithobrake.chaos.postprocessing import (
     density,
     gradient,
     main_effect,
@@ -14,21 +21,13 @@ from lithobrake.chaos.exploration import (
     output_correlation,
     quantiles,
     sampled_outputs,
+    shape_moments,
 )
-from lithobrake.chaos.fitting import fit
-from lithobrake.chaos.germ import Distribution
-from lithobrake.chaos.kinds import distribution
-from lithobrake.chaos.moments import shape_moments
-from lithobrake.chaos.noise import replicates
-from lithobrake.chaos.optimal import christoffel, christoffel_weights, d_optimal, fekete
-from lithobrake.chaos.resampling import score_intervals, sobol_estimates, sobol_intervals
 from lithobrake.chaos.scores import absolute_percentage_error
 from lithobrake.chaos.sparse_grid import smolyak
 from lithobrake.chaos.stochastic import StochasticSurrogate, fit_stochastic, joint_scatter, load_stochastic
-from lithobrake.chaos.storage import load
-from lithobrake.chaos.surrogate import Surrogate
-from lithobrake.chaos.terms import multi_index_set
-from lithobrake.chaos.unbounded import Exponential, Gamma, LogNormal, Normal
+from lithobrake.chaos.surrogate import Surrogate, load
+from lithobrake.chaos.unbounded_distributions import Exponential, Gamma, LogNormal, Normal
 
 __all__ = [
     "Beta",

@@ -12,7 +12,7 @@ Score = dict[str, Any]
 def absolute_percentage_error(predicted: Array, y: Array) -> Array:
     """APE = 100 |predicted - y| / |y| [%], elementwise; where y is 0 it is 0 for an exact prediction, else infinite.
 
-    Source: the paper, Eq 24 (with |y|, since an output may be negative).
+    Source: [Landings-PCE], Eq 24 (with |y|, since an output may be negative).
     """
     error = np.abs(predicted - y)
     with np.errstate(divide="ignore", invalid="ignore"):

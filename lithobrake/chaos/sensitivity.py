@@ -5,8 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from lithobrake.chaos.multi_index import Indices
 from lithobrake.chaos.polynomials import Array
-from lithobrake.chaos.terms import Indices
 
 
 def _shares(indices: Indices, coefficients: Array, chosen: NDArray[np.bool_]) -> Array:
@@ -22,34 +22,34 @@ def _varying(indices: Indices) -> NDArray[np.bool_]:
 
 
 def mean_of(indices: Indices, coefficients: Array) -> Array:
-    """Mean of each output [output_count]: the constant term. Source: the paper, Eq 18."""
+    """Mean of each output [output_count]: the constant term. Source: [Landings-PCE], Eq 18."""
     return coefficients[~_varying(indices)].sum(axis=0)
 
 
 def variance_of(indices: Indices, coefficients: Array) -> Array:
-    """Variance of each output [output_count]. Source: the paper, Eq 21, with orthonormal polynomials."""
+    """Variance of each output [output_count]. Source: [Landings-PCE], Eq 21, with orthonormal polynomials."""
     return (coefficients[_varying(indices)] ** 2).sum(axis=0)
 
 
 def first_order(indices: Indices, coefficients: Array) -> Array:
-    """First-order Sobol indices [input_count, output_count]. Source: the paper, Eq 23; Sudret, 2008."""
+    """First-order Sobol indices [input_count, output_count]. Source: [Landings-PCE], Eq 23; [Sudret-2008]."""
     active = indices > 0
     return _shares(indices, coefficients, (active & (active.sum(axis=1) == 1)[:, None]).T)
 
 
 def total_order(indices: Indices, coefficients: Array) -> Array:
-    """Total Sobol indices [input_count, output_count]. Source: Sudret, 2008, Eq 36."""
+    """Total Sobol indices [input_count, output_count]. Source: [Sudret-2008], Eq 36."""
     return _shares(indices, coefficients, (indices > 0).T)
 
 
 def group_share(indices: Indices, coefficients: Array, members: Sequence[int]) -> Array:
-    """Share of the variance in all terms of these inputs only (closed index), [output_count]. Source: Sobol, 2001."""
+    """Share of the variance in all terms of these inputs only (closed index), [output_count]. Source: [Sobol-2001]."""
     others = [k for k in range(indices.shape[1]) if k not in set(members)]
     inside = (indices[:, others].sum(axis=1) == 0) & _varying(indices)
     return _shares(indices, coefficients, inside[None, :])[0]
 
 
 def interaction(indices: Indices, coefficients: Array, members: Sequence[int]) -> Array:
-    """Sobol index of exactly this set of inputs, [output_count]. Source: Sudret, 2008, Eq 35."""
+    """Sobol index of exactly this set of inputs, [output_count]. Source: [Sudret-2008], Eq 35."""
     wanted = np.isin(np.arange(indices.shape[1]), list(members))
     return _shares(indices, coefficients, ((indices > 0) == wanted).all(axis=1)[None, :])[0]

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from lithobrake.chaos.multi_index import Indices
 from lithobrake.chaos.polynomials import Array
-from lithobrake.chaos.terms import Indices
 
 
 @dataclass(frozen=True)
@@ -27,7 +27,7 @@ class Solution:
     residuals: Array | None = None
 
 
-def told(outputs: range, progress: Callable[[int, int], None]) -> Iterator[int]:
+def with_progress(outputs: range, progress: Callable[[int, int], None]) -> Iterator[int]:
     """The outputs one by one, with how many are done told before each and at the end."""
     for output in outputs:
         progress(output, len(outputs))
@@ -52,7 +52,7 @@ def joined(solutions: Sequence[Solution]) -> tuple[Indices, Array]:
 
 
 def summary(solutions: Sequence[Solution], names: Sequence[str], y: Array) -> dict[str, Any]:
-    """The report of a fit: per output its method and expected error, in its unit and as a share of its spread."""
+    """The report of a fit: per output its method and expected error, in its unit and relative to its spread."""
     outputs = {}
     for name, one, column in zip(names, solutions, y.T, strict=True):
         spread = float(np.std(column)) if np.ptp(column) > 0.0 else 0.0

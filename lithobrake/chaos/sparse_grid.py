@@ -1,12 +1,12 @@
-"""The Smolyak sparse grid of nested Clenshaw-Curtis nodes: the paper's design."""
+"""The Smolyak sparse grid of nested Clenshaw-Curtis nodes: the design of [Landings-PCE]."""
 
 from collections.abc import Mapping
 from itertools import product
 
 import numpy as np
 
+from lithobrake.chaos.abstract_distribution import Distribution, checked_inputs
 from lithobrake.chaos.counts import check_level
-from lithobrake.chaos.germ import Distribution, checked_inputs
 from lithobrake.chaos.polynomials import Array
 
 
@@ -14,7 +14,7 @@ def new_nodes(level: int) -> Array:
     """Clenshaw-Curtis nodes on [-1, 1] that a level adds to the one below: m(0) = 1, m(l) = 2**l + 1.
 
     A node is computed at the level where it first appears and nowhere else: nested to the last bit by construction.
-    Source: Clenshaw and Curtis, 1960; extrema of Chebyshev polynomials.
+    Source: [Clenshaw-1960]; extrema of Chebyshev polynomials.
     """
     if level == 0:
         return np.zeros(1)
@@ -37,7 +37,7 @@ def smolyak(inputs: Mapping[str, Distribution], level: int) -> Array:
 
     The order is by total level, so the nodes of a lower level are the first rows, bit for bit, of a higher one.
     Raises ValueError for an unbounded input (limit it, or choose another design) and for a level out of range.
-    Source: Smolyak, 1963; the paper, "Polynomial chaos expansion" and Fig 3.
+    Source: [Smolyak-1963]; [Landings-PCE], "Polynomial chaos expansion" and Fig 3.
     """
     check_level(level)
     distributions = checked_inputs(inputs)

@@ -9,12 +9,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy import special
 
-from lithobrake.chaos.automatic import PROCESS_FROM, PROCESS_LIMIT
+from lithobrake.chaos.abstract_distribution import Distribution
 from lithobrake.chaos.fitting import fit
-from lithobrake.chaos.germ import Distribution
+from lithobrake.chaos.model_selection import PROCESS_FROM, PROCESS_LIMIT
 from lithobrake.chaos.noise import equal_rows, replicates
 from lithobrake.chaos.polynomials import Array
-from lithobrake.chaos.storage import content_of, numbers, read, surrogate_of, write
+from lithobrake.chaos.storage import numbers_from_json, read, write
 from lithobrake.chaos.surrogate import Surrogate
 from lithobrake.chaos.training import checked_training
 
@@ -35,7 +35,7 @@ class StochasticSurrogate:
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write everything into one readable JSON file."""
-        parts = {"mean": content_of(self.mean), "log_variance": content_of(self.log_variance)}
+        parts = {"mean": self.mean.content(), "log_variance": self.log_variance.content()}
         write(FORMAT, {**parts, "correlation": self.correlation.tolist()}, path)
 
     def sample(self, x: ArrayLike, *, seed: int = 0) -> Array:
@@ -54,8 +54,8 @@ def load_stochastic(path: str | os.PathLike[str]) -> StochasticSurrogate:
     """Read what `StochasticSurrogate.save` wrote. Raises ValueError if the file is another thing or damaged."""
 
     def build(content: dict[str, Any]) -> StochasticSurrogate:
-        mean, spread = surrogate_of(content["mean"]), surrogate_of(content["log_variance"])
-        correlation = numbers("correlation", content["correlation"], len(mean.output_names))
+        mean, spread = Surrogate.from_content(content["mean"]), Surrogate.from_content(content["log_variance"])
+        correlation = numbers_from_json("correlation", content["correlation"], len(mean.output_names))
         if mean.inputs != spread.inputs or mean.output_names != spread.output_names:
             raise ValueError("mean and log_variance have different inputs or outputs")
         if len(correlation) != len(mean.output_names) or not np.allclose(correlation, correlation.T):
@@ -72,7 +72,7 @@ def fit_stochastic(
 
     The logarithm of a sample variance is too low on average by a known amount, which is added; groups of at least
     two runs enter. Raises ValueError without repeated points, or for an output that does not scatter.
-    Source: Bartlett and Kendall, 1946 (logarithm of a variance); Zhu and Sudret, 2020 (stochastic expansions).
+    Source: [Bartlett-1946] (logarithm of a variance); [Zhu-2020] (stochastic expansions).
     """
     training = checked_training(inputs, x, y, output_names=output_names)
     pooled = replicates(training.x, training.y)

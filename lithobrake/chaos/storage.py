@@ -1,4 +1,4 @@
-"""An expansion as one readable JSON file. Loading reads numbers and names; nothing in the file is executed."""
+"""One readable JSON file for each expansion. Loading reads numbers and names; nothing in the file is executed."""
 
 import hashlib
 import json
@@ -10,16 +10,14 @@ from typing import Any, TypeVar
 import numpy as np
 
 from lithobrake.atomic import atomic_path
-from lithobrake.chaos.germ import Distribution
-from lithobrake.chaos.kinds import distribution
+from lithobrake.chaos.abstract_distribution import Distribution
+from lithobrake.chaos.distribution_registry import distribution
+from lithobrake.chaos.multi_index import LOOKED_AT, Indices
 from lithobrake.chaos.polynomials import Array
-from lithobrake.chaos.surrogate import Surrogate
-from lithobrake.chaos.terms import LOOKED_AT, Indices
 from lithobrake.reading import UNREADABLE
 
 Kept = TypeVar("Kept")
 
-FORMAT = "lithobrake expansion"
 FORMAT_VERSION = 1
 
 
@@ -31,31 +29,16 @@ def data_hash(x: Array, y: Array) -> str:
     return digest.hexdigest()
 
 
-def save(surrogate: Surrogate, path: str | os.PathLike[str]) -> None:
-    """Write an expansion; the file is complete or absent, and numbers come back bit for bit."""
-    write(FORMAT, content_of(surrogate), path)
-
-
 def write(kind: str, content: dict[str, Any], path: str | os.PathLike[str]) -> None:
-    """Write content [JSON values] under a heading that says what it is and who wrote it."""
+    """Write content [JSON values] under a heading that says what it is and who wrote it.
+
+    The file is complete or absent, and numbers come back bit for bit.
+    """
     from lithobrake import __version__
 
     heading = {"format": kind, "format_version": FORMAT_VERSION, "written_by": f"lithobrake {__version__}"}
     with atomic_path(path) as draft:
         draft.write_text(_readable({**heading, **content}) + "\n", encoding="utf-8")
-
-
-def content_of(surrogate: Surrogate) -> dict[str, Any]:
-    """Everything that makes an expansion, as plain JSON values."""
-    return {
-        "inputs": inputs_to_json(surrogate.inputs),
-        "output_names": surrogate.output_names,
-        "one_dimensional": surrogate.one_dimensional,
-        "multi_indices": surrogate.multi_indices.tolist(),
-        "coefficients": surrogate.coefficients.reshape(surrogate.term_count, -1).tolist(),
-        "report": surrogate.report,
-        "residuals": surrogate.residuals.tolist(),
-    }
 
 
 def inputs_to_json(inputs: Mapping[str, Distribution]) -> list[dict[str, Any]]:
@@ -86,11 +69,6 @@ def _readable(content: dict[str, Any]) -> str:
     return "{\n" + ",\n".join(lines) + "\n}"
 
 
-def load(path: str | os.PathLike[str]) -> Surrogate:
-    """Read an expansion that `Surrogate.save` wrote. Raises ValueError if the file is another thing or damaged."""
-    return read(FORMAT, surrogate_of, path)
-
-
 def read(kind: str, build: Callable[[dict[str, Any]], Kept], path: str | os.PathLike[str]) -> Kept:
     """Read a file that `write` wrote under the same heading, and build what it holds."""
     name = Path(path)
@@ -113,29 +91,7 @@ def read(kind: str, build: Callable[[dict[str, Any]], Kept], path: str | os.Path
         raise ValueError(f"{name} is damaged ({error}): save it again") from error
 
 
-def surrogate_of(content: dict[str, Any]) -> Surrogate:
-    """The expansion that `content_of` wrote. Raises ValueError for content that is none."""
-    inputs, names = inputs_from_json(content["inputs"]), _names(content["output_names"])
-    indices = _indices(content["multi_indices"], len(inputs))
-    coefficients = numbers("coefficients", content["coefficients"], len(names))
-    if len(coefficients) != len(indices):
-        raise ValueError(f"there are {len(coefficients)} coefficients for {len(indices)} multi_indices")
-    one_dimensional, report = content["one_dimensional"], content["report"]
-    if type(one_dimensional) is not bool or (one_dimensional and len(names) > 1) or not isinstance(report, dict):
-        raise ValueError("one_dimensional must be true or false, true for one output only, and report a table")
-    residuals = numbers("residuals", content["residuals"], len(names))
-    return Surrogate(
-        inputs,
-        indices,
-        coefficients,
-        output_names=names,
-        one_dimensional=one_dimensional,
-        residuals=residuals,
-        report=report,
-    )
-
-
-def numbers(name: str, rows: Any, width: int) -> Array:
+def numbers_from_json(name: str, rows: Any, width: int) -> Array:
     """A table of finite numbers, shape [any, width]. Raises ValueError for anything else."""
     table = np.array(rows, dtype=float)
     if table.size == 0:
@@ -145,7 +101,8 @@ def numbers(name: str, rows: Any, width: int) -> Array:
     return table
 
 
-def _names(names: Any) -> list[str]:
+def names_from_json(names: Any) -> list[str]:
+    """Output names. Raises ValueError unless they are a list of different names."""
     if not isinstance(names, list) or not names or not all(isinstance(name, str) for name in names):
         raise ValueError(f"output_names are {names!r}; they must be a list of names")
     if len(set(names)) < len(names):
@@ -153,7 +110,7 @@ def _names(names: Any) -> list[str]:
     return names
 
 
-def _indices(rows: Any, input_count: int) -> Indices:
+def indices_from_json(rows: Any, input_count: int) -> Indices:
     """Multi-indices, shape [term_count, input_count], as they were written: nothing is rounded or dropped."""
     whole = isinstance(rows, list) and all(
         isinstance(row, list) and len(row) == input_count and all(type(power) is int for power in row) for row in rows

@@ -4,18 +4,30 @@ import os
 import warnings
 from collections.abc import Mapping, Sequence
 from functools import cached_property
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from lithobrake.chaos import noise, scores, sensitivity
+from lithobrake.chaos.abstract_distribution import Distribution, checked_inputs
 from lithobrake.chaos.basis import outside_count, points_of
 from lithobrake.chaos.evaluation import Plan, evaluate, make_plan
-from lithobrake.chaos.germ import Distribution, checked_inputs
+from lithobrake.chaos.moments import ShapeMoments, skewness_and_kurtosis
+from lithobrake.chaos.multi_index import Indices
 from lithobrake.chaos.polynomials import Array
-from lithobrake.chaos.terms import Indices
+from lithobrake.chaos.storage import (
+    indices_from_json,
+    inputs_from_json,
+    inputs_to_json,
+    names_from_json,
+    numbers_from_json,
+    read,
+    write,
+)
 from lithobrake.chaos.threads import one_thread
+
+FORMAT = "lithobrake expansion"
 
 
 class Surrogate:
@@ -24,7 +36,7 @@ class Surrogate:
     inputs: name -> distribution, in column order; multi_indices [term_count, input_count]; coefficients of the
     orthonormal terms [term_count, output_count] ([term_count] for a one-dimensional y); report: how it was fitted,
     plain JSON values; residuals of the training points [count, output_count], kept jointly over outputs.
-    Source: the paper, Eq 13; Xiu and Karniadakis, 2002.
+    Source: [Landings-PCE], Eq 13; [Xiu-2002].
     """
 
     def __init__(
@@ -116,29 +128,27 @@ class Surrogate:
 
     @property
     def mean(self) -> Any:
-        """Mean of each output [output_count], or a number. Source: the paper, Eq 18."""
+        """Mean of each output [output_count], or a number. Source: [Landings-PCE], Eq 18."""
         return self.shaped(sensitivity.mean_of(self.multi_indices, self._coefficients))
 
     @property
     def variance(self) -> Any:
-        """Variance of each output [output_count], or a number. Source: the paper, Eq 21."""
+        """Variance of each output [output_count], or a number. Source: [Landings-PCE], Eq 21."""
         return self.shaped(sensitivity.variance_of(self.multi_indices, self._coefficients))
 
     @cached_property
-    def _shape(self) -> dict[str, Any]:
-        from lithobrake.chaos.moments import shape_moments
-
-        return shape_moments(self)
+    def _shape_moments(self) -> ShapeMoments:
+        return skewness_and_kurtosis(self.inputs, self.multi_indices, self._coefficients)
 
     @property
     def skewness(self) -> Any:
         """Skewness of each output [output_count], or a number; `shape_moments` says how, and whether exactly."""
-        return self._shape["skewness"]
+        return self.shaped(self._shape_moments.skewness)
 
     @property
     def kurtosis(self) -> Any:
         """Kurtosis of each output (3 for a normal) [output_count], or a number; as for the skewness."""
-        return self._shape["kurtosis"]
+        return self.shaped(self._shape_moments.kurtosis)
 
     @property
     def sobol_first(self) -> Array:
@@ -169,7 +179,7 @@ class Surrogate:
     def score(self, x: ArrayLike, y: ArrayLike) -> dict[str, scores.Score]:
         """Scores at points x with known outputs y, by output name: mape, ape [%], q2, rrmse, rmse, std.
 
-        Raises ValueError for NaN in y. Source: the paper, Eq 24; `score_of` has the definitions.
+        Raises ValueError for NaN in y. Source: [Landings-PCE], Eq 24; `score_of` has the definitions.
         """
         truth, count = np.asarray(y, dtype=float), len(points_of(self.inputs, x))
         if truth.ndim == 1 and len(self.output_names) == 1:
@@ -186,11 +196,48 @@ class Surrogate:
         return {name: scores.score_of(predicted[:, k], truth[:, k]) for k, name in columns}
 
     def runs_needed(self, target: float) -> dict[str, dict[str, Any]]:
-        """How many more runs would bring the expected error to `target` (share of the spread), by output name."""
+        """How many more runs would bring the expected error to `target` (in units of the spread), by output name."""
         return noise.runs_needed(self.report, target)
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write everything into one readable JSON file."""
-        from lithobrake.chaos.storage import save
+        write(FORMAT, self.content(), path)
 
-        save(self, path)
+    def content(self) -> dict[str, Any]:
+        """Everything that makes the expansion, as plain JSON values."""
+        return {
+            "inputs": inputs_to_json(self.inputs),
+            "output_names": self.output_names,
+            "one_dimensional": self.one_dimensional,
+            "multi_indices": self.multi_indices.tolist(),
+            "coefficients": self._coefficients.tolist(),
+            "report": self.report,
+            "residuals": self.residuals.tolist(),
+        }
+
+    @classmethod
+    def from_content(cls, content: Mapping[str, Any]) -> Self:
+        """Make the expansion that `content` gave. Raises ValueError for content that is none."""
+        inputs, names = inputs_from_json(content["inputs"]), names_from_json(content["output_names"])
+        indices = indices_from_json(content["multi_indices"], len(inputs))
+        coefficients = numbers_from_json("coefficients", content["coefficients"], len(names))
+        if len(coefficients) != len(indices):
+            raise ValueError(f"there are {len(coefficients)} coefficients for {len(indices)} multi_indices")
+        one_dimensional, report = content["one_dimensional"], content["report"]
+        if type(one_dimensional) is not bool or (one_dimensional and len(names) > 1) or not isinstance(report, dict):
+            raise ValueError("one_dimensional must be true or false, true for one output only, and report a table")
+        residuals = numbers_from_json("residuals", content["residuals"], len(names))
+        return cls(
+            inputs,
+            indices,
+            coefficients,
+            output_names=names,
+            one_dimensional=one_dimensional,
+            residuals=residuals,
+            report=report,
+        )
+
+
+def load(path: str | os.PathLike[str]) -> Surrogate:
+    """Read an expansion that `Surrogate.save` wrote. Raises ValueError if the file is another thing or damaged."""
+    return read(FORMAT, Surrogate.from_content, path)

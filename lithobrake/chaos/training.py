@@ -7,8 +7,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from lithobrake.chaos.abstract_distribution import Distribution, checked_inputs
 from lithobrake.chaos.basis import outside_count, points_of
-from lithobrake.chaos.germ import Distribution, checked_inputs
 from lithobrake.chaos.noise import equal_rows
 from lithobrake.chaos.polynomials import Array
 

@@ -1,7 +1,16 @@
-"""Grains: shapes, contact law, neighbours, narrow phase, motion, world. Knows nothing of landers or chaos."""
+"""Grains: shapes, contact law, neighbours, narrow phase, motion, world. Knows nothing of landers or chaos.
 
+Other parts use this one by the names that stand here.
+"""
+
+from lithobrake.dem.assembly import rotation_matrices
 from lithobrake.dem.material import Material
-from lithobrake.dem.shape import Box, ConvexHull, Shape, Sphere
+from lithobrake.dem.rigid_body import checked_inertia
+from lithobrake.dem.shape import Box, ConvexHull, Shape, Sphere, equivalent_radius
+from lithobrake.dem.timestep import contact_duration
 from lithobrake.dem.world import World
 
-__all__ = ["Box", "ConvexHull", "Material", "Shape", "Sphere", "World"]
+__all__ = [
+    "Box", "ConvexHull", "Material", "Shape", "Sphere", "World", "checked_inertia", "contact_duration",
+    "equivalent_radius", "rotation_matrices",
+]  # fmt: skip

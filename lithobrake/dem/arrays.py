@@ -1,4 +1,8 @@
-"""The arrays that kernels work on. Every length is in metres, every frame is the world's unless it says body."""
+"""The arrays that kernels work on. Every length is in metres, every frame is the world's unless it says body.
+
+Kernels take a pair first, then arrays in the order below and those of scratch.py, then all else. They only read, but
+for what their docstrings say they write to.
+"""
 
 from typing import NamedTuple
 
@@ -22,8 +26,8 @@ class Cores(NamedTuple):
     edge_start: Integers  # [shape_count + 1]
     edge_begin: Floats  # [edge_total, 3], about the centroid
     edge_along: Floats  # [edge_total, 3], from begin to end
-    fence: Integers  # [2 edge_total]: the faces across the edges of each face, counted within the shape
-    fence_start: Integers  # [face_total + 1]
+    adjacent_face: Integers  # [2 edge_total]: the faces across the edges of each face, counted within the shape
+    adjacent_start: Integers  # [face_total + 1]
     rounding: Floats  # [shape_count]
 
 
@@ -87,10 +91,10 @@ class Pairs(NamedTuple):
     roll_stiffness: Floats  # [pair_count], N m
     tilt_stiffness: Floats  # [pair_count], N m, against tilting of a patch of several points
     lost: Floats  # [pair_count, 3], J, what damping, friction and rolling took since the list was made
-    term_count: Integers  # [pair_count], features near enough to touch before waking; -1: all of them
-    term: Integers  # [pair_count, NEAR], names of the first of them
-    rest_row: Integers  # [pair_count], row of the names that found no room there, -1: none
-    rest: Integers  # [row_count, rest_max]
+    feature_count: Integers  # [pair_count], features near enough to touch before waking; -1: all of them
+    feature: Integers  # [pair_count, INLINE_FEATURES], the first of them, see feature_id.py
+    overflow_row: Integers  # [pair_count], row of those that found no room there, -1: none
+    overflow: Integers  # [row_count, overflow_max]
 
 
 class Laws(NamedTuple):
@@ -107,19 +111,19 @@ class Laws(NamedTuple):
     cohesion_line: Floats  # N/m, cohesion over contact radius
 
 
-class Share(NamedTuple):
+class Partition(NamedTuple):
     """A run of bodies, and the pairs of which they are the first: what one thread works on, see threads.py."""
 
     start: int
     stop: int  # bodies from start to before stop
     first_pair: int
     last_pair: int  # pairs from first_pair to before last_pair
-    outgoing: Integers  # those of them whose second is in a later share, in order
-    incoming: Integers  # pairs of earlier shares of which these bodies are the second, in order
+    outgoing: Integers  # those of them whose second is in a later partition, in order
+    incoming: Integers  # pairs of earlier partitions of which these bodies are the second, in order
 
 
 class Reactions(NamedTuple):
-    """What contacts do to their bodies, kept where these are in different shares; no room where there is one share."""
+    """What contacts do to their bodies, kept where these are in different partitions; no room where there is one."""
 
     force: Floats  # [pair_count, 3] or [0, 3], N, on the second
     first_torque: Floats  # the same, N m

@@ -3,22 +3,20 @@
 import json
 import os
 from dataclasses import asdict
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from lithobrake.atomic import atomic_path
-from lithobrake.dem.body import Body, Plane
+from lithobrake.dem.arrays import Step
+from lithobrake.dem.assembly import material_numbers, materials_of, shape_numbers, shapes_of
+from lithobrake.dem.engine import MOVING, Engine
 from lithobrake.dem.material import Material
-from lithobrake.dem.motion import write_matrices
-from lithobrake.dem.neighbours import pairs_of
+from lithobrake.dem.rigid_body import Plane, RigidBody
 from lithobrake.dem.shape import Box, ConvexHull, Shape, Sphere
+from lithobrake.dem.world_state import WorldState
 
-if TYPE_CHECKING:
-    from lithobrake.dem.world import World
-
-FORMAT_VERSION = 3
-MOVING = ("force", "torque", "half_spin", "travel", "travel_listed", "dragged")
+FORMAT_VERSION = 4
 
 
 def _shape_text(shape: Shape) -> str:
@@ -36,40 +34,36 @@ def _shape(text: str) -> Shape:
     return {"sphere": Sphere, "box": Box, "hull": ConvexHull}[kind](value)
 
 
-def save(world: "World", path: str | os.PathLike[str]) -> None:
-    """Write a world to an HDF5 file."""
+def write_checkpoint(path: str | os.PathLike[str], state: WorldState, step: Step, clock: dict[str, Any]) -> None:
+    """Write a state, the gravity and drag of its steps, and a clock of plain numbers to an HDF5 file."""
     import h5py
 
-    engine = world._assembled()
+    engine = state.assembled(step)
+    shapes, materials = shapes_of(state.bodies), materials_of(state.bodies, state.planes)
     with atomic_path(path) as draft, h5py.File(draft, "w") as file:
         file.attrs["format"], file.attrs["format_version"] = "lithobrake world", FORMAT_VERSION
-        file.attrs["shapes"] = json.dumps([_shape_text(shape) for shape in engine.shapes])
-        file.attrs["materials"] = json.dumps([asdict(material) for material in engine.materials])
-        file.attrs["options"] = json.dumps(world.options)
-        file.attrs["given_time_step"] = json.dumps(world._given_time_step)
-        file.attrs["time_step"] = json.dumps(world._time_step)
-        file.attrs["time"], file.attrs["drag"], file.attrs["watched"] = world.time, world.drag, world._watched
-        file.attrs["skin"] = engine.skin
-        for name in ("gravity", "_lost", "_probed"):
-            file[name.strip("_")] = getattr(world, name)
-        file["body/shape"], file["body/material"] = engine.bodies.shape, engine.bodies.material
-        file["body/mass"] = world.mass
-        file["body/inertia"] = np.array([body.inertia for body in world.bodies])
-        for name in (*world._state, *MOVING):
+        file.attrs["shapes"] = json.dumps([_shape_text(shape) for shape in shapes])
+        file.attrs["materials"] = json.dumps([asdict(material) for material in materials])
+        file.attrs["options"], file.attrs["clock"] = json.dumps(state.options), json.dumps(clock)
+        file.attrs["drag"], file.attrs["watched"], file.attrs["skin"] = step.drag, state.watched, engine.skin
+        file["gravity"], file["lost"], file["watch_record"] = step.gravity, state.lost, state.watch_record
+        file["body/shape"] = shape_numbers(state.bodies, shapes)
+        file["body/material"] = material_numbers(state.bodies, materials)
+        file["body/mass"] = np.array([body.mass for body in state.bodies])
+        file["body/inertia"] = np.array([body.inertia for body in state.bodies])
+        for name in MOVING:
             file[f"body/{name}"] = getattr(engine.bodies, name)
-        file.attrs["meets_all"] = json.dumps([plane.meets is None for plane in world.planes])
-        file["plane/point"] = np.array([plane.point for plane in world.planes]).reshape(-1, 3)
+        file.attrs["meets_all"] = json.dumps([plane.meets is None for plane in state.planes])
+        file["plane/point"] = np.array([plane.point for plane in state.planes]).reshape(-1, 3)
         for name in ("normal", "material", "meets"):
             file[f"plane/{name}"] = getattr(engine.planes, name)
         for name in engine.pairs._fields:
             file[f"pair/{name}"] = getattr(engine.pairs, name)
 
 
-def load(path: str | os.PathLike[str]) -> "World":
-    """Read a world from an HDF5 file."""
+def read_checkpoint(path: str | os.PathLike[str]) -> tuple[WorldState, Step, dict[str, Any]]:
+    """Read what `write_checkpoint` wrote. Raises ValueError where the file is not of this format."""
     import h5py
-
-    from lithobrake.dem.world import World
 
     with h5py.File(path, "r") as file:
         if file.attrs.get("format") != "lithobrake world" or file.attrs["format_version"] != FORMAT_VERSION:
@@ -80,28 +74,32 @@ def load(path: str | os.PathLike[str]) -> "World":
         data: dict[str, Any] = {}
         file.visititems(lambda name, item: data.update({name: item[()]}) if isinstance(item, h5py.Dataset) else None)
         attributes = dict(file.attrs)
-    world = World(data["gravity"], json.loads(attributes["given_time_step"]), **json.loads(attributes["options"]))
+    state = WorldState(json.loads(attributes["options"]))
+    _add_members(state, data, attributes)
+    state.watched, state.watch_record = int(attributes["watched"]), data["watch_record"]
+    state.motion = {name: data[f"body/{name}"].copy() for name in state.motion}
+    damping_with_reduced_mass = state.options["damping_mass"] == "paper"
+    step = Step(0.0, float(attributes["drag"]), tuple(data["gravity"].tolist()), damping_with_reduced_mass)
+    _restore(state.assembled(step), data, float(attributes["skin"]))
+    state.lost[:] = data["lost"]
+    return state, step, json.loads(attributes["clock"])
+
+
+def _add_members(state: WorldState, data: dict[str, Any], attributes: dict[str, Any]) -> None:
+    """Add the bodies and planes to an empty state."""
     shapes = [_shape(text) for text in json.loads(attributes["shapes"])]
     materials = [Material(**values) for values in json.loads(attributes["materials"])]
     for shape, material, mass, inertia in zip(
         data["body/shape"], data["body/material"], data["body/mass"], data["body/inertia"], strict=True
     ):
-        world.bodies.append(Body(shapes[shape], materials[material], float(mass), inertia))
-    for k, point in enumerate(data["plane/point"]):
-        everything = json.loads(attributes["meets_all"])[k]
+        state.bodies.append(RigidBody(shapes[shape], materials[material], float(mass), inertia))
+    for k, everything in enumerate(json.loads(attributes["meets_all"])):
         meets = None if everything else frozenset(np.flatnonzero(data["plane/meets"][k]).tolist())
-        world.planes.append(Plane(point, data["plane/normal"][k], materials[data["plane/material"][k]], meets))
-    world.time, world.drag = float(attributes["time"]), float(attributes["drag"])
-    world._time_step, world._watched = json.loads(attributes["time_step"]), int(attributes["watched"])
-    world._state = {name: data[f"body/{name}"].copy() for name in world._state}
-    engine = world._assembled()
-    # Assembling took a step of no duration, which may have rounded the orientations anew.
-    engine.bodies.quaternion[:] = data["body/quaternion"]
-    write_matrices(engine.bodies)
-    world._lost[:], world._probed[:] = data["lost"], data["probed"]
-    engine.skin = float(attributes["skin"])
-    for name in MOVING:
-        getattr(engine.bodies, name)[:] = data[f"body/{name}"]
-    pairs = pairs_of(data["pair/first"], data["pair/second"])
-    engine.gather(pairs._replace(**{name: data[f"pair/{name}"] for name in pairs._fields}))
-    return world
+        material = materials[data["plane/material"][k]]
+        state.planes.append(Plane(data["plane/point"][k], data["plane/normal"][k], material, meets))
+
+
+def _restore(engine: Engine, data: dict[str, Any], skin: float) -> None:
+    """Give an engine back what it held: assembling took a step of no duration, which may have changed a last bit."""
+    pairs = engine.pairs._replace(**{name: data[f"pair/{name}"] for name in engine.pairs._fields})
+    engine.restore({name: data[f"body/{name}"] for name in MOVING}, pairs, skin)

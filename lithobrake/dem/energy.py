@@ -3,7 +3,7 @@
 import numpy as np
 
 from lithobrake.dem.arrays import Floats, Pairs
-from lithobrake.dem.force import DAMPING, FRICTION, ROLLING
+from lithobrake.dem.contact_law import DAMPING, FRICTION, ROLLING
 
 
 def kinetic(mass: Floats, velocity: Floats, spin: Floats, angular_momentum: Floats) -> Floats:

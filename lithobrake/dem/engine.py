@@ -4,26 +4,26 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 
-from lithobrake.dem.advance import DONE, LIST_USED_UP, NAMES_OVERFLOW, advance
 from lithobrake.dem.arrays import Bodies, Cores, Floats, Laws, Pairs, Planes, Step
-from lithobrake.dem.body import Body, Plane, bodies_of, cores_of, laws_of, planes_of
-from lithobrake.dem.distance import Search, search_for
-from lithobrake.dem.force import DAMPING
-from lithobrake.dem.listing import BOUND_SLACK
-from lithobrake.dem.material import Material
-from lithobrake.dem.names import NEAR
-from lithobrake.dem.neighbours import neighbours, pairs_of, renewed, roomier
-from lithobrake.dem.shape import Shape
-from lithobrake.dem.threads import Team, room_for, shares_of
+from lithobrake.dem.assembly import bodies_of, cores_of, laws_of, materials_of, planes_of, shapes_of
+from lithobrake.dem.contact_law import DAMPING
+from lithobrake.dem.feature_id import INLINE_FEATURES
+from lithobrake.dem.feature_list import BOUND_SLACK
+from lithobrake.dem.motion import write_matrices
+from lithobrake.dem.neighbours import carry_over, neighbouring_pairs, with_more_overflow
+from lithobrake.dem.rigid_body import Plane, RigidBody
+from lithobrake.dem.scratch import Scratch, scratch_for
+from lithobrake.dem.threads import Team, new_reactions, partitions_of
+from lithobrake.dem.time_loop import DONE, FEATURES_OVERFLOW, LIST_USED_UP, advance
 
 # Skin of the neighbour list over the smallest bounding radius: costs or saves time, changes no result.
 SKIN = 0.25
-NO_ROOM = room_for(0)
-
-
-def no_pairs() -> Pairs:
-    """Return the pairs of a world in which nothing has met."""
-    return pairs_of(np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64))
+NO_REACTIONS = new_reactions(0)
+# What changes of bodies and does not follow from the rest; what a checkpoint keeps of them.
+MOVING = (
+    "position", "velocity", "quaternion", "angular_momentum", "force", "torque", "half_spin", "travel", "travel_listed",
+    "dragged",
+)  # fmt: skip
 
 
 def pool_of(thread_count: int) -> ThreadPoolExecutor | None:
@@ -34,32 +34,30 @@ def pool_of(thread_count: int) -> ThreadPoolExecutor | None:
 class Engine:
     """Arrays of a world in which nothing is added any more.
 
-    state holds position, velocity, quaternion and angular_momentum and is advanced in place; pairs carry the history of
-    contacts; lost [3] (see force.py) and probed count on across engines.
+    motion holds position, velocity, quaternion and angular_momentum and is advanced in place; pairs carry the history
+    of contacts; lost [3] (see contact_law.py) and watch_record count on across engines.
     """
 
     def __init__(
         self,
-        bodies: list[Body],
+        bodies: list[RigidBody],
         planes: list[Plane],
         options: dict[str, str],
-        state: dict[str, Floats],
+        motion: dict[str, Floats],
         pairs: Pairs,
         lost: Floats,
-        probed: Floats,
+        watch_record: Floats,
         thread_count: int,
     ) -> None:
-        self.shapes: list[Shape] = list({id(body.shape): body.shape for body in bodies}.values())
-        made_of = [body.material for body in bodies] + [plane.material for plane in planes]
-        self.materials: list[Material] = list(dict.fromkeys(made_of))
-        self.cores: Cores = cores_of(self.shapes)
-        self.laws: Laws = laws_of(self.materials, options["shear_modulus_rule"], options["pair_rule"])
-        self.planes: Planes = planes_of(planes, self.materials, len(bodies))
-        self.bodies: Bodies = bodies_of(bodies, self.shapes, self.materials, state)
+        shapes, materials = shapes_of(bodies), materials_of(bodies, planes)
+        self.cores: Cores = cores_of(shapes)
+        self.laws: Laws = laws_of(materials, options["shear_modulus_rule"], options["pair_rule"])
+        self.planes: Planes = planes_of(planes, materials, len(bodies))
+        self.bodies: Bodies = bodies_of(bodies, shapes, materials, motion)
         self.pairs: Pairs
-        self.search: Search
+        self.scratch: Scratch
         self.team: Team | None
-        self.lost, self.probed = lost, probed
+        self.lost, self.watch_record = lost, watch_record
         self.skin = SKIN * float(self.bodies.bounding_radius.min())
         self.thread_count, self.pool = thread_count, pool_of(thread_count)
         self.gather(pairs)
@@ -77,8 +75,8 @@ class Engine:
             left -= taken
             if reason == LIST_USED_UP:
                 self._list_neighbours()
-            elif reason == NAMES_OVERFLOW:
-                self.gather(roomier(self.pairs))
+            elif reason == FEATURES_OVERFLOW:
+                self.gather(with_more_overflow(self.pairs))
             elif reason != DONE:
                 return steps - left, reason
         return steps, DONE
@@ -87,12 +85,13 @@ class Engine:
         """Take steps until the lists have to be renewed, on one thread or on several."""
         if self.team is None:
             return advance(
-                steps, drifted, self.bodies, self.cores, self.planes, self.pairs, self.laws, step, self._way,
-                self.search, NO_ROOM, self.whole, watched, self.probed,
+                self.bodies, self.cores, self.planes, self.pairs, self.laws, step, self.scratch, NO_REACTIONS,
+                self.whole, steps, drifted, self._travel_limit, watched, self.watch_record,
             )  # fmt: skip
         return self.team.advance(
-            steps, drifted, self.bodies, self.cores, self.planes, self.laws, step, self._way, watched, self.probed
-        )
+            self.bodies, self.cores, self.planes, self.laws, step, steps, drifted, self._travel_limit, watched,
+            self.watch_record,
+        )  # fmt: skip
 
     def losses(self) -> Floats:
         """Return what damping, friction and rolling have taken so far [J], shape [3]."""
@@ -105,36 +104,44 @@ class Engine:
         self.lost[:] = self.losses()
         self.pairs.lost[:], self.bodies.dragged[:] = 0.0, 0.0
 
-    def share_among(self, thread_count: int) -> None:
+    def restore(self, moving: dict[str, Floats], pairs: Pairs, skin: float) -> None:
+        """Go on from where another engine for the same bodies stood: its MOVING arrays, pairs, and skin [m]."""
+        for name, values in moving.items():
+            getattr(self.bodies, name)[:] = values
+        write_matrices(self.bodies)
+        self.skin = skin
+        self.gather(pairs)
+
+    def use_threads(self, thread_count: int) -> None:
         """Go on with so many threads."""
         self.thread_count, self.pool = thread_count, pool_of(thread_count)
         self.gather(self.pairs)
 
     def gather(self, pairs: Pairs) -> None:
-        """Take on pairs: make scratch for them, and share them out among the threads."""
-        self.pairs, self.search = pairs, self._scratch(pairs)
-        self.whole, *_ = shares_of(pairs, len(self.bodies.mass), 1)
+        """Take on pairs: make scratch for them, and divide them among the threads."""
+        self.pairs, self.scratch = pairs, self._scratch(pairs)
+        self.whole, *_ = partitions_of(pairs, len(self.bodies.mass), 1)
         self.team = None
         if self.pool is not None:
-            searches = [self._scratch(pairs) for _ in range(self.thread_count)]
-            self.team = Team(self.pool, searches, len(self.bodies.mass), pairs)
+            scratches = [self._scratch(pairs) for _ in range(self.thread_count)]
+            self.team = Team(self.pool, scratches, len(self.bodies.mass), pairs)
 
-    def _scratch(self, pairs: Pairs) -> Search:
+    def _scratch(self, pairs: Pairs) -> Scratch:
         shape = self.bodies.shape
         vertices, edges = (
             np.sort(np.diff(start)[shape])[-2:] for start in (self.cores.vertex_start, self.cores.edge_start)
         )
         # All corners and all pairs of edges of the two largest bodies, should they cross, and a list's worth beside.
-        points = 1 + int(vertices.sum() + 2 * edges.prod()) + NEAR + pairs.rest.shape[1]
-        return search_for(int(vertices.max() + edges.max()), points)
+        points = 1 + int(vertices.sum() + 2 * edges.prod()) + INLINE_FEATURES + pairs.overflow.shape[1]
+        return scratch_for(int(vertices.max() + edges.max()), points)
 
     @property
-    def _way(self) -> float:
+    def _travel_limit(self) -> float:
         """How far a surface may come nearer to others before neighbours are listed anew [m]."""
         return 0.5 * (1.0 - BOUND_SLACK) * self.skin
 
     def _list_neighbours(self) -> None:
         self.book()
-        first, second = neighbours(self.bodies, self.cores, self.planes, self.skin, self.search)
-        self.gather(renewed(self.pairs, first, second))
+        first, second = neighbouring_pairs(self.bodies, self.cores, self.planes, self.scratch, self.skin)
+        self.gather(carry_over(self.pairs, first, second))
         self.bodies.travel_listed[:] = self.bodies.travel

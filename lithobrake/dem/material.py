@@ -9,6 +9,7 @@ from scipy.optimize import brentq
 
 SHEAR_MODULUS_RULES = ("mindlin", "paper")
 PAIR_RULES = ("smaller", "mean", "geometric")
+DAMPING_MASSES = ("contact", "paper")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -67,6 +68,15 @@ class PairLaw(NamedTuple):
     spinning_friction: float
     cohesion_force: float  # N
     cohesion_line: float  # N/m, to be multiplied by the contact radius
+
+
+def contact_options(shear_modulus_rule: str, damping_mass: str, pair_rule: str) -> dict[str, str]:
+    """Return the options of a world's contacts by name. Raises ValueError for a value that is not allowed."""
+    options = {"shear_modulus_rule": shear_modulus_rule, "damping_mass": damping_mass, "pair_rule": pair_rule}
+    for (name, value), allowed in zip(options.items(), (SHEAR_MODULUS_RULES, DAMPING_MASSES, PAIR_RULES), strict=True):
+        if value not in allowed:
+            raise ValueError(f"World {name} is {value!r}; allowed are {', '.join(allowed)}: choose one")
+    return options
 
 
 def restitution_of(damping_ratio: float) -> float:

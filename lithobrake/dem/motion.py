@@ -26,7 +26,7 @@ def turned(q: Quaternion, spin: Vector, time: float) -> Quaternion:
 
 @kernel
 def write_rotation(q: Quaternion, rotation: Floats) -> None:
-    """Write the rotation matrix [3, 3], body to world, of a unit quaternion."""
+    """Write the rotation matrix [3, 3], body to world, of a unit quaternion. Writes to rotation."""
     w, x, y, z = q
     rotation[0, 0], rotation[0, 1], rotation[0, 2] = 1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)
     rotation[1, 0], rotation[1, 1], rotation[1, 2] = 2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)
@@ -35,7 +35,7 @@ def write_rotation(q: Quaternion, rotation: Floats) -> None:
 
 @kernel
 def write_rotations(quaternions: Floats, rotations: Floats) -> None:
-    """Write the rotation matrices [count, 3, 3] of unit quaternions [count, 4]."""
+    """Write the rotation matrices [count, 3, 3] of unit quaternions [count, 4]. Writes to rotations."""
     for k in range(len(quaternions)):
         q = (quaternions[k, 0], quaternions[k, 1], quaternions[k, 2], quaternions[k, 3])
         write_rotation(q, rotations[k])
@@ -43,7 +43,10 @@ def write_rotations(quaternions: Floats, rotations: Floats) -> None:
 
 @kernel
 def write_spins(rotations: Floats, momenta: Floats, inverse_inertia: Floats, spins: Floats) -> None:
-    """Write spins [count, 3], world frame, from angular momenta; inverse_inertia [count, 3, 3] is in the body frame."""
+    """Write spins [count, 3], world frame, from angular momenta; inverse_inertia [count, 3, 3] is in the body frame.
+
+    Writes to spins.
+    """
     for k in range(len(rotations)):
         within = times(inverse_inertia, k, transposed_times(rotations, k, row(momenta, k)))
         put(spins, k, times(rotations, k, within))
@@ -51,15 +54,15 @@ def write_spins(rotations: Floats, momenta: Floats, inverse_inertia: Floats, spi
 
 @kernel
 def write_matrices(bodies: Bodies) -> None:
-    """Write rotation and inverse inertia in the world frame of all bodies."""
+    """Write rotation and inverse inertia in the world frame of all bodies. Writes to bodies."""
     write_rotations(bodies.quaternion, bodies.rotation)
     for body in range(len(bodies.mass)):
-        write_inverse_inertia(body, bodies)
+        write_inverse_inertia(bodies, body)
 
 
 @kernel
-def write_inverse_inertia(body: int, bodies: Bodies) -> None:
-    """Turn the inverse inertia of a body into the world frame."""
+def write_inverse_inertia(bodies: Bodies, body: int) -> None:
+    """Turn the inverse inertia of a body into the world frame. Writes to bodies."""
     r, inner, outer = bodies.rotation[body], bodies.inverse_inertia_body[body], bodies.inverse_inertia[body]
     if bodies.isotropic[body]:
         for i in range(3):
@@ -82,7 +85,7 @@ def turned_vector(vector: Vector, half: Vector) -> Vector:
 
 
 @kernel
-def spin_at_mid_step(momentum: Vector, body: int, bodies: Bodies, time_step: float) -> Vector:
+def spin_at_mid_step(bodies: Bodies, body: int, momentum: Vector, time_step: float) -> Vector:
     """Return the spin for which the body, turned half a step by it, has that spin under this angular momentum."""
     spin = times(bodies.inverse_inertia, body, momentum)
     for _ in range(MIDPOINT_ITERATIONS):
@@ -97,28 +100,28 @@ def spin_at_mid_step(momentum: Vector, body: int, bodies: Bodies, time_step: flo
 
 
 @kernel
-def rotate(body: int, bodies: Bodies, time_step: float) -> None:
+def rotate(bodies: Bodies, body: int, time_step: float) -> None:
     """Turn a body over one step by the spin at mid-step, which follows from the angular momentum held fixed.
 
-    The implicit midpoint is symmetric in time, so the energy of free rotation does not drift.
+    The implicit midpoint is symmetric in time, so the energy of free rotation does not drift. Writes to bodies.
     """
     momentum = row(bodies.angular_momentum, body)
     if bodies.isotropic[body]:
         spin = times(bodies.inverse_inertia, body, momentum)
     else:
-        spin = spin_at_mid_step(momentum, body, bodies, time_step)
+        spin = spin_at_mid_step(bodies, body, momentum, time_step)
     q = bodies.quaternion
     after = turned((q[body, 0], q[body, 1], q[body, 2], q[body, 3]), spin, time_step)
     q[body, 0], q[body, 1], q[body, 2], q[body, 3] = after
     write_rotation(after, bodies.rotation[body])
     if not bodies.isotropic[body]:
-        write_inverse_inertia(body, bodies)
+        write_inverse_inertia(bodies, body)
     put(bodies.half_spin, body, spin)
 
 
 @large_kernel
 def kick(bodies: Bodies, step: Step, start: int, stop: int) -> None:
-    """Advance the velocities of bodies start to stop by half a step under the forces at hand."""
+    """Advance the velocities of bodies start to stop by half a step under the forces at hand. Writes to bodies."""
     half = 0.5 * step.time_step
     for body in range(start, stop):
         add(bodies.velocity, body, half * bodies.inverse_mass[body], row(bodies.force, body))
@@ -127,7 +130,7 @@ def kick(bodies: Bodies, step: Step, start: int, stop: int) -> None:
 
 
 @kernel
-def top_speed(bodies: Bodies, body: int) -> float:
+def surface_speed_bound(bodies: Bodies, body: int) -> float:
     """Return a bound on the speed at which a body's surface comes nearer to anything [m/s]."""
     velocity, spin = row(bodies.velocity, body), row(bodies.half_spin, body)
     return dot(velocity, velocity) ** 0.5 + bodies.turning_radius[body] * dot(spin, spin) ** 0.5
@@ -138,14 +141,14 @@ def drift(bodies: Bodies, step: Step, start: int, stop: int) -> float:
     """Advance bodies start to stop by a step at the half-step velocities and predict the velocities at its end.
 
     Returns the farthest that the surface of a body may have moved since the neighbour list was made [m], not finite
-    where one is lost.
+    where one is lost. Writes to bodies.
     """
     farthest, lost = 0.0, 0.0
     half = 0.5 * step.time_step
     for body in range(start, stop):
         add(bodies.position, body, step.time_step, row(bodies.velocity, body))
-        rotate(body, bodies, step.time_step)
-        bodies.travel[body] += step.time_step * top_speed(bodies, body)
+        rotate(bodies, body, step.time_step)
+        bodies.travel[body] += step.time_step * surface_speed_bound(bodies, body)
         gain = scaled(half * bodies.inverse_mass[body], row(bodies.force, body))
         predicted = plus(row(bodies.velocity, body), plus(gain, scaled(half, step.gravity)))
         put(bodies.velocity_predicted, body, predicted)

@@ -4,9 +4,10 @@ import numpy as np
 
 from lithobrake.compiled import kernel, large_kernel
 from lithobrake.dem.arrays import Bodies, Cores, Flags, Floats, Integers, Pairs, Planes
-from lithobrake.dem.closest import approach
-from lithobrake.dem.distance import APART, Search
-from lithobrake.dem.names import NEAR
+from lithobrake.dem.closest_points import find_closest_points
+from lithobrake.dem.feature_id import INLINE_FEATURES
+from lithobrake.dem.gjk import APART
+from lithobrake.dem.scratch import Scratch
 from lithobrake.dem.vectors import minus, row
 
 
@@ -15,6 +16,7 @@ def sweep(order: Integers, low: Floats, position: Floats, reach: Floats, first: 
     """Find pairs of bounding spheres that meet, sweeping along x; write as many as fit and return how many there are.
 
     order [body_count] sorts low = x - reach; reach is the bounding radius and half the skin.
+    Writes to first and second.
     """
     count = 0
     for i in range(len(order)):
@@ -34,21 +36,27 @@ def sweep(order: Integers, low: Floats, position: Floats, reach: Floats, first: 
 
 
 @large_kernel
-def note_near(
-    bodies: Bodies, cores: Cores, first: Integers, second: Integers, skin: float, search: Search, near: Flags
+def mark_near(
+    bodies: Bodies, cores: Cores, scratch: Scratch, first: Integers, second: Integers, skin: float, near: Flags
 ) -> None:
-    """Note which pairs of bodies are less than the skin apart: fewer than half of those whose bounding spheres meet."""
+    """Note which pairs of bodies are less than the skin apart: fewer than half of those whose bounding spheres meet.
+
+    Writes to scratch and near.
+    """
     for pair in range(len(first)):
         members = (first[pair], second[pair])
         shapes = (bodies.shape[members[0]], bodies.shape[members[1]])
         apart = minus(row(bodies.position, members[1]), row(bodies.position, members[0]))
         farthest = cores.rounding[shapes[0]] + cores.rounding[shapes[1]] + skin
-        near[pair] = approach(search, cores, shapes, bodies.rotation, members, apart, farthest)[0] != APART
+        found, _, _ = find_closest_points(
+            cores, scratch.simplex, scratch.turned, scratch.relative, shapes, bodies.rotation, members, apart, farthest
+        )
+        near[pair] = found != APART
 
 
-def neighbours(
-    bodies: Bodies, cores: Cores, planes: Planes, skin: float, search: Search
-) -> tuple[Integers, Integers]:  # fmt: skip
+def neighbouring_pairs(
+    bodies: Bodies, cores: Cores, planes: Planes, scratch: Scratch, skin: float
+) -> tuple[Integers, Integers]:
     """Return first and second of all neighbouring pairs, ordered; plane k stands as second = -1 - k."""
     reach = bodies.bounding_radius + 0.5 * skin
     low = bodies.position[:, 0] - reach
@@ -61,7 +69,7 @@ def neighbours(
             break
         capacity = count
     near = np.zeros(count, dtype=np.bool_)
-    note_near(bodies, cores, first[:count], second[:count], skin, search, near)
+    mark_near(bodies, cores, scratch, first[:count], second[:count], skin, near)
     gap = planes.normal @ bodies.position.T - planes.offset[:, None] - reach
     plane, body = np.nonzero((gap < 0.0) & planes.meets)
     first = np.concatenate([first[:count][near], body])
@@ -70,7 +78,7 @@ def neighbours(
     return first[sorting], second[sorting]
 
 
-def pairs_of(first: Integers, second: Integers) -> Pairs:
+def new_pairs(first: Integers, second: Integers) -> Pairs:
     """Return pairs without any history."""
     n = len(first)
     return Pairs(
@@ -78,38 +86,48 @@ def pairs_of(first: Integers, second: Integers) -> Pairs:
         point=np.zeros((n, 3)), normal_force=np.zeros(n), elastic_force=np.zeros(n), cohesion=np.zeros(n),
         spring=np.zeros((n, 3)), tangential_force=np.zeros((n, 3)), tangential_stiffness=np.zeros(n),
         twist=np.zeros(n), twist_stiffness=np.zeros(n), roll=np.zeros((n, 3)), roll_stiffness=np.zeros(n),
-        tilt_stiffness=np.zeros(n), lost=np.zeros((n, 3)), term_count=np.zeros(n, dtype=np.int64),
-        term=np.zeros((n, NEAR), dtype=np.int64), rest_row=np.full(n, -1), rest=np.zeros((0, 1), dtype=np.int64),
+        tilt_stiffness=np.zeros(n), lost=np.zeros((n, 3)), feature_count=np.zeros(n, dtype=np.int64),
+        feature=np.zeros((n, INLINE_FEATURES), dtype=np.int64), overflow_row=np.full(n, -1),
+        overflow=np.zeros((0, 1), dtype=np.int64),
     )  # fmt: skip
 
 
-def renewed(old: Pairs, first: Integers, second: Integers) -> Pairs:
+def no_pairs() -> Pairs:
+    """Return the pairs of a world in which nothing has met."""
+    return new_pairs(np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64))
+
+
+def carry_over(old: Pairs, first: Integers, second: Integers) -> Pairs:
     """Return pairs for a new list that carry on the history of those already in the old one.
 
     No contact is lost: what touches lies deep inside the reach of the list.
     """
-    new = pairs_of(first, second)
+    new = new_pairs(first, second)
     span = 1 + max(int(first.max(initial=0)), int(old.first.max(initial=0)), int(np.abs(second).max(initial=0)),
                    int(np.abs(old.second).max(initial=0)))  # fmt: skip
     key_old, key_new = old.first * (2 * span) + old.second, first * (2 * span) + second
     _, here, there = np.intersect1d(key_new, key_old, assume_unique=True, return_indices=True)
     for name in Pairs._fields[2:-1]:
         getattr(new, name)[here] = getattr(old, name)[there]
-    return with_rows(new, old.rest, old.rest.shape[1])
+    return with_overflow_rows(new, old.overflow, old.overflow.shape[1])
 
 
-def with_rows(pairs: Pairs, rest: Integers, width: int) -> Pairs:
-    """Return the pairs with rows of so many names for those that have one in `rest`, moved up."""
-    using = np.flatnonzero(pairs.rest_row >= 0)
+def with_overflow_rows(pairs: Pairs, overflow: Integers, width: int) -> Pairs:
+    """Return the pairs with rows of so many features for those that have one in `overflow`, moved up."""
+    using = np.flatnonzero(pairs.overflow_row >= 0)
     rows = np.zeros((len(using), width), dtype=np.int64)
-    known = pairs.rest_row[using] < len(rest)
-    rows[known, : rest.shape[1]] = rest[pairs.rest_row[using[known]]]
-    pairs.rest_row[using] = np.arange(len(using))
-    return pairs._replace(rest=rows)
+    known = pairs.overflow_row[using] < len(overflow)
+    rows[known, : overflow.shape[1]] = overflow[pairs.overflow_row[using[known]]]
+    pairs.overflow_row[using] = np.arange(len(using))
+    return pairs._replace(overflow=rows)
 
 
-def roomier(pairs: Pairs) -> Pairs:
-    """Return the pairs with room for as many names as they ask for."""
-    lacking = pairs.term_count > np.where(pairs.rest_row < 0, NEAR, NEAR + pairs.rest.shape[1])
-    pairs.rest_row[lacking & (pairs.rest_row < 0)] = len(pairs.rest)
-    return with_rows(pairs, pairs.rest, max(pairs.rest.shape[1], int(pairs.term_count.max()) - NEAR))
+def with_more_overflow(pairs: Pairs) -> Pairs:
+    """Return the pairs with room for as many features as they ask for."""
+    lacking = pairs.feature_count > np.where(
+        pairs.overflow_row < 0, INLINE_FEATURES, INLINE_FEATURES + pairs.overflow.shape[1]
+    )
+    pairs.overflow_row[lacking & (pairs.overflow_row < 0)] = len(pairs.overflow)
+    return with_overflow_rows(
+        pairs, pairs.overflow, max(pairs.overflow.shape[1], int(pairs.feature_count.max()) - INLINE_FEATURES)
+    )

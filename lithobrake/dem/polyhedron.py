@@ -29,7 +29,7 @@ def power_of_two_above(value: float) -> float:
     return math.ldexp(1.0, math.frexp(value)[1])
 
 
-def polyhedron(points: NDArray[np.float64]) -> Polyhedron:
+def convex_polyhedron(points: NDArray[np.float64]) -> Polyhedron:
     """Return the convex envelope of points [m], shape [count, 3]; interior points are dropped.
 
     Raises ValueError for fewer than four points, values that are not finite, or a cloud that encloses no volume.

@@ -13,7 +13,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lithobrake.dem.polyhedron import MassProperties, Polyhedron, mass_properties, polyhedron
+from lithobrake.dem.polyhedron import MassProperties, Polyhedron, convex_polyhedron, mass_properties
 
 # Rounding radius over the distance from the centroid to the nearest face.
 ROUNDING_FRACTION = 0.02
@@ -59,7 +59,7 @@ class ConvexHull:
 
     def __init__(self, vertices: ArrayLike) -> None:
         self.given = np.array(vertices, dtype=np.float64)
-        self.polyhedron: Polyhedron = polyhedron(self.given)
+        self.polyhedron: Polyhedron = convex_polyhedron(self.given)
         self._mass: MassProperties = mass_properties(self.polyhedron.vertices, self.polyhedron.triangles)
         self.volume = self._mass.volume
         self.centroid = self._mass.centroid
@@ -93,7 +93,7 @@ class ConvexHull:
         normals[vertex, place], there[vertex, place] = given.face_normals[face], 1.0
         # Least squares: where more than three faces meet, they may not after each has moved.
         core = given.vertices - self.centroid - self.rounding * (np.linalg.pinv(normals) @ there)[:, :, 0]
-        return polyhedron(core)
+        return convex_polyhedron(core)
 
     @property
     def core(self) -> NDArray[np.float64]:

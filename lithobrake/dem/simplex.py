@@ -13,8 +13,8 @@ def segment_weights(a: Vector, b: Vector) -> tuple[float, float]:
     length_squared = dot(along, along)
     if length_squared == 0.0:
         return (1.0, 0.0)
-    share = min(max(-dot(a, along) / length_squared, 0.0), 1.0)
-    return (1.0 - share, share)
+    fraction = min(max(-dot(a, along) / length_squared, 0.0), 1.0)
+    return (1.0 - fraction, fraction)
 
 
 @kernel

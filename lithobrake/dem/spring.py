@@ -10,7 +10,7 @@ from lithobrake.compiled import kernel
 from lithobrake.dem.vectors import Vector, cross, dot, minus, plus, scaled
 
 
-class Hold(NamedTuple):
+class SpringForce(NamedTuple):
     """What a spring with a dashpot does in a step."""
 
     spring: Vector  # N or N m, force of the spring alone
@@ -33,7 +33,7 @@ def turned_spring(spring: Vector, normal_before: Vector, normal: Vector, twist: 
 
 
 @kernel
-def across(vector: Vector, normal: Vector) -> Vector:
+def tangential_part(vector: Vector, normal: Vector) -> Vector:
     """Return the part of a vector across the normal."""
     return minus(vector, scaled(dot(vector, normal), normal))
 
@@ -51,22 +51,22 @@ def stored(force_squared: float, stiffness: float) -> float:
 
 
 @kernel
-def within(vector: Vector, limit: float) -> Vector:
+def clipped(vector: Vector, limit: float) -> Vector:
     """Return a vector, shortened to the limit where it is longer."""
     square = dot(vector, vector)
     return vector if square <= limit * limit else scaled(limit / square**0.5, vector)
 
 
 @kernel
-def hold(
+def spring_force(
     before: Vector, stiffness_before: float, stiffness: float, way: Vector, rate: Vector, dashpot: float, limit: float
-) -> Hold:
+) -> SpringForce:
     """Stretch a spring by a way, or an angle, and add a dashpot against its rate; neither passes the limit."""
     softness_before = 1.0 / stiffness_before if stiffness_before > 0.0 else 0.0
     kept = stiffness * softness_before if stiffness < stiffness_before else 1.0
     spring = minus(scaled(kept, before), scaled(stiffness, way))
-    spring = within(spring, limit)
+    spring = clipped(spring, limit)
     given = 0.5 * dot(before, before) * softness_before - 0.5 * dot(plus(before, spring), way)
-    total = within(minus(spring, scaled(dashpot, rate)), limit)
+    total = clipped(minus(spring, scaled(dashpot, rate)), limit)
     slid = given - stored(dot(spring, spring), stiffness)
-    return Hold(spring, total, slid, dot(minus(spring, total), rate))
+    return SpringForce(spring, total, slid, dot(minus(spring, total), rate))

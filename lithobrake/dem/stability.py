@@ -12,14 +12,14 @@ import math
 from typing import NamedTuple
 
 from lithobrake.compiled import kernel, large_kernel
-from lithobrake.dem.arrays import Bodies, Floats, Laws, Pairs, Planes
-from lithobrake.dem.distance import Search
-from lithobrake.dem.masses import inverse_inertia_across, inverse_mass_at
-from lithobrake.dem.spring import across
+from lithobrake.dem.arrays import Bodies, Floats, Laws, Pairs, Planes, Step
+from lithobrake.dem.effective_mass import inverse_inertia_across, inverse_mass_at
+from lithobrake.dem.scratch import Patch
+from lithobrake.dem.spring import tangential_part
 from lithobrake.dem.vectors import Vector, dot, minus, row, times
 
 # Largest c dt + (w dt)^2 / 4 that is allowed; 1 is the limit of stability.
-STABLE_SHARE = 0.8
+STABLE_FRACTION = 0.8
 # Steps from look to look while no contact turns farther in a step than this phase [rad]; t_c / 50 turns by .08 at most.
 LOOK_STEPS, LOOK_PHASE = 16, 0.2
 
@@ -31,7 +31,7 @@ class Damping(NamedTuple):
     shear: float  # across the normal over along it
 
 
-class Grip(NamedTuple):
+class ContactStiffness(NamedTuple):
     """How a contact holds its bodies against small changes."""
 
     normal: float  # N/m
@@ -56,18 +56,20 @@ def inverse_masses(bodies: Bodies, body: int, arm: Vector, normal: Vector) -> tu
 
 
 @kernel
-def tilting(search: Search, count: int, centre: Vector, normal: Vector, overlap: float, stiffness: float) -> float:
+def patch_tilt_stiffness(
+    patch: Patch, count: int, centre: Vector, normal: Vector, overlap: float, stiffness: float
+) -> float:
     """Return the stiffness [N m] of a patch against tilting about the stiffest axis through its centre.
 
-    Second derivative of shares.spread's energy where the points move against each other: each has a share of the
+    Second derivative of patch_energy.py's energy where the points move against each other: each has a part of the
     normal stiffness, 3/2 of the secant `stiffness` [N/m], and seven times the force over its own overlap.
     """
     if count == 1:
         return 0.0
     xx, yy, zz, xy, yz, zx = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     for k in range(count):
-        x, y, z = across(minus(row(search.point, k), centre), normal)
-        weight = max(search.share[k], 0.0) * stiffness * (1.5 + 7.0 * overlap / search.depth[k])
+        x, y, z = tangential_part(minus(row(patch.point, k), centre), normal)
+        weight = max(patch.weight[k], 0.0) * stiffness * (1.5 + 7.0 * overlap / patch.depth[k])
         xx, yy, zz = xx + weight * x * x, yy + weight * y * y, zz + weight * z * z
         xy, yz, zx = xy + weight * x * y, yz + weight * y * z, zx + weight * z * x
     both = xx + yy + zz
@@ -76,7 +78,9 @@ def tilting(search: Search, count: int, centre: Vector, normal: Vector, overlap:
 
 
 @kernel
-def grip_of(bodies: Bodies, pairs: Pairs, pair: int, inverse_mass: float, couple: float, law: Damping) -> Grip:
+def contact_stiffness(
+    pair: int, bodies: Bodies, pairs: Pairs, inverse_mass: float, couple: float, law: Damping
+) -> ContactStiffness:
     """Return how a pair that touches holds its bodies; inverse_mass and couple are what both show it together."""
     secant = pairs.elastic_force[pair] / pairs.overlap[pair]
     dashpot = 2.0 * law.ratio * (1.25 * secant / inverse_mass) ** 0.5
@@ -84,20 +88,26 @@ def grip_of(bodies: Bodies, pairs: Pairs, pair: int, inverse_mass: float, couple
     # The weights of tilting are at least 1.5 + 7 times those of its dashpot.
     tilt_dashpot = dashpot * tilt / (8.5 * secant) + 2.0 * law.ratio * (roll / couple) ** 0.5
     shear_dashpot = dashpot * law.shear
-    return Grip(1.5 * secant, pairs.tangential_stiffness[pair], tilt + roll, dashpot, shear_dashpot, tilt_dashpot)
+    return ContactStiffness(
+        1.5 * secant, pairs.tangential_stiffness[pair], tilt + roll, dashpot, shear_dashpot, tilt_dashpot
+    )
 
 
 @kernel
-def hold(rates: Floats, body: int, grip: Grip, masses: tuple[float, float, float]) -> None:
-    """Add what a contact does to a body's w^2 and c, in the fastest of its directions."""
+def add_contact_rates(
+    rates: Floats, body: int, stiffness: ContactStiffness, masses: tuple[float, float, float]
+) -> None:
+    """Add what a contact does to a body's w^2 and c, in the fastest of its directions. Writes to rates."""
     along, sideways, couple = masses
-    rates[body, 0] += max(grip.normal * along + grip.tilt * couple, grip.shear * sideways)
-    rates[body, 1] += max(grip.normal_dashpot * along + grip.tilt_dashpot * couple, grip.shear_dashpot * sideways)
+    rates[body, 0] += max(stiffness.normal * along + stiffness.tilt * couple, stiffness.shear * sideways)
+    rates[body, 1] += max(
+        stiffness.normal_dashpot * along + stiffness.tilt_dashpot * couple, stiffness.shear_dashpot * sideways
+    )
 
 
 @large_kernel
 def write_rates(bodies: Bodies, planes: Planes, pairs: Pairs, laws: Laws, paper_mass: bool) -> None:
-    """Sum up for every body how its contacts hold it."""
+    """Sum up for every body how its contacts hold it. Writes to bodies."""
     bodies.rates[:] = 0.0
     for pair in range(len(pairs.first)):
         if pairs.overlap[pair] == 0.0:
@@ -113,16 +123,18 @@ def write_rates(bodies: Bodies, planes: Planes, pairs: Pairs, laws: Laws, paper_
             theirs = inverse_masses(bodies, second, minus(point, row(bodies.position, second)), normal)
             inverse_mass += bodies.inverse_mass[second] if paper_mass else theirs[0]
         law = Damping(laws.damping_ratio[here, there], laws.shear_damping[here, there])
-        grip = grip_of(bodies, pairs, pair, inverse_mass, ours[2] + theirs[2], law)
-        hold(bodies.rates, first, grip, ours)
+        stiffness = contact_stiffness(pair, bodies, pairs, inverse_mass, ours[2] + theirs[2], law)
+        add_contact_rates(bodies.rates, first, stiffness, ours)
         if second >= 0:
-            hold(bodies.rates, second, grip, theirs)
+            add_contact_rates(bodies.rates, second, stiffness, theirs)
 
 
 @large_kernel
 def largest_step(bodies: Bodies, planes: Planes, pairs: Pairs, laws: Laws, paper_mass: bool) -> float:
     """Return the largest safe time step [s], infinite where nothing touches: there c dt + (w dt)^2 / 4 of two that
-    touch comes to the share that is allowed.
+    touch comes to the fraction that is allowed.
+
+    Writes to bodies.
     """
     write_rates(bodies, planes, pairs, laws, paper_mass)
     rates, most = bodies.rates, 0.0
@@ -132,18 +144,19 @@ def largest_step(bodies: Bodies, planes: Planes, pairs: Pairs, laws: Laws, paper
             square, damping = rates[first, 0], rates[first, 1]
             if second >= 0:
                 square, damping = square + rates[second, 0], damping + rates[second, 1]
-            most = max(most, damping + (damping * damping + STABLE_SHARE * square) ** 0.5)
-    return 2.0 * STABLE_SHARE / most if most > 0.0 else math.inf
+            most = max(most, damping + (damping * damping + STABLE_FRACTION * square) ** 0.5)
+    return 2.0 * STABLE_FRACTION / most if most > 0.0 else math.inf
 
 
 @kernel
-def unsteady(
-    taken: int, rate: float, bodies: Bodies, planes: Planes, pairs: Pairs, laws: Laws, paper_mass: bool,
-    time_step: float,
-) -> bool:  # fmt: skip
+def step_is_too_large(
+    bodies: Bodies, planes: Planes, pairs: Pairs, laws: Laws, step: Step, taken: int, rate: float
+) -> bool:
     """Whether the step is too large; looks at every so many steps, and where a contact alone turns far in one: `rate`
     is the largest square of a rate [1/s2].
+
+    Writes to bodies.
     """
-    if taken % LOOK_STEPS > 0 and rate * time_step * time_step < LOOK_PHASE * LOOK_PHASE:
+    if taken % LOOK_STEPS > 0 and rate * step.time_step * step.time_step < LOOK_PHASE * LOOK_PHASE:
         return False
-    return time_step > largest_step(bodies, planes, pairs, laws, paper_mass)
+    return step.time_step > largest_step(bodies, planes, pairs, laws, step.paper_mass)

@@ -11,32 +11,32 @@ from typing import Any
 
 import numpy as np
 
-from lithobrake.dem.advance import (
+from lithobrake.dem.arrays import Bodies, Cores, Floats, Laws, Pairs, Partition, Planes, Reactions, Step
+from lithobrake.dem.feature_list import update_feature_lists
+from lithobrake.dem.force import forces_across_partitions, forces_within_partition
+from lithobrake.dem.scratch import Scratch
+from lithobrake.dem.stability import step_is_too_large
+from lithobrake.dem.time_loop import (
     DIVERGED,
     DONE,
+    FEATURES_OVERFLOW,
     LIST_USED_UP,
-    NAMES_OVERFLOW,
     STEP_TOO_LARGE,
     begin_step,
     end_step,
-    note,
+    record_watched,
 )
-from lithobrake.dem.arrays import Bodies, Cores, Floats, Laws, Pairs, Planes, Reactions, Share, Step
-from lithobrake.dem.distance import Search
-from lithobrake.dem.force import act_across, act_within
-from lithobrake.dem.listing import renew
-from lithobrake.dem.stability import unsteady
 
 
-def shares_of(pairs: Pairs, body_count: int, count: int) -> list[Share]:
-    """Return so many shares of about as many pairs each."""
+def partitions_of(pairs: Pairs, body_count: int, count: int) -> list[Partition]:
+    """Return so many partitions of about as many pairs each."""
     everyone = pairs.first if len(pairs.first) else np.arange(body_count)
     ends = np.array([0, *(everyone[len(everyone) * k // count] for k in range(1, count)), body_count])
     pair_ends = np.searchsorted(pairs.first, ends)
     owner = np.searchsorted(ends[1:], pairs.first, side="right")
     other = np.searchsorted(ends[1:], np.maximum(pairs.second, pairs.first), side="right")
     return [
-        Share(
+        Partition(
             int(ends[k]), int(ends[k + 1]), int(pair_ends[k]), int(pair_ends[k + 1]),
             outgoing=np.flatnonzero((owner == k) & (other > k)), incoming=np.flatnonzero((other == k) & (owner < k)),
         )
@@ -44,46 +44,46 @@ def shares_of(pairs: Pairs, body_count: int, count: int) -> list[Share]:
     ]  # fmt: skip
 
 
-def room_for(count: int) -> Reactions:
+def new_reactions(count: int) -> Reactions:
     """Return room for what so many pairs do."""
     return Reactions(*(np.zeros((count, 3)) for _ in range(3)))
 
 
 class Team:
-    """Threads that share the bodies and pairs of an engine out."""
+    """Threads that work on the bodies and pairs of an engine together."""
 
-    def __init__(self, pool: ThreadPoolExecutor, searches: list[Search], body_count: int, pairs: Pairs) -> None:
-        self.pool, self.searches = pool, searches  # scratch, one for each thread and for the one that calls
-        self.pairs, self.reactions = pairs, room_for(len(pairs.first))
-        self.shares = shares_of(pairs, body_count, len(searches))
+    def __init__(self, pool: ThreadPoolExecutor, scratches: list[Scratch], body_count: int, pairs: Pairs) -> None:
+        self.pool, self.scratches = pool, scratches  # scratch, one for each thread and for the one that calls
+        self.pairs, self.reactions = pairs, new_reactions(len(pairs.first))
+        self.partitions = partitions_of(pairs, body_count, len(scratches))
 
-    def each(self, work: Callable[[Share, Search], Any]) -> list[Any]:
-        """Do a piece of work for every share: work(share, scratch); return what came of it."""
-        parts = list(zip(self.shares, self.searches, strict=True))
+    def each(self, work: Callable[[Partition, Scratch], Any]) -> list[Any]:
+        """Do a piece of work for every partition: work(partition, scratch); return what came of it."""
+        parts = list(zip(self.partitions, self.scratches, strict=True))
         others = [self.pool.submit(work, *part) for part in parts[1:]]
         return [work(*parts[0]), *(other.result() for other in others)]
 
     def advance(
-        self, step_count: int, drifted: bool, bodies: Bodies, cores: Cores, planes: Planes, laws: Laws, step: Step,
-        half_skin: float, probe: int, probed: Floats,
+        self, bodies: Bodies, cores: Cores, planes: Planes, laws: Laws, step: Step, step_count: int, drifted: bool,
+        travel_limit: float, watched: int, watch_record: Floats,
     ) -> tuple[int, int, bool]:  # fmt: skip
-        """Take up to `step_count` steps, see advance.advance."""
-        pairs = self.pairs
+        """Take up to `step_count` steps, see time_loop.advance."""
+        pairs, reactions = self.pairs, self.reactions
 
-        def begin(share: Share, _: Search) -> float:
-            return begin_step(bodies, step, share.start, share.stop)
+        def begin(partition: Partition, _: Scratch) -> float:
+            return begin_step(bodies, step, partition.start, partition.stop)
 
-        def look(share: Share, search: Search) -> int:
-            return renew(
-                bodies, cores, planes, pairs, search, step.time_step, share.first_pair, share.last_pair
-            )  # fmt: skip
+        def update_lists(partition: Partition, scratch: Scratch) -> int:
+            return update_feature_lists(
+                bodies, cores, planes, pairs, scratch, step.time_step, partition.first_pair, partition.last_pair
+            )
 
-        def across(share: Share, search: Search) -> float:
-            return act_across(bodies, cores, planes, pairs, laws, step, search, self.reactions, share)
+        def across(partition: Partition, scratch: Scratch) -> float:
+            return forces_across_partitions(bodies, cores, planes, pairs, laws, step, scratch, reactions, partition)
 
-        def end(share: Share, search: Search) -> float:
-            rate = act_within(bodies, cores, planes, pairs, laws, step, search, self.reactions, share)
-            end_step(bodies, step, share.start, share.stop)
+        def end(partition: Partition, scratch: Scratch) -> float:
+            rate = forces_within_partition(bodies, cores, planes, pairs, laws, step, scratch, reactions, partition)
+            end_step(bodies, step, partition.start, partition.stop)
             return rate
 
         for taken in range(step_count):
@@ -91,14 +91,14 @@ class Team:
                 ways = self.each(begin)
                 if not np.isfinite(ways).all():
                     return taken, DIVERGED, False
-                if max(ways) > half_skin:
+                if max(ways) > travel_limit:
                     return taken, LIST_USED_UP, True
-            if max(self.each(look)) > 0:
-                return taken, NAMES_OVERFLOW, True
+            if max(self.each(update_lists)) > 0:
+                return taken, FEATURES_OVERFLOW, True
             drifted = False
             rates = self.each(across) + self.each(end)
-            if probe >= 0:
-                note(probe, bodies, probed)
-            if unsteady(taken, max(rates), bodies, planes, pairs, laws, step.paper_mass, step.time_step):
+            if watched >= 0:
+                record_watched(bodies, watched, watch_record)
+            if step_is_too_large(bodies, planes, pairs, laws, step, taken, max(rates)):
                 return taken + 1, STEP_TOO_LARGE, False
         return step_count, DONE, False

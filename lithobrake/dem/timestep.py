@@ -6,10 +6,18 @@ import numpy as np
 
 from lithobrake.dem.arrays import Floats
 from lithobrake.dem.material import Material, pair_law
-from lithobrake.dem.shape import ConvexHull, Shape
+from lithobrake.dem.rigid_body import Plane, RigidBody
+from lithobrake.dem.shape import ConvexHull, Shape, equivalent_radius
 
 # Steps in the shortest contact when a world chooses its own step.
 STEPS_PER_CONTACT = 50.0
+
+
+def checked_step(time_step: float, allowed: str = "a finite value above 0") -> float:
+    """Return a time step [s]. Raises ValueError for one that is not finite and positive; `allowed` says what is."""
+    if not 0.0 < time_step < math.inf:
+        raise ValueError(f"World time_step is {time_step!r} s; allowed is {allowed}: change it")
+    return float(time_step)
 
 
 def contact_duration(mass: float, radius: float, young_modulus: float, speed: float) -> float:
@@ -63,16 +71,37 @@ def shortest_contact_duration(
     return shortest
 
 
-def top_speed(
-    position: Floats, velocity: Floats, spin: Floats, reach: Floats, places: list[Floats], gravity: Floats
+def shortest_contact(bodies: list[RigidBody], planes: list[Plane], options: dict[str, str], speed: float) -> float:
+    """Return the duration [s] of the shortest collision of any of these bodies and planes at a relative speed [m/s].
+
+    options: see material.contact_options. Raises ValueError for a speed of zero, and where no two things can meet.
+    """
+    if not speed > 0.0:
+        raise ValueError("World time_step cannot be chosen while nothing moves or falls: give a time_step [s]")
+    parts = [
+        (b.material, smallest_mass_at_contact(b.shape, b.mass, b.inertia), equivalent_radius(b.shape)) for b in bodies
+    ]
+    made_of = [plane.material for plane in planes]
+    rules = options["shear_modulus_rule"], options["pair_rule"]
+    duration = shortest_contact_duration(parts, made_of, speed, *rules)
+    if duration == math.inf:
+        raise ValueError("World time_step cannot be chosen while nothing can collide: give a time_step [s]")
+    return duration
+
+
+def meeting_speed_bound(
+    position: Floats, velocity: Floats, spin: Floats, bodies: list[RigidBody], planes: list[Plane], gravity: Floats
 ) -> float:  # fmt: skip
     """Return a bound on the speeds [m/s] at which bodies meet: now, and after falling through all that there is.
 
-    position, velocity, spin [body_count, 3]; reach [m] holds their bounding radii, places [m] points of planes.
+    position, velocity, spin [body_count, 3] are those of the bodies.
     """
+    reach = np.array([body.shape.bounding_radius for body in bodies])
     speed = np.linalg.norm(velocity, axis=1) + np.linalg.norm(spin, axis=1) * reach
     down = gravity / max(float(np.linalg.norm(gravity)), np.finfo(float).tiny)
-    points = np.vstack([position - reach[:, None] * down, position + reach[:, None] * down, *places])
+    points = np.vstack(
+        [position - reach[:, None] * down, position + reach[:, None] * down, *(plane.point for plane in planes)]
+    )
     fall = float(np.ptp(points @ gravity))
     relative = 2.0 * float(speed.max()) if len(speed) > 1 else float(speed.max())
     return max(relative, math.sqrt(2.0 * fall))

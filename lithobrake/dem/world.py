@@ -9,18 +9,17 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lithobrake.dem import energy, timestep
-from lithobrake.dem.advance import DIVERGED, FIRST_CONTACT, LAST_CONTACT, PEAK_FORCE, STEP_TOO_LARGE
-from lithobrake.dem.arrays import Floats, Pairs, Step
-from lithobrake.dem.body import Body, Plane, inverse_inertias, new_body, rotation_matrices, unit, vector
+from lithobrake.dem.arrays import Floats, Step
+from lithobrake.dem.assembly import rotation_matrices
+from lithobrake.dem.checkpoint import read_checkpoint, write_checkpoint
 from lithobrake.dem.contacts import contacts_of
-from lithobrake.dem.engine import Engine, no_pairs
-from lithobrake.dem.force import LOSSES
-from lithobrake.dem.material import PAIR_RULES, SHEAR_MODULUS_RULES, Material
-from lithobrake.dem.motion import write_spins
-from lithobrake.dem.shape import Shape, equivalent_radius
+from lithobrake.dem.engine import Engine
+from lithobrake.dem.material import Material, contact_options
+from lithobrake.dem.rigid_body import Plane, new_body, unit, vector
+from lithobrake.dem.shape import Shape
 from lithobrake.dem.stability import largest_step
-
-DAMPING_MASSES = ("contact", "paper")
+from lithobrake.dem.time_loop import DIVERGED, STEP_TOO_LARGE, WATCHED
+from lithobrake.dem.world_state import WorldState
 
 
 class World:
@@ -41,38 +40,18 @@ class World:
         damping_mass: str = "contact",
         pair_rule: str = "smaller",
     ) -> None:
-        for name, value, allowed in (
-            ("shear_modulus_rule", shear_modulus_rule, SHEAR_MODULUS_RULES),
-            ("damping_mass", damping_mass, DAMPING_MASSES),
-            ("pair_rule", pair_rule, PAIR_RULES),
-        ):
-            if value not in allowed:
-                raise ValueError(f"World {name} is {value!r}; allowed are {', '.join(allowed)}: choose one")
-        if time_step is not None and not 0.0 < time_step < math.inf:
-            raise ValueError(
-                f"World time_step is {time_step!r} s; allowed is a finite value above 0, or None: change it"
-            )
+        self.options = contact_options(shear_modulus_rule, damping_mass, pair_rule)
+        if time_step is not None:
+            timestep.checked_step(time_step, "a finite value above 0, or None")
         self.gravity = vector(gravity, "World gravity")
         self.drag = 0.0  # 1/s, viscous damping of all motion, for settling only
         self.time = 0.0  # s
-        self.options = {
-            "shear_modulus_rule": shear_modulus_rule, "damping_mass": damping_mass, "pair_rule": pair_rule
-        }  # fmt: skip
-        self.bodies: list[Body] = []
-        self.planes: list[Plane] = []
         self._given_time_step = time_step
         self._time_step = time_step
-        self._state: dict[str, Floats] = {
-            "position": np.zeros((0, 3)), "velocity": np.zeros((0, 3)), "quaternion": np.zeros((0, 4)),
-            "angular_momentum": np.zeros((0, 3)),
-        }  # fmt: skip
-        self._pairs: Pairs = no_pairs()
-        self._lost = np.zeros(LOSSES)
-        self._inverse_inertia = np.zeros((0, 3, 3))
-        self._watched = -1
-        self._probed = np.zeros(4)
-        self._engine: Engine | None = None
-        self._thread_count = 1
+        self._take(WorldState(self.options))
+
+    def _take(self, state: WorldState) -> None:
+        self._state, self.bodies, self.planes = state, state.bodies, state.planes
 
     # --- what is in it -------------------------------------------------------------------------------------------
 
@@ -98,16 +77,14 @@ class World:
         body = new_body(shape, material, mass, inertia)
         quaternion = unit(orientation, "add_body orientation")
         rotation = rotation_matrices(quaternion[None])[0]
-        row = {
+        motion = {
             "position": vector(position, "add_body position"),
             "velocity": vector(velocity, "add_body velocity"),
             "quaternion": quaternion,
             "angular_momentum": rotation @ (body.inertia @ (rotation.T @ vector(spin, "add_body spin"))),
         }
-        self._disassemble()
-        self._state = {name: np.vstack([array, row[name]]) for name, array in self._state.items()}
-        self.bodies.append(body)
-        return len(self.bodies) - 1
+        self._time_step = self._given_time_step
+        return self._state.add_body(body, motion)
 
     def add_plane(
         self,
@@ -120,7 +97,8 @@ class World:
         """Add a half-space of matter behind a plane; `normal` points out of it. It meets the bodies listed, or all."""
         place = vector(point, "add_plane point")
         meets = None if bodies is None else frozenset(bodies)
-        self._disassemble()
+        self._state.disassemble()
+        self._time_step = self._given_time_step
         self.planes.append(Plane(place, unit(normal, "add_plane normal"), material, meets))
         return len(self.planes) - 1
 
@@ -135,24 +113,18 @@ class World:
         old = self.planes[number]
         place = old.point if point is None else vector(point, "move_plane point")
         meets = old.meets if bodies is None else frozenset(bodies)
-        given, chosen = self._given_time_step, self._time_step
-        self._disassemble()
-        self._given_time_step, self._time_step = given, chosen
+        self._state.disassemble()
         self.planes[number] = Plane(place, old.normal, old.material, meets)
 
     def watch(self, body: int) -> None:
         """Note from now on the contact forces on one body, see `watched`."""
-        self._watched = range(len(self.bodies))[body]
-        self._probed[:] = 0.0
+        self._state.watched = range(len(self.bodies))[body]
+        self._state.watch_record[:] = 0.0
 
     @property
     def watched(self) -> dict[str, float]:
         """Largest contact force [N] on the watched body; steps from `watch` to its first and last contact (0: none)."""
-        return {
-            "peak_force": float(self._probed[PEAK_FORCE]),
-            "first_contact": float(self._probed[FIRST_CONTACT]),
-            "last_contact": float(self._probed[LAST_CONTACT]),
-        }
+        return {name: float(self._state.watch_record[place]) for name, place in WATCHED.items()}
 
     # --- motion --------------------------------------------------------------------------------------------------
 
@@ -160,30 +132,26 @@ class World:
     def time_step(self) -> float:
         """Time step [s]."""
         if self._time_step is None:
-            reach = np.array([body.shape.bounding_radius for body in self.bodies])
-            places = [plane.point for plane in self.planes]
-            speed = timestep.top_speed(self.position, self.velocity, self.spin, reach, places, self.gravity)
+            speed = timestep.meeting_speed_bound(
+                self.position, self.velocity, self.spin, self.bodies, self.planes, self.gravity
+            )
             return self.shortest_contact(speed) / timestep.STEPS_PER_CONTACT
         return self._time_step
 
     @time_step.setter
     def time_step(self, value: float) -> None:
-        if not 0.0 < value < math.inf:
-            raise ValueError(f"World time_step is {value!r} s; allowed is a finite value above 0: change it")
-        self._time_step = self._given_time_step = float(value)
+        self._time_step = self._given_time_step = timestep.checked_step(value)
 
     @property
     def thread_count(self) -> int:
-        """Number of threads that share a step; any number gives the same bits. It pays from some thousand bodies on."""
-        return self._thread_count
+        """Number of threads that take a step; any number gives the same bits. It pays from some thousand bodies on."""
+        return self._state.thread_count
 
     @thread_count.setter
     def thread_count(self, value: int) -> None:
         if value != int(value) or value < 1:
             raise ValueError(f"World thread_count is {value!r}; allowed is a whole number of at least 1: change it")
-        self._thread_count = int(value)
-        if self._engine is not None:
-            self._engine.share_among(self._thread_count)
+        self._state.use_threads(int(value))
 
     @property
     def largest_step(self) -> float:
@@ -199,18 +167,7 @@ class World:
 
         Raises ValueError for a speed of zero, and where no two things can meet.
         """
-        if not speed > 0.0:
-            raise ValueError("World time_step cannot be chosen while nothing moves or falls: give a time_step [s]")
-        parts = [
-            (b.material, timestep.smallest_mass_at_contact(b.shape, b.mass, b.inertia), equivalent_radius(b.shape))
-            for b in self.bodies
-        ]
-        planes = [plane.material for plane in self.planes]
-        rules = self.options["shear_modulus_rule"], self.options["pair_rule"]
-        duration = timestep.shortest_contact_duration(parts, planes, speed, *rules)
-        if duration == math.inf:
-            raise ValueError("World time_step cannot be chosen while nothing can collide: give a time_step [s]")
-        return duration
+        return timestep.shortest_contact(self.bodies, self.planes, self.options, speed)
 
     def run(self, duration: float | None = None, *, steps: int | None = None) -> None:
         """Advance by a duration [s], rounded to whole steps, or by a number of steps.
@@ -228,7 +185,7 @@ class World:
         if steps == 0:
             return
         self._time_step = self.time_step
-        taken, reason = self._assembled().advance(steps, self._step(self.time_step), self._watched)
+        taken, reason = self._assembled().advance(steps, self._step(self.time_step), self._state.watched)
         self.time += taken * self.time_step
         if reason in (STEP_TOO_LARGE, DIVERGED):
             self._refuse(reason)
@@ -258,63 +215,40 @@ class World:
     def _step(self, time_step: float) -> Step:
         return Step(time_step, float(self.drag), tuple(self.gravity), self.options["damping_mass"] == "paper")
 
-    # --- between a person's bodies and the engine --------------------------------------------------------------------
-
     def _assembled(self) -> Engine:
-        """Return the engine for what is in the world now, with the forces of the state at hand."""
-        if self._engine is None:
-            self._engine = Engine(
-                self.bodies, self.planes, self.options, self._state, self._pairs, self._lost, self._probed,
-                self._thread_count,
-            )  # fmt: skip
-            self._engine.advance(1, self._step(0.0), -1)
-        return self._engine
-
-    def _disassemble(self) -> None:
-        """Make ready for a change of what is in the world."""
-        if self._engine is not None:
-            self._engine.book()
-            self._pairs = self._engine.pairs
-        self._state = {name: array.copy() for name, array in self._state.items()}
-        self._time_step = self._given_time_step
-        self._engine = None
+        return self._state.assembled(self._step(0.0))
 
     # --- what came of it ------------------------------------------------------------------------------------------
 
     @property
     def position(self) -> Floats:
         """Centroids [m], shape [body_count, 3]."""
-        return self._state["position"].copy()
+        return self._state.motion["position"].copy()
 
     @property
     def velocity(self) -> Floats:
         """Velocities of the centroids [m/s], shape [body_count, 3]."""
-        return self._state["velocity"].copy()
+        return self._state.motion["velocity"].copy()
 
     @property
     def orientation(self) -> Floats:
         """Orientations, unit quaternions w, x, y, z, body to world, shape [body_count, 4]."""
-        return self._state["quaternion"].copy()
+        return self._state.motion["quaternion"].copy()
 
     @property
     def angular_momentum(self) -> Floats:
         """Angular momenta about the centroids [kg m2/s], shape [body_count, 3], world frame."""
-        return self._state["angular_momentum"].copy()
+        return self._state.motion["angular_momentum"].copy()
 
     @property
     def spin(self) -> Floats:
         """Angular velocities [rad/s], shape [body_count, 3], world frame."""
-        if len(self._inverse_inertia) != len(self.bodies):
-            self._inverse_inertia = inverse_inertias(self.bodies)
-        spin = np.zeros((len(self.bodies), 3))
-        rotation = rotation_matrices(self._state["quaternion"])
-        write_spins(rotation, self._state["angular_momentum"], self._inverse_inertia, spin)
-        return spin
+        return self._state.spin()
 
     @property
     def kinetic_energy(self) -> Floats:
         """Kinetic energy of each body [J], shape [body_count]."""
-        return energy.kinetic(self.mass, self._state["velocity"], self.spin, self._state["angular_momentum"])
+        return energy.kinetic(self.mass, self.velocity, self.spin, self.angular_momentum)
 
     @property
     def mass(self) -> Floats:
@@ -352,13 +286,14 @@ class World:
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write everything to an HDF5 file, whole or not at all; `World.load` continues from it bit for bit."""
-        from lithobrake.dem import checkpoint
-
-        checkpoint.save(self, path)
+        clock = {"time": self.time, "given_time_step": self._given_time_step, "time_step": self._time_step}
+        write_checkpoint(path, self._state, self._step(0.0), clock)
 
     @staticmethod
     def load(path: str | os.PathLike[str]) -> "World":
         """Read a world that `save` wrote. Raises ValueError where the file is not one."""
-        from lithobrake.dem import checkpoint
-
-        return checkpoint.load(path)
+        state, step, clock = read_checkpoint(path)
+        world = World(step.gravity, clock["given_time_step"], **state.options)
+        world._take(state)
+        world.drag, world.time, world._time_step = step.drag, clock["time"], clock["time_step"]
+        return world

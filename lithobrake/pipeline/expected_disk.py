@@ -1,10 +1,11 @@
 """How much room the files of a study will take on the disk; sizes measured on scenarios/quick.toml and bounces.toml."""
 
-from lithobrake.pipeline.expansions import design_inputs
+from lithobrake.outputs import OUTPUTS
+from lithobrake.pipeline.designs import design_inputs
 from lithobrake.pipeline.expected_steps import ExpectedSoil
 from lithobrake.pipeline.planned_runs import PlannedRuns
-from lithobrake.site import site_body
-from lithobrake.study import OUTPUTS, Study
+from lithobrake.pipeline.site import site_body
+from lithobrake.study import Study
 
 NUMBER = 8
 # A bed: hulls, poses and frames of a grain, and the history, a row in every eight steps.

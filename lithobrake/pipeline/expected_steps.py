@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lithobrake.pipeline.expansions import design_inputs
+from lithobrake.pipeline.designs import design_inputs
 from lithobrake.pipeline.landings import draw, lander, landing, medians
 from lithobrake.pipeline.planned_runs import planned_points
 from lithobrake.pipeline.surface import bed_recipe

@@ -14,7 +14,7 @@ from lithobrake.campaign import Record, available_cores
 from lithobrake.pipeline.expected_disk import flight_count, journey_count
 from lithobrake.pipeline.expected_steps import ExpectedSoil
 from lithobrake.pipeline.pace import engine_is_compiled, machine_pace
-from lithobrake.site import site_body
+from lithobrake.pipeline.site import site_body
 from lithobrake.study import Study
 
 if TYPE_CHECKING:

@@ -9,8 +9,8 @@ from lithobrake.pipeline.flights import QUANTILES, flight_numbers, read_table
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.samples import MISSING, SAMPLE_OUTCOMES, Samples
 from lithobrake.pipeline.scope import scope
+from lithobrake.pipeline.site import push_at_site, site_body
 from lithobrake.pipeline.solver import OUTCOMES
-from lithobrake.site import push_at_site, site_body
 from lithobrake.study import Study
 
 # How a journey from bounce to bounce may end (docs/flights.md).

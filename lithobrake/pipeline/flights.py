@@ -12,10 +12,10 @@ from lithobrake.atomic import atomic_path
 from lithobrake.pipeline.folder import AGAIN, StudyFolder, content_hash
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.samples import Samples, sampling_seed
-from lithobrake.quantity import uncertain
+from lithobrake.pipeline.site import SITE_KEYS, frames, site_body, site_medians, site_values, site_warning
 from lithobrake.reading import read_rows
-from lithobrake.site import SITE_KEYS, frames, site_body, site_medians, site_values, site_warning
 from lithobrake.study import BUILT_IN_BODIES, Study
+from lithobrake.study.quantity import uncertain
 
 if TYPE_CHECKING:
     from lithobrake.smallbody import Body, Flights

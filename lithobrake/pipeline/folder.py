@@ -77,15 +77,19 @@ class StudyFolder:
         """Path of a file in the folder."""
         return self.path / name
 
-    def begin(self, study: Path, stages: dict[str, dict[str, Any]], say: Callable[[str], None]) -> None:
-        """Note which study runs now, with its stages as `pipeline.stages.setting` gives them, and keep its file."""
+    def begin(
+        self, study: Path | None, content: bytes, stages: dict[str, dict[str, Any]], say: Callable[[str], None]
+    ) -> None:
+        """Note which study runs now, with its stages as `pipeline.stages.setting` gives them, and keep its content.
+
+        study: its file, None where it has none.
+        """
         try:
             notes = Notes.read(self.path, "so the files that it vouched for are made again")
         except DamagedFileError as error:
             say(f"{error}.")
             notes = Notes()
-        content = study.read_bytes()
-        place = _path_from(self.path, study)
+        place = _path_from(self.path, study) if study else ""
         notes.of_setting({"file": place, "sha256": hashlib.sha256(content).hexdigest()}, stages).write(self.path)
         with atomic_path(self / "study.toml") as draft:
             draft.write_bytes(content)

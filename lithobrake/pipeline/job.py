@@ -10,25 +10,53 @@ from lithobrake.study import Study
 
 
 class Progress(Protocol):
-    """Shows how far a piece of work is; detail: more about it, in lines."""
+    """Shows a study at work: the stages as they begin, how far the work in each is, sentences that stay."""
 
-    def __call__(self, done: float, total: float, what: str, detail: str = "", /) -> None:
-        """Show it."""
+    def begin(self, title: str, number: int, count: int) -> None:
+        """Show that a stage begins, the one of this number out of `count`."""
+
+    def progress(self, done: float, total: float, what: str, detail: str = "", /) -> None:
+        """Show how far a piece of work is; detail: more about it, in lines."""
+
+    def say(self, sentence: str) -> None:
+        """Tell the user a sentence."""
+
+
+class Silent:
+    """Shows nothing."""
+
+    def begin(self, title: str, number: int, count: int) -> None:
+        """Show nothing."""
+
+    def progress(self, done: float, total: float, what: str, detail: str = "", /) -> None:
+        """Show nothing."""
+
+    def say(self, sentence: str) -> None:
+        """Tell nothing."""
 
 
 @dataclass(frozen=True)
 class Job:
     """A study, its folder, where runs are made, and where progress is shown.
 
-    tables: the study file as it was written, for the record. say: tells the user a sentence. keeps_logs: each run
-    leaves a log in the folder. wanted: files of the present stage that are not there, or no longer good.
+    tables: the study file as it was written, for the record. model: a function of the user's own that makes the
+    touchdowns in place of the soil. keeps_logs: each run leaves a log in the folder. wanted: files of the present stage
+    that are not there, or no longer good.
     """
 
     study: Study
     tables: Mapping[str, Any]
     folder: StudyFolder
     executor: Executor
-    progress: Progress
-    say: Callable[[str], None]
+    shown: Progress
+    model: Callable[[dict[str, float], int], Mapping[str, Any]] | None = None
     keeps_logs: bool = False
     wanted: tuple[str, ...] = ()
+
+    def progress(self, done: float, total: float, what: str, detail: str = "", /) -> None:
+        """Show how far a piece of work is; detail: more about it, in lines."""
+        self.shown.progress(done, total, what, detail)
+
+    def say(self, sentence: str) -> None:
+        """Tell the user a sentence."""
+        self.shown.say(sentence)

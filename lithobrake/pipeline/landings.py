@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from lithobrake.pipeline.folder import source_hash
-from lithobrake.quantity import median
 from lithobrake.study import Study
+from lithobrake.study.quantity import median
 
 if TYPE_CHECKING:
     from lithobrake.dem import Material

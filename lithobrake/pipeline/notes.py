@@ -29,7 +29,9 @@ _FORM = {
 # Format 1 had files and wall_s alone.
 _ABSENT: dict[str, Any] = {name: {} for name in _FORM} | {"study": {"file": "", "sha256": ""}}
 # The stage whose key says whether a design is still what the study asks for.
-_STAGE_OF_DESIGN = {"screening": "screen", "refined": "refine", "test_kept": "test", "test_all": "test"}
+_STAGE_OF_DESIGN = {
+    "screening": "screening_runs", "refined": "refined_runs", "test_kept": "test_runs", "test_all": "test_runs"
+}  # fmt: skip
 
 
 @dataclass(frozen=True)

@@ -6,18 +6,22 @@ from pathlib import Path
 from lithobrake.pipeline.folder import LOCK
 from lithobrake.pipeline.notes import NAME, Notes
 from lithobrake.reading import DamagedFileError
+from lithobrake.study import StudySource
 
 _ANOTHER = "choose another folder with --out"
 
 
-def refuse_others_folder(study: Path, out: Path) -> None:
+def refuse_others_folder(source: StudySource, out: Path) -> None:
     """Raise ValueError, with what to do, unless a study file may have its files written into a folder.
 
     The folder is the study's own when it notes this study file, or has a copy of it with the same bytes. So a study is
     edited and run again where it was, and one that was moved or renamed takes its folder over once it is copied there.
     """
+    study = source.path
     # A link is overwritten where it lies, and what it leads to where that lies.
-    if any(out.resolve() in path.parents for path in (study.resolve(), study.parent.resolve() / study.name)):
+    if study is not None and any(
+        out.resolve() in path.parents for path in (study.resolve(), study.parent.resolve() / study.name)
+    ):
         raise ValueError(
             f"{study} lies in {out}, where its own files would be written over it and what lies beside it; {_ANOTHER}, "
             f"such as --out {shlex.quote(str(Path('runs') / study.stem))}"
@@ -32,10 +36,12 @@ def refuse_others_folder(study: Path, out: Path) -> None:
             "not there yet"
         )
     owner, copy = _noted_study(out), out / "study.toml"
-    if owner == study.resolve() or (copy.is_file() and copy.read_bytes() == study.read_bytes()):
+    if owner == (study and study.resolve()) or (copy.is_file() and copy.read_bytes() == source.content):
         return
-    unknown = f"does not note which study it is of, and its study.toml is not that of {study}"
+    unknown = f"does not note which study it is of, and its study.toml is not that of {source.name}"
     whose = f"has the files of another study, {owner}" if owner else unknown
+    if study is None:
+        raise ValueError(f"{out} {whose}; {_ANOTHER}")
     raise ValueError(
         f"{out} {whose}; {_ANOTHER}, or, if they are one study that was moved, renamed or edited, copy {study} over "
         f"{copy} and give the same command again"
@@ -50,7 +56,7 @@ def _visible(folder: Path) -> list[str]:
 
 
 def _noted_study(folder: Path) -> Path | None:
-    """The study file that a folder notes; None where it notes none that can be read."""
+    """The study file that a folder notes; None where it notes none that can be read, or has a study of tables."""
     try:
         noted = Notes.read(folder).study_path(folder)
     except DamagedFileError:

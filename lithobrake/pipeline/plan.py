@@ -6,7 +6,6 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from lithobrake import study_file
 from lithobrake.campaign import available_cores
 from lithobrake.pipeline.expected_disk import expected_bytes, flight_count, journey_count
 from lithobrake.pipeline.expected_steps import ExpectedSoil
@@ -15,13 +14,13 @@ from lithobrake.pipeline.folder import StudyFolder
 from lithobrake.pipeline.owner import refuse_others_folder
 from lithobrake.pipeline.plan_lines import brief_lines, bytes_in_words, plan_lines
 from lithobrake.pipeline.planned_runs import PlannedRuns, known_runs, possible_runs
+from lithobrake.pipeline.site import with_site_gravity
 from lithobrake.pipeline.stages import STAGES, stage_keys
 from lithobrake.pipeline.study_warnings import study_warnings
 from lithobrake.pipeline.surface import bed_files
-from lithobrake.study import Study
+from lithobrake.study import Study, StudySource
 
-# Stages that go through the runs.
-READ_RUNS = frozenset({"screen", "refine", "test", "sample", "rest", "summary"})
+MAKE_RUNS = frozenset({"screening_runs", "refined_runs", "test_runs"})
 
 
 @dataclass(frozen=True)
@@ -79,8 +78,9 @@ def plan_study(path: Path, out: Path, worker_count: int | None = None) -> Plan:
     Raises ValueError for a study file that is refused, a folder of something else, a mesh that cannot be read, a ledger
     that is none.
     """
-    study = study_file.read(path)
-    refuse_others_folder(path, out)
+    source = StudySource.read(path)
+    study = with_site_gravity(source.study, source.name)
+    refuse_others_folder(source, out)
     return plan_of(study, study.title or path.stem, StudyFolder.only_read(out), worker_count)
 
 
@@ -94,7 +94,7 @@ def plan_of(
     runs = tuple(possible_runs(study, folder, "screen" not in stale, known))
     beds = sum(not folder.is_current([file], keys["bed"]) for file in bed_files(study))
     made = _made(study, stale.keys(), runs, beds)
-    soil = None if study.solver.command else ExpectedSoil.of(study, runs[-1].kept_count)
+    soil = None if not study.has_soil else ExpectedSoil.of(study, runs[-1].kept_count)
     workers = None if on_cluster else worker_count or available_cores()
     ended = [known[key] for key in runs[-1].known]
     sizes, free = expected_bytes(study, runs[-1], soil), _free(folder.path)
@@ -116,8 +116,8 @@ def plan_of(
 
 def _made(study: Study, stale: Set[str], runs: tuple[PlannedRuns, ...], beds: int) -> dict[str, tuple[int, int]]:
     """How many of each are to be made, at least and at most."""
-    new = [one.new for one in runs] if stale & READ_RUNS else [0]
-    landings = int("landing" in stale and not study.solver.command)
+    new = [one.new for one in runs] if stale & MAKE_RUNS else [0]
+    landings = int("landing" in stale and study.has_soil)
     return {
         "beds": (beds, beds),
         "landings": (landings, landings),

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from lithobrake.campaign import Record, read_records
-from lithobrake.pipeline.expansions import DESIGNS, design_inputs, kept_inputs, points, replicate_count
+from lithobrake.pipeline.designs import DESIGNS, design_inputs, kept_inputs, points, replicate_count
 from lithobrake.pipeline.folder import StudyFolder
 from lithobrake.pipeline.touchdowns import drawn_rows, touchdown_keys
 from lithobrake.study import Study

@@ -9,8 +9,8 @@ from lithobrake.pipeline.flights import partner_time, sample_sites, write_table
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.outgoing import VELOCITY
 from lithobrake.pipeline.samples import SAMPLE_OUTCOMES, Samples, sampling_seed, touchdown_values
+from lithobrake.pipeline.site import frames, site_body
 from lithobrake.pipeline.soil import rolling_spin, soil_bounce, trained_ranges, why_no_soil
-from lithobrake.site import frames, site_body
 from lithobrake.study import Study
 
 if TYPE_CHECKING:
@@ -100,24 +100,20 @@ class Sites:
         body, samples = site_body(job.study), Samples.load(job.folder).first(job.study.rest.count)
         site = sample_sites(job.study, len(samples.outcome))
         origin, axes = frames(body, site)
-        spin_rate = 2.0 * np.pi / site["spin_period"]
-        push = body.acceleration(origin) * (site["mass"] / body.mass)[:, None]
-        push += (spin_rate**2)[:, None] * origin * np.array([1.0, 1.0, 0.0])
+        push = body.effective_acceleration(origin, mass=site["mass"], spin_period=site["spin_period"])
         return cls(body, samples, site, origin, axes, np.einsum("ni,ni->n", push, axes[:, 2]))
 
     def follow(self, job: Job, ground: str, first: "Rebounds", bounce: "Bounce") -> list[list[Any]]:
         """A row of rest.csv for each sample, in their order: from how it leaves the first impact to where it ends."""
-        from lithobrake.smallbody import hop
+        from lithobrake.smallbody import Launch, hop
 
         going = np.flatnonzero(~(first.captured | first.outside))
         site = {key: values[going] for key, values in self.site.items()}
         velocity, spin = (np.einsum("nij,ni->nj", self.axes[going], v[going]) for v in (first.velocity, first.spin))
+        time = partner_time(self.body, site)
+        launch = Launch(self.origin[going], velocity, spin, time, site["mass"], site["spin_period"])
         ends = hop(
-            *(self.body, self.origin[going], velocity, bounce, job.study.rest.duration),
-            spin=spin,
-            start_time=partner_time(self.body, site),
-            mass=site["mass"],
-            spin_period=site["spin_period"],
+            *(self.body, launch, bounce, job.study.rest.duration),
             gravity=job.study.flight.gravity,
             seed=sampling_seed(job.study, f"rest on {ground} ground"),
             threads=getattr(job.executor, "worker_count", None),

@@ -7,15 +7,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lithobrake.atomic import atomic_path
-from lithobrake.pipeline.expansions import DESIGNS, DesignRuns, design_inputs, design_runs
+from lithobrake.pipeline.design_runs import DesignRuns
+from lithobrake.pipeline.designs import DESIGNS, design_inputs
 from lithobrake.pipeline.folder import AGAIN, StudyFolder, json_hash
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.outgoing import outgoing
 from lithobrake.pipeline.scatter import Scatter
 from lithobrake.pipeline.solver import OUTCOMES
-from lithobrake.quantity import median
 from lithobrake.reading import reading
 from lithobrake.study import Study
+from lithobrake.study.quantity import median
 
 if TYPE_CHECKING:
     from lithobrake.analysis import OutcomeModel
@@ -125,7 +126,7 @@ def draw_samples(job: Job) -> None:
     smooth = _evaluate(refined, x[:, [list(inputs).index(name) for name in refined.input_names]], job)
     job.progress(0, 1, "chances of the outcomes")
     random = np.random.Generator(np.random.PCG64(sampling_seed(study, "capture")))
-    drawn = outcome_model(job, refined).draw(x, random)
+    drawn = outcome_model(job).draw(x, random)
     outputs, without_scatter = smooth, None
     if study.monte_carlo.scatter:
         speed = touchdown_values(study, inputs, x, "impact.speed")
@@ -146,25 +147,21 @@ def touchdown_values(study: Study, inputs: Iterable[str], x: np.ndarray, name: s
     return np.full(len(x), median(study.touchdown_values()[name]))
 
 
-def outcome_model(job: Job, refined: "Surrogate") -> "OutcomeModel":
-    """The chances of the outcomes, learnt from all runs of the study."""
-    from lithobrake.analysis import OutcomeModel
-
-    runs = [design_runs(job, design, refined.input_names) for design in DESIGNS]
-    return OutcomeModel(design_inputs(job.study), *ended_runs(runs), OUTCOMES)
-
-
-def ended_runs(designs: list[DesignRuns]) -> tuple[np.ndarray, list[str]]:
-    """Points [run_count, input_count] and outcomes of all runs that have one; a run that failed says nothing.
+def outcome_model(job: Job) -> "OutcomeModel":
+    """The chances of the outcomes, learnt from all runs of the study that have one; a run that failed says nothing.
 
     Raises ValueError when no run has ended.
     """
-    x = np.concatenate([design.x for design in designs])
-    outcomes = [outcome for design in designs for outcome in design.runs.outcomes]
+    from lithobrake.analysis import OutcomeModel
+
+    inputs = design_inputs(job.study)
+    runs = [DesignRuns.load(job.folder, design) for design in DESIGNS]
+    x = np.concatenate([one.columns(list(inputs)) for one in runs])
+    outcomes = [outcome for one in runs for outcome in one.outcomes]
     ended = np.isin(outcomes, OUTCOMES)
     if not ended.any():
         raise ValueError("every run has failed (runs.sqlite has the reasons); mend what they name")
-    return x[ended], [outcome for outcome in outcomes if outcome in OUTCOMES]
+    return OutcomeModel(inputs, x[ended], [outcome for outcome in outcomes if outcome in OUTCOMES], OUTCOMES)
 
 
 def _evaluate(surrogate: "Surrogate", x: np.ndarray, job: Job) -> np.ndarray:

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lithobrake.pipeline.expansions import design_runs
+from lithobrake.pipeline.design_runs import DesignRuns
 from lithobrake.pipeline.job import Job
 
 if TYPE_CHECKING:
@@ -32,10 +32,10 @@ class Scatter:
         """That of the runs of the refined design."""
         from lithobrake.chaos import joint_scatter
 
-        runs = design_runs(job, "refined", refined.input_names)
+        runs = DesignRuns.load(job.folder, "refined")
         rows = joint_scatter(refined, runs.columns(refined.input_names), runs.y)
         # Every run has its impact speed among its inputs, whether the study varies it or not.
-        speeds = np.array([record.inputs["impact.speed"] for record in runs.runs.records])[runs.has_outputs]
+        speeds = runs.inputs["impact.speed"][runs.has_outputs]
         grows = np.array([name not in ANGLES for name in refined.output_names])
         return cls(rows, float(np.sqrt(np.mean(speeds**2))), grows)
 

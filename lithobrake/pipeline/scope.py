@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass
 
-from lithobrake.quantity import Uncertain
 from lithobrake.study import Study
+from lithobrake.study.quantity import Uncertain
 
 
 @dataclass(frozen=True)
@@ -17,7 +17,7 @@ class Scope:
 
 def scope(study: Study) -> Scope:
     """What the runs of a study have in common, and what that leaves unsaid."""
-    if study.solver.command:
+    if not study.has_soil:
         return Scope(
             "With the touchdowns of this study's own program",
             "Other touchdowns give another figure; this study cannot say how different.",

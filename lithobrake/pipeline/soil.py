@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lithobrake.pipeline.expansions import design_inputs, points
+from lithobrake.pipeline.designs import design_inputs, points
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.outgoing import VELOCITY, outgoing
 from lithobrake.pipeline.samples import CLEAR, outcome_model
@@ -89,7 +89,7 @@ class SoilBounce:
         Those outside have the inputs of the first impact in place of theirs.
         """
         felt = {"impact.speed": impacts.speed, "impact.incidence_deg": np.degrees(impacts.incidence)}
-        felt |= dict(zip(SPIN, impacts.spin.T, strict=True)) | {"surface.gravity": -impacts.push}
+        felt |= dict(zip(SPIN, impacts.spin.T, strict=True)) | {"surface.gravity": -impacts.effective_acceleration}
         x = np.column_stack([values[impacts.lander] for values in self.inputs.values()])
         outside = np.zeros(len(x), dtype=bool)
         for index, name in enumerate(self.inputs):
@@ -117,4 +117,4 @@ def soil_bounce(job: Job, inputs: dict[str, np.ndarray]) -> SoilBounce:
 
     study, refined = job.study, load(job.folder / "refined.json")
     scatter = Scatter.of(job, refined) if study.monte_carlo.scatter else None
-    return SoilBounce(refined, outcome_model(job, refined), inputs, trained_ranges(study), scatter)
+    return SoilBounce(refined, outcome_model(job), inputs, trained_ranges(study), scatter)

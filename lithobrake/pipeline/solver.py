@@ -1,20 +1,27 @@
-"""A program of the user's own that makes the touchdowns: what it is told, and what it has to answer."""
+"""A program or function of the user's own that makes the touchdowns: what it is told, and what it has to answer."""
 
+import hashlib
 import math
-from collections.abc import Mapping
+import pickle
+import reprlib
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from lithobrake import __version__
 from lithobrake.campaign import Command
+from lithobrake.outputs import OUTPUTS
 from lithobrake.pipeline.folder import content_hash
-from lithobrake.study import OUTPUTS, Study
+from lithobrake.study import Study
 
 # How a touchdown may end; one that is clear has outputs.
 OUTCOMES = ("clear", "captured", "left_sideways", "time_limit")
 # What speed and elevation may be off their components: numbers printed with six digits, as C and C++ do, agree so far.
 PRINTED = 2e-5
+
+
+Model = Callable[[dict[str, float], int], Mapping[str, Any]]
 
 
 @dataclass(frozen=True)
@@ -26,13 +33,50 @@ class SolverModel:
 
     def __call__(self, values: dict[str, float], seed: int) -> dict[str, Any]:
         """Make one touchdown. Raises ValueError for an outcome or outputs that a study cannot use."""
-        answer = self.command.ask({"inputs": values, "seed": seed, "setting": self.setting})
-        outcome, outputs = answer.get("outcome", "clear"), completed(answer["outputs"])
-        if outcome not in OUTCOMES:
-            raise ValueError(f"outputs.json has the outcome {outcome!r}; allowed: {', '.join(OUTCOMES)}")
-        if outcome == "clear":
-            refuse_contradictions(outputs)
-        return {"outcome": outcome, "outputs": outputs, "draws": answer.get("draws", {})}
+        return checked("outputs.json", self.command.ask({"inputs": values, "seed": seed, "setting": self.setting}))
+
+
+@dataclass(frozen=True)
+class FunctionModel:
+    """Touchdowns by a function of the user's own, called with the values and the seed of a run."""
+
+    function: Model
+
+    def __call__(self, values: dict[str, float], seed: int) -> dict[str, Any]:
+        """Make one touchdown. Raises ValueError for an answer that a study cannot use."""
+        answer = self.function(values, seed)
+        if not isinstance(answer, Mapping) or not isinstance(answer.get("outputs", {}), Mapping):
+            raise ValueError(
+                f"the model gave {reprlib.repr(answer)}; it must give a dict with an outcome and outputs by name"
+            )
+        outputs = {name: float(value) for name, value in answer.get("outputs", {}).items()}
+        # An output without a value is absent, as in a program's answer.
+        known = {name: value for name, value in outputs.items() if not math.isnan(value)}
+        return checked("the model's answer", {**answer, "outputs": known})
+
+
+def function_identity(function: Model) -> str:
+    """What tells one function from another: the hash of its pickle, which is its name and its attributes.
+
+    Raises ValueError for a function that cannot be sent to a worker process.
+    """
+    try:
+        return hashlib.sha256(pickle.dumps(function)).hexdigest()[:16]
+    except (pickle.PicklingError, AttributeError, TypeError) as error:
+        raise ValueError(
+            f"the model cannot be sent to a process ({error}); give a function of a file, outside of any other "
+            "function, or an object whose attributes can be sent"
+        ) from error
+
+
+def checked(what: str, answer: Mapping[str, Any]) -> dict[str, Any]:
+    """An answer as a study keeps it; what: who says it. Raises ValueError for one that a study cannot use."""
+    outcome, outputs = answer.get("outcome", "clear"), completed(answer["outputs"])
+    if outcome not in OUTCOMES:
+        raise ValueError(f"{what} has the outcome {outcome!r}; allowed: {', '.join(OUTCOMES)}")
+    if outcome == "clear":
+        refuse_contradictions(what, outputs)
+    return {"outcome": outcome, "outputs": outputs, "draws": answer.get("draws", {})}
 
 
 def completed(outputs: Mapping[str, float]) -> dict[str, float]:
@@ -45,23 +89,23 @@ def completed(outputs: Mapping[str, float]) -> dict[str, float]:
     return found
 
 
-def refuse_contradictions(outputs: Mapping[str, float]) -> None:
+def refuse_contradictions(what: str, outputs: Mapping[str, float]) -> None:
     """Raise ValueError unless these are outputs [SI] of a lander that leaves: all there, outwards, of one velocity."""
     lacking = [name for name in OUTPUTS if name not in outputs]
     if lacking:
-        raise ValueError(f"outputs.json lacks {', '.join(lacking)}; a lander that leaves has all of them")
+        raise ValueError(f"{what} lacks {', '.join(lacking)}; a lander that leaves has all of them")
     if outputs["velocity_out_z"] <= 0.0:
         raise ValueError(
-            f"outputs.json has the outcome clear and a velocity_out_z of {outputs['velocity_out_z']:g} m/s; a lander "
+            f"{what} has the outcome clear and a velocity_out_z of {outputs['velocity_out_z']:g} m/s; a lander "
             "that leaves moves outwards, along +z: turn the axis round, or name another outcome"
         )
     if outputs["spin_out"] < 0.0:
-        raise ValueError(f"outputs.json has a spin_out of {outputs['spin_out']:g} rad/s; it is a size: at least 0")
+        raise ValueError(f"{what} has a spin_out of {outputs['spin_out']:g} rad/s; it is a size: at least 0")
     components = {name: value for name, value in outputs.items() if name.startswith("velocity_out_")}
     for name, follows in completed(components).items():
         if not math.isclose(outputs[name], follows, rel_tol=PRINTED, abs_tol=0.0):
             raise ValueError(
-                f"outputs.json has {outputs[name]:.8g} for {name}, and {follows:.8g} follows from velocity_out_x, _y "
+                f"{what} has {outputs[name]:.8g} for {name}, and {follows:.8g} follows from velocity_out_x, _y "
                 "and _z (SI, angles in rad): leave it out, or mend one of them"
             )
 
@@ -86,4 +130,5 @@ def solver_reads(study: Study) -> dict[str, Any]:
     setting = solver_setting(study)
     # A mesh counts with its content, wherever it lies.
     setting["lander"]["file"] = None if study.lander.file is None else content_hash(Path(study.lander.file))
-    return {"solver": solver_command(study, Path()).identity(), "setting": setting, "version": __version__}
+    identity = [study.solver.function] if study.solver.function else solver_command(study, Path()).identity()
+    return {"solver": identity, "setting": setting, "version": __version__}

@@ -5,10 +5,13 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
-from lithobrake.pipeline.expansions import design_reads, fit_refined, fit_screening, score_all
+from lithobrake.pipeline.design_runs import file_of
+from lithobrake.pipeline.designs import design_reads
+from lithobrake.pipeline.expansions import fit_refined, fit_screening, score_all
 from lithobrake.pipeline.flights import flight_reads, fly_samples
 from lithobrake.pipeline.folder import json_hash, source_hash
 from lithobrake.pipeline.job import Job
+from lithobrake.pipeline.making_runs import make_refined_runs, make_screening_runs, make_test_runs
 from lithobrake.pipeline.rest import follow_samples, rest_reads
 from lithobrake.pipeline.samples import draw_samples
 from lithobrake.pipeline.summary import study_tables, write_summary
@@ -41,8 +44,8 @@ def _files(*names: str) -> Callable[[Study], list[str]]:
     return lambda study: list(names)
 
 
-def _screening(study: Study) -> Any:
-    return [design_reads(study), study.seed, *_design(*_SCREENING)(study)]
+def _screening_runs(study: Study) -> Any:
+    return [design_reads(study), study.seed, *_design(*_SCREENING_RUNS)(study)]
 
 
 def _sample(study: Study) -> Any:
@@ -60,18 +63,40 @@ def _write_report(job: Job) -> None:
 
 
 FIT, FLY = ("pipeline", "chaos", "analysis"), ("pipeline", "smallbody", "site.py", "mesh.py", "mesh_files.py")
-_SCREENING = ("method", "fit", "replicate_count", "screening_level", "screening_count", "screening_degree")
-_REFINED = _design("refined_level", "refined_count", "refined_degree", "kept_share", "kept_outputs")
-_TEST = _design("test_count")
+# The points of one design are best for the degree that is fitted to them.
+_SCREENING_RUNS = ("method", "replicate_count", "screening_level", "screening_count", "screening_degree")
+_REFINED_RUNS = _design("refined_level", "refined_count", "refined_degree", "kept_share", "kept_outputs")
+_FIT, _TEST = _design("fit"), _design("test_count")
 
 FLIGHT_FILES = ("flights.csv", "flights_without_scatter.csv", "flights.json", "body.obj")
 
 STAGES = (
     Stage("bed", "bed", bed_files, bed_reads, (), (), pour_beds),
     Stage("landing", "median landing", landing_files, landing_reads, ("bed",), (), land_once),
-    Stage("screen", "screening", _files("screening.json"), _screening, ("bed",), FIT, fit_screening),
-    Stage("refine", "refinement", _files("refined.json"), _REFINED, ("screen",), FIT, fit_refined),
-    Stage("test", "test runs", _files("scores.json"), _TEST, ("screen", "refine"), FIT, score_all),
+    Stage(
+        "screening_runs",
+        "screening runs",
+        _files(file_of("screening")),
+        _screening_runs,
+        ("bed",),
+        FIT,
+        make_screening_runs,
+    ),
+    Stage("screen", "screening", _files("screening.json"), _FIT, ("screening_runs",), FIT, fit_screening),
+    Stage(
+        "refined_runs", "refined runs", _files(file_of("refined")), _REFINED_RUNS, ("screen",), FIT, make_refined_runs
+    ),
+    Stage("refine", "refinement", _files("refined.json"), _nothing, ("refined_runs",), FIT, fit_refined),
+    Stage(
+        "test_runs",
+        "test runs",
+        _files(file_of("test_kept"), file_of("test_all")),
+        _TEST,
+        ("refined_runs",),
+        FIT,
+        make_test_runs,
+    ),
+    Stage("test", "scores", _files("scores.json"), _nothing, ("refine", "test_runs"), FIT, score_all),
     Stage("sample", "samples", _files("samples.h5"), _sample, ("refine", "test"), FIT, draw_samples),
     Stage("fly", "flights", _files(*FLIGHT_FILES), flight_reads, ("sample",), FLY, fly_samples),
     Stage("rest", "bounces until rest", _files("rest.csv", "rest.json"), rest_reads, ("fly",), FLY, follow_samples),
@@ -100,16 +125,17 @@ def setting(study: Study) -> dict[str, dict[str, Any]]:
     }
 
 
-def make(job: Job, until: str, begin: Callable[[str, int, int], None]) -> None:
+def make(job: Job, until: str, note: Callable[..., None]) -> None:
     """Make every file up to and with a stage that is not there, or no longer what the study says.
 
-    begin: called with the title, the number and the count of the stages as each begins.
+    note: notes for other processes which stage is being made.
     """
     keys = stage_keys(job.study)
     last = [stage.name for stage in STAGES].index(until)
     kept: list[str] = []
     for number, stage in enumerate(STAGES[: last + 1], start=1):
-        begin(stage.title, number, last + 1)
+        note(stage=stage.title, number=number, count=last + 1)
+        job.shown.begin(stage.title, number, last + 1)
         files = stage.files(job.study)
         wanted = tuple(name for name in files if not job.folder.is_current([name], keys[stage.name]))
         if not wanted:

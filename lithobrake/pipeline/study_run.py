@@ -1,58 +1,96 @@
 """Running a study file in a folder, and writing the report of a folder again."""
 
+import os
 import time
-from collections.abc import Callable
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
-from lithobrake import study_file
 from lithobrake.campaign import DaskExecutor, LocalExecutor
 from lithobrake.pipeline.folder import StudyFolder
-from lithobrake.pipeline.job import Job, Progress
+from lithobrake.pipeline.job import Job, Progress, Silent
 from lithobrake.pipeline.notes import NAME
 from lithobrake.pipeline.owner import refuse_others_folder
 from lithobrake.pipeline.plan import plan_of
+from lithobrake.pipeline.site import with_site_gravity
+from lithobrake.pipeline.solver import Model, function_identity
 from lithobrake.pipeline.stages import make, setting
 from lithobrake.pipeline.state import grouped, read_state
-from lithobrake.study import Study
+from lithobrake.results import StudyResults
+from lithobrake.study import StudySource
+
+
+def run(
+    study: str | os.PathLike[str] | Mapping[str, Any],
+    out: str | os.PathLike[str] | None = None,
+    *,
+    workers: int | None = None,
+    model: Model | None = None,
+    report: bool = True,
+    progress: Progress | None = None,
+) -> StudyResults:
+    """Run a study to its end and give its results; what its folder already has is kept.
+
+    study: path of a study file, or its tables as a dict, in which relative paths count from the current folder.
+    out: folder of the study; None: runs/NAME, with the name of the file; tables need one. workers: processes (None: one
+    for each core); a script must start them under `if __name__ == "__main__":`.
+    model: a callable that can be pickled, `(inputs, seed) -> {"outcome": ..., "outputs": {...}}`, which makes the
+    touchdowns in place of the soil, under the contract of docs/own_solver.md (outcomes clear, captured, left_sideways,
+    time_limit). No bed is poured for it. Its inputs are all numbers of the study by dotted key and what the run drew.
+    It is known again by its pickle, which holds the name of a function and not its body: for an edited one take
+    another `out`. report: also make the page. progress: shows the stages as they go on; None: silence.
+    Raises ValueError for a study or folder that is refused, too few runs with outputs, a model that cannot be pickled.
+    """
+    tables = isinstance(study, Mapping)
+    source = StudySource.of_tables(study) if isinstance(study, Mapping) else StudySource.read(Path(study))
+    if model is not None:
+        source = source.with_function(function_identity(model))
+    if tables and out is None:
+        raise ValueError("out is None, and a study of tables has no name that its folder could have; give a folder")
+    folder = Path("runs") / source.stem if out is None else Path(out)
+    if not str(out).strip():
+        raise ValueError(f"out is {str(out)!r}; allowed: the path of a folder; leave it out for runs/{source.stem}")
+    until = "report" if report else "summary"
+    run_study(source, folder, until=until, worker_count=workers, model=model, shown=progress)
+    return StudyResults(folder)
 
 
 def run_study(
-    path: Path,
+    source: StudySource,
     out: Path,
     *,
+    until: str = "report",
     worker_count: int | None = None,
     scheduler: str | None = None,
-    until: str = "report",
-    begin: Callable[[str, int, int], None] = lambda title, number, count: None,
-    progress: Progress = lambda done, total, what, detail="": None,
-    say: Callable[[str], None] = lambda sentence: None,
+    model: Model | None = None,
+    shown: Progress | None = None,
     keeps_logs: bool = False,
 ) -> None:
-    """Make what a study file asks for, up to and with a stage; what the folder already has is kept.
+    """Make what a study asks for, up to and with a stage; what the folder already has is kept.
 
     worker_count: processes here (None: one for each core); scheduler: address of a Dask scheduler, whose workers make
-    the runs instead. begin(title, number, count) is called as each stage begins, progress(done, total, what, detail)
-    within it, say with a sentence that the user should read. keeps_logs: each run leaves a log in the folder.
-    Raises ValueError for a study file that is refused, a folder that is not the study's or cannot be written, too few
-    runs with outputs.
+    the runs instead. model: makes the touchdowns in place of the soil. shown: shows the progress. keeps_logs: each run
+    leaves a log in the folder.
+    Raises ValueError for a study that is refused, a folder that is not the study's or cannot be written, too few runs
+    with outputs.
     """
-    study, tables = study_file.read(path), study_file.load(path)
-    refuse_others_folder(path, out)
+    shown = shown or Silent()
+    study = with_site_gravity(source.study, source.name)
+    refuse_others_folder(source, out)
     if study.solver.command:
-        say(f"This study names a program, which every run that is still to be made starts: {study.solver.command}")
+        shown.say(
+            f"This study names a program, which every run that is still to be made starts: {study.solver.command}"
+        )
     folder = StudyFolder(out)
     with folder.alone() as note, DaskExecutor(scheduler) if scheduler else LocalExecutor(worker_count) as executor:
-        folder.begin(path, setting(study), say)
-
+        folder.begin(source.path, source.content, setting(study), shown.say)
         if until == "report":
-            _say_plan(study, path, folder, worker_count, scheduler, say)
-
-        def begin_and_note(title: str, number: int, count: int) -> None:
-            note(stage=title, number=number, count=count)
-            begin(title, number, count)
-
+            plan = plan_of(study, source.stem, folder, worker_count, on_cluster=scheduler is not None)
+            command = f"lithobrake plan {source.path or 'STUDY.toml'} --out {folder.path}"
+            for line in plan.brief(command) if plan.stages else ():
+                shown.say(line)
         try:
-            make(Job(study, tables, folder, executor, progress, say, keeps_logs), until, begin_and_note)
+            make(Job(study, source.tables, folder, executor, shown, model, keeps_logs), until, note)
         except BaseException:
             # What is under way would be waited for otherwise; every finished run is in the ledger already.
             executor.shutdown(cancel_futures=True)
@@ -76,13 +114,3 @@ def write_report_again(path: Path) -> None:
         started, stage = time.perf_counter(), state.notes.stages["report"]
         write_report(path)
         folder.note("report", stage["files"], stage["key"], time.perf_counter() - started)
-
-
-def _say_plan(
-    study: Study, path: Path, folder: StudyFolder, worker_count: int | None, scheduler: str | None,
-    say: Callable[[str], None],
-) -> None:  # fmt: skip
-    """Say what will be made, where anything is left to be."""
-    plan = plan_of(study, path.stem, folder, worker_count, on_cluster=scheduler is not None)
-    for line in plan.brief(f"lithobrake plan {path} --out {folder.path}") if plan.stages else ():
-        say(line)

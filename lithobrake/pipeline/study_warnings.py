@@ -2,13 +2,13 @@
 
 from collections.abc import Iterator
 
-from lithobrake.pipeline.expansions import design_inputs
+from lithobrake.pipeline.designs import design_inputs
 from lithobrake.pipeline.expected_steps import ExpectedSoil
 from lithobrake.pipeline.landings import PLACE
+from lithobrake.pipeline.site import gravity_warning, site_warning
 from lithobrake.pipeline.soil import why_no_soil
-from lithobrake.quantity import Scalar, Uncertain, uncertain
-from lithobrake.site import gravity_warning, site_warning
 from lithobrake.study import Study
+from lithobrake.study.quantity import Scalar, Uncertain, uncertain
 
 # A share of touchdowns that may be cut off without a word [-].
 CUT_OFF = 0.05
@@ -118,7 +118,7 @@ def _bounces(study: Study) -> Iterator[str]:
 def _one_place(study: Study) -> Iterator[str]:
     """An answer that holds for one place of one bed."""
     places = study.impact.region or any(isinstance(study.touchdown_values().get(name), Uncertain) for name in PLACE)
-    if study.bed.bed_count == 1 and not places and not study.solver.command:
+    if study.bed.bed_count == 1 and not places and study.has_soil:
         yield (
             "All runs come down on the same place of the same bed, so the answer holds for these stones only: raise "
             "bed.bed_count, or draw the place in impact.region."

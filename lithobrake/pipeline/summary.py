@@ -4,22 +4,22 @@ import os
 import platform
 import sys
 from collections import Counter
-from collections.abc import Sequence
 from datetime import UTC, datetime
 from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from lithobrake.pipeline.expansions import DESIGNS, DesignRuns, design_runs, kept_inputs, replicate_count
+from lithobrake.campaign import read_records
+from lithobrake.outputs import OUTPUTS
+from lithobrake.pipeline.design_runs import DesignRuns
+from lithobrake.pipeline.designs import DESIGNS, kept_inputs, replicate_count
 from lithobrake.pipeline.fates import landing_results
 from lithobrake.pipeline.flights import read_table
 from lithobrake.pipeline.headline import answer, headline
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.samples import Samples
-from lithobrake.pipeline.solver import OUTCOMES
-from lithobrake.pipeline.surface import bed_files
-from lithobrake.site import (
+from lithobrake.pipeline.site import (
     escape_speed,
     gravity_warning,
     has_heading,
@@ -28,8 +28,10 @@ from lithobrake.site import (
     site_medians,
     site_warning,
 )
-from lithobrake.study import BUILT_IN_BODIES, OUTPUTS, Study
-from lithobrake.study_units import OUTPUT_UNITS
+from lithobrake.pipeline.solver import OUTCOMES
+from lithobrake.pipeline.surface import bed_files
+from lithobrake.study import BUILT_IN_BODIES, Study
+from lithobrake.study.units import OUTPUT_UNITS
 
 if TYPE_CHECKING:
     from lithobrake.chaos import Surrogate
@@ -43,7 +45,9 @@ def write_summary(job: Job) -> None:
     from lithobrake.chaos import load
 
     screening, refined = load(job.folder / "screening.json"), load(job.folder / "refined.json")
-    runs = {design: design_runs(job, design, refined.input_names) for design in DESIGNS}
+    runs = {design: DesignRuns.load(job.folder, design) for design in DESIGNS}
+    distinct = DesignRuns.distinct(list(runs.values()))
+    ended = Counter(outcome for outcome in distinct.outcomes if outcome in OUTCOMES)
     samples, scores = Samples.load(job.folder), job.folder.read_json("scores.json")
     kept, flights = kept_inputs(job.study, screening), read_table(job.folder, "flights.csv")
     results = {
@@ -51,7 +55,7 @@ def write_summary(job: Job) -> None:
         "beds": [_bed(job, name) for name in bed_files(job.study)],
         "node_counts": _node_counts(job.study, len(screening.input_names)),
         "designs": {design: _design(runs[design], replicate_count(job.study, design)) for design in DESIGNS},
-        "outputs_of_runs": _outputs_of_runs(runs),
+        "outputs_of_runs": _outputs_of_runs(distinct),
         "screening": _expansion(job, "screening", screening, runs["screening"]),
         "refined": _expansion(job, "refined", refined, runs["refined"]),
         "kept_inputs": list(kept),
@@ -65,7 +69,7 @@ def write_summary(job: Job) -> None:
         },
         "monte_carlo": _monte_carlo(samples),
         "site": _site(job.study),
-        **landing_results(job, samples, flights, _run_outcomes(runs)),
+        **landing_results(job, samples, flights, ended),
     }
     results["answer"] = answer(job.study, results)
     results["headline"] = headline(job.study, results)
@@ -75,7 +79,7 @@ def write_summary(job: Job) -> None:
             "format_version": FORMAT_VERSION,
             "study": study_tables(job.study, job.tables),
             "results": results,
-            "provenance": _provenance(job, runs),
+            "provenance": _provenance(job, sum(one.run_count for one in runs.values()), distinct),
         },
     )
 
@@ -129,29 +133,22 @@ def _node_counts(study: Study, input_count: int) -> dict[str, Any]:
 
 def _design(design: DesignRuns, replicate_count: int) -> dict[str, Any]:
     return {
-        "point_count": len(design.x) // replicate_count,
+        "point_count": design.run_count // replicate_count,
         "replicate_count": replicate_count,
-        "run_count": len(design.x),
+        "run_count": design.run_count,
         "with_outputs": int(design.has_outputs.sum()),
         "outcomes": design.outcome_counts(),
     }
 
 
-def _run_outcomes(runs: dict[str, DesignRuns]) -> Counter[str]:
-    """How often each outcome came among the distinct runs that did not fail."""
-    distinct = {record.key: record.outcome for design in runs.values() for record in design.runs.records}
-    return Counter(outcome for outcome in distinct.values() if outcome in OUTCOMES)
-
-
-def _outputs_of_runs(runs: dict[str, DesignRuns]) -> dict[str, Any]:
-    """What else the touchdowns gave, over all distinct runs: median, smallest and largest."""
-    distinct = {record.key: record for design in runs.values() for record in design.runs.records}
+def _outputs_of_runs(runs: DesignRuns) -> dict[str, Any]:
+    """What else the touchdowns gave, over distinct runs: median, smallest and largest."""
     table: dict[str, Any] = {}
     for name in ("contact_duration", "penetration", "peak_acceleration", "energy_lost"):
-        values = [record.outputs[name] for record in distinct.values() if name in record.outputs]
-        if values:
+        values = runs.output(name)[~np.isnan(runs.output(name))]
+        if len(values):
             table[name] = {
-                "median": float(np.median(values)), "smallest": min(values), "largest": max(values),
+                "median": float(np.median(values)), "smallest": float(values.min()), "largest": float(values.max()),
                 "unit": OUTPUT_UNITS[name],
             }  # fmt: skip
     return table
@@ -241,10 +238,11 @@ def _site(study: Study) -> dict[str, Any]:
     }
 
 
-def _provenance(job: Job, runs: dict[str, DesignRuns]) -> dict[str, Any]:
-    distinct = {record.key: record for design in runs.values() for record in design.runs.records}
+def _provenance(job: Job, asked: int, runs: DesignRuns) -> dict[str, Any]:
+    """Where it all comes from; asked: runs of all designs, of which `runs` are the distinct ones."""
+    ledger, keys = job.folder / "runs.sqlite", set(runs.keys)
+    records = [one for one in (read_records(ledger) if ledger.is_file() else []) if one.key in keys]
     packages = ("lithobrake", "numpy", "scipy", "numba", "scikit-learn", "h5py")
-    asked: Sequence[int] = [len(design.x) for design in runs.values()]
     return {
         "date": datetime.now(UTC).isoformat(timespec="seconds"),
         "folder": str(job.folder.path),
@@ -255,10 +253,10 @@ def _provenance(job: Job, runs: dict[str, DesignRuns]) -> dict[str, Any]:
         "packages": {name: version(name) for name in packages},
         "wall_s": job.folder.wall_times(),
         "runs": {
-            "asked": sum(asked),
-            "distinct": len(distinct),
-            "wall_s": sum(record.wall_s or 0.0 for record in distinct.values()),
-            "cpu_s": sum(record.cpu_s or 0.0 for record in distinct.values()),
-            "longest_wall_s": max((record.wall_s or 0.0 for record in distinct.values()), default=0.0),
+            "asked": asked,
+            "distinct": runs.run_count,
+            "wall_s": sum(one.wall_s or 0.0 for one in records),
+            "cpu_s": sum(one.cpu_s or 0.0 for one in records),
+            "longest_wall_s": max((one.wall_s or 0.0 for one in records), default=0.0),
         },
     }

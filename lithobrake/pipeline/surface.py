@@ -30,7 +30,7 @@ SNAPSHOT_FRAMES = 120
 
 def bed_files(study: Study) -> list[str]:
     """Names of the bed files; a solver of the user's own has its own surface."""
-    if study.solver.command:
+    if not study.has_soil:
         return []
     return [f"beds/bed_{index}.h5" for index in range(study.bed.bed_count)]
 
@@ -89,12 +89,12 @@ def bed_recipe(study: Study, index: int) -> "BedRecipe":
 
 def landing_files(study: Study) -> list[str]:
     """Name of the file of the landing at the medians."""
-    return [] if study.solver.command else ["landing.h5"]
+    return [] if not study.has_soil else ["landing.h5"]
 
 
 def touchdown_reads(study: Study) -> dict[str, Any]:
     """What a touchdown depends on beside its values: the options, the lander's mesh, the beds, the engine."""
-    if study.solver.command:
+    if not study.has_soil:
         return solver_reads(study)
     return {
         "bed": bed_reads(study),

@@ -6,13 +6,14 @@ from typing import Any
 
 import numpy as np
 
-from lithobrake.campaign import Ledger, Limits, Runs, Tally, run_key, run_seed
+from lithobrake.campaign import Ledger, Limits, RunOptions, Runs, Tally, run_key, run_seed
 from lithobrake.campaign import run as run_campaign
+from lithobrake.outputs import OUTPUTS
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.landings import TouchdownModel, draw, engine_hash, medians
-from lithobrake.pipeline.solver import SolverModel, solver_command, solver_setting
+from lithobrake.pipeline.solver import FunctionModel, SolverModel, solver_command, solver_setting
 from lithobrake.pipeline.surface import bed_files, touchdown_reads
-from lithobrake.study import OUTPUTS, Study
+from lithobrake.study import Study
 
 
 def drawn_rows(study: Study, names: Sequence[str], x: np.ndarray, replicate: int) -> list[dict[str, float]]:
@@ -46,12 +47,14 @@ def touchdowns(job: Job, rows: Sequence[dict[str, float]], title: str, replicate
             names=list(rows[0]),
             context=touchdown_reads(study),
             ledger=ledger,
-            seed=study.seed,
-            replicate=replicate,
             executor=job.executor,
             limits=Limits(study.campaign.wall_limit or math.inf, study.campaign.memory_limit or math.inf),
-            retry_count=study.campaign.retry_count,
-            log_folder=job.folder.path.absolute() / "logs" if job.keeps_logs else None,
+            options=RunOptions(
+                seed=study.seed,
+                replicate=replicate,
+                retry_count=study.campaign.retry_count,
+                log_folder=job.folder.path.absolute() / "logs" if job.keeps_logs else None,
+            ),
             progress=show,
         )
 
@@ -71,7 +74,9 @@ def _drawn(study: Study, names: Sequence[str], row: Sequence[float], replicate: 
     return {name: float(value) for name, value in drawn.items()}
 
 
-def _model(job: Job) -> TouchdownModel | SolverModel:
+def _model(job: Job) -> TouchdownModel | SolverModel | FunctionModel:
+    if job.model is not None:
+        return FunctionModel(job.model)
     # Workers may have another working directory.
     folder = job.folder.path.absolute()
     if job.study.solver.command:

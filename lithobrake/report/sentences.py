@@ -85,7 +85,10 @@ def gravity_words(data: Results) -> str:
 def bed(data: Results) -> str:
     """Figure 1."""
     if data.bed is None:
-        return f"The touchdowns were made by a program of the study's author: {data.study['solver']['command']}"
+        program = data.study["solver"]["command"]
+        return "The touchdowns were made by a " + (
+            f"program of the study's author: {program}" if program else "function."
+        )
     study, first = data.study["bed"], data.results["beds"][0]
     width = " x ".join(f"{length:g}" for length in study["width"])
     return (

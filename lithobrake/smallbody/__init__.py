@@ -1,21 +1,24 @@
 """Small bodies: shape, gravity, rotation and flight."""
 
-from lithobrake.smallbody.body import Body
+from lithobrake.smallbody.body import Body, Partner
 from lithobrake.smallbody.bounce import Bounce, HardSurface, Impacts, Rebounds
-from lithobrake.smallbody.didymos import didymos, dimorphos
+from lithobrake.smallbody.built_in_bodies import didymos, dimorphos
 from lithobrake.smallbody.flight import fly
-from lithobrake.smallbody.flights import Flights
-from lithobrake.smallbody.journey import Journeys, hop
-from lithobrake.smallbody.partner import Partner
+from lithobrake.smallbody.flight_results import Flights
+from lithobrake.smallbody.hopping import Journeys, Launch, hop
 from lithobrake.smallbody.shape import Shape
+from lithobrake.smallbody.status import FlightStatus, JourneyStatus
 
 __all__ = [
     "Body",
     "Bounce",
+    "FlightStatus",
     "Flights",
     "HardSurface",
     "Impacts",
+    "JourneyStatus",
     "Journeys",
+    "Launch",
     "Partner",
     "Rebounds",
     "Shape",

@@ -1,22 +1,43 @@
 """Gravity at points near and far in one call: the facets' sums near the body, the series beyond its radius."""
 
-from typing import Any
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lithobrake.compiled import compiled, kernel, large_kernel
-from lithobrake.smallbody.lanes import LANES, WIDTH
-from lithobrake.smallbody.multipole import SCRATCH, series_block
-from lithobrake.smallbody.polyhedron import ROWS, field_block
-from lithobrake.smallbody.table import level_of, read_table
+from lithobrake.smallbody.arrays import Floats, Integers
+from lithobrake.smallbody.gravity_table import GravityTable, level_of, read_table
+from lithobrake.smallbody.multipole import SCRATCH, Multipole, series_block
+from lithobrake.smallbody.polyhedron import ROWS, Polyhedron, field_block
+from lithobrake.smallbody.simd import LANES, WIDTH
+
+
+class Gravity(NamedTuple):
+    """What the gravity of one shape is read from: its facets, its series, and a table, which may be empty."""
+
+    polyhedron: Polyhedron
+    multipole: Multipole
+    table: GravityTable
+
+
+class Workspace(NamedTuple):
+    """Scratch of attract and of acceleration.accelerate."""
+
+    near: Floats  # [ROWS * LANES], block of the near points
+    far: Floats  # [ROWS * LANES], block of the far points
+    lane: Integers  # [2 LANES], lanes of the near points, then of the far ones
+    distance: Floats  # [vertex_count * LANES]
+    series: Floats  # [SCRATCH]
+    weight: Floats  # [3, 4], of the splines
+    total: Floats  # [12], sums of the splines
+    turn: Floats  # [4, LANES], cosines and sines of the partner's place and attitude
 
 
 @compiled
-def workspace(vertex_count: int) -> Any:
-    """Scratch of attract: the near points' block, the far points', their lanes, vertex distances, series,
-    spline weights and sums; then cosines and sines for acceleration."""
-    return (
+def workspace(vertex_count: int) -> Workspace:
+    """Room for a shape with this many vertices."""
+    return Workspace(
         np.zeros(ROWS * LANES),
         np.zeros(ROWS * LANES),
         np.empty(2 * LANES, dtype=np.int64),
@@ -29,7 +50,7 @@ def workspace(vertex_count: int) -> Any:
 
 
 @kernel
-def _fill(block: Any, count: int) -> int:
+def _pad_block(block: Floats, count: int) -> int:
     """Repeat the first point up to a multiple of WIDTH points: points left over would be done one at a time."""
     full = (count + WIDTH - 1) // WIDTH * WIDTH
     for j in range(count, full):
@@ -39,21 +60,19 @@ def _fill(block: Any, count: int) -> int:
 
 
 @large_kernel
-def attract(lane: Any, count: int, scratch: Any, gravity: Any) -> None:
+def attract(lane: Floats, count: int, scratch: Workspace, gravity: Gravity) -> None:
     """Field of one block, as field_block: lane [ROWS * LANES], reads rows X, Y, Z of `count` points, writes the others.
 
-    gravity: (polyhedron arrays, multipole arrays, table arrays); scratch: see workspace. A point that the table serves
-    gets the pull only.
+    A point that the table serves gets the pull only.
     """
-    near, far, index, distance, series, weight, total, _ = scratch
-    polyhedron, multipole, table = gravity
-    centre, nearest = multipole[0], multipole[2]
+    near, far, index = scratch.near, scratch.far, scratch.lane
+    table, centre, nearest = gravity.table, gravity.multipole.centre, gravity.multipole.nearest
     near_count = far_count = 0
     for j in range(count):
         x, y, z = lane[j], lane[LANES + j], lane[2 * LANES + j]
         level = level_of(x, y, z, table)
         if level >= 0:
-            pull = read_table(x, y, z, level, table, weight, total)
+            pull = read_table(x, y, z, level, table, scratch.weight, scratch.total)
             lane[3 * LANES + j], lane[4 * LANES + j], lane[5 * LANES + j] = pull
             continue
         square = (x - centre[0]) ** 2 + (y - centre[1]) ** 2 + (z - centre[2]) ** 2
@@ -66,21 +85,21 @@ def attract(lane: Any, count: int, scratch: Any, gravity: Any) -> None:
             index[LANES + far_count] = j
             far_count += 1
     if near_count:
-        field_block(near, _fill(near, near_count), distance, polyhedron)
+        field_block(near, _pad_block(near, near_count), scratch.distance, gravity.polyhedron)
         for k in range(near_count):
             for row in range(3, ROWS):
                 lane[row * LANES + index[k]] = near[row * LANES + k]
     if far_count:
-        series_block(far, _fill(far, far_count), series, multipole)
+        series_block(far, _pad_block(far, far_count), scratch.series, gravity.multipole)
         for k in range(far_count):
             for row in range(3, ROWS):
                 lane[row * LANES + index[LANES + k]] = far[row * LANES + k]
 
 
 @compiled
-def _evaluate(points: Any, result: Any, gravity: Any) -> None:
+def _evaluate(points: Floats, result: Floats, gravity: Gravity) -> None:
     """Field at many points, block by block."""
-    lane, scratch = np.zeros(ROWS * LANES), workspace(len(gravity[0][0]))
+    lane, scratch = np.zeros(ROWS * LANES), workspace(len(gravity.polyhedron.vertices))
     for start in range(0, len(points), LANES):
         count = min(LANES, len(points) - start)
         for j in range(count):
@@ -93,7 +112,7 @@ def _evaluate(points: Any, result: Any, gravity: Any) -> None:
             result[start + j, 3] *= 0.5
 
 
-def field(points: NDArray[np.float64], gravity: tuple[Any, ...]) -> NDArray[np.float64]:
+def field(points: NDArray[np.float64], gravity: Gravity) -> NDArray[np.float64]:
     """Field sums without the factor G density, at points [m], shape [count, 3].
 
     Gives [count, 5]: acceleration x, y, z [m], potential (positive) [m2], and minus the Laplacian [1]: 4 pi inside,

@@ -1,4 +1,4 @@
-"""A small body: a shape with a mass that turns about its z axis."""
+"""A small body: a shape with a mass that turns about its z axis, alone or with a partner."""
 
 import math
 from dataclasses import dataclass
@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lithobrake.smallbody import attraction
-from lithobrake.smallbody.gradient import gradient
-from lithobrake.smallbody.partner import Orbit, Partner
+from lithobrake.smallbody.gravity_gradient import gradient
+from lithobrake.smallbody.orbit import Entry, Orbit
 from lithobrake.smallbody.shape import Shape
 
 GRAVITATIONAL_CONSTANT = 6.67430e-11  # m3/(kg s2), CODATA 2018
@@ -30,7 +30,7 @@ class Body:
     mass: float
     spin_period: float
     name: str = "body"
-    partner: Partner | None = None
+    partner: "Partner | None" = None
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.mass) and self.mass > 0.0):
@@ -48,9 +48,15 @@ class Body:
                 )
 
     @property
-    def orbit(self) -> Orbit:
+    def orbit(self) -> Orbit[float]:
         """How the partner moves in the frame of this body."""
-        return Orbit.of(self)
+        return self.orbit_with(self.gravitational_parameter, self.spin_rate)
+
+    def orbit_with(self, parameter: Entry, spin_rate: Entry) -> Orbit[Entry]:
+        """As orbit, with a G mass [m3/s2] and spin rate [rad/s] in place of the body's own; all 0 without a partner."""
+        if self.partner is None:
+            return Orbit(*(0.0 * parameter,) * 8)
+        return self.partner.orbit(parameter, spin_rate)
 
     @property
     def density(self) -> float:
@@ -101,10 +107,17 @@ class Body:
         sums = gradient(p.reshape(-1, 3), self.shape.polyhedron, self.shape.multipole)
         return (sums * (GRAVITATIONAL_CONSTANT * self.density)).reshape(*p.shape, 3)
 
-    def effective_acceleration(self, points: ArrayLike) -> NDArray[np.float64]:
-        """Gravity and centrifugal acceleration [m/s2] of a point at rest in the body-fixed frame, shape [..., 3]."""
+    def effective_acceleration(
+        self, points: ArrayLike, *, mass: ArrayLike | None = None, spin_period: ArrayLike | None = None
+    ) -> NDArray[np.float64]:
+        """Gravity and centrifugal acceleration [m/s2] of points at rest in the body-fixed frame, both [..., 3].
+
+        mass [kg] and spin_period [s], of shape [...], stand in place of the body's own.
+        """
         p = np.asarray(points, dtype=np.float64)
-        return self.acceleration(p) + self.spin_rate**2 * p * np.array([1.0, 1.0, 0.0])
+        ratio = np.asarray(self.mass if mass is None else mass)[..., None] / self.mass
+        spin_rate = self.spin_rate if spin_period is None else 2.0 * math.pi / np.asarray(spin_period)[..., None]
+        return self.acceleration(p) * ratio + spin_rate**2 * p * np.array([1.0, 1.0, 0.0])
 
     def slope(self, latitude_deg: ArrayLike, longitude_deg: ArrayLike) -> NDArray[np.float64]:
         """Angle between the outward normal and the upward plumb line, gravity and rotation together [rad], shape [...].
@@ -112,8 +125,8 @@ class Body:
         Above a right angle the ground does not hold what lies on it.
         """
         points, facets = self.shape.locate(latitude_deg, longitude_deg)
-        push = self.effective_acceleration(points)
-        along = -(push * self.shape.normals[facets]).sum(axis=-1) / np.linalg.norm(push, axis=-1)
+        felt = self.effective_acceleration(points)
+        along = -(felt * self.shape.normals[facets]).sum(axis=-1) / np.linalg.norm(felt, axis=-1)
         slope: NDArray[np.float64] = np.arccos(np.clip(along, -1.0, 1.0))
         return slope
 
@@ -155,3 +168,48 @@ class Body:
         turn = headings[..., None]
         ahead = np.cos(turn) * north + np.sin(turn) * np.cross(north, up)
         return points, np.stack([ahead, np.cross(up, ahead), up], axis=-2)
+
+
+@dataclass(frozen=True)
+class Partner:
+    """The other body of a binary, seen from the one that holds this: it goes round in the sense of that one's spin.
+
+    body            its shape, mass and spin, about the same direction
+    period          of the mutual orbit [s]; the distance follows from it and both masses (Kepler's third law)
+    longitude_deg   east longitude of its centre at time 0, in the frame of the body that holds this
+    facing_deg      the longitude on the partner that faces that body at time 0, and always where it turns once an orbit
+    """
+
+    body: "Body"
+    period: float
+    longitude_deg: float = 0.0
+    facing_deg: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not (math.isfinite(self.period) and self.period > 0.0):
+            raise ValueError(f"{self.body.name}: the orbit's period is {self.period} s; it must be finite and above 0.")
+        if not (math.isfinite(self.longitude_deg) and math.isfinite(self.facing_deg)):
+            raise ValueError(
+                f"{self.body.name}: longitude_deg is {self.longitude_deg}, facing_deg {self.facing_deg}; both must be "
+                "finite."
+            )
+        if self.body.partner is not None:
+            raise ValueError(f"{self.body.name}: a partner has no partner of its own; give it partner=None.")
+
+    def orbit(self, parameter: Entry, spin_rate: Entry) -> Orbit[Entry]:
+        """Its motion in the frame of a body of this G mass [m3/s2] and spin rate [rad/s]: numbers, or one a flight."""
+        total = parameter + self.body.gravitational_parameter
+        mean_motion = 2.0 * math.pi / self.period
+        distance = (total / mean_motion**2) ** (1.0 / 3.0)
+        angle = 0.0 * parameter + math.radians(self.longitude_deg)
+        mass_fraction = self.body.gravitational_parameter / total
+        return Orbit(
+            distance=distance,
+            angle=angle,
+            rate=mean_motion - spin_rate,
+            attitude=angle + math.pi - math.radians(self.facing_deg),
+            swing=self.body.spin_rate - spin_rate,
+            pull=self.body.gravitational_parameter / distance**2,
+            drift=mass_fraction * mean_motion * distance,
+            mass_fraction=mass_fraction,
+        )

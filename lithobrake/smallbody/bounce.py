@@ -18,14 +18,15 @@ class Impacts:
     speed       [m/s], [count]
     incidence   angle of the velocity from the inward normal [rad], [count]
     spin        angular velocity [rad/s], [count, 3]
-    push        gravity and centrifugal acceleration along the outward normal [m/s2], [count]; below 0 it holds a lander
+    effective_acceleration   gravity and centrifugal acceleration along the outward normal [m/s2], [count]; below 0 it
+                holds a lander
     lander      which of the landers each is, counted as they were given to `hop`, [count]
     """
 
     speed: NDArray[np.float64]
     incidence: NDArray[np.float64]
     spin: NDArray[np.float64]
-    push: NDArray[np.float64]
+    effective_acceleration: NDArray[np.float64]
     lander: NDArray[np.int64]
 
 
@@ -54,9 +55,10 @@ class HardSurface:
 
     The normal velocity v becomes -normal_restitution v. The horizontal one becomes tangential_restitution times itself,
     unless that takes more than friction times the normal impulse. A lander whose rebound rises less than rest_height
-    [m] under the local push is captured; where the push points outwards none is. Keep that height above a millimetre:
-    flights are not told from rest below a millionth of the body's radius. How far it would still slide, its horizontal
-    velocity squared over twice friction times push, is not followed. Spin is kept: a point has none to change.
+    [m] under the effective acceleration is captured; where that points outwards none is. Keep that height above a
+    millimetre: flights are not told from rest below a millionth of the body's radius. How far it would still slide, its
+    horizontal velocity squared over twice friction times that acceleration, is not followed. Spin is kept: a point has
+    none to change.
 
     Source: Tardivel, Scheeres, Michel, Van wal and Sanchez (2014), Contact motion on surface of asteroid, Journal of
     Spacecraft and Rockets 51, 1857-1871: an impact as normal restitution and Coulomb friction.
@@ -78,11 +80,11 @@ class HardSurface:
     def __call__(self, impacts: Impacts, random: np.random.Generator) -> Rebounds:
         """Bounce without scatter; `random` is not read."""
         down, along = impacts.speed * np.cos(impacts.incidence), impacts.speed * np.sin(impacts.incidence)
-        up = self.normal_restitution * down
+        up, outward = self.normal_restitution * down, impacts.effective_acceleration
         # Without horizontal motion there is nothing to lose, whatever the friction.
         with np.errstate(invalid="ignore", divide="ignore"):
             kept = 1.0 - self.friction * (down + up) / along
-            apex = np.where(impacts.push < 0.0, up**2 / (-2.0 * impacts.push), np.inf)
+            apex = np.where(outward < 0.0, up**2 / (-2.0 * outward), np.inf)
         kept = np.where(along > 0.0, np.maximum(kept, self.tangential_restitution), 0.0)
         velocity = np.stack([kept * along, np.zeros_like(up), up], axis=1)
         captured = apex < self.rest_height

@@ -3,15 +3,14 @@
 Sources: Dormand and Prince (1980), A family of embedded Runge-Kutta formulae, J. Comput. Appl. Math. 6, 19-26; Hairer,
 Norsett and Wanner (1993), Solving Ordinary Differential Equations I, sections II.4 (step size) and II.6 (dense output).
 
-A state is x, y, z [m] and their rates [m/s]; a slope is its derivative. Lanes stand last: state [6, lane], slope
-[7, 6, lane].
+A state is x, y, z [m] and their rates [m/s]; `derivative` holds that of each stage. Lanes stand last: state
+[6, lane], derivative [7, 6, lane].
 """
-
-from typing import Any
 
 import numpy as np
 
 from lithobrake.compiled import kernel
+from lithobrake.smallbody.arrays import Floats
 
 STAGES = 7
 NODES = np.array([0, 1 / 5, 3 / 10, 4 / 5, 8 / 9, 1, 1])
@@ -41,14 +40,14 @@ DENSE = np.array(
 
 
 @kernel
-def stage_state(state: Any, slope: Any, step: Any, stage: int, count: int, result: Any) -> None:
-    """Write into result [6, lane] the state at which a stage takes its slope; stage 6 gives the end of the step."""
+def stage_state(state: Floats, derivative: Floats, step: Floats, stage: int, count: int, result: Floats) -> None:
+    """Write into result [6, lane] the state where a stage takes its derivative; stage 6 gives the end of the step."""
     for i in range(6):
         row = result[i]
         for j in range(count):
             row[j] = 0.0
         for m in range(stage):
-            weight, rate = WEIGHTS[stage, m], slope[m, i]
+            weight, rate = WEIGHTS[stage, m], derivative[m, i]
             for j in range(count):
                 row[j] += weight * rate[j]
         for j in range(count):
@@ -56,13 +55,13 @@ def stage_state(state: Any, slope: Any, step: Any, stage: int, count: int, resul
 
 
 @kernel
-def step_error(slope: Any, step: float, j: int, length: float, speed: float) -> float:
+def step_error(derivative: Floats, step: float, j: int, length: float, speed: float) -> float:
     """Largest error of lane j over its step, position in units of `length` [m], velocity of `speed` [m/s]."""
     worst = 0.0
     for i in range(6):
         total = 0.0
         for m in range(STAGES):
-            total += ERROR[m] * slope[m, i, j]
+            total += ERROR[m] * derivative[m, i, j]
         error = abs(step * total) / (length if i < 3 else speed)
         if not error < np.inf:
             return np.nan
@@ -79,25 +78,25 @@ def next_step(step: float, error: float) -> float:
 
 
 @kernel
-def interpolate(state: Any, end: Any, slope: Any, step: float, j: int, curve: Any) -> None:
+def dense_coefficients(state: Floats, end: Floats, derivative: Floats, step: float, j: int, curve: Floats) -> None:
     """Write the coefficients curve [5, 6] of the polynomial of lane j between state and end [6, lane]."""
     for i in range(6):
         change = end[i, j] - state[i, j]
-        bend = step * slope[0, i, j] - change
+        bend = step * derivative[0, i, j] - change
         total = 0.0
         for m in range(STAGES):
-            total += DENSE[m] * slope[m, i, j]
+            total += DENSE[m] * derivative[m, i, j]
         curve[0, i] = state[i, j]
         curve[1, i] = change
         curve[2, i] = bend
-        curve[3, i] = change - step * slope[6, i, j] - bend
+        curve[3, i] = change - step * derivative[6, i, j] - bend
         curve[4, i] = step * total
 
 
 @kernel
-def along(curve: Any, share: float, i: int) -> float:
-    """Component i of the state at a share of the step."""
-    rest = 1.0 - share
-    inner = curve[3, i] + rest * curve[4, i]
-    value: float = curve[0, i] + share * (curve[1, i] + rest * (curve[2, i] + share * inner))
+def dense_output(curve: Floats, fraction: float, i: int) -> float:
+    """Component i of the state at a fraction of the step."""
+    remaining = 1.0 - fraction
+    inner = curve[3, i] + remaining * curve[4, i]
+    value: float = curve[0, i] + fraction * (curve[1, i] + remaining * (curve[2, i] + fraction * inner))
     return value

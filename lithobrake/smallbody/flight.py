@@ -8,25 +8,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lithobrake.smallbody.acceleration import (
-    COLUMNS,
-    FAR,
-    FIRST_STEP,
-    LENGTH,
-    ORBIT,
-    PARAMETER,
-    PARTNER_STRENGTH,
-    SPEED,
-    SPIN,
-    STRENGTH,
-)
+from lithobrake.smallbody.acceleration import Dynamics, Forces
+from lithobrake.smallbody.arrays import Floats
+from lithobrake.smallbody.attraction import Gravity
 from lithobrake.smallbody.body import GRAVITATIONAL_CONSTANT, Body
-from lithobrake.smallbody.flights import ESCAPE_ORBITS, ESCAPE_RADII, STATUSES, Flights, Starts
-from lithobrake.smallbody.impact import ALOFT, ON_SURFACE
-from lithobrake.smallbody.nearest import near_heights
-from lithobrake.smallbody.partner import Orbit
+from lithobrake.smallbody.flight_results import ESCAPE_ORBITS, ESCAPE_RADII, STATUSES, Flights, StartStates
+from lithobrake.smallbody.impact import ALOFT, ON_SURFACE, Ground
+from lithobrake.smallbody.integration import FAILED, FlightEnds, integrate_flights
+from lithobrake.smallbody.orbit import Orbit
 from lithobrake.smallbody.shape import Shape
-from lithobrake.smallbody.trajectory import FAILED, fly_lanes
+from lithobrake.smallbody.signed_distance import near_heights
 
 CHUNK = 1024  # flights that a thread takes at a time
 FARTHEST = 1e20  # of a start, in m and in m/s
@@ -85,63 +76,64 @@ def fly(
     count = len(starts)
     masses = _one_each("mass", body.mass if mass is None else mass, count, "kg")
     periods = _one_each("spin_period", body.spin_period if spin_period is None else spin_period, count, infinite=True)
-    worlds = _worlds(body, masses, periods, tolerance)
+    dynamics = _dynamics(body, masses, periods, tolerance)
     if frame == "inertial":
-        starts = _into_turning_frame(starts, worlds[:, SPIN], begin)
-    orbit = Orbit(*worlds[:, ORBIT : ORBIT + 8].T)
-    phase, grounds = _phases(body, starts, orbit, begin)
+        starts = _into_turning_frame(starts, dynamics.spin_rate, begin)
+    phase, grounds = _phases(body, starts, dynamics.orbit, begin)
     sources = _sources(body, gravity)
-    status, time, final = np.zeros(count, dtype=np.int64), np.zeros(count), np.zeros((count, 6))
-    facet, steps = np.full(count, -1), np.zeros(count, dtype=np.int64)
+    ends = FlightEnds(
+        status=np.zeros(count, dtype=np.int64),
+        time=np.zeros(count),
+        state=np.zeros((count, 6)),
+        facet=np.full(count, -1),
+        step_count=np.zeros(count, dtype=np.int64),
+    )
 
     def part(first: int) -> None:
         piece = slice(first, first + CHUNK)
-        out = (status[piece], time[piece], final[piece], facet[piece], steps[piece])
-        forces = (*sources, worlds[piece])
-        fly_lanes(starts[piece], begin[piece], times[piece], phase[piece], forces, grounds, out)
+        forces, out = Forces(*sources, dynamics.of_flights(piece)), ends.of_flights(piece)
+        integrate_flights(starts[piece], begin[piece], times[piece], phase[piece], forces, grounds, out)
 
     _run(part, count, threads, progress)
-    _refuse_failed(starts, status, time, tolerance)
+    _refuse_failed(starts, ends, tolerance)
     where, rate = starts[:, :3].copy(), starts[:, 3:].copy()
-    begins = Starts(begin, where, rate, masses, periods)
-    return Flights(body, begins, STATUSES[status], time, final[:, :3], final[:, 3:], facet, steps)
+    begins = StartStates(begin, where, rate, masses, periods)
+    place, velocity_there = ends.state[:, :3], ends.state[:, 3:]
+    return Flights(body, begins, STATUSES[ends.status], ends.time, place, velocity_there, ends.facet, ends.step_count)
 
 
-def _sources(body: Body, gravity: str) -> list[tuple[Any, ...]]:
+def _sources(body: Body, gravity: str) -> tuple[Gravity, Gravity]:
     """What attraction.attract reads of the body and of its partner; without one the body stands in, and is not asked.
 
     Kernels take both as one type, so a partner's table may be coarser but is a table too.
     """
     own = body.shape.gravity if gravity == "exact" else body.shape.tabled_gravity
     if body.partner is None:
-        return [own, own]
+        return own, own
     other = body.partner.body.shape
-    return [own, other.gravity if gravity == "exact" else other.distant_gravity]
+    return own, other.gravity if gravity == "exact" else other.distant_gravity
 
 
-def _worlds(
-    body: Body, mass: NDArray[np.float64], spin_period: NDArray[np.float64], tolerance: float
-) -> NDArray[np.float64]:
-    """What differs between flights, [count, COLUMNS] (see acceleration)."""
+def _dynamics(body: Body, mass: NDArray[np.float64], spin_period: NDArray[np.float64], tolerance: float) -> Dynamics:
+    """What differs between flights."""
     if not ((mass > 0.0).all() and (spin_period > 0.0).all()):
         raise ValueError("mass and spin_period must be above 0 in every flight.")
-    worlds = np.zeros((len(mass), COLUMNS))
     radius, parameter = body.shape.radius, GRAVITATIONAL_CONSTANT * mass
     spin_rate = 2.0 * np.pi / spin_period
-    orbit = Orbit.of(body, parameter, spin_rate)
-    worlds[:, STRENGTH], worlds[:, SPIN] = parameter / body.shape.volume, spin_rate
-    for column, numbers in enumerate(orbit.numbers):
-        worlds[:, ORBIT + column] = numbers
+    orbit = body.orbit_with(parameter, spin_rate)
     dynamical_time = np.sqrt(radius**3 / parameter)
-    worlds[:, LENGTH], worlds[:, SPEED] = tolerance * radius, tolerance * radius / dynamical_time
-    worlds[:, FIRST_STEP] = 0.02 * dynamical_time
-    worlds[:, FAR] = np.maximum(ESCAPE_RADII * radius, ESCAPE_ORBITS * np.asarray(orbit.distance))
-    worlds[:, PARAMETER] = parameter
-    if body.partner is not None:
-        other = body.partner.body
-        worlds[:, PARTNER_STRENGTH] = GRAVITATIONAL_CONSTANT * other.density
-        worlds[:, PARAMETER] += other.gravitational_parameter
-    return worlds
+    other = None if body.partner is None else body.partner.body
+    return Dynamics(
+        strength=parameter / body.shape.volume,
+        spin_rate=spin_rate,
+        partner_strength=np.full(len(mass), 0.0 if other is None else GRAVITATIONAL_CONSTANT * other.density),
+        parameter=parameter if other is None else parameter + other.gravitational_parameter,
+        escape_radius=np.maximum(ESCAPE_RADII * radius, ESCAPE_ORBITS * orbit.distance),
+        first_step=0.02 * dynamical_time,
+        length_tolerance=np.full(len(mass), tolerance * radius),
+        speed_tolerance=tolerance * radius / dynamical_time,
+        orbit=Orbit(*(np.array(np.broadcast_to(entry, len(mass))) for entry in orbit)),
+    )
 
 
 def _one_each(
@@ -169,15 +161,14 @@ def _into_turning_frame(
     return result
 
 
-def _refuse_failed(
-    starts: NDArray[np.float64], status: NDArray[np.int64], time: NDArray[np.float64], tolerance: float
-) -> None:
+def _refuse_failed(starts: NDArray[np.float64], ends: FlightEnds, tolerance: float) -> None:
     """Raise FloatingPointError for the first flight whose integration came to a halt."""
-    if (status == FAILED).any():
-        flight = int(np.flatnonzero(status == FAILED)[0])
+    failed = np.flatnonzero(ends.status == FAILED)
+    if len(failed):
+        flight = int(failed[0])
         raise FloatingPointError(
             f"flight {flight} from {starts[flight, :3]} m at {starts[flight, 3:]} m/s: the step size fell below the "
-            f"resolution of time at {time[flight]} s; loosen tolerance ({tolerance})."
+            f"resolution of time at {ends.time[flight]} s; loosen tolerance ({tolerance})."
         )
 
 
@@ -199,30 +190,33 @@ def _starts(position: ArrayLike, velocity: ArrayLike) -> NDArray[np.float64]:
 
 
 def _phases(
-    body: Body, starts: NDArray[np.float64], orbit: Orbit, begin: NDArray[np.float64]
-) -> tuple[NDArray[np.int64], tuple[Any, ...]]:
+    body: Body, starts: NDArray[np.float64], orbit: Orbit[Floats], begin: NDArray[np.float64]
+) -> tuple[NDArray[np.int64], tuple[Ground, Ground]]:
     """ON_SURFACE or ALOFT of each start for the body and its partner, [count, 2], and the grounds of both.
 
     Raises ValueError for starts below a surface.
     """
     slack = min(1e-6 * body.shape.radius, 1e-3)
     phase = np.full((len(starts), 2), ALOFT)
-    grounds = []
     phase[:, 0] = _phase(body.shape, starts[:, :3], slack, body.name)
-    for column, other in enumerate((body, body if body.partner is None else body.partner.body)):
-        shape = other.shape
-        grounds.append((shape.grid.arrays, shape.corners, shape.pseudonormals, slack, shape.radius))
-        if column and body.partner is not None:
-            position, _ = orbit.seen_from_partner(starts[:, :3], starts[:, 3:], begin)
-            phase[:, 1] = _phase(shape, position, slack, other.name)
-    return phase, tuple(grounds)
+    ground = _ground(body.shape, slack)
+    if body.partner is None:
+        return phase, (ground, ground)
+    other = body.partner.body
+    position, _ = orbit.seen_from_partner(starts[:, :3], starts[:, 3:], begin)
+    phase[:, 1] = _phase(other.shape, position, slack, other.name)
+    return phase, (ground, _ground(other.shape, slack))
+
+
+def _ground(shape: Shape, slack: float) -> Ground:
+    return Ground(shape.grid, shape.corners, shape.pseudonormals, slack, shape.radius)
 
 
 def _phase(shape: Shape, position: NDArray[np.float64], slack: float, name: str) -> NDArray[np.int64]:
     """ON_SURFACE or ALOFT for positions [count, 3] in the frame of a shape; raises for those below its surface."""
     height = np.empty(len(position))
     position, facet = np.ascontiguousarray(position), np.empty(len(position), dtype=np.int64)
-    near_heights(shape.grid.arrays, shape.corners, shape.pseudonormals, position, height, facet)
+    near_heights(shape.grid, shape.corners, shape.pseudonormals, position, height, facet)
     far = np.flatnonzero(np.isinf(height))
     height[far[shape.contains(position[far])]] = -np.inf
     if (height < -slack).any():

@@ -1,20 +1,19 @@
 """A grid of cells over a shape: which facets are near a place, and how far the surface is at least."""
 
-from dataclasses import dataclass
-from typing import Any
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import distance_transform_cdt
 
 from lithobrake.compiled import compiled, kernel
+from lithobrake.smallbody.arrays import Floats, Indices, Integers
 
 LARGEST = 160  # cells along the longest side: 20 MB of indices, and few facets in a cell
 PAD = 1e-3  # of a cell: covers the rounding of a point that lies on a facet and on a cell's side
 
 
-@dataclass(frozen=True)
-class Grid:
+class Grid(NamedTuple):
     """Cells [cell] of equal edges; cell (i, j, k) has index (i * size[1] + j) * size[2] + k.
 
     lower       corner of the grid [m], [3]; the outermost layer of cells is empty
@@ -58,14 +57,9 @@ class Grid:
         gap = np.maximum(distance_transform_cdt(~occupied, metric="chessboard") - 1, 0).astype(np.int32)
         return cls(lower, edge, size, start, facets, gap.reshape(-1))
 
-    @property
-    def arrays(self) -> tuple[Any, ...]:
-        """The grid in the order in which kernels take it."""
-        return self.lower, self.edge, self.size, self.start, self.facets, self.gap
-
 
 @compiled
-def _sort(first: Any, last: Any, plane: Any, size: Any, start: Any, facets: Any) -> None:
+def _sort(first: Integers, last: Integers, plane: Floats, size: Integers, start: Indices, facets: Indices) -> None:
     """Count the facets of each cell c in start[c + 1]; or, given room in facets, place them and move start[c] on.
 
     first, last: cells that a facet's box spans, [facet_count, 3]; plane: normal and offset in cells, [facet_count, 4].
@@ -88,9 +82,9 @@ def _sort(first: Any, last: Any, plane: Any, size: Any, start: Any, facets: Any)
 
 
 @kernel
-def place(grid: Any, x: float, y: float, z: float) -> Any:
+def cell_of(grid: Grid, x: float, y: float, z: float) -> tuple[int, int, int]:
     """Cell (i, j, k) of a point; outside the grid it lies outside 0 to size - 1."""
-    lower, edge = grid[0], grid[1]
+    lower, edge = grid.lower, grid.edge
     return (
         int(np.floor((x - lower[0]) / edge)),
         int(np.floor((y - lower[1]) / edge)),
@@ -99,12 +93,12 @@ def place(grid: Any, x: float, y: float, z: float) -> Any:
 
 
 @kernel
-def clearance(grid: Any, x: float, y: float, z: float) -> float:
+def clearance(grid: Grid, x: float, y: float, z: float) -> float:
     """A distance [m] within which there is certainly no facet; 0 near the surface."""
-    lower, edge, size, _, _, gap = grid
-    i, j, k = place(grid, x, y, z)
+    lower, edge, size = grid.lower, grid.edge, grid.size
+    i, j, k = cell_of(grid, x, y, z)
     if 0 <= i < size[0] and 0 <= j < size[1] and 0 <= k < size[2]:
-        return gap[(i * size[1] + j) * size[2] + k] * edge
+        return grid.gap[(i * size[1] + j) * size[2] + k] * edge
     # The outermost layer of the grid is empty.
     dx = max(lower[0] - x, x - (lower[0] + size[0] * edge), 0.0)
     dy = max(lower[1] - y, y - (lower[1] + size[1] * edge), 0.0)

@@ -6,15 +6,15 @@ recursions and derivatives); Werner (1997), Spherical harmonic coefficients for 
 polyhedron, Computers and Geosciences 23, 1071-1077 (cones from the centre reduce the integrals to facets).
 """
 
-from dataclasses import dataclass
-from typing import Any
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lithobrake.compiled import compiled
-from lithobrake.smallbody.lanes import LANES
-from lithobrake.smallbody.polyhedron import DEPTH, PULL_X, PULL_Y, PULL_Z, Polyhedron
+from lithobrake.smallbody.arrays import Floats
+from lithobrake.smallbody.polyhedron import POTENTIAL, PULL_X, PULL_Y, PULL_Z, Polyhedron
+from lithobrake.smallbody.simd import LANES
 
 DEGREE = 20
 LARGEST_ERROR = 2e-11  # of the acceleration, at the radius from which the series is used
@@ -24,8 +24,7 @@ _X, _Y, _Z, _W, _DIAGONAL, _NEW, _OLD = 0, 1, 2, 3, 4, 6, 8
 SCRATCH = 10 * LANES
 
 
-@dataclass(frozen=True)
-class Multipole:
+class Multipole(NamedTuple):
     """Moments of a body of unit density about its centroid.
 
     centre    centroid of the volume [m], [3]
@@ -58,15 +57,10 @@ class Multipole:
                 break
         return cls(centre, radius, real, imaginary, share * radius, error)
 
-    @property
-    def arrays(self) -> tuple[Any, ...]:
-        """The numbers in the order in which kernels take them."""
-        return self.centre, self.radius, self.nearest, self.real, self.imaginary
-
     def field(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
         """As Polyhedron.field (the Laplacian is zero), at points [m], shape [count, 3], outside the body's sphere."""
         result = np.empty((len(points), 5))
-        _series(np.ascontiguousarray(points, dtype=np.float64), result, self.arrays)
+        _series(np.ascontiguousarray(points, dtype=np.float64), result, self)
         return result
 
     def _error(self, polyhedron: Polyhedron) -> float:
@@ -82,7 +76,7 @@ class Multipole:
 
 
 @compiled
-def _moments(corner: Any, node: Any, weight: Any, real: Any, imaginary: Any) -> None:
+def _moments(corner: Floats, node: Floats, weight: Floats, real: Floats, imaginary: Floats) -> None:
     """Add to real and imaginary the moments: conjugate regular harmonics integrated over cones from the centre to
     facets.
 
@@ -111,7 +105,7 @@ def _moments(corner: Any, node: Any, weight: Any, real: Any, imaginary: Any) -> 
 
 
 @compiled
-def _regular(x: float, y: float, z: float, re: Any, im: Any) -> None:
+def _regular(x: float, y: float, z: float, re: Floats, im: Floats) -> None:
     """Write the regular solid harmonics, real and imaginary [degree + 1, degree + 1]."""
     square = x * x + y * y + z * z
     for m in range(len(re)):
@@ -130,9 +124,9 @@ def _regular(x: float, y: float, z: float, re: Any, im: Any) -> None:
 
 
 @compiled
-def series_block(lane: Any, count: int, scratch: Any, multipole: Any) -> None:
-    """As field_block, by the series: reads the first three rows of lane, writes pull and depth. scratch [SCRATCH]."""
-    centre, radius, _, real, imaginary = multipole
+def series_block(lane: Floats, count: int, scratch: Floats, multipole: Multipole) -> None:
+    """As field_block, by the series: reads the first three rows of lane, writes pull, potential. scratch [SCRATCH]."""
+    centre, radius = multipole.centre, multipole.radius
     for i in range(3):
         for j in range(count):
             scratch[(_X + i) * LANES + j] = (lane[i * LANES + j] - centre[i]) / radius
@@ -141,8 +135,9 @@ def series_block(lane: Any, count: int, scratch: Any, multipole: Any) -> None:
         scratch[_W * LANES + j] = 1.0 / (x * x + y * y + z * z)
         scratch[_DIAGONAL * LANES + j] = np.sqrt(scratch[_W * LANES + j])
         scratch[(_DIAGONAL + 1) * LANES + j] = 0.0
-        lane[PULL_X * LANES + j] = lane[PULL_Y * LANES + j] = lane[PULL_Z * LANES + j] = lane[DEPTH * LANES + j] = 0.0
-    top = len(real) - 1
+        for row in (PULL_X, PULL_Y, PULL_Z, POTENTIAL):
+            lane[row * LANES + j] = 0.0
+    top = len(multipole.real) - 1
     for m in range(top + 1):
         if m > 0:
             _raise_order(scratch, count, m)
@@ -152,16 +147,16 @@ def series_block(lane: Any, count: int, scratch: Any, multipole: Any) -> None:
         for n in range(m, top + 1):
             if n > m:
                 _raise_degree(scratch, count, n, m)
-            _add_harmonic(lane, count, scratch, n, m, real, imaginary)
+            _add_harmonic(lane, count, scratch, n, m, multipole)
     for j in range(count):
         for i in range(3):
             lane[(PULL_X + i) * LANES + j] *= radius
         # A block holds twice the potential.
-        lane[DEPTH * LANES + j] *= 2.0 * radius * radius
+        lane[POTENTIAL * LANES + j] *= 2.0 * radius * radius
 
 
 @compiled
-def _raise_order(scratch: Any, count: int, m: int) -> None:
+def _raise_order(scratch: Floats, count: int, m: int) -> None:
     """Turn the harmonic of degree and order m - 1 into that of m."""
     for j in range(count):
         x, y, w = scratch[_X * LANES + j], scratch[_Y * LANES + j], scratch[_W * LANES + j]
@@ -171,7 +166,7 @@ def _raise_order(scratch: Any, count: int, m: int) -> None:
 
 
 @compiled
-def _raise_degree(scratch: Any, count: int, n: int, m: int) -> None:
+def _raise_degree(scratch: Floats, count: int, n: int, m: int) -> None:
     """Turn the harmonics of degrees n - 1 (new) and n - 2 (old) into those of n and n - 1."""
     ahead, back = 2.0 * n - 1.0, (n - 1.0) ** 2 - m * m
     for j in range(count):
@@ -183,9 +178,9 @@ def _raise_degree(scratch: Any, count: int, n: int, m: int) -> None:
 
 
 @compiled
-def _add_harmonic(lane: Any, count: int, scratch: Any, n: int, m: int, real: Any, imaginary: Any) -> None:
+def _add_harmonic(lane: Floats, count: int, scratch: Floats, n: int, m: int, multipole: Multipole) -> None:
     """Add what the irregular harmonic (n, m) gives: potential of moment (n, m), pulls of moments of degree n - 1."""
-    weight = 1.0 if m == 0 else 2.0
+    real, imaginary, weight = multipole.real, multipole.imaginary, 1.0 if m == 0 else 2.0
     a, b = weight * real[n, m], weight * imaginary[n, m]
     c = d = e = f = g = h = 0.0
     if n > 0:
@@ -195,14 +190,14 @@ def _add_harmonic(lane: Any, count: int, scratch: Any, n: int, m: int, real: Any
             e, f = real[n - 1, m - 1], imaginary[n - 1, m - 1]
     for j in range(count):
         re, im = scratch[_NEW * LANES + j], scratch[(_NEW + 1) * LANES + j]
-        lane[DEPTH * LANES + j] += a * re - b * im
+        lane[POTENTIAL * LANES + j] += a * re - b * im
         lane[PULL_Z * LANES + j] -= c * re - d * im
         lane[PULL_X * LANES + j] += (e - g) * re - (f - h) * im
         lane[PULL_Y * LANES + j] += (e + g) * im + (f + h) * re
 
 
 @compiled
-def _series(points: Any, result: Any, multipole: Any) -> None:
+def _series(points: Floats, result: Floats, multipole: Multipole) -> None:
     """Series at many points, block by block."""
     lane, scratch = np.zeros(8 * LANES), np.zeros(SCRATCH)
     for start in range(0, len(points), LANES):
@@ -214,5 +209,5 @@ def _series(points: Any, result: Any, multipole: Any) -> None:
         for j in range(count):
             for i in range(3):
                 result[start + j, i] = lane[(PULL_X + i) * LANES + j]
-            result[start + j, 3] = 0.5 * lane[DEPTH * LANES + j]
+            result[start + j, 3] = 0.5 * lane[POTENTIAL * LANES + j]
             result[start + j, 4] = 0.0

@@ -5,22 +5,21 @@ gravitation representations of asteroid 4769 Castalia, Celestial Mechanics and D
 10-17.
 """
 
-from dataclasses import dataclass
-from typing import Any
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lithobrake.compiled import compiled
-from lithobrake.smallbody.lanes import LANES, angle, fma, log_ratio
+from lithobrake.smallbody.arrays import Floats
+from lithobrake.smallbody.simd import LANES, angle, fma, log_ratio
 
 # Rows of a block of points: `lane[row * LANES + j]` belongs to point j. The first three are read, the others written.
-X, Y, Z, PULL_X, PULL_Y, PULL_Z, DEPTH, TURN = 0, 1, 2, 3, 4, 5, 6, 7
+X, Y, Z, PULL_X, PULL_Y, PULL_Z, POTENTIAL, SOLID_ANGLE = 0, 1, 2, 3, 4, 5, 6, 7
 ROWS = 8
 
 
-@dataclass(frozen=True)
-class Polyhedron:
+class Polyhedron(NamedTuple):
     """What the kernels read of a shape, all lengths [m].
 
     vertices          [vertex_count, 3]
@@ -66,11 +65,6 @@ class Polyhedron:
             np.ascontiguousarray(np.column_stack([normal, area])),
         )
 
-    @property
-    def arrays(self) -> tuple[Any, ...]:
-        """The arrays in the order in which kernels take them."""
-        return self.vertices, self.edge_ends, self.edge_terms, self.facet_corners, self.facet_terms
-
     def field(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
         """Sums of Eqs 10, 15 and 16 without the factor G density, at points [m], shape [count, 3].
 
@@ -78,12 +72,12 @@ class Polyhedron:
         0 outside, 2 pi on a facet.
         """
         result = np.empty((len(points), 5))
-        _field(np.ascontiguousarray(points, dtype=np.float64), result, self.arrays)
+        _field(np.ascontiguousarray(points, dtype=np.float64), result, self)
         return result
 
 
 @compiled
-def _distances(lane: Any, count: int, distance: Any, vertices: Any) -> None:
+def _distances(lane: Floats, count: int, distance: Floats, vertices: Floats) -> None:
     """Write the distance of every vertex to every point of the block, [vertex_count * LANES]."""
     for v in range(len(vertices)):
         vx, vy, vz = vertices[v, 0], vertices[v, 1], vertices[v, 2]
@@ -94,8 +88,9 @@ def _distances(lane: Any, count: int, distance: Any, vertices: Any) -> None:
 
 
 @compiled
-def _add_edges(lane: Any, count: int, distance: Any, vertices: Any, ends: Any, terms: Any) -> None:
+def _add_edges(lane: Floats, count: int, distance: Floats, polyhedron: Polyhedron) -> None:
     """Add the edge sums: E r L to the pull (sign turned), r E r L to the potential."""
+    vertices, ends, terms = polyhedron.vertices, polyhedron.edge_ends, polyhedron.edge_terms
     for e in range(len(ends)):
         a, b = ends[e, 0], ends[e, 1]
         vx, vy, vz = vertices[a, 0], vertices[a, 1], vertices[a, 2]
@@ -113,12 +108,13 @@ def _add_edges(lane: Any, count: int, distance: Any, vertices: Any, ends: Any, t
             lane[PULL_X * LANES + j] -= px
             lane[PULL_Y * LANES + j] -= py
             lane[PULL_Z * LANES + j] -= pz
-            lane[DEPTH * LANES + j] += fma(x, px, fma(y, py, z * pz))
+            lane[POTENTIAL * LANES + j] += fma(x, px, fma(y, py, z * pz))
 
 
 @compiled
-def _add_facets(lane: Any, count: int, distance: Any, vertices: Any, corners: Any, terms: Any) -> None:
+def _add_facets(lane: Floats, count: int, distance: Floats, polyhedron: Polyhedron) -> None:
     """Add the facet sums with the solid angle of Eq 27, which is 2 atan2(r1.(r2 x r3), ...)."""
+    vertices, corners, terms = polyhedron.vertices, polyhedron.facet_corners, polyhedron.facet_terms
     for f in range(len(corners)):
         a, b, c = corners[f, 0], corners[f, 1], corners[f, 2]
         ax, ay, az = vertices[a, 0], vertices[a, 1], vertices[a, 2]
@@ -145,30 +141,29 @@ def _add_facets(lane: Any, count: int, distance: Any, vertices: Any, corners: An
             lane[PULL_X * LANES + j] = fma(pull, nx, lane[PULL_X * LANES + j])
             lane[PULL_Y * LANES + j] = fma(pull, ny, lane[PULL_Y * LANES + j])
             lane[PULL_Z * LANES + j] = fma(pull, nz, lane[PULL_Z * LANES + j])
-            lane[DEPTH * LANES + j] -= pull * height
-            lane[TURN * LANES + j] += solid
+            lane[POTENTIAL * LANES + j] -= pull * height
+            lane[SOLID_ANGLE * LANES + j] += solid
 
 
 @compiled
-def field_block(lane: Any, count: int, distance: Any, polyhedron: Any) -> None:
+def field_block(lane: Floats, count: int, distance: Floats, polyhedron: Polyhedron) -> None:
     """Field of one block. lane [ROWS * LANES]: reads X, Y, Z of the first `count` points, writes the other rows.
 
-    distance [vertex_count * LANES] is scratch. The pull is acceleration / (G density), DEPTH twice the potential.
+    distance [vertex_count * LANES] is scratch. The pull is acceleration / (G density), POTENTIAL twice the potential.
     """
-    vertices, ends, edge_terms, corners, facet_terms = polyhedron
     for row in range(PULL_X, ROWS):
         for j in range(count):
             lane[row * LANES + j] = 0.0
-    _distances(lane, count, distance, vertices)
-    _add_edges(lane, count, distance, vertices, ends, edge_terms)
-    _add_facets(lane, count, distance, vertices, corners, facet_terms)
+    _distances(lane, count, distance, polyhedron.vertices)
+    _add_edges(lane, count, distance, polyhedron)
+    _add_facets(lane, count, distance, polyhedron)
 
 
 @compiled
-def _field(points: Any, result: Any, polyhedron: Any) -> None:
+def _field(points: Floats, result: Floats, polyhedron: Polyhedron) -> None:
     """Field at many points, block by block."""
     lane = np.zeros(ROWS * LANES)
-    distance = np.empty(len(polyhedron[0]) * LANES)
+    distance = np.empty(len(polyhedron.vertices) * LANES)
     for start in range(0, len(points), LANES):
         count = min(LANES, len(points) - start)
         for j in range(count):
@@ -178,5 +173,5 @@ def _field(points: Any, result: Any, polyhedron: Any) -> None:
         for j in range(count):
             for i in range(3):
                 result[start + j, i] = lane[(PULL_X + i) * LANES + j]
-            result[start + j, 3] = 0.5 * lane[DEPTH * LANES + j]
-            result[start + j, 4] = lane[TURN * LANES + j]
+            result[start + j, 3] = 0.5 * lane[POTENTIAL * LANES + j]
+            result[start + j, 4] = lane[SOLID_ANGLE * LANES + j]

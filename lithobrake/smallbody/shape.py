@@ -3,20 +3,20 @@
 import os
 import warnings
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lithobrake.mesh import closed_faces, mass_properties
 from lithobrake.mesh_files import read_mesh
-from lithobrake.smallbody.crossing import outermost
+from lithobrake.smallbody.attraction import Gravity
+from lithobrake.smallbody.gravity_table import LEVELS, GravityTable
+from lithobrake.smallbody.gravity_table_build import TableError, gravity_table_of
 from lithobrake.smallbody.grid import Grid
 from lithobrake.smallbody.multipole import Multipole
-from lithobrake.smallbody.nearest import heights, pseudonormals
 from lithobrake.smallbody.polyhedron import Polyhedron
-from lithobrake.smallbody.table import LEVELS, GravityTable
-from lithobrake.smallbody.table_build import TableError, table_of
+from lithobrake.smallbody.ray_facet import outermost_hit
+from lithobrake.smallbody.signed_distance import heights, pseudonormals
 
 OFF_CENTRE = 1e-3  # of the radius: how far the centre of mass may lie from the origin without a word
 
@@ -76,19 +76,19 @@ class Shape:
         return Multipole.of(self.polyhedron, self.centroid)
 
     @property
-    def gravity(self) -> tuple[Any, ...]:
+    def gravity(self) -> Gravity:
         """What the gravity kernels read."""
-        return self.polyhedron.arrays, self.multipole.arrays, GravityTable.empty().arrays
+        return Gravity(self.polyhedron, self.multipole, GravityTable.empty())
 
     @property
-    def tabled_gravity(self) -> tuple[Any, ...]:
+    def tabled_gravity(self) -> Gravity:
         """The same with the table, which serves all points but the farthest."""
-        return self.polyhedron.arrays, self.multipole.arrays, self._table[0].arrays
+        return Gravity(self.polyhedron, self.multipole, self._table[0])
 
     @property
-    def distant_gravity(self) -> tuple[Any, ...]:
+    def distant_gravity(self) -> Gravity:
         """The same for a body that flights hardly come near: from a coarser table, which takes a tenth of the time."""
-        return self.polyhedron.arrays, self.multipole.arrays, self._coarse_table[0].arrays
+        return Gravity(self.polyhedron, self.multipole, self._coarse_table[0])
 
     @property
     def table_error(self) -> TableError:
@@ -97,11 +97,11 @@ class Shape:
 
     @cached_property
     def _table(self) -> tuple[GravityTable, TableError]:
-        return table_of(self.polyhedron, self.multipole, self.volume, LEVELS)
+        return gravity_table_of(self.polyhedron, self.multipole, self.volume, LEVELS)
 
     @cached_property
     def _coarse_table(self) -> tuple[GravityTable, TableError]:
-        return table_of(self.polyhedron, self.multipole, self.volume, LEVELS[2:])
+        return gravity_table_of(self.polyhedron, self.multipole, self.volume, LEVELS[2:])
 
     @cached_property
     def corners(self) -> NDArray[np.float64]:
@@ -172,7 +172,7 @@ class Shape:
         direction = np.stack([across * np.cos(longitude), across * np.sin(longitude), np.sin(latitude)], axis=-1)
         rays = np.ascontiguousarray(direction.reshape(-1, 3))
         distance, facet = np.empty(len(rays)), np.empty(len(rays), dtype=np.int64)
-        outermost(self.corners, rays, distance, facet)
+        outermost_hit(self.corners, rays, distance, facet)
         if (facet < 0).any():
             raise ValueError(
                 f"{self.name}: no surface at latitude_deg {latitude_deg!r}, longitude_deg {longitude_deg!r}; "

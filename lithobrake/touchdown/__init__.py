@@ -3,9 +3,10 @@
 from lithobrake.touchdown.bed import Bed, ContactModel
 from lithobrake.touchdown.grains import GrainSizes
 from lithobrake.touchdown.lander import Lander, read_hull
-from lithobrake.touchdown.landing import Landing, land
+from lithobrake.touchdown.landing import Landing
 from lithobrake.touchdown.outcome import FATES, OUTPUTS, Outcome
 from lithobrake.touchdown.pouring import BedRecipe, pour_bed
+from lithobrake.touchdown.simulation import land
 from lithobrake.touchdown.smallest_bed import smallest_bed, wave_speed
 
 __all__ = [

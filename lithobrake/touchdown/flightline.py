@@ -1,7 +1,6 @@
 """Watching one landing: when it is over, and what is to be told of it."""
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,11 +8,9 @@ from numpy.typing import NDArray
 from lithobrake.dem import World
 from lithobrake.touchdown.bed import Bed
 from lithobrake.touchdown.lander import Lander
+from lithobrake.touchdown.landing import Landing
 from lithobrake.touchdown.outcome import Outcome, outgoing
 from lithobrake.touchdown.surface import rotation_matrix
-
-if TYPE_CHECKING:
-    from lithobrake.touchdown.landing import Landing
 
 Floats = NDArray[np.float64]
 CAPTURED_ENERGY = 1e-4  # of the energy of impact
@@ -21,15 +18,13 @@ CAPTURED_APEX = 0.5  # of the lander's smallest edge; the apex if all of its ene
 # A lander that turns round passes through rest: only rest that lasts for so many of the shortest contacts is capture.
 CAPTURED_CONTACTS = 10.0
 # Of the lander's smallest edge: deeper in the floor an overlap is no contact, and nothing that follows is a landing.
-SUNK_SHARE = 0.5
+SUNK_FRACTION = 0.5
 
 
 class FlightLine:
     """The lander's way, looked at every few steps."""
 
-    def __init__(
-        self, bed: Bed, lander: Lander, landing: "Landing", world: World, number: int, frame_count: int
-    ) -> None:
+    def __init__(self, bed: Bed, lander: Lander, landing: Landing, world: World, number: int, frame_count: int) -> None:
         self.bed, self.lander, self.landing, self.world, self.number = bed, lander, landing, world, number
         self.start_time = world.time
         self.start_energy = self.energy()
@@ -57,7 +52,7 @@ class FlightLine:
         Raises ValueError for a lander that went through the floor: no fate is to be told of that.
         """
         height, touched = self.height(), self.world.watched
-        if height < -SUNK_SHARE * self.lander.smallest_edge:
+        if height < -SUNK_FRACTION * self.lander.smallest_edge:
             raise ValueError(
                 f"the lander went through the floor: it is {-height:.3g} m below it, of {self.lander.mass:.3g} kg and "
                 f"come with {self.landing.speed:.3g} m/s, for which these grains are too soft or too few; raise "

@@ -6,8 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from lithobrake.dem import Box, ConvexHull, Material, Sphere
-from lithobrake.dem.body import checked_inertia
+from lithobrake.dem import Box, ConvexHull, Material, Sphere, checked_inertia
 from lithobrake.mesh import refuse_malformed
 from lithobrake.mesh_files import read_mesh
 

@@ -1,25 +1,16 @@
-"""One landing: a lander meets a bed, and what becomes of it."""
+"""What a landing follows from."""
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, field
-from itertools import count
 
 import numpy as np
 from numpy.typing import NDArray
 
-from lithobrake.dem import Material, World
-from lithobrake.touchdown import settling
-from lithobrake.touchdown.bed import Bed, ContactModel
-from lithobrake.touchdown.flightline import FlightLine
-from lithobrake.touchdown.lander import Lander
-from lithobrake.touchdown.outcome import Outcome
-from lithobrake.touchdown.surface import rotation_matrix
+from lithobrake.dem import Material
+from lithobrake.touchdown.bed import ContactModel
 
 Floats = NDArray[np.float64]
 Vector = tuple[float, float, float]
-RELAX_FADING = 5.0  # periods in which the damping of contacts falls by a factor of e: what has to slide must be free to
-CHECKS_PER_CONTACT = 5  # looks at the lander in the time of the shortest contact
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -64,87 +55,3 @@ class Landing:
                 -self.speed * math.cos(self.incidence),
             ]
         )
-
-
-def land(
-    bed: Bed,
-    lander: Lander,
-    landing: Landing,
-    frame_count: int = 0,
-    progress: Callable[[float, str], None] = lambda share, what: None,
-) -> Outcome:
-    """Let a lander meet a bed whose grains have taken on the landing's material, until its fate is clear.
-
-    progress: called with the share that is done of what is being done; a landing may end long before its time limit.
-    Raises ValueError where bed and landing do not fit and where the lander goes through the floor, FloatingPointError
-    where the motion diverged.
-    """
-    if max(abs(landing.place[0]) / bed.width[0], abs(landing.place[1]) / bed.width[1]) >= 0.5:
-        raise ValueError(f"Landing.place is {landing.place!r} m; allowed is inside the box of {bed.width} m: move it")
-    if 2.0 * lander.shape.bounding_radius >= min(bed.width):
-        raise ValueError(
-            f"the lander is {2.0 * lander.shape.bounding_radius:.3g} m across; allowed is less than the bed's width, "
-            f"{min(bed.width)} m: make the bed wider"
-        )
-    world = bed.world(landing.grain, bed.gravity, landing.contact)
-    relax(world, bed, landing, lambda share: progress(share, "bed taking on the soil of the landing"))
-    number = release(world, bed, lander, landing)
-    world.time_step = world.shortest_contact(landing.speed) / landing.contact.steps_per_contact
-    world.watch(number)
-    line = FlightLine(bed, lander, landing, world, number, frame_count)
-    chunk = max(1, int(landing.contact.steps_per_contact / CHECKS_PER_CONTACT))
-    while line.fate is None:
-        world.run(steps=chunk)
-        line.look()
-        progress(min((world.time - line.start_time) / landing.time_limit, 1.0), "landing, up to its time limit")
-    return line.outcome()
-
-
-def relax(
-    world: World, bed: Bed, landing: Landing, tell: Callable[[float], None] = lambda share: None
-) -> None:  # fmt: skip
-    """Let the stored bed find its rest under the landing's material and gravity, under damping that fades.
-
-    Where the site's acceleration vanishes or points outward nothing settles: the bed rests under the gravity it was
-    made with, and the site's acts from the touchdown on.
-    """
-    gravity = np.array(landing.gravity)
-    rests_under = gravity if gravity[2] < 0.0 else np.array(bed.gravity)
-    strength = float(np.linalg.norm(rests_under))
-    period = settling.rest_period(landing.grain, bed.grain_diameter, strength)
-    lasting = settling.free_fall_drag(strength, bed.grain_diameter)
-    world.drag = settling.contact_drag(period)
-    tell(0.0)
-    settling.ramp(world, rests_under, period)
-    checks = count(1)
-
-    def fade(_: float) -> None:
-        # How long it takes is not known before: the share grows ever slower.
-        tell(1.0 - math.exp(-next(checks) / (settling.PERIODS_HELD * settling.CHECKS_PER_PERIOD)))
-        world.drag = max(lasting, world.drag * math.exp(-1.0 / (RELAX_FADING * settling.CHECKS_PER_PERIOD)))
-
-    def at_rest() -> bool:
-        return settling.unbalanced_force(world) < settling.UNBALANCED_FORCE
-
-    if not settling.rests(world, period, settling.PERIODS_RELAXED, at_rest, fade):
-        raise ValueError(settling.restless(world))
-    world.drag = 0.0
-    world.gravity = gravity
-
-
-def release(world: World, bed: Bed, lander: Lander, landing: Landing) -> int:
-    """Put the lander just above every grain under its bounding circle, and return its number."""
-    reach = lander.shape.bounding_radius
-    place = np.array([*landing.place, 0.0])
-    below = np.linalg.norm(world.position[:, :2] - place[:2], axis=1)
-    top = 0.0
-    for k, grain in enumerate(bed.grains):
-        if below[k] < reach + grain.bounding_radius:
-            height = (grain.vertices - grain.centroid) @ rotation_matrix(world.orientation[k])[2]
-            top = max(top, float(world.position[k, 2] + height.max()))
-    rotation = rotation_matrix(np.array(landing.orientation) / np.linalg.norm(landing.orientation))
-    place[2] = top - lander.lowest(np.zeros(3), rotation)
-    return world.add_body(
-        lander.shape, lander.material, tuple(place), tuple(landing.velocity), landing.orientation, landing.spin,
-        mass=lander.mass, inertia=lander.inertia,
-    )  # fmt: skip

@@ -3,7 +3,6 @@
 import math
 import os
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,9 +11,7 @@ from lithobrake.atomic import atomic_path
 from lithobrake.dem import Box, ConvexHull, Sphere
 from lithobrake.touchdown.bed import Bed, write_hulls
 from lithobrake.touchdown.lander import Lander
-
-if TYPE_CHECKING:
-    from lithobrake.touchdown.landing import Landing
+from lithobrake.touchdown.landing import Landing
 
 Floats = NDArray[np.float64]
 FATES = ("clear", "captured", "left_sideways", "time_limit")
@@ -38,7 +35,7 @@ class Outcome:
     simulated_time: float  # s
     frames: dict[str, Floats] | None = None
 
-    def save_frames(self, path: str | os.PathLike[str], bed: Bed, lander: Lander, landing: "Landing") -> None:
+    def save_frames(self, path: str | os.PathLike[str], bed: Bed, lander: Lander, landing: Landing) -> None:
         """Write a recorded landing to an HDF5 file: hulls, the lander last, and where they were."""
         import h5py
 

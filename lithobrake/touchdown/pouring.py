@@ -89,10 +89,10 @@ def pour_bed(recipe: BedRecipe, progress: Progress | None = None) -> Bed:
     world = boxed_world(grains, position, orientation, recipe.width, recipe.material, down, recipe.contact)
     recorder = Recorder(float(diameter.mean()))
     fall(world, recorder, recipe, tell)
-    settle(world, recorder, recipe, False, lambda share: tell(0.4 + 0.2 * share, "settling under the pour gravity"))
+    settle(world, recorder, recipe, False, lambda done: tell(0.4 + 0.2 * done, "settling under the pour gravity"))
     world = loosened(world, recorder, recipe, grains, tell)
-    lower(world, recorder, recipe, lambda share: tell(0.7 + 0.15 * share, "letting loose grains fall"))
-    settle(world, recorder, recipe, True, lambda share: tell(0.85 + 0.15 * share, "settling under the local gravity"))
+    lower(world, recorder, recipe, lambda done: tell(0.7 + 0.15 * done, "letting loose grains fall"))
+    settle(world, recorder, recipe, True, lambda done: tell(0.85 + 0.15 * done, "settling under the local gravity"))
     return finished(world, recorder, recipe, grains, diameter)
 
 

@@ -20,7 +20,7 @@ UNBALANCED_FORCE = 1e-2  # of the mean contact force
 PERIODS_HELD = 10.0  # settled: both hold for so many periods of a grain's small oscillation at its rest overlap
 PERIODS_RELAXED = 5.0
 PERIODS_PATIENCE = 1200.0  # after so many the bed is given up
-QUIET_SHARE = 0.8  # of the largest safe step, while nothing collides
+QUIET_FRACTION = 0.8  # of the largest safe step, while nothing collides
 QUIET_STEPS = 8  # between looks at what the largest safe step has become
 CHECKS_PER_PERIOD = 20
 
@@ -72,7 +72,7 @@ def run_quietly(world: World, chunk: float) -> None:
     """Run for a chunk [s] in steps, at least four, that are safe for the contacts at their present overlaps."""
     left = chunk
     while left > 0.0:
-        steps = math.ceil(left / min(chunk / 4.0, QUIET_SHARE * world.largest_step))
+        steps = math.ceil(left / min(chunk / 4.0, QUIET_FRACTION * world.largest_step))
         taken = min(steps, QUIET_STEPS)
         world.time_step = left / steps
         world.run(steps=taken)

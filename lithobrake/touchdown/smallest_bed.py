@@ -2,9 +2,7 @@
 
 import math
 
-from lithobrake.dem import Material
-from lithobrake.dem.shape import equivalent_radius
-from lithobrake.dem.timestep import contact_duration
+from lithobrake.dem import Material, contact_duration, equivalent_radius
 from lithobrake.touchdown.lander import Lander
 
 

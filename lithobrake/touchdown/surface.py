@@ -3,8 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from lithobrake.dem import ConvexHull
-from lithobrake.dem.body import rotation_matrices
+from lithobrake.dem import ConvexHull, rotation_matrices
 
 Floats = NDArray[np.float64]
 RAYS_PER_DIAMETER = 4

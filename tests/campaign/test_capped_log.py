@@ -9,7 +9,7 @@ import pytest
 
 from lithobrake.campaign import Command
 from lithobrake.campaign.capped_log import KEPT, CappedLog, last_words
-from lithobrake.campaign.one_run import perform
+from lithobrake.campaign.single_run import run_model
 
 
 @pytest.mark.parametrize("piece", [1000, 65_536, 5_000_000])
@@ -49,7 +49,7 @@ json.dump({"height": 1.0}, open("outputs.json", "w"))
 
 def test_a_program_that_prints_without_end_fills_no_disk_and_its_last_words_are_the_reason(tmp_path: Path) -> None:
     model = Command(shlex.join([sys.executable, "-c", PRINTS_MUCH]), tmp_path / "solver")
-    result = perform(model, {"a": 1.0}, 1)
+    result = run_model(model, {"a": 1.0}, 1)
     assert result["reason"] == "RuntimeError: the program ended with exit code 3; its last words: it diverged"
     (log,) = (tmp_path / "solver").glob("*/log.txt")
     assert log.stat().st_size <= 3 * KEPT
@@ -58,7 +58,7 @@ def test_a_program_that_prints_without_end_fills_no_disk_and_its_last_words_are_
 def test_nobody_waits_for_what_a_program_leaves_running(tmp_path: Path) -> None:
     (tmp_path / "program.py").write_text(LEAVES_SOMETHING)
     model = Command(shlex.join([sys.executable, str(tmp_path / "program.py")]), tmp_path / "solver")
-    result = perform(model, {"a": 1.0}, 1)
+    result = run_model(model, {"a": 1.0}, 1)
     assert result["outputs"] == {"height": 1.0}
     assert result["wall_s"] < 20
     (log,) = (tmp_path / "solver").glob("*/log.txt")
@@ -73,7 +73,7 @@ def prints_much(inputs: dict[str, float], seed: int) -> dict[str, float]:
 
 
 def test_the_log_of_a_model_is_capped_too(tmp_path: Path) -> None:
-    result = perform(prints_much, {"a": 1.0}, 1, tmp_path / "logs" / "run.log")
+    result = run_model(prints_much, {"a": 1.0}, 1, tmp_path / "logs" / "run.log")
     assert result["outputs"] == {"height": 1.0}
     text = (tmp_path / "logs" / "run.log").read_text()
     assert len(text) <= 3 * KEPT

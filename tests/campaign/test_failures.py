@@ -17,6 +17,7 @@ from lithobrake.campaign import (
     Ledger,
     Limits,
     LocalExecutor,
+    RunOptions,
     Runs,
     Tally,
     missing,
@@ -67,13 +68,13 @@ def test_a_failed_run_is_tried_again_as_often_as_configured(how: str, tmp_path: 
     assert [entry.attempts for entry in once.records] == [1] * 4
     # Asked for again with as few tries, they stay what they are; with one more, they are made.
     assert campaign(tmp_path, model).reused_count == 4
-    again = campaign(tmp_path, model, retry_count=1)
+    again = campaign(tmp_path, model, options=RunOptions(retry_count=1))
     assert again.outcomes == ["clear"] * 4
     assert [(entry.attempts, entry.reason) for entry in again.records] == [(2, None)] * 4
 
 
 def test_a_retry_within_one_campaign(tmp_path: Path) -> None:
-    runs = campaign(tmp_path, models.FailsOnce(tmp_path, "dies"), retry_count=1)
+    runs = campaign(tmp_path, models.FailsOnce(tmp_path, "dies"), options=RunOptions(retry_count=1))
     assert runs.outcomes == ["clear"] * 4
     assert [entry.attempts for entry in runs.records] == [2] * 4
 
@@ -93,7 +94,7 @@ def test_a_model_that_never_works_is_given_up_after_the_first_runs_and_their_ret
     said = r"the first (1\d) runs have all failed \(1\d x OSError: no \[/licence\]\), so the (6|7)\d that are left"
     with pytest.raises(ValueError, match=said):
         # With two, the one that starts first may be through with many runs before the other has begun with its first.
-        campaign(tmp_path, model, x=MANY, workers=1, retry_count=retry_count)
+        campaign(tmp_path, model, x=MANY, workers=1, options=RunOptions(retry_count=retry_count))
     # Beside the ten only what was under way meanwhile: two at most.
     assert 10 * (retry_count + 1) <= tries(tmp_path) <= 12 * (retry_count + 1)
     failed = [entry for entry in read_records(tmp_path / "runs.sqlite") if entry.status == "failed"]
@@ -114,11 +115,11 @@ def test_runs_that_fail_again_when_they_are_tried_once_more_end_no_campaign(tmp_
     model = models.WorksAbove(10.0, tmp_path)
     first = campaign(tmp_path, model, x=MANY)
     assert first.outcomes.count("failed") == 20
-    assert campaign(tmp_path, model, x=MANY, retry_count=1).outcomes == first.outcomes
+    assert campaign(tmp_path, model, x=MANY, options=RunOptions(retry_count=1)).outcomes == first.outcomes
 
 
 def test_a_log_of_each_run_on_demand(tmp_path: Path) -> None:
-    runs = campaign(tmp_path, models.talks, log_folder=tmp_path / "logs")
+    runs = campaign(tmp_path, models.talks, options=RunOptions(log_folder=tmp_path / "logs"))
     logs = [(tmp_path / "logs" / f"{entry.key}.log").read_text() for entry in runs.records]
     assert all(f"rolling on {row[0]}" in log for row, log in zip(X, logs, strict=True))
     assert "Traceback" in logs[1]

@@ -12,7 +12,17 @@ import numpy as np
 import pytest
 
 from lithobrake.atomic import lock_holder
-from lithobrake.campaign import Ledger, LocalExecutor, Tally, campaign_began, ledger_tally, read_records, run, write_csv
+from lithobrake.campaign import (
+    Ledger,
+    LocalExecutor,
+    RunStatus,
+    Tally,
+    campaign_began,
+    ledger_tally,
+    read_records,
+    run,
+    write_csv,
+)
 from lithobrake.campaign.record import lock_path
 
 X = np.array([[1.0, 0.5], [2.0, 0.5], [3.0, 0.5]])
@@ -93,6 +103,17 @@ def test_a_ledger_of_the_first_format_keeps_its_runs(tmp_path: Path) -> None:
         )  # fmt: skip
     assert runs.reused_count == 3
     assert [entry.attempts for entry in runs.records] == [1, 1, 1]
+
+
+def test_a_row_has_one_of_four_statuses(tmp_path: Path) -> None:
+    path = tmp_path / "runs.sqlite"
+    fill(path)
+    assert all(entry.status is RunStatus.DONE for entry in read_records(path))
+    with sqlite3.connect(path) as database:
+        database.execute("UPDATE runs SET status = 'lost' WHERE json_extract(inputs, '$.a') = 2.0")
+    database.close()
+    with pytest.raises(ValueError, match=r"status is 'lost'; allowed: queued, running, done, failed"):
+        read_records(path)
 
 
 def test_the_words_of_a_model_enter_as_plain_text_on_one_line(tmp_path: Path) -> None:

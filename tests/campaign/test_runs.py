@@ -10,7 +10,7 @@ import campaign_models as models
 import numpy as np
 import pytest
 
-from lithobrake.campaign import Ledger, LocalExecutor, Runs, Tally, run
+from lithobrake.campaign import Ledger, LocalExecutor, RunOptions, Runs, Tally, run
 
 X = np.array([[1.0, 0.5], [2.0, 0.5], [3.0, 0.5], [1.0, 0.5]])
 
@@ -48,9 +48,9 @@ def test_what_was_computed_is_not_computed_again_by_any_design(tmp_path: Path) -
     assert runs.reused_count == 1
 
 
-def test_a_fixed_input_that_becomes_uncertain_reuses_its_runs(tmp_path: Path) -> None:
+def test_the_order_of_the_inputs_makes_no_other_run(tmp_path: Path) -> None:
     with Ledger(tmp_path / "runs.sqlite") as ledger:
-        run(models.parabola, X[:, :1], names=("a",), fixed={"b": 0.5}, ledger=ledger, executor=HereExecutor())
+        run(models.parabola, X[:, ::-1], names=("b", "a"), ledger=ledger, executor=HereExecutor())
     here = HereExecutor()
     campaign(tmp_path, models.parabola, here)
     assert here.call_count == 0
@@ -58,7 +58,8 @@ def test_a_fixed_input_that_becomes_uncertain_reuses_its_runs(tmp_path: Path) ->
 
 def test_another_seed_or_context_is_another_run(tmp_path: Path) -> None:
     campaign(tmp_path, models.parabola, HereExecutor())
-    for options in ({"seed": 2}, {"context": {"version": "2"}}, {"replicate": 1}):
+    others = {"options": RunOptions(seed=2)}, {"context": {"version": "2"}}, {"options": RunOptions(replicate=1)}
+    for options in others:
         here = HereExecutor()
         campaign(tmp_path, models.parabola, here, **options)
         assert here.call_count == 3

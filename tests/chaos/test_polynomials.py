@@ -103,7 +103,7 @@ def test_slopes_are_derivatives():
     recurrence = Gamma(2.0, 1.0).recurrence(6)
     germ, step = np.linspace(0.2, 4.0, 9), 1e-6
     difference = (recurrence.values(germ + step) - recurrence.values(germ - step)) / (2.0 * step)
-    assert np.allclose(recurrence.slopes(germ), difference, rtol=1e-6, atol=1e-6)
+    assert np.allclose(recurrence.derivatives(germ), difference, rtol=1e-6, atol=1e-6)
 
 
 def test_gauss_rule_matches_scipy():

@@ -186,6 +186,6 @@ def test_motion_that_is_lost_is_told(shape, name, value):
     world.add_body(shape, ROCK, (0, 0, 1))
     world.add_body(shape, ROCK, (0, 0, 2))
     world.run(steps=5)
-    getattr(world._engine.bodies, name)[0] = value
+    getattr(world._state.engine.bodies, name)[0] = value
     with pytest.raises(FloatingPointError, match="diverged"):
         world.run(steps=5)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from lithobrake.dem import Box, Material, Sphere, World
-from lithobrake.dem.spring import hold
+from lithobrake.dem.spring import spring_force
 from lithobrake.dem.timestep import contact_duration
 
 
@@ -189,7 +189,7 @@ def test_tangential_spring_gives_back_no_more_than_it_got_on_random_paths(poisso
             before, softer = spring, stiffness
             stiffness = shear_over_normal * overlap**0.5
             limit = friction * normal_over * overlap**1.5
-            spring = hold(before, softer, stiffness, way, (0.0, 0.0, 0.0), 0.0, limit).total
+            spring = spring_force(before, softer, stiffness, way, (0.0, 0.0, 0.0), 0.0, limit).total
             given -= 0.5 * float(np.dot(np.add(before, spring), way))
             most = max(most, given)
             assert given - 0.5 * float(np.dot(spring, spring)) / stiffness > -1e-12 * most

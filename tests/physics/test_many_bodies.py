@@ -218,7 +218,7 @@ def test_renewing_every_list_in_every_step_changes_no_bit():
         for _ in range(1500):
             world.run(steps=1)
             if renewing:
-                world._engine.pairs.wake[:] = 0.0
+                world._state.engine.pairs.wake[:] = 0.0
         worlds.append(world)
     assert np.array_equal(worlds[0].position, worlds[1].position)
     assert np.array_equal(worlds[0].angular_momentum, worlds[1].angular_momentum)
@@ -234,7 +234,7 @@ def test_skin_of_the_neighbour_list_changes_no_bit(monkeypatch, skin):
     other = heap()
     other.run(0.4)
     assert usual.energy()["friction"] > 0.0
-    assert len(other._engine.pairs.first) != len(usual._engine.pairs.first)
+    assert len(other._state.engine.pairs.first) != len(usual._state.engine.pairs.first)
     for name in ("position", "orientation", "velocity", "angular_momentum"):
         assert np.array_equal(getattr(usual, name), getattr(other, name))
     assert usual.energy() == pytest.approx(other.energy(), rel=1e-12)

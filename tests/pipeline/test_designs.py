@@ -11,11 +11,11 @@ import h5py
 import numpy as np
 import pytest
 
-from lithobrake import study_file
+from lithobrake.outputs import OUTPUTS
 from lithobrake.pipeline import stage_keys
-from lithobrake.pipeline.expansions import points
-from lithobrake.study import OUTPUTS, Study
-from lithobrake.study_template import template
+from lithobrake.pipeline.designs import points
+from lithobrake.study import Study, check_tables
+from lithobrake.study.template import template
 
 # Two of the outputs scatter together, by a tenth of a millimetre a second along x and twice that upward.
 SCATTER = 1e-4
@@ -75,7 +75,7 @@ def changed(**design: Any) -> Study:
     """The template with another design."""
     tables = tomllib.loads(template())
     tables["design"].update(design)
-    return study_file.check(tables, Path())
+    return check_tables(tables, Path())
 
 
 @pytest.mark.parametrize("method", ["sobol_sequence", "latin_hypercube", "fekete"])
@@ -97,9 +97,9 @@ def test_a_larger_sobol_sequence_keeps_the_points_of_a_smaller_one() -> None:
 def test_another_number_of_runs_a_point_makes_again_from_the_screening_on() -> None:
     tables = tomllib.loads(template())
     tables["impact"]["orientation"] = "random"
-    before = stage_keys(study_file.check(tables, Path()))
+    before = stage_keys(check_tables(tables, Path()))
     tables["design"]["replicate_count"] = 3
-    after = stage_keys(study_file.check(tables, Path()))
+    after = stage_keys(check_tables(tables, Path()))
     assert [name for name in before if before[name] == after[name]] == ["bed", "landing"]
 
 

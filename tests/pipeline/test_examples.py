@@ -13,9 +13,9 @@ from pathlib import Path
 
 import pytest
 
-from lithobrake import study_file
 from lithobrake.campaign import read_records
 from lithobrake.pipeline.solver import completed, solver_reads
+from lithobrake.study import StudyError, read_study
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
@@ -139,7 +139,7 @@ def test_speed_and_elevation_follow_from_the_components() -> None:
 def test_the_place_of_a_study_does_not_name_its_runs(tmp_path: Path) -> None:
     for name in ("ball_on_plate.toml", "ball_on_plate.py"):
         (tmp_path / name).write_text((EXAMPLES / name).read_text())
-    here, there = (study_file.read(folder / "ball_on_plate.toml") for folder in (EXAMPLES, tmp_path))
+    here, there = (read_study(folder / "ball_on_plate.toml") for folder in (EXAMPLES, tmp_path))
     assert solver_reads(here) == solver_reads(there)
     (tmp_path / "ball_on_plate.py").write_text("print()")
     assert solver_reads(here) != solver_reads(there)
@@ -157,12 +157,12 @@ def test_the_place_of_a_study_does_not_name_its_runs(tmp_path: Path) -> None:
 def test_a_command_that_cannot_be_started_is_refused(command: str, said: str, tmp_path: Path) -> None:
     text = (EXAMPLES / "ball_on_plate.toml").read_text().replace("python3 ball_on_plate.py", command)
     (tmp_path / "study.toml").write_text(text)
-    with pytest.raises(study_file.StudyError, match=said):
-        study_file.read(tmp_path / "study.toml")
+    with pytest.raises(StudyError, match=said):
+        read_study(tmp_path / "study.toml")
 
 
 def test_inputs_without_a_command_are_refused(tmp_path: Path) -> None:
     text = (EXAMPLES / "ball_on_plate.toml").read_text().replace("command = ", "# command = ")
     (tmp_path / "study.toml").write_text(text)
-    with pytest.raises(study_file.StudyError, match=r"solver\.command is missing"):
-        study_file.read(tmp_path / "study.toml")
+    with pytest.raises(StudyError, match=r"solver\.command is missing"):
+        read_study(tmp_path / "study.toml")

@@ -83,7 +83,7 @@ def test_a_whole_folder_is_current_and_its_report_can_be_written_again(home: Pat
     }
     lines = said_by("status", home).splitlines()
     assert lines[0] == f"{home / 'out'}: nobody is at work; the report is there"
-    assert lines[1].startswith("8 of 8 stages are current: screening, refinement, ")
+    assert lines[1].startswith("11 of 11 stages are current: screening runs, screening, refined runs, refinement, ")
     assert not any("earlier" in line for line in lines)
     assert said_by("view", home).startswith("No browser answers here")
     headline = json.loads((home / "out" / "summary.json").read_text())["results"]["headline"]
@@ -101,13 +101,15 @@ def test_a_changed_study_makes_old_files_stale_and_tells_runs_of_earlier_setting
     run(home, "screen")
     lines = said_by("status", home).splitlines()
     assert lines[0].endswith("nobody is at work; the report is there, but not of the files as they are")
-    assert lines[1] == "1 of 8 stages are current: screening"
-    assert lines[2].startswith("of an earlier setting or version: refined.json, scores.json, samples.h5, ")
+    assert lines[1] == "2 of 11 stages are current: screening runs, screening"
+    assert lines[2].startswith(
+        "of an earlier setting or version: designs/refined.csv, refined.json, designs/test_kept.csv, "
+    )
     made = len(read_records(home / "out" / "runs.sqlite")) - before
     assert lines[3] == f"{made} runs: {made} done, 0 running, 0 failed"
     assert lines[4] == f"{before} more runs in the ledger are of earlier settings of the study"
     refused = said_by("report", home, code=2)
-    assert "of an earlier setting or version: refined.json, scores.json" in refused
+    assert "of an earlier setting or version: designs/refined.csv, refined.json, " in refused
     assert f"lithobrake run {home / 'ball.toml'} --out {home / 'out'}" in refused
     assert "older than the files of the study" in said_by("view", home)
 
@@ -144,12 +146,12 @@ def test_while_a_study_is_at_work_what_is_not_current_is_still_to_come(home: Pat
     (home / "out" / "samples.h5").unlink()
     (home / "out" / "flights.csv").write_text("half")
     with locked(home / "out" / ".lock", "busy") as note:
-        note(stage="samples", number=6, count=10)
+        note(stage="samples", number=9, count=13)
         lines = said_by("status", home).splitlines()
         assert "another lithobrake is at work" in said_by("report", home, code=2)
         (home / "out" / ".lock").write_text("{")
         assert f"{home / 'out' / '.lock'} cannot be read (" in said_by("status", home, code=2)
-    assert ": stage 6 of 10, samples (process " in lines[0]
+    assert ": stage 9 of 13, samples (process " in lines[0]
     assert lines[2] == "to come: samples, flights"
 
 
@@ -238,7 +240,7 @@ def test_a_damaged_ledger_is_one_sentence(damage: Callable[[Path], object], home
 def test_a_damaged_ledger_is_not_written_over(name: str, home: Path) -> None:
     ledger = home / "out" / "runs.sqlite"
     LEDGERS[name](ledger)
-    (home / "out" / "screening.json").unlink()
+    (home / "out" / "designs" / "screening.csv").unlink()
     before = ledger.read_bytes()
     shown = RUNNER.invoke(app, ["screen", str(home / "ball.toml"), "--out", str(home / "out"), "--workers", "1"])
     assert shown.exit_code == 2
@@ -267,7 +269,7 @@ def test_a_run_with_damaged_keys_says_so_and_makes_the_files_again(home: Path) -
     said = run(home)
     assert f"{home / 'out' / 'keys.json'} cannot be read (" in said
     assert "so the files that it vouched for are made again" in said
-    assert said_by("status", home).splitlines()[1].startswith("8 of 8 stages are current")
+    assert said_by("status", home).splitlines()[1].startswith("11 of 11 stages are current")
 
 
 @pytest.mark.parametrize("words", [["report"], ["status"], ["runs"], ["runs", "--csv"]], ids=" ".join)

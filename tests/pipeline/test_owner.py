@@ -9,8 +9,11 @@ import pytest
 
 from lithobrake.pipeline import StudyFolder
 from lithobrake.pipeline.owner import refuse_others_folder
+from lithobrake.study import StudySource
 
-STAGES = {name: {"title": name, "key": "1", "files": []} for name in ("screen", "refine", "test", "report")}
+STAGES = {
+    name: {"title": name, "key": "1", "files": []} for name in ("screening_runs", "refined_runs", "test_runs", "report")
+}
 
 
 def write_study(path: Path, text: str = "seed = 1") -> Path:
@@ -19,12 +22,17 @@ def write_study(path: Path, text: str = "seed = 1") -> Path:
     return path
 
 
+def source(study: Path) -> StudySource:
+    """A study file as a study has it; what stands in it does not matter to whose folder it is."""
+    return StudySource(None, {}, study.read_bytes(), study)  # type: ignore[arg-type]
+
+
 def begun(study: Path, out: Path) -> StudyFolder:
     """A folder in which a study has begun to run."""
-    refuse_others_folder(study, out)
+    refuse_others_folder(source(study), out)
     folder = StudyFolder(out)
     with folder.alone():
-        folder.begin(study, STAGES, lambda sentence: None)
+        folder.begin(study, study.read_bytes(), STAGES, lambda sentence: None)
     return folder
 
 
@@ -32,7 +40,7 @@ def refusal(study: Path, out: Path) -> str:
     """What is said; nothing in the folder changes."""
     before = {path: path.read_bytes() for path in out.rglob("*") if path.is_file()}
     with pytest.raises(ValueError, match="with --out") as refused:
-        refuse_others_folder(study, out)
+        refuse_others_folder(source(study), out)
     assert {path: path.read_bytes() for path in out.rglob("*") if path.is_file()} == before
     assert "\n" not in str(refused.value)
     return str(refused.value)
@@ -120,7 +128,7 @@ def test_a_folder_of_a_later_format_is_refused(tmp_path: Path) -> None:
     keys = json.loads((folder / "keys.json").read_text()) | {"format_version": 9}
     (folder / "keys.json").write_text(json.dumps(keys))
     with pytest.raises(ValueError, match=r"keys\.json has format 9; this version reads 1 to 2"):
-        refuse_others_folder(study, tmp_path / "out")
+        refuse_others_folder(source(study), tmp_path / "out")
 
 
 def test_damaged_keys_are_told_and_noted_anew(tmp_path: Path) -> None:
@@ -130,7 +138,7 @@ def test_damaged_keys_are_told_and_noted_anew(tmp_path: Path) -> None:
     folder.note("test", ["scores.json"], "key", 1.0)
     (folder / "keys.json").write_text('{"format_version": 2, "files": 3}')
     said: list[str] = []
-    folder.begin(study, STAGES, said.append)
+    folder.begin(study, study.read_bytes(), STAGES, said.append)
     assert said == [
         f"{folder / 'keys.json'} cannot be read (files is 3, not of type dict); so the files that it vouched for are "
         "made again."
@@ -143,5 +151,7 @@ def test_runs_of_a_design_are_forgotten_when_its_stage_changes(tmp_path: Path) -
     folder = begun(study, tmp_path / "out")
     for design in ("screening", "refined", "test_all"):
         folder.note_runs(design, ["1f", "2e"])
-    folder.begin(study, STAGES | {"test": STAGES["test"] | {"key": "2"}}, lambda sentence: None)
+    folder.begin(
+        study, study.read_bytes(), STAGES | {"test_runs": STAGES["test_runs"] | {"key": "2"}}, lambda sentence: None
+    )
     assert set(json.loads((folder / "keys.json").read_text())["designs"]) == {"screening", "refined"}

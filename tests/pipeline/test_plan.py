@@ -13,20 +13,21 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from lithobrake import study_file
-from lithobrake.campaign import Record, available_cores, read_records
+from lithobrake.campaign import Record, RunStatus, available_cores, read_records
 from lithobrake.cli import app
+from lithobrake.outputs import OUTPUTS
 from lithobrake.pipeline import Plan, StudyFolder, plan_study
-from lithobrake.pipeline.expansions import design_inputs
+from lithobrake.pipeline.designs import design_inputs
 from lithobrake.pipeline.expected_disk import expected_bytes
 from lithobrake.pipeline.expected_steps import ExpectedSoil
 from lithobrake.pipeline.expected_time import run_time
+from lithobrake.pipeline.job import Silent
 from lithobrake.pipeline.plan import plan_of
 from lithobrake.pipeline.planned_runs import PlannedRuns
 from lithobrake.pipeline.samples import Samples
 from lithobrake.pipeline.study_run import run_study
 from lithobrake.pipeline.study_warnings import study_warnings
-from lithobrake.study import OUTPUTS, Study
+from lithobrake.study import Study, StudySource, check_tables, load_tables, read_study
 
 HERE = Path(__file__).parents[2]
 EXAMPLES, SCENARIOS = HERE / "examples", HERE / "scenarios"
@@ -53,10 +54,10 @@ def written(folder: Path, changes: dict[str, str], source: Path = EXAMPLES / "ba
 
 def soft(**changes: dict[str, Any]) -> Study:
     """The quick study with these keys of its sections changed."""
-    tables = study_file.load(SCENARIOS / "quick.toml")
+    tables = load_tables(SCENARIOS / "quick.toml")
     for section, keys in changes.items():
         tables[section] = tables.get(section, {}) | keys
-    return study_file.check(tables, SCENARIOS)
+    return check_tables(tables, SCENARIOS)
 
 
 def soil_of(study: Study) -> ExpectedSoil:
@@ -71,12 +72,12 @@ def test_the_runs_that_are_counted_are_those_that_are_made(tmp_path: Path) -> No
     # Of the 41 nodes of level 2 nine are those of level 1; of the five of one input three.
     assert (fewest.refined, most.refined) == (2, 32)
     assert before.made["touchdowns"] == (fewest.total, most.total) == (17, 47)
-    run_study(study, out, worker_count=1, until="screen")
+    run_study(StudySource.read(study), out, worker_count=1, until="screen")
     screened = plan_study(study, out)
     (left,) = screened.runs
     assert (len(left.known), left.total) == (9, screened.made["touchdowns"][0] + 9)
     assert fewest.total <= left.total <= most.total
-    run_study(study, out, worker_count=1, until="test")
+    run_study(StudySource.read(study), out, worker_count=1, until="test")
     assert len(read_records(out / "runs.sqlite")) == left.total
     tested = plan_study(study, out)
     assert tested.made["touchdowns"] == (0, 0)
@@ -90,7 +91,7 @@ def test_planning_makes_and_changes_nothing(tmp_path: Path) -> None:
     study, out = written(tmp_path, FEW), tmp_path / "out"
     plan_study(study, out)
     assert [path.name for path in tmp_path.iterdir()] == ["study.toml"]
-    run_study(study, out, worker_count=1, until="screen")
+    run_study(StudySource.read(study), out, worker_count=1, until="screen")
 
     def everything() -> dict[Path, tuple[int, bytes]]:
         return {path: (path.stat().st_mtime_ns, path.read_bytes()) for path in out.rglob("*") if path.is_file()}
@@ -127,11 +128,17 @@ def test_a_run_begins_with_its_plan_in_three_lines(tmp_path: Path) -> None:
     class Begun(Exception):
         """The first stage."""
 
-    def begin(*stage: object) -> None:
-        raise Begun
+    class Shown(Silent):
+        """Keeps what is said."""
+
+        def begin(self, title: str, number: int, count: int) -> None:
+            raise Begun
+
+        def say(self, sentence: str) -> None:
+            said.append(sentence)
 
     with pytest.raises(Begun):
-        run_study(study, tmp_path / "out", worker_count=1, begin=begin, say=said.append)
+        run_study(StudySource.read(study), tmp_path / "out", worker_count=1, shown=Shown())
     program, *plan = said
     assert program.startswith("This study names a program")
     assert len(plan) == 3
@@ -200,7 +207,7 @@ def test_a_disk_that_is_too_small_is_the_first_warning(tmp_path: Path, monkeypat
 
 
 def test_a_study_that_has_all_it_needs_is_not_warned_of() -> None:
-    study = study_file.read(SCENARIOS / "bounces.toml")
+    study = read_study(SCENARIOS / "bounces.toml")
     assert study_warnings(study, soil_of(study)) == []
 
 
@@ -229,7 +236,7 @@ def test_a_bed_is_expected_as_deep_as_its_grains_fill_it() -> None:
 
 def record(wall_s: float) -> Record:
     empty: dict[str, float] = {}
-    return Record("", "done", "clear", empty, empty, {}, 0, 0, 1, None, wall_s, wall_s, None, "", None, None)
+    return Record("", RunStatus.DONE, "clear", empty, empty, {}, 0, 0, 1, None, wall_s, wall_s, None, "", None, None)
 
 
 def test_runs_that_have_ended_tell_how_long_the_others_take() -> None:
@@ -265,7 +272,7 @@ def test_without_a_compiled_engine_the_pace_is_that_of_the_reference_machine(tmp
 
 
 def test_the_samples_take_the_room_that_is_expected(tmp_path: Path) -> None:
-    study = study_file.read(EXAMPLES / "ball_on_plate.toml")
+    study = read_study(EXAMPLES / "ball_on_plate.toml")
     names, count = list(design_inputs(study)), study.monte_carlo.sample_count
     inputs, outputs = np.zeros((count, len(names))), np.zeros((count, len(OUTPUTS)))
     Samples(names, list(OUTPUTS), inputs, outputs, np.zeros(count, dtype=np.uint8)).save(StudyFolder(tmp_path))

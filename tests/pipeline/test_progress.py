@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 from lithobrake.pipeline import run_study
+from lithobrake.study import StudySource
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 FEW = {
@@ -21,9 +22,12 @@ FEW = {
 Told = dict[str, dict[str, list[tuple[float, float]]]]
 # Which pieces of work each stage tells of, in their order.
 WORKS = {
-    "screening": ["screening runs", "screening fit, outputs"],
-    "refinement": ["inputs that matter", "refined runs", "refined fit, outputs"],
-    "test runs": ["screening runs", "refined runs", "test kept runs", "test all runs", "scores with their intervals"],
+    "screening runs": ["screening runs"],
+    "screening": ["screening fit, outputs"],
+    "refined runs": ["refined runs"],
+    "refinement": ["refined fit, outputs"],
+    "test runs": ["test kept runs", "test all runs"],
+    "scores": ["scores with their intervals"],
     "flights": ["gravity table", "checks of flights", "flights", "flights without scatter"],
     "bounces until rest": ["bounces, hard ground"],
 }
@@ -41,18 +45,20 @@ def study(tmp_path_factory: pytest.TempPathFactory) -> tuple[Told, list[str]]:
     stages: Told = {}
     said_first: list[str] = []
 
-    def say(sentence: str) -> None:
-        if not stages:
-            said_first.append(sentence)
+    class Shown:
+        """Keeps what is told."""
 
-    def begin(title: str, number: int, count: int) -> None:
-        stages[title] = {}
+        def say(self, sentence: str) -> None:
+            if not stages:
+                said_first.append(sentence)
 
-    def progress(done: float, total: float, what: str, detail: str = "", /) -> None:
-        stages[list(stages)[-1]].setdefault(what, []).append((done, total))
+        def begin(self, title: str, number: int, count: int) -> None:
+            stages[title] = {}
 
-    shown = {"begin": begin, "progress": progress, "say": say}
-    run_study(folder / "study.toml", folder / "out", worker_count=1, until="rest", **shown)  # type: ignore[arg-type]
+        def progress(self, done: float, total: float, what: str, detail: str = "", /) -> None:
+            stages[list(stages)[-1]].setdefault(what, []).append((done, total))
+
+    run_study(StudySource.read(folder / "study.toml"), folder / "out", worker_count=1, until="rest", shown=Shown())
     return stages, said_first
 
 

@@ -10,20 +10,21 @@ from typing import Any
 import numpy as np
 import pytest
 
-from lithobrake import study_file
 from lithobrake.analysis import OutcomeModel
 from lithobrake.chaos import Uniform, fit, smolyak
+from lithobrake.outputs import OUTPUTS
 from lithobrake.pipeline import Job, StudyFolder
 from lithobrake.pipeline.fates import ENDS, landing_results, proportion
 from lithobrake.pipeline.flights import COLUMNS, read_table, write_table
+from lithobrake.pipeline.job import Silent
 from lithobrake.pipeline.rest import follow_samples
 from lithobrake.pipeline.samples import SAMPLE_OUTCOMES, Samples
 from lithobrake.pipeline.scatter import Scatter
 from lithobrake.pipeline.soil import SoilBounce, rolling_spin, trained_ranges, why_no_soil
 from lithobrake.pipeline.solver import OUTCOMES
 from lithobrake.smallbody import Impacts
-from lithobrake.study import OUTPUTS, Study
-from lithobrake.study_template import template
+from lithobrake.study import Study, check_tables
+from lithobrake.study.template import template
 
 INPUTS = {
     "grain.friction": Uniform(0.2, 0.8),
@@ -125,7 +126,7 @@ def changed(**sections: dict[str, Any]) -> Study:
     tables = tomllib.loads(template())
     for section, keys in sections.items():
         tables.setdefault(section, {}).update(keys)
-    return study_file.check(tables, Path())
+    return check_tables(tables, Path())
 
 
 def test_the_soil_is_asked_where_speed_and_incidence_are_uncertain() -> None:
@@ -147,7 +148,9 @@ def test_hard_ground_is_followed_from_the_first_impact_and_the_summary_adds_up(t
     Samples.of([], OUTPUTS, np.zeros((100, 0)), outputs, drawn).save(folder)
     said: list[str] = []
     with ThreadPoolExecutor(1) as executor:
-        job = Job(study, {}, folder, executor, lambda *_: None, said.append)
+        shown = Silent()
+        shown.say = said.append  # type: ignore[method-assign]
+        job = Job(study, {}, folder, executor, shown)
         follow_samples(job)
         write_table(folder, "flights.csv", COLUMNS, [])
         folder.write_json("flights.json", {})

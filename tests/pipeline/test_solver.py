@@ -3,11 +3,10 @@
 import math
 from typing import Any
 
-import numpy as np
 import pytest
 
-from lithobrake.campaign import Record, Runs
-from lithobrake.pipeline.expansions import DesignRuns
+from lithobrake.campaign import Record, Runs, RunStatus
+from lithobrake.pipeline.design_runs import DesignRuns
 from lithobrake.pipeline.solver import SolverModel
 
 VELOCITY = {"velocity_out_x": 0.03, "velocity_out_y": -0.02, "velocity_out_z": 0.06}
@@ -70,8 +69,10 @@ def test_only_a_lander_that_is_clear_counts_as_leaving_whatever_else_is_told_of_
     answers = [made(CLEAR), made(CLEAR, outcome), made({"penetration": 0.01}, outcome)]
     assert answers[1]["outputs"]["spin_out"] == CLEAR["spin_out"]
     records = [
-        Record("", "done", answer["outcome"], {}, answer["outputs"], {}, 1, 0, 1, None, *[None] * 3, "", None, None)
+        Record(
+            "", RunStatus.DONE, answer["outcome"], {}, answer["outputs"], {}, 1, 0, 1, None, *[None] * 3, "", None, None
+        )
         for answer in answers
     ]
-    design = DesignRuns(("a",), np.zeros((3, 1)), Runs(records, 0))
+    design = DesignRuns.of(Runs(records, 0))
     assert design.has_outputs.tolist() == [True, False, False]

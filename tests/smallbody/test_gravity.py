@@ -1,13 +1,14 @@
 """Gravity of polyhedra against closed forms and against its own derivatives."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from lithobrake.smallbody import Body, Shape, didymos
 from lithobrake.smallbody.body import GRAVITATIONAL_CONSTANT
-from lithobrake.smallbody.lanes import angle, log_ratio
+from lithobrake.smallbody.simd import angle, log_ratio
 
 from .meshes import CUBE_FACES, cube_vertices, sphere_mesh
 
@@ -217,6 +218,18 @@ def test_effective_acceleration_by_latitude(shapes):
     assert at_site == pytest.approx(10e-6, abs=2e-6)
     pole = body.effective_acceleration(body.shape.surface_point(85.0, 0.0)) @ body.shape.surface_normal(85.0, 0.0)
     assert pole == pytest.approx(-223e-6, abs=15e-6)
+
+
+def test_effective_acceleration_with_a_mass_and_a_spin_for_each_point(block):
+    points, mass, period = (
+        np.array([[3.0, 1.0, 0.0], [0.0, 2.0, 2.0]]),
+        np.array([1e6, 3e6]),
+        np.array([40.0, math.inf]),
+    )
+    together = block.effective_acceleration(points, mass=mass, spin_period=period)
+    for i in range(2):
+        alone = replace(block, mass=mass[i], spin_period=period[i]).effective_acceleration(points[i])
+        assert together[i] == pytest.approx(alone, rel=1e-14)
 
 
 def test_slope(cube, shapes):

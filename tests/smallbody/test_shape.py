@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from lithobrake.smallbody import Shape, didymos, dimorphos
-from lithobrake.smallbody.didymos import DIDYMOS_POLE
+from lithobrake.smallbody.built_in_bodies import DIDYMOS_POLE
 
 from .meshes import CUBE_FACES, cube_vertices, sphere_mesh
 

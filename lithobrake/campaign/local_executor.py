@@ -1,0 +1,236 @@
+"""Runs on the cores of this machine, behind the interface of concurrent.futures.
+
+A pool of the standard library breaks as a whole when one process dies, does not say at which call, and cannot end a
+single call. Here each process has a pipe of its own: the call of a dead one is known, the others go on undisturbed.
+"""
+
+import contextlib
+import math
+import os
+import pickle
+import platform
+import threading
+import time
+from collections import deque
+from collections.abc import Callable
+from concurrent.futures import BrokenExecutor, Executor, Future
+from multiprocessing.connection import Pipe, wait
+from typing import Any
+
+from lithobrake.campaign.limits import Limits, memory_by_session
+from lithobrake.campaign.worker import BEGUN, Call, Worker
+
+# How often running calls are looked at when they have limits [s].
+_POLL_INTERVAL = 0.2
+# So many processes in a row that die before they begin with a call are no accident.
+_STILLBORN_LIMIT = 3
+
+
+class WorkerDiedError(RuntimeError):
+    """The process of a call died, or was ended because the call went over its limits; the reason says which.
+
+    wall_s: how long it had been at the call [s]; host: where; None where nobody saw it.
+    """
+
+    def __init__(self, reason: str, wall_s: float | None = None, host: str | None = None) -> None:
+        """Keep all three; it may be sent from one process to another."""
+        super().__init__(reason, wall_s, host)
+        self.wall_s, self.host = wall_s, host
+
+    def __str__(self) -> str:
+        """Give the reason."""
+        return str(self.args[0])
+
+
+class LocalExecutor(Executor):
+    """A pool of processes, each with one thread; one that dies is replaced.
+
+    Processes are spawned, never forked: a fork of a process that has threads may hang. They end with this one, however
+    it ends.
+    """
+
+    def __init__(self, worker_count: int | None = None) -> None:
+        """Prepare `worker_count` processes (None: one for each core); they start when there is work for them.
+
+        Raises ValueError for less than one.
+        """
+        if worker_count is not None and (worker_count != int(worker_count) or worker_count < 1):
+            raise ValueError(f"worker_count is {worker_count!r}; allowed: a whole number of at least 1, or None")
+        self.worker_count = available_cores() if worker_count is None else int(worker_count)
+        self._waiting: deque[Call] = deque()
+        self._workers: list[Worker] = []
+        self._wake_receiver, self._wake_sender = Pipe(duplex=False)
+        self._lock = threading.Lock()
+        self._thread: threading.Thread | None = None
+        self._closing = False
+        self._stillborn_count = 0
+
+    @property
+    def capacity(self) -> int:
+        """Calls that are made at once."""
+        return self.worker_count
+
+    def submit(self, function: Callable[..., Any], /, *args: Any, **kwargs: Any) -> "Future[Any]":
+        """Queue a call; it is pickled here and now."""
+        return self.submit_limited(Limits(), function, *args, **kwargs)
+
+    def submit_limited(
+        self, limits: Limits, function: Callable[..., Any], /, *args: Any, **kwargs: Any
+    ) -> "Future[Any]":
+        """Queue a call whose process is ended when it goes over its limits; the future then has a WorkerDiedError.
+
+        Raises ValueError for a call that cannot be sent to a process.
+        """
+        call, future = _pickled(function, args, kwargs), Future[Any]()
+        with self._lock:
+            if self._closing:
+                raise RuntimeError("this LocalExecutor is shut down; make another one")
+            self._waiting.append(Call(future, call, limits))
+            if self._thread is None:
+                self._thread = threading.Thread(target=self._serve, name="local executor", daemon=True)
+                self._thread.start()
+        self._wake_sender.send_bytes(b"call")
+        return future
+
+    def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
+        """Take no more calls; with cancel_futures, those that wait are cancelled and those under way are ended."""
+        with self._lock:
+            self._closing = True
+            given_up = [call.future for call in self._waiting] if cancel_futures else []
+            if cancel_futures:
+                self._waiting.clear()
+        for future in given_up:
+            future.cancel()
+        if cancel_futures:
+            for worker in list(self._workers):
+                worker.kill()
+        if self._thread is not None:
+            # Where the thread has ended already, nobody listens.
+            with contextlib.suppress(OSError):
+                self._wake_sender.send_bytes(b"end")
+            if wait:
+                self._thread.join()
+
+    def _serve(self) -> None:
+        """Hand out calls and collect answers until the executor is shut down and nothing is left to do."""
+        try:
+            while self._hand_out():
+                busy = [worker for worker in self._workers if worker.call]
+                has_limits = any(worker.call.limits != Limits() for worker in busy if worker.call)
+                pipes = [self._wake_receiver, *(worker.connection for worker in busy)]
+                ready = wait(pipes, timeout=_POLL_INTERVAL if has_limits else None)
+                if self._wake_receiver in ready:
+                    self._wake_receiver.recv_bytes()
+                for worker in busy:
+                    if worker.connection in ready:
+                        self._receive(worker)
+                if has_limits:
+                    self._end_those_over_their_limits()
+        # Say, no process can be started: whoever waits for a future has to hear of it.
+        except BaseException as error:
+            self._give_up(error)
+        for worker in self._workers:
+            worker.connection.close()
+
+    def _hand_out(self) -> bool:
+        """Give waiting calls to idle processes, starting processes as needed; False when all is done and closed."""
+        while True:
+            with self._lock:
+                idle = next((worker for worker in self._workers if worker.call is None), None)
+                if not self._waiting or (idle is None and len(self._workers) >= self.worker_count):
+                    busy = any(worker.call for worker in self._workers)
+                    return bool(self._waiting) or busy or not self._closing
+                call = self._waiting.popleft()
+            if not (call.future.running() or call.future.set_running_or_notify_cancel()):
+                continue
+            if idle is None:
+                idle = Worker()
+                self._workers.append(idle)
+            if not idle.take(call):
+                # It died while it had nothing to do; the call has not begun, so another process takes it.
+                self._remove(idle)
+                with self._lock:
+                    self._waiting.appendleft(call)
+
+    def _receive(self, worker: Worker) -> None:
+        """Take in what a process says: that it has begun, or how its call ended."""
+        try:
+            said = worker.connection.recv_bytes()
+        except (EOFError, OSError):
+            if worker.begun is None:
+                self._pass_on_the_call_of(worker)
+            else:
+                self._lose(worker, "its process died ({ended})")
+            return
+        if said == BEGUN:
+            worker.begun, self._stillborn_count = time.monotonic(), 0
+            return
+        call, worker.call = worker.call, None
+        # The next call goes out before anybody is told of this one, so that the process need not wait.
+        self._hand_out()
+        fine, answer = pickle.loads(said)
+        if call and fine:
+            call.future.set_result(answer)
+        elif call:
+            call.future.set_exception(answer)
+
+    def _pass_on_the_call_of(self, worker: Worker) -> None:
+        """Give the call of a process that died before it began with it to another one.
+
+        Raises BrokenExecutor when this has happened to several in a row.
+        """
+        self._remove(worker)
+        self._stillborn_count += 1
+        if worker.call:
+            with self._lock:
+                self._waiting.appendleft(worker.call)
+        if self._stillborn_count >= _STILLBORN_LIMIT:
+            raise BrokenExecutor(
+                f"processes end before they begin with a run ({worker.ended()}); in a script of your own, what starts "
+                'the campaign belongs under: if __name__ == "__main__":'
+            )
+
+    def _lose(self, worker: Worker, reason: str) -> None:
+        self._remove(worker)
+        if worker.call is not None and worker.begun is not None:
+            wall = time.monotonic() - worker.begun
+            worker.call.future.set_exception(
+                WorkerDiedError(reason.format(ended=worker.ended()), wall, platform.node())
+            )
+
+    def _remove(self, worker: Worker) -> None:
+        worker.kill()
+        self._workers.remove(worker)
+
+    def _give_up(self, error: BaseException) -> None:
+        with self._lock:
+            self._closing = True
+            calls = list(self._waiting)
+        calls += [worker.call for worker in self._workers if worker.call]
+        for future in [call.future for call in calls]:
+            if not future.done() and (future.running() or future.set_running_or_notify_cancel()):
+                future.set_exception(error)
+
+    def _end_those_over_their_limits(self) -> None:
+        begun = [(worker, worker.call.limits, worker.begun) for worker in self._workers if worker.call and worker.begun]
+        measured = any(limits.memory_bytes < math.inf for _, limits, _ in begun)
+        memory = memory_by_session() if measured else {}
+        for worker, limits, since in begun:
+            reason = limits.exceeded(time.monotonic() - since, memory.get(worker.number, 0))
+            if reason:
+                self._lose(worker, reason)
+
+
+def _pickled(*call: Any) -> bytes:
+    try:
+        return pickle.dumps(call)
+    except (pickle.PicklingError, AttributeError, TypeError) as error:
+        raise ValueError(
+            f"a call cannot be sent to a process ({error}); a model may be a function of a file, outside of any other "
+            "function, or an object whose attributes can be sent"
+        ) from error
+
+
+def available_cores() -> int:
+    """Cores that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

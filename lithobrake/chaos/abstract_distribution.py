@@ -1,0 +1,128 @@
+"""What every uncertain input offers: a distribution, and the germ in which its polynomials are orthonormal.
+
+The germ t is the standardised variable (uniform on [-1, 1], standard normal, ...) of which the input x is a function.
+"""
+
+from abc import ABC, abstractmethod
+from dataclasses import fields
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from lithobrake.chaos.polynomials import Array, Recurrence
+
+Support = tuple[float, float]
+NO_CHOICES = "discrete choices are not supported: fit one expansion for each choice"
+
+
+class Distribution(ABC):
+    """One uncertain input. Subclasses are frozen dataclasses whose fields are the parameters."""
+
+    kind: ClassVar[str]
+
+    @property
+    @abstractmethod
+    def support(self) -> Support:
+        """Smallest and largest possible value [unit of the input]; infinite where unbounded."""
+
+    @abstractmethod
+    def germ(self, x: Array) -> Array:
+        """Germ of values x [any shape]."""
+
+    @abstractmethod
+    def physical(self, germ: Array) -> Array:
+        """Values x of a germ [any shape]; never outside the support because of rounding."""
+
+    @abstractmethod
+    def ppf(self, u: ArrayLike) -> Array:
+        """Quantiles at probabilities u [any shape], 0 <= u <= 1."""
+
+    @abstractmethod
+    def cdf(self, x: Array) -> Array:
+        """Probabilities of not exceeding values x [any shape] inside the support."""
+
+    @abstractmethod
+    def recurrence(self, degree: int) -> Recurrence:
+        """Polynomials in the germ, orthonormal in this distribution, up to a degree."""
+
+    @abstractmethod
+    def germ_derivative(self, x: Array) -> Array:
+        """Derivative of the germ with respect to x [1 / unit of the input]."""
+
+    def gauss(self, count: int) -> tuple[Array, Array]:
+        """Germ nodes and weights (summing to 1), exact for polynomials up to degree 2 count - 1; at most `count`
+        unless samples determine fewer.
+        """
+        return self.recurrence(count).gauss_rule()
+
+    def rule(self, count: int) -> tuple[Array, Array]:
+        """Germ nodes and weights (summing to 1) of a fine quadrature over this distribution, about `count` of each."""
+        return self.gauss(count)
+
+    @property
+    def highest_degree(self) -> float:
+        """Highest degree of polynomials that the distribution determines: infinite unless it is made of samples."""
+        return np.inf
+
+    @property
+    def bounded(self) -> bool:
+        """Whether both ends of the support are finite."""
+        return bool(np.all(np.isfinite(self.support)))
+
+    @property
+    def median(self) -> float:
+        """Value that is exceeded with probability one half."""
+        return float(self.ppf(0.5))
+
+    def sample(self, uniforms: ArrayLike) -> Array:
+        """Values from uniform random numbers in (0, 1), by inversion: same numbers, same values."""
+        return self.ppf(uniforms)
+
+    def to_json(self) -> dict[str, Any]:
+        """Kind and parameters as plain JSON values; an infinite limit is the text "inf", as JSON has no such number."""
+        content: dict[str, Any] = {"kind": self.kind}
+        for field in fields(self):  # type: ignore[arg-type]
+            value = getattr(self, field.name)
+            content[field.name] = (
+                list(value) if isinstance(value, tuple) else value if np.isfinite(value) else str(value)
+            )
+        return content
+
+    def _clip(self, x: Array) -> Array:
+        return np.clip(x, *self.support)
+
+    def _number(self, name: str, above: float | None = None, finite: bool = True) -> float:
+        """Check a parameter, store it as a float and give it back."""
+        value = getattr(self, name)
+        where = f"{type(self).__name__}.{name}"
+        try:
+            number = float(value)
+        except (TypeError, ValueError):
+            raise ValueError(f"{where} is {value!r}, but must be a number") from None
+        if np.isnan(number) or (finite and np.isinf(number)):
+            raise ValueError(f"{where} is {number}, but must be {'finite' if finite else 'a number'}")
+        if above is not None and number <= above:
+            raise ValueError(f"{where} is {number}, but must be greater than {above:g}")
+        object.__setattr__(self, name, number)
+        return number
+
+    def _ordered(self, lower: float, upper: float) -> None:
+        if not lower < upper:
+            raise ValueError(
+                f"{type(self).__name__} has lower {lower:g} and upper {upper:g}, but lower must be less than upper; "
+                "give a certain input as a plain number instead"
+            )
+
+
+def checked_inputs(inputs: Any) -> dict[str, Distribution]:
+    """Check a mapping of input names to distributions and give it back as an ordered dict."""
+    if not hasattr(inputs, "items") or not inputs:
+        raise ValueError("inputs must be a dict of at least one name with its distribution, for instance Uniform(0, 1)")
+    for name, entry in inputs.items():
+        if not isinstance(entry, Distribution):
+            raise ValueError(
+                f"input {name!r} is {entry!r}, but must be a distribution (Uniform, LogUniform, Normal, LogNormal, "
+                f"TruncatedNormal, Beta, Gamma, Exponential, Empirical); {NO_CHOICES}"
+            )
+    return dict(inputs)

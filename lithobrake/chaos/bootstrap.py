@@ -1,0 +1,280 @@
+"""Confidence intervals by resampling: of Sobol indices from the residuals, of scores from the test runs."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lithobrake.chaos import sensitivity
+from lithobrake.chaos.basis import basis_matrix, condition_number
+from lithobrake.chaos.degree_selection import best_terms, terms_to_try
+from lithobrake.chaos.gaussian_process import FAMILIES, fit_process
+from lithobrake.chaos.least_squares import RANK_TOLERANCE
+from lithobrake.chaos.multi_index import Indices
+from lithobrake.chaos.polynomials import Array
+from lithobrake.chaos.scores import absolute_percentage_error
+from lithobrake.chaos.surrogate import Surrogate
+from lithobrake.chaos.threads import one_thread
+from lithobrake.chaos.training import Training, checked_training
+
+# With more terms for each point than this the residuals say too little about the error.
+TERMS_PER_POINT = 0.7
+SMALLEST_FREEDOM = 0.05
+# Above this share of scatter in the variance a process has settled what matters too firmly to be drawn from.
+SCATTER_SHARE = 0.05
+# Fewer test runs than this, drawn anew, repeat each other too often to tell a spread.
+FEWEST_TEST_RUNS = 5
+
+
+@dataclass(frozen=True)
+class Refit:
+    """A fit of one output that can be made again, and where draws of its runs come from.
+
+    indices [term_count, input_count]; coefficients: of outputs [count, draw_count], result [term_count, draw_count].
+    observed [count]: the outputs of the runs; fitted [count]: those that draws scatter about; truth [2, input_count]:
+    first-order and total indices of what gave them; residuals [count], as large as errors at new points; shrinks:
+    whether the fit pulls coefficients to 0.
+    """
+
+    indices: Indices
+    coefficients: Callable[[Array], Array]
+    observed: Array
+    fitted: Array
+    truth: Array
+    residuals: Array
+    shrinks: bool = False
+
+
+@one_thread()
+def sobol_estimates(
+    surrogate: Surrogate, x: ArrayLike, y: ArrayLike, *, count: int = 500, level: float = 0.95, seed: int = 0
+) -> dict[str, Any]:
+    """Sobol indices freed of the scatter of the training runs x, y, with confidence intervals by resampling residuals.
+
+    Result: "first" and "total", each [3 (estimate, lower, upper), input_count, output_count] (last axis dropped for a
+    one-dimensional y): shares of the variance that the inputs give the expansion. An expansion's own indices are sums
+    of squared coefficients, to which scatter adds: the less an output depends on its inputs, the more they say.
+    Draws are fitted again: least squares with its terms, a sparse fit by least squares on its terms
+    and all of low degree, a process with its parameters or, where scatter is more than a twentieth of the variance, by
+    least squares on all terms of low degree: parameters learnt from much scatter rule out inputs that may matter.
+    Rows of residuals are drawn jointly for all outputs and are as large as the error at new points, so that they hold
+    what the fit left out. Intervals take the runs as independent: they hold for the bed and place of these runs.
+    Source: [Davison-1997], sections 5.2 and 6.2; [Dubreuil-2014] (indices from expansions).
+    """
+    _check_resampling(count, level)
+    training = checked_training(surrogate.inputs, x, y, output_names=surrogate.output_names)
+    rows = np.random.default_rng(seed).integers(training.count, size=(count, training.count))
+    own, found = _own_indices(surrogate), []
+    for output in range(len(surrogate.output_names)):
+        if np.ptp(training.y[:, output]) == 0.0:
+            found.append(np.stack([own[..., output]] * 3))
+            continue
+        refit = _refit_of(surrogate, training, output)
+        coefficients = refit.coefficients(refit.fitted[:, None] + refit.residuals[rows].T)
+        estimate, low, high = (_basic if refit.shrinks else _debiased)(refit, coefficients, level)
+        found.append(np.clip([estimate, np.minimum(low, estimate), np.maximum(high, estimate)], 0.0, 1.0))
+    table = np.stack(found, axis=-1)
+    return {"first": surrogate.shaped(table[:, 0]), "total": surrogate.shaped(table[:, 1])}
+
+
+def sobol_intervals(
+    surrogate: Surrogate, x: ArrayLike, y: ArrayLike, *, count: int = 500, level: float = 0.95, seed: int = 0
+) -> dict[str, Any]:
+    """The intervals of `sobol_estimates`, widened where needed to hold the indices of the expansion itself.
+
+    Result: "first" and "total", each [2 (lower, upper), input_count, output_count] (last axis dropped for a
+    one-dimensional y).
+    """
+    own, found = _own_indices(surrogate), sobol_estimates(surrogate, x, y, count=count, level=level, seed=seed)
+    result = {}
+    for index, key in enumerate(("first", "total")):
+        _, low, high = found[key].reshape(3, *own[index].shape)
+        result[key] = surrogate.shaped(np.stack([np.minimum(low, own[index]), np.maximum(high, own[index])]))
+    return result
+
+
+def _own_indices(surrogate: Surrogate) -> Array:
+    """First-order and total indices of the expansion itself, [2, input_count, output_count]."""
+    return np.stack([surrogate.sobol_first, surrogate.sobol_total]).reshape(2, len(surrogate.inputs), -1)
+
+
+def _basic(refit: Refit, coefficients: Array, level: float) -> tuple[Array, Array, Array]:
+    """Estimate and bounds [2, input_count] each, from coefficients [term_count, draw_count] of a fit that shrinks.
+
+    Distances of the draws from what they were drawn about, turned round; up to the percentile of the draws without
+    their mean distance, or small effects would be missed.
+    """
+    draws = _indices_of(refit.indices, coefficients)
+    low, high = np.quantile(draws, [0.5 - 0.5 * level, 0.5 + 0.5 * level], axis=-1)
+    bias = draws.mean(axis=-1) - refit.truth
+    return refit.truth - bias, 2.0 * refit.truth - high, np.maximum(2.0 * refit.truth - low, high - bias)
+
+
+def _debiased(refit: Refit, coefficients: Array, level: float) -> tuple[Array, Array, Array]:
+    """Estimate and bounds [2, input_count] each, from coefficients [term_count, draw_count] of least squares.
+
+    Scatter adds its variance to every squared coefficient; it is taken off, so that many small terms do not add up to
+    an effect. Source: [Searle-1992], section 3.5 (analysis of variance).
+    """
+    noise = coefficients.var(axis=1, ddof=1, keepdims=True)
+    parts, variance = _debiased_parts(refit.indices, coefficients, noise)
+    # A draw that leaves no variance says nothing: every second one counts as none, the others as all of it.
+    shares = np.broadcast_to(np.resize([0.0, 1.0], len(variance)), parts.shape).copy()
+    np.divide(parts, variance, out=shares, where=variance > 0.0)
+    low, high = np.quantile(shares, [0.5 - 0.5 * level, 0.5 + 0.5 * level], axis=-1)
+    parts, variance = _debiased_parts(refit.indices, refit.coefficients(refit.observed[:, None]), noise)
+    # Where interactions come out below nothing, inputs alone would explain more than there is.
+    whole = max(float(variance[0]), float(np.maximum(parts[0], 0.0).sum()))
+    return (parts[..., 0] / whole if whole > 0.0 else np.zeros_like(parts[..., 0])), low, high
+
+
+def _debiased_parts(indices: Indices, coefficients: Array, noise: Array) -> tuple[Array, Array]:
+    """Variance of each input alone and with all interactions, [2, input_count, draw_count], and in all, [draw_count].
+
+    Sums of squared coefficients [term_count, draw_count], less the variance `noise` [term_count, 1] that scatter gives.
+    """
+    active = (indices > 0).T
+    squares = coefficients**2 - noise
+    squares[indices.sum(axis=1) == 0] = 0.0
+    chosen = np.stack([active & (active.sum(axis=0) == 1), active]).astype(float)
+    return chosen @ squares, squares.sum(axis=0)
+
+
+def _indices_of(indices: Indices, coefficients: Array) -> Array:
+    """First-order and total indices [2, input_count, draw_count] of coefficients [term_count, draw_count]."""
+    return np.stack([sensitivity.first_order(indices, coefficients), sensitivity.total_order(indices, coefficients)])
+
+
+def _check_resampling(count: int, level: float) -> None:
+    """Check a number of resamplings and a level of confidence; raises ValueError."""
+    if count < 20:
+        raise ValueError(f"count is {count}, but at least 20 resamplings are needed for an interval")
+    if not 0.0 < level < 1.0:
+        raise ValueError(f"level is {level}, but must be between 0 and 1, for instance 0.95")
+
+
+def _refit_of(surrogate: Surrogate, training: Training, output: int) -> Refit:
+    """How one output was fitted, as the report says; the least squares of the best degree where it does not say."""
+    entry = surrogate.report.get("outputs", {}).get(surrogate.output_names[output], {})
+    method = entry.get("method")
+    coefficients = surrogate.coefficients.reshape(surrogate.term_count, -1)[:, output]
+    indices = surrogate.multi_indices[(coefficients != 0.0) | (surrogate.multi_indices.sum(axis=1) == 0)]
+    if method in ("lars", "omp") and "candidate_degree" in entry:
+        return _sparse_refit(training, output, entry["rmse_estimate"], indices)
+    if method == "gaussian_process" and "covariance" in entry:
+        if entry.get("noise_std", 0.0) ** 2 > SCATTER_SHARE * np.var(training.y[:, output]):
+            constant = np.zeros((1, len(training.inputs)), dtype=np.int64)
+            return _least_squares_refit(training, output, _with_low_degrees(constant, training))
+        return _process_refit(training, output, entry, indices)
+    if method != "ols" or len(indices) > TERMS_PER_POINT * training.count:
+        indices = best_terms(training, term_limit=TERMS_PER_POINT * training.count)
+    return _least_squares_refit(training, output, indices)
+
+
+def _least_squares_refit(training: Training, output: int, indices: Indices) -> Refit:
+    """Source of the residuals: [MacKinnon-1985] (HC3: the full leverage, as for left-out points)."""
+    orthogonal, triangle = np.linalg.qr(basis_matrix(training.inputs, indices, training.x))
+    y = training.y[:, output]
+    fitted = orthogonal @ (orthogonal.T @ y)
+    freedom = 1.0 - np.einsum("ij,ij->i", orthogonal, orthogonal)
+    residuals = (y - fitted) / np.maximum(freedom, SMALLEST_FREEDOM)
+
+    def coefficients(values: Array) -> Array:
+        return np.linalg.solve(triangle, orthogonal.T @ values)
+
+    truth = _indices_of(indices, coefficients(y[:, None]))[..., 0]
+    return Refit(indices, coefficients, y, fitted, truth, residuals - residuals.mean())
+
+
+def _sparse_refit(training: Training, output: int, expected_error: float, kept: Indices) -> Refit:
+    """Least squares on the chosen terms and all of low degree, with residuals as large as the error of the folds.
+
+    From the chosen terms alone no effect that the choice has overlooked could ever return, and their residuals are
+    too small.
+    """
+    rich = _least_squares_refit(training, output, _with_low_degrees(kept, training))
+    return replace(rich, residuals=_grown(rich.residuals, expected_error))
+
+
+def _grown(residuals: Array, size: float) -> Array:
+    """Residuals [count] with at least this root mean square."""
+    own = float(np.sqrt(np.mean(residuals**2)))
+    return residuals * max(size / own, 1.0) if own > 0.0 else residuals
+
+
+def _with_low_degrees(kept: Indices, training: Training) -> Indices:
+    """The kept terms and those of the highest total degree with which the points still determine them twice over."""
+    union, degree = kept, 1
+    while True:
+        more = np.unique(np.concatenate([kept, terms_to_try(training, degree)]), axis=0)
+        if 2 * len(more) > training.count or len(more) == len(union):
+            return union
+        if condition_number(training.inputs, training.x, more) > 1.0 / RANK_TOLERANCE:
+            return union
+        union, degree = more, degree + 1
+
+
+def _process_refit(training: Training, output: int, entry: dict[str, Any], indices: Indices) -> Refit:
+    """The process with its parameters kept, which is linear in the outputs."""
+    process = fit_process(training, output, next(one for one in FAMILIES if one.name == entry["covariance"]))
+    errors = process.leave_one_out
+
+    def coefficients(values: Array) -> Array:
+        return process.refitted(indices, values)
+
+    truth = _indices_of(indices, process.coefficients(indices)[:, None])[..., 0]
+    residuals = _grown(errors - errors.mean(), entry["rmse_estimate"])
+    observed, fitted = training.y[:, output], process.predict(process.germs)
+    return Refit(indices, coefficients, observed, fitted, truth, residuals, shrinks=True)
+
+
+def score_intervals(
+    surrogate: Surrogate, x: ArrayLike, y: ArrayLike, *, count: int = 1000, level: float = 0.95, seed: int = 0
+) -> dict[str, dict[str, tuple[float, float]]]:
+    """Confidence intervals of mape [%], q2, rrmse and rmse on test runs x, y, by output name, resampling the runs.
+
+    Studentised, in the logarithms of the errors: a mean of squares is skewed, and plain percentiles of it are too low
+    and too narrow. Fewer than five runs tell nothing; a score of 0 or infinity is its own interval.
+    Source: [Davison-1997], section 5.2 (studentised bootstrap).
+    """
+    _check_resampling(count, level)
+    training = checked_training(surrogate.inputs, x, y, output_names=surrogate.output_names)
+    predicted = np.asarray(surrogate(training.x)).reshape(training.y.shape)
+    rows = np.random.default_rng(seed).integers(training.count, size=(count, training.count))
+    result: dict[str, dict[str, tuple[float, float]]] = {}
+    for k, name in enumerate(surrogate.output_names):
+        low, high = _studentised(predicted[:, k], training.y[:, k], rows, level)
+        result[name] = {key: (float(low[j]), float(high[j])) for j, key in enumerate(("mape", "rmse", "rrmse"))}
+        result[name]["q2"] = (1.0 - float(high[2]) ** 2, 1.0 - float(low[2]) ** 2)
+    return result
+
+
+def _studentised(predicted: Array, y: Array, rows: NDArray[np.int64], level: float) -> Array:
+    """Bounds [2 (lower, upper), 3] of mape, rmse and rrmse of one output; rows [draw_count, count] drawn from it."""
+    logarithms, errors = _log_scores(predicted, y)
+    if len(y) < FEWEST_TEST_RUNS:
+        return np.array([[0.0] * 3, [np.inf] * 3])
+    draws = np.stack([_log_scores(predicted[draw], y[draw]) for draw in rows])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        distance = (draws[:, 0] - logarithms) / draws[:, 1]
+        # A draw of one and the same run has no standard error, so it is infinitely far.
+        distance = np.where(np.isnan(distance), np.sign(draws[:, 0] - logarithms) * np.inf, distance)
+        # No interpolation between distances that may be infinite.
+        high = np.quantile(distance, 0.5 + 0.5 * level, axis=0, method="higher")
+        low = np.quantile(distance, 0.5 - 0.5 * level, axis=0, method="lower")
+        bounds = np.exp(logarithms - np.stack([high, low]) * errors)
+    return np.where(np.isfinite(logarithms) & (errors > 0.0), bounds, np.exp(logarithms))
+
+
+def _log_scores(predicted: Array, y: Array) -> Array:
+    """Logarithms of mape, rmse and rrmse, and their standard errors to first order, [2, 3]."""
+    square, deviation = (predicted - y) ** 2, (y - y.mean()) ** 2
+    percentage = absolute_percentage_error(predicted, y)
+    mean_square = float(square.mean())
+    with np.errstate(divide="ignore", invalid="ignore"):
+        sizes = np.array([percentage.mean(), np.sqrt(mean_square), np.sqrt(mean_square / deviation.mean())])
+        error, deviation = square / mean_square, deviation / deviation.mean()
+        derivatives = np.stack([percentage / sizes[0], 0.5 * error, 0.5 * (error - deviation)])
+        return np.stack([np.log(sizes), derivatives.std(axis=1) / np.sqrt(max(len(y) - 1, 1))])

@@ -1,0 +1,203 @@
+"""Inputs whose orthonormal polynomials have no name and are computed: truncated normal, and samples as they are."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy import special
+
+from lithobrake.chaos.abstract_distribution import NO_CHOICES, Distribution, Support
+from lithobrake.chaos.polynomials import Array, Recurrence, discretised
+
+# Densities below exp(-350) of the largest cannot be felt by polynomials of the degrees in use.
+NEGLIGIBLE_LOG_DENSITY = 350.0
+# Weights of one long Gauss rule lose digits near its ends; panels of a short rule do not.
+PANEL_NODES, PANELS = 40, 20
+# Samples that a fine rule keeps for each node asked for.
+SAMPLES_PER_NODE = 10
+# Polynomials of samples are made up to this degree, or to where rounding spoils their orthonormality by this much: at
+# a lone far value a polynomial of high degree is the small difference of huge numbers.
+SAMPLE_DEGREE, SAMPLE_ERROR = 40, 1e-8
+
+
+@dataclass(frozen=True)
+class TruncatedNormal(Distribution):
+    """Normal(mean, std) restricted to lower <= x <= upper [unit of the input]; either limit may be infinite.
+
+    mean and std are those before truncation. Polynomials by discretisation of the density on Gauss-Legendre nodes.
+    """
+
+    mean: float
+    std: float
+    lower: float
+    upper: float
+    kind = "truncated_normal"
+
+    def __post_init__(self) -> None:
+        self._number("mean")
+        self._number("std", above=0.0)
+        self._ordered(self._number("lower", finite=False), self._number("upper", finite=False))
+
+    @property
+    def support(self) -> Support:
+        return self.lower, self.upper
+
+    @cached_property
+    def _limits(self) -> tuple[float, float]:
+        """Standardised limits beyond which the density is zero or negligible."""
+        low, high = (self.lower - self.mean) / self.std, (self.upper - self.mean) / self.std
+        mode = min(max(0.0, low), high)
+        reach = float(np.sqrt(mode * mode + 2.0 * NEGLIGIBLE_LOG_DENSITY))
+        return max(low, -reach), min(high, reach)
+
+    @cached_property
+    def _frame(self) -> tuple[float, float]:
+        """Middle and half-width of the interval that becomes [-1, 1]."""
+        low, high = self._limits
+        lower = self.lower if np.isfinite(self.lower) else self.mean + self.std * low
+        upper = self.upper if np.isfinite(self.upper) else self.mean + self.std * high
+        return 0.5 * (lower + upper), 0.5 * (upper - lower)
+
+    def germ(self, x: Array) -> Array:
+        middle, half = self._frame
+        return (x - middle) / half
+
+    def physical(self, germ: Array) -> Array:
+        middle, half = self._frame
+        return self._clip(middle + half * germ)
+
+    def ppf(self, u: ArrayLike) -> Array:
+        probability = np.asarray(u, dtype=float)
+        low, high = (self.lower - self.mean) / self.std, (self.upper - self.mean) / self.std
+        # In the right tail the mirrored problem keeps all digits; logarithms keep the far tail from underflow.
+        sign = -1.0 if low + high > 0.0 else 1.0
+        if sign < 0.0:
+            low, high, probability = -high, -low, 1.0 - probability
+        with np.errstate(divide="ignore"):
+            logarithm = np.logaddexp(
+                special.log_ndtr(low) + np.log1p(-probability),
+                special.log_ndtr(high) + np.log(probability),
+            )
+        return self._clip(self.mean + self.std * sign * special.ndtri_exp(logarithm))
+
+    def cdf(self, x: Array) -> Array:
+        low, high = (self.lower - self.mean) / self.std, (self.upper - self.mean) / self.std
+        z, sign = (np.asarray(x) - self.mean) / self.std, 1.0
+        # Differences of tails keep their digits only on the left side of the normal.
+        if low + high > 0.0:
+            low, high, z, sign = -high, -low, -z, -1.0
+        start, end = special.log_ndtr(low), special.log_ndtr(high)
+        probability = np.expm1(special.log_ndtr(z) - start) / np.expm1(end - start) if np.isfinite(start) else None
+        probability = np.exp(special.log_ndtr(z) - end) if probability is None else probability
+        return probability if sign > 0.0 else 1.0 - probability
+
+    def germ_derivative(self, x: Array) -> Array:
+        return np.full_like(x, 1.0 / self._frame[1])
+
+    def recurrence(self, degree: int) -> Recurrence:
+        low, high = self._limits
+        nodes, weights = np.polynomial.legendre.leggauss(max(PANEL_NODES, degree))
+        edges = np.linspace(low, high, PANELS + 1)[:, None]
+        z = (0.5 * (edges[:-1] + edges[1:]) + 0.5 * (edges[1:] - edges[:-1]) * nodes).ravel()
+        mode = min(max(0.0, low), high)
+        density = np.tile(weights, PANELS) * np.exp(-0.5 * (z - mode) * (z + mode))
+        return discretised(degree, self.germ(self.mean + self.std * z), density / density.sum())
+
+
+@dataclass(frozen=True)
+class Empirical(Distribution):
+    """The samples themselves [unit of the input], equally probable; polynomials orthonormal over exactly these values.
+
+    Quantiles are sample values (no interpolation), so that a Monte Carlo has the moments that the expansion states.
+    Raises ValueError for fewer than two distinct or for non-finite samples.
+    """
+
+    samples: Sequence[float]
+    kind = "empirical"
+
+    def __post_init__(self) -> None:
+        try:
+            values = np.sort(np.asarray(self.samples, dtype=float).ravel())
+        except (TypeError, ValueError):
+            raise ValueError(f"Empirical.samples must be numbers, but holds others; {NO_CHOICES}") from None
+        if not np.all(np.isfinite(values)) or len(np.unique(values)) < 2:
+            raise ValueError(
+                f"Empirical.samples holds {values.size} values, but needs finite ones, at least two of them distinct"
+            )
+        object.__setattr__(self, "samples", tuple(values.tolist()))
+
+    @cached_property
+    def _sorted(self) -> Array:
+        return np.asarray(self.samples, dtype=float)
+
+    @property
+    def support(self) -> Support:
+        return self.samples[0], self.samples[-1]
+
+    def germ(self, x: Array) -> Array:
+        lower, upper = self.support
+        return ((x - lower) - (upper - x)) / (upper - lower)
+
+    def physical(self, germ: Array) -> Array:
+        lower, upper = self.support
+        return self._clip(0.5 * ((1.0 - germ) * lower + (1.0 + germ) * upper))
+
+    def ppf(self, u: ArrayLike) -> Array:
+        count = len(self.samples)
+        place = np.ceil(np.asarray(u, dtype=float) * count).astype(int) - 1
+        return self._sorted[np.clip(place, 0, count - 1)]
+
+    def cdf(self, x: Array) -> Array:
+        # The middle of the step, so that no value has probability 0 or 1.
+        below, upto = (np.searchsorted(self._sorted, x, side=side) for side in ("left", "right"))
+        count = len(self.samples)
+        return np.clip(0.5 * (below + upto) / count, 0.5 / count, 1.0 - 0.5 / count)
+
+    def germ_derivative(self, x: Array) -> Array:
+        return np.full_like(x, 2.0 / (self.samples[-1] - self.samples[0]))
+
+    def _measure(self) -> tuple[Array, Array]:
+        # Equal values share one node, so that ties do not cost orthogonality.
+        nodes, repeats = np.unique(self._sorted, return_counts=True)
+        return self.germ(nodes), repeats / len(self.samples)
+
+    def gauss(self, count: int) -> tuple[Array, Array]:
+        # The samples themselves are exact for any degree, only more.
+        return super().gauss(count) if count <= self.highest_degree else self._measure()
+
+    def rule(self, count: int) -> tuple[Array, Array]:
+        nodes, weights = self._measure()
+        if len(nodes) <= SAMPLES_PER_NODE * count:
+            return nodes, weights
+        # Of many samples neighbours are merged into their means: a fine rule, not the measure itself.
+        starts = np.linspace(0, len(nodes), SAMPLES_PER_NODE * count, endpoint=False).astype(int)
+        merged = np.add.reduceat(weights, starts)
+        return np.add.reduceat(weights * nodes, starts) / merged, merged
+
+    @cached_property
+    def _polynomials(self) -> Recurrence:
+        """Polynomials of all degrees that the samples determine."""
+        nodes, weights = self._measure()
+        made = discretised(min(len(nodes) - 1, SAMPLE_DEGREE), nodes, weights)
+        # Degrees beyond the usable ones may overflow; they are left out just below.
+        with np.errstate(over="ignore", invalid="ignore"):
+            table = made.values(nodes)
+            error = np.abs((table * weights) @ table.T - np.eye(len(table)))
+        worst = np.maximum.accumulate(np.tril(error).max(axis=1))
+        usable = int(np.sum(worst < SAMPLE_ERROR)) - 1
+        return Recurrence(made.center[:usable], made.spread[:usable])
+
+    @property
+    def highest_degree(self) -> float:
+        return self._polynomials.degree
+
+    def recurrence(self, degree: int) -> Recurrence:
+        made = self._polynomials
+        if degree > made.degree:
+            raise ValueError(
+                f"degree {degree} is asked of {len(self.samples)} samples with {len(np.unique(self._sorted))} distinct "
+                f"values, which determine polynomials up to degree {made.degree}: lower the degree or give more samples"
+            )
+        return Recurrence(made.center[:degree], made.spread[:degree])

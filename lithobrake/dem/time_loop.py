@@ -1,0 +1,101 @@
+"""The time loop."""
+
+import numpy as np
+
+from lithobrake.compiled import kernel, large_kernel
+from lithobrake.dem.arrays import Bodies, Cores, Floats, Laws, Pairs, Partition, Planes, Reactions, Step
+from lithobrake.dem.feature_list import update_feature_lists
+from lithobrake.dem.force import forces_within_partition
+from lithobrake.dem.motion import drift, kick
+from lithobrake.dem.scratch import Scratch
+from lithobrake.dem.stability import step_is_too_large
+from lithobrake.dem.vectors import dot, plus, row, scaled
+
+DONE, LIST_USED_UP, FEATURES_OVERFLOW, STEP_TOO_LARGE, DIVERGED = 0, 1, 2, 3, 4
+
+
+@kernel
+def apply_drag(bodies: Bodies, step: Step, start: int, stop: int) -> None:
+    """Add a force against every velocity and a torque against every spin, for settling. Writes to bodies."""
+    for body in range(start, stop):
+        velocity, spin = row(bodies.velocity_predicted, body), row(bodies.spin_predicted, body)
+        momentum = plus(row(bodies.angular_momentum, body), scaled(0.5 * step.time_step, row(bodies.torque, body)))
+        for axis in range(3):
+            bodies.force[body, axis] -= step.drag * bodies.mass[body] * velocity[axis]
+            bodies.torque[body, axis] -= step.drag * momentum[axis]
+        energy = bodies.mass[body] * dot(velocity, velocity) + dot(spin, momentum)
+        bodies.dragged[body] += step.drag * energy * step.time_step
+
+
+@large_kernel
+def begin_step(bodies: Bodies, step: Step, start: int, stop: int) -> float:
+    """Kick and drift bodies start to stop; return how far their surfaces may have moved [m], see `drift`.
+
+    Writes to bodies.
+    """
+    kick(bodies, step, start, stop)
+    return drift(bodies, step, start, stop)
+
+
+@large_kernel
+def end_step(bodies: Bodies, step: Step, start: int, stop: int) -> None:
+    """Kick bodies start to stop under their new forces. Writes to bodies."""
+    if step.drag > 0.0:
+        apply_drag(bodies, step, start, stop)
+    kick(bodies, step, start, stop)
+
+
+@large_kernel
+def advance(
+    bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, laws: Laws, step: Step, scratch: Scratch,
+    reactions: Reactions, whole: Partition, step_count: int, drifted: bool, travel_limit: float, watched: int,
+    watch_record: Floats,
+) -> tuple[int, int, bool]:  # fmt: skip
+    """Take up to `step_count` steps.
+
+    Returns the steps taken, why it stopped, and whether the step in hand has drifted but not yet felt its forces (it
+    goes on from there once the neighbour list is renewed). Body `watched` (none: -1) is recorded, see
+    `record_watched`. `whole` is the partition of all bodies; there is no room in `reactions`.
+    Writes to bodies, pairs, scratch, reactions and watch_record.
+    """
+    for taken in range(step_count):
+        if not drifted:
+            farthest = begin_step(bodies, step, whole.start, whole.stop)
+            if not np.isfinite(farthest):
+                return taken, DIVERGED, False
+            if farthest > travel_limit:
+                return taken, LIST_USED_UP, True
+        lacking = update_feature_lists(
+            bodies, cores, planes, pairs, scratch, step.time_step, whole.first_pair, whole.last_pair
+        )
+        if lacking > 0:
+            return taken, FEATURES_OVERFLOW, True
+        drifted = False
+        rate = forces_within_partition(bodies, cores, planes, pairs, laws, step, scratch, reactions, whole)
+        end_step(bodies, step, whole.start, whole.stop)
+        if watched >= 0:
+            record_watched(bodies, watched, watch_record)
+        if step_is_too_large(bodies, planes, pairs, laws, step, taken, rate):
+            return taken + 1, STEP_TOO_LARGE, False
+    return step_count, DONE, False
+
+
+# What is recorded of a watched body, and where.
+STEPS, PEAK_FORCE, FIRST_CONTACT, LAST_CONTACT = 0, 1, 2, 3
+WATCHED = {"peak_force": PEAK_FORCE, "first_contact": FIRST_CONTACT, "last_contact": LAST_CONTACT}
+
+
+@kernel
+def record_watched(bodies: Bodies, watched: int, watch_record: Floats) -> None:
+    """Count the step, and note the largest force on a body and the first and last step on which it was touched.
+
+    Writes to watch_record.
+    """
+    watch_record[STEPS] += 1.0
+    force = row(bodies.force, watched)
+    size = dot(force, force) ** 0.5
+    if size > 0.0:
+        watch_record[PEAK_FORCE] = max(watch_record[PEAK_FORCE], size)
+        if watch_record[FIRST_CONTACT] == 0.0:
+            watch_record[FIRST_CONTACT] = watch_record[STEPS]
+        watch_record[LAST_CONTACT] = watch_record[STEPS]

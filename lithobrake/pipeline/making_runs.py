@@ -1,0 +1,62 @@
+"""The stages that make runs; whatever comes after only reads them."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from lithobrake.campaign import Runs, missing
+from lithobrake.pipeline.design_runs import DesignRuns
+from lithobrake.pipeline.designs import design_inputs, points, replicate_count
+from lithobrake.pipeline.expansions import screened_inputs
+from lithobrake.pipeline.job import Job
+from lithobrake.pipeline.site import gravity_warning
+from lithobrake.pipeline.touchdowns import drawn_rows, touchdown_keys, touchdowns
+
+
+def make_screening_runs(job: Job) -> None:
+    """Make the runs in which all inputs vary, at the nodes of the screening design."""
+    # Said before the landings are made, as it may be a reason not to make them.
+    warning = gravity_warning(job.study)
+    if warning:
+        job.say(warning)
+    make_runs(job, "screening")
+
+
+def make_refined_runs(job: Job) -> None:
+    """Make the runs in which the inputs vary that the screening keeps."""
+    make_runs(job, "refined", screened_inputs(job))
+
+
+def make_test_runs(job: Job) -> None:
+    """Make the runs that no expansion is fitted to: the kept inputs vary, then all of them."""
+    kept = screened_inputs(job)
+    for design in ("test_kept", "test_all"):
+        make_runs(job, design, kept)
+
+
+def make_runs(job: Job, design: str, kept: Sequence[str] = ()) -> None:
+    """Make the runs of a design, all points once, then again if asked; those that the ledger has are read from it.
+
+    Which runs they are is noted before they are made, so that whoever looks can tell them from all others.
+    Raises ValueError when too many have failed, or those that failed lie together.
+    """
+    inputs, x = tuple(design_inputs(job.study)), points(job.study, design, kept)
+    count, title = replicate_count(job.study, design), f"{design.replace('_', ' ')} runs"
+    titles = [f"{title}, {number} of {count} times" if count > 1 else title for number in range(1, count + 1)]
+    rows = [drawn_rows(job.study, inputs, x, replicate) for replicate in range(count)]
+    keys = [key for replicate, one in enumerate(rows) for key in touchdown_keys(job.study, one, replicate)]
+    job.folder.note_runs(design, keys)
+    made = [touchdowns(job, rows[replicate], words, replicate) for replicate, words in enumerate(titles)]
+    runs = Runs([record for one in made for record in one.records], sum(one.reused_count for one in made))
+    _account(job, design, runs, np.tile(x, (count, 1)), inputs)
+    DesignRuns.of(runs).save(job.folder, design)
+
+
+def _account(job: Job, design: str, runs: Runs, x: np.ndarray, inputs: Sequence[str]) -> None:
+    """Say what of a design was known before, and what is missing. Raises ValueError when too much is."""
+    name, distinct = design.replace("_", " "), len({record.key for record in runs.records})
+    if runs.reused_count:
+        job.say(f"{name}: {runs.reused_count} of {distinct} runs were known and are reused")
+    lost = missing(x, runs.reasons, inputs, job.study.campaign.failed_share)
+    if lost:
+        job.say(f"{name}: {lost}")

@@ -1,0 +1,197 @@
+"""Where on which body a study lands: the body, the place, the local frame, and what a thing at rest there feels."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+from functools import lru_cache
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from lithobrake.study import BUILT_IN_BODIES, Study, StudyError
+from lithobrake.study.checks import settling_problems
+from lithobrake.study.quantity import Scalar, Uncertain, median, usual_reach
+
+if TYPE_CHECKING:
+    from lithobrake.smallbody import Body, Shape
+
+# The numbers of a place, in the order of their columns in flights.csv.
+SITE_KEYS = (
+    "latitude_deg", "longitude_deg", "heading_deg", "north_error", "east_error", "mass", "spin_period",
+    "partner_longitude_deg",
+)  # fmt: skip
+# Below this share of gravity the acceleration at a place counts as nearly none.
+NEARLY_NONE = 0.05
+# Accelerations that differ by this factor, or in direction, are told to the user.
+UNLIKE = 3.0
+
+
+def site_values(study: Study) -> dict[str, Scalar]:
+    """All numbers of SITE_KEYS, fixed or uncertain; what the study leaves open is the built-in body's.
+
+    Where the partner stands when the lander leaves is not known unless the study says so: drawn evenly.
+    """
+    given = {name.removeprefix("site."): value for name, value in study.site_values().items()}
+    body = _body(study)
+    values: dict[str, Scalar] = {"mass": body.mass, "spin_period": body.spin_period, "partner_longitude_deg": 0.0}
+    if body.partner is not None and body.orbit.rate != 0.0:
+        values["partner_longitude_deg"] = Uncertain("uniform", {"lower": -180.0, "upper": 180.0})
+    values |= given
+    return {key: values[key] for key in SITE_KEYS}
+
+
+def site_medians(study: Study) -> dict[str, float]:
+    """The same with uncertain numbers at their median."""
+    return {key: median(value) for key, value in site_values(study).items()}
+
+
+def has_heading(study: Study) -> bool:
+    """Whether the heading has a median: one that is uncertain over the circle has none.
+
+    It has none where a draw points hardly anywhere in the mean (resultant length below a tenth; an even spread over
+    325 degrees has that). Source: Mardia and Jupp (2000), Directional Statistics, section 2.3.
+    """
+    heading = site_values(study)["heading_deg"]
+    if not isinstance(heading, Uncertain):
+        return True
+    draws = np.radians(heading.to_chaos().ppf((np.arange(1000) + 0.5) / 1000))
+    return bool(np.hypot(np.cos(draws).mean(), np.sin(draws).mean()) > 0.1)
+
+
+def site_body(study: Study) -> "Body":
+    """The body of the study with its shape and partner, at the medians of its mass and spin period."""
+    values = site_medians(study)
+    return replace(_body(study), mass=values["mass"], spin_period=values["spin_period"])
+
+
+def _body(study: Study) -> "Body":
+    """The body with its built-in mass and spin, or with 1 where it comes from a mesh, which has none."""
+    from lithobrake.smallbody import Body
+
+    if study.site.body in BUILT_IN_BODIES:
+        return _built_in(study.site.body, study.site.partner)
+    return Body(_read_shape(Path(study.site.body), study.site.unit), mass=1.0, spin_period=1.0)
+
+
+@lru_cache(maxsize=4)
+def _built_in(name: str, partner: bool) -> "Body":
+    from lithobrake import smallbody
+
+    body: Body = getattr(smallbody, name)(partner=partner)
+    return body
+
+
+@lru_cache(maxsize=1)
+def _read_shape(path: Path, unit: str) -> "Shape":
+    from lithobrake.smallbody import Shape
+
+    return Shape.read(path, unit)
+
+
+def frames(body: "Body", site: Mapping[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+    """Origins on the surface [m], shape [count, 3], and axes in their rows, [count, 3, 3], for columns of SITE_KEYS.
+
+    The delivery error moves the place north and east; the frame is that of where it ends.
+    """
+    names = ("latitude_deg", "longitude_deg", "heading_deg", "north_error", "east_error")
+    columns = np.column_stack([site[name] for name in names])
+    # Most studies have one site, or few: each is looked for once.
+    unique, index = np.unique(columns, axis=0, return_inverse=True)
+    latitude, longitude, heading, north, east = unique.T
+    moved = (north != 0.0) | (east != 0.0)
+    if moved.any():
+        there = _delivered(body.shape, latitude[moved], longitude[moved], north[moved], east[moved])
+        latitude[moved], longitude[moved] = body.shape.latitude_longitude(there)
+    origin, axes = body.local_frame(latitude, longitude, heading)
+    return origin[index.reshape(-1)], axes[index.reshape(-1)]
+
+
+def _delivered(
+    shape: "Shape", latitude_deg: np.ndarray, longitude_deg: np.ndarray, north: np.ndarray, east: np.ndarray
+) -> np.ndarray:
+    """Directions from the centre, shape [count, 3], in which places lie that an error [m] moved north and east.
+
+    The way is that of a great circle as long as the error on a ball of the radius at the site: whatever its length, it
+    ends on the body, and on a ball it is the way over the ground.
+    """
+    latitude, longitude = np.radians(latitude_deg), np.radians(longitude_deg)
+    sine, cosine, along, across = np.sin(latitude), np.cos(latitude), np.cos(longitude), np.sin(longitude)
+    up = np.stack([cosine * along, cosine * across, sine], axis=1)
+    northward = np.stack([-sine * along, -sine * across, cosine], axis=1)
+    eastward = np.stack([-across, along, np.zeros_like(along)], axis=1)
+    way = np.hypot(north, east)
+    turn = way / np.linalg.norm(shape.surface_point(latitude_deg, longitude_deg), axis=1)
+    ahead = (north / way)[:, None] * northward + (east / way)[:, None] * eastward
+    there: np.ndarray = np.cos(turn)[:, None] * up + np.sin(turn)[:, None] * ahead
+    return there
+
+
+def push_at_site(study: Study) -> np.ndarray:
+    """Acceleration [m/s2] of a point at rest on the ground at the site, at medians: along heading, left of it, out."""
+    body, values = site_body(study), site_medians(study)
+    origin, axes = frames(body, {key: np.array([value]) for key, value in values.items()})
+    push: np.ndarray = axes[0] @ body.effective_acceleration(origin[0])
+    return push
+
+
+def site_warning(study: Study) -> str | None:
+    """What it means that the ground at the site does not hold what lies on it, or hardly; None where it does."""
+    body, values = site_body(study), site_medians(study)
+    origin, _ = frames(body, {key: np.array([value]) for key, value in values.items()})
+    outward, pull = float(push_at_site(study)[2]), float(np.linalg.norm(body.acceleration(origin[0])))
+    if outward < -NEARLY_NONE * pull:
+        return None
+    where = f"At the site gravity ({pull:.2g} m/s2) and rotation together"
+    end = "a lander that comes down again within the time of flight is not one that stays."
+    if outward > NEARLY_NONE * pull:
+        return f"{where} push outwards by {outward:.2g} m/s2: what lies there is thrown off, so {end}"
+    words = "push outwards" if outward > 0.0 else "hold"
+    # Metres that a fall or a drift covers in an hour say more than micrometres per second squared.
+    hour = 0.5 * abs(outward) * 3600.0**2
+    return (
+        f"{where} nearly cancel: they {words} by only {abs(outward):.2g} m/s2, {hour:.2g} m in the first hour from "
+        f"rest. The least uncertainty of mass, spin or shape turns that round, so {end}"
+    )
+
+
+def gravity_warning(study: Study) -> str | None:
+    """What it means that touchdowns and flights feel another acceleration; None where the two are alike."""
+    at_site = -float(push_at_site(study)[2])
+    given = study.surface.gravity
+    lower, upper = (at_site, at_site) if isinstance(given, str) else usual_reach(given)
+    # That end of surface.gravity which is nearest to the acceleration at the site.
+    nearest = min(max(at_site, lower), upper)
+    if nearest == at_site or (nearest * at_site > 0.0 and 1.0 / UNLIKE < nearest / at_site < UNLIKE):
+        return None
+    reached = f"{lower:.3g}" if lower == upper else f"{lower:.3g} to {upper:.3g}"
+    settle = "" if at_site > 0.0 else " and bed.settle_gravity an inward value"
+    return (
+        f"surface.gravity is {reached} m/s2 inwards, and at the site gravity and rotation together are "
+        f"{abs(at_site):.3g} m/s2 {'inwards' if at_site > 0.0 else 'outwards'}: touchdowns and flights are made under "
+        'different accelerations; write surface.gravity = "site"'
+        f"{settle}, or choose the site that the touchdown is meant for"
+    )
+
+
+def escape_speed(study: Study) -> float:
+    """Speed [m/s], in axes that do not turn, with which a point at the site escapes the body alone, at medians."""
+    body, values = site_body(study), site_medians(study)
+    origin, _ = frames(body, {key: np.array([value]) for key, value in values.items()})
+    return math.sqrt(2.0 * float(body.potential(origin[0])))
+
+
+def with_site_gravity(study: Study, name: str = "study.toml") -> Study:
+    """The study with surface.gravity = "site" replaced by the acceleration there; negative points outward.
+
+    Raises StudyError, with the name of the study file, where no bed would settle under it.
+    """
+    if study.surface.gravity != "site":
+        return study
+    gravity = -float(push_at_site(study)[2])
+    problems = [f"{name}: {text}" for text in settling_problems(study, gravity)]
+    if not math.isfinite(gravity):
+        problems = [f"{name}: surface.gravity: the acceleration at the site is not finite; mend site.mass or its mesh"]
+    if problems:
+        raise StudyError(problems)
+    return study.model_copy(update={"surface": study.surface.model_copy(update={"gravity": gravity})})

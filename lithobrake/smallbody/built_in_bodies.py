@@ -1,0 +1,115 @@
+"""Built-in bodies, generated from published extents."""
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lithobrake.smallbody.body import Body, Partner
+from lithobrake.smallbody.shape import Shape
+
+# Ecliptic longitude and latitude of the pole [deg], of spin and mutual orbit: right ascension 69.327 and declination
+# -72.725 deg (J2000) in the frames kernel of the Didymos system, version 007 (Nair 2023, JHU/APL; orbit solution 542,
+# before the impact of DART). No flight depends on it.
+DIDYMOS_POLE = (310.0, -80.6)
+MUTUAL_PERIOD = 11.3674 * 3600.0  # [s], since the impact of DART; Naidu et al. (2024)
+RINGS = 15  # between a pole and the band along the equator: 8 * 15 * 16 = 1920 facets
+
+
+def didymos(*, partner: bool = True) -> Body:
+    """(65803) Didymos: a top shape with an equatorial ridge, extents 851 x 849 x 620 m, 5.32e11 kg, 2.2600 h.
+
+    partner: Dimorphos attracts and may be hit; False leaves Didymos alone, as the published landing dispersion does.
+
+    The flanks are an ellipsoid; the ridge stands 20 m above it, narrowing over 12 degrees of latitude. Both are choices
+    within the 15 m by which the extents are known; no boulder or crater is drawn. The pole is DIDYMOS_POLE.
+
+    Sources: extents (+-15 m) Daly et al. (2023), Successful kinetic impact into an asteroid for planetary defence,
+    Nature 616, 443-447; period before the DART impact Naidu et al. (2020), Radar observations and a physical model of
+    binary near-Earth asteroid 65803 Didymos, Icarus 348, 113777. The mass is a choice inside the published 5.4 +- .4
+    e11 kg of the system less Dimorphos; the density follows as 2396 kg/m3, published is 2400 +- 300.
+    """
+    other = Partner(_dimorphos(), period=MUTUAL_PERIOD, longitude_deg=0.0) if partner else None
+    return replace(_didymos(), partner=other)
+
+
+def dimorphos(*, partner: bool = True) -> Body:
+    """Dimorphos: an ellipsoid of extents 177 x 174 x 116 m, 4.3e9 kg, turning in 11.3674 h, its orbit's period.
+
+    partner: Didymos attracts and may be hit; it stands over longitude 0 at all times. False leaves Dimorphos alone.
+
+    One face towards Didymos is assumed, not measured: the impact of DART may have set it tumbling. Its shape is that
+    before the impact. The orbit is taken as a circle (published eccentricity below .03) in the equator of Didymos; its
+    radius follows from period and masses as 1149 m, published are 1144 +- 70 m. The pole is that of the orbit,
+    DIDYMOS_POLE.
+
+    Sources: extents and mass Daly et al. (2023), Nature 616, 443-447; period Naidu et al. (2024), Orbital and physical
+    characterization of asteroid Dimorphos following the DART impact, Planetary Science Journal 5, 74; distance and
+    eccentricity Thomas et al. (2023), Orbital period change of Dimorphos due to the DART kinetic impact, Nature 616,
+    448-451, and Scheirich et al. (2024), Dimorphos orbit determination from mutual events photometry, Planetary Science
+    Journal 5, 17.
+    """
+    # From Dimorphos, which always shows the same face, Didymos never moves; it turns once in its own period.
+    other = Partner(_didymos(), period=MUTUAL_PERIOD, longitude_deg=0.0) if partner else None
+    return replace(_dimorphos(), partner=other)
+
+
+def _didymos() -> Body:
+    return Body(top_shape((851.0, 849.0, 620.0), ridge_height=20.0, name="didymos"), 5.32e11, 2.26 * 3600.0, "didymos")
+
+
+def _dimorphos() -> Body:
+    shape = top_shape((177.0, 174.0, 116.0), ridge_height=0.0, name="dimorphos")
+    return Body(shape, 4.3e9, MUTUAL_PERIOD, "dimorphos")
+
+
+def top_shape(
+    extents: tuple[float, float, float], ridge_height: float, *, ridge_width_deg: float = 12.0, name: str = "top"
+) -> Shape:
+    """An ellipsoid with a ridge around its equator; its bounding box has exactly the given extents [m].
+
+    The ridge adds ridge_height exp(-(latitude / ridge_width)**2) [m] to the radius. The mesh has a row of facets
+    standing upright along the equator, so the normal at latitude 0, longitude 0 is +x.
+    """
+    directions, faces = _rings()
+    semi = 0.5 * np.array(extents) - np.array([ridge_height, ridge_height, 0.0])
+    radius = 1.0 / np.linalg.norm(directions / semi, axis=1)
+    latitude = np.degrees(np.arcsin(directions[:, 2]))
+    vertices = directions * (radius + ridge_height * np.exp(-((latitude / ridge_width_deg) ** 2)))[:, None]
+    # Facets cut the corners of a smooth curve; half a percent brings the box back to what was published.
+    vertices *= np.array(extents) / (vertices.max(axis=0) - vertices.min(axis=0))
+    return Shape(vertices, faces, name=name)
+
+
+def _rings() -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """Unit directions and facets: rings of 4, 8, 12 ... points around each pole, joined along the equator."""
+    spacing = np.pi / (2 * RINGS + 1)
+    first = [0, *(1 + np.cumsum([4 * i for i in range(RINGS)])).tolist()]
+    angles = [np.zeros(1)] + [(np.arange(4 * i) + 0.5) * (0.5 * np.pi / i) for i in range(1, RINGS + 1)]
+    turns = np.concatenate(angles)
+    tilt = np.repeat(0.5 * np.pi - spacing * np.arange(RINGS + 1), [len(a) for a in angles])
+    cap = np.stack([np.cos(tilt) * np.cos(turns), np.cos(tilt) * np.sin(turns), np.sin(tilt)], axis=1)
+    cap[0] = (0.0, 0.0, 1.0)
+    facets = [facet for ring in range(RINGS) for facet in _strip(ring, first)]
+    count, size = len(cap), 4 * RINGS
+    north = np.array(facets, dtype=np.int64)
+    rim = first[RINGS] + np.arange(size)
+    after = first[RINGS] + (np.arange(size) + 1) % size
+    band = np.concatenate(
+        [np.stack([rim, rim + count, after + count], axis=1), np.stack([rim, after + count, after], axis=1)]
+    )
+    south = north[:, ::-1] + count
+    return np.concatenate([cap, cap * [1.0, 1.0, -1.0]]), np.concatenate([north, south, band])
+
+
+def _strip(ring: int, first: list[int]) -> list[list[int]]:
+    """Facets between one ring and the next, which has one more point in each of the four sectors."""
+    facets = []
+    for sector in range(4):
+        for i in range(ring + 1):
+            outer = [first[ring + 1] + (sector * (ring + 1) + i + step) % (4 * (ring + 1)) for step in (0, 1)]
+            inner = [first[ring] + (sector * ring + i + step) % max(4 * ring, 1) for step in (0, 1)]
+            facets.append([inner[0], *outer])
+            if i < ring:
+                facets.append([inner[0], outer[1], inner[1]])
+    return facets

@@ -1,0 +1,66 @@
+"""The table of the study file that says what the lander touches: the grains' sizes and their bed."""
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from lithobrake.study.quantity import Number, Numbers, Whole
+from lithobrake.study.section import Section
+
+Metres = Annotated[float, Number("m", above=0)]
+
+
+class Constant(Section):
+    """All grains have one size."""
+
+    distribution: Literal["constant"]
+    value: Metres
+
+
+class Between(Section):
+    """Grain sizes spread evenly between two limits."""
+
+    distribution: Literal["uniform"]
+    lower: Metres
+    upper: Metres
+
+
+class Bell(Section):
+    """Grain sizes with a normal distribution, cut at two limits."""
+
+    distribution: Literal["normal"]
+    mean: Metres
+    std: Metres
+    lower: Metres
+    upper: Metres
+
+
+class PowerLaw(Section):
+    """Number of grains falling with size as diameter**-exponent, between two limits."""
+
+    distribution: Literal["power_law"]
+    exponent: Annotated[float, Number("")]
+    lower: Metres
+    upper: Metres
+
+
+class BedSection(Section):
+    """The surface: grains are convex hulls of random clouds of points, poured into an open box and settled."""
+
+    grain_count: Annotated[int, Whole("", at_least=10, at_most=1_000_000)] = Field(examples=["150"])
+    """How many grains."""
+    width: Annotated[tuple[float, float], Numbers("m", count=2, above=0)] = Field(examples=["[0.55, 0.55]"])
+    """Inner width of the box along x and y; at least twice the lander's largest diameter."""
+    diameter: Annotated[Constant | Between | Bell | PowerLaw, Field(discriminator="distribution")] = Field(
+        examples=['{ distribution = "constant", value = 0.08 }']
+    )
+    """Diameter of the sphere of equal volume: constant (value), uniform (lower, upper), normal (mean, std, lower,
+    upper) or power_law (exponent, lower, upper)."""
+    bed_count: Annotated[int, Whole("", at_least=1, at_most=1000)] = 1
+    """How many beds; with more than one, each run draws its bed."""
+    cloud_point_count: Annotated[int, Whole("", at_least=4, at_most=100)] = 14
+    """Points in the random cloud whose hull is a grain."""
+    pour_gravity: Annotated[float, Number("m/s2", above=0)] = 9.81
+    """Acceleration under which the grains fall; it is then lowered slowly to the one they settle under."""
+    settle_gravity: Annotated[float, Number("m/s2", above=0)] | None = None
+    """Acceleration under which the bed comes to rest; absent: surface.gravity, which must then point inward."""

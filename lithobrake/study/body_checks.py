@@ -1,0 +1,141 @@
+"""What is wrong with the body of a study, found before anything runs: its mesh, its density, its size, the delivery."""
+
+import math
+import os
+import warnings
+from collections.abc import Iterator
+from pathlib import Path
+
+from lithobrake.study.flight_sections import BUILT_IN_BODIES
+from lithobrake.study.quantity import Scalar, usual_reach
+from lithobrake.study.refusals import closest, show
+from lithobrake.study.study import Study
+
+# Bulk density [kg/m3]: nuclei of comets are near 500 (67P: 533, Paetzold et al. 2016, Nature 530), iron-nickel is 7900.
+LIGHTEST, HEAVIEST = 300.0, 8000.0
+# Diameter of the ball of equal volume [m]: from the smallest asteroids seen to Ceres.
+SMALLEST, LARGEST = 1.0, 1e6
+# Spin period [s]: the shortest known is that of 2020 HS7, 3.0 s (Beniyama et al. 2022, PASJ 74, 877).
+FASTEST = 1.0
+
+
+def body_problems(study: Study) -> Iterator[str]:
+    """One sentence for each thing wrong; a mesh is read for that, and no kernel is compiled or loaded."""
+    site = study.site
+    yield from _spin_problems(study)
+    if site.body in BUILT_IN_BODIES:
+        yield from _unit_problems(study)
+        # Loading a built-in shape takes a second: only where the study changes what is known to be right.
+        if site.mass is None and not any(_largest(value) for value in _delivery(study).values()):
+            return
+    elif lacking := list(_lacking(study)):
+        yield from lacking
+        return
+    try:
+        volume = _volume(study)
+    except (ValueError, OSError) as error:
+        yield f"site.body: {error}"
+        return
+    # In a wrong unit every delivery would be too wide, too.
+    yield from list(_bulk_problems(study, volume)) or _delivery_problems(study, _ball_radius(volume))
+
+
+def _unit_problems(study: Study) -> Iterator[str]:
+    if study.site.unit != "m":
+        yield f'site.unit is "{study.site.unit}", and site.body is built in; a unit goes with a mesh: leave it out'
+
+
+def _spin_problems(study: Study) -> Iterator[str]:
+    shortest = math.inf if study.site.spin_period is None else usual_reach(study.site.spin_period)[0]
+    if shortest < FASTEST:
+        yield (
+            f"site.spin_period reaches down to {shortest:.4g} s; allowed: at least {FASTEST:g} s, as no known body "
+            "turns faster; is it in hours or days? write seconds"
+        )
+
+
+def _lacking(study: Study) -> Iterator[str]:
+    """What a body from a mesh needs and has not."""
+    if not os.path.isfile(study.site.body):
+        names = ", ".join(f'"{name}"' for name in BUILT_IN_BODIES)
+        meant = closest(Path(study.site.body).name, BUILT_IN_BODIES)
+        yield f"site.body is {show(study.site.body)}; allowed: {names} or the path of a mesh; no such file{meant}"
+        return
+    for key in ("mass", "spin_period"):
+        if getattr(study.site, key) is None:
+            yield f"site.{key} is missing; a body read from a mesh needs its {key.replace('_', ' ')}"
+
+
+def _volume(study: Study) -> float:
+    """Volume of the body [m3]. Raises ValueError for a mesh that is no body, OSError for one that may not be read."""
+    site = study.site
+    if site.body in BUILT_IN_BODIES:
+        from lithobrake import smallbody
+
+        return float(getattr(smallbody, site.body)(partner=False).shape.volume)
+    # Only a mesh needs arrays: whatever else is refused is refused before they are imported.
+    from lithobrake.mesh import closed_faces, holds_origin, volume_of
+    from lithobrake.mesh_files import read_mesh
+
+    vertices, faces = read_mesh(site.body, site.unit)
+    with warnings.catch_warnings():
+        # Whoever uses the mesh is warned of what is mended in it.
+        warnings.simplefilter("ignore")
+        faces = closed_faces(vertices, faces, site.body)
+    if not holds_origin(vertices, faces):
+        raise ValueError(
+            f"{site.body}: the origin, about which the body turns, lies outside of it, so latitude and longitude name "
+            "no place; move the vertices"
+        )
+    return volume_of(vertices, faces)
+
+
+def _bulk_problems(study: Study, volume: float) -> Iterator[str]:
+    """A body that is too light, too heavy, too small or too large, with the unit that was likely meant."""
+    if study.site.mass is None:
+        return
+    from lithobrake.mesh_files import UNITS
+
+    low, high = (mass / volume for mass in usual_reach(study.site.mass))
+    diameter, here = 2.0 * _ball_radius(volume), UNITS[study.site.unit]
+    fitting = [unit for unit, length in UNITS.items() if _is_a_body(low, high, diameter, length / here)]
+    if study.site.unit in fitting:
+        return
+    likely = fitting[0] if fitting and study.site.body not in BUILT_IN_BODIES else None
+    remedy = f'is the mesh in {likely}? then set site.unit = "{likely}"' if likely else "mend site.mass or the mesh"
+    density = f"{low:.4g} kg/m3" if low == high else f"{low:.4g} to {high:.4g} kg/m3"
+    yield (
+        f"site.body has {volume:.4g} m3 and is {diameter:.4g} m across, and site.mass makes that a bulk density of "
+        f"{density}; allowed: {LIGHTEST:g} to {HEAVIEST:g} kg/m3, as bodies from comets to iron have, and "
+        f"{SMALLEST:g} to {LARGEST:g} m; {remedy}"
+    )
+
+
+def _is_a_body(low: float, high: float, diameter: float, longer: float) -> bool:
+    """Tell whether densities [kg/m3] and a diameter [m] are a small body's, with all lengths so many times longer."""
+    dense = low / longer**3 >= LIGHTEST and high / longer**3 <= HEAVIEST
+    return dense and SMALLEST <= diameter * longer <= LARGEST
+
+
+def _delivery_problems(study: Study, radius: float) -> Iterator[str]:
+    """Errors of delivery that are no error but another place; radius [m]: of the ball of equal volume."""
+    limit = 0.5 * math.pi * radius
+    for name, value in _delivery(study).items():
+        if _largest(value) > limit:
+            yield (
+                f"site.{name} reaches {_largest(value):.4g} m; allowed: at most {limit:.4g} m, a quarter of the way "
+                f"round a body of {radius:.4g} m radius; lower it, or move the site"
+            )
+
+
+def _delivery(study: Study) -> dict[str, Scalar]:
+    return {name: getattr(study.site, name) for name in ("north_error", "east_error")}
+
+
+def _largest(value: Scalar) -> float:
+    return max(abs(end) for end in usual_reach(value))
+
+
+def _ball_radius(volume: float) -> float:
+    """Radius [m] of the ball of a volume [m3]."""
+    return (0.75 * volume / math.pi) ** (1.0 / 3.0)

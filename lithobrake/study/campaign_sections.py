@@ -1,0 +1,33 @@
+"""The tables of the study file that say how runs are made, and by which program."""
+
+from typing import Annotated
+
+from pydantic import Field
+
+from lithobrake.study.quantity import MaybeUncertain, Number, Scalar, Whole
+from lithobrake.study.section import Section
+
+
+class CampaignSection(Section):
+    """How runs are made, and how many may fail; nothing here changes what a run gives."""
+
+    wall_limit: Annotated[float, Number("s", above=0)] | None = None
+    """Longest time that one run may take on the clock; it is then ended and counts as failed. Absent: any time."""
+    memory_limit: Annotated[float, Number("bytes", above=0)] | None = None
+    """Most memory that one run may hold, with all that it starts; above that it is ended. Absent: any (Linux only)."""
+    retry_count: Annotated[int, Whole("", at_least=0, at_most=100)] = 1
+    """How often a run that failed is tried again."""
+    failed_share: Annotated[float, Number("", at_least=0, below=1)] = 0.05
+    """Largest share of failed runs of a design with which an expansion is still fitted."""
+
+
+class SolverSection(Section):
+    """A program of your own that makes the touchdowns in place of this one (docs/own_solver.md)."""
+
+    command: str | None = None
+    """Its command line, started in a folder for each run, where it reads inputs.json and writes outputs.json; words
+    that name files count from the study file. Absent: this program's own soil."""
+    inputs: dict[str, Annotated[Scalar, MaybeUncertain("")]] = Field(default={})
+    """Numbers that only your program knows, by names of your own."""
+    function: Annotated[str | None, Field(exclude=True)] = None
+    """Identity of a Python function in place of the program; `lithobrake.run(study, model=...)` sets it."""

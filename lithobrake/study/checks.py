@@ -1,0 +1,206 @@
+"""What is wrong between the keys of a study that are each right in themselves: looked at before anything runs."""
+
+import math
+import os
+import re
+import shlex
+import shutil
+from collections.abc import Iterator
+from pathlib import Path
+
+from lithobrake.study.body_checks import body_problems
+from lithobrake.study.contact_checks import contact_problems, inertia_problems
+from lithobrake.study.quantity import reach, uncertain
+from lithobrake.study.refusals import show
+from lithobrake.study.study import Study
+
+# A bed narrower than this many lander diameters would hold the lander between its walls.
+BED_WIDTH_PER_LANDER = 2.0
+# An attitude is scaled to length 1; one so much longer or shorter is a slip, and its square may not be a number.
+LONGEST_QUATERNION = 1e3
+# Fewer grains across are no bed.
+BED_WIDTH_PER_GRAIN = 3.0
+
+
+def problems(study: Study) -> Iterator[str]:
+    """One sentence for each thing that is wrong between keys that are each right in themselves."""
+    yield from _shape_problems(study)
+    yield from inertia_problems(study)
+    yield from _grain_problems(study)
+    yield from _place_problems(study)
+    yield from _design_problems(study)
+    yield from _solver_problems(study)
+    if study.has_soil:
+        yield from contact_problems(study)
+    gravity = study.surface.gravity
+    if not isinstance(gravity, str):
+        yield from settling_problems(study, reach(gravity)[0])
+    yield from body_problems(study)
+
+
+def settling_problems(study: Study, gravity: float) -> Iterator[str]:
+    """A bed that is to settle under the acceleration of the touchdown [m/s2], which does not press it down."""
+    if study.bed.settle_gravity is None and gravity <= 0.0:
+        yield (
+            "surface.gravity reaches zero or points outward, and no bed settles under that; "
+            "give bed.settle_gravity an inward value, say 2e-5 m/s2 (the touchdown keeps surface.gravity)"
+        )
+
+
+def _grain_problems(study: Study) -> Iterator[str]:
+    sizes = study.bed.diameter.model_dump()
+    largest = sizes["upper"] if "upper" in sizes else sizes["value"]
+    if sizes.get("lower", 0) >= largest:
+        yield f"bed.diameter reaches from {sizes['lower']:g} to {largest:g} m; allowed: lower below upper; swap them"
+    limit = min(study.bed.width) / BED_WIDTH_PER_GRAIN
+    # A grain of exactly a third may not fail by the rounding of the division.
+    if largest > limit * (1 + 1e-12):
+        yield (
+            f"bed.diameter reaches to {largest:g} m; allowed: at most {limit:.3g} m, a third of bed.width; "
+            "widen the bed or take smaller grains"
+        )
+
+
+def _shape_problems(study: Study) -> Iterator[str]:
+    lander, takes = study.lander, {"box": "edges", "sphere": "diameter", "hull": "file"}
+    needed = takes[lander.shape]
+    for key in takes.values():
+        if (getattr(lander, key) is None) == (key == needed):
+            verb = "is missing" if key == needed else "does not go with this shape"
+            yield f'lander.{key} {verb}; allowed: shape = "{lander.shape}" takes {needed} and no other of these'
+    if lander.shape == "hull" and lander.file is not None and not os.path.isfile(lander.file):
+        yield f"lander.file is {show(lander.file)}; no such file; give the path of an OBJ or STL mesh"
+        return
+    if lander.unit != "m" and lander.file is None:
+        yield f'lander.unit is "{lander.unit}", and there is no lander.file; a unit goes with a mesh: leave it out'
+    if getattr(lander, needed) is None:
+        return
+    try:
+        radius = lander_radius(study)
+    except (ValueError, OSError) as error:
+        yield f"lander.file: {error}"
+        return
+    width, unit = min(study.bed.width), f', or name the unit of lander.file (lander.unit is "{lander.unit}")'
+    if width < BED_WIDTH_PER_LANDER * 2 * radius:
+        yield (
+            f"bed.width is {width:g} m at its narrowest; allowed: at least {BED_WIDTH_PER_LANDER * 2 * radius:.3g} m, "
+            f"twice the largest diameter of the lander ({2 * radius:.3g} m); widen the bed and add grains"
+            f"{unit if lander.file else ''}"
+        )
+
+
+def lander_radius(study: Study) -> float:
+    """Largest distance of a point of the lander from its centre [m]. Raises ValueError for a mesh that is refused."""
+    lander = study.lander
+    if lander.edges is not None:
+        return math.hypot(*lander.edges) / 2
+    if lander.diameter is not None:
+        return reach(lander.diameter)[1] / 2
+    from lithobrake.touchdown import read_hull
+
+    hull = read_hull(Path(str(lander.file)), lander.unit)
+    return float(((hull.vertices - hull.centroid) ** 2).sum(axis=1).max() ** 0.5)
+
+
+def _place_problems(study: Study) -> Iterator[str]:
+    impact, half = study.impact, [width / 2 for width in study.bed.width]
+    if impact.place is not None and impact.region is not None:
+        yield "impact.place and impact.region are both given; keep one: a place for all runs, or a region to draw from"
+    length = math.hypot(*impact.orientation) if isinstance(impact.orientation, tuple) else 1.0
+    if not 1.0 / LONGEST_QUATERNION <= length <= LONGEST_QUATERNION:
+        yield (
+            f"impact.orientation is {show(impact.orientation)}, a quaternion of length {length:.3g}; "
+            f"allowed: {1.0 / LONGEST_QUATERNION:g} to {LONGEST_QUATERNION:g}, which is then made 1; "
+            "write [1, 0, 0, 0] for no rotation"
+        )
+    for key, spot in (("place", impact.place), ("region", impact.region)):
+        if spot is None:
+            continue
+        for axis, limit in zip("xy", half, strict=True):
+            value = getattr(spot, axis)
+            lower, upper = value if isinstance(value, tuple) else reach(value)
+            if lower < -limit or upper > limit:
+                yield (
+                    f"impact.{key}.{axis} reaches from {lower:g} to {upper:g} m; allowed: -{limit:g} to {limit:g} m, "
+                    "counted from the middle of the bed; move it inside or widen the bed"
+                )
+
+
+def _design_problems(study: Study) -> Iterator[str]:
+    from lithobrake.chaos import smolyak_count, term_count
+
+    input_count = len(uncertain(study.touchdown_values()))
+    if input_count == 0:
+        yield (
+            "nothing in grain, lander, impact or surface is uncertain; give at least one key a distribution, "
+            'such as young_modulus = { distribution = "log_uniform", lower = 1e6, upper = 1e8 }'
+        )
+        return
+    yield from _unbounded_problems(study)
+    yield from _replicate_problems(study)
+    design = study.design
+    for stage, counts in (("screening", [input_count]), ("refined", range(1, input_count + 1))):
+        level, degree = getattr(design, f"{stage}_level"), getattr(design, f"{stage}_degree")
+        point_count, smolyak = getattr(design, f"{stage}_count"), design.method == "smolyak"
+        key = f"design.{stage}_{'level' if smolyak else 'count'}"
+        if smolyak == (point_count is not None):
+            yield (
+                f"design.{stage}_count {'does not go with' if smolyak else 'is missing; it is needed by'} "
+                f'design.method = "{design.method}"; allowed: "smolyak" takes levels, every other method counts'
+            )
+            continue
+        for count in counts:
+            found = smolyak_count(count, level) if smolyak else int(point_count or 0)
+            terms = term_count(count, degree)
+            if found < terms and (design.fit == "ols" or design.method == "fekete"):
+                where = f"{found} nodes of level {level}" if smolyak else f"{found} points of {key}"
+                yield (
+                    f"design.{stage}_degree is {degree}; with {count} inputs it has {terms} terms, more than the "
+                    f"{where}; lower the degree or raise {key}"
+                )
+                break
+
+
+def _unbounded_problems(study: Study) -> Iterator[str]:
+    """Inputs that have no end, on a grid that puts nodes at the ends."""
+    if study.design.method != "smolyak":
+        return
+    for name, value in uncertain(study.touchdown_values()).items():
+        if not all(map(math.isfinite, reach(value))):
+            yield (
+                f'{name} is {value.distribution}, which has no end, and design.method = "smolyak" puts runs at the '
+                "ends; give it two limits (truncated_normal, log_uniform, uniform, beta), or take another design.method"
+            )
+
+
+def _replicate_problems(study: Study) -> Iterator[str]:
+    """Runs that would be made several times to the same end."""
+    impact, count = study.impact, study.design.replicate_count
+    drawn = study.bed.bed_count > 1 or impact.region or "random" in (impact.azimuth_deg, impact.orientation)
+    if count > 1 and not drawn and study.has_soil:
+        yield (
+            f"design.replicate_count is {count}, but runs draw nothing by chance, so all {count} would be equal; "
+            'give them something to draw (bed.bed_count, impact.region, azimuth_deg or orientation "random") or write 1'
+        )
+
+
+def _solver_problems(study: Study) -> Iterator[str]:
+    solver = study.solver
+    if solver.command is None:
+        if solver.inputs and study.has_soil:
+            yield "solver.inputs has numbers, and solver.command is missing; give the command that reads them"
+        return
+    for name in solver.inputs:
+        # Names stand in figures and tables, where other characters have a meaning of their own.
+        if not re.fullmatch(r"[\w-]+", name):
+            yield f"solver.inputs.{name} is no name; allowed: letters, digits, _ and -; rename it"
+    try:
+        words = shlex.split(solver.command)
+    except ValueError as error:
+        yield f"solver.command is {solver.command!r}; {str(error).lower()}: close every quotation mark"
+        return
+    if not solver.command.isprintable():
+        yield f"solver.command is {solver.command!r}; allowed: what can be shown on one line; write plain words"
+        return
+    if not words or shutil.which(words[0]) is None:
+        yield f'solver.command begins with "{" ".join(words[:1])}", which is no program here; give its path'

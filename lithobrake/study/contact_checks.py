@@ -1,0 +1,73 @@
+"""What no contact law can answer, found before anything runs: how deep, how heavy, how light, and which inertia."""
+
+import math
+from collections.abc import Iterator
+
+from lithobrake.study.bed_section import Constant
+from lithobrake.study.quantity import usual_reach
+from lithobrake.study.study import Study
+
+# A lander heavier than so many of the largest grains outweighs every bed that a study may have; one lighter than the
+# same part of the smallest grain bounces off as from a rock. Neither says anything about a soil.
+GRAINS_PER_LANDER = 1e6
+# Mass anywhere adds at most as much to one moment of inertia as to the other two; a plate may miss that by rounding.
+ROUNDING = 1e-9
+
+
+def inertia_problems(study: Study) -> Iterator[str]:
+    """Moments of inertia that no body has."""
+    moments = study.lander.inertia
+    if moments is not None and 2.0 * max(moments) > sum(moments) + ROUNDING * max(moments):
+        shown = ", ".join(f"{moment:g}" for moment in moments)
+        yield (
+            f"lander.inertia is [{shown}] kg m2; allowed: each at most the sum of the other two, as every body has it; "
+            "mend it, or leave it out for a homogeneous lander"
+        )
+
+
+def contact_problems(study: Study) -> Iterator[str]:
+    """Landers and speeds at which the contact of the lander with a grain means nothing; for this program's own soil."""
+    sizes = study.bed.diameter
+    smallest, largest = (sizes.value,) * 2 if isinstance(sizes, Constant) else (sizes.lower, sizes.upper)
+    thin, dense = usual_reach(study.grain.density)
+    grain = _ball_mass(dense, largest)
+    least, most = _ball_mass(thin, smallest) / GRAINS_PER_LANDER, grain * GRAINS_PER_LANDER
+    low, high = usual_reach(study.lander.mass)
+    if low < least or high > most:
+        masses = f"is {low:.4g} kg" if low == high else f"reaches from {low:.4g} to {high:.4g} kg"
+        yield (
+            f"lander.mass {masses}; allowed: {least:.3g} to {most:.3g} kg, a millionth of the lightest grain to a "
+            "million of the heaviest, as no soil answers to another lander; change it or the grains"
+        )
+        return
+    radius = 0.5 * largest
+    depth = _first_overlap(study, min(high, grain), radius)
+    if depth > radius:
+        speed, modulus = usual_reach(study.impact.speed)[1], usual_reach(study.grain.young_modulus)[0]
+        yield (
+            f"impact.speed reaches {speed:.4g} m/s with grain.young_modulus down to {modulus:.3g} Pa, so the first "
+            f"contact with a grain is {depth:.3g} m deep; allowed: at most the radius of a grain, {radius:.3g} m; "
+            "lower the speed or raise Young's modulus"
+        )
+
+
+def _first_overlap(study: Study, mass: float, radius: float) -> float:
+    """Largest overlap [m] of a flat lander and a grain of a radius [m] at the highest speed.
+
+    mass [kg]: of the lighter of the two, which for unlike bodies is that of the collision. Source: Johnson (1985),
+    Contact Mechanics, Eq. (11.23): (15 m v^2 / (16 E sqrt(R)))^(2/5) of a Hertz collision.
+    """
+    grain, lander, give = study.grain, study.lander, 0.0
+    for modulus, ratio in (
+        (grain.young_modulus, grain.poisson_ratio),
+        (lander.young_modulus, grain.poisson_ratio if lander.poisson_ratio is None else lander.poisson_ratio),
+    ):
+        softest = usual_reach(grain.young_modulus if modulus is None else modulus)[0]
+        give += (1.0 - usual_reach(ratio)[0] ** 2) / softest
+    speed = usual_reach(study.impact.speed)[1]
+    return float((15.0 * mass * speed**2 * give / (16.0 * math.sqrt(radius))) ** 0.4)
+
+
+def _ball_mass(density: float, diameter: float) -> float:
+    """Mass [kg] of a ball of a density [kg/m3] and a diameter [m]; infinite for absurd ones."""
+    return density * math.pi / 6.0 * diameter * diameter * diameter

@@ -1,0 +1,56 @@
+"""The tables of the study file that say which runs are made, what is fitted to them and how it is sampled."""
+
+from typing import Annotated, Literal
+
+from pydantic import Field, StrictBool
+
+from lithobrake.outputs import OUTPUTS, OutputName
+from lithobrake.study.quantity import Number, Whole
+from lithobrake.study.section import Section
+
+Level = Annotated[int, Whole("", at_least=1, at_most=8)]
+Degree = Annotated[int, Whole("", at_least=1, at_most=15)]
+PointCount = Annotated[int, Whole("", at_least=2, at_most=1_000_000)] | None
+
+
+class DesignSection(Section):
+    """Which runs are made, and what is fitted to them: all inputs first, then those that matter at higher order."""
+
+    method: Literal["smolyak", "sobol_sequence", "latin_hypercube", "fekete"] = "smolyak"
+    """Where the runs stand: "smolyak", the paper's sparse grid, takes the levels and inputs with two limits;
+    "sobol_sequence" (a larger count keeps the runs of a smaller one), "latin_hypercube" and "fekete" (best conditioned
+    for the degree) take the counts and any input."""
+    screening_level: Level = Field(default=3, examples=["2"])
+    """Level of the Smolyak grid over all uncertain inputs."""
+    screening_count: PointCount = None
+    """Number of points over all uncertain inputs, for the other methods."""
+    screening_degree: Degree = Field(default=3, examples=["2"])
+    """Total degree of the expansion in all uncertain inputs."""
+    refined_level: Level = Field(default=5, examples=["3"])
+    """Level of the Smolyak grid over the kept inputs; the others stay at their median."""
+    refined_count: PointCount = None
+    """Number of points over the kept inputs, for the other methods."""
+    refined_degree: Degree = Field(default=5, examples=["3"])
+    """Total degree of the expansion in the kept inputs."""
+    replicate_count: Annotated[int, Whole("", at_least=1, at_most=1000)] = 1
+    """Runs at every point of these two designs, each with draws of its own (bed, place, azimuth, attitude): two or
+    more tell the scatter that no expansion removes."""
+    fit: Literal["ols", "lars", "omp", "gaussian_process", "best"] = "ols"
+    """How expansions are fitted: "ols", least squares of the degrees above (the paper's); the others choose their terms
+    themselves, "best" for each output by the smallest expected error."""
+    kept_share: Annotated[float, Number("", above=0, at_most=1)] = 0.9
+    """Share of the explained variance of every output of kept_outputs that the kept inputs must reach together."""
+    kept_outputs: Annotated[tuple[OutputName, ...], Field(min_length=1)] = OUTPUTS
+    """Outputs that decide which inputs are kept."""
+    test_count: Annotated[int, Whole("", at_least=2, at_most=100_000)] = Field(default=40, examples=["10"])
+    """Fresh random runs in each of the two test sets (kept inputs vary; all inputs vary)."""
+
+
+class MonteCarloSection(Section):
+    """Samples of the refined expansion."""
+
+    sample_count: Annotated[int, Whole("", at_least=100, at_most=100_000_000)] = 100_000
+    """How many samples."""
+    scatter: StrictBool = False
+    """Whether samples get the scatter from run to run on top of the expansion: what the expansion leaves of the refined
+    runs, drawn jointly for all outputs; samples.h5 then has them without it too."""

@@ -1,0 +1,72 @@
+"""The tables of the study file that say where a lander comes down and how it is followed from there."""
+
+from typing import Annotated, Literal
+
+from pydantic import Field, Strict
+
+from lithobrake.study.quantity import Angle, LengthUnit, MaybeUncertain, Number, Scalar, Whole
+from lithobrake.study.section import Section
+
+BUILT_IN_BODIES = ("didymos", "dimorphos")
+
+
+class SiteSection(Section):
+    """Where on which body the lander touches down. Uncertain values here vary in the Monte Carlo only."""
+
+    body: str = "didymos"
+    """"didymos" or "dimorphos" (built in), or a closed mesh (OBJ, STL or PDS plates) around the body's centre; the path
+    counts from the study file."""
+    unit: LengthUnit = "m"
+    """Unit of the lengths in the mesh: "m", "km", "cm" or "mm"."""
+    partner: Annotated[bool, Strict()] = True
+    """Whether the partner of a built-in body attracts and may be hit; false: the body is alone, as in the paper."""
+    partner_longitude_deg: Angle | None = None
+    """East longitude over which the partner stands when the lander leaves; absent: not known, drawn over the circle."""
+    mass: Annotated[Scalar, MaybeUncertain("kg", above=0)] | None = None
+    """Mass of the body; absent: that of the built-in body."""
+    spin_period: Annotated[Scalar, MaybeUncertain("s", above=0)] | None = None
+    """Spin period of the body; absent: that of the built-in body."""
+    latitude_deg: Annotated[Scalar, MaybeUncertain("deg", at_least=-90, at_most=90)] = 0.0
+    """Latitude, planetocentric."""
+    longitude_deg: Angle = 0.0
+    """Longitude, east."""
+    heading_deg: Angle = 0.0
+    """Direction of the incoming horizontal velocity, from north toward east."""
+    north_error: Annotated[Scalar, MaybeUncertain("m")] = 0.0
+    """How far the delivery misses the site toward north: a way over the ground, as if the body were a ball of the
+    radius at the site; at most a quarter of the way round."""
+    east_error: Annotated[Scalar, MaybeUncertain("m")] = 0.0
+    """The same toward east."""
+
+
+class FlightSection(Section):
+    """The flight from the bounce to the next impact."""
+
+    duration: Annotated[float, Number("s", above=0)] = 43_200.0
+    """Longest flight."""
+    flight_count: Annotated[int, Whole("", at_least=1)] | None = Field(default=None, examples=["1000"])
+    """How many samples fly (the first ones that leave the surface); absent: all."""
+    gravity: Literal["exact", "table"] = "table"
+    """Gravity of the polyhedron: summed over its facets, or from a table that is built once for a shape, whose error is
+    told; the table is some 30 times faster."""
+
+
+class RestSection(Section):
+    """From bounce to bounce until a lander rests: on the soil, by the expansion, and on hard ground for comparison.
+
+    The soil is asked again at each impact where impact.speed and impact.incidence_deg are both uncertain; an impact
+    outside the range of the runs ends the journey there. Hard ground answers every impact, the first among them, with
+    the same restitution and friction; the defaults are in the middle of what is used, not measured."""
+
+    count: Annotated[int, Whole("", at_least=0)] = Field(default=10_000, examples=["1000"])
+    """How many samples are followed, the first ones; 0: none."""
+    duration: Annotated[float, Number("s", above=0)] = 86_400.0
+    """Longest journey, counted from the first impact."""
+    normal_restitution: Annotated[float, Number("", at_least=0, at_most=1)] = 0.6
+    """Hard ground: outgoing over incoming speed along the normal."""
+    tangential_restitution: Annotated[float, Number("", at_least=0, at_most=1)] = 0.8
+    """Hard ground: the same along the ground, unless friction takes less."""
+    friction: Annotated[float, Number("", at_least=0)] = 0.6
+    """Hard ground: largest loss along the ground over the change along the normal."""
+    rest_height: Annotated[float, Number("m", above=0)] = 0.01
+    """Hard ground: a lander rests where its rebound would rise less than this."""

@@ -1,0 +1,203 @@
+"""A number in a study file: with its unit and its allowed range, and fixed or uncertain.
+
+An uncertain number is written as a table in place of the number,
+`young_modulus = { distribution = "log_uniform", lower = 1e6, upper = 1e8 }`. The allowed range holds for the whole
+support of the distribution, so no sample can ever leave it.
+"""
+
+import math
+import sys
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+from pydantic_core import PydanticCustomError, core_schema
+
+from lithobrake.study.refusals import closest, show
+
+if TYPE_CHECKING:
+    from lithobrake.chaos import Distribution
+
+# Parameters of each distribution; all are needed. mean and std of log_normal are those of ln x.
+DISTRIBUTIONS: dict[str, tuple[str, ...]] = {
+    "uniform": ("lower", "upper"),
+    "log_uniform": ("lower", "upper"),
+    "normal": ("mean", "std"),
+    "log_normal": ("mean", "std"),
+    "truncated_normal": ("mean", "std", "lower", "upper"),
+    "beta": ("alpha", "beta", "lower", "upper"),
+    "gamma": ("shape", "scale"),
+    "exponential": ("rate",),
+}
+RARE = 1e-3
+_POSITIVE_PARAMETERS = ("std", "alpha", "beta", "shape", "scale", "rate")
+
+
+@dataclass(frozen=True)
+class Uncertain:
+    """A distribution in place of a number; parameters in the unit of the quantity."""
+
+    distribution: str
+    parameters: dict[str, float]
+
+    def support(self) -> tuple[float, float]:
+        """Smallest and largest possible value; infinite where the distribution has no end."""
+        if "lower" in self.parameters:
+            return self.parameters["lower"], self.parameters["upper"]
+        return (-math.inf if self.distribution == "normal" else 0.0), math.inf
+
+    def to_chaos(self) -> "Distribution":
+        """The distribution object that samples and expands this quantity."""
+        from lithobrake.chaos import distribution
+
+        return distribution(self.distribution, **self.parameters)
+
+
+Scalar = float | Uncertain
+
+
+def median(value: Scalar) -> float:
+    """The number itself, or the median of its distribution."""
+    return float(value.to_chaos().median) if isinstance(value, Uncertain) else value
+
+
+def reach(value: Scalar) -> tuple[float, float]:
+    """Smallest and largest possible value; infinite where its distribution has no end."""
+    return value.support() if isinstance(value, Uncertain) else (value, value)
+
+
+def usual_reach(value: Scalar) -> tuple[float, float]:
+    """The same, where a distribution without an end counts from RARE to 1 - RARE of its samples."""
+    ends = reach(value)
+    if isinstance(value, Uncertain) and not all(map(math.isfinite, ends)):
+        distribution = value.to_chaos()
+        return float(distribution.ppf(RARE)), float(distribution.ppf(1.0 - RARE))
+    return ends
+
+
+def uncertain(values: dict[str, Scalar]) -> dict[str, Uncertain]:
+    """Those of the values that have a distribution, in their order."""
+    return {name: value for name, value in values.items() if isinstance(value, Uncertain)}
+
+
+def refuse(value: object, allowed: object, remedy: str) -> PydanticCustomError:
+    """The refusal of one value: what it is, what is allowed, what to do."""
+    return PydanticCustomError("quantity", "{text}", {"text": f"is {show(value)}; allowed: {allowed}; {remedy}"})
+
+
+@dataclass(frozen=True)
+class Number:
+    """A number in its unit ("" for a pure number) and range, or one given word in its place.
+
+    `above` and `below` exclude the end of the range, `at_least` and `at_most` allow it.
+    """
+
+    unit: str
+    above: float = -math.inf
+    at_least: float = -math.inf
+    below: float = math.inf
+    at_most: float = math.inf
+    word: str | None = None
+
+    def __str__(self) -> str:
+        """Say the range in words, with the unit."""
+        ends = {"above": self.above, "at least": self.at_least, "below": self.below, "at most": self.at_most}
+        words = " and ".join(f"{word} {end:g}" for word, end in ends.items() if math.isfinite(end))
+        unit = f" [{self.unit}]" if self.unit else ""
+        return f"{words or 'any number'}{unit}" + (f', or "{self.word}"' if self.word else "")
+
+    def __get_pydantic_core_schema__(self, _source: object, _handler: object) -> core_schema.CoreSchema:
+        """Let the annotation itself check the value."""
+        return core_schema.no_info_plain_validator_function(self.read)
+
+    def allow(self, lower: float, upper: float, *, ends: bool = True) -> bool:
+        """Tell whether the interval from lower to upper lies in the range; `ends` = it contains its own ends."""
+        inside = self.at_least <= lower and upper <= self.at_most
+        if ends:
+            return inside and (lower > self.above) and (upper < self.below)
+        return inside and lower >= self.above and upper <= self.below
+
+    def read(self, value: Any) -> Any:
+        """Give back the word, or what the range makes of the value."""
+        return value if self.word is not None and value == self.word else self.check(value)
+
+    def check(self, value: Any) -> Any:
+        """Give back the number; refuse anything else, a distribution included."""
+        if isinstance(value, dict):
+            raise refuse(value, self, "it cannot be uncertain: write one number")
+        if not is_number(value):
+            unit = f", in {self.unit}" if self.unit else ""
+            raise refuse(value, self, f"write a finite number without quotes{unit}")
+        if not self.allow(value, value):
+            raise refuse(value, self, "write a number in this range")
+        return float(value)
+
+
+class Whole(Number):
+    """A whole number in its range."""
+
+    def check(self, value: Any) -> int:
+        """Give back the whole number, also one written as 100.0; refuse anything else."""
+        if not is_number(value) or value != int(value) or not self.allow(value, value):
+            raise refuse(value, self, "write a whole number in this range")
+        return int(value)
+
+
+@dataclass(frozen=True)
+class Numbers(Number):
+    """A list of `count` numbers, each in the range; `ascending`: each larger than the one before."""
+
+    count: int = 3
+    ascending: bool = False
+
+    def check(self, value: Any) -> tuple[float, ...]:
+        """Give back the numbers."""
+        if not isinstance(value, list | tuple) or len(value) != self.count or not all(map(is_number, value)):
+            raise refuse(value, f"{self.count} numbers, each {self}", f"write {self.count} numbers in square brackets")
+        if not all(self.allow(entry, entry) for entry in value):
+            raise refuse(value, f"{self.count} numbers, each {self}", "write numbers in this range")
+        if self.ascending and any(later <= earlier for earlier, later in pairwise(value)):
+            raise refuse(value, f"{self.count} numbers, ascending", "write the smaller one first")
+        return tuple(float(entry) for entry in value)
+
+
+class MaybeUncertain(Number):
+    """A number in its range, or a distribution whose whole support lies in it."""
+
+    def check(self, value: Any) -> Scalar:
+        """Give back the number or the distribution."""
+        if isinstance(value, Uncertain):
+            return value
+        return self._uncertain(value) if isinstance(value, dict) else super().check(value)
+
+    def _uncertain(self, table: dict[str, Any]) -> Uncertain:
+        given = dict(table)
+        kind = given.pop("distribution", None)
+        if not isinstance(kind, str) or kind not in DISTRIBUTIONS:
+            names = ", ".join(DISTRIBUTIONS)
+            remedy = f"give it a distribution out of {names}{closest(kind, DISTRIBUTIONS)}"
+            raise refuse(table, self, f"{remedy}; discrete choices are not supported: make one study for each")
+        needed = DISTRIBUTIONS[kind]
+        if set(given) != set(needed) or not all(map(is_number, given.values())):
+            raise refuse(table, self, f"{kind} takes exactly the numbers {', '.join(needed)}")
+        positive = [name for name in needed if name in _POSITIVE_PARAMETERS]
+        if any(given[name] <= 0 for name in positive):
+            raise refuse(table, self, f"{', '.join(positive)} must be above 0")
+        uncertain = Uncertain(kind, {name: float(given[name]) for name in needed})
+        lower, upper = uncertain.support()
+        if lower >= upper or (kind == "log_uniform" and lower <= 0):
+            raise refuse(table, self, "lower must be less than upper, and above 0 for log_uniform")
+        if not self.allow(lower, upper, ends=math.isfinite(upper)):
+            allowed = f"{self}, and it reaches from {lower:g} to {upper:g}"
+            raise refuse(table, allowed, "bound it within the range (uniform, log_uniform, beta, truncated_normal)")
+        return uncertain
+
+
+def is_number(value: object) -> bool:
+    """Tell whether a value read from TOML is a number that a float can hold (true, false and infinity are not)."""
+    largest = sys.float_info.max
+    return isinstance(value, int | float) and not isinstance(value, bool) and -largest <= value <= largest
+
+
+Angle = Annotated[Scalar, MaybeUncertain("deg", at_least=-360, at_most=360)]
+LengthUnit = Literal["m", "km", "cm", "mm"]

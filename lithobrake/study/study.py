@@ -1,0 +1,77 @@
+"""The study file: what a user writes. Every key has its unit, range and default in its section, and nowhere else.
+
+A `MaybeUncertain` key takes a number, or a table with a distribution. `lithobrake new` writes these very lines.
+"""
+
+from typing import Annotated
+
+from pydantic import BaseModel
+
+from lithobrake.study.bed_section import BedSection
+from lithobrake.study.campaign_sections import CampaignSection, SolverSection
+from lithobrake.study.design_sections import DesignSection, MonteCarloSection
+from lithobrake.study.flight_sections import FlightSection, RestSection, SiteSection
+from lithobrake.study.impact_sections import (
+    ContactSection,
+    ImpactSection,
+    LandingSection,
+    PlaceSection,
+    SurfaceSection,
+)
+from lithobrake.study.material_sections import GrainSection, LanderSection
+from lithobrake.study.quantity import Scalar, Uncertain, Whole
+from lithobrake.study.section import Section
+
+
+class Study(Section):
+    """A landing study."""
+
+    title: str = ""
+    """One line about the study."""
+    seed: Annotated[int, Whole("", at_least=0, at_most=2**53)] = 1
+    """Everything random follows from this number."""
+    bed: BedSection
+    grain: GrainSection
+    lander: LanderSection
+    impact: ImpactSection
+    surface: SurfaceSection
+    contact: ContactSection = ContactSection()
+    landing: LandingSection = LandingSection()
+    solver: SolverSection = SolverSection()
+    campaign: CampaignSection = CampaignSection()
+    design: DesignSection = DesignSection()
+    monte_carlo: MonteCarloSection = MonteCarloSection()
+    site: SiteSection = SiteSection()
+    flight: FlightSection = FlightSection()
+    rest: RestSection = RestSection()
+
+    @property
+    def has_soil(self) -> bool:
+        """Whether this program's own soil makes the touchdowns, and not a program or function of the user's own."""
+        return self.solver.command is None and self.solver.function is None
+
+    def touchdown_values(self) -> dict[str, Scalar]:
+        """Every scalar that the touchdown reads, by dotted key, in the units of the file; absent ones are left out."""
+        values: dict[str, Scalar] = {}
+        for section in ("grain", "lander", "impact", "surface", "solver"):
+            values |= _scalars(section, getattr(self, section))
+        if self.impact.region is None and self.impact.place is None:
+            values |= {"impact.place.x": 0.0, "impact.place.y": 0.0}
+        return values
+
+    def site_values(self) -> dict[str, Scalar]:
+        """Every scalar that only the flight reads, by dotted key."""
+        return _scalars("site", self.site)
+
+
+def _scalars(path: str, section: BaseModel) -> dict[str, Scalar]:
+    values: dict[str, Scalar] = {}
+    for name in type(section).model_fields:
+        value = getattr(section, name)
+        if isinstance(value, float | Uncertain):
+            values[f"{path}.{name}"] = value
+        elif isinstance(value, PlaceSection):
+            values |= _scalars(f"{path}.{name}", value)
+        elif isinstance(value, dict):
+            values |= {f"{path}.{name}.{key}": entry for key, entry in value.items()}
+    return values

@@ -1,0 +1,179 @@
+"""A real Dask cluster on this machine: a scheduler and workers, each a process of its own."""
+
+import contextlib
+import os
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import campaign_models as models
+import numpy as np
+import pytest
+
+from lithobrake.campaign import DaskExecutor, Ledger, Limits, LocalExecutor, Runs, Tally, read_records, run
+
+pytest.importorskip("distributed", reason="distributed is not installed (pip install lithobrake[dask])")
+
+X = np.column_stack([np.linspace(0.5, 10.0, 40), np.full(40, 0.5)])
+
+
+class Cluster:
+    """Processes of a cluster that are ended with the test."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder, self.processes = folder, dict[str, subprocess.Popen[bytes]]()
+        here = [str(Path(models.__file__).parent), str(Path(__file__).parents[2]), os.environ.get("PYTHONPATH", "")]
+        self.environment = os.environ | {"PYTHONPATH": os.pathsep.join(here)}
+        self.start("scheduler", "--host", "127.0.0.1", "--port", "0")
+        self.address = self.said("scheduler", "Scheduler at:").split("Scheduler at:")[1].split()[0]
+
+    def start(self, name: str, *arguments: str) -> None:
+        kind = "scheduler" if name == "scheduler" else "worker"
+        command = [sys.executable, "-m", f"distributed.cli.dask_{kind}", *arguments, "--no-dashboard"]
+        with (self.folder / f"{name}.txt").open("wb") as log:
+            self.processes[name] = subprocess.Popen(
+                command, stdout=log, stderr=log, cwd=self.folder, env=self.environment
+            )
+
+    def add_worker(self, name: str, nanny: bool = False) -> None:
+        self.start(name, self.address, "--nthreads", "1", "--nanny" if nanny else "--no-nanny", "--name", name)
+        self.said(name, "Registered to:")
+
+    def said(self, name: str, words: str) -> str:
+        """The line of a log that has these words, once it is there."""
+        limit = time.monotonic() + 60
+        while time.monotonic() < limit:
+            for line in (self.folder / f"{name}.txt").read_text().splitlines():
+                if words in line:
+                    return line
+            time.sleep(0.05)
+        raise AssertionError((self.folder / f"{name}.txt").read_text())
+
+
+@contextlib.contextmanager
+def cluster(folder: Path) -> Iterator[Cluster]:
+    made = Cluster(folder)
+    try:
+        yield made
+    finally:
+        for process in made.processes.values():
+            process.kill()
+            process.wait()
+
+
+def campaign(path: Path, executor: Any, model: Any = models.sleeps_a_moment, **options: Any) -> list[tuple[Any, ...]]:
+    """Make the runs at X; give what determines them and what came of them."""
+    with Ledger(path) as ledger, executor:
+        return what_came(run(model, X, names=("a", "b"), ledger=ledger, executor=executor, **options))
+
+
+def what_came(runs: Runs) -> list[tuple[Any, ...]]:
+    return [(e.key, e.status, e.outcome, e.inputs, e.outputs, e.draws, e.seed, e.reason) for e in runs.records]
+
+
+def test_a_cluster_that_loses_a_worker_gives_the_bits_of_this_machine(tmp_path: Path) -> None:
+    here = campaign(tmp_path / "here.sqlite", LocalExecutor(2))
+    with cluster(tmp_path) as made:
+        made.add_worker("first")
+        made.add_worker("second")
+
+        def lose_a_worker(state: Tally) -> None:
+            if state.done >= 10 and made.processes["first"].poll() is None:
+                made.processes["first"].kill()
+                made.processes["first"].wait()
+
+        there = campaign(tmp_path / "there.sqlite", DaskExecutor(made.address), progress=lose_a_worker)
+        assert made.processes["first"].poll() is not None
+    assert there == here
+
+
+COORDINATE = """
+import sys
+from pathlib import Path
+sys.path.insert(0, sys.argv[1])
+from test_dask_executor import campaign, DaskExecutor
+campaign(Path(sys.argv[2]), DaskExecutor(sys.argv[3]))
+"""
+
+
+def done_count(path: Path) -> int:
+    return sum(entry.status == "done" for entry in read_records(path))
+
+
+def test_a_coordinator_that_is_killed_loses_no_run_that_its_cluster_has_made(tmp_path: Path) -> None:
+    path, here = tmp_path / "there.sqlite", campaign(tmp_path / "here.sqlite", LocalExecutor(2))
+    with cluster(tmp_path) as made:
+        made.add_worker("only")
+        # A ledger that is being made is there a moment before its table.
+        Ledger(path).close()
+        arguments = [str(Path(__file__).parent), str(path), made.address]
+        coordinator = subprocess.Popen([sys.executable, "-c", COORDINATE, *arguments], env=made.environment)
+        while done_count(path) < 10 and coordinator.poll() is None:
+            time.sleep(0.02)
+        coordinator.kill()
+        coordinator.wait()
+        kept = done_count(path)
+        with Ledger(path) as ledger, DaskExecutor(made.address) as executor:
+            runs = run(models.sleeps_a_moment, X, names=("a", "b"), ledger=ledger, executor=executor)
+    assert 10 <= runs.reused_count == kept
+    assert what_came(runs) == here
+
+
+def test_limits_hold_on_a_cluster_and_its_worker_lives_on(tmp_path: Path) -> None:
+    with cluster(tmp_path) as made:
+        # A worker under a nanny is a daemon, which may not start processes as it is.
+        made.add_worker("only", nanny=True)
+        runs = campaign(
+            tmp_path / "runs.sqlite", DaskExecutor(made.address), models.sleeps_at_ten, limits=Limits(wall_s=1.0)
+        )
+    assert [entry[1] for entry in runs] == ["done"] * 39 + ["failed"]
+    assert runs[39][7] == "it ran longer than its limit of 1 s"
+    assert all(entry.wall_s and entry.host for entry in read_records(tmp_path / "runs.sqlite"))
+
+
+def test_a_scheduler_that_goes_away_is_one_sentence_and_what_had_ended_is_kept(tmp_path: Path) -> None:
+    with cluster(tmp_path) as made:
+        made.add_worker("only")
+
+        def lose_the_scheduler(state: Tally) -> None:
+            if state.done >= 5:
+                made.processes["scheduler"].kill()
+
+        with pytest.raises(ConnectionError, match="every run that had ended is kept"):
+            campaign(tmp_path / "runs.sqlite", DaskExecutor(made.address), progress=lose_the_scheduler)
+    with Ledger(tmp_path / "runs.sqlite") as ledger, LocalExecutor(1) as executor:
+        runs = run(models.sleeps_a_moment, X, names=("a", "b"), ledger=ledger, executor=executor)
+    assert 5 <= runs.reused_count < 40
+
+
+def test_no_scheduler_is_one_sentence() -> None:
+    with pytest.raises(ValueError, match=r"no Dask scheduler answers at tcp://127\.0\.0\.1:9"):
+        DaskExecutor("tcp://127.0.0.1:9")
+
+
+@pytest.mark.parametrize("address", ["nonsense", "127.0.0.1:8786", "tcp://127.0.0.1", "", "tcp:// x:1"])
+def test_an_address_that_is_none_is_refused_at_once(address: str) -> None:
+    with pytest.raises(ValueError, match="allowed: tcp://HOST:PORT or tls://HOST:PORT"):
+        DaskExecutor(address)
+
+
+def test_certificates_that_do_not_go_with_the_address_are_refused_at_once(tmp_path: Path) -> None:
+    import dask
+
+    with pytest.raises(ValueError, match="asks for certificates, and Dask's settings name none"):
+        DaskExecutor("tls://127.0.0.1:9")
+    with (
+        dask.config.set({"distributed.comm.require-encryption": True}),
+        pytest.raises(ValueError, match=r"require encryption, and tcp://127\.0\.0\.1:9 has none"),
+    ):
+        DaskExecutor("tcp://127.0.0.1:9")
+    (tmp_path / "none.pem").write_text("no certificate")
+    tls = {f"distributed.comm.tls.{key}": str(tmp_path / "none.pem") for key in ("ca-file", "client.cert")}
+    with (
+        dask.config.set(tls),
+        pytest.raises(ValueError, match=r"the certificates in Dask's settings cannot be used \("),
+    ):
+        DaskExecutor("tls://127.0.0.1:9")

@@ -1,0 +1,67 @@
+"""The site: where an error of delivery leads, and what is told of the accelerations there."""
+
+import math
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from lithobrake.pipeline.site import escape_speed, frames, gravity_warning, site_body
+from lithobrake.smallbody import Body
+from lithobrake.smallbody.built_in_bodies import top_shape
+from lithobrake.study import Study, check_tables
+from lithobrake.study.template import template
+
+
+def changed(**sections: dict[str, Any]) -> Study:
+    """The template with some keys changed."""
+    tables = tomllib.loads(template())
+    for section, keys in sections.items():
+        tables.setdefault(section, {}).update(keys)
+    return check_tables(tables, Path())
+
+
+@pytest.mark.parametrize("latitude", [0.0, 60.0, 90.0])
+@pytest.mark.parametrize(("north", "east"), [(30.0, 0.0), (-90.0, 120.0), (0.0, 400.0)])
+def test_an_error_goes_over_the_ground_by_its_length_however_long(latitude: float, north: float, east: float) -> None:
+    """On a ball of 100 m an error of s metres is an arc of s / 100 rad, in the direction of its components."""
+    body = Body(top_shape((200.0, 200.0, 200.0), ridge_height=0.0), 1e10, 1e5)
+    site = {"latitude_deg": latitude, "longitude_deg": 25.0, "heading_deg": 0.0, "north_error": 0.0, "east_error": 0.0}
+    (aim, there), axes = frames(
+        body,
+        {key: np.array([value, value]) for key, value in site.items()}
+        | {"north_error": np.array([0.0, north]), "east_error": np.array([0.0, east])},
+    )
+    radius, length = float(np.linalg.norm(aim)), math.hypot(north, east)
+    ahead = axes[0] @ there / np.linalg.norm(there)
+    assert aim @ there / radius / np.linalg.norm(there) == pytest.approx(math.cos(length / radius), abs=1e-12)
+    # The frame is that of a facet, of which a corner is two thirds of 180 / 31 degrees off the normal, .068 rad.
+    assert ahead[:2] == pytest.approx(np.array([north, -east]) / length * math.sin(length / radius), abs=0.07)
+
+
+def test_unlike_accelerations_of_touchdown_and_site_are_told() -> None:
+    def warned(gravity: Any, latitude: float) -> str | None:
+        return gravity_warning(changed(surface={"gravity": gravity}, site={"latitude_deg": latitude}))
+
+    # 1.4e-5 m/s2 outwards at the equator, 2.2e-4 m/s2 inwards near the pole.
+    assert "5e-05 m/s2 inwards" in str(warned(5e-5, 0.0))
+    assert "1.39e-05 m/s2 outwards" in str(warned(5e-5, 0.0))
+    assert "bed.settle_gravity" in str(warned(5e-5, 0.0))
+    assert "inwards: touchdowns" in str(warned(5e-5, 80.0))
+    assert warned(1e-4, 80.0) is None
+    assert warned(6e-4, 80.0) is None
+    assert "0.0008 m/s2 inwards" in str(warned(8e-4, 80.0))
+    assert warned({"distribution": "uniform", "lower": 1e-5, "upper": 1e-4}, 80.0) is None
+    site = changed(surface={"gravity": "site"}, bed={"settle_gravity": 2e-5}, site={"latitude_deg": 0.0})
+    assert gravity_warning(site) is None
+
+
+def test_the_escape_speed_is_that_of_the_potential_at_the_site() -> None:
+    study = changed(site={"latitude_deg": 80.0, "partner": False})
+    body = site_body(study)
+    radius = float(np.linalg.norm(body.shape.surface_point(80.0, 0.0)))
+    # Far from a point mass, and still within some per cent of it.
+    assert escape_speed(study) == pytest.approx(math.sqrt(2.0 * body.gravitational_parameter / radius), rel=0.08)
+    assert escape_speed(study) != escape_speed(changed(site={"latitude_deg": 0.0, "partner": False}))

@@ -1,0 +1,125 @@
+"""A study from Python: run with a function in place of the soil, opened again, its tables as objects."""
+
+import copy
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import result_models as models
+
+import lithobrake
+from lithobrake.results import StudyResults
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+
+
+def small_study() -> dict[str, Any]:
+    """The ball on a plate without its program, with few runs."""
+    tables = tomllib.loads((EXAMPLES / "ball_on_plate.toml").read_text())
+    del tables["solver"]
+    tables["design"] |= {"screening_level": 1, "screening_degree": 1, "refined_level": 2, "refined_degree": 1}
+    tables["design"] |= {"test_count": 4}
+    tables["monte_carlo"] = {"sample_count": 400}
+    tables["flight"] = {"flight_count": 6, "duration": 600.0, "gravity": "exact"}
+    tables["rest"] = {"count": 0}
+    return tables
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder of a finished study."""
+    out = tmp_path_factory.mktemp("face") / "out"
+    lithobrake.run(small_study(), out, workers=1, model=models.bounce, report=False)
+    return out
+
+
+@pytest.fixture(scope="module")
+def results(folder: Path) -> StudyResults:
+    return lithobrake.open_study(folder)
+
+
+def test_a_function_makes_the_touchdowns_and_no_bed_is_poured(folder: Path, results: StudyResults) -> None:
+    assert not (folder / "beds").exists()
+    assert not (folder / "report").exists()
+    runs = results.runs
+    assert set(runs["outcome"].tolist()) == {"clear", "captured"}
+    captured = runs["outcome"] == "captured"
+    assert (runs["lander.restitution"][captured] < 0.43).all()
+    assert np.isnan(runs["speed_out"][captured]).all()
+    speed = runs["impact.speed"] * runs["lander.restitution"]
+    assert runs["speed_out"][~captured] == pytest.approx(speed[~captured])
+    # An output that is NaN has no value.
+    assert "azimuth_out" not in runs
+    assert results.beds.row_count == 0
+    assert results.summary["results"]["designs"]["screening"]["run_count"] == 7
+
+
+def test_columns_say_what_they_are(results: StudyResults) -> None:
+    samples = results.samples.to_xarray()
+    assert samples.sizes == {"sample": 400}
+    assert samples["speed_out"].attrs["units"] == "m/s"
+    assert samples["velocity_out_z"].attrs["frame"].startswith("of the touchdown")
+    assert samples["impact.incidence_deg"].attrs["units"] == "deg"
+    frame = results.runs.to_pandas()
+    assert len(frame) == results.runs.row_count
+    assert frame.attrs["penetration"]["units"] == "m"
+    assert all(column.long_name for table in (results.runs, results.flights) for column in table.columns.values())
+    assert results.flights.row_count == 6
+    assert "speed_out [m/s]" in results.samples._repr_html_()
+
+
+def test_the_expansion_is_called_by_the_names_of_its_inputs(results: StudyResults) -> None:
+    names = results.surrogate.expansion.input_names
+    inputs = {name: np.full((2, 3), results.surrogate.expansion.inputs[name].median) for name in names}
+    found = results.surrogate(inputs)
+    assert found["speed_out"].shape == (2, 3)
+    assert (found["speed_out"] > 0.0).all()
+    with pytest.raises(ValueError, match="give exactly"):
+        results.surrogate({"speed": 1.0})
+
+
+def test_opening_writes_nothing_and_a_folder_of_something_else_is_refused(folder: Path, tmp_path: Path) -> None:
+    before = {path: path.stat().st_mtime_ns for path in folder.rglob("*")}
+    opened = lithobrake.open_study(folder)
+    assert (opened.runs.row_count, opened.samples.row_count, opened.rest.row_count) == (opened.runs.row_count, 400, 0)
+    assert {path: path.stat().st_mtime_ns for path in folder.rglob("*")} == before
+    with pytest.raises(ValueError, match="holds no results of a study"):
+        lithobrake.open_study(tmp_path)
+
+
+def test_the_same_call_makes_nothing_again_and_another_study_is_refused_the_folder(folder: Path) -> None:
+    before = (folder / "summary.json").stat().st_mtime_ns
+    lithobrake.run(small_study(), folder, workers=1, model=models.bounce, report=False)
+    assert (folder / "summary.json").stat().st_mtime_ns == before
+    with pytest.raises(ValueError, match="choose another folder"):
+        lithobrake.run(EXAMPLES / "ball_on_plate.toml", folder, workers=1, report=False)
+
+
+def test_what_cannot_be_run_is_refused_before_anything_is_made(tmp_path: Path) -> None:
+    tables, out = small_study(), tmp_path / "out"
+    with pytest.raises(ValueError, match="out is None"):
+        lithobrake.run(tables, model=models.bounce)
+    with pytest.raises(ValueError, match="cannot be sent to a process"):
+        lithobrake.run(tables, out, model=lambda inputs, seed: {})
+    with pytest.raises(ValueError, match="keep one of the two"):
+        lithobrake.run(EXAMPLES / "ball_on_plate.toml", out, model=models.bounce)
+    wrong = copy.deepcopy(tables)
+    wrong["impact"]["speed"] = -1.0
+    with pytest.raises(ValueError, match=r"impact\.speed is -1; allowed: above 0"):
+        lithobrake.run(wrong, out, model=models.bounce)
+    assert not out.exists()
+
+
+def test_a_model_that_contradicts_itself_fails_with_the_reason(tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match="a lander that leaves moves outwards"):
+        lithobrake.run(small_study(), tmp_path / "out", workers=1, model=models.contradicts_itself, report=False)
+
+
+def test_importing_the_package_loads_no_other() -> None:
+    code = "import lithobrake, sys; print(sorted({name.split('.')[0] for name in sys.modules} & {'numpy', 'pydantic'}))"
+    found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert found.stdout.strip() == "[]"

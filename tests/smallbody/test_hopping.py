@@ -1,0 +1,129 @@
+"""Bounces, and journeys made of flights and bounces."""
+
+import math
+
+import numpy as np
+import pytest
+
+from lithobrake.smallbody import Body, HardSurface, Impacts, Launch, Rebounds, Shape, didymos, hop
+
+from .meshes import CUBE_FACES, cube_vertices
+
+
+@pytest.fixture(scope="module")
+def plain() -> Body:
+    """A cube of 200 m that does not turn: near the middle of its top, gravity is nearly plumb and constant."""
+    return Body(Shape(cube_vertices(200.0), CUBE_FACES), mass=2e10, spin_period=math.inf)
+
+
+def impacts(speed: float, incidence: float, outward: float = -1e-4) -> Impacts:
+    return Impacts(np.array([speed]), np.array([incidence]), np.zeros((1, 3)), np.array([outward]), np.arange(1))
+
+
+def test_hard_surface_limits_the_tangential_impulse_by_friction():
+    random = np.random.default_rng(0)
+    steep = HardSurface(0.6, 0.5, friction=0.3)(impacts(0.2, 0.2), random)
+    down, along = 0.2 * math.cos(0.2), 0.2 * math.sin(0.2)
+    # Steep: friction could stop more than is lost; half of the horizontal speed is kept.
+    assert steep.velocity[0] == pytest.approx([0.5 * along, 0.0, 0.6 * down])
+    flat = HardSurface(0.6, 0.5, friction=0.3)(impacts(0.2, 1.4), random)
+    down, along = 0.2 * math.cos(1.4), 0.2 * math.sin(1.4)
+    # Flat: it slides, and loses friction times the normal impulse.
+    assert flat.velocity[0] == pytest.approx([along - 0.3 * 1.6 * down, 0.0, 0.6 * down])
+    assert not steep.captured[0]
+    assert HardSurface(0.6)(impacts(1e-4, 0.0), random).captured[0]
+    assert not HardSurface(0.6)(impacts(1e-4, 0.0, outward=1e-5), random).captured[0]
+    with pytest.raises(ValueError, match="normal_restitution is"):
+        HardSurface(1.2)
+
+
+def test_bounces_of_a_ball_follow_the_geometric_series(plain):
+    """Thrown up at v from a plane it bounces at e v, e e v ...: flights of 2 v / g, 2 e v / g ..."""
+    origin = np.array([3.0, 2.0, 100.0])
+    push = -float(plain.acceleration(origin)[2])
+    speed, restitution = 0.004, 0.5
+    surface = HardSurface(restitution, rest_height=1e-3)
+    end = hop(plain, Launch(origin, [0.0, 0.0, speed]), surface, 86400.0, gravity="exact")
+    assert end.status[0] == "settled"
+    # A rebound of e**n v rises (e**n v)**2 / 2 g; the first one below the height of rest is the end.
+    rebounds = math.floor(math.log(math.sqrt(2.0 * push * 1e-3) / speed) / math.log(restitution))
+    assert end.bounce_count[0] == rebounds
+    # Gravity weakens by some thousandths over the .09 m that the first flight rises.
+    expected = 2.0 * speed / push * (1.0 - restitution ** (rebounds + 1)) / (1.0 - restitution)
+    assert end.time[0] == pytest.approx(expected, rel=5e-3)
+    assert end.latitude[0] == pytest.approx(math.degrees(math.atan2(100.0, math.hypot(3.0, 2.0))), abs=0.1)
+
+
+def test_journeys_end_in_each_way(plain):
+    start, up = np.array([3.0, 2.0, 100.0]), np.array([0.0, 0.0, 1.0])
+
+    def unknown(hit: Impacts, random: np.random.Generator) -> Rebounds:
+        nothing = np.zeros(len(hit.speed), dtype=bool)
+        return Rebounds(np.full((len(hit.speed), 3), np.nan), hit.spin, nothing, ~nothing)
+
+    assert hop(plain, Launch(start, 0.01 * up), unknown, 1e5, gravity="exact").status[0] == "outside"
+    assert hop(plain, Launch(start, 0.01 * up), HardSurface(1.0), 1e3, gravity="exact").status[0] == "flying"
+    assert hop(plain, Launch(start, 1.0 * up), HardSurface(1.0), 1e5, gravity="exact").status[0] == "escaped"
+    limited = hop(plain, Launch(start, 0.002 * up), HardSurface(1.0), 1e5, gravity="exact", bounce_limit=3)
+    assert (limited.status[0], limited.bounce_count[0]) == ("bouncing", 3)
+
+
+def test_a_launch_has_one_value_for_all_landers_or_one_for_each(plain):
+    place = np.array([[3.0, 2.0, 100.0], [-3.0, 1.0, 100.0]])
+    with pytest.raises(ValueError, match=r"launch: mass has shape \(3,\) for 2 landers; it must be \(\)"):
+        hop(plain, Launch(place, [0.0, 0.0, 0.01], mass=[1e10, 2e10, 3e10]), HardSurface(0.5), 1e3)
+    told: list[float] = []
+    nobody = hop(plain, Launch(place[:0], place[:0]), HardSurface(0.5), 1e3, gravity="exact", progress=told.append)
+    assert (len(nobody.status), told) == (0, [1.0])
+
+
+def test_the_frame_of_an_impact_and_the_spin_are_carried(plain):
+    """A bounce that turns by a right angle to the left of the way it came, and gives a spin about the normal."""
+
+    def aside(hit: Impacts, random: np.random.Generator) -> Rebounds:
+        along = hit.speed * np.sin(hit.incidence)
+        up = hit.speed * np.cos(hit.incidence)
+        spin = np.tile([0.0, 0.0, 0.5], (len(along), 1))
+        none = np.zeros(len(along), dtype=bool)
+        return Rebounds(np.stack([0.0 * along, along, up], axis=1), spin, none, none)
+
+    start = np.array([-1.0, 0.3, 100.0])
+    end = hop(plain, Launch(start, [0.01, 0.0, 0.01]), aside, 1e5, gravity="exact", bounce_limit=1)
+    first = hop(plain, Launch(start, [0.01, 0.0, 0.01]), aside, 1e5, gravity="exact", bounce_limit=0)
+    assert first.position[0, 0] > start[0] + 0.5
+    assert abs(first.position[0, 1] - start[1]) < 0.1
+    assert end.position[0, 1] > first.position[0, 1] + 0.5
+    assert end.spin[0] == pytest.approx([0.0, 0.0, 0.5])
+    again = hop(plain, Launch(start, [0.01, 0.0, 0.01]), aside, 1e5, gravity="exact", bounce_limit=1)
+    assert np.array_equal(again.position, end.position)
+
+
+def test_a_bounce_is_told_which_lander_it_is(plain):
+    """The second of three lands and stays; the others bounce once more, and each keeps the last impact it had."""
+    seen = []
+
+    def only_the_second_stays(hit: Impacts, random: np.random.Generator) -> Rebounds:
+        seen.append(hit.lander.tolist())
+        up = np.stack([0.0 * hit.speed, 0.0 * hit.speed, 0.5 * hit.speed], axis=1)
+        return Rebounds(up, hit.spin, hit.lander == 1, np.zeros(len(hit.speed), dtype=bool))
+
+    start, up = np.array([[3.0, 2.0, 100.0], [-3.0, 1.0, 100.0], [0.0, 4.0, 100.0]]), np.array([0.0, 0.0, 4e-3])
+    end = hop(plain, Launch(start, up), only_the_second_stays, 1e5, gravity="exact", bounce_limit=1)
+    assert seen == [[0, 1, 2]]
+    assert end.status.tolist() == ["bouncing", "settled", "bouncing"]
+    assert end.impact_speed == pytest.approx([2e-3, 4e-3, 2e-3], rel=5e-3)
+    assert (end.incidence < 0.1).all()
+    away = hop(plain, Launch(start[0], 250.0 * up), only_the_second_stays, 1e5, gravity="exact")
+    assert away.status[0] == "escaped"
+    assert np.isnan(away.impact_speed[0])
+
+
+def test_a_lander_that_only_its_own_motion_holds_down_slides():
+    """Westward along the equator of Didymos it stays down, though the ground there throws off what lies on it."""
+    body = didymos(partner=False)
+    origin, axes = body.local_frame(0.0, 0.0, 270.0)
+    assert axes[2] @ body.effective_acceleration(origin) > 0.0
+    end = hop(body, Launch(origin, 0.15 * axes[0]), HardSurface(0.6), 1e5, gravity="exact")
+    assert end.status[0] == "sliding"
+    assert 5 < end.bounce_count[0] < 100
+    assert -90.0 < end.longitude[0] < 0.0

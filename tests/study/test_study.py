@@ -1,0 +1,322 @@
+"""The study file: what is accepted, and how everything else is refused."""
+
+import subprocess
+import sys
+import tomllib
+from copy import deepcopy
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from lithobrake.study import Study, StudyError, check_tables, known_keys, read_study
+from lithobrake.study.quantity import uncertain
+from lithobrake.study.template import template
+
+TABLES: dict[str, Any] = tomllib.loads(template())
+
+
+def problems(changes: dict[str, Any], folder: Path = Path()) -> list[str]:
+    """What is said about the template with some keys changed; a key is dotted, None takes it away."""
+    tables = deepcopy(TABLES)
+    for key, value in changes.items():
+        *path, last = key.split(".")
+        table = tables
+        for name in path:
+            table = table.setdefault(name, {})
+        table.pop(last, None) if value is None else table.update({last: value})
+    try:
+        check_tables(tables, folder)
+    except StudyError as error:
+        return error.problems
+    return []
+
+
+def table(kind: str, **parameters: float) -> dict[str, Any]:
+    return {"distribution": kind, **parameters}
+
+
+def test_the_template_is_a_study_with_the_papers_five_inputs() -> None:
+    study = check_tables(TABLES, Path())
+    assert list(uncertain(study.touchdown_values())) == [
+        "grain.young_modulus",
+        "grain.poisson_ratio",
+        "grain.restitution",
+        "grain.friction",
+        "lander.restitution",
+    ]
+
+
+def test_every_key_has_a_meaning_in_the_template() -> None:
+    text = template()
+    for path, names in known_keys().items():
+        # The kinds of size distribution stand in the words of bed.diameter.
+        for name in names if path != "bed.diameter" else ():
+            assert f"{name} =" in text or f"[{name}]" in text, f"{path}.{name}"
+
+
+REFUSED = [
+    ("lander.mass", -3.0, ["lander.mass is -3", "above 0 [kg]"]),
+    ("lander.mass", "3 kg", ["lander.mass", "without quotes"]),
+    ("lander.mass", True, ["lander.mass is true"]),
+    ("lander.mass", float("nan"), ["lander.mass is nan"]),
+    ("grain.restitution", 0.0, ["above 0 and at most 1"]),
+    ("grain.restitution", table("uniform", lower=0.5, upper=1.2), ["reaches from 0.5 to 1.2"]),
+    ("grain.restitution", table("normal", mean=0.5, std=0.1), ["-inf to inf", "truncated_normal"]),
+    ("grain.poisson_ratio", 0.5, ["at least 0 and below 0.5"]),
+    ("grain.poisson_ratio", table("uniform", lower=0.3, upper=0.5), ["reaches from 0.3 to 0.5"]),
+    ("grain.friction", table("exponential", rate=-1.0), ["rate must be above 0"]),
+    ("grain.friction", table("uniform", lower=0.9, upper=0.3), ["lower must be less than upper"]),
+    ("grain.friction", table("unifrom", lower=0.3, upper=0.9), ["did you mean uniform?"]),
+    ("grain.friction", table("uniform", lower=0.3), ["uniform takes exactly the numbers lower, upper"]),
+    ("grain.youngs_modulus", 1e7, ["grain.youngs_modulus is not a known key", "did you mean young_modulus?"]),
+    ("grian", {}, ["grian is not a known key", "did you mean grain?"]),
+    ("surface", None, ["surface is missing"]),
+    ("site", 3, ["site is 3", "write [site]"]),
+    ("impact.incidence_deg", 95.0, ["below 90 [deg]"]),
+    ("impact.azimuth_deg", "randm", ['or "random"']),
+    ("impact.orientation", [1, 0, 0], ["4 numbers"]),
+    ("impact.place", {"x": 0.9}, ["impact.place.x reaches from 0.9 to 0.9 m", "-0.275 to 0.275"]),
+    ("bed.grain_count", 12.5, ["whole number"]),
+    ("bed.width", [0.3, 0.3], ["bed.width is 0.3 m", "at least 0.535 m"]),
+    ("bed.diameter", table("uniform", lower=0.1), ["bed.diameter.upper is missing"]),
+    ("bed.diameter", table("uniform", lower=0.2, upper=0.1), ["bed.diameter reaches from 0.2 to 0.1 m"]),
+    ("bed.diameter", table("constant", value=0.6), ["bed.diameter reaches to 0.6 m", "0.183 m"]),
+    ("bed.diameter", table("constant", value=0.1, upper=3.0), ["bed.diameter.upper is not a known key"]),
+    ("contact.pair_rule", "smalest", ["did you mean smaller?"]),
+    ("design.screening_degree", 9, ["design.screening_degree is 9", "2002 terms", "61 nodes"]),
+    ("design.method", "sobol", ["did you mean sobol_sequence?"]),
+    ("design.method", "latin_hypercube", ["design.screening_count is missing", "design.refined_count is missing"]),
+    ("design.refined_count", 50, ["design.refined_count does not go with", '"smolyak" takes levels']),
+    ("design.replicate_count", 2, ["draw nothing by chance", "impact.region"]),
+    ("design.replicate_count", 0, ["at least 1 and at most 1000"]),
+    ("design.fit", "least squares", ["allowed: ols, lars, omp, gaussian_process or best"]),
+    ("monte_carlo.scatter", "yes", ['monte_carlo.scatter is "yes"; allowed: true or false; write it without']),
+    ("grain.friction", table("choice", values=[0.3, 0.9]), ["discrete choices are not supported"]),
+    (
+        "grain.young_modulus",
+        table("log_normal", mean=16.0, std=1.0),
+        ["which has no end", "log_uniform", "design.method"],
+    ),
+    ("grain.friction", table("exponential", rate=2.0), ["grain.friction is exponential, which has no end"]),
+    ("impact.spin_x", table("normal", mean=0.0, std=0.1), ["impact.spin_x is normal, which has no end"]),
+    ("site.body", "no_such.obj", ["no such file"]),
+    ("site.body", "Didymos", ["no such file; did you mean didymos?"]),
+    ("site.body", "a" * 5000, ["no such file"]),
+    ("site.unit", "km", ["site.unit is", "leave it out"]),
+    ("lander.unit", "mm", ["there is no lander.file"]),
+    ("lander.inertia", [0.001, 0.001, 0.01], ["lander.inertia is [0.001, 0.001, 0.01]", "sum of the other two"]),
+    ("lander.mass", 1e6, ["lander.mass is 1e+06 kg", "allowed: 6.7e-07 to 6.7e+05 kg"]),
+    ("lander.mass", 1e-9, ["lander.mass is 1e-09 kg"]),
+    ("impact.speed", 1e300, ["at most 1000 [m/s]"]),
+    ("impact.speed", 50.0, ["impact.speed reaches 50 m/s", "0.188 m deep", "at most the radius of a grain, 0.04 m"]),
+    ("site.north_error", 800.0, ["site.north_error reaches 800 m", "at most 590.1 m", "quarter of the way round"]),
+    ("site.east_error", table("normal", mean=0.0, std=300.0), ["site.east_error reaches 927.1 m"]),
+    ("site.mass", 3.5e10, ["bulk density of 157.6 kg/m3", "allowed: 300 to 8000 kg/m3"]),
+    ("site.mass", table("uniform", lower=5e11, upper=5e12), ["2252 to 2.252e+04 kg/m3"]),
+    ("bed.grain_count", 100.5, ["whole number"]),
+    ("bed.grain_count", 10**399, ["bed.grain_count is about 1e399", "at most 1e+06"]),
+    ("bed.width", [], ["bed.width is []", "2 numbers"]),
+    ("bed.diameter", {}, ["must name its distribution"]),
+    ("lander.shape", 16**5000, ["lander.shape is about 1e6021"]),
+    ("lander.mass", 10**400, ["lander.mass is about 1e400", "write a finite number"]),
+    ("lander.mass", [[[[[[1]]]]]], ["lander.mass is [[[[...]]]]"]),
+    ("lander.mass", table(["uniform"]), ["lander.mass is", "did you mean uniform?"]),  # type: ignore[arg-type]
+    ("lander.mass", "x" * 5000, ["(5002 characters)"]),
+    ("design.kept_outputs", "speed_out", ['design.kept_outputs is "speed_out"; allowed: a list', "square brackets"]),
+    ("title", 3, ["title is 3; allowed: text; write it in quotation marks"]),
+    ("impact.orientation", [0, 0, 0, 0], ["a quaternion of length 0", "allowed: 0.001 to 1000", "[1, 0, 0, 0]"]),
+    ("impact.orientation", [1e-300, 0, 0, 0], ["a quaternion of length 1e-300"]),
+    ("impact.orientation", [1e300, 1e300, 0, 0], ["a quaternion of length 1.41e+300"]),
+    ("site.spin_period", 1e-200, ["site.spin_period reaches down to 1e-200 s", "at least 1 s", "write seconds"]),
+    ("design.kept_outputs", [], ["design.kept_outputs is []", "at least 1 entry"]),
+    ("solver.inputs", {"a$b": 1.0}, ["solver.command is missing"]),
+    ("solver", {"command": "python3", "inputs": {"a$b": 1.0}}, ["solver.inputs.a$b is no name", "letters, digits"]),
+    ("surface.gravity", -1e-5, ["bed.settle_gravity"]),
+    ("lander.diameter", 0.2, ["does not go with this shape"]),
+    ("site.mass", table("uniform", lower=0, upper=1), ["above 0 [kg]"]),
+    ("site.spin_period", table("normal", mean=8136.0, std=1.0), ["-inf to inf"]),
+]
+
+
+@pytest.mark.parametrize(("key", "value", "words"), REFUSED, ids=[f"{key}: {words[0]}" for key, _, words in REFUSED])
+def test_a_wrong_key_is_named_with_its_value_and_range(key: str, value: Any, words: list[str]) -> None:
+    said = "\n".join(problems({key: value}))
+    for word in ["study.toml: ", *words]:
+        assert word in said
+
+
+SOBOL = {"design.method": "sobol_sequence", "design.screening_count": 100, "design.refined_count": 100}
+ACCEPTED = [
+    {"grain.friction": table("exponential", rate=2.0), **SOBOL},
+    {"lander.mass": table("log_normal", mean=1.0, std=0.1), **SOBOL, "design.method": "fekete"},
+    {
+        "site.latitude_deg": table("uniform", lower=-10.0, upper=10.0),
+        "site.mass": table("gamma", shape=9.0, scale=6e10),
+    },
+    {"design.replicate_count": 3, "impact.orientation": "random"},
+    {"design.replicate_count": 2, "bed.bed_count": 2, "design.fit": "best", "monte_carlo.scatter": True},
+    {"grain.restitution": 1.0},
+    {"bed.grain_count": 100.0},
+    {"lander.inertia": [0.001, 0.002, 0.003]},
+    {"lander.mass": 1e6, "solver.command": "python3", "impact.speed": 900.0},
+    {"site.north_error": table("normal", mean=0.0, std=50.0), "site.east_error": 590.0},
+    {"impact.incidence_deg": table("truncated_normal", mean=30.0, std=5.0, lower=10.0, upper=50.0)},
+    {"impact.azimuth_deg": "random", "impact.orientation": "random"},
+    {"impact.region": {"x": [-0.1, 0.1], "y": [0.0, 0.1]}, "impact.azimuth_deg": table("uniform", lower=0, upper=90)},
+    {"surface.gravity": table("uniform", lower=-1e-5, upper=5e-5), "bed.settle_gravity": 2e-5},
+]
+
+
+@pytest.mark.parametrize("changes", ACCEPTED)
+def test_what_is_within_its_limits_is_accepted(changes: dict[str, Any]) -> None:
+    assert problems(changes) == []
+
+
+def test_counts_must_reach_the_terms_of_least_squares_only() -> None:
+    few = {**SOBOL, "design.screening_count": 20}
+    (said,) = problems(few)
+    assert "it has 21 terms, more than the 20 points of design.screening_count; lower the degree or raise" in said
+    assert problems({**few, "design.fit": "omp"}) == []
+
+
+def test_all_problems_are_said_at_once() -> None:
+    wrong = {"lander.mass": -1.0, "grain.density": "heavy", "impact.sped": 3, "bed.width": [1.0]}
+    assert len(problems(wrong)) == 4
+
+
+def test_a_list_with_a_wrong_entry_is_told_once() -> None:
+    assert [text.split(" is ")[0] for text in problems({"design.kept_outputs": ["speed"]})] == [
+        "study.toml: design.kept_outputs.0"
+    ]
+
+
+def test_nothing_uncertain_is_refused() -> None:
+    certain = {f"grain.{name}": 0.4 for name in ("young_modulus", "poisson_ratio", "restitution", "friction")}
+    assert (
+        "nothing in grain, lander, impact or surface is uncertain"
+        in problems({**certain, "lander.restitution": 0.5})[0]
+    )
+
+
+def test_a_broken_file_and_a_missing_file_are_one_sentence(tmp_path: Path) -> None:
+    (tmp_path / "broken.toml").write_text("bed = [\n")
+    (tmp_path / "deep.toml").write_text(f"seed = {'[' * 3000}{']' * 3000}")
+    (tmp_path / "long.toml").write_text(f"seed = {'1' * 5000}")
+    (tmp_path / "latin.toml").write_bytes(b'title = "caf\xe9"')
+    said = {
+        "broken": "not TOML",
+        "missing": "cannot be read",
+        "deep": "nested too deeply",
+        "long": "thousands of digits",
+        "latin": "not text in UTF-8, byte 13 is 0xe9; save it in that encoding",
+    }
+    for name, word in ((f"{stem}.toml", word) for stem, word in said.items()):
+        with pytest.raises(StudyError, match=word) as caught:
+            read_study(tmp_path / name)
+        assert len(caught.value.problems) == 1
+
+
+def test_a_mark_of_the_encoding_and_whole_numbers_with_a_point_are_read(tmp_path: Path) -> None:
+    text = template().replace("grain_count = 150", "grain_count = 150.0")
+    (tmp_path / "study.toml").write_text(text, encoding="utf-8-sig")
+    assert read_study(tmp_path / "study.toml").bed.grain_count == 150
+
+
+OCTAHEDRON = "f 1 3 5\nf 3 2 5\nf 2 4 5\nf 4 1 5\nf 3 1 6\nf 2 3 6\nf 4 2 6\nf 1 4 6\n"
+
+
+def octahedron(radius: float, middle: float = 0.0) -> str:
+    """An OBJ file; the octahedron has a volume of 4/3 radius**3."""
+    corners = [(radius, 0, 0), (-radius, 0, 0), (0, radius, 0), (0, -radius, 0), (0, 0, radius), (0, 0, -radius)]
+    return "".join(f"v {x + middle} {y} {z}\n" for x, y, z in corners) + OCTAHEDRON
+
+
+def rock(folder: Path, text: str, **changes: Any) -> list[str]:
+    """What is said about a study on a body from this mesh, of 4/3e6 m3 if it is an octahedron of 100 m."""
+    (folder / "rock.obj").write_text(text)
+    site = {"body": "rock.obj", "mass": 3e9, "spin_period": 8000.0, **changes}
+    return problems({"site": {key: value for key, value in site.items() if value is not None}}, folder)
+
+
+def test_mesh_paths_count_from_the_study_file(tmp_path: Path) -> None:
+    assert rock(tmp_path, octahedron(100.0)) == []
+    tables = {**TABLES, "site": {"body": "rock.obj", "mass": 3e9, "spin_period": 8000.0}}
+    assert Path(check_tables(tables, tmp_path).site.body) == tmp_path / "rock.obj"
+
+
+def test_a_mesh_in_another_unit_is_refused_with_the_unit_that_was_meant_and_read_with_it(tmp_path: Path) -> None:
+    (said,) = rock(tmp_path, octahedron(0.1))
+    assert "bulk density of 2.25e+12 kg/m3; allowed: 300 to 8000 kg/m3" in said
+    assert 'is the mesh in km? then set site.unit = "km"' in said
+    assert rock(tmp_path, octahedron(0.1), unit="km") == []
+    (said,) = rock(tmp_path, octahedron(10_000.0))
+    assert 'set site.unit = "cm"' in said
+    # Right in itself, and a pebble.
+    (said,) = rock(tmp_path, octahedron(0.1), mass=3.0)
+    assert "0.1366 m across" in said
+    assert "1 to 1e+06 m" in said
+
+
+@pytest.mark.parametrize(
+    ("text", "changes", "said"),
+    [
+        (octahedron(100.0).replace("f 1 4 6\n", ""), {}, "open, 3 edges belong to one facet only"),
+        ("a stone\n", {}, "0 facets cannot enclose a volume"),
+        ("v 1 2 x\n", {}, "is not a vertex or a facet"),
+        (octahedron(100.0, middle=200.0), {}, "the origin, about which the body turns, lies outside"),
+        (octahedron(100.0), {"mass": None}, "site.mass is missing"),
+        (octahedron(100.0), {"east_error": 120.0}, "at most 107"),
+    ],
+)
+def test_a_body_that_cannot_be_used_is_refused_before_anything_runs(
+    text: str, changes: dict[str, Any], said: str, tmp_path: Path
+) -> None:
+    assert [said in problem for problem in rock(tmp_path, text, **changes)] == [True]
+
+
+CHECK = """
+import sys
+from pathlib import Path
+from lithobrake.study import read_study
+read_study(Path(sys.argv[1]))
+print("numba" in sys.modules)
+"""
+
+
+def test_a_mesh_is_looked_at_without_loading_the_compiler(tmp_path: Path) -> None:
+    (tmp_path / "rock.obj").write_text(octahedron(100.0))
+    site = f'body = "{tmp_path / "rock.obj"}"\nmass = 3e9\nspin_period = 8000.0\n'
+    text = (Path(__file__).parents[2] / "examples" / "ball_on_plate.toml").read_text()
+    (tmp_path / "study.toml").write_text(f"{text}\n[site]\n{site}")
+    command = [sys.executable, "-c", CHECK, str(tmp_path / "study.toml")]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    assert done.stdout == "False\n"
+
+
+def test_a_lander_in_another_unit_is_asked_about(tmp_path: Path) -> None:
+    (tmp_path / "lander.obj").write_text(octahedron(100.0))
+    lander = {"lander.shape": "hull", "lander.edges": None, "lander.file": "lander.obj"}
+    (said,) = problems(lander, tmp_path)
+    assert 'name the unit of lander.file (lander.unit is "m")' in said
+    assert problems({**lander, "lander.unit": "mm"}, tmp_path) == []
+
+
+def test_scalars_of_the_touchdown_and_of_the_site_are_apart() -> None:
+    study = Study.model_validate(TABLES)
+    assert {name.split(".")[0] for name in study.touchdown_values()} == {"grain", "lander", "impact", "surface"}
+    assert {name.split(".")[0] for name in study.site_values()} == {"site"}
+
+
+def test_what_only_the_flight_reads_may_be_uncertain() -> None:
+    study = check_tables({**TABLES, "site": {"mass": table("uniform", lower=5e11, upper=6e11)}}, Path())
+    assert "site.mass" not in uncertain(study.touchdown_values())
+    assert "site.mass" in uncertain(study.site_values())
+
+
+@pytest.mark.parametrize(
+    "path", sorted((Path(__file__).parents[2] / "scenarios").glob("*.toml")), ids=lambda path: path.stem
+)
+def test_the_scenarios_are_studies(path: Path) -> None:
+    counts = {"bounces": 3, "paper": 5, "quick": 5}
+    assert len(uncertain(read_study(path).touchdown_values())) == counts[path.stem]
