@@ -15,7 +15,7 @@ FATE_WORDS = {
     "captured": "captured",
     "left_sideways": "left over the rim of the bed",
     "time_limit": "in contact at the time limit",
-    "outside": "drawn outside 0 to 90 deg of elevation",
+    "outside": "drawn outside 0 to 90 deg",
     "remains": "{remains}",
     "missing": "nobody knows where (over the rim, time limit, drawn outside)",
 }
