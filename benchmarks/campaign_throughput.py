@@ -23,8 +23,8 @@ import numpy as np
 
 from lithobrake.campaign import DaskExecutor, Ledger, LocalExecutor, Runs, run
 from lithobrake.pipeline import run_study
-from lithobrake.pipeline.landings import TouchdownModel, draw, engine_hash, medians
 from lithobrake.study import StudySource, read_study
+from lithobrake.touchdown_model import TouchdownModel, draw, engine_hash, medians
 
 STUDY = Path(__file__).parents[1] / "scenarios" / "quick.toml"
 

@@ -3,8 +3,8 @@
     python benchmarks/plan_estimate.py quick 24
 
 pours the bed of scenarios/quick.toml and makes 24 of its landings, one after the other, and keeps what came beside what
-was expected in benchmarks/plan_estimate.json. The constants of pipeline/expected_steps.py, expected_time.py and pace.py
-were taken from there.
+was expected in benchmarks/plan_estimate.json. The constants of expected_steps.py,
+expected_time.py and pace.py in lithobrake/pipeline/planning were taken from there.
 """
 
 import argparse
@@ -17,9 +17,9 @@ from typing import Any
 from grains_beds import origin
 
 from lithobrake.dem import World
-from lithobrake.pipeline.expected_steps import FALLS, SETTLING, STEPS_PER_PERIOD, ExpectedSoil
-from lithobrake.pipeline.expected_time import landing_time, pour_time
-from lithobrake.pipeline.pace import REFERENCE, probe
+from lithobrake.pipeline.planning.expected_steps import FALLS, SETTLING, STEPS_PER_PERIOD, ExpectedSoil
+from lithobrake.pipeline.planning.expected_time import landing_time, pour_time
+from lithobrake.pipeline.planning.pace import REFERENCE, probe
 from lithobrake.study import read_study
 from lithobrake.touchdown import Bed, Landing, land, pour_bed, simulation
 from lithobrake.touchdown.settling import PERIODS_RELAXED

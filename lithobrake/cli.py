@@ -117,7 +117,7 @@ def plan(
     """Say what a study will make, how long that takes and what to know of it; nothing is made."""
     folder = _default_folder(study) if out is None else _given_folder(out)
     with _one_sentence():
-        from lithobrake.pipeline import plan_study
+        from lithobrake.pipeline import plan_lines, plan_study
 
         found = plan_study(study, folder, workers)
     if json:
@@ -125,7 +125,7 @@ def plan(
 
         _tell([dumps(found.to_json(), indent=2)])
         return
-    _tell(found.lines())
+    _tell(plan_lines(found))
 
 
 @app.command(epilog="Example: lithobrake report runs/study")

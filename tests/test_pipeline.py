@@ -14,9 +14,8 @@ from lithobrake.chaos import Uniform, fit, smolyak
 from lithobrake.outputs import OUTPUTS
 from lithobrake.pipeline import STAGES, StudyFolder, rest, stage_keys
 from lithobrake.pipeline.designs import design_inputs, kept_inputs, points
-from lithobrake.pipeline.fates import shares, stays
 from lithobrake.pipeline.flights import COLUMNS, partner_time, starts
-from lithobrake.pipeline.landings import ORIENTATION, PLACE, acceleration, draw, in_words_of_the_study, medians
+from lithobrake.pipeline.landing_statistics import shares, stays
 from lithobrake.pipeline.samples import SAMPLE_OUTCOMES, Samples
 from lithobrake.pipeline.scope import scope
 from lithobrake.pipeline.site import (
@@ -31,6 +30,7 @@ from lithobrake.pipeline.site import (
 from lithobrake.pipeline.summary import study_tables
 from lithobrake.study import Study, StudyError, check_tables
 from lithobrake.study.template import template
+from lithobrake.touchdown_model import ORIENTATION, PLACE, acceleration, draw, in_words_of_the_study, medians
 
 
 def changed(**sections: dict[str, Any]) -> Study:

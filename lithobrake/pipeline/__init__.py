@@ -6,21 +6,44 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from lithobrake.pipeline.folder import StudyFolder
     from lithobrake.pipeline.job import Job
-    from lithobrake.pipeline.plan import Plan, plan_study
+    from lithobrake.pipeline.planning.plan import Plan
+    from lithobrake.pipeline.planning.plan_in_words import plan_lines
+    from lithobrake.pipeline.planning.planner import plan_study
     from lithobrake.pipeline.stages import STAGES, Stage, make, stage_keys
     from lithobrake.pipeline.state import report_page
     from lithobrake.pipeline.status import study_status
     from lithobrake.pipeline.study_run import run_study, write_report_again
 
 _HOME = {
-    "STAGES": "stages", "Job": "job", "Plan": "plan", "Stage": "stages", "StudyFolder": "folder", "make": "stages",
-    "plan_study": "plan", "report_page": "state", "run_study": "study_run", "stage_keys": "stages",
-    "study_status": "status", "write_report_again": "study_run",
-}  # fmt: skip
+    "STAGES": "stages",
+    "Job": "job",
+    "Plan": "planning.plan",
+    "Stage": "stages",
+    "StudyFolder": "folder",
+    "make": "stages",
+    "plan_lines": "planning.plan_in_words",
+    "plan_study": "planning.planner",
+    "report_page": "state",
+    "run_study": "study_run",
+    "stage_keys": "stages",
+    "study_status": "status",
+    "write_report_again": "study_run",
+}
 __all__ = [
-    "STAGES", "Job", "Plan", "Stage", "StudyFolder", "make", "plan_study", "report_page", "run_study", "stage_keys",
-    "study_status", "write_report_again",
-]  # fmt: skip
+    "STAGES",
+    "Job",
+    "Plan",
+    "Stage",
+    "StudyFolder",
+    "make",
+    "plan_lines",
+    "plan_study",
+    "report_page",
+    "run_study",
+    "stage_keys",
+    "study_status",
+    "write_report_again",
+]
 
 
 def __getattr__(name: str) -> Any:

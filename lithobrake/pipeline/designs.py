@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from lithobrake.pipeline.folder import json_hash
-from lithobrake.pipeline.surface import touchdown_reads
-from lithobrake.pipeline.touchdowns import drawn_reads
+from lithobrake.hashing import json_hash
+from lithobrake.pipeline.beds import touchdown_reads
+from lithobrake.pipeline.touchdown_runs import drawn_reads
 from lithobrake.study import Study
 from lithobrake.study.quantity import uncertain
 

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from lithobrake.atomic import atomic_path
-from lithobrake.pipeline.folder import AGAIN, StudyFolder, content_hash
+from lithobrake.hashing import content_hash
+from lithobrake.pipeline.folder import AGAIN, StudyFolder
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.samples import Samples, sampling_seed
 from lithobrake.pipeline.site import SITE_KEYS, frames, site_body, site_medians, site_values, site_warning

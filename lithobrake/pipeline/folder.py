@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from lithobrake.atomic import atomic_path, locked
+from lithobrake.hashing import content_hash
 from lithobrake.pipeline.notes import Notes
 from lithobrake.reading import DamagedFileError, read_json
 
@@ -135,24 +136,3 @@ def _path_from(folder: Path, file: Path) -> str:
     except ValueError:
         # On Windows nothing leads from one drive to another.
         return str(target)
-
-
-def content_hash(path: Path) -> str:
-    """Hash of a file's bytes."""
-    with path.open("rb") as file:
-        return hashlib.file_digest(file, "sha256").hexdigest()
-
-
-def json_hash(value: Any) -> str:
-    """Hash of a JSON value; the order of keys does not matter."""
-    return hashlib.sha256(json.dumps(value, sort_keys=True, separators=(",", ":")).encode()).hexdigest()
-
-
-def source_hash(*parts: str) -> str:
-    """Hash of the sources of parts or files of the package: results of other code are other results."""
-    package = Path(__file__).parents[1]
-    roots = [package / part for part in parts]
-    digest = hashlib.sha256()
-    for source in sorted(path for root in roots for path in ([root] if root.is_file() else root.rglob("*.py"))):
-        digest.update(str(source.relative_to(package)).encode() + b"\0" + source.read_bytes())
-    return digest.hexdigest()[:16]

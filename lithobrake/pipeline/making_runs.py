@@ -10,7 +10,7 @@ from lithobrake.pipeline.designs import design_inputs, points, replicate_count
 from lithobrake.pipeline.expansions import screened_inputs
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.site import gravity_warning
-from lithobrake.pipeline.touchdowns import drawn_rows, touchdown_keys, touchdowns
+from lithobrake.pipeline.touchdown_runs import drawn_rows, touchdown_keys, touchdowns
 
 
 def make_screening_runs(job: Job) -> None:

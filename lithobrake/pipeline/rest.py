@@ -10,7 +10,7 @@ from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.outgoing import VELOCITY
 from lithobrake.pipeline.samples import SAMPLE_OUTCOMES, Samples, sampling_seed, touchdown_values
 from lithobrake.pipeline.site import frames, site_body
-from lithobrake.pipeline.soil import rolling_spin, soil_bounce, trained_ranges, why_no_soil
+from lithobrake.pipeline.surrogate_bounce import rolling_spin, soil_bounce, trained_ranges, why_no_soil
 from lithobrake.study import Study
 
 if TYPE_CHECKING:

@@ -7,12 +7,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lithobrake.atomic import atomic_path
+from lithobrake.hashing import json_hash
 from lithobrake.pipeline.design_runs import DesignRuns
 from lithobrake.pipeline.designs import DESIGNS, design_inputs
-from lithobrake.pipeline.folder import AGAIN, StudyFolder, json_hash
+from lithobrake.pipeline.folder import AGAIN, StudyFolder
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.outgoing import outgoing
-from lithobrake.pipeline.scatter import Scatter
+from lithobrake.pipeline.run_noise import Scatter
 from lithobrake.pipeline.solver import OUTCOMES
 from lithobrake.reading import reading
 from lithobrake.study import Study

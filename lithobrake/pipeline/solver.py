@@ -11,8 +11,8 @@ from typing import Any
 
 from lithobrake import __version__
 from lithobrake.campaign import Command
+from lithobrake.hashing import content_hash
 from lithobrake.outputs import OUTPUTS
-from lithobrake.pipeline.folder import content_hash
 from lithobrake.study import Study
 
 # How a touchdown may end; one that is clear has outputs.

@@ -5,17 +5,17 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
+from lithobrake.hashing import json_hash, source_hash
+from lithobrake.pipeline.beds import bed_files, bed_reads, land_once, landing_files, landing_reads, pour_beds
 from lithobrake.pipeline.design_runs import file_of
 from lithobrake.pipeline.designs import design_reads
 from lithobrake.pipeline.expansions import fit_refined, fit_screening, score_all
 from lithobrake.pipeline.flights import flight_reads, fly_samples
-from lithobrake.pipeline.folder import json_hash, source_hash
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.making_runs import make_refined_runs, make_screening_runs, make_test_runs
 from lithobrake.pipeline.rest import follow_samples, rest_reads
 from lithobrake.pipeline.samples import draw_samples
 from lithobrake.pipeline.summary import study_tables, write_summary
-from lithobrake.pipeline.surface import bed_files, bed_reads, land_once, landing_files, landing_reads, pour_beds
 from lithobrake.study import Study
 
 

@@ -6,7 +6,8 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-from lithobrake.pipeline.folder import FileState, content_hash, file_state
+from lithobrake.hashing import content_hash
+from lithobrake.pipeline.folder import FileState, file_state
 from lithobrake.pipeline.notes import NAME, Notes
 
 # The copy of the study file is a file of no stage, and counts as one of its own.

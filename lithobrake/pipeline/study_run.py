@@ -11,7 +11,8 @@ from lithobrake.pipeline.folder import StudyFolder
 from lithobrake.pipeline.job import Job, Progress, Silent
 from lithobrake.pipeline.notes import NAME
 from lithobrake.pipeline.owner import refuse_others_folder
-from lithobrake.pipeline.plan import plan_of
+from lithobrake.pipeline.planning.plan_in_words import brief_lines
+from lithobrake.pipeline.planning.planner import plan_of
 from lithobrake.pipeline.site import with_site_gravity
 from lithobrake.pipeline.solver import Model, function_identity
 from lithobrake.pipeline.stages import make, setting
@@ -87,7 +88,7 @@ def run_study(
         if until == "report":
             plan = plan_of(study, source.stem, folder, worker_count, on_cluster=scheduler is not None)
             command = f"lithobrake plan {source.path or 'STUDY.toml'} --out {folder.path}"
-            for line in plan.brief(command) if plan.stages else ():
+            for line in brief_lines(plan, command) if plan.stages else ():
                 shown.say(line)
         try:
             make(Job(study, source.tables, folder, executor, shown, model, keeps_logs), until, note)

@@ -12,12 +12,13 @@ import numpy as np
 
 from lithobrake.campaign import read_records
 from lithobrake.outputs import OUTPUTS
+from lithobrake.pipeline.beds import bed_files
 from lithobrake.pipeline.design_runs import DesignRuns
 from lithobrake.pipeline.designs import DESIGNS, kept_inputs, replicate_count
-from lithobrake.pipeline.fates import landing_results
 from lithobrake.pipeline.flights import read_table
 from lithobrake.pipeline.headline import answer, headline
 from lithobrake.pipeline.job import Job
+from lithobrake.pipeline.landing_statistics import landing_results
 from lithobrake.pipeline.samples import Samples
 from lithobrake.pipeline.site import (
     escape_speed,
@@ -29,7 +30,6 @@ from lithobrake.pipeline.site import (
     site_warning,
 )
 from lithobrake.pipeline.solver import OUTCOMES
-from lithobrake.pipeline.surface import bed_files
 from lithobrake.study import BUILT_IN_BODIES, Study
 from lithobrake.study.units import OUTPUT_UNITS
 
@@ -102,8 +102,8 @@ def _plain(value: Any) -> Any:
 
 
 def _bed(job: Job, name: str) -> dict[str, Any]:
-    from lithobrake.pipeline.landings import grain, lander, medians, stored_bed
     from lithobrake.touchdown import smallest_bed
+    from lithobrake.touchdown_model import grain, lander, medians, stored_bed
 
     bed, values = stored_bed(job.folder / name), medians(job.study)
     width, depth = smallest_bed(

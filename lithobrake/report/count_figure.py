@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
-from lithobrake.report.look import INK, QUIET, SITE
+from lithobrake.report.style import INK, QUIET, SITE
 
 Counts = NDArray[np.float64]
 

@@ -8,8 +8,8 @@ from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
 from lithobrake.report.density import Window, near
-from lithobrake.report.look import SITE
 from lithobrake.report.site_mark import ellipse_style
+from lithobrake.report.style import SITE
 
 Array = NDArray[np.float64]
 POINTS = 361

@@ -8,8 +8,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from lithobrake.report.look import INK, PAPER_OUTPUTS, QUIET, TEST, TEST_ALL, TRAINING, output
 from lithobrake.report.page import fixed, number
+from lithobrake.report.style import INK, PAPER_OUTPUTS, QUIET, TEST, TEST_ALL, TRAINING, output
 
 Array = NDArray[np.float64]
 

@@ -13,8 +13,8 @@ from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 from numpy.typing import NDArray
 
-from lithobrake.report.light import light_on_faces
-from lithobrake.report.look import shade
+from lithobrake.report.shading import light_on_faces
+from lithobrake.report.style import shade
 
 Array = NDArray[np.float64]
 Triangles = NDArray[np.int64]

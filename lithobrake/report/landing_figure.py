@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from lithobrake.report.hulls import Body, Camera, draw_box, frame_axes, paint
-from lithobrake.report.look import INK, SITE
+from lithobrake.report.style import INK, SITE
 
 Array = NDArray[np.float64]
 

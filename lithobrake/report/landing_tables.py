@@ -3,9 +3,9 @@
 from collections.abc import Mapping
 from typing import Any
 
+from lithobrake.report.captions import hours, percent
 from lithobrake.report.page import Table, fixed, flat, number
 from lithobrake.report.results import Results
-from lithobrake.report.sentences import hours, percent
 
 FATE_WORDS = {
     "impact": "down again within {hours}",

@@ -14,8 +14,8 @@ from scipy.interpolate import LinearNDInterpolator
 
 from lithobrake.report.density import WHOLE, Window, close_window, draw_density, near
 from lithobrake.report.ellipse_line import draw_ellipses
-from lithobrake.report.look import INK, INPUT_COLOURS, INTERACTIONS, QUIET, TEST
 from lithobrake.report.site_mark import draw_legend, mark_site
+from lithobrake.report.style import INK, INPUT_COLOURS, INTERACTIONS, QUIET, TEST
 
 Array = NDArray[np.float64]
 

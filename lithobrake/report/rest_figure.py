@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 
 from lithobrake.report.density import WHOLE, Window, close_window, draw_density, near
 from lithobrake.report.ellipse_line import draw_ellipses
-from lithobrake.report.look import QUIET
 from lithobrake.report.map_figure import Share, draw_relief, draw_scale, draw_shares
 from lithobrake.report.site_mark import draw_legend, mark_site
+from lithobrake.report.style import QUIET
 
 Array = NDArray[np.float64]
 

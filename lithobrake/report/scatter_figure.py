@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from lithobrake.report.look import PAPER_OUTPUTS, QUIET, input_label, output
+from lithobrake.report.style import PAPER_OUTPUTS, QUIET, input_label, output
 
 Array = NDArray[np.float64]
 

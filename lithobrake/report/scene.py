@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lithobrake.report.hulls import Body
-from lithobrake.report.look import GRAIN, LANDER
+from lithobrake.report.style import GRAIN, LANDER
 
 Array = NDArray[np.float64]
 

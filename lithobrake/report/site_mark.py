@@ -9,7 +9,7 @@ from matplotlib.lines import Line2D
 from matplotlib.path import Path
 from matplotlib.patheffects import Normal, Stroke
 
-from lithobrake.report.look import INK, SITE
+from lithobrake.report.style import INK, SITE
 
 # Four strokes that point at the place and leave it open: a site is where impacts may be densest.
 CROSSHAIR = Path(

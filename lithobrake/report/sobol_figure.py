@@ -6,8 +6,8 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
-from lithobrake.report.look import INTERACTIONS, PAPER_OUTPUTS, QUIET, input_colours, input_label, output
 from lithobrake.report.page import number
+from lithobrake.report.style import INTERACTIONS, PAPER_OUTPUTS, QUIET, input_colours, input_label, output
 
 Array = NDArray[np.float64]
 

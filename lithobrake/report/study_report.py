@@ -8,22 +8,22 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lithobrake.atomic import atomic_path
-from lithobrake.report import sentences
+from lithobrake.report import captions
 from lithobrake.report.bed_figure import bed_figure
 from lithobrake.report.body_figure import body_figure
+from lithobrake.report.captions import hours
 from lithobrake.report.count_figure import Design, count_figure
 from lithobrake.report.error_figure import error_figure
 from lithobrake.report.landing_figure import landing_figure
 from lithobrake.report.landing_tables import GROUND_WORDS, SUMS, fates, followed
-from lithobrake.report.look import PAPER_OUTPUTS, figure_style
 from lithobrake.report.map_figure import Share, map_figure
 from lithobrake.report.page import Panel, page
 from lithobrake.report.rest_figure import RestMap, rest_figure
 from lithobrake.report.results import Results, read_results
 from lithobrake.report.scatter_figure import scatter_figure
-from lithobrake.report.sentences import hours
 from lithobrake.report.sobol_figure import sobol_figure
 from lithobrake.report.study_files import data_files, picture_files
+from lithobrake.report.style import PAPER_OUTPUTS, figure_style
 from lithobrake.report.tables import provenance, tables, tiles
 
 if TYPE_CHECKING:
@@ -63,7 +63,7 @@ def write_report(folder: Path, progress: Callable[[int, int], None]) -> Path:
         panels.append(Panel(title, sentence, picture))
     title = data.study.get("title") or folder.name
     origin = [data_files(folder), picture_files(folder, pictures), *provenance(data)]
-    answer, facts = sentences.answer(data), sentences.facts(data)
+    answer, facts = captions.answer(data), captions.facts(data)
     text = page(title, answer, facts, tiles(data), panels, tables(data), origin, data.study_text)
     path = folder / "report" / "index.html"
     with atomic_path(path) as draft:
@@ -75,15 +75,15 @@ def _figures(data: Results) -> list[tuple[str, str, str, Callable[[], "Figure | 
     """The figures of the method in its order: name of the file, title, sentence, and what draws it."""
     colour = _colour_input(data)
     return [
-        ("bed", "The surface", sentences.bed(data), lambda: _bed(data)),
-        ("landing", "A landing", sentences.landing(data), lambda: _landing(data)),
-        ("counts", "What the designs cost", sentences.counts(data), lambda: _counts(data)),
-        ("sobol", "What matters", sentences.sobol(data), lambda: _sobol(data)),
-        ("errors", "How good the expansion is", sentences.errors(data), lambda: _errors(data)),
-        ("outputs", "What may come out", sentences.scatter(data, colour), lambda: _outputs(data, colour)),
-        ("map", "Where the lander comes down", sentences.landing_map(data), lambda: _map(data)),
-        ("body", "The same on the body", sentences.body(data), lambda: _body(data)),
-        ("rest", "Where it rests", sentences.rest(data), lambda: _rest(data)),
+        ("bed", "The surface", captions.bed(data), lambda: _bed(data)),
+        ("landing", "A landing", captions.landing(data), lambda: _landing(data)),
+        ("counts", "What the designs cost", captions.counts(data), lambda: _counts(data)),
+        ("sobol", "What matters", captions.sobol(data), lambda: _sobol(data)),
+        ("errors", "How good the expansion is", captions.errors(data), lambda: _errors(data)),
+        ("outputs", "What may come out", captions.scatter(data, colour), lambda: _outputs(data, colour)),
+        ("map", "Where the lander comes down", captions.landing_map(data), lambda: _map(data)),
+        ("body", "The same on the body", captions.body(data), lambda: _body(data)),
+        ("rest", "Where it rests", captions.rest(data), lambda: _rest(data)),
     ]
 
 

@@ -3,11 +3,11 @@
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+from lithobrake.report.captions import hours, input_words, percent
 from lithobrake.report.landing_tables import fates, landing_tables
-from lithobrake.report.look import PAPER_OUTPUTS, output
 from lithobrake.report.page import Table, Tile, fixed, flat, number, show, unit_scales
 from lithobrake.report.results import Results
-from lithobrake.report.sentences import hours, input_words, percent
+from lithobrake.report.style import PAPER_OUTPUTS, output
 
 OUTPUT_WORDS = {
     "speed_out": "outgoing speed V+",

@@ -18,15 +18,16 @@ from lithobrake.cli import app
 from lithobrake.outputs import OUTPUTS
 from lithobrake.pipeline import Plan, StudyFolder, plan_study
 from lithobrake.pipeline.designs import design_inputs
-from lithobrake.pipeline.expected_disk import expected_bytes
-from lithobrake.pipeline.expected_steps import ExpectedSoil
-from lithobrake.pipeline.expected_time import run_time
 from lithobrake.pipeline.job import Silent
-from lithobrake.pipeline.plan import plan_of
-from lithobrake.pipeline.planned_runs import PlannedRuns
+from lithobrake.pipeline.planning.expected_disk import expected_bytes
+from lithobrake.pipeline.planning.expected_steps import ExpectedSoil
+from lithobrake.pipeline.planning.expected_time import run_time
+from lithobrake.pipeline.planning.plan_in_words import brief_lines
+from lithobrake.pipeline.planning.planned_runs import PlannedRuns
+from lithobrake.pipeline.planning.planner import plan_of
+from lithobrake.pipeline.planning.study_warnings import study_warnings
 from lithobrake.pipeline.samples import Samples
 from lithobrake.pipeline.study_run import run_study
-from lithobrake.pipeline.study_warnings import study_warnings
 from lithobrake.study import Study, StudySource, check_tables, load_tables, read_study
 
 HERE = Path(__file__).parents[2]
@@ -260,11 +261,11 @@ def test_more_processes_than_cores_are_no_faster_and_a_cluster_has_no_known_time
     assert touchdowns(many) == touchdowns(all_cores)
     cluster = plan_of(study, "quick", folder, None, on_cluster=True)
     assert touchdowns(cluster) is None
-    assert "whose time is not known on a cluster" in cluster.brief("")[1]
+    assert "whose time is not known on a cluster" in brief_lines(cluster, "")[1]
 
 
 def test_without_a_compiled_engine_the_pace_is_that_of_the_reference_machine(tmp_path: Path) -> None:
-    code = "from lithobrake.pipeline.pace import machine_pace; print(machine_pace())"
+    code = "from lithobrake.pipeline.planning.pace import machine_pace; print(machine_pace())"
     environment = os.environ | {"LITHOBRAKE_CACHE": str(tmp_path)}
     shown = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, env=environment)
     assert shown.stdout.strip() == "None"

@@ -14,14 +14,14 @@ from lithobrake.analysis import OutcomeModel
 from lithobrake.chaos import Uniform, fit, smolyak
 from lithobrake.outputs import OUTPUTS
 from lithobrake.pipeline import Job, StudyFolder
-from lithobrake.pipeline.fates import ENDS, landing_results, proportion
 from lithobrake.pipeline.flights import COLUMNS, read_table, write_table
 from lithobrake.pipeline.job import Silent
+from lithobrake.pipeline.landing_statistics import ENDS, landing_results, proportion
 from lithobrake.pipeline.rest import follow_samples
+from lithobrake.pipeline.run_noise import Scatter
 from lithobrake.pipeline.samples import SAMPLE_OUTCOMES, Samples
-from lithobrake.pipeline.scatter import Scatter
-from lithobrake.pipeline.soil import SoilBounce, rolling_spin, trained_ranges, why_no_soil
 from lithobrake.pipeline.solver import OUTCOMES
+from lithobrake.pipeline.surrogate_bounce import SoilBounce, rolling_spin, trained_ranges, why_no_soil
 from lithobrake.smallbody import Impacts
 from lithobrake.study import Study, check_tables
 from lithobrake.study.template import template

@@ -16,11 +16,11 @@ from lithobrake.report.ellipse_line import draw_ellipses, outline
 from lithobrake.report.error_figure import Score, error_figure
 from lithobrake.report.hulls import Body
 from lithobrake.report.landing_figure import instants, landing_figure
-from lithobrake.report.look import INK, PAPER_OUTPUTS, figure_style, input_label
 from lithobrake.report.map_figure import Share, draw_shares, map_figure
 from lithobrake.report.rest_figure import RestMap, rest_figure
 from lithobrake.report.scatter_figure import scatter_figure
 from lithobrake.report.sobol_figure import sobol_figure
+from lithobrake.report.style import INK, PAPER_OUTPUTS, figure_style, input_label
 
 ELLIPSES = {
     "latitude_deg": 10.0,

@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 from scipy.spatial import ConvexHull
 
 from lithobrake.report.hulls import Body, Camera, frame_axes, paint, rotation, subdivide
-from lithobrake.report.light import SUN, direction
+from lithobrake.report.shading import SUN, direction
 
 CUBE = np.array([(x, y, z) for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
 STRAIGHT = np.array([[1.0, 0.0, 0.0, 0.0]])

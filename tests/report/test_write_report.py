@@ -13,7 +13,7 @@ import h5py
 import numpy as np
 import pytest
 
-from lithobrake.report import sentences, write_report
+from lithobrake.report import captions, write_report
 from lithobrake.report.results import read_results
 from lithobrake.report.scene import read_scene
 from lithobrake.report.study_files import size
@@ -107,8 +107,8 @@ def test_a_summary_without_date_and_escape_speed_is_read_too(study_folder: Path)
     data = read_results(study_folder)
     site = {key: value for key, value in data.results["site"].items() if key[:6] not in ("escape", "bulk_d")}
     older = replace(data, provenance={}, results=data.results | {"site": site})
-    assert sentences.facts(older) == ""
-    assert sentences.landing_map(older).endswith("outward).")
+    assert captions.facts(older) == ""
+    assert captions.landing_map(older).endswith("outward).")
 
 
 @pytest.mark.parametrize(

@@ -4,11 +4,11 @@ import tomllib
 from pathlib import Path
 
 from lithobrake.outputs import OUTPUTS
-from lithobrake.pipeline.landings import draw, medians
 from lithobrake.study import check_tables
 from lithobrake.study.template import template
 from lithobrake.study.units import OUTPUT_UNITS, input_units
 from lithobrake.touchdown import OUTPUTS as OUTPUTS_OF_A_TOUCHDOWN
+from lithobrake.touchdown_model import draw, medians
 
 
 def test_every_input_of_a_run_has_its_unit() -> None:

@@ -2,8 +2,8 @@
 
 from lithobrake.outputs import OUTPUTS
 from lithobrake.pipeline.designs import design_inputs
-from lithobrake.pipeline.expected_steps import ExpectedSoil
-from lithobrake.pipeline.planned_runs import PlannedRuns
+from lithobrake.pipeline.planning.expected_steps import ExpectedSoil
+from lithobrake.pipeline.planning.planned_runs import PlannedRuns
 from lithobrake.pipeline.site import site_body
 from lithobrake.study import Study
 
@@ -44,7 +44,7 @@ def flight_count(study: Study) -> int:
 
 def journey_count(study: Study) -> int:
     """Journeys from bounce to bounce, on hard ground and, where it can be asked, on the soil."""
-    from lithobrake.pipeline.soil import why_no_soil
+    from lithobrake.pipeline.surrogate_bounce import why_no_soil
 
     count = min(study.rest.count, study.monte_carlo.sample_count)
     return count if why_no_soil(study) else 2 * count

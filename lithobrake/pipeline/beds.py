@@ -4,10 +4,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from lithobrake import __version__
-from lithobrake.pipeline.folder import content_hash, json_hash
+from lithobrake.hashing import content_hash, json_hash
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.kernels import compile_kernels
-from lithobrake.pipeline.landings import (
+from lithobrake.pipeline.solver import solver_reads
+from lithobrake.study import Study
+from lithobrake.touchdown_model import (
     acceleration,
     contact,
     draw,
@@ -19,8 +21,6 @@ from lithobrake.pipeline.landings import (
     medians,
     stored_bed,
 )
-from lithobrake.pipeline.solver import solver_reads
-from lithobrake.study import Study
 
 if TYPE_CHECKING:
     from lithobrake.touchdown import BedRecipe

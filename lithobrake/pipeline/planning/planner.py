@@ -1,75 +1,25 @@
-"""What a study will make, how long that takes and how much room, and what to know of it, before it runs."""
+"""Planning a study: what is still to be made, and what that will cost."""
 
 import shutil
-from collections.abc import Mapping, Set
-from dataclasses import asdict, dataclass
+from collections.abc import Set
 from pathlib import Path
-from typing import Any
 
 from lithobrake.campaign import available_cores
-from lithobrake.pipeline.expected_disk import expected_bytes, flight_count, journey_count
-from lithobrake.pipeline.expected_steps import ExpectedSoil
-from lithobrake.pipeline.expected_time import Span, basis, expected_seconds
+from lithobrake.pipeline.beds import bed_files
 from lithobrake.pipeline.folder import StudyFolder
 from lithobrake.pipeline.owner import refuse_others_folder
-from lithobrake.pipeline.plan_lines import brief_lines, bytes_in_words, plan_lines
-from lithobrake.pipeline.planned_runs import PlannedRuns, known_runs, possible_runs
+from lithobrake.pipeline.planning.expected_disk import expected_bytes, flight_count, journey_count
+from lithobrake.pipeline.planning.expected_steps import ExpectedSoil
+from lithobrake.pipeline.planning.expected_time import basis, expected_seconds
+from lithobrake.pipeline.planning.plan import Plan
+from lithobrake.pipeline.planning.plan_in_words import bytes_in_words
+from lithobrake.pipeline.planning.planned_runs import PlannedRuns, known_runs, possible_runs
+from lithobrake.pipeline.planning.study_warnings import study_warnings
 from lithobrake.pipeline.site import with_site_gravity
 from lithobrake.pipeline.stages import STAGES, stage_keys
-from lithobrake.pipeline.study_warnings import study_warnings
-from lithobrake.pipeline.surface import bed_files
 from lithobrake.study import Study, StudySource
 
 MAKE_RUNS = frozenset({"screening_runs", "refined_runs", "test_runs"})
-
-
-@dataclass(frozen=True)
-class Plan:
-    """What a study will do.
-
-    study           its title
-    folder          where
-    stages          titles of those that are to be made
-    made            how many beds, touchdowns, samples, ... are to be made, at least and at most
-    runs            the touchdowns with the fewest and with the most kept inputs; one, where these are known
-    process_count   here; None for a cluster
-    seconds         from and to, by what takes them; None where nobody knows
-    basis           where the seconds come from, in a sentence
-    bytes           of all files when finished, by what they hold
-    free_bytes      where the folder is
-    warnings        in sentences, the most important first
-    """
-
-    study: str
-    folder: str
-    stages: tuple[str, ...]
-    made: Mapping[str, tuple[int, int]]
-    runs: tuple[PlannedRuns, ...]
-    process_count: int | None
-    seconds: Mapping[str, Span | None]
-    basis: str
-    bytes: Mapping[str, int]
-    free_bytes: int
-    warnings: tuple[str, ...]
-
-    @property
-    def time(self) -> Span:
-        """Time of all that is known [s], from and to."""
-        spans = [span for span in self.seconds.values() if span is not None]
-        return sum(lower for lower, _ in spans), sum(upper for _, upper in spans)
-
-    def lines(self) -> list[str]:
-        """All of it in words."""
-        return plan_lines(self)
-
-    def brief(self, command: str) -> list[str]:
-        """Three lines of it; command: what says all."""
-        return brief_lines(self, command)
-
-    def to_json(self) -> dict[str, Any]:
-        """All of it as JSON values."""
-        runs = [asdict(one) | {"known": len(one.known), "new": one.new, "total": one.total} for one in self.runs]
-        return asdict(self) | {"runs": runs, "time": self.time}
 
 
 def plan_study(path: Path, out: Path, worker_count: int | None = None) -> Plan:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from lithobrake.pipeline.folder import source_hash
+from lithobrake.hashing import source_hash
 from lithobrake.study import Study
 from lithobrake.study.quantity import median
 
@@ -94,7 +94,7 @@ def in_words_of_the_study() -> Iterator[None]:
 @cache
 def engine_hash() -> str:
     """Hash of the code that decides what a touchdown gives."""
-    return source_hash("dem", "touchdown", "mesh.py", "mesh_files.py", "pipeline/landings.py")
+    return source_hash("dem", "touchdown", "mesh.py", "mesh_files.py", "touchdown_model.py")
 
 
 def stored_bed(path: Path) -> "Bed":

@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from lithobrake.pipeline.beds import bed_recipe
 from lithobrake.pipeline.designs import design_inputs
-from lithobrake.pipeline.landings import draw, lander, landing, medians
-from lithobrake.pipeline.planned_runs import planned_points
-from lithobrake.pipeline.surface import bed_recipe
+from lithobrake.pipeline.planning.planned_runs import planned_points
 from lithobrake.study import Study
+from lithobrake.touchdown_model import draw, lander, landing, medians
 
 if TYPE_CHECKING:
     from lithobrake.dem import ConvexHull

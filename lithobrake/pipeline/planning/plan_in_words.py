@@ -1,9 +1,6 @@
 """A plan in words."""
 
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from lithobrake.pipeline.plan import Plan
+from lithobrake.pipeline.planning.plan import Plan
 
 # One, and more.
 NAMES = {
@@ -16,7 +13,7 @@ NAMES = {
 }
 
 
-def plan_lines(plan: "Plan") -> list[str]:
+def plan_lines(plan: Plan) -> list[str]:
     """All that a plan says, in lines."""
     lines = [f"{plan.study}, in {plan.folder}"]
     if not plan.stages:
@@ -31,7 +28,7 @@ def plan_lines(plan: "Plan") -> list[str]:
     return lines + [f"  {number}. {warning}" for number, warning in enumerate(plan.warnings, start=1)]
 
 
-def brief_lines(plan: "Plan", command: str) -> list[str]:
+def brief_lines(plan: Plan, command: str) -> list[str]:
     """A plan in three lines; command: what says all of it."""
     count = len(plan.warnings)
     said = "No warnings." if count == 0 else f"{count} warning{'s, the first' * (count > 1)}: {plan.warnings[0]}"
@@ -42,13 +39,13 @@ def brief_lines(plan: "Plan", command: str) -> list[str]:
     ]
 
 
-def _made(plan: "Plan") -> str:
+def _made(plan: Plan) -> str:
     """Beds, touchdowns and what follows, in numbers."""
     counts = [f"{_range(*ends)} {NAMES[what][ends[1] > 1]}" for what, ends in plan.made.items() if ends[1]]
     return ", ".join(counts) or "summary and report"
 
 
-def _designs(plan: "Plan") -> str:
+def _designs(plan: Plan) -> str:
     """How many touchdowns each design asks for, and how many of all are there."""
     fewest, most = plan.runs[0], plan.runs[-1]
     kept = (
@@ -60,7 +57,7 @@ def _designs(plan: "Plan") -> str:
     return f"{asked}; {_range(fewest.total, most.total)} in all, of which {len(most.known)} are known and reused"
 
 
-def _time(plan: "Plan") -> str:
+def _time(plan: Plan) -> str:
     """The expected time in all."""
     workers = plan.process_count
     where = f" on {workers} process{'es' * (workers != 1)}" if workers else ""

@@ -9,11 +9,11 @@ import numpy as np
 from lithobrake.campaign import Ledger, Limits, RunOptions, Runs, Tally, run_key, run_seed
 from lithobrake.campaign import run as run_campaign
 from lithobrake.outputs import OUTPUTS
+from lithobrake.pipeline.beds import bed_files, touchdown_reads
 from lithobrake.pipeline.job import Job
-from lithobrake.pipeline.landings import TouchdownModel, draw, engine_hash, medians
 from lithobrake.pipeline.solver import FunctionModel, SolverModel, solver_command, solver_setting
-from lithobrake.pipeline.surface import bed_files, touchdown_reads
 from lithobrake.study import Study
+from lithobrake.touchdown_model import TouchdownModel, draw, engine_hash, medians
 
 
 def drawn_rows(study: Study, names: Sequence[str], x: np.ndarray, replicate: int) -> list[dict[str, float]]:

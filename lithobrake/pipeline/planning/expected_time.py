@@ -11,9 +11,9 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from lithobrake.campaign import Record, available_cores
-from lithobrake.pipeline.expected_disk import flight_count, journey_count
-from lithobrake.pipeline.expected_steps import ExpectedSoil
-from lithobrake.pipeline.pace import engine_is_compiled, machine_pace
+from lithobrake.pipeline.planning.expected_disk import flight_count, journey_count
+from lithobrake.pipeline.planning.expected_steps import ExpectedSoil
+from lithobrake.pipeline.planning.pace import engine_is_compiled, machine_pace
 from lithobrake.pipeline.site import site_body
 from lithobrake.study import Study
 

@@ -4,10 +4,10 @@ import math
 from typing import Any
 
 from lithobrake.report.error_figure import Score
-from lithobrake.report.look import PAPER_OUTPUTS, output
 from lithobrake.report.page import fixed, number
 from lithobrake.report.results import Results
 from lithobrake.report.scatter_figure import DRAWN_COUNT
+from lithobrake.report.style import PAPER_OUTPUTS, output
 
 PLAIN_SYMBOLS = {"speed_out": "V+", "elevation_out": "theta+", "spin_out": "omega+"}
 FIELD_WORDS = {"young_modulus": "Young's modulus", "poisson_ratio": "Poisson's ratio"}

@@ -8,7 +8,7 @@ import numpy as np
 from lithobrake.campaign import Record, read_records
 from lithobrake.pipeline.designs import DESIGNS, design_inputs, kept_inputs, points, replicate_count
 from lithobrake.pipeline.folder import StudyFolder
-from lithobrake.pipeline.touchdowns import drawn_rows, touchdown_keys
+from lithobrake.pipeline.touchdown_runs import drawn_rows, touchdown_keys
 from lithobrake.study import Study
 
 # Designs with more runs are not gone through run by run: that would take longer than a second or two.

@@ -8,8 +8,8 @@ import numpy as np
 from lithobrake.pipeline.designs import design_inputs, points
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.outgoing import VELOCITY, outgoing
+from lithobrake.pipeline.run_noise import Scatter
 from lithobrake.pipeline.samples import CLEAR, outcome_model
-from lithobrake.pipeline.scatter import Scatter
 from lithobrake.pipeline.solver import OUTCOMES
 from lithobrake.study import Study
 

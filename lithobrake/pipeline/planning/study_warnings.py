@@ -3,12 +3,12 @@
 from collections.abc import Iterator
 
 from lithobrake.pipeline.designs import design_inputs
-from lithobrake.pipeline.expected_steps import ExpectedSoil
-from lithobrake.pipeline.landings import PLACE
+from lithobrake.pipeline.planning.expected_steps import ExpectedSoil
 from lithobrake.pipeline.site import gravity_warning, site_warning
-from lithobrake.pipeline.soil import why_no_soil
+from lithobrake.pipeline.surrogate_bounce import why_no_soil
 from lithobrake.study import Study
 from lithobrake.study.quantity import Scalar, Uncertain, uncertain
+from lithobrake.touchdown_model import PLACE
 
 # A share of touchdowns that may be cut off without a word [-].
 CUT_OFF = 0.05

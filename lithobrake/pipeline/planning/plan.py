@@ -1,0 +1,49 @@
+"""What a study will do: how many of each it will make, how long that takes, how much room, and what to know of it."""
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from lithobrake.pipeline.planning.expected_time import Span
+from lithobrake.pipeline.planning.planned_runs import PlannedRuns
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What a study will do.
+
+    study           its title
+    folder          where
+    stages          titles of those that are to be made
+    made            how many beds, touchdowns, samples, ... are to be made, at least and at most
+    runs            the touchdowns with the fewest and with the most kept inputs; one, where these are known
+    process_count   here; None for a cluster
+    seconds         from and to, by what takes them; None where nobody knows
+    basis           where the seconds come from, in a sentence
+    bytes           of all files when finished, by what they hold
+    free_bytes      where the folder is
+    warnings        in sentences, the most important first
+    """
+
+    study: str
+    folder: str
+    stages: tuple[str, ...]
+    made: Mapping[str, tuple[int, int]]
+    runs: tuple[PlannedRuns, ...]
+    process_count: int | None
+    seconds: Mapping[str, Span | None]
+    basis: str
+    bytes: Mapping[str, int]
+    free_bytes: int
+    warnings: tuple[str, ...]
+
+    @property
+    def time(self) -> Span:
+        """Time of all that is known [s], from and to."""
+        spans = [span for span in self.seconds.values() if span is not None]
+        return sum(lower for lower, _ in spans), sum(upper for _, upper in spans)
+
+    def to_json(self) -> dict[str, Any]:
+        """All of it as JSON values."""
+        runs = [asdict(one) | {"known": len(one.known), "new": one.new, "total": one.total} for one in self.runs]
+        return asdict(self) | {"runs": runs, "time": self.time}
