@@ -210,8 +210,6 @@ def _scheduler(executor: str, scheduler: str | None) -> str | None:
 
 def _make(study: Path, out: Path, until: str, workers: int | None, scheduler: str | None, logs: bool) -> None:
     """Make the files of a study up to a stage, with two lines of progress."""
-    # The bits of a least-squares fit depend on the threads of the linear algebra, which reads this when it is loaded.
-    os.environ.update(OPENBLAS_NUM_THREADS="1", MKL_NUM_THREADS="1")
     with _one_sentence():
         from lithobrake.study import StudySource
 

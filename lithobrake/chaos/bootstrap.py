@@ -257,7 +257,8 @@ def _studentised(predicted: Array, y: Array, rows: NDArray[np.int64], level: flo
     if len(y) < FEWEST_TEST_RUNS:
         return np.array([[0.0] * 3, [np.inf] * 3])
     draws = np.stack([_log_scores(predicted[draw], y[draw]) for draw in rows])
-    with np.errstate(divide="ignore", invalid="ignore"):
+    # A bound that overflows is infinite: so few runs bound nothing.
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         distance = (draws[:, 0] - logarithms) / draws[:, 1]
         # A draw of one and the same run has no standard error, so it is infinitely far.
         distance = np.where(np.isnan(distance), np.sign(draws[:, 0] - logarithms) * np.inf, distance)

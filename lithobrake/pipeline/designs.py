@@ -15,8 +15,6 @@ from lithobrake.study.quantity import uncertain
 if TYPE_CHECKING:
     from lithobrake.chaos import Distribution, Surrogate
 
-DESIGNS = ("screening", "refined", "test_kept", "test_all")
-
 
 def design_inputs(study: Study) -> "dict[str, Distribution]":
     """The uncertain inputs of the touchdown with their distributions, in the order of the file's sections."""

@@ -5,9 +5,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from lithobrake.outputs import OUTPUTS
+from lithobrake.outputs import DESIGNS, OUTPUTS
 from lithobrake.pipeline.design_runs import DesignRuns
-from lithobrake.pipeline.designs import DESIGNS, design_inputs, kept_inputs
+from lithobrake.pipeline.designs import design_inputs, kept_inputs
 from lithobrake.pipeline.job import Job
 
 if TYPE_CHECKING:

@@ -8,8 +8,9 @@ import numpy as np
 
 from lithobrake.atomic import atomic_path
 from lithobrake.hashing import json_hash
+from lithobrake.outputs import DESIGNS
 from lithobrake.pipeline.design_runs import DesignRuns
-from lithobrake.pipeline.designs import DESIGNS, design_inputs
+from lithobrake.pipeline.designs import design_inputs
 from lithobrake.pipeline.folder import AGAIN, StudyFolder
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.outgoing import outgoing

@@ -130,5 +130,5 @@ def solver_reads(study: Study) -> dict[str, Any]:
     setting = solver_setting(study)
     # A mesh counts with its content, wherever it lies.
     setting["lander"]["file"] = None if study.lander.file is None else content_hash(Path(study.lander.file))
-    identity = [study.solver.function] if study.solver.function else solver_command(study, Path()).identity()
+    identity = [study.function] if study.function else solver_command(study, Path()).identity()
     return {"solver": identity, "setting": setting, "version": __version__}

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from lithobrake.campaign import DaskExecutor, LocalExecutor
+from lithobrake.chaos.threads import one_thread
 from lithobrake.pipeline.folder import StudyFolder
 from lithobrake.pipeline.job import Job, Progress, Silent
 from lithobrake.pipeline.notes import NAME
@@ -42,12 +43,13 @@ def run(
     another `out`. report: also make the page. progress: shows the stages as they go on; None: silence.
     Raises ValueError for a study or folder that is refused, too few runs with outputs, a model that cannot be pickled.
     """
-    tables = isinstance(study, Mapping)
-    source = StudySource.of_tables(study) if isinstance(study, Mapping) else StudySource.read(Path(study))
-    if model is not None:
-        source = source.with_function(function_identity(model))
-    if tables and out is None:
-        raise ValueError("out is None, and a study of tables has no name that its folder could have; give a folder")
+    function = None if model is None else function_identity(model)
+    if isinstance(study, Mapping):
+        if out is None:
+            raise ValueError("out is None, and a study of tables has no name that its folder could have; give a folder")
+        source = StudySource.of_tables(study, function)
+    else:
+        source = StudySource.read(Path(study), function)
     folder = Path("runs") / source.stem if out is None else Path(out)
     if not str(out).strip():
         raise ValueError(f"out is {str(out)!r}; allowed: the path of a folder; leave it out for runs/{source.stem}")
@@ -83,7 +85,12 @@ def run_study(
             f"This study names a program, which every run that is still to be made starts: {study.solver.command}"
         )
     folder = StudyFolder(out)
-    with folder.alone() as note, DaskExecutor(scheduler) if scheduler else LocalExecutor(worker_count) as executor:
+    # The bits of a least-squares fit depend on the threads of the linear algebra.
+    with (
+        one_thread(),
+        folder.alone() as note,
+        DaskExecutor(scheduler) if scheduler else LocalExecutor(worker_count) as executor,
+    ):
         folder.begin(source.path, source.content, setting(study), shown.say)
         if until == "report":
             plan = plan_of(study, source.stem, folder, worker_count, on_cluster=scheduler is not None)

@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from lithobrake.campaign import read_records
-from lithobrake.outputs import OUTPUTS
+from lithobrake.outputs import DESIGNS, OUTPUTS
 from lithobrake.pipeline.beds import bed_files
 from lithobrake.pipeline.design_runs import DesignRuns
-from lithobrake.pipeline.designs import DESIGNS, kept_inputs, replicate_count
+from lithobrake.pipeline.designs import kept_inputs, replicate_count
 from lithobrake.pipeline.flights import read_table
 from lithobrake.pipeline.headline import answer, headline
 from lithobrake.pipeline.job import Job

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from lithobrake.outputs import DESIGNS
 from lithobrake.reading import read_json, read_rows, reading
 from lithobrake.results.columns import described
 from lithobrake.results.table import Table
@@ -15,7 +16,6 @@ from lithobrake.results.table import Table
 if TYPE_CHECKING:
     from lithobrake.results.named_surrogate import NamedSurrogate
 
-DESIGNS = ("screening", "refined", "test_kept", "test_all")
 REMEDY = "have it made again with: lithobrake run STUDY.toml --out DIR"
 _TABLE = dict
 

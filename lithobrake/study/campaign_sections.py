@@ -29,5 +29,3 @@ class SolverSection(Section):
     that name files count from the study file. Absent: this program's own soil."""
     inputs: dict[str, Annotated[Scalar, MaybeUncertain("")]] = Field(default={})
     """Numbers that only your program knows, by names of your own."""
-    function: Annotated[str | None, Field(exclude=True)] = None
-    """Identity of a Python function in place of the program; `lithobrake.run(study, model=...)` sets it."""

@@ -186,14 +186,17 @@ def _replicate_problems(study: Study) -> Iterator[str]:
 
 def _solver_problems(study: Study) -> Iterator[str]:
     solver = study.solver
-    if solver.command is None:
-        if solver.inputs and study.has_soil:
-            yield "solver.inputs has numbers, and solver.command is missing; give the command that reads them"
+    if solver.command is not None and study.function is not None:
+        yield "solver.command names a program, and a Python model is given too; keep one of the two"
         return
     for name in solver.inputs:
         # Names stand in figures and tables, where other characters have a meaning of their own.
         if not re.fullmatch(r"[\w-]+", name):
             yield f"solver.inputs.{name} is no name; allowed: letters, digits, _ and -; rename it"
+    if solver.command is None:
+        if solver.inputs and study.has_soil:
+            yield "solver.inputs has numbers, and solver.command is missing; give the command that reads them"
+        return
     try:
         words = shlex.split(solver.command)
     except ValueError as error:

@@ -34,16 +34,27 @@ def read_study(path: Path) -> Study:
 
 def load_tables(path: Path) -> dict[str, Any]:
     """Read the tables of a TOML file as they stand. Raises StudyError when it is not there or is not TOML."""
+    return parse_tables(path, read_bytes(path))
+
+
+def read_bytes(path: Path) -> bytes:
+    """Read a study file as it lies on the disk. Raises StudyError when it is not there."""
+    try:
+        return path.read_bytes()
+    except OSError as error:
+        raise StudyError([f"{path}: the study file cannot be read ({error}); name an existing TOML file"]) from error
+
+
+def parse_tables(path: Path, content: bytes) -> dict[str, Any]:
+    """The tables of a study file with this content. Raises StudyError when it is not TOML."""
     try:
         # Some editors begin a file with a mark of its encoding, which "utf-8-sig" takes off.
-        return tomllib.loads(path.read_text(encoding="utf-8-sig"))
+        return tomllib.loads(content.decode("utf-8-sig"))
     except tomllib.TOMLDecodeError as error:
         raise StudyError([f"{path.name}: this is not TOML: {error}; mend that line"]) from error
     except UnicodeDecodeError as error:
         byte = f"byte {error.start + 1} is 0x{error.object[error.start]:02x}"
         raise StudyError([f"{path.name}: this is not text in UTF-8, {byte}; save it in that encoding"]) from error
-    except OSError as error:
-        raise StudyError([f"{path}: the study file cannot be read ({error}); name an existing TOML file"]) from error
     except RecursionError as error:
         raise StudyError(
             [f"{path.name}: brackets are nested too deeply; no key takes more than a few levels"]
@@ -55,13 +66,16 @@ def load_tables(path: Path) -> dict[str, Any]:
         ) from error
 
 
-def check_tables(tables: Mapping[str, Any], folder: Path, name: str = "study.toml") -> Study:
+def check_tables(
+    tables: Mapping[str, Any], folder: Path, name: str = "study.toml", function: str | None = None
+) -> Study:
     """Make a study of the tables; `folder` is where relative paths in it count from.
 
+    function: identity of a Python function that makes the touchdowns in place of the soil.
     Raises StudyError with one sentence for each problem.
     """
     try:
-        study = Study.model_validate(_absolute(tables, folder))
+        study = Study.model_validate(_absolute(tables, folder)).with_function(function)
     except ValidationError as error:
         raise StudyError([f"{name}: {text}" for text in sentences(error.errors(), known_keys())]) from error
     found = [f"{name}: {text}" for text in problems(study)]

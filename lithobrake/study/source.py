@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from lithobrake.study.reader import check_tables, load_tables, read_study
+from lithobrake.study.reader import check_tables, parse_tables, read_bytes
 from lithobrake.study.study import Study
 
 # What a study of tables is called in messages, and the stem of its folder.
@@ -22,16 +22,22 @@ class StudySource:
     path: Path | None
 
     @classmethod
-    def read(cls, path: Path) -> "StudySource":
-        """Read a study file. Raises StudyError with one sentence for each problem."""
-        return cls(read_study(path), load_tables(path), path.read_bytes(), path)
+    def read(cls, path: Path, function: str | None = None) -> "StudySource":
+        """Read a study file; function: identity of a Python function that makes the touchdowns in place of the soil.
+
+        Raises StudyError with one sentence for each problem.
+        """
+        content = read_bytes(path)
+        tables = parse_tables(path, content)
+        return cls(check_tables(tables, path.resolve().parent, path.name, function), tables, content, path)
 
     @classmethod
-    def of_tables(cls, tables: Mapping[str, Any]) -> "StudySource":
+    def of_tables(cls, tables: Mapping[str, Any], function: str | None = None) -> "StudySource":
         """Check the tables of a study; relative paths in them count from the current folder. Raises StudyError."""
         import tomli_w
 
-        return cls(check_tables(tables, Path.cwd()), tables, tomli_w.dumps(dict(tables)).encode(), None)
+        study = check_tables(tables, Path.cwd(), function=function)
+        return cls(study, tables, tomli_w.dumps(dict(tables)).encode(), None)
 
     @property
     def name(self) -> str:
@@ -42,12 +48,3 @@ class StudySource:
     def stem(self) -> str:
         """Its name without the ending."""
         return TABLES if self.path is None else self.path.stem
-
-    def with_function(self, identity: str) -> "StudySource":
-        """The study whose touchdowns a function makes. Raises ValueError where the study names a program for that."""
-        if self.study.solver.command is not None:
-            raise ValueError(
-                f"{self.name}: solver.command names a program, and a model is given too; keep one of the two"
-            )
-        solver = self.study.solver.model_copy(update={"function": identity})
-        return StudySource(self.study.model_copy(update={"solver": solver}), self.tables, self.content, self.path)

@@ -5,7 +5,7 @@ A `MaybeUncertain` key takes a number, or a table with a distribution. `lithobra
 
 from typing import Annotated
 
-from pydantic import BaseModel
+from pydantic import BaseModel, PrivateAttr
 
 from lithobrake.study.bed_section import BedSection
 from lithobrake.study.campaign_sections import CampaignSection, SolverSection
@@ -44,11 +44,23 @@ class Study(Section):
     site: SiteSection = SiteSection()
     flight: FlightSection = FlightSection()
     rest: RestSection = RestSection()
+    _function: str | None = PrivateAttr(default=None)
+
+    def with_function(self, identity: str | None) -> "Study":
+        """The same study, its touchdowns made by a Python function of this identity in place of the soil."""
+        study = self.model_copy()
+        study._function = identity
+        return study
+
+    @property
+    def function(self) -> str | None:
+        """Identity of the Python function that makes the touchdowns; no key of the file, but part of the run."""
+        return self._function
 
     @property
     def has_soil(self) -> bool:
         """Whether this program's own soil makes the touchdowns, and not a program or function of the user's own."""
-        return self.solver.command is None and self.solver.function is None
+        return self.solver.command is None and self.function is None
 
     def touchdown_values(self) -> dict[str, Scalar]:
         """Every scalar that the touchdown reads, by dotted key, in the units of the file; absent ones are left out."""

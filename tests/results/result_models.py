@@ -24,3 +24,15 @@ def bounce(inputs: dict[str, float], seed: int) -> dict[str, Any]:
 def contradicts_itself(inputs: dict[str, float], seed: int) -> dict[str, Any]:
     """A lander that leaves into the ground."""
     return {"outputs": {"velocity_out_x": 0.1, "velocity_out_y": 0.0, "velocity_out_z": -0.1, "spin_out": 0.0}}
+
+
+def lifted(inputs: dict[str, float], seed: int) -> dict[str, Any]:
+    """A rebound straight up, by a part of the speed that only this model knows."""
+    speed = inputs["solver.inputs.lift"] * inputs["impact.speed"]
+    outputs = {
+        "velocity_out_x": 0.0,
+        "velocity_out_y": 0.0,
+        "velocity_out_z": speed,
+        "spin_out": inputs["impact.speed"],
+    }
+    return {"outcome": "clear", "outputs": outputs}

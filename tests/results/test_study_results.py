@@ -114,6 +114,17 @@ def test_what_cannot_be_run_is_refused_before_anything_is_made(tmp_path: Path) -
     assert not out.exists()
 
 
+def test_a_model_has_inputs_of_its_own_and_no_grain_stands_in_its_way(tmp_path: Path) -> None:
+    tables = small_study()
+    tables["solver"] = {"inputs": {"lift": {"distribution": "uniform", "lower": 0.5, "upper": 1.0}}}
+    # No contact law would take so heavy a lander on these grains; the model has its own.
+    tables["lander"]["mass"] = 1e12
+    found = lithobrake.run(tables, tmp_path / "out", workers=1, model=models.lifted, report=False).runs
+    lift = found["solver.inputs.lift"]
+    assert 0.5 <= lift.min() < lift.max() <= 1.0
+    assert found["speed_out"] == pytest.approx(lift * found["impact.speed"])
+
+
 def test_a_model_that_contradicts_itself_fails_with_the_reason(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match="a lander that leaves moves outwards"):
         lithobrake.run(small_study(), tmp_path / "out", workers=1, model=models.contradicts_itself, report=False)

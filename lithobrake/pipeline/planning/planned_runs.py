@@ -6,7 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from lithobrake.campaign import Record, read_records
-from lithobrake.pipeline.designs import DESIGNS, design_inputs, kept_inputs, points, replicate_count
+from lithobrake.outputs import DESIGNS
+from lithobrake.pipeline.designs import design_inputs, kept_inputs, points, replicate_count
 from lithobrake.pipeline.folder import StudyFolder
 from lithobrake.pipeline.touchdown_runs import drawn_rows, touchdown_keys
 from lithobrake.study import Study
