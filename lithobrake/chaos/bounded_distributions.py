@@ -33,7 +33,8 @@ class Uniform(Distribution):
         return self._clip(0.5 * ((1.0 - germ) * self.lower + (1.0 + germ) * self.upper))
 
     def ppf(self, u: ArrayLike) -> Array:
-        return self._clip(self.lower + np.asarray(u, dtype=float) * (self.upper - self.lower))
+        # Through the germ, so that the median is the middle node of a grid to the last bit.
+        return self.physical(2.0 * np.asarray(u, dtype=float) - 1.0)
 
     def cdf(self, x: Array) -> Array:
         return 0.5 * (1.0 + self.germ(x))

@@ -94,6 +94,18 @@ def test_a_larger_sobol_sequence_keeps_the_points_of_a_smaller_one() -> None:
     assert np.array_equal(points(few, "screening", ()), points(many, "screening", ())[:50])
 
 
+def test_a_grid_of_few_inputs_reuses_the_nodes_of_the_grid_of_all() -> None:
+    tables = tomllib.loads(template())
+    tables["grain"]["friction"] = {"distribution": "uniform", "lower": 0.1, "upper": 0.7}
+    study = check_tables(tables, Path())
+    screening, refined = (
+        {tuple(row) for row in points(study, design, ["grain.friction", "grain.restitution"]).tolist()}
+        for design in ("screening", "refined")
+    )
+    # Both grids have 13 nodes on which the inputs that are not kept stand at their medians.
+    assert len(screening & refined) == 13
+
+
 def test_another_number_of_runs_a_point_makes_again_from_the_screening_on() -> None:
     tables = tomllib.loads(template())
     tables["impact"]["orientation"] = "random"
