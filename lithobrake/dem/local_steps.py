@@ -251,16 +251,14 @@ def replan(
         if pairs.feature_count[pair] == 0:
             plan_far(pair, bodies, pairs, flight, plans, agenda, now, rules)
         else:
+            item = len(bodies.mass) + pair
             if pairs.overlap[pair] > 0.0:
                 interval = touching_interval(pair, bodies, pairs, plans, rules)
                 # A contact keeps its steps even while it can: uneven ones take energy from it.
-                even = interval >= rules.uneven * plans.interval[pair]
+                if interval < rules.uneven * plans.interval[pair]:
+                    put_on(agenda, item, min(agenda.due[item], max(plans.last[pair] + interval, now)))
             else:
-                speed = closing_speed(bodies, flight, pairs.first[pair], pairs.second[pair])
-                interval, even = near_interval(pair, plans, speed, rules), False
-            due, item = plans.last[pair] + interval, len(bodies.mass) + pair
-            if not even and due < agenda.due[item]:
-                put_on(agenda, item, max(due, now))
+                put_on(agenda, item, now)
         entry = plans.link[entry]
 
 
@@ -319,35 +317,77 @@ def list_features(
     return True
 
 
+class Approach(NamedTuple):
+    """How near the features of a pair are to touching."""
+
+    gap: float  # m, of the first to touch; not above 0 where one touches
+    speed: float  # m/s, at which that one closes at most while the plans hold
+    time: float  # s, before which none touches
+
+
 @kernel
-def gap_of(pair: int, bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs) -> float:
-    """Return a lower bound on the gap of a pair from its listed features [m]; not above 0 where they touch."""
+def sooner(approach: Approach, gap: float, closing: float, slack: float, fall: float) -> Approach:
+    """Return the sooner of an approach and of a feature at a gap [m] that closes at a speed [m/s] and a slack [m/s]."""
+    speed = max(closing, 0.0) + slack
+    time = time_to_close(max(gap, 0.0), speed, fall)
+    return Approach(gap, speed, time) if gap <= 0.0 or time < approach.time else approach
+
+
+@large_kernel
+def approach_of(
+    pair: int, bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, flight: Flight, rules: Rules
+) -> Approach:
+    """Return how near a pair is to touching, from the features that are listed and the motion of either."""
     first, second = pairs.first[pair], pairs.second[pair]
     left = pairs.wake[pair] - travelled(bodies, first, second)
-    count = pairs.feature_count[pair]
-    if count < 0 or feature_kind(pairs.feature[pair, 0]) == SPHERES:
-        if count < 0:
-            return 0.0
-        apart = minus(row(bodies.position, second), row(bodies.position, first))
-        return dot(apart, apart) ** 0.5 - bodies.contact_radius[first] - bodies.contact_radius[second]
+    fall = weight(rules) if second < 0 else 0.0
+    whole = closing_speed(bodies, flight, first, second)
+    approach = Approach(left, whole, time_to_close(max(left, 0.0), whole, fall))
+    count, velocity = pairs.feature_count[pair], row(bodies.velocity, first)
+    spin = times(bodies.inverse_inertia, first, row(bodies.angular_momentum, first))
+    slack = flight.slack[first]
+    if count < 0 or left <= 0.0:
+        return Approach(0.0, whole, 0.0)
     if second < 0:
         plane, shape = -1 - second, bodies.shape[first]
         outward = row(planes.normal, plane)
-        down = transposed_times(bodies.rotation, first, outward)
         level = dot(outward, row(bodies.position, first)) - planes.offset[plane] - cores.rounding[shape]
         for k in range(count):
             corner = row(cores.vertex, cores.vertex_start[shape] + feature_indices(listed_feature(pair, pairs, k))[0])
-            left = min(left, level + dot(corner, down))
-        return left
+            arm = times(bodies.rotation, first, corner)
+            closing = -dot(outward, plus(velocity, cross(spin, arm)))
+            approach = sooner(approach, level + dot(outward, arm), closing, slack, fall)
+        return approach
+    slack += flight.slack[second]
     apart = minus(row(bodies.position, second), row(bodies.position, first))
+    other_spin = times(bodies.inverse_inertia, second, row(bodies.angular_momentum, second))
+    between = minus(row(bodies.velocity, second), velocity)
+    if feature_kind(pairs.feature[pair, 0]) == SPHERES:
+        distance = dot(apart, apart) ** 0.5
+        gap = distance - bodies.contact_radius[first] - bodies.contact_radius[second]
+        return sooner(approach, gap, -dot(between, apart) / distance if distance > 0.0 else 0.0, slack, 0.0)
     reach = cores.rounding[bodies.shape[first]] + cores.rounding[bodies.shape[second]]
     for k in range(count):
-        if left <= 0.0:
-            break
         feature = listed_feature(pair, pairs, k)
-        _, _, distance = measure_feature(bodies, cores, feature, first, second, apart, reach + left)
-        left = min(left, distance - reach)
-    return left
+        on_first, normal, distance = measure_feature(bodies, cores, feature, first, second, apart, reach + left)
+        if distance < reach + left:
+            on_second = minus(plus(on_first, scaled(distance, normal)), apart)
+            moving = plus(between, minus(cross(other_spin, on_second), cross(spin, on_first)))
+            approach = sooner(approach, distance - reach, -dot(moving, normal), slack, 0.0)
+            if approach.gap <= 0.0:
+                break
+    return approach
+
+
+@kernel
+def longest_turn(bodies: Bodies, flight: Flight, first: int, second: int) -> float:
+    """Return for how long [s] velocities of points of the bodies stay about the same, though they turn."""
+    momentum = row(bodies.angular_momentum, first)
+    spin = flight.turning[first] * dot(momentum, momentum) ** 0.5
+    if second >= 0:
+        momentum = row(bodies.angular_momentum, second)
+        spin = max(spin, flight.turning[second] * dot(momentum, momentum) ** 0.5)
+    return LARGEST_TURN / spin if spin > 0.0 else np.inf
 
 
 @kernel
@@ -427,12 +467,13 @@ def meet(
         return DONE
     touched = pairs.overlap[pair] > 0.0
     if not touched:
-        gap, speed = gap_of(pair, bodies, cores, planes, pairs), closing_speed(bodies, flight, first, second)
-        if gap > speed * near_interval(pair, plans, speed, rules):
+        approach = approach_of(pair, bodies, cores, planes, pairs, flight, rules)
+        if approach.gap > 0.0:
+            # What is about to touch may do so by a step's motion, as what touches moves by that.
+            wait = max(approach.time, near_interval(pair, plans, approach.speed, rules))
             plans.interval[pair] = 0.0
             flight.stats[6] += 1
-            fall = weight(rules) if second < 0 else 0.0
-            put_on(agenda, len(bodies.mass) + pair, now + time_to_close(gap, speed, fall))
+            put_on(agenda, len(bodies.mass) + pair, now + min(wait, longest_turn(bodies, flight, first, second)))
             return DONE
     force, torque, second_torque = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
     if touched:
