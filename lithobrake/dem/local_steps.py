@@ -18,7 +18,7 @@ from lithobrake.dem.arrays import Bodies, Cores, Floats, Integers, Laws, Pairs, 
 from lithobrake.dem.contact_patch import measure_feature
 from lithobrake.dem.feature_id import SPHERES, feature_capacity, feature_indices, feature_kind, listed_feature
 from lithobrake.dem.feature_list import BOUND_SLACK, ROUNDING_OF_RADIUS, STEPS_LISTED, list_bodies, list_plane, travelled
-from lithobrake.dem.force import contact_forces
+from lithobrake.dem.force import contact_force
 from lithobrake.dem.motion import turned, write_inverse_inertia, write_rotation
 from lithobrake.dem.scratch import Scratch
 from lithobrake.dem.vectors import Vector, add, cross, dot, minus, plus, put, row, scaled, times, transposed_times
@@ -236,7 +236,7 @@ def plan_far(
     put_on(agenda, len(bodies.mass) + pair, now + time)
 
 
-@large_kernel
+@kernel
 def replan(
     bodies: Bodies, pairs: Pairs, flight: Flight, plans: Plans, agenda: Agenda, body: int, now: float, rules: Rules
 ) -> None:
@@ -333,7 +333,7 @@ def sooner(approach: Approach, gap: float, closing: float, slack: float, fall: f
     return Approach(gap, speed, time) if gap <= 0.0 or time < approach.time else approach
 
 
-@large_kernel
+@kernel
 def approach_of(
     pair: int, bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, flight: Flight, rules: Rules
 ) -> Approach:
@@ -433,7 +433,7 @@ def forces_after(
         else:
             put(bodies.velocity, first, scaled(-1.0, way))
     step = Step(passed, 0.0, rules.gravity, rules.paper_mass)
-    rate = contact_forces(bodies, cores, planes, pairs, laws, step, scratch, reactions, True, pair, pair + 1)
+    rate = contact_force(pair, bodies, cores, planes, pairs, laws, step, scratch, reactions, True)
     if passed > 0.0 and plans.interval[pair] > 0.0:
         put(bodies.velocity, first, velocity)
         put(bodies.half_spin, first, spin)
@@ -443,7 +443,7 @@ def forces_after(
     return rate
 
 
-@large_kernel
+@kernel
 def meet(
     pair: int, bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, laws: Laws, scratch: Scratch,
     reactions: Reactions, flight: Flight, plans: Plans, agenda: Agenda, now: float, rules: Rules,
@@ -453,9 +453,9 @@ def meet(
     Writes to bodies, pairs, scratch, reactions, flight, plans and agenda.
     """
     first, second = pairs.first[pair], pairs.second[pair]
-    fly_to(bodies, flight, first, now, rules)
-    if second >= 0:
-        fly_to(bodies, flight, second, now, rules)
+    for member in (first, second):
+        if member >= 0:
+            fly_to(bodies, flight, member, now, rules)
     if not list_features(pair, bodies, cores, planes, pairs, scratch, flight, plans, rules):
         return FEATURES_OVERFLOW
     passed = now - plans.last[pair]
@@ -498,8 +498,6 @@ def meet(
     plans.interval[pair] = interval
     if pairs.overlap[pair] > 0.0:
         flight.stats[0] += 1
-        if interval < 0.999*touching_interval(pair, bodies, pairs, plans, Rules(rules.gravity, rules.drag, rules.paper_mass, rules.steps, rules.skin, rules.uneven, 1e9)) and interval != planned:
-            flight.stats[1] += 1
         if touched and passed < planned * (1.0 - 1e-9):
             flight.stats[3] += 1
     elif touched:
@@ -518,10 +516,9 @@ def meet(
             kick_body(bodies, second, 1.0, impulse, second_moment)
     note_motion(pair, bodies, pairs, plans)
     put_on(agenda, len(bodies.mass) + pair, now + interval)
-    if has_changed(bodies, flight, first):
-        replan(bodies, pairs, flight, plans, agenda, first, now, rules)
-    if second >= 0 and has_changed(bodies, flight, second):
-        replan(bodies, pairs, flight, plans, agenda, second, now, rules)
+    for member in (first, second):
+        if member >= 0 and has_changed(bodies, flight, member):
+            replan(bodies, pairs, flight, plans, agenda, member, now, rules)
     return DONE
 
 
