@@ -14,25 +14,14 @@ import pytest
 
 from lithobrake.campaign import Record, read_records
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
+from .ball_studies import FEW_RUNS, PROGRAM, write_ball
+
 FRICTION = 'friction = { distribution = "uniform", lower = 0.05, upper = 0.4 }'
-FEW_RUNS = {
-    "screening_level = 2": "screening_level = 1",
-    "screening_degree = 2": "screening_degree = 1",
-    "refined_level = 3": "refined_level = 1",
-    "refined_degree = 3": "refined_degree = 1",
-    "test_count = 10": "test_count = 6",
-}
 
 
-def write_study(folder: Path, changes: dict[str, str], program: Path = EXAMPLES / "ball_on_plate.py") -> Path:
+def write_study(folder: Path, changes: dict[str, str], program: Path = PROGRAM) -> Path:
     """The example's study with few runs and these changes of its text."""
-    text = (EXAMPLES / "ball_on_plate.toml").read_text()
-    for old, new in (FEW_RUNS | {"python3 ball_on_plate.py": f"{sys.executable} {program}"} | changes).items():
-        assert old in text
-        text = text.replace(old, new)
-    (folder / "study.toml").write_text(text)
-    return folder / "study.toml"
+    return write_ball(folder / "study.toml", FEW_RUNS | {"test_count = 10": "test_count = 6"} | changes, program)
 
 
 def lithobrake(*arguments: object) -> "subprocess.CompletedProcess[str]":
@@ -86,7 +75,7 @@ def test_one_more_bed_reuses_the_runs_that_stay_on_theirs_and_says_so(fixed: Pat
 
 def test_one_more_run_at_every_point_reuses_the_first_ones_and_says_so(fixed: Path) -> None:
     before = what_came(read_records(fixed / "runs.sqlite"))
-    changes = {FRICTION: "friction = 0.225", "screening_level = 1": "screening_level = 1\nreplicate_count = 2"}
+    changes = {FRICTION: "friction = 0.225", "screening_level = 2": "screening_level = 1\nreplicate_count = 2"}
     said = said_by("screen", write_study(fixed.parent, changes), "--out", fixed, "--workers", 1)
     assert "screening: 7 of 14 runs were known and are reused" in said
     after = read_records(fixed / "runs.sqlite")
@@ -112,9 +101,9 @@ runpy.run_path(PROGRAM, run_name="__main__")
     ],
 )  # fmt: skip
 def test_runs_that_fail_in_a_corner_are_not_fitted_around(share: str, said: str, tmp_path: Path) -> None:
-    (tmp_path / "breaks.py").write_text(FAILS_ABOVE.replace("PROGRAM", repr(str(EXAMPLES / "ball_on_plate.py"))))
+    (tmp_path / "breaks.py").write_text(FAILS_ABOVE.replace("PROGRAM", repr(str(PROGRAM))))
     changes = {
-        "screening_level = 1": "screening_level = 2",
+        "screening_level = 2": "screening_level = 2",
         "failed_share = 0.02": f"failed_share = {share}\nretry_count = 0",
     }
     study = write_study(tmp_path, changes, tmp_path / "breaks.py")
@@ -124,7 +113,7 @@ def test_runs_that_fail_in_a_corner_are_not_fitted_around(share: str, said: str,
 
 def test_a_program_that_never_works_ends_the_study_soon_and_so_does_its_restart(tmp_path: Path) -> None:
     (tmp_path / "never.py").write_text("import sys; sys.exit('\\x1b[31mno [/licence]')")
-    study = write_study(tmp_path, {"screening_level = 1": "screening_level = 2"}, tmp_path / "never.py")
+    study = write_study(tmp_path, {"screening_level = 2": "screening_level = 2"}, tmp_path / "never.py")
     for _ in range(2):
         said = said_by("screen", study, "--out", tmp_path / "out", "--workers", 1, code=2)
         assert "x RuntimeError: the program ended with exit code 1; its last words: no [/licence]), so the" in said
