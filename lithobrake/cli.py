@@ -160,9 +160,9 @@ def runs(
         units: dict[str, str] = {}
         # The names of a campaign that is no study are its author's, and so are their units.
         if (folder / "study.toml").is_file():
-            from lithobrake.study.units import OUTPUT_UNITS, input_units
+            from lithobrake.study.units import run_units
 
-            units = input_units() | OUTPUT_UNITS
+            units = run_units()
     if csv:
         with _reader_may_leave():
             write_csv(records, sys.stdout, units)

@@ -7,6 +7,7 @@ import tomllib
 from pathlib import Path
 from typing import Any
 
+import h5py
 import numpy as np
 import pytest
 import result_models as models
@@ -70,6 +71,19 @@ def test_columns_say_what_they_are(results: StudyResults) -> None:
     assert all(column.long_name for table in (results.runs, results.flights) for column in table.columns.values())
     assert results.flights.row_count == 6
     assert "speed_out [m/s]" in results.samples._repr_html_()
+
+
+def test_every_data_set_of_the_samples_says_of_its_columns_what_they_are(folder: Path) -> None:
+    with h5py.File(folder / "samples.h5") as file:
+        assert set(file) == {"inputs", "outputs", "outcome"}
+        assert file["outcome"].attrs["long_name"] == "how the touchdown ended"
+        for name in ("inputs", "outputs"):
+            attributes, count = file[name].attrs, file[name].shape[1]
+            assert len(attributes["units"]) == len(attributes["frame"]) == count
+            assert all(attributes["long_name"][:])
+        assert list(file["outputs"].attrs["units"]) == ["m/s", "rad", "rad/s", "m/s", "m/s", "m/s"]
+        degrees = list(file.attrs["input_names"]).index("impact.incidence_deg")
+        assert file["inputs"].attrs["units"][degrees] == "deg"
 
 
 def test_the_expansion_is_called_by_the_names_of_its_inputs(results: StudyResults) -> None:
