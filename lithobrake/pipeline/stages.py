@@ -102,7 +102,15 @@ STAGES = (
     Stage("fly", "flights", _files(*FLIGHT_FILES), flight_reads, ("sample",), FLY, fly_samples),
     Stage("rest", "bounces until rest", _files("rest.csv", "rest.json"), rest_reads, ("fly",), FLY, follow_samples),
     Stage("summary", "summary", _files("summary.json"), study_tables, ("landing", "rest"), FIT, write_summary),
-    Stage("report", "report", _files("report/index.html"), _nothing, ("summary",), ("report", "results", "outputs.py"), _write_report),
+    Stage(
+        "report",
+        "report",
+        _files("report/index.html"),
+        _nothing,
+        ("summary",),
+        ("report", "results", "outputs.py"),
+        _write_report,
+    ),
 )
 
 
