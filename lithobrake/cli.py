@@ -154,9 +154,10 @@ def runs(
 ) -> None:
     """List the runs of a study, with the inputs that differ between them."""
     with _one_sentence():
-        from lithobrake.campaign import read_records, run_lines, write_csv
+        from lithobrake.campaign import run_lines, write_csv
+        from lithobrake.results import open_study
 
-        records = read_records(folder / "runs.sqlite")
+        records = open_study(folder).ledger
         units: dict[str, str] = {}
         # The names of a campaign that is no study are its author's, and so are their units.
         if (folder / "study.toml").is_file():
@@ -227,12 +228,11 @@ def _make(study: Path, out: Path, until: str, workers: int | None, scheduler: st
 def _results(folder: Path) -> list[str]:
     """The five most telling numbers, and where the report is, in lines."""
     with _one_sentence():
-        from lithobrake.reading import read_json
+        from lithobrake.results import open_study
 
-        form, remedy = {"results": {"headline": [str]}}, "give the same command again, and it is made anew"
-        summary = read_json(folder / "summary.json", form, remedy)
+        headline = open_study(folder).headline
     page = (folder / "report" / "index.html").resolve()
-    return [*(f"  {sentence}" for sentence in summary["results"]["headline"]), f"Report: {page}"]
+    return [*(f"  {sentence}" for sentence in headline), f"Report: {page}"]
 
 
 def _tell(lines: Iterable[str]) -> None:

@@ -106,13 +106,13 @@ def quantity(name: str, known: Mapping[str, Quantity], study_units: Mapping[str,
     """What a column of this name holds, of a table of which these quantities are known.
 
     study_units: of the numbers of a study file by dotted key. A name of neither is one of the user's own: it keeps its
-    words, and has no unit.
+    words, and has no unit but the degrees that a name may end with.
     """
     if name in known:
         return known[name]
     site = name.removeprefix("site_")
     key, of_sample = (name, "") if site == name else (f"site.{site}", " of the sample")
-    units = study_units.get(key, "").removeprefix(PURE)
+    units = study_units.get(key, "deg" if name.endswith("_deg") else "").removeprefix(PURE)
     return Quantity(units, f"{site.replace('_', ' ').replace('.', ', ')}{of_sample}")
 
 

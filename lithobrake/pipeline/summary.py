@@ -30,12 +30,12 @@ from lithobrake.pipeline.site import (
     site_warning,
 )
 from lithobrake.pipeline.solver import OUTCOMES
+from lithobrake.results.study_results import SUMMARY_FORMAT
 from lithobrake.study import BUILT_IN_BODIES, Study
 
 if TYPE_CHECKING:
     from lithobrake.chaos import Surrogate
 
-FORMAT_VERSION = 2
 QUANTILES = (0.05, 0.5, 0.95)
 
 
@@ -75,7 +75,7 @@ def write_summary(job: Job) -> None:
     job.folder.write_json(
         "summary.json",
         {
-            "format_version": FORMAT_VERSION,
+            "format_version": SUMMARY_FORMAT,
             "study": study_tables(job.study, job.tables),
             "results": results,
             "provenance": _provenance(job, sum(one.run_count for one in runs.values()), distinct),

@@ -23,7 +23,8 @@ if TYPE_CHECKING:
 
 DESIGNS = ("screening", "refined", "test_kept", "test_all")
 SUMMARY_FORMAT = 2
-# Columns that every execution of a flight or a journey fills.
+# Columns that a table has even without rows.
+_RUN = ("key", "outcome")
 _PLACES = ("sample", "status", "latitude_deg", "longitude_deg")
 # Columns that hold no numbers.
 _WORDS = {"key", "design", "outcome", "reason", "status", "ground"}
@@ -89,9 +90,9 @@ class StudyResults:
         rows: dict[str, dict[str, Any]] = {}
         for design in DESIGNS:
             name = f"designs/{design}.csv"
-            for row in self._rows(name, ("key", "outcome")) if (self.folder / name).is_file() else ():
+            for row in self._rows(name, _RUN) if (self.folder / name).is_file() else ():
                 rows.setdefault(row["key"], {"design": design, **row})
-        return self._table("run", list(rows.values()), RUN | TOUCHDOWN)
+        return self._table("run", list(rows.values()), ("design", *_RUN), RUN | TOUCHDOWN)
 
     @cached_property
     def scores(self) -> dict[str, dict[str, dict[str, Any]]]:
@@ -118,12 +119,14 @@ class StudyResults:
     @cached_property
     def flights(self) -> "Table":
         """The flights of the samples that leave, to the next impact (docs/flights.md)."""
-        return self._table("flight", self._rows("flights.csv", (*_PLACES, "facet")), FLIGHT)
+        columns = (*_PLACES, "facet")
+        return self._table("flight", self._rows("flights.csv", columns), columns, FLIGHT)
 
     @cached_property
     def rest(self) -> "Table":
         """Where samples end after all bounces, on each ground (docs/flights.md)."""
-        return self._table("journey", self._rows("rest.csv", ("ground", *_PLACES)), FLIGHT)
+        columns = ("ground", *_PLACES)
+        return self._table("journey", self._rows("rest.csv", columns), columns, FLIGHT)
 
     @cached_property
     def beds(self) -> "Table":
@@ -193,7 +196,7 @@ class StudyResults:
 
     def _key(self, run: str | int) -> str:
         """The key of a run of the study. Raises ValueError where it has none, or several that begin like that."""
-        keys = [str(key) for key in self.runs["key"]] if self.runs.row_count else []
+        keys = [str(key) for key in self.runs["key"]]
         found = [key for row, key in enumerate(keys) if (key.startswith(run) if isinstance(run, str) else row == run)]
         if len(found) != 1:
             raise ValueError(
@@ -216,12 +219,13 @@ class StudyResults:
                 for row in read_rows(path, columns, self.remedy)
             ]
 
-    def _table(self, row: str, rows: Sequence[Mapping[str, Any]], known: Mapping[str, Quantity]) -> "Table":
-        """A table of rows by title; a row that lacks a number has none there."""
-        titles = dict.fromkeys(title for one in rows for title in one)
-        absent = {title: "" if title in _WORDS else math.nan for title in titles}
-        names = {title: title.removeprefix("input:").removeprefix("output:") for title in titles}
-        columns = {names[title]: [one.get(title, absent[title]) for one in rows] for title in titles}
+    def _table(
+        self, row: str, rows: Sequence[Mapping[str, Any]], first: Sequence[str], known: Mapping[str, Quantity]
+    ) -> "Table":
+        """A table of rows by title; a row that lacks a number has none there. first: columns that it has at least."""
+        absent = {title: "" if title in _WORDS else math.nan for title in (*first, *(t for one in rows for t in one))}
+        names = {title: title.removeprefix("input:").removeprefix("output:") for title in absent}
+        columns = {names[title]: [one.get(title, none) for one in rows] for title, none in absent.items()}
         return self._described(row, columns, known)
 
     def _described(self, row: str, columns: Mapping[str, Any], known: Mapping[str, Quantity]) -> "Table":

@@ -119,7 +119,7 @@ def test_other_code_is_refused_before_anything_lands(copied: Path) -> None:
 
 def test_a_bed_that_is_gone_and_a_landing_that_comes_out_otherwise_are_refused(copied: Path) -> None:
     (copied / "study.toml").write_text(STUDY.replace("steps_per_contact = 20.0", "steps_per_contact = 25.0"))
-    with pytest.raises(ValueError, match="and landing again gave .*: the study, its bed or this machine is another"):
+    with pytest.raises(ValueError, match=r"and landing again gave .*: the study, its bed or this machine is another"):
         open_study(copied).landing(0)
     (copied / "beds" / "bed_0.h5").unlink()
     with pytest.raises(ValueError, match=r"beds/bed_0\.h5, the bed of run \w+, is not there; make it again with"):
