@@ -1,6 +1,5 @@
 """A whole study through the command line, on a bed of a few grains: every stage real, stopped and gone on with."""
 
-import json
 import os
 import shutil
 import signal
@@ -12,6 +11,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+
+from lithobrake.results import open_study
 
 STUDY = """
 title = "A few grains"
@@ -74,7 +75,7 @@ def lithobrake(study: Path, out: Path, workers: int) -> "subprocess.CompletedPro
 
 
 def summary(out: Path) -> dict[str, Any]:
-    content: dict[str, Any] = json.loads((out / "summary.json").read_text())
+    content: dict[str, Any] = open_study(out).summary
     return content
 
 

@@ -101,7 +101,7 @@ class Samples:
             if self.without_scatter is not None:
                 file.create_dataset("without_scatter", data=self.without_scatter)
             file["outcome"].attrs.update(RUN["outcome"].attributes)
-            for name in set(file) - {"outcome"}:
+            for name in (name for name in file if name != "outcome"):
                 names = self.input_names if name == "inputs" else self.output_names
                 columns = [quantity(column, TOUCHDOWN, study_units) for column in names]
                 # One word for each column.

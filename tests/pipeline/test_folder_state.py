@@ -14,8 +14,8 @@ import pytest
 from typer.testing import CliRunner
 
 from lithobrake.atomic import locked
-from lithobrake.campaign import read_records
 from lithobrake.cli import app
+from lithobrake.results import open_study
 
 from .ball_studies import FEW_RUNS, FEW_SAMPLES, edit, write_ball
 
@@ -69,7 +69,7 @@ def test_a_whole_folder_is_current_and_its_report_can_be_written_again(home: Pat
     assert lines[1].startswith("11 of 11 stages are current: screening runs, screening, refined runs, refinement, ")
     assert not any("earlier" in line for line in lines)
     assert said_by("view", home).startswith("No browser answers here")
-    headline = json.loads((home / "out" / "summary.json").read_text())["results"]["headline"]
+    headline = open_study(home / "out").summary["results"]["headline"]
     assert len(said_by("report", home).splitlines()) == len(headline) + 1
     changed = {path.name for path, content in before.items() if path.read_bytes() != content}
     assert changed <= {".lock", "keys.json"}
@@ -80,7 +80,7 @@ def test_a_changed_study_makes_old_files_stale_and_tells_runs_of_earlier_setting
     edit(home / "ball.toml", {"speed = 0.15": "speed = 0.2"})
     assert f"{home / 'ball.toml'} was edited since" in said_by("status", home)
     assert f"{home / 'ball.toml'} was edited after this report was made" in said_by("view", home)
-    before = len(read_records(home / "out" / "runs.sqlite"))
+    before = len(open_study(home / "out").ledger)
     run(home, "screen")
     lines = said_by("status", home).splitlines()
     assert lines[0].endswith("nobody is at work; the report is there, but not of the files as they are")
@@ -88,7 +88,7 @@ def test_a_changed_study_makes_old_files_stale_and_tells_runs_of_earlier_setting
     assert lines[2].startswith(
         "of an earlier setting or version: designs/refined.csv, refined.json, designs/test_kept.csv, "
     )
-    made = len(read_records(home / "out" / "runs.sqlite")) - before
+    made = len(open_study(home / "out").ledger) - before
     assert lines[3] == f"{made} runs: {made} done, 0 running, 0 failed"
     assert lines[4] == f"{before} more runs in the ledger are of earlier settings of the study"
     refused = said_by("report", home, code=2)
@@ -234,8 +234,8 @@ def test_a_damaged_ledger_is_not_written_over(name: str, home: Path) -> None:
 
 def test_a_run_makes_damaged_files_again_with_the_same_bytes(home: Path) -> None:
     out = home / "out"
-    results = json.loads((out / "summary.json").read_text())["results"]
-    runs, before = read_records(out / "runs.sqlite"), {}
+    results = open_study(out).summary["results"]
+    runs, before = open_study(out).ledger, {}
     for name, damage in dict(FILES.values()).items():
         before[name] = (out / name).read_bytes()
         damage(out / name)
@@ -243,8 +243,8 @@ def test_a_run_makes_damaged_files_again_with_the_same_bytes(home: Path) -> None
     del before["summary.json"]
     assert {name: (out / name).read_bytes() for name in before} == before
     # The summary has the times of this execution too.
-    assert json.loads((out / "summary.json").read_text())["results"] == results
-    assert read_records(out / "runs.sqlite") == runs
+    assert open_study(out).summary["results"] == results
+    assert open_study(out).ledger == runs
 
 
 def test_a_run_with_damaged_keys_says_so_and_makes_the_files_again(home: Path) -> None:

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from lithobrake.campaign import Record, RunStatus, available_cores, read_records
+from lithobrake.campaign import Record, RunStatus, available_cores
 from lithobrake.cli import app
 from lithobrake.outputs import OUTPUTS
 from lithobrake.pipeline import Plan, StudyFolder, plan_study
@@ -28,6 +28,7 @@ from lithobrake.pipeline.planning.planner import plan_of
 from lithobrake.pipeline.planning.study_warnings import study_warnings
 from lithobrake.pipeline.samples import Samples
 from lithobrake.pipeline.study_run import run_study
+from lithobrake.results import open_study
 from lithobrake.study import Study, StudySource, check_tables, load_tables, read_study
 
 from .ball_studies import BALL, FEW_RUNS, write_ball
@@ -67,7 +68,7 @@ def test_the_runs_that_are_counted_are_those_that_are_made(tmp_path: Path) -> No
     assert (len(left.known), left.total) == (9, screened.made["touchdowns"][0] + 9)
     assert fewest.total <= left.total <= most.total
     run_study(StudySource.read(study), out, worker_count=1, until="test")
-    assert len(read_records(out / "runs.sqlite")) == left.total
+    assert len(open_study(out).ledger) == left.total
     tested = plan_study(study, out)
     assert tested.made["touchdowns"] == (0, 0)
     assert (tested.runs[0].new, tested.stages[0]) == (0, "samples")

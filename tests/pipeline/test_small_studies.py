@@ -12,7 +12,8 @@ from pathlib import Path
 
 import pytest
 
-from lithobrake.campaign import Record, read_records
+from lithobrake.campaign import Record
+from lithobrake.results import open_study
 
 from .ball_studies import FEW_RUNS, PROGRAM, write_ball
 
@@ -53,32 +54,32 @@ def fixed(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_an_input_that_becomes_uncertain_reuses_the_runs_at_its_median_and_says_so(fixed: Path) -> None:
-    before = what_came(read_records(fixed / "runs.sqlite"))
+    before = what_came(open_study(fixed).ledger)
     said = said_by("screen", write_study(fixed.parent, {}), "--out", fixed, "--workers", 1)
     # Three inputs have 7 nodes, four have 9: the two new ones are the ends of the friction.
     assert "screening: 7 of 9 runs were known and are reused" in said
-    after = what_came(read_records(fixed / "runs.sqlite"))
+    after = what_came(open_study(fixed).ledger)
     assert len(after) == len(before) + 2
     assert {key: after[key] for key in before} == before
 
 
 def test_one_more_bed_reuses_the_runs_that_stay_on_theirs_and_says_so(fixed: Path) -> None:
-    before = what_came(read_records(fixed / "runs.sqlite"))
+    before = what_came(open_study(fixed).ledger)
     changes = {FRICTION: "friction = 0.225", "grain_count = 100": "grain_count = 100\nbed_count = 2"}
     said = said_by("screen", write_study(fixed.parent, changes), "--out", fixed, "--workers", 1)
-    after = what_came(read_records(fixed / "runs.sqlite"))
-    moved = [entry for entry in read_records(fixed / "runs.sqlite") if entry.inputs["bed"] == 1.0]
+    after = what_came(open_study(fixed).ledger)
+    moved = [entry for entry in open_study(fixed).ledger if entry.inputs["bed"] == 1.0]
     assert 0 < len(moved) < 7
     assert f"screening: {7 - len(moved)} of 7 runs were known and are reused" in said
     assert {key: after[key] for key in before} == before
 
 
 def test_one_more_run_at_every_point_reuses_the_first_ones_and_says_so(fixed: Path) -> None:
-    before = what_came(read_records(fixed / "runs.sqlite"))
+    before = what_came(open_study(fixed).ledger)
     changes = {FRICTION: "friction = 0.225", "screening_level = 2": "screening_level = 1\nreplicate_count = 2"}
     said = said_by("screen", write_study(fixed.parent, changes), "--out", fixed, "--workers", 1)
     assert "screening: 7 of 14 runs were known and are reused" in said
-    after = read_records(fixed / "runs.sqlite")
+    after = open_study(fixed).ledger
     assert len(after) == len(before) + 7
     assert {entry.replicate for entry in after if entry.key not in before} == {1}
     assert {key: what_came(after)[key] for key in before} == before
@@ -119,7 +120,7 @@ def test_a_program_that_never_works_ends_the_study_soon_and_so_does_its_restart(
         assert "x RuntimeError: the program ended with exit code 1; its last words: no [/licence]), so the" in said
         assert "give the same command again" in said
         # Ten runs, and what was under way beside them.
-        assert 10 <= sum(entry.status == "failed" for entry in read_records(tmp_path / "out" / "runs.sqlite")) <= 12
+        assert 10 <= sum(entry.status == "failed" for entry in open_study(tmp_path / "out").ledger) <= 12
     assert "\x1b" not in lithobrake("runs", tmp_path / "out").stdout
 
 
@@ -136,7 +137,7 @@ def test_a_second_coordinator_is_refused_while_the_first_goes_on(tmp_path: Path)
     assert f"another lithobrake is at work in {tmp_path / 'out'} (process {first.pid} on " in said
     assert f"(process {first.pid} on " in told
     assert first.returncode == 0
-    assert len(read_records(tmp_path / "out" / "runs.sqlite")) == 9
+    assert len(open_study(tmp_path / "out").ledger) == 9
 
 
 @pytest.fixture
@@ -166,16 +167,17 @@ def test_a_disk_that_fills_up_is_one_sentence_and_the_study_goes_on_when_there_i
     database.close()
     subprocess.run(["mount", "-o", "remount,size=20m", str(small_disk)], check=True)
     said_by("test", study, "--out", small_disk / "out", "--workers", 1)
-    again, before = (what_came(read_records(out / "runs.sqlite")) for out in (small_disk / "out", fixed))
+    again, before = (what_came(open_study(out).ledger) for out in (small_disk / "out", fixed))
     assert {key: entry[:4] for key, entry in again.items()} == {key: before[key][:4] for key in again}
 
 
 AS_NOBODY = """
 import os, sys
 from pathlib import Path
-from lithobrake.campaign import Ledger, read_records
+from lithobrake.campaign import Ledger
 from lithobrake.pipeline import study_status
 from lithobrake.pipeline.folder import StudyFolder
+from lithobrake.results import open_study
 
 out = Path(sys.argv[1])
 out.chmod(0o555)
@@ -186,7 +188,7 @@ for open_folder in (lambda: StudyFolder(out), lambda: Ledger(out / "runs.sqlite"
         open_folder()
     except ValueError as error:
         print(error)
-print(len(read_records(out / "runs.sqlite")))
+print(len(open_study(out).ledger))
 print(*study_status(out), sep="\\n")
 """
 

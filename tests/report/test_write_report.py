@@ -153,6 +153,8 @@ DAMAGED: list[tuple[str, Callable[[Path], object]]] = [
     ("scores.json", lambda path: path.write_text('{"refined": 3}')),
     ("flights.csv", lambda path: path.write_text("")),
     ("flights.csv", lambda path: path.write_text(path.read_text()[:-9])),
+    ("flights.csv", lambda path: path.write_text(re.sub("impact,([^,]*),[^,]*,", r"impact,\1,,", path.read_text()))),
+    ("flights.csv", lambda path: path.write_text(path.read_text().replace("0.05", "fast"))),
     ("rest.csv", lambda path: path.write_text("a,b\n1,2\n")),
     ("body.obj", lambda path: path.write_text("\n")),
     ("body.obj", lambda path: path.write_text("v 0 0 0\nf 1 2 3\n")),
