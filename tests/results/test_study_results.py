@@ -3,9 +3,7 @@
 import copy
 import subprocess
 import sys
-import tomllib
 from pathlib import Path
-from typing import Any
 
 import h5py
 import numpy as np
@@ -18,23 +16,11 @@ from lithobrake.results import StudyResults
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
 
-def small_study() -> dict[str, Any]:
-    """The ball on a plate without its program, with few runs."""
-    tables = tomllib.loads((EXAMPLES / "ball_on_plate.toml").read_text())
-    del tables["solver"]
-    tables["design"] |= {"screening_level": 1, "screening_degree": 1, "refined_level": 2, "refined_degree": 1}
-    tables["design"] |= {"test_count": 4}
-    tables["monte_carlo"] = {"sample_count": 400}
-    tables["flight"] = {"flight_count": 6, "duration": 600.0, "gravity": "exact"}
-    tables["rest"] = {"count": 0}
-    return tables
-
-
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The folder of a finished study."""
     out = tmp_path_factory.mktemp("face") / "out"
-    lithobrake.run(small_study(), out, workers=1, model=models.bounce, report=False)
+    lithobrake.run(models.small_study(), out, workers=1, model=models.bounce, report=False)
     return out
 
 
@@ -107,14 +93,14 @@ def test_opening_writes_nothing_and_a_folder_of_something_else_is_refused(folder
 
 def test_the_same_call_makes_nothing_again_and_another_study_is_refused_the_folder(folder: Path) -> None:
     before = (folder / "summary.json").stat().st_mtime_ns
-    lithobrake.run(small_study(), folder, workers=1, model=models.bounce, report=False)
+    lithobrake.run(models.small_study(), folder, workers=1, model=models.bounce, report=False)
     assert (folder / "summary.json").stat().st_mtime_ns == before
     with pytest.raises(ValueError, match="choose another folder"):
         lithobrake.run(EXAMPLES / "ball_on_plate.toml", folder, workers=1, report=False)
 
 
 def test_what_cannot_be_run_is_refused_before_anything_is_made(tmp_path: Path) -> None:
-    tables, out = small_study(), tmp_path / "out"
+    tables, out = models.small_study(), tmp_path / "out"
     with pytest.raises(ValueError, match="out is None"):
         lithobrake.run(tables, model=models.bounce)
     with pytest.raises(ValueError, match="cannot be sent to a process"):
@@ -130,7 +116,7 @@ def test_what_cannot_be_run_is_refused_before_anything_is_made(tmp_path: Path) -
 
 def test_a_model_that_contradicts_itself_fails_with_the_reason(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match="a lander that leaves moves outwards"):
-        lithobrake.run(small_study(), tmp_path / "out", workers=1, model=models.contradicts_itself, report=False)
+        lithobrake.run(models.small_study(), tmp_path / "out", workers=1, model=models.contradicts_itself, report=False)
 
 
 def test_importing_the_package_loads_no_other() -> None:
