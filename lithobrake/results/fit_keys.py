@@ -50,7 +50,7 @@ FIT_SECTIONS = (
             "challenger.rmse_estimate.*": "error that it promises; null where it could not be fitted",
             "outputs.*.method": "how the output was fitted",
             "outputs.*.term_count": "its terms",
-            "outputs.*.rmse_estimate": "root-mean-square error expected at a new run with scatter, in the output's unit",
+            "outputs.*.rmse_estimate": "root-mean-square error expected at a new run, with scatter, in its unit",
             "outputs.*.rrmse_estimate": "the same over the standard deviation of the runs; null where they do not vary",
             "outputs.*.error_estimate": "how that error was found",
             "outputs.*.condition_number": "of the least squares",
