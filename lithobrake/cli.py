@@ -154,15 +154,16 @@ def runs(
 ) -> None:
     """List the runs of a study, with the inputs that differ between them."""
     with _one_sentence():
-        from lithobrake.campaign import read_records, run_lines, write_csv
+        from lithobrake.campaign import run_lines, write_csv
+        from lithobrake.results import open_study
 
-        records = read_records(folder / "runs.sqlite")
+        records = open_study(folder).ledger
         units: dict[str, str] = {}
         # The names of a campaign that is no study are its author's, and so are their units.
         if (folder / "study.toml").is_file():
-            from lithobrake.study.units import OUTPUT_UNITS, input_units
+            from lithobrake.study.units import run_units
 
-            units = input_units() | OUTPUT_UNITS
+            units = run_units()
     if csv:
         with _reader_may_leave():
             write_csv(records, sys.stdout, units)
@@ -225,12 +226,11 @@ def _make(study: Path, out: Path, until: str, workers: int | None, scheduler: st
 def _results(folder: Path) -> list[str]:
     """The five most telling numbers, and where the report is, in lines."""
     with _one_sentence():
-        from lithobrake.reading import read_json
+        from lithobrake.results import open_study
 
-        form, remedy = {"results": {"headline": [str]}}, "give the same command again, and it is made anew"
-        summary = read_json(folder / "summary.json", form, remedy)
+        headline = open_study(folder).headline
     page = (folder / "report" / "index.html").resolve()
-    return [*(f"  {sentence}" for sentence in summary["results"]["headline"]), f"Report: {page}"]
+    return [*(f"  {sentence}" for sentence in headline), f"Report: {page}"]
 
 
 def _tell(lines: Iterable[str]) -> None:

@@ -1,7 +1,7 @@
 """One touchdown as a model: from the numbers of the study file, by dotted key, to what came out."""
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cache, lru_cache
@@ -10,13 +10,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from lithobrake import __version__
 from lithobrake.hashing import source_hash
 from lithobrake.study import Study
 from lithobrake.study.quantity import median
 
 if TYPE_CHECKING:
     from lithobrake.dem import Material
-    from lithobrake.touchdown import Bed, ContactModel, Lander, Landing
+    from lithobrake.touchdown import Bed, ContactModel, Lander, Landing, Outcome
 
 Values = Mapping[str, float]
 # What a material is to a contact, by the names of the study file and of dem.Material.
@@ -46,6 +47,16 @@ class TouchdownModel:
 
     def __call__(self, values: dict[str, float], seed: int) -> dict[str, Any]:
         """Land once and say the outcome and the outputs [SI]. Raises ValueError where the code is another one."""
+        outcome = self.land(values)
+        return {"outcome": outcome.status, "outputs": outcome.outputs}
+
+    def land(
+        self,
+        values: Mapping[str, float],
+        frame_count: int = 0,
+        progress: Callable[[float, str], None] = lambda fraction, what: None,
+    ) -> "Outcome":
+        """Land once, and record about so many frames. Raises ValueError where the code is another one."""
         from lithobrake.touchdown import land
 
         if engine_hash() != self.engine:
@@ -55,8 +66,7 @@ class TouchdownModel:
             )
         bed = stored_bed(self.bed_paths[round(values["bed"])])
         with in_words_of_the_study():
-            outcome = land(bed, lander(self.study, values), landing(self.study, values))
-        return {"outcome": outcome.status, "outputs": outcome.outputs}
+            return land(bed, lander(self.study, values), landing(self.study, values), frame_count, progress)
 
 
 # What the engine calls things by its own names, and what they are in a study file.
@@ -95,6 +105,11 @@ def in_words_of_the_study() -> Iterator[None]:
 def engine_hash() -> str:
     """Hash of the code that decides what a touchdown gives."""
     return source_hash("dem", "touchdown", "mesh.py", "mesh_files.py", "touchdown_model.py")
+
+
+def touchdown_version() -> str:
+    """The version of the package and of the code that decides what a touchdown gives, as the ledger keeps it."""
+    return f"{__version__}+{engine_hash()}"
 
 
 def stored_bed(path: Path) -> "Bed":

@@ -3,7 +3,6 @@
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from lithobrake import __version__
 from lithobrake.hashing import content_hash, json_hash
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.kernels import compile_kernels
@@ -20,6 +19,7 @@ from lithobrake.touchdown_model import (
     landing,
     medians,
     stored_bed,
+    touchdown_version,
 )
 
 if TYPE_CHECKING:
@@ -101,7 +101,7 @@ def touchdown_reads(study: Study) -> dict[str, Any]:
         "lander": study.lander.model_dump(include={"shape", "edges", "inertia", "unit"}),
         "mesh": None if study.lander.file is None else content_hash(Path(study.lander.file)),
         "time_limit": study.landing.time_limit,
-        "version": f"{__version__}+{engine_hash()}",
+        "version": touchdown_version(),
     }
 
 

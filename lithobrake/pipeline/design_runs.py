@@ -15,7 +15,7 @@ from lithobrake.campaign import Runs
 from lithobrake.outputs import OUTPUTS
 from lithobrake.pipeline.folder import AGAIN, StudyFolder
 from lithobrake.reading import read_rows
-from lithobrake.study.units import OUTPUT_UNITS, input_units
+from lithobrake.study.units import run_units
 
 # What is known of every run, whatever its inputs and outputs; times stand in the ledger alone: they never repeat.
 PLAIN_COLUMNS = ("key", "outcome", "reason")
@@ -102,7 +102,7 @@ class DesignRuns:
 
     def save(self, folder: StudyFolder, design: str) -> None:
         """Write designs/NAME.csv, one row a run, units in the header."""
-        units = input_units() | OUTPUT_UNITS
+        units = run_units()
         head = [f"input:{name}" + _unit(name, units) for name in self.inputs]
         head += [f"output:{name}" + _unit(name, units) for name in self.outputs]
         columns = [*self.inputs.values(), *self.outputs.values()]

@@ -10,6 +10,7 @@ import numpy as np
 
 from lithobrake.atomic import atomic_path
 from lithobrake.hashing import content_hash
+from lithobrake.outputs import FLIGHT, quantity
 from lithobrake.pipeline.folder import AGAIN, StudyFolder
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.samples import Samples, sampling_seed
@@ -17,6 +18,7 @@ from lithobrake.pipeline.site import SITE_KEYS, frames, site_body, site_medians,
 from lithobrake.reading import read_rows
 from lithobrake.study import BUILT_IN_BODIES, Study
 from lithobrake.study.quantity import uncertain
+from lithobrake.study.units import input_units
 
 if TYPE_CHECKING:
     from lithobrake.smallbody import Body, Flights
@@ -30,12 +32,6 @@ COLUMNS = (
     *(f"site_{key}" for key in SITE_KEYS),
     "status", "time_s", "latitude_deg", "longitude_deg", "facet", "impact_speed", "impact_incidence_deg",
 )  # fmt: skip
-# Of the columns here and in rest.csv whose names do not say it; readers drop it from the headers.
-UNITS = {
-    **dict.fromkeys(("start_speed", "velocity_x", "velocity_y", "velocity_z", "impact_speed"), "m/s"),
-    **dict.fromkeys(("site_north_error", "site_east_error", "path_length"), "m"),
-    "site_mass": "kg", "site_spin_period": "s",
-}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -111,9 +107,14 @@ def fly_samples(job: Job) -> None:
 
 def write_table(folder: StudyFolder, name: str, columns: Sequence[str], rows: Iterable[list[Any]]) -> None:
     """Write a CSV file of the folder, with the unit behind each name that does not hold it."""
+    study_units = input_units()
+    units = {column: quantity(column, FLIGHT, study_units).units for column in columns}
+    titles = [
+        column if not unit or column.endswith(f"_{unit}") else f"{column} [{unit}]" for column, unit in units.items()
+    ]
     with atomic_path(folder / name) as draft, draft.open("w", newline="", encoding="utf-8") as file:
         table = csv.writer(file)
-        table.writerow(f"{column} [{UNITS[column]}]" if column in UNITS else column for column in columns)
+        table.writerow(titles)
         table.writerows(rows)
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from lithobrake.atomic import atomic_path
 from lithobrake.hashing import json_hash
-from lithobrake.outputs import DESIGNS
+from lithobrake.outputs import DESIGNS, RUN, TOUCHDOWN, quantity
 from lithobrake.pipeline.design_runs import DesignRuns
 from lithobrake.pipeline.designs import design_inputs
 from lithobrake.pipeline.folder import AGAIN, StudyFolder
@@ -19,6 +19,7 @@ from lithobrake.pipeline.solver import OUTCOMES
 from lithobrake.reading import reading
 from lithobrake.study import Study
 from lithobrake.study.quantity import median
+from lithobrake.study.units import input_units
 
 if TYPE_CHECKING:
     from lithobrake.analysis import OutcomeModel
@@ -90,14 +91,22 @@ class Samples:
         return replace(self, without_scatter=None, **part)
 
     def save(self, folder: StudyFolder) -> None:
-        """Write samples.h5."""
+        """Write samples.h5; each data set says of its columns what they are."""
         import h5py
 
+        study_units = input_units()
         with atomic_path(folder / "samples.h5") as draft, h5py.File(draft, "w") as file:
             for name in ("inputs", "outputs", "outcome"):
                 file.create_dataset(name, data=getattr(self, name))
             if self.without_scatter is not None:
                 file.create_dataset("without_scatter", data=self.without_scatter)
+            file["outcome"].attrs.update(RUN["outcome"].attributes)
+            for name in (name for name in file if name != "outcome"):
+                names = self.input_names if name == "inputs" else self.output_names
+                columns = [quantity(column, TOUCHDOWN, study_units) for column in names]
+                # One word for each column.
+                for attribute in ("units", "long_name", "frame"):
+                    file[name].attrs[attribute] = [getattr(column, attribute) for column in columns]
             file.attrs["format_version"] = FORMAT_VERSION
             file.attrs["input_names"], file.attrs["output_names"] = self.input_names, self.output_names
             file.attrs["outcomes"] = list(SAMPLE_OUTCOMES)

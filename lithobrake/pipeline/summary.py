@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from lithobrake.campaign import read_records
-from lithobrake.outputs import DESIGNS, OUTPUTS
+from lithobrake.outputs import DESIGNS, OUTPUTS, TOUCHDOWN
 from lithobrake.pipeline.beds import bed_files
 from lithobrake.pipeline.design_runs import DesignRuns
 from lithobrake.pipeline.designs import kept_inputs, replicate_count
@@ -30,13 +30,12 @@ from lithobrake.pipeline.site import (
     site_warning,
 )
 from lithobrake.pipeline.solver import OUTCOMES
+from lithobrake.results.study_results import SUMMARY_FORMAT
 from lithobrake.study import BUILT_IN_BODIES, Study
-from lithobrake.study.units import OUTPUT_UNITS
 
 if TYPE_CHECKING:
     from lithobrake.chaos import Surrogate
 
-FORMAT_VERSION = 2
 QUANTILES = (0.05, 0.5, 0.95)
 
 
@@ -51,7 +50,7 @@ def write_summary(job: Job) -> None:
     samples, scores = Samples.load(job.folder), job.folder.read_json("scores.json")
     kept, flights = kept_inputs(job.study, screening), read_table(job.folder, "flights.csv")
     results = {
-        "units": {name: OUTPUT_UNITS[name] for name in OUTPUTS},
+        "units": {name: TOUCHDOWN[name].units for name in OUTPUTS},
         "beds": [_bed(job, name) for name in bed_files(job.study)],
         "node_counts": _node_counts(job.study, len(screening.input_names)),
         "designs": {design: _design(runs[design], replicate_count(job.study, design)) for design in DESIGNS},
@@ -76,7 +75,7 @@ def write_summary(job: Job) -> None:
     job.folder.write_json(
         "summary.json",
         {
-            "format_version": FORMAT_VERSION,
+            "format_version": SUMMARY_FORMAT,
             "study": study_tables(job.study, job.tables),
             "results": results,
             "provenance": _provenance(job, sum(one.run_count for one in runs.values()), distinct),
@@ -149,7 +148,7 @@ def _outputs_of_runs(runs: DesignRuns) -> dict[str, Any]:
         if len(values):
             table[name] = {
                 "median": float(np.median(values)), "smallest": float(values.min()), "largest": float(values.max()),
-                "unit": OUTPUT_UNITS[name],
+                "unit": TOUCHDOWN[name].units,
             }  # fmt: skip
     return table
 

@@ -9,7 +9,6 @@ from lithobrake.report.results import Results
 from lithobrake.report.scatter_figure import DRAWN_COUNT
 from lithobrake.report.style import PAPER_OUTPUTS, output
 
-PLAIN_SYMBOLS = {"speed_out": "V+", "elevation_out": "theta+", "spin_out": "omega+"}
 FIELD_WORDS = {"young_modulus": "Young's modulus", "poisson_ratio": "Poisson's ratio"}
 METHOD_WORDS = {
     "smolyak": "on the Smolyak grid",
@@ -106,7 +105,7 @@ def landing(data: Results) -> str:
     """Figure 2."""
     if data.landing is None:
         return "The pictures of a touchdown are that program's own."
-    attributes, time = data.landing.attributes, data.landing.time
+    attributes, time = data.landing.moving.attributes, data.landing.moving.time
     status = str(attributes.get("status", ""))
     return (
         "With every uncertain input at its median, the lander arrives at "
@@ -146,7 +145,7 @@ def sobol(data: Results) -> str:
     screening = data.results["screening"]
     leaders = [_leader(name, screening) for name in PAPER_OUTPUTS]
     shares = {name: screening["fits"][name]["noise_share"] for name in PAPER_OUTPUTS}
-    scatter = [f"{percent(share, 0)} of {PLAIN_SYMBOLS[name]}" for name, share in shares.items() if share is not None]
+    scatter = [f"{percent(share, 0)} of {output(name).sign}" for name, share in shares.items() if share is not None]
     rest = f"; of the variance of the runs {listing(scatter)} is scatter, which no input decides" if scatter else ""
     kept = listing([input_words(name) for name in data.results["kept_inputs"]])
     share = min(data.results["kept_share"][name] for name in data.study["design"]["kept_outputs"])
@@ -161,10 +160,10 @@ def _leader(name: str, screening: dict[str, Any]) -> str:
     first = screening["sobol_first"][name]
     main = max(first, key=lambda key: first[key])
     if first[main] <= 0.0:
-        return f"no input was found that {PLAIN_SYMBOLS[name]} varies with"
+        return f"no input was found that {output(name).sign} varies with"
     low, high = (percent(end, 0) for end in screening["sobol_first_interval"][name][main])
     return (
-        f"{PLAIN_SYMBOLS[name]} varies most with the {input_words(main)} ({percent(first[main], 0)}, {low} to {high}, "
+        f"{output(name).sign} varies most with the {input_words(main)} ({percent(first[main], 0)}, {low} to {high}, "
         "of its explained variance)"
     )
 
@@ -185,7 +184,7 @@ def _explained(table: dict[str, Score]) -> str:
     for name in PAPER_OUTPUTS:
         q2, mape = table[name].q2, table[name].mape
         words = "an undefined share" if q2 is None else f"Q2 = {table[name].q2_words}"
-        parts.append(f"{words} of {PLAIN_SYMBOLS[name]} (MAPE {'undefined' if mape is None else f'{mape:.2g} %'})")
+        parts.append(f"{words} of {output(name).sign} (MAPE {'undefined' if mape is None else f'{mape:.2g} %'})")
     return listing(parts)
 
 

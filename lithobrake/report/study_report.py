@@ -19,12 +19,13 @@ from lithobrake.report.landing_tables import GROUND_WORDS, SUMS, fates, followed
 from lithobrake.report.map_figure import Share, map_figure
 from lithobrake.report.page import Panel, page
 from lithobrake.report.rest_figure import RestMap, rest_figure
-from lithobrake.report.results import Results, read_results
+from lithobrake.report.results import Results, page_results
 from lithobrake.report.scatter_figure import scatter_figure
 from lithobrake.report.sobol_figure import sobol_figure
 from lithobrake.report.study_files import data_files, picture_files
-from lithobrake.report.style import PAPER_OUTPUTS, figure_style
+from lithobrake.report.style import PAPER_OUTPUTS, figure_style, input_label
 from lithobrake.report.tables import provenance, tables, tiles
+from lithobrake.results import open_study
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -47,7 +48,7 @@ def write_report(folder: Path, progress: Callable[[int, int], None]) -> Path:
 
     Raises ValueError when a file that the report reads is missing.
     """
-    data = read_results(folder)
+    data = page_results(open_study(folder))
     (folder / "report").mkdir(exist_ok=True)
     panels, pictures, figures = [], [], _figures(data)
     for number, (name, title, sentence, draw) in enumerate(figures, start=1):
@@ -97,20 +98,19 @@ def _png(figure: "Figure") -> bytes:
 def _bed(data: Results) -> "Figure | None":
     if data.bed is None:
         return None
-    scene, first = data.bed, data.results["beds"][0]
+    moving, first = data.bed.moving, data.results["beds"][0]
     width = tuple(data.study["bed"]["width"])
     return bed_figure(
-        scene.bodies, scene.time, scene.position, scene.orientation, width, first["surface_height_m"], scene.history
+        *(data.bed.bodies, moving.time, moving.position, moving.orientation),
+        *(width, first["surface_height_m"], moving.history),
     )
 
 
 def _landing(data: Results) -> "Figure | None":
     if data.landing is None:
         return None
-    scene = data.landing
-    return landing_figure(
-        scene.bodies, scene.time, scene.position, scene.orientation, tuple(data.study["bed"]["width"])
-    )
+    moving, width = data.landing.moving, tuple(data.study["bed"]["width"])
+    return landing_figure(data.landing.bodies, moving.time, moving.position, moving.orientation, width)
 
 
 def _counts(data: Results) -> "Figure":
@@ -144,7 +144,7 @@ def _errors(data: Results) -> "Figure":
 
 def _colour_input(data: Results) -> str:
     """The restitution of the grains, as in the paper; where it is certain, the input that decides the speed most."""
-    if "grain.restitution" in data.samples.inputs:
+    if "grain.restitution" in data.samples:
         return "grain.restitution"
     total: dict[str, float] = data.results["screening"]["sobol_total"]["speed_out"]
     return max(total, key=lambda name: total[name])
@@ -152,9 +152,11 @@ def _colour_input(data: Results) -> str:
 
 def _outputs(data: Results, colour_name: str) -> "Figure | None":
     samples = data.samples
-    if not samples.leaves.any():
+    leaves = samples["outcome"] == "clear"
+    if not leaves.any():
         return None
-    return scatter_figure(samples.outputs, colour_name, samples.inputs[colour_name], samples.leaves)
+    colour = samples.columns[colour_name]
+    return scatter_figure(samples, (input_label(colour_name, colour.units), colour.values), leaves)
 
 
 def _map(data: Results) -> "Figure":

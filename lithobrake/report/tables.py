@@ -9,14 +9,6 @@ from lithobrake.report.page import Table, Tile, fixed, flat, number, show, unit_
 from lithobrake.report.results import Results
 from lithobrake.report.style import PAPER_OUTPUTS, output
 
-OUTPUT_WORDS = {
-    "speed_out": "outgoing speed V+",
-    "elevation_out": "elevation theta+",
-    "spin_out": "spin omega+",
-    "velocity_out_x": "velocity along x",
-    "velocity_out_y": "velocity across y",
-    "velocity_out_z": "velocity up z",
-}
 STAGE_WORDS = {
     "screening": "screening: its own runs",
     "test_screening": "screening: test, all inputs vary",
@@ -167,7 +159,7 @@ def _fits(data: Results) -> Table:
             rows.append(
                 [
                     stage if row == 0 else "",
-                    OUTPUT_WORDS.get(name, name),
+                    shown.row,
                     shown.unit,
                     fit["method"].replace("_", " "),
                     str(fit["term_count"]),
@@ -195,7 +187,7 @@ def _scores(data: Results) -> Table:
             rows.append(
                 [
                     STAGE_WORDS.get(stage, stage) if row == 0 else "",
-                    OUTPUT_WORDS.get(name, name),
+                    shown.row,
                     shown.unit,
                     _with_interval(score, "mape"),
                     _with_interval(score, "q2"),
@@ -213,7 +205,7 @@ def _scores(data: Results) -> Table:
 
 def _sobol(data: Results) -> Table:
     table = data.results["screening"]
-    words = [OUTPUT_WORDS[name].split()[-1] for name in PAPER_OUTPUTS]
+    words = [output(name).sign for name in PAPER_OUTPUTS]
     columns = ["input", *(f"{word} first" for word in words), *(f"{word} total" for word in words)]
     rows = [
         [
@@ -239,7 +231,7 @@ def _outputs(data: Results) -> Table:
     for name, table in outputs.items():
         shown = output(name)
         cells = (_cell(table[key] * shown.factor, scale[shown.unit]) for key in keys)
-        rows.append([OUTPUT_WORDS.get(name, name), shown.unit, *cells])
+        rows.append([shown.row, shown.unit, *cells])
     return Table("Outputs of the samples that leave", columns, rows, numbers=frozenset(columns[2:]))
 
 

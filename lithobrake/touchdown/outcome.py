@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from lithobrake.atomic import atomic_path
 from lithobrake.dem import Box, ConvexHull, Sphere
+from lithobrake.outputs import describe
 from lithobrake.touchdown.bed import Bed, write_hulls
 from lithobrake.touchdown.lander import Lander
 from lithobrake.touchdown.landing import Landing
@@ -47,6 +48,7 @@ class Outcome:
                 file[f"frames/{name}"] = values
             file["position"], file["orientation"] = self.frames["position"][-1], self.frames["orientation"][-1]
             file["diameter"] = bed.diameter
+            describe(file)
             file.attrs["format"], file.attrs["format_version"] = "lithobrake landing", 1
             file.attrs["status"], file.attrs["width"] = self.status, bed.width
             file.attrs["speed"], file.attrs["incidence"] = landing.speed, landing.incidence
