@@ -13,6 +13,7 @@ CITED = re.compile(r"\[([A-Za-z-]+-(?:[0-9]{4}|PCE))\]")
 WITH_KEYS = (
     "campaign",
     "chaos",
+    "dem",
 )
 
 
