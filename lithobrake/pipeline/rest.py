@@ -5,10 +5,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from lithobrake.outcomes import JourneyStatus
 from lithobrake.pipeline.flights import partner_time, sample_sites, write_table
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.outgoing import VELOCITY
-from lithobrake.pipeline.samples import SAMPLE_OUTCOMES, Samples, sampling_seed, touchdown_values
+from lithobrake.pipeline.samples import CAPTURED, Samples, sampling_seed, touchdown_values
 from lithobrake.pipeline.site import frames, site_body
 from lithobrake.pipeline.surrogate_bounce import rolling_spin, soil_bounce, trained_ranges, why_no_soil
 from lithobrake.study import Study
@@ -22,7 +23,10 @@ COLUMNS = (
     "impact_speed", "impact_incidence_deg",
 )  # fmt: skip
 # Statuses of landers that lie on, or have just touched, the ground of the body.
-DOWN = ("settled", "lofted", "outside", "sliding", "bouncing")
+DOWN = (
+    *(JourneyStatus.SETTLED, JourneyStatus.LOFTED, JourneyStatus.OUTSIDE, JourneyStatus.SLIDING),
+    JourneyStatus.BOUNCING,
+)
 
 
 def rest_reads(study: Study) -> dict[str, Any]:
@@ -59,7 +63,7 @@ def _on_soil(job: Job, samples: Samples) -> tuple["Rebounds", "Bounce"]:
 
     velocity = np.column_stack([samples.output(name) for name in VELOCITY])
     spin = rolling_spin(velocity, np.maximum(samples.output("spin_out"), 0.0))
-    captured = samples.outcome == SAMPLE_OUTCOMES.index("captured")
+    captured = samples.outcome == CAPTURED
     inputs = {name: samples.inputs[samples.leaves, index] for index, name in enumerate(samples.input_names)}
     return Rebounds(velocity, spin, captured, ~captured & ~samples.leaves), soil_bounce(job, inputs)
 
@@ -120,8 +124,8 @@ class Sites:
             progress=lambda share: job.progress(round(share * len(going)), len(going), f"bounces, {ground} ground"),
         )
         latitude, longitude = self.body.shape.latitude_longitude(self.origin)
-        held = np.where(self.push < 0.0, "settled", "lofted")
-        status = np.where(first.outside, "outside", held).tolist()
+        held = np.where(self.push < 0.0, JourneyStatus.SETTLED, JourneyStatus.LOFTED)
+        status = np.where(first.outside, JourneyStatus.OUTSIDE, held).tolist()
         rows = [
             [ground, sample, end, 0.0, *place, 0, 0.0, "", ""]
             for sample, (end, *place) in enumerate(zip(status, latitude.tolist(), longitude.tolist(), strict=True))

@@ -8,13 +8,13 @@ import numpy as np
 
 from lithobrake.atomic import atomic_path
 from lithobrake.hashing import json_hash
+from lithobrake.outcomes import SampleOutcome, TouchdownOutcome
 from lithobrake.pipeline.design_runs import DesignRuns
 from lithobrake.pipeline.designs import DESIGNS, design_inputs
 from lithobrake.pipeline.folder import AGAIN, StudyFolder
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.outgoing import outgoing
 from lithobrake.pipeline.run_noise import Scatter
-from lithobrake.pipeline.solver import OUTCOMES
 from lithobrake.reading import reading
 from lithobrake.study import Study
 from lithobrake.study.quantity import median
@@ -24,11 +24,11 @@ if TYPE_CHECKING:
     from lithobrake.chaos import Surrogate
 
 FORMAT_VERSION = 2
-# What may become of a sample at the touchdown: as of a run, or the expansion gave a way to leave that there is not.
-SAMPLE_OUTCOMES = (*OUTCOMES, "outside")
-CLEAR, OUTSIDE = SAMPLE_OUTCOMES.index("clear"), SAMPLE_OUTCOMES.index("outside")
+SAMPLE_OUTCOMES = tuple(SampleOutcome)
+CLEAR, CAPTURED = SAMPLE_OUTCOMES.index(SampleOutcome.CLEAR), SAMPLE_OUTCOMES.index(SampleOutcome.CAPTURED)
+OUTSIDE = SAMPLE_OUTCOMES.index(SampleOutcome.OUTSIDE)
 # Those after which nobody knows where the lander is.
-MISSING = ("left_sideways", "time_limit", "outside")
+MISSING = (SampleOutcome.LEFT_SIDEWAYS, SampleOutcome.TIME_LIMIT, SampleOutcome.OUTSIDE)
 # Points at which the expansion is evaluated at once; between two blocks progress is shown.
 _BLOCK = 1 << 20
 
@@ -99,7 +99,7 @@ class Samples:
                 file.create_dataset("without_scatter", data=self.without_scatter)
             file.attrs["format_version"] = FORMAT_VERSION
             file.attrs["input_names"], file.attrs["output_names"] = self.input_names, self.output_names
-            file.attrs["outcomes"] = list(SAMPLE_OUTCOMES)
+            file.attrs["outcomes"] = [outcome.value for outcome in SAMPLE_OUTCOMES]
 
     @classmethod
     def load(cls, folder: StudyFolder) -> "Samples":
@@ -159,10 +159,11 @@ def outcome_model(job: Job) -> "OutcomeModel":
     runs = [DesignRuns.load(job.folder, design) for design in DESIGNS]
     x = np.concatenate([one.columns(list(inputs)) for one in runs])
     outcomes = [outcome for one in runs for outcome in one.outcomes]
-    ended = np.isin(outcomes, OUTCOMES)
+    names = tuple(TouchdownOutcome)
+    ended = np.isin(outcomes, names)
     if not ended.any():
         raise ValueError("every run has failed (runs.sqlite has the reasons); mend what they name")
-    return OutcomeModel(inputs, x[ended], [outcome for outcome in outcomes if outcome in OUTCOMES], OUTCOMES)
+    return OutcomeModel(inputs, x[ended], [outcome for outcome in outcomes if outcome in names], names)
 
 
 def _evaluate(surrogate: "Surrogate", x: np.ndarray, job: Job) -> np.ndarray:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from lithobrake.campaign import read_records
+from lithobrake.outcomes import TouchdownOutcome
 from lithobrake.outputs import OUTPUTS
 from lithobrake.pipeline.beds import bed_files
 from lithobrake.pipeline.design_runs import DesignRuns
@@ -29,7 +30,6 @@ from lithobrake.pipeline.site import (
     site_medians,
     site_warning,
 )
-from lithobrake.pipeline.solver import OUTCOMES
 from lithobrake.study import BUILT_IN_BODIES, Study
 from lithobrake.study.units import OUTPUT_UNITS
 
@@ -47,7 +47,7 @@ def write_summary(job: Job) -> None:
     screening, refined = load(job.folder / "screening.json"), load(job.folder / "refined.json")
     runs = {design: DesignRuns.load(job.folder, design) for design in DESIGNS}
     distinct = DesignRuns.distinct(list(runs.values()))
-    ended = Counter(outcome for outcome in distinct.outcomes if outcome in OUTCOMES)
+    ended = Counter(outcome for outcome in distinct.outcomes if outcome in list(TouchdownOutcome))
     samples, scores = Samples.load(job.folder), job.folder.read_json("scores.json")
     kept, flights = kept_inputs(job.study, screening), read_table(job.folder, "flights.csv")
     results = {

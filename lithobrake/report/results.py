@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from lithobrake.outcomes import FlightStatus, JourneyStatus, SampleOutcome
 from lithobrake.reading import NUMBER, DamagedFileError, parsed, read_json, read_rows, reading
 from lithobrake.report.error_figure import Score
 from lithobrake.report.scene import Scene, read_scene
@@ -84,9 +85,9 @@ def read_results(folder: Path) -> Results:
     if has_scenes:
         _refuse_without(folder, ("landing.h5", "beds/bed_0.h5"))
     places = ("latitude_deg", "longitude_deg")
-    impacts = read("flights.csv", read_columns, remedy, {"status": "impact"}, *places, "facet")
+    impacts = read("flights.csv", read_columns, remedy, {"status": FlightStatus.IMPACT}, *places, "facet")
     rest = {
-        ground: read("rest.csv", read_columns, remedy, {"ground": ground, "status": "settled"}, *places)
+        ground: read("rest.csv", read_columns, remedy, {"ground": ground, "status": JourneyStatus.SETTLED}, *places)
         for ground in ("soil", "hard")
     }
     vertices, faces = read("body.obj", read_body)
@@ -156,7 +157,7 @@ def read_samples(path: Path) -> Samples:
 
     with h5py.File(path, "r") as file:
         inputs, outputs = file["inputs"][:], file["outputs"][:]
-        leaves = file["outcome"][:] == list(file.attrs["outcomes"]).index("clear")
+        leaves = file["outcome"][:] == list(file.attrs["outcomes"]).index(SampleOutcome.CLEAR)
         input_names, output_names = [str(name) for name in file.attrs["input_names"]], list(file.attrs["output_names"])
     return Samples(
         {name: inputs[:, column] for column, name in enumerate(input_names)},

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lithobrake.atomic import atomic_path
+from lithobrake.outcomes import JourneyStatus
 from lithobrake.report import captions
 from lithobrake.report.bed_figure import bed_figure
 from lithobrake.report.body_figure import body_figure
@@ -15,7 +16,7 @@ from lithobrake.report.captions import hours
 from lithobrake.report.count_figure import Design, count_figure
 from lithobrake.report.error_figure import error_figure
 from lithobrake.report.landing_figure import landing_figure
-from lithobrake.report.landing_tables import GROUND_WORDS, SUMS, fates, followed
+from lithobrake.report.landing_tables import GROUND_WORDS, SUMS, followed, outcome_words
 from lithobrake.report.map_figure import Share, map_figure
 from lithobrake.report.page import Panel, page
 from lithobrake.report.rest_figure import RestMap, rest_figure
@@ -30,15 +31,15 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 # What may become of a lander after all bounces, as short as it has to be beside a bar.
-SHORT_END_WORDS = {
-    "settled": "at rest",
-    "lofted": "lifted off again",
-    "outside": "outside the runs",
-    "sliding": "sliding",
-    "bouncing": "still bouncing",
-    "flying": "not at rest, {hours}",
-    "escaped": "escaped",
-    "partner": "on the partner",
+SHORT_JOURNEY_WORDS = {
+    JourneyStatus.SETTLED: "at rest",
+    JourneyStatus.LOFTED: "lifted off again",
+    JourneyStatus.OUTSIDE: "outside the runs",
+    JourneyStatus.SLIDING: JourneyStatus.SLIDING.label,
+    JourneyStatus.BOUNCING: "still bouncing",
+    JourneyStatus.FLYING: "not at rest, {hours}",
+    JourneyStatus.ESCAPED: JourneyStatus.ESCAPED.label,
+    JourneyStatus.PARTNER: "on the partner",
 }
 
 
@@ -161,7 +162,7 @@ def _map(data: Results) -> "Figure":
     table, site, limit = data.results["shares"], data.results["site"], hours(data.study["flight"]["duration"])
     shares = [
         Share(words.format(hours=limit), table[key]["share"], upper=table[key].get("upper_limit"))
-        for key, words in fates(data).items()
+        for key, words in outcome_words(data).items()
         if key not in SUMS
     ]
     where = (site["latitude_deg"], site["longitude_deg"])
@@ -185,8 +186,8 @@ def _rest(data: Results) -> "Figure | None":
     found, site, limit = followed(data), data.results["site"], hours(data.study["rest"]["duration"])
     if not found:
         return None
-    # The same ends on both sides, so that rows and colours match.
-    met = {key: words for key, words in SHORT_END_WORDS.items() if any(one[key]["count"] for one in found.values())}
+    # The same statuses on both sides, so that rows and colours match.
+    met = {key: words for key, words in SHORT_JOURNEY_WORDS.items() if any(one[key]["count"] for one in found.values())}
     maps = []
     for ground, (latitude, longitude) in data.rest.items():
         table = found.get(ground)

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from lithobrake.report.captions import hours, input_words, percent
-from lithobrake.report.landing_tables import fates, landing_tables
+from lithobrake.report.landing_tables import landing_tables, outcome_words
 from lithobrake.report.page import Table, Tile, fixed, flat, number, show, unit_scales
 from lithobrake.report.results import Results
 from lithobrake.report.style import PAPER_OUTPUTS, output
@@ -46,7 +46,7 @@ def tiles(data: Results) -> list[Tile]:
         Tile(
             f"{100 * shares['remains']['share']:.1f}",
             "%",
-            f"{fates(data)['remains'].format(hours=hours(data.study['flight']['duration']))}; {_scope(data)}",
+            f"{outcome_words(data)['remains'].format(hours=hours(data.study['flight']['duration']))}; {_scope(data)}",
         ),
         _touchdowns_tile(list(designs)),
         Tile(

@@ -7,11 +7,11 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from lithobrake.outcomes import FlightStatus, JourneyStatus
 from lithobrake.smallbody.body import Body
 from lithobrake.smallbody.bounce import Bounce, Impacts
 from lithobrake.smallbody.flight import fly
 from lithobrake.smallbody.flight_results import Flights
-from lithobrake.smallbody.status import FlightStatus, JourneyStatus
 
 GRAZE = 1e-5  # cosine of the incidence below which a lander does not hit the ground but slides along it
 
