@@ -117,7 +117,7 @@ def draw(study: Study, values: Values, seed: int) -> dict[str, float]:
     whether used or not, so that each has the same random numbers in every study. A run takes the bed with the largest
     number of its own: one more bed takes its share of runs over, and all others stay on theirs (rendezvous hashing).
 
-    Source: Thaler and Ravishankar (1998), IEEE/ACM Transactions on Networking 6, 1.
+    Source: [Thaler-1998].
     """
     bed = int(np.argmax(np.random.Generator(np.random.PCG64([seed, 1])).random(study.bed.bed_count)))
     generator = np.random.Generator(np.random.PCG64(seed))

@@ -50,7 +50,7 @@ def has_heading(study: Study) -> bool:
     """Whether the heading has a median: one that is uncertain over the circle has none.
 
     It has none where a draw points hardly anywhere in the mean (resultant length below a tenth; an even spread over
-    325 degrees has that). Source: Mardia and Jupp (2000), Directional Statistics, section 2.3.
+    325 degrees has that). Source: [Mardia-2000], section 2.3.
     """
     heading = site_values(study)["heading_deg"]
     if not isinstance(heading, Uncertain):

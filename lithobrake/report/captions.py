@@ -175,7 +175,7 @@ def errors(data: Results) -> str:
 
 
 def _explained(table: dict[str, Score]) -> str:
-    """Explained share of the variance and mean error of the paper's outputs on one set of runs."""
+    """Explained share of the variance and mean error of the outputs of [Landings-PCE] on one set of runs."""
     parts = []
     for name in PAPER_OUTPUTS:
         q2, mape = table[name].q2, table[name].mape

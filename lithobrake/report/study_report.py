@@ -144,7 +144,7 @@ def _errors(data: Results) -> "Figure":
 
 
 def _colour_input(data: Results) -> str:
-    """The restitution of the grains, as in the paper; where it is certain, the input that decides the speed most."""
+    """The restitution of the grains, as in [Landings-PCE], or the input that decides the speed most."""
     if "grain.restitution" in data.samples.inputs:
         return "grain.restitution"
     total: dict[str, float] = data.results["screening"]["sobol_total"]["speed_out"]

@@ -91,7 +91,7 @@ OUTPUTS = {
     "velocity_out_y": Output("$V^+_y$", "velocity across", "m/s", 1.0),
     "velocity_out_z": Output("$V^+_z$", "velocity up", "m/s", 1.0),
 }
-# The three outputs of the paper, in its order.
+# The three outputs of [Landings-PCE], in its order.
 PAPER_OUTPUTS = ("speed_out", "elevation_out", "spin_out")
 
 INPUT_LABELS = {

@@ -65,14 +65,7 @@ def fly(
     times = _one_each("duration", duration, len(starts))
     if not (times > 0.0).all():
         raise ValueError(f"duration is {duration!r} s; it must be finite and above 0.")
-    if frame not in ("body", "inertial"):
-        raise ValueError(f"frame is {frame!r}; allowed are 'body' and 'inertial'.")
-    if gravity not in ("exact", "table"):
-        raise ValueError(f"gravity is {gravity!r}; allowed are 'exact' and 'table'.")
-    if tolerance is None:
-        tolerance = 3e-7 if gravity == "exact" else 3e-6
-    if not 1e-13 <= tolerance <= 1e-3:
-        raise ValueError(f"tolerance is {tolerance}; it must lie in 1e-13 to 1e-3.")
+    tolerance = _checked_choices(frame, gravity, tolerance)
     count = len(starts)
     masses = _one_each("mass", body.mass if mass is None else mass, count, "kg")
     periods = _one_each("spin_period", body.spin_period if spin_period is None else spin_period, count, infinite=True)
@@ -81,13 +74,7 @@ def fly(
         starts = _into_turning_frame(starts, dynamics.spin_rate, begin)
     phase, grounds = _phases(body, starts, dynamics.orbit, begin)
     sources = _sources(body, gravity)
-    ends = FlightEnds(
-        status=np.zeros(count, dtype=np.int64),
-        time=np.zeros(count),
-        state=np.zeros((count, 6)),
-        facet=np.full(count, -1),
-        step_count=np.zeros(count, dtype=np.int64),
-    )
+    ends = FlightEnds.of_count(count)
 
     def part(first: int) -> None:
         piece = slice(first, first + CHUNK)
@@ -100,6 +87,19 @@ def fly(
     begins = StartStates(begin, where, rate, masses, periods)
     place, velocity_there = ends.state[:, :3], ends.state[:, 3:]
     return Flights(body, begins, STATUSES[ends.status], ends.time, place, velocity_there, ends.facet, ends.step_count)
+
+
+def _checked_choices(frame: str, gravity: str, tolerance: float | None) -> float:
+    """The tolerance, by default that of the gravity. Raises ValueError for a word or a number that is not allowed."""
+    if frame not in ("body", "inertial"):
+        raise ValueError(f"frame is {frame!r}; allowed are 'body' and 'inertial'.")
+    if gravity not in ("exact", "table"):
+        raise ValueError(f"gravity is {gravity!r}; allowed are 'exact' and 'table'.")
+    if tolerance is None:
+        return 3e-7 if gravity == "exact" else 3e-6
+    if not 1e-13 <= tolerance <= 1e-3:
+        raise ValueError(f"tolerance is {tolerance}; it must lie in 1e-13 to 1e-3.")
+    return tolerance
 
 
 def _sources(body: Body, gravity: str) -> tuple[Gravity, Gravity]:

@@ -1,8 +1,7 @@
 """How gravity changes from place to place: the second derivatives of the potential, near and far.
 
-Sources: Werner and Scheeres (1996), Exterior gravitation of a polyhedron, Celestial Mechanics and Dynamical Astronomy
-65, 313-344, Eq 17's companion for the gradient matrix (sum of edge dyads and logarithms less facet dyads and solid
-angles); far away the harmonics of multipole.py, whose derivative is a series again, with shifted moments.
+Source: [Werner-1996], Eq 17's companion for the gradient matrix (sum of edge dyads and logarithms less facet dyads and
+solid angles); far away the harmonics of multipole.py, whose derivative is a series again, with shifted moments.
 """
 
 import numpy as np

@@ -1,9 +1,8 @@
 """Gravity far from a body as a series of solid harmonics, where the sums over facets lose their digits.
 
-Far away the facets' terms cancel to ever fewer digits, while a series needs ever fewer terms. Sources: Dehnen (2014), A
-fast multipole method for stellar dynamics, Computational Astrophysics and Cosmology 1, 1, appendix A (harmonics, their
-recursions and derivatives); Werner (1997), Spherical harmonic coefficients for the potential of a constant-density
-polyhedron, Computers and Geosciences 23, 1071-1077 (cones from the centre reduce the integrals to facets).
+Far away the facets' terms cancel to ever fewer digits, while a series needs ever fewer terms. Sources:
+[Dehnen-2014], appendix A (harmonics, their recursions and derivatives); [Werner-1997] (cones from the centre reduce the
+integrals to facets).
 """
 
 from typing import NamedTuple

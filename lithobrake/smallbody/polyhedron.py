@@ -1,8 +1,6 @@
 """The gravity of a body of constant density whose surface is plane triangles, exactly.
 
-Source: Werner and Scheeres (1996), Exterior gravitation of a polyhedron derived and compared with harmonic and mascon
-gravitation representations of asteroid 4769 Castalia, Celestial Mechanics and Dynamical Astronomy 65, 313-344, Eqs
-10-17.
+Source: [Werner-1996], Eqs 10-17.
 """
 
 from typing import NamedTuple

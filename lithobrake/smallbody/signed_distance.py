@@ -1,8 +1,6 @@
 """Distance from a point to the surface of a shape, negative inside.
 
-Sources: Ericson (2005), Real-Time Collision Detection, section 5.1.5 (closest point of a triangle); Baerentzen and
-Aanaes (2005), Signed distance computation using the angle weighted pseudonormal, IEEE Trans. Vis. Comput. Graph. 11,
-243-253.
+Sources: [Ericson-2005], section 5.1.5 (closest point of a triangle); [Baerentzen-2005].
 """
 
 import numpy as np
