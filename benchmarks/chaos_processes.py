@@ -1,7 +1,7 @@
 """The default fit beside the Gaussian processes of scikit-learn, on eleven truths of five uniform inputs.
 
 Prints a table of medians over seeds of rRMSE (error at 2000 noise-free points over the spread of the truth): default,
-radial Matern 5/2 and Gaussian covariance with a length an input and a nugget, the 241 runs of [Landings-PCE]; and the ratio
+radial Matern 5/2 and Gaussian covariance with a length an input and a nugget, 241 runs of [Landings-PCE]; and the ratio
 of the default to the better process. Usage: python benchmarks/chaos_processes.py [--seeds 3] [--counts 50,100]
 """
 

@@ -29,7 +29,7 @@ class Ellipses:
     semi_axes_deg: dict[float, tuple[float, float]]
 
 
-def landing_ellipses(
+def dispersion_ellipses(
     latitude_deg: ArrayLike, longitude_deg: ArrayLike, shares: tuple[float, ...] = (0.5, 0.95)
 ) -> Ellipses | None:
     """Ellipses that hold shares of places, shape [count] both; None where these are few, all around, or one place.

@@ -134,7 +134,7 @@ def fly_starts(body: "Body", start: Starts, study: Study, job: Job, what: str) -
         mass=start.site["mass"],
         spin_period=start.site["spin_period"],
         threads=getattr(job.executor, "worker_count", None),
-        progress=lambda share: job.progress(round(share * count), count, what),
+        progress=lambda fraction: job.progress(round(fraction * count), count, what),
     )
 
 

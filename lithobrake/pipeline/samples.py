@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lithobrake.atomic import atomic_path
-from lithobrake.hashing import json_hash
+from lithobrake.hashing import hashed_seed
 from lithobrake.outcomes import SampleOutcome, TouchdownOutcome
 from lithobrake.pipeline.design_runs import DesignRuns
 from lithobrake.pipeline.designs import DESIGNS, design_inputs
@@ -113,7 +113,7 @@ class Samples:
 
 def sampling_seed(study: Study, purpose: str) -> int:
     """Seed of the random numbers of one purpose."""
-    return int(json_hash([study.seed, purpose])[:12], 16)
+    return hashed_seed(study.seed, purpose)
 
 
 def draw_samples(job: Job) -> None:

@@ -16,16 +16,16 @@ from lithobrake.outputs import OUTPUTS
 from lithobrake.pipeline.beds import bed_files
 from lithobrake.pipeline.design_runs import DesignRuns
 from lithobrake.pipeline.designs import DESIGNS, kept_inputs, replicate_count
+from lithobrake.pipeline.dispersion_statistics import dispersion_results
 from lithobrake.pipeline.flights import read_table
 from lithobrake.pipeline.headline import answer, headline
 from lithobrake.pipeline.job import Job
-from lithobrake.pipeline.landing_statistics import landing_results
 from lithobrake.pipeline.samples import Samples
 from lithobrake.pipeline.site import (
+    effective_acceleration_at_site,
     escape_speed,
     gravity_warning,
     has_heading,
-    push_at_site,
     site_body,
     site_medians,
     site_warning,
@@ -69,7 +69,7 @@ def write_summary(job: Job) -> None:
         },
         "monte_carlo": _monte_carlo(samples),
         "site": _site(job.study),
-        **landing_results(job, samples, flights, ended),
+        **dispersion_results(job, samples, flights, ended),
     }
     results["answer"] = answer(job.study, results)
     results["headline"] = headline(job.study, results)
@@ -213,7 +213,7 @@ def _monte_carlo(samples: Samples) -> dict[str, Any]:
 
 def _site(study: Study) -> dict[str, Any]:
     """The body at the medians, and the acceleration of a point at rest on the ground at the site."""
-    body, site, effective = site_body(study), site_medians(study), push_at_site(study)
+    body, site, effective = site_body(study), site_medians(study), effective_acceleration_at_site(study)
     built_in, heads = study.site.body in BUILT_IN_BODIES, has_heading(study)
     partner = None if body.partner is None else body.partner.body.name
     return {

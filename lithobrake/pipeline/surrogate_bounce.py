@@ -49,7 +49,7 @@ class SoilBounce:
     ranges    of the runs; an impact outside them is not answered
     scatter   drawn anew at each impact; None: none
 
-    Of speed, incidence, spin and the push of gravity and rotation at an impact those enter that are inputs of the
+    Of speed, incidence, spin and effective acceleration at an impact those enter that are inputs of the
     study; the others stay as the study has them. The expansion gives the size of the outgoing spin; its axis is taken
     as that of rolling along the outgoing velocity.
     """

@@ -201,7 +201,7 @@ def scatter(data: Results, colour_name: str) -> str:
     )
 
 
-def landing_map(data: Results) -> str:
+def impact_map(data: Results) -> str:
     """Figure 7."""
     shares, site = data.results["shares"], data.results["site"]
     extents = " x ".join(f"{length:.0f}" for length in site["extents_m"])

@@ -39,7 +39,7 @@ class Tile:
 
 
 @dataclass(frozen=True)
-class Table:
+class PageTable:
     """A table of the page; a column whose name stands in `numbers` is set to the right, a cell in `links` is one."""
 
     title: str
@@ -56,8 +56,8 @@ def page(
     facts: str,
     tiles: Sequence[Tile],
     panels: Sequence[Panel],
-    tables: Sequence[Table],
-    provenance: Sequence[Table],
+    tables: Sequence[PageTable],
+    provenance: Sequence[PageTable],
     study_text: str,
 ) -> str:
     """Put the page together; all words are plain text and are escaped here."""
@@ -118,7 +118,7 @@ def _figure(number: int, panel: Panel) -> str:
     )
 
 
-def _table(table: Table) -> str:
+def _table(table: PageTable) -> str:
     kinds = [' class="number"' if name in table.numbers else "" for name in table.columns]
     head = "".join(f"<th{kind}>{escape(name)}</th>" for name, kind in zip(table.columns, kinds, strict=True))
     body = "".join(

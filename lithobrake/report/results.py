@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from lithobrake.mesh_files import read_mesh
 from lithobrake.outcomes import FlightStatus, JourneyStatus, SampleOutcome
 from lithobrake.reading import NUMBER, DamagedFileError, parsed, read_json, read_rows, reading
 from lithobrake.report.error_figure import Score
@@ -20,7 +21,7 @@ FORMAT_VERSION = 2
 
 
 @dataclass(frozen=True)
-class Samples:
+class SampleColumns:
     """The Monte Carlo: inputs in the study file's units and outputs [SI] by name, shape [sample]; which leave."""
 
     inputs: dict[str, Array]
@@ -45,7 +46,7 @@ class Results:
     bed: Scene | None
     landing: Scene | None
     scores: dict[str, dict[str, Score]]
-    samples: Samples
+    samples: SampleColumns
     latitude: Array
     longitude: Array
     facet: NDArray[np.int64]
@@ -54,7 +55,7 @@ class Results:
     rest: dict[str, tuple[Array, Array]]
 
 
-class Table(dict[str, Any]):
+class SummaryTable(dict[str, Any]):
     """A table of summary.json; a key that it lacks, as where another version wrote it, is named with the file."""
 
     def __init__(self, content: Mapping[str, Any], path: Path, remedy: str, inside: str = "") -> None:
@@ -63,7 +64,7 @@ class Table(dict[str, Any]):
         self._lacks = f"{path} lacks {inside}{{key}}; {remedy}"
         for key, value in content.items():
             if isinstance(value, dict):
-                self[key] = Table(value, path, remedy, f"{inside}{key}.")
+                self[key] = SummaryTable(value, path, remedy, f"{inside}{key}.")
 
     def __missing__(self, key: str) -> Any:
         """Raise DamagedFileError for a key that is not there."""
@@ -109,14 +110,14 @@ def read_results(folder: Path) -> Results:
     )
 
 
-def read_summary(path: Path, remedy: str) -> Table:
+def read_summary(path: Path, remedy: str) -> SummaryTable:
     """The tables of summary.json. Raises DamagedFileError for a damaged file, and for another format."""
     content = read_json(path, {"format_version": int, "study": dict, "results": dict, "provenance": dict}, remedy)
     if content["format_version"] != FORMAT_VERSION:
         raise DamagedFileError(
             f"{path} has format {content['format_version']}; this version reads {FORMAT_VERSION}; {remedy}"
         )
-    return Table(content, path, remedy)
+    return SummaryTable(content, path, remedy)
 
 
 def _refuse_without(folder: Path, needed: tuple[str, ...]) -> None:
@@ -151,7 +152,7 @@ def read_scores(path: Path) -> dict[str, dict[str, Score]]:
     }
 
 
-def read_samples(path: Path) -> Samples:
+def read_samples(path: Path) -> SampleColumns:
     """Samples by name."""
     import h5py
 
@@ -159,7 +160,7 @@ def read_samples(path: Path) -> Samples:
         inputs, outputs = file["inputs"][:], file["outputs"][:]
         leaves = file["outcome"][:] == list(file.attrs["outcomes"]).index(SampleOutcome.CLEAR)
         input_names, output_names = [str(name) for name in file.attrs["input_names"]], list(file.attrs["output_names"])
-    return Samples(
+    return SampleColumns(
         {name: inputs[:, column] for column, name in enumerate(input_names)},
         {str(name): outputs[:, column] for column, name in enumerate(output_names)},
         leaves,
@@ -175,9 +176,7 @@ def read_columns(path: Path, remedy: str, wanted: Mapping[str, str], *names: str
 
 def read_body(path: Path) -> tuple[Array, NDArray[np.int64]]:
     """Vertices of the body [m], shape [vertex, 3], and its faces, counted from 0, shape [face, 3]."""
-    lines = [line.split() for line in path.read_text(encoding="utf-8").splitlines()]
-    vertices = np.array([[float(word) for word in words[1:4]] for words in lines if words[0] == "v"])
-    faces = np.array([[int(word) - 1 for word in words[1:4]] for words in lines if words[0] == "f"])
-    if vertices.ndim != 2 or faces.ndim != 2 or not 0 <= faces.min() <= faces.max() < len(vertices):
+    vertices, faces = read_mesh(path, "m")
+    if not len(vertices) or not len(faces) or not 0 <= faces.min() <= faces.max() < len(vertices):
         raise ValueError("it has no vertices, or faces without them")
     return vertices, faces

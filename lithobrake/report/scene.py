@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from lithobrake.report.hulls import Body
+from lithobrake.report.hulls import Hull
 from lithobrake.report.style import GRAIN, LANDER
 
 Array = NDArray[np.float64]
@@ -18,7 +18,7 @@ class Scene:
     shape [frame, body, 4]; the file's attributes; the settling history by name, empty for a landing.
     """
 
-    bodies: tuple[Body, ...]
+    bodies: tuple[Hull, ...]
     time: Array
     position: Array
     orientation: Array
@@ -53,7 +53,7 @@ def read_scene(path: Path, has_lander: bool) -> Scene:
     return Scene(bodies, frames["time"], frames["position"], frames["orientation"], attributes, history)
 
 
-def _body(vertices: Array, faces: NDArray[np.int64], colour: str) -> Body:
+def _body(vertices: Array, faces: NDArray[np.int64], colour: str) -> Hull:
     """A body about its centroid, which is what its position in the file means."""
     corners = vertices[faces]
     middle = vertices.mean(axis=0)
@@ -63,7 +63,7 @@ def _body(vertices: Array, faces: NDArray[np.int64], colour: str) -> Body:
     )
     centres = (corners.sum(axis=1) + middle) / 4
     centroid = np.average(centres, axis=0, weights=volumes)
-    return Body(vertices - centroid, faces, colour)
+    return Hull(vertices - centroid, faces, colour)
 
 
 def _plain(value: object) -> object:

@@ -14,9 +14,9 @@ from lithobrake.report.bed_figure import bed_figure
 from lithobrake.report.body_figure import body_figure
 from lithobrake.report.captions import hours
 from lithobrake.report.count_figure import Design, count_figure
+from lithobrake.report.dispersion_tables import GROUND_WORDS, SUMS, followed, outcome_words
 from lithobrake.report.error_figure import error_figure
 from lithobrake.report.landing_figure import landing_figure
-from lithobrake.report.landing_tables import GROUND_WORDS, SUMS, followed, outcome_words
 from lithobrake.report.map_figure import Share, map_figure
 from lithobrake.report.page import Panel, page
 from lithobrake.report.rest_figure import RestMap, rest_figure
@@ -82,7 +82,7 @@ def _figures(data: Results) -> list[tuple[str, str, str, Callable[[], "Figure | 
         ("sobol", "What matters", captions.sobol(data), lambda: _sobol(data)),
         ("errors", "How good the expansion is", captions.errors(data), lambda: _errors(data)),
         ("outputs", "What may come out", captions.scatter(data, colour), lambda: _outputs(data, colour)),
-        ("map", "Where the lander comes down", captions.landing_map(data), lambda: _map(data)),
+        ("map", "Where the lander comes down", captions.impact_map(data), lambda: _map(data)),
         ("body", "The same on the body", captions.body(data), lambda: _body(data)),
         ("rest", "Where it rests", captions.rest(data), lambda: _rest(data)),
     ]

@@ -13,7 +13,7 @@ from lithobrake.smallbody.arrays import Floats
 from lithobrake.smallbody.attraction import Gravity
 from lithobrake.smallbody.body import GRAVITATIONAL_CONSTANT, Body
 from lithobrake.smallbody.flight_results import ESCAPE_ORBITS, ESCAPE_RADII, STATUSES, Flights, StartStates
-from lithobrake.smallbody.impact import ALOFT, ON_SURFACE, Ground
+from lithobrake.smallbody.impact_search import ALOFT, ON_SURFACE, Ground
 from lithobrake.smallbody.integration import FAILED, FlightEnds, integrate_flights
 from lithobrake.smallbody.orbit import Orbit
 from lithobrake.smallbody.shape import Shape
@@ -49,11 +49,11 @@ def fly(
     gravity              "exact": the polyhedron's; "table": read from grids that are built once for a shape and kept
                          on disk, with the error shape.table_error
     mass, spin_period    [kg], [s], of the body in each flight, in place of its own: for a body that is not well known
-    tolerance            error that one step may make: this share of the body's radius in position, and the same share
+    tolerance            error that one step may make: this part of the body's radius in position, and the same part
                          of radius over dynamical time in velocity; by default 3e-7 (impacts within centimetres), with
                          the table 3e-6, whose own error is larger
     threads              defaults to the number of cores; the result does not depend on it
-    progress             called with the finished share of the flights, from this thread
+    progress             called with the finished fraction of the flights, from this thread
 
     A start on the surface (within a millionth of the radius, at most 1 mm) is no impact; the first meeting with the
     ground after the flight has left it is. A flight that starts on the surface and moves into it at once has its impact

@@ -87,7 +87,7 @@ def hop(
     bounce     called once a round with the impacts of all landers still under way and a generator of random numbers
     gravity    as of `fly`, and so are threads
     seed       of the generator: the same call gives the same result
-    progress   called with the share of landers that have ended
+    progress   called with the fraction of landers that have ended
     """
     state = _State.of(body, launch)
     count = len(state.time)

@@ -21,9 +21,9 @@ from lithobrake.smallbody.dormand_prince import (
     stage_state,
     step_error,
 )
-from lithobrake.smallbody.impact import Ground, find_impact
+from lithobrake.smallbody.impact_search import Ground, find_impact
 from lithobrake.smallbody.orbit import Motion, motion_over
-from lithobrake.smallbody.polyhedron import ROWS
+from lithobrake.smallbody.polyhedron_gravity import ROWS
 from lithobrake.smallbody.simd import LANES
 
 FLYING, IMPACT, ESCAPED, PARTNER, FAILED = range(5)  # the first four in the order of FlightStatus
@@ -112,7 +112,8 @@ def _first_impact(
 ) -> tuple[float, int, int]:
     """Fraction of lane j's step [s] at which it ends on the ground, the facet, and the status.
 
-    phase [2] of this flight, for the body and its partner, is read and written (see impact); motion: of the partner.
+    phase [2] of this flight, for the body and its partner, is read and written (see impact_search); motion: of the
+    partner.
     """
     ground, partner_ground = grounds
     still = Motion(0.0, 0.0, 0.0, 0.0, 0.0)
@@ -224,7 +225,7 @@ def integrate_flights(
     """Fly all starts [count, 6] to their ends.
 
     begin     time at the start [s], [count]; duration [s], [count]
-    phase     [count, 2], read and written: whether the flight has left the body, the partner (see impact)
+    phase     [count, 2], read and written: whether the flight has left the body, the partner (see impact_search)
     grounds   of the body and its partner
     ends      written
     """

@@ -15,9 +15,9 @@ from lithobrake.chaos import Uniform, fit, smolyak
 from lithobrake.outcomes import JourneyStatus, TouchdownOutcome
 from lithobrake.outputs import OUTPUTS
 from lithobrake.pipeline import Job, StudyFolder
+from lithobrake.pipeline.dispersion_statistics import dispersion_results, proportion
 from lithobrake.pipeline.flights import COLUMNS, read_table, write_table
 from lithobrake.pipeline.job import Silent
-from lithobrake.pipeline.landing_statistics import landing_results, proportion
 from lithobrake.pipeline.rest import follow_samples
 from lithobrake.pipeline.run_noise import Scatter
 from lithobrake.pipeline.samples import SAMPLE_OUTCOMES, Samples
@@ -154,7 +154,7 @@ def test_hard_ground_is_followed_from_the_first_impact_and_the_summary_adds_up(t
         follow_samples(job)
         write_table(folder, "flights.csv", COLUMNS, [])
         folder.write_json("flights.json", {})
-        table = landing_results(job, Samples.load(folder), [], {"captured": 40})["rest"]
+        table = dispersion_results(job, Samples.load(folder), [], {"captured": 40})["rest"]
     assert "on hard ground only: impact.speed and" in said[0]
     assert table["soil"] is None
     assert table["hard"]["sample_count"] == 60

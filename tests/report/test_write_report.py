@@ -108,7 +108,7 @@ def test_a_summary_without_date_and_escape_speed_is_read_too(study_folder: Path)
     site = {key: value for key, value in data.results["site"].items() if key[:6] not in ("escape", "bulk_d")}
     older = replace(data, provenance={}, results=data.results | {"site": site})
     assert captions.facts(older) == ""
-    assert captions.landing_map(older).endswith("outward).")
+    assert captions.impact_map(older).endswith("outward).")
 
 
 @pytest.mark.parametrize(

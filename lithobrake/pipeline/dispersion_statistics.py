@@ -10,7 +10,7 @@ from lithobrake.pipeline.flights import QUANTILES, flight_numbers, read_table
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.samples import MISSING, SAMPLE_OUTCOMES, Samples
 from lithobrake.pipeline.scope import scope
-from lithobrake.pipeline.site import push_at_site, site_body
+from lithobrake.pipeline.site import effective_acceleration_at_site, site_body
 from lithobrake.study import Study
 
 # In the order of the summary.
@@ -19,10 +19,10 @@ NORMAL_QUANTILE_90 = 1.6448536269514722
 Rows = Sequence[dict[str, str]]
 
 
-def landing_results(job: Job, samples: Samples, flights: Rows, run_outcomes: Mapping[str, int]) -> dict[str, Any]:
+def dispersion_results(job: Job, samples: Samples, flights: Rows, run_outcomes: Mapping[str, int]) -> dict[str, Any]:
     """The parts of the summary that come from flights and journeys; run_outcomes: how often each came in the runs."""
     study = job.study
-    holds = bool(push_at_site(study)[2] < 0.0)
+    holds = bool(effective_acceleration_at_site(study)[2] < 0.0)
     results: dict[str, Any] = {}
     results["shares"] = shares(samples, flights, run_outcomes, holds=holds) | {"why": scope(study).why}
     results["stays"] = stays(study, results["shares"], sum(run_outcomes.values()))
@@ -96,11 +96,11 @@ def ellipses(study: Study, rows: Rows, status: str) -> dict[str, Any] | None:
 
     The axes in metres are the angles times the radius at the middle.
     """
-    from lithobrake.analysis import landing_ellipses
+    from lithobrake.analysis import dispersion_ellipses
 
     down = [row for row in rows if row["status"] == status]
     latitude, longitude = (np.array([float(row[f"{name}_deg"]) for row in down]) for name in ("latitude", "longitude"))
-    found = landing_ellipses(latitude, longitude)
+    found = dispersion_ellipses(latitude, longitude)
     if found is None:
         return None
     centre = site_body(study).shape.surface_point(found.latitude_deg, found.longitude_deg)
