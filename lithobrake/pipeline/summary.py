@@ -4,6 +4,7 @@ import os
 import platform
 import sys
 from collections import Counter
+from collections.abc import Mapping
 from datetime import UTC, datetime
 from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
@@ -40,6 +41,11 @@ FORMAT_VERSION = 2
 QUANTILES = (0.05, 0.5, 0.95)
 
 
+def _without_runs(table: Mapping[str, Mapping[str, Any]]) -> dict[str, dict[str, Any]]:
+    """Scores by output, less the errors of each run."""
+    return {output: {name: value for name, value in score.items() if name != "ape"} for output, score in table.items()}
+
+
 def write_summary(job: Job) -> None:
     """Write summary.json: study, results, provenance. Times, host, folders and versions stand in provenance only."""
     from lithobrake.chaos import load
@@ -60,13 +66,7 @@ def write_summary(job: Job) -> None:
         "refined": _expansion(job, "refined", refined, runs["refined"]),
         "kept_inputs": list(kept),
         "kept_share": _by_output(screening, np.asarray(screening.sobol_group(kept))),
-        "scores": {
-            stage: {
-                output: {name: value for name, value in score.items() if name != "ape"}
-                for output, score in table.items()
-            }
-            for stage, table in scores.items()
-        },
+        "scores": {stage: _without_runs(table) for stage, table in scores.items()},
         "monte_carlo": _monte_carlo(samples),
         "site": _site(job.study),
         **dispersion_results(job, samples, flights, ended),

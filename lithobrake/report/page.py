@@ -50,6 +50,15 @@ class PageTable:
     links: Mapping[str, str] = field(default_factory=dict)
 
 
+def _header(title: str, answer: str, facts: str) -> str:
+    return f"""<header>
+<p class="kind">Landing study</p>
+<h1>{escape(title)}</h1>
+<p class="answer">{escape(answer)}</p>
+<p class="facts">{escape(facts)}</p>
+</header>"""
+
+
 def page(
     title: str,
     answer: str,
@@ -73,12 +82,7 @@ def page(
 {style}</style>
 </head>
 <body><main>
-<header>
-<p class="kind">Landing study</p>
-<h1>{escape(title)}</h1>
-<p class="answer">{escape(answer)}</p>
-<p class="facts">{escape(facts)}</p>
-</header>
+{_header(title, answer, facts)}
 <ul class="tiles">
 {"".join(_tile(tile) for tile in tiles)}</ul>
 <h2>Figures</h2>

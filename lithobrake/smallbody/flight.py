@@ -73,8 +73,7 @@ def fly(
     if frame == "inertial":
         starts = _into_turning_frame(starts, dynamics.spin_rate, begin)
     phase, grounds = _phases(body, starts, dynamics.orbit, begin)
-    sources = _sources(body, gravity)
-    ends = FlightEnds.of_count(count)
+    sources, ends = _sources(body, gravity), FlightEnds.of_count(count)
 
     def part(first: int) -> None:
         piece = slice(first, first + CHUNK)
@@ -83,10 +82,9 @@ def fly(
 
     _run(part, count, threads, progress)
     _refuse_failed(starts, ends, tolerance)
-    where, rate = starts[:, :3].copy(), starts[:, 3:].copy()
-    begins = StartStates(begin, where, rate, masses, periods)
-    place, velocity_there = ends.state[:, :3], ends.state[:, 3:]
-    return Flights(body, begins, STATUSES[ends.status], ends.time, place, velocity_there, ends.facet, ends.step_count)
+    begins = StartStates(begin, starts[:, :3].copy(), starts[:, 3:].copy(), masses, periods)
+    place, rate = ends.state[:, :3], ends.state[:, 3:]
+    return Flights(body, begins, STATUSES[ends.status], ends.time, place, rate, ends.facet, ends.step_count)
 
 
 def _checked_choices(frame: str, gravity: str, tolerance: float | None) -> float:

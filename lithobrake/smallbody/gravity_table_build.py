@@ -83,9 +83,7 @@ def _build(polyhedron: PolyhedronTerms, multipole: Multipole, volume: float, lev
     gravity = Gravity(polyhedron, closer, GravityTable.empty())
     core = CORE * (3.0 * volume / (4.0 * math.pi)) ** (1.0 / 3.0)
     lower, upper = polyhedron.vertices.min(axis=0), polyhedron.vertices.max(axis=0)
-    corners: list[NDArray[np.float64]] = []
-    edges: list[float] = []
-    sizes: list[NDArray[np.int64]] = []
+    grids: list[tuple[NDArray[np.float64], NDArray[np.int64], float]] = []
     values: list[NDArray[np.float64]] = []
     served: tuple[NDArray[np.float64], NDArray[np.float64]] | None = None
     for fineness, reach in levels:
@@ -106,12 +104,10 @@ def _build(polyhedron: PolyhedronTerms, multipole: Multipole, volume: float, lev
         if served is None:
             sample -= 4.0 * math.pi * _continuation(nodes, polyhedron, SKIN * edge)
         values.append(spline_coefficients(sample.reshape(*size, 3)).reshape(-1))
-        corners.append(first)
-        edges.append(edge)
-        sizes.append(size)
+        grids.append((first, size, edge))
         served = first + RIM * edge, first + (size - 1 - RIM) * edge
     starts = np.cumsum([0, *(len(level) for level in values[:-1])])
-    corner, cells, cell = np.array(corners), np.array(sizes), np.array(edges)
+    corner, cells, cell = (np.array(column) for column in zip(*grids, strict=True))
     rim = RIM * cell[:, None]
     return GravityTable(
         *(multipole.centre, volume, core, corner, cell, cells, starts, np.concatenate(values)),

@@ -90,8 +90,7 @@ def hop(
     progress   called with the fraction of landers that have ended
     """
     state = _State.of(body, launch)
-    count = len(state.time)
-    going = np.arange(count)
+    going = np.arange(len(state.time))
     for number in range(bounce_limit + 1):
         flights = fly(
             *(body, state.position[going], state.velocity[going], duration - state.time[going]),
@@ -114,7 +113,7 @@ def hop(
             state.status[going] = JourneyStatus.BOUNCING
             going = going[:0]
         if progress:
-            progress(1.0 - len(going) / max(count, 1))
+            progress(1.0 - len(going) / max(len(state.time), 1))
         if not len(going):
             break
     return state.journeys()
