@@ -130,13 +130,13 @@ def draw(study: Study, values: Values, seed: int) -> dict[str, float]:
 
     bed: number of the bed; impact.place.x and .y [m], impact.azimuth_deg, impact.orientation.w to .z. All are drawn,
     whether used or not, so that each has the same random numbers in every study. A run takes the bed with the largest
-    number of its own: one more bed takes its share of runs over, and all others stay on theirs (rendezvous hashing).
+    number of its own: one more bed takes its part of the runs over, and all others stay on theirs (rendezvous hashing).
 
-    Source: Thaler and Ravishankar (1998), IEEE/ACM Transactions on Networking 6, 1.
+    Source: [Thaler-1998].
     """
     bed = int(np.argmax(np.random.Generator(np.random.PCG64([seed, 1])).random(study.bed.bed_count)))
     generator = np.random.Generator(np.random.PCG64(seed))
-    shares, turn = generator.random(2), generator.random()
+    fractions, turn = generator.random(2), generator.random()
     # Four normal numbers point evenly over the unit quaternions.
     quaternion = generator.standard_normal(4)
     impact = study.impact
@@ -144,7 +144,7 @@ def draw(study: Study, values: Values, seed: int) -> dict[str, float]:
         place = [values["impact.place.x"], values["impact.place.y"]]
     else:
         ends = (impact.region.x, impact.region.y)
-        place = [low + share * (high - low) for share, (low, high) in zip(shares.tolist(), ends, strict=True)]
+        place = [low + fraction * (high - low) for fraction, (low, high) in zip(fractions.tolist(), ends, strict=True)]
     azimuth = 360 * turn if impact.azimuth_deg == "random" else values["impact.azimuth_deg"]
     if impact.orientation != "random":
         quaternion = np.array(impact.orientation)

@@ -71,7 +71,7 @@ class OutcomeModel:
 def upper_limit(run_count: int, level: float = 0.95) -> float:
     """Largest probability that an event may have, at a level of confidence, which none of so many runs has met.
 
-    Source: Clopper and Pearson (1934), Biometrika 26, 404, at a count of 0; about 3 / run_count for .95.
+    Source: [Clopper-1934], at a count of 0; about 3 / run_count for .95.
     """
     if run_count < 1:
         return 1.0

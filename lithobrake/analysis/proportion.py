@@ -10,7 +10,7 @@ def wilson_interval(count: int, total: int, quantile: float = NORMAL_QUANTILE_95
 
     quantile: of the standard normal law (1.96: 95 %). It stays within [0, 1] and is right near 0 and 1, where the
     usual plus-minus is not. Raises ValueError for counts that cannot be.
-    Source: Wilson 1927, J. Am. Stat. Assoc. 22, 209.
+    Source: [Wilson-1927].
     """
     if total < 1 or not 0 <= count <= total:
         raise ValueError(f"{count} of {total} is no share; the count must lie between 0 and a total of at least 1")

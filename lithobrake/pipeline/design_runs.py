@@ -12,6 +12,7 @@ import numpy as np
 
 from lithobrake.atomic import atomic_path
 from lithobrake.campaign import Runs
+from lithobrake.outcomes import TouchdownOutcome
 from lithobrake.outputs import OUTPUTS
 from lithobrake.pipeline.folder import AGAIN, StudyFolder
 from lithobrake.reading import read_rows
@@ -80,7 +81,7 @@ class DesignRuns:
     def y(self) -> np.ndarray:
         """Fitted outputs, shape [run_count, output_count]; a row of NaN where the lander did not leave."""
         y = np.column_stack([self.output(name) for name in OUTPUTS])
-        clear = np.array(self.outcomes) == "clear"
+        clear = np.array(self.outcomes) == TouchdownOutcome.CLEAR
         return np.where((clear & ~np.isnan(y).any(axis=1))[:, None], y, np.nan)
 
     @property

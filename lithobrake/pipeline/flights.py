@@ -10,6 +10,7 @@ import numpy as np
 
 from lithobrake.atomic import atomic_path
 from lithobrake.hashing import content_hash
+from lithobrake.outcomes import FlightStatus
 from lithobrake.outputs import FLIGHT, quantity
 from lithobrake.pipeline.folder import AGAIN, StudyFolder
 from lithobrake.pipeline.job import Job
@@ -134,7 +135,7 @@ def fly_starts(body: "Body", start: Starts, study: Study, job: Job, what: str) -
         mass=start.site["mass"],
         spin_period=start.site["spin_period"],
         threads=getattr(job.executor, "worker_count", None),
-        progress=lambda share: job.progress(round(share * count), count, what),
+        progress=lambda fraction: job.progress(round(fraction * count), count, what),
     )
 
 
@@ -182,14 +183,14 @@ def _rows(start: Starts, flown: "Flights") -> Iterator[list[Any]]:
     for row, sample in enumerate(start.sample.tolist()):
         latitude, longitude, speed_there, incidence = after[row] if down[row] else [""] * 4
         # The partner's facets are not those of body.obj.
-        facet = int(flown.facet[row]) if flown.status[row] == "impact" else ""
+        facet = int(flown.facet[row]) if flown.status[row] == FlightStatus.IMPACT else ""
         end = [str(flown.status[row]), float(flown.time[row]), latitude, longitude, facet, speed_there, incidence]
         yield [sample, *before[row], *end]
 
 
 def flight_numbers(flights: Sequence[dict[str, str]]) -> dict[str, Any]:
     """Median and the middle nine tenths of time of flight, speed and incidence of the impacts on the body."""
-    down = [row for row in flights if row["status"] == "impact"]
+    down = [row for row in flights if row["status"] == FlightStatus.IMPACT]
     table: dict[str, Any] = {}
     for name in ("time_s", "impact_speed", "impact_incidence_deg") if down else ():
         values = np.array([float(row[name]) for row in down])

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lithobrake.atomic import atomic_path
-from lithobrake.hashing import json_hash
+from lithobrake.hashing import hashed_seed
+from lithobrake.outcomes import SampleOutcome, TouchdownOutcome
 from lithobrake.outputs import DESIGNS, RUN, TOUCHDOWN, quantity
 from lithobrake.pipeline.design_runs import DesignRuns
 from lithobrake.pipeline.designs import design_inputs
@@ -15,7 +16,6 @@ from lithobrake.pipeline.folder import AGAIN, StudyFolder
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.outgoing import outgoing
 from lithobrake.pipeline.run_noise import Scatter
-from lithobrake.pipeline.solver import OUTCOMES
 from lithobrake.reading import reading
 from lithobrake.study import Study
 from lithobrake.study.quantity import median
@@ -26,11 +26,11 @@ if TYPE_CHECKING:
     from lithobrake.chaos import Surrogate
 
 FORMAT_VERSION = 2
-# What may become of a sample at the touchdown: as of a run, or the expansion gave a way to leave that there is not.
-SAMPLE_OUTCOMES = (*OUTCOMES, "outside")
-CLEAR, OUTSIDE = SAMPLE_OUTCOMES.index("clear"), SAMPLE_OUTCOMES.index("outside")
+SAMPLE_OUTCOMES = tuple(SampleOutcome)
+CLEAR, CAPTURED = SAMPLE_OUTCOMES.index(SampleOutcome.CLEAR), SAMPLE_OUTCOMES.index(SampleOutcome.CAPTURED)
+OUTSIDE = SAMPLE_OUTCOMES.index(SampleOutcome.OUTSIDE)
 # Those after which nobody knows where the lander is.
-MISSING = ("left_sideways", "time_limit", "outside")
+MISSING = (SampleOutcome.LEFT_SIDEWAYS, SampleOutcome.TIME_LIMIT, SampleOutcome.OUTSIDE)
 # Points at which the expansion is evaluated at once; between two blocks progress is shown.
 _BLOCK = 1 << 20
 
@@ -109,7 +109,7 @@ class Samples:
                     file[name].attrs[attribute] = [getattr(column, attribute) for column in columns]
             file.attrs["format_version"] = FORMAT_VERSION
             file.attrs["input_names"], file.attrs["output_names"] = self.input_names, self.output_names
-            file.attrs["outcomes"] = list(SAMPLE_OUTCOMES)
+            file.attrs["outcomes"] = [outcome.value for outcome in SAMPLE_OUTCOMES]
 
     @classmethod
     def load(cls, folder: StudyFolder) -> "Samples":
@@ -123,7 +123,7 @@ class Samples:
 
 def sampling_seed(study: Study, purpose: str) -> int:
     """Seed of the random numbers of one purpose."""
-    return int(json_hash([study.seed, purpose])[:12], 16)
+    return hashed_seed(study.seed, purpose)
 
 
 def draw_samples(job: Job) -> None:
@@ -169,10 +169,11 @@ def outcome_model(job: Job) -> "OutcomeModel":
     runs = [DesignRuns.load(job.folder, design) for design in DESIGNS]
     x = np.concatenate([one.columns(list(inputs)) for one in runs])
     outcomes = [outcome for one in runs for outcome in one.outcomes]
-    ended = np.isin(outcomes, OUTCOMES)
+    names = tuple(TouchdownOutcome)
+    ended = np.isin(outcomes, names)
     if not ended.any():
         raise ValueError("every run has failed (runs.sqlite has the reasons); mend what they name")
-    return OutcomeModel(inputs, x[ended], [outcome for outcome in outcomes if outcome in OUTCOMES], OUTCOMES)
+    return OutcomeModel(inputs, x[ended], [outcome for outcome in outcomes if outcome in names], names)
 
 
 def _evaluate(surrogate: "Surrogate", x: np.ndarray, job: Job) -> np.ndarray:

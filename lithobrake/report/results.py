@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from lithobrake.outcomes import FlightStatus, JourneyStatus
 from lithobrake.reading import DamagedFileError, reading
 from lithobrake.report.error_figure import Score
 from lithobrake.report.scene import Scene, scene
@@ -43,7 +44,7 @@ class Results:
     rest: dict[str, tuple[Array, Array]]
 
 
-class NamedTable(dict[str, Any]):
+class SummaryTable(dict[str, Any]):
     """A table of summary.json; a key that it lacks, as where another version wrote it, is named with the file."""
 
     def __init__(self, content: Mapping[str, Any], path: Path, remedy: str, inside: str = "") -> None:
@@ -52,7 +53,7 @@ class NamedTable(dict[str, Any]):
         self._lacks = f"{path} lacks {inside}{{key}}; {remedy}"
         for key, value in content.items():
             if isinstance(value, dict):
-                self[key] = NamedTable(value, path, remedy, f"{inside}{key}.")
+                self[key] = SummaryTable(value, path, remedy, f"{inside}{key}.")
 
     def __missing__(self, key: str) -> Any:
         """Raise DamagedFileError for a key that is not there."""
@@ -62,12 +63,12 @@ class NamedTable(dict[str, Any]):
 def page_results(found: StudyResults) -> Results:
     """What the page shows of a study. Raises ValueError that names the file when one is missing or damaged."""
     _refuse_without(found.folder, FILES)
-    summary = NamedTable(found.summary, found.folder / "summary.json", found.remedy)
+    summary = SummaryTable(found.summary, found.folder / "summary.json", found.remedy)
     # A program or function of the user's own has neither beds nor pictures.
     has_scenes = bool(summary["results"]["beds"])
     if has_scenes:
         _refuse_without(found.folder, ("landing.h5", "beds/bed_0.h5"))
-    impacts = found.flights.where(found.flights["status"] == "impact")
+    impacts = found.flights.where(found.flights["status"] == FlightStatus.IMPACT)
     latitude, longitude = _places(found.folder / "flights.csv", impacts, found.remedy)
     vertices, faces = found.body_shape
     return Results(
@@ -98,7 +99,7 @@ def _refuse_without(folder: Path, needed: tuple[str, ...]) -> None:
 
 def _resting(found: StudyResults, ground: str) -> tuple[Array, Array]:
     """Where the landers lie that rest on a ground."""
-    chosen = (found.rest["status"] == "settled") & (found.rest["ground"] == ground)
+    chosen = (found.rest["status"] == JourneyStatus.SETTLED) & (found.rest["ground"] == ground)
     return _places(found.folder / "rest.csv", found.rest.where(chosen), found.remedy)
 
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from lithobrake.report.hulls import Body
+from lithobrake.report.hulls import Hull
 from lithobrake.report.style import GRAIN, LANDER
 from lithobrake.results import MovingBodies
 
@@ -16,7 +16,7 @@ Array = NDArray[np.float64]
 class Scene:
     """Bodies as they are drawn, each about its centroid, and how they moved."""
 
-    bodies: tuple[Body, ...]
+    bodies: tuple[Hull, ...]
     moving: MovingBodies
 
 
@@ -30,7 +30,7 @@ def scene(moving: MovingBodies, has_lander: bool) -> Scene:
     return Scene(bodies, moving)
 
 
-def _body(vertices: Array, faces: NDArray[np.int64], colour: str) -> Body:
+def _body(vertices: Array, faces: NDArray[np.int64], colour: str) -> Hull:
     """A body about its centroid, which is what its position in the file means."""
     corners = vertices[faces]
     middle = vertices.mean(axis=0)
@@ -40,4 +40,4 @@ def _body(vertices: Array, faces: NDArray[np.int64], colour: str) -> Body:
     )
     centres = (corners.sum(axis=1) + middle) / 4
     centroid = np.average(centres, axis=0, weights=volumes)
-    return Body(vertices - centroid, faces, colour)
+    return Hull(vertices - centroid, faces, colour)

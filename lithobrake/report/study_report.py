@@ -8,14 +8,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lithobrake.atomic import atomic_path
+from lithobrake.outcomes import JourneyStatus
 from lithobrake.report import captions
 from lithobrake.report.bed_figure import bed_figure
 from lithobrake.report.body_figure import body_figure
 from lithobrake.report.captions import hours
 from lithobrake.report.count_figure import Design, count_figure
+from lithobrake.report.dispersion_tables import GROUND_WORDS, SUMS, followed, outcome_words
 from lithobrake.report.error_figure import error_figure
 from lithobrake.report.landing_figure import landing_figure
-from lithobrake.report.landing_tables import GROUND_WORDS, SUMS, fates, followed
 from lithobrake.report.map_figure import Share, map_figure
 from lithobrake.report.page import Panel, page
 from lithobrake.report.rest_figure import RestMap, rest_figure
@@ -31,15 +32,15 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 # What may become of a lander after all bounces, as short as it has to be beside a bar.
-SHORT_END_WORDS = {
-    "settled": "at rest",
-    "lofted": "lifted off again",
-    "outside": "outside the runs",
-    "sliding": "sliding",
-    "bouncing": "still bouncing",
-    "flying": "not at rest, {hours}",
-    "escaped": "escaped",
-    "partner": "on the partner",
+SHORT_JOURNEY_WORDS = {
+    JourneyStatus.SETTLED: "at rest",
+    JourneyStatus.LOFTED: "lifted off again",
+    JourneyStatus.OUTSIDE: "outside the runs",
+    JourneyStatus.SLIDING: JourneyStatus.SLIDING.label,
+    JourneyStatus.BOUNCING: "still bouncing",
+    JourneyStatus.FLYING: "not at rest, {hours}",
+    JourneyStatus.ESCAPED: JourneyStatus.ESCAPED.label,
+    JourneyStatus.PARTNER: "on the partner",
 }
 
 
@@ -82,7 +83,7 @@ def _figures(data: Results) -> list[tuple[str, str, str, Callable[[], "Figure | 
         ("sobol", "What matters", captions.sobol(data), lambda: _sobol(data)),
         ("errors", "How good the expansion is", captions.errors(data), lambda: _errors(data)),
         ("outputs", "What may come out", captions.scatter(data, colour), lambda: _outputs(data, colour)),
-        ("map", "Where the lander comes down", captions.landing_map(data), lambda: _map(data)),
+        ("map", "Where the lander comes down", captions.impact_map(data), lambda: _map(data)),
         ("body", "The same on the body", captions.body(data), lambda: _body(data)),
         ("rest", "Where it rests", captions.rest(data), lambda: _rest(data)),
     ]
@@ -143,7 +144,7 @@ def _errors(data: Results) -> "Figure":
 
 
 def _colour_input(data: Results) -> str:
-    """The restitution of the grains, as in the paper; where it is certain, the input that decides the speed most."""
+    """The restitution of the grains, as in [Landings-PCE], or the input that decides the speed most."""
     if "grain.restitution" in data.samples:
         return "grain.restitution"
     total: dict[str, float] = data.results["screening"]["sobol_total"]["speed_out"]
@@ -163,7 +164,7 @@ def _map(data: Results) -> "Figure":
     table, site, limit = data.results["shares"], data.results["site"], hours(data.study["flight"]["duration"])
     shares = [
         Share(words.format(hours=limit), table[key]["share"], upper=table[key].get("upper_limit"))
-        for key, words in fates(data).items()
+        for key, words in outcome_words(data).items()
         if key not in SUMS
     ]
     where = (site["latitude_deg"], site["longitude_deg"])
@@ -187,8 +188,8 @@ def _rest(data: Results) -> "Figure | None":
     found, site, limit = followed(data), data.results["site"], hours(data.study["rest"]["duration"])
     if not found:
         return None
-    # The same ends on both sides, so that rows and colours match.
-    met = {key: words for key, words in SHORT_END_WORDS.items() if any(one[key]["count"] for one in found.values())}
+    # The same statuses on both sides, so that rows and colours match.
+    met = {key: words for key, words in SHORT_JOURNEY_WORDS.items() if any(one[key]["count"] for one in found.values())}
     maps = []
     for ground, (latitude, longitude) in data.rest.items():
         table = found.get(ground)

@@ -101,7 +101,7 @@ SYMBOLS = {
     "velocity_out_y": ("$V^+_y$", ""),
     "velocity_out_z": ("$V^+_z$", ""),
 }
-# The three outputs of the paper, in its order.
+# The three outputs of [Landings-PCE], in its order.
 PAPER_OUTPUTS = ("speed_out", "elevation_out", "spin_out")
 
 INPUT_LABELS = {

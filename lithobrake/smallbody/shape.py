@@ -14,7 +14,7 @@ from lithobrake.smallbody.gravity_table import LEVELS, GravityTable
 from lithobrake.smallbody.gravity_table_build import TableError, gravity_table_of
 from lithobrake.smallbody.grid import Grid
 from lithobrake.smallbody.multipole import Multipole
-from lithobrake.smallbody.polyhedron import Polyhedron
+from lithobrake.smallbody.polyhedron_gravity import PolyhedronTerms
 from lithobrake.smallbody.ray_facet import outermost_hit
 from lithobrake.smallbody.signed_distance import heights, pseudonormals
 
@@ -66,9 +66,9 @@ class Shape:
         return shape
 
     @cached_property
-    def polyhedron(self) -> Polyhedron:
+    def polyhedron(self) -> PolyhedronTerms:
         """The arrays of the gravity kernels."""
-        return Polyhedron.of(self.vertices, self.faces)
+        return PolyhedronTerms.of(self.vertices, self.faces)
 
     @cached_property
     def multipole(self) -> Multipole:
@@ -155,8 +155,8 @@ class Shape:
         Raises ValueError where the direction does not meet the surface (the origin lies outside the body).
         """
         ground = self.locate(latitude_deg, longitude_deg)[0]
-        share = np.asarray(height, dtype=np.float64) / np.linalg.norm(ground, axis=-1)
-        return ground + np.asarray(share)[..., None] * ground
+        ratio = np.asarray(height, dtype=np.float64) / np.linalg.norm(ground, axis=-1)
+        return ground + np.asarray(ratio)[..., None] * ground
 
     def locate(
         self, latitude_deg: ArrayLike, longitude_deg: ArrayLike

@@ -14,7 +14,7 @@ from lithobrake.report.count_figure import Design, count_figure
 from lithobrake.report.density import WHOLE, close_window, draw_density, neighbour_count
 from lithobrake.report.ellipse_line import draw_ellipses, outline
 from lithobrake.report.error_figure import Score, error_figure
-from lithobrake.report.hulls import Body
+from lithobrake.report.hulls import Hull
 from lithobrake.report.landing_figure import instants, landing_figure
 from lithobrake.report.map_figure import Share, draw_shares, map_figure
 from lithobrake.report.rest_figure import RestMap, rest_figure
@@ -46,9 +46,9 @@ def texts(figure: Figure) -> str:
     return "\n".join([*found, *legends])
 
 
-def falling(frame_count: int) -> tuple[list[Body], np.ndarray, np.ndarray, np.ndarray]:
+def falling(frame_count: int) -> tuple[list[Hull], np.ndarray, np.ndarray, np.ndarray]:
     """Five tetrahedra that sink: bodies, time, position and orientation."""
-    bodies = [Body(0.03 * TETRAHEDRON, FACES, "#aa9977")] * 5
+    bodies = [Hull(0.03 * TETRAHEDRON, FACES, "#aa9977")] * 5
     start = np.column_stack([np.linspace(-0.2, 0.2, 5), np.zeros(5), np.linspace(0.3, 1.0, 5)])
     drop = np.linspace(0.0, 0.25, frame_count)[:, None]
     position = np.repeat(start[None], frame_count, axis=0)

@@ -48,7 +48,7 @@ def test_sentences_carry_the_numbers_of_the_summary(report: str) -> None:
         "at most 3.0 %",
         "12 grains",
         "solid fraction of 0.58",
-        "0.2 m/s and 30 deg from the normal and leaves the surface",
+        "0.2 m/s and 30 deg from the normal. The lander leaves the surface after",
         "25 runs on the Smolyak grid, against 125",
         "V+ varies most with the restitution of the grains (50 %, 45 % to 55 %, of its explained variance)",
         "of the variance of the runs 6 % of V+, 6 % of theta+ and 6 % of omega+ is scatter, which no input decides",
@@ -109,7 +109,7 @@ def test_a_summary_without_date_and_escape_speed_is_read_too(study_folder: Path)
     site = {key: value for key, value in data.results["site"].items() if key[:6] not in ("escape", "bulk_d")}
     older = replace(data, provenance={}, results=data.results | {"site": site})
     assert captions.facts(older) == ""
-    assert captions.landing_map(older).endswith("outward).")
+    assert captions.impact_map(older).endswith("outward).")
 
 
 @pytest.mark.parametrize(
