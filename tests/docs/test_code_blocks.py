@@ -4,6 +4,7 @@ import ast
 import json
 import os
 import re
+import runpy
 import shlex
 import shutil
 import subprocess
@@ -15,6 +16,7 @@ from pathlib import Path
 import pytest
 import typer
 from blocks import PAGES, ROOT, Block, all_blocks, blocks
+from typer.testing import CliRunner
 
 from lithobrake.cli import app
 from lithobrake.study import known_keys
@@ -31,19 +33,22 @@ def short(path: Path) -> str:
 
 
 @pytest.fixture
-def workplace(tmp_path: Path) -> Path:
-    """A folder with what a reader has who cloned the project: examples and scenarios."""
+def workplace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The current folder, with what a reader has who cloned the project: examples and scenarios."""
     for name in ("examples", "scenarios"):
         shutil.copytree(ROOT / name, tmp_path / name)
+    monkeypatch.chdir(tmp_path)
     return tmp_path
 
 
-def run_in(workplace: Path, *words: str) -> str:
-    """Run Python with some words in a folder and return what it printed."""
-    setting = {**os.environ, "PYTHONPATH": str(ROOT), "OPENBLAS_NUM_THREADS": "1"}
-    found = subprocess.run([sys.executable, *words], cwd=workplace, env=setting, capture_output=True, text=True)
+def run_script(path: Path) -> None:
+    """Run a script as a reader would, one that has no worker processes without another start of Python."""
+    if "__main__" not in path.read_text(encoding="utf-8"):
+        assert runpy.run_path(str(path), run_name="__main__")
+        return
+    setting = {**os.environ, "PYTHONPATH": str(ROOT)}
+    found = subprocess.run([sys.executable, path], env=setting, capture_output=True, text=True, check=False)
     assert found.returncode == 0, found.stderr
-    return found.stdout
 
 
 @pytest.mark.parametrize("page", PAGES_WITH_PYTHON, ids=short)
@@ -55,8 +60,9 @@ def test_python_of_a_page_runs_as_one_script(page: Path, workplace: Path) -> Non
         elif block.language == "python":
             # Lines keep their numbers, so that a failure names the line of the page.
             script += [""] * (block.line - 1 - len(script)) + block.text.splitlines()
-    (workplace / "page.py").write_text("\n".join(script) + "\n", encoding="utf-8")
-    run_in(workplace, "page.py")
+    path = workplace / "page.py"
+    path.write_text("\n".join(script) + "\n", encoding="utf-8")
+    run_script(path)
 
 
 def commands(block: Block) -> Iterator[list[str]]:
@@ -86,7 +92,8 @@ def test_commands_that_are_marked_run(workplace: Path) -> None:
     assert marked
     for block in marked:
         for words in commands(block):
-            assert run_in(workplace, "-m", "lithobrake", *words), block
+            found = CliRunner().invoke(app, words)
+            assert found.exit_code == 0, f"{block}: {found.output}"
 
 
 def test_scripts_that_are_named_exist() -> None:
