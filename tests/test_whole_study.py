@@ -174,7 +174,7 @@ def test_ctrl_c_keeps_the_runs_and_one_worker_ends_with_the_same_bits(study: Pat
     process.send_signal(signal.SIGINT)
     _, said = process.communicate(timeout=60)
     assert process.returncode == 130
-    assert "the same command goes on from there" in said
+    assert "to continue, run the same command" in said
     assert "Traceback" not in said
     kept = finished_runs(other)
     assert 2 <= kept < finished_runs(out)

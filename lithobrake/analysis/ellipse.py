@@ -32,7 +32,7 @@ class Ellipses:
 def dispersion_ellipses(
     latitude_deg: ArrayLike, longitude_deg: ArrayLike, shares: tuple[float, ...] = (0.5, 0.95)
 ) -> Ellipses | None:
-    """Ellipses that hold shares of places, shape [count] both; None where these are few, all around, or one place.
+    """Ellipses that hold shares of places, both of shape [count]; None if these are few, all around, or one place.
 
     The places are laid flat about their mean direction, keeping distance and direction from it (azimuthal equidistant);
     the axes are those of their second moments, and each ellipse is as large as it takes to hold its share of them: no

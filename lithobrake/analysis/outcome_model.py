@@ -15,8 +15,8 @@ _BLOCK = 65_536
 class OutcomeModel:
     """Logistic regression on a quadratic in the inputs, each put on the scale of its distribution.
 
-    The penalty of the regression keeps it finite when few runs, or all on one side of a plane, had an outcome. One
-    that no run had gets the probability 0 everywhere, which `upper_limit` puts right.
+    The penalty of the regression keeps it finite when few runs, or all on one side of a plane, had an outcome. An
+    outcome that no run had gets probability 0 everywhere; `upper_limit` bounds it.
     """
 
     def __init__(

@@ -239,5 +239,5 @@ class Surrogate:
 
 
 def load(path: str | os.PathLike[str]) -> Surrogate:
-    """Read an expansion that `Surrogate.save` wrote. Raises ValueError if the file is another thing or damaged."""
+    """Read an expansion that `Surrogate.save` wrote. Raises ValueError if the file is of another kind or damaged."""
     return read(FORMAT, Surrogate.from_content, path)

@@ -135,7 +135,7 @@ def setting(study: Study) -> dict[str, dict[str, Any]]:
 
 
 def make(job: Job, until: str, note: Callable[..., None]) -> None:
-    """Make every file up to and with a stage that is not there, or no longer what the study says.
+    """Make every missing or outdated file of the stages up to and including `until`.
 
     note: notes for other processes which stage is being made.
     """

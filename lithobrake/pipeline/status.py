@@ -14,9 +14,9 @@ from lithobrake.results import open_study
 
 
 def study_status(path: Path) -> list[str]:
-    """Say who is at work on a study, which stages it has come through, and where its runs stand, in lines.
+    """Return lines that say who is at work on a study, which stages are done, and the state of its runs.
 
-    A folder that has a ledger alone is that of a campaign. Raises ValueError when it has neither study nor ledger.
+    A folder with only a ledger is that of a campaign. Raises ValueError when it has neither study nor ledger.
     """
     ledger, is_study = path / "runs.sqlite", any((path / name).is_file() for name in (STUDY_FILE, NAME))
     if not (is_study or ledger.is_file()):

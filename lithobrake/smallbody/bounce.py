@@ -37,7 +37,7 @@ class Rebounds:
     velocity    [m/s], [count, 3]
     spin        [rad/s], [count, 3]
     captured    the lander stays, [count]
-    outside     the model does not know such an impact, [count]; neither velocity nor captured is then read
+    outside     the model does not cover this impact, [count]; neither velocity nor captured is then read
     """
 
     velocity: NDArray[np.float64]

@@ -31,7 +31,7 @@ class Shape:
     inertia_per_density   about the centroid [m5], shape [3, 3]
 
     Raises ValueError for a mesh that is open, non-manifold, degenerate or in pieces; warns where it turns facets
-    outward. Facets that cut through each other are not looked for.
+    outward. It does not look for facets that intersect.
     """
 
     def __init__(self, vertices: ArrayLike, faces: ArrayLike, *, name: str = "shape") -> None:
@@ -72,7 +72,7 @@ class Shape:
 
     @cached_property
     def multipole(self) -> Multipole:
-        """The moments of the shape, and from where on they give its gravity."""
+        """Moments of the shape, and the distance beyond which they give its gravity."""
         return Multipole.of(self.polyhedron, self.centroid)
 
     @property
@@ -82,17 +82,17 @@ class Shape:
 
     @property
     def tabled_gravity(self) -> Gravity:
-        """The same with the table, which serves all points but the farthest."""
+        """The same with the table, which covers all but the farthest points."""
         return Gravity(self.polyhedron, self.multipole, self._table[0])
 
     @property
     def distant_gravity(self) -> Gravity:
-        """The same for a body that flights hardly come near: from a coarser table, which takes a tenth of the time."""
+        """The same for a body that flights rarely approach: from a coarser table, built in a tenth of the time."""
         return Gravity(self.polyhedron, self.multipole, self._coarse_table[0])
 
     @property
     def table_error(self) -> TableError:
-        """How far the table is off the facets' sums."""
+        """Error of the table against the sum over the facets."""
         return self._table[1]
 
     @cached_property
