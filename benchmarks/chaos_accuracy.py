@@ -1,4 +1,4 @@
-"""Error of the default fit against the number of runs, beside the paper's design and a Gaussian process.
+"""Error of the default fit against the number of runs, beside the design of [Landings-PCE] and a Gaussian process.
 
 Prints a table of medians over seeds of rRMSE (error at 2000 noise-free test points over the spread of the truth).
 Usage: python benchmarks/chaos_accuracy.py [--seeds 10] [--counts 50,100,250,450] [--cases smooth,kinked,...]
@@ -40,7 +40,7 @@ CASES: dict[str, tuple[Model, float]] = {
 
 
 def errors_of_case(model: Model, noise: float, count: int, seed: int) -> tuple[float, float, float, float]:
-    """rRMSE of the default, of the process alone, of the paper's 241 runs; and the default's own estimate."""
+    """rRMSE of the default, of the process alone, of the 241 runs of [Landings-PCE]; and the default's own estimate."""
     test = sobol_sequence(INPUTS, 2000, seed=1000 + seed)
     truth = model(test)
     spread = float(truth.std())

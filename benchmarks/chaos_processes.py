@@ -1,8 +1,8 @@
 """The default fit beside the Gaussian processes of scikit-learn, on eleven truths of five uniform inputs.
 
 Prints a table of medians over seeds of rRMSE (error at 2000 noise-free points over the spread of the truth): default,
-radial Matern 5/2 and Gaussian covariance with a length an input and a nugget, the paper's 241 runs; and the ratio of
-the default to the better process. Usage: python benchmarks/chaos_processes.py [--seeds 3] [--counts 50,100]
+radial Matern 5/2 and Gaussian covariance with a length an input and a nugget, 241 runs of [Landings-PCE]; and the ratio
+of the default to the better process. Usage: python benchmarks/chaos_processes.py [--seeds 3] [--counts 50,100]
 """
 
 import argparse
@@ -44,7 +44,7 @@ def process(kernel: RBF, x: np.ndarray, y: np.ndarray, test: np.ndarray) -> np.n
 
 
 def errors(truth: Model, noise: float, count: int, seed: int) -> list[float]:
-    """rRMSE of the default, of both processes, and of the paper's design."""
+    """rRMSE of the default, of both processes, and of the design of [Landings-PCE]."""
     test = sobol_sequence(INPUTS, 2000, seed=77)
     exact = truth(test)
     spread, generator = exact.std(), np.random.default_rng(seed)

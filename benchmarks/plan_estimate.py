@@ -39,9 +39,10 @@ class Clock:
         run = World.run
 
         def counted(world: World, duration: float | None = None, *, steps: int | None = None) -> None:
-            taken = world._steps_in(duration) if steps is None else steps
-            self.steps[self.what] = self.steps.get(self.what, 0.0) + taken
+            began = world.time
             run(world, duration, steps=steps)
+            taken = round((world.time - began) / world.time_step)
+            self.steps[self.what] = self.steps.get(self.what, 0.0) + taken
 
         World.run = counted  # type: ignore[method-assign]
 

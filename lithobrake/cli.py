@@ -23,16 +23,18 @@ app = typer.Typer(
 
 StudyPath = Annotated[Path, typer.Argument(metavar="STUDY.toml", help="The study file.", show_default=False)]
 OutPath = Annotated[
-    str | None, typer.Option("--out", metavar="DIR", help="Folder of the study; absent: runs/<study name>.")
+    str | None, typer.Option("--out", metavar="DIR", help="Folder of the study; the default is runs/<study name>.")
 ]
 ExecutorName = Annotated[
-    str, typer.Option("--executor", metavar="local|dask", help="Where runs are made: here, or on a Dask cluster.")
+    str, typer.Option("--executor", metavar="local|dask", help="Run on this machine or on a Dask cluster.")
 ]
 Scheduler = Annotated[
     str | None, typer.Option("--scheduler", metavar="tcp://HOST:PORT", help="Address of the Dask scheduler.")
 ]
-Logs = Annotated[bool, typer.Option("--logs", help="Keep a log of each run, in DIR/logs.")]
-Workers = Annotated[int | None, typer.Option("--workers", min=1, metavar="N", help="Processes; absent: all cores.")]
+Logs = Annotated[bool, typer.Option("--logs", help="Keep a log of each run in DIR/logs.")]
+Workers = Annotated[
+    int | None, typer.Option("--workers", min=1, metavar="N", help="Number of processes; the default is all cores.")
+]
 StudyDirectory = Annotated[Path, typer.Argument(metavar="DIR", help="The folder of a study.", show_default=False)]
 
 BAD_INPUT, INTERRUPTED = 2, 130
@@ -72,9 +74,9 @@ def new(name: Annotated[str, typer.Argument(metavar="NAME", help="Name of the st
         except OSError as error:
             reason = error.strerror or error
             raise ValueError(
-                f"{path} cannot be written ({reason}); choose another name, or a folder that exists"
+                f"{path} cannot be written ({reason}); choose another name or an existing folder"
             ) from error
-        print(f"Wrote {path}. Change what you like, then: {_command('run', path)}")
+        print(f"Wrote {path}. Edit it, then: {_command('run', path)}")
 
 
 def _study_command(name: str, what: str, until: str | None = None) -> None:
@@ -96,15 +98,17 @@ def _study_command(name: str, what: str, until: str | None = None) -> None:
     app.command(name, help=what, epilog=f"Example: lithobrake {name} study.toml --out results --workers 4")(command)
 
 
-BEFORE = "What comes before is made too, where it is missing."
-_study_command("run", "Run a study from its file to its report; what its folder already has is kept.", until="report")
-_study_command("bed", f"Pour and settle the beds, and land once at the medians. {BEFORE}", until="landing")
-_study_command("screen", f"Run the screening design and fit all inputs. {BEFORE}")
-_study_command("refine", f"Run the refined design and fit the inputs that matter. {BEFORE}")
-_study_command("test", f"Make the test runs and score the expansions. {BEFORE}")
-_study_command("sample", f"Sample the refined expansion. {BEFORE}")
-_study_command("fly", f"Fly the samples that leave the surface. {BEFORE}")
-_study_command("rest", f"Follow samples from bounce to bounce until they rest. {BEFORE}")
+BEFORE = "Runs any earlier stage whose output is missing."
+_study_command(
+    "run", "Run a study from its file to its report. Reuses whatever its folder already has.", until="report"
+)
+_study_command("bed", f"Pour and settle the beds, and make one landing at the median inputs. {BEFORE}", until="landing")
+_study_command("screen", f"Run the screening design and fit an expansion in all inputs. {BEFORE}")
+_study_command("refine", f"Run the refined design and fit an expansion in the inputs that matter. {BEFORE}")
+_study_command("test", f"Run the test points and score the expansions on them. {BEFORE}")
+_study_command("sample", f"Draw Monte Carlo samples from the refined expansion. {BEFORE}")
+_study_command("fly", f"Fly the samples that leave the surface to their next impact. {BEFORE}")
+_study_command("rest", f"Follow samples from bounce to bounce until they come to rest. {BEFORE}")
 
 
 @app.command(epilog="Example: lithobrake plan study.toml")
@@ -112,9 +116,9 @@ def plan(
     study: StudyPath,
     out: OutPath = None,
     workers: Workers = None,
-    json: Annotated[bool, typer.Option("--json", help="As JSON, all numbers in SI.")] = False,
+    json: Annotated[bool, typer.Option("--json", help="Print JSON, all numbers in SI.")] = False,
 ) -> None:
-    """Say what a study will make, how long that takes and what to know of it; nothing is made."""
+    """Show what a study will make, how long that takes, and what to watch out for. Runs nothing."""
     folder = _default_folder(study) if out is None else _given_folder(out)
     with _one_sentence():
         from lithobrake.pipeline import plan_lines, plan_study
@@ -130,7 +134,7 @@ def plan(
 
 @app.command(epilog="Example: lithobrake report runs/study")
 def report(folder: StudyDirectory) -> None:
-    """Write the report of a study again."""
+    """Write the report of a study again from its files."""
     with _one_sentence():
         from lithobrake.pipeline import write_report_again
 
@@ -140,7 +144,7 @@ def report(folder: StudyDirectory) -> None:
 
 @app.command(epilog="Example: lithobrake status runs/study")
 def status(folder: StudyDirectory) -> None:
-    """Say where a study is; from any terminal, also while it runs."""
+    """Show the progress of a study. Works from any terminal, even while the study runs."""
     with _one_sentence():
         from lithobrake.pipeline import study_status
 
@@ -150,19 +154,20 @@ def status(folder: StudyDirectory) -> None:
 
 @app.command(epilog="Example: lithobrake runs runs/study --csv > runs.csv")
 def runs(
-    folder: StudyDirectory, csv: Annotated[bool, typer.Option("--csv", help="Every column, as CSV.")] = False
+    folder: StudyDirectory, csv: Annotated[bool, typer.Option("--csv", help="Print every column as CSV.")] = False
 ) -> None:
-    """List the runs of a study, with the inputs that differ between them."""
+    """List the runs of a study with the inputs that vary."""
     with _one_sentence():
-        from lithobrake.campaign import read_records, run_lines, write_csv
+        from lithobrake.campaign import run_lines, write_csv
+        from lithobrake.results import open_study
 
-        records = read_records(folder / "runs.sqlite")
+        records = open_study(folder).ledger
         units: dict[str, str] = {}
         # The names of a campaign that is no study are its author's, and so are their units.
         if (folder / "study.toml").is_file():
-            from lithobrake.study.units import OUTPUT_UNITS, input_units
+            from lithobrake.study.units import run_units
 
-            units = input_units() | OUTPUT_UNITS
+            units = run_units()
     if csv:
         with _reader_may_leave():
             write_csv(records, sys.stdout, units)
@@ -182,7 +187,7 @@ def view(folder: StudyDirectory) -> None:
     import webbrowser
 
     if not webbrowser.open(page.as_uri()):
-        _tell([f"No browser answers here; open this file: {page}"])
+        _tell([f"No browser found; open this file: {page}"])
 
 
 def _default_folder(study: Path) -> Path:
@@ -192,8 +197,8 @@ def _default_folder(study: Path) -> Path:
 def _given_folder(out: str) -> Path:
     if not out.strip():
         _leave(
-            "--out is empty, as a variable is that nobody has set, and would mean the present folder; "
-            "name a folder, or leave --out away to have runs/<study name>",
+            "--out is empty (an unset variable?) and would mean the current folder; "
+            "name a folder, or omit --out to use runs/<study name>",
             BAD_INPUT,
         )
     return Path(out)
@@ -204,7 +209,7 @@ def _scheduler(executor: str, scheduler: str | None) -> str | None:
     if executor not in ("local", "dask"):
         _leave(f"--executor is {executor!r}; allowed: local, dask", BAD_INPUT)
     if (executor == "dask") != (scheduler is not None):
-        _leave("--executor dask and --scheduler tcp://HOST:PORT go together; give both, or neither", BAD_INPUT)
+        _leave("--executor dask and --scheduler tcp://HOST:PORT go together; give both or neither", BAD_INPUT)
     return scheduler
 
 
@@ -223,14 +228,13 @@ def _make(study: Path, out: Path, until: str, workers: int | None, scheduler: st
 
 
 def _results(folder: Path) -> list[str]:
-    """The five most telling numbers, and where the report is, in lines."""
+    """The headline of the summary and the path of the report, in lines."""
     with _one_sentence():
-        from lithobrake.reading import read_json
+        from lithobrake.results import open_study
 
-        form, remedy = {"results": {"headline": [str]}}, "give the same command again, and it is made anew"
-        summary = read_json(folder / "summary.json", form, remedy)
+        headline = open_study(folder).headline
     page = (folder / "report" / "index.html").resolve()
-    return [*(f"  {sentence}" for sentence in summary["results"]["headline"]), f"Report: {page}"]
+    return [*(f"  {sentence}" for sentence in headline), f"Report: {page}"]
 
 
 def _tell(lines: Iterable[str]) -> None:
@@ -241,7 +245,7 @@ def _tell(lines: Iterable[str]) -> None:
 
 @contextmanager
 def _reader_may_leave() -> Iterator[None]:
-    """Write to standard output as long as somebody reads it: whoever has enough (`| head`) makes no mistake."""
+    """Write to standard output for as long as it is read; a reader that stops early (`| head`) is no error."""
     try:
         yield
         print(end="", flush=True)
@@ -252,16 +256,16 @@ def _reader_may_leave() -> Iterator[None]:
 
 @contextmanager
 def _one_sentence() -> Iterator[None]:
-    """Turn what a user can mend into its sentence and exit code 2, and Ctrl-C into exit code 130."""
+    """Turn an error that a user can fix into its sentence and exit code 2, and Ctrl-C into exit code 130."""
     try:
         yield
     except (ValueError, FloatingPointError, OSError) as error:
         full = isinstance(error, OSError) and error.errno in (errno.ENOSPC, errno.EDQUOT)
-        remedy = "; all that was finished is kept: make room on the disk, and give the same command again"
+        remedy = "; all finished work is kept: make room on the disk and run the same command again"
         _leave(f"{error}{remedy if full else ''}", BAD_INPUT)
     except KeyboardInterrupt:
         command = _command(*sys.argv[1:])
-        _leave(f"Stopped. Every finished run is kept; the same command goes on from there: {command}", INTERRUPTED)
+        _leave(f"Stopped. Every finished run is kept; to continue, run the same command: {command}", INTERRUPTED)
 
 
 def _command(*words: str | Path) -> str:

@@ -17,6 +17,11 @@ def json_hash(value: Any) -> str:
     return hashlib.sha256(json.dumps(value, sort_keys=True, separators=(",", ":")).encode()).hexdigest()
 
 
+def hashed_seed(*values: Any) -> int:
+    """Seed of random numbers from JSON values: another one for any other values."""
+    return int(json_hash(list(values))[:12], 16)
+
+
 def source_hash(*parts: str) -> str:
     """Hash of the sources of parts or files of the package: results of other code are other results."""
     package = Path(__file__).parent

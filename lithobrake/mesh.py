@@ -48,9 +48,7 @@ def volume_of(vertices: Vertices, faces: Faces) -> float:
 def mass_properties(vertices: Vertices, faces: Faces) -> tuple[float, NDArray[np.float64], NDArray[np.float64]]:
     """Volume [m3], centroid [m] and inertia per density about the centroid [m5], shape [3, 3].
 
-    Tetrahedra from the mean of the vertices. Source: Tonon (2004), Explicit exact formulas for the 3-D tetrahedron
-    inertia tensor in terms of its vertex coordinates, Journal of Mathematics and Statistics 1, 8-11, in its covariance
-    form.
+    Tetrahedra from the mean of the vertices. Source: [Tonon-2004], in its covariance form.
     """
     base = vertices.mean(axis=0)
     corner = vertices[faces] - base
@@ -67,7 +65,7 @@ def mass_properties(vertices: Vertices, faces: Faces) -> tuple[float, NDArray[np
 def holds_origin(vertices: Vertices, faces: Faces) -> bool:
     """Tell whether a closed surface goes round the origin: whether it fills more than half of the sky seen from there.
 
-    Source: Van Oosterom and Strackee (1983), The solid angle of a plane triangle, IEEE Trans. Biomed. Eng. 30, 125-126.
+    Source: [Van-Oosterom-1983].
     """
     a, b, c = (vertices[faces[:, corner]] for corner in range(3))
     length_a, length_b, length_c = (np.linalg.norm(corner, axis=1) for corner in (a, b, c))

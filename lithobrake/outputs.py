@@ -1,8 +1,129 @@
-"""What every touchdown gives, and which designs ask for touchdowns, by name; light, for whoever only looks."""
+"""What comes out of a study, by name: unit, words and frame of every number that its files and tables hold.
 
-from typing import Literal, get_args
+Light, so that whoever only looks at a study need not load how it is checked. What a study is given has its units in
+the schema of the study file (`lithobrake.study.units`).
+"""
+
+from collections.abc import Mapping
+from typing import Any, Literal, NamedTuple, get_args
 
 OutputName = Literal["speed_out", "elevation_out", "spin_out", "velocity_out_x", "velocity_out_y", "velocity_out_z"]
+# What every touchdown gives that leaves the surface, and an expansion is fitted to.
 OUTPUTS: tuple[OutputName, ...] = get_args(OutputName)
 # The designs of a study, in the order in which their runs are made.
 DESIGNS = ("screening", "refined", "test_kept", "test_all")
+# The unit of a number that has none, where a header has to say so.
+PURE = "-"
+
+
+class Quantity(NamedTuple):
+    """What a number is: its unit ("" for a pure number or a word), in words, in which frame ("": in none).
+
+    title: in few words, for an axis or a row; "" where it has no other than its name.
+    """
+
+    units: str
+    long_name: str
+    frame: str = ""
+    title: str = ""
+
+    @property
+    def attributes(self) -> dict[str, str]:
+        """The same as other programs keep it beside the values."""
+        frame = {"frame": self.frame} if self.frame else {}
+        return {"units": self.units, "long_name": self.long_name, **frame}
+
+
+LOCAL = "of the touchdown: x along the incoming horizontal velocity, z along the outward normal"
+FIXED = "of the body, turning with it"
+BED = "of the bed: origin in the middle of the floor, x and y along the walls, z upward"
+HULL = "of each hull: origin at its centroid, turning with it"
+
+TOUCHDOWN = {
+    "speed_out": Quantity("m/s", "speed after the touchdown", LOCAL, "outgoing speed"),
+    "elevation_out": Quantity(
+        "rad", "angle of the velocity after the touchdown above the mean surface", LOCAL, "elevation"
+    ),
+    "azimuth_out": Quantity("rad", "angle of the horizontal velocity after the touchdown from x toward y", LOCAL),
+    "spin_out": Quantity("rad/s", "size of the angular velocity after the touchdown", title="spin"),
+    "velocity_out_x": Quantity("m/s", "velocity after the touchdown along x", LOCAL, "velocity along x"),
+    "velocity_out_y": Quantity("m/s", "velocity after the touchdown along y", LOCAL, "velocity across y"),
+    "velocity_out_z": Quantity("m/s", "velocity after the touchdown along z", LOCAL, "velocity up z"),
+    "contact_duration": Quantity("s", "time from the first to the last touch of lander and soil"),
+    "penetration": Quantity("m", "largest depth of the lander below where it first touched"),
+    "peak_acceleration": Quantity("m/s2", "largest acceleration of the lander by contacts"),
+    "energy_lost": Quantity("J", "kinetic energy that the lander has lost"),
+}
+RUN = {
+    "key": Quantity("", "key of the run in the ledger"),
+    "design": Quantity("", "design that asks for the run first"),
+    "outcome": Quantity("", "how the touchdown ended"),
+    "reason": Quantity("", "why the run failed"),
+    "bed": Quantity("", "number of the bed, from 0"),
+}
+FLIGHT = {
+    "sample": Quantity("", "row of the sample, from 0"),
+    "ground": Quantity("", "what the lander bounces on"),
+    "status": Quantity("", "how the flight or the journey ended"),
+    "start_speed": Quantity("m/s", "speed after the touchdown", LOCAL),
+    "start_elevation_deg": Quantity("deg", "angle of that velocity above the surface", LOCAL),
+    "velocity_x": Quantity("m/s", "velocity after the touchdown along x", LOCAL),
+    "velocity_y": Quantity("m/s", "velocity after the touchdown along y", LOCAL),
+    "velocity_z": Quantity("m/s", "velocity after the touchdown along z", LOCAL),
+    "time_s": Quantity("s", "time until the end of the flight or the journey"),
+    "latitude_deg": Quantity("deg", "planetocentric latitude of the end", FIXED),
+    "longitude_deg": Quantity("deg", "east longitude of the end", FIXED),
+    "facet": Quantity("", "facet of the body that was hit, from 0"),
+    "impact_speed": Quantity("m/s", "speed of the last impact against the ground"),
+    "impact_incidence_deg": Quantity("deg", "angle of that velocity from the inward normal"),
+    "rebounds": Quantity("", "impacts after which the lander went on"),
+    "path_length": Quantity("m", "sum of the straight lines between impacts"),
+}
+BEDS = {
+    "solid_fraction": Quantity("", "share of the volume that grains fill"),
+    "coordination_number": Quantity("", "contacts of a grain in the mean"),
+    "surface_height_m": Quantity("m", "mean height of the surface above the floor"),
+    "mean_diameter_m": Quantity("m", "mean diameter of the grains, as spheres of equal volume"),
+    "smallest_width_m": Quantity("m", "width that keeps the walls out of the first blow"),
+    "smallest_depth_m": Quantity("m", "depth that keeps the floor out of the first blow"),
+    "large_enough": Quantity("", "whether the bed has that width and depth"),
+}
+# Data sets of the HDF5 files of beds and landings; the history is that of the settling.
+BODIES = {
+    "vertices": Quantity("m", "vertices of the hulls, one hull after the other", HULL),
+    "vertex_start": Quantity("", "row of the first vertex of each hull, and the number of all"),
+    "faces": Quantity("", "triangles of the hulls, as vertices counted from the first of the hull"),
+    "face_start": Quantity("", "row of the first triangle of each hull, and the number of all"),
+    "position": Quantity("m", "places of the centroids", BED),
+    "orientation": Quantity("", "unit quaternions w, x, y, z that turn the hulls as given into place", BED),
+    "diameter": Quantity("m", "diameters of the grains, as spheres of equal volume"),
+    "time": Quantity("s", "simulated time"),
+    "kinetic_ratio": Quantity("", "kinetic energy over the energy of lifting every grain by its mean diameter"),
+    "unbalanced_force": Quantity("", "mean net force on a grain over the mean force of a contact"),
+    "gravity": Quantity("m/s2", "size of the gravity"),
+}
+
+
+def quantity(name: str, known: Mapping[str, Quantity], study_units: Mapping[str, str]) -> Quantity:
+    """What a column of this name holds, of a table of which these quantities are known.
+
+    study_units: of the numbers of a study file by dotted key. A name of neither is one of the user's own: it keeps its
+    words, and has no unit but the degrees that a name may end with.
+    """
+    if name in known:
+        return known[name]
+    site = name.removeprefix("site_")
+    key, of_sample = (name, "") if site == name else (f"site.{site}", " of the sample")
+    units = study_units.get(key, "deg" if name.endswith("_deg") else "").removeprefix(PURE)
+    return Quantity(units, f"{site.replace('_', ' ').replace('.', ', ')}{of_sample}")
+
+
+def describe(file: Any) -> None:
+    """Write beside each data set of an open HDF5 file of bodies what it holds."""
+
+    def note(name: str, entry: Any) -> None:
+        # A group has no shape.
+        if hasattr(entry, "shape"):
+            entry.attrs.update(BODIES[name.rpartition("/")[2]].attributes)
+
+    file.visititems(note)

@@ -27,8 +27,8 @@ class _Work:
 
     def now(self) -> str:
         """How far it is, how fast it goes and how long it will take."""
-        share = (self.done - self.first_done) / (self.total - self.first_done or 1.0)
-        left = f"{duration(self.seconds * (1.0 / share - 1.0))} left" if 0.0 < share < 1.0 else ""
+        fraction = (self.done - self.first_done) / (self.total - self.first_done or 1.0)
+        left = f"{duration(self.seconds * (1.0 / fraction - 1.0))} left" if 0.0 < fraction < 1.0 else ""
         return self._line(counted(self.done, self.total), f"{duration(self.seconds)} so far", self._rate, left)
 
     def end(self) -> str:
@@ -134,5 +134,5 @@ class ProgressLog:
 
 
 def counted(done: float, total: float) -> str:
-    """How much of how much, in numbers where things are counted and else as a share."""
+    """How much of how much, in numbers where things are counted and else as a fraction."""
     return f"{done:.0f}/{total:.0f}" if total > 1 else f"{100 * done / max(total, 1e-300):.0f} %"

@@ -1,7 +1,7 @@
 """One touchdown as a model: from the numbers of the study file, by dotted key, to what came out."""
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cache, lru_cache
@@ -10,13 +10,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from lithobrake import __version__
 from lithobrake.hashing import source_hash
 from lithobrake.study import Study
 from lithobrake.study.quantity import median
 
 if TYPE_CHECKING:
     from lithobrake.dem import Material
-    from lithobrake.touchdown import Bed, ContactModel, Lander, Landing
+    from lithobrake.touchdown import Bed, ContactModel, Lander, Landing, Outcome
 
 Values = Mapping[str, float]
 # What a material is to a contact, by the names of the study file and of dem.Material.
@@ -46,6 +47,16 @@ class TouchdownModel:
 
     def __call__(self, values: dict[str, float], seed: int) -> dict[str, Any]:
         """Land once and say the outcome and the outputs [SI]. Raises ValueError where the code is another one."""
+        outcome = self.land(values)
+        return {"outcome": outcome.status, "outputs": outcome.outputs}
+
+    def land(
+        self,
+        values: Mapping[str, float],
+        frame_count: int = 0,
+        progress: Callable[[float, str], None] = lambda fraction, what: None,
+    ) -> "Outcome":
+        """Land once, and record about so many frames. Raises ValueError where the code is another one."""
         from lithobrake.touchdown import land
 
         if engine_hash() != self.engine:
@@ -55,8 +66,7 @@ class TouchdownModel:
             )
         bed = stored_bed(self.bed_paths[round(values["bed"])])
         with in_words_of_the_study():
-            outcome = land(bed, lander(self.study, values), landing(self.study, values))
-        return {"outcome": outcome.status, "outputs": outcome.outputs}
+            return land(bed, lander(self.study, values), landing(self.study, values), frame_count, progress)
 
 
 # What the engine calls things by its own names, and what they are in a study file.
@@ -97,6 +107,11 @@ def engine_hash() -> str:
     return source_hash("dem", "touchdown", "mesh.py", "mesh_files.py", "touchdown_model.py")
 
 
+def touchdown_version() -> str:
+    """The version of the package and of the code that decides what a touchdown gives, as the ledger keeps it."""
+    return f"{__version__}+{engine_hash()}"
+
+
 def stored_bed(path: Path) -> "Bed":
     """Read a bed, once for all runs of a process as long as the file stays the same."""
     status = path.stat()
@@ -115,13 +130,13 @@ def draw(study: Study, values: Values, seed: int) -> dict[str, float]:
 
     bed: number of the bed; impact.place.x and .y [m], impact.azimuth_deg, impact.orientation.w to .z. All are drawn,
     whether used or not, so that each has the same random numbers in every study. A run takes the bed with the largest
-    number of its own: one more bed takes its share of runs over, and all others stay on theirs (rendezvous hashing).
+    number of its own: one more bed takes its part of the runs over, and all others stay on theirs (rendezvous hashing).
 
-    Source: Thaler and Ravishankar (1998), IEEE/ACM Transactions on Networking 6, 1.
+    Source: [Thaler-1998].
     """
     bed = int(np.argmax(np.random.Generator(np.random.PCG64([seed, 1])).random(study.bed.bed_count)))
     generator = np.random.Generator(np.random.PCG64(seed))
-    shares, turn = generator.random(2), generator.random()
+    fractions, turn = generator.random(2), generator.random()
     # Four normal numbers point evenly over the unit quaternions.
     quaternion = generator.standard_normal(4)
     impact = study.impact
@@ -129,7 +144,7 @@ def draw(study: Study, values: Values, seed: int) -> dict[str, float]:
         place = [values["impact.place.x"], values["impact.place.y"]]
     else:
         ends = (impact.region.x, impact.region.y)
-        place = [low + share * (high - low) for share, (low, high) in zip(shares.tolist(), ends, strict=True)]
+        place = [low + fraction * (high - low) for fraction, (low, high) in zip(fractions.tolist(), ends, strict=True)]
     azimuth = 360 * turn if impact.azimuth_deg == "random" else values["impact.azimuth_deg"]
     if impact.orientation != "random":
         quaternion = np.array(impact.orientation)

@@ -167,10 +167,10 @@ def test_a_folder_that_cannot_be_written_is_one_sentence(tmp_path: Path, monkeyp
 
 
 @pytest.mark.parametrize("out", ["", " "])
-def test_an_empty_out_is_not_the_present_folder(out: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_empty_out_is_not_the_current_folder(out: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     RUNNER.invoke(app, ["new", "study"])
-    assert "--out is empty, as a variable is that nobody has set" in refused(["run", "study.toml", "--out", out])
+    assert "--out is empty (an unset variable?)" in refused(["run", "study.toml", "--out", out])
     assert [path.name for path in tmp_path.iterdir()] == ["study.toml"]
 
 

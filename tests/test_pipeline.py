@@ -14,14 +14,14 @@ from lithobrake.chaos import Uniform, fit, smolyak
 from lithobrake.outputs import OUTPUTS
 from lithobrake.pipeline import STAGES, StudyFolder, rest, stage_keys
 from lithobrake.pipeline.designs import design_inputs, kept_inputs, points
+from lithobrake.pipeline.dispersion_statistics import shares, stays
 from lithobrake.pipeline.flights import COLUMNS, partner_time, starts
-from lithobrake.pipeline.landing_statistics import shares, stays
 from lithobrake.pipeline.samples import SAMPLE_OUTCOMES, Samples
 from lithobrake.pipeline.scope import scope
 from lithobrake.pipeline.site import (
+    effective_acceleration_at_site,
     frames,
     has_heading,
-    push_at_site,
     site_body,
     site_medians,
     site_warning,
@@ -332,7 +332,7 @@ def test_the_acceleration_of_the_site_is_offered_to_the_touchdown() -> None:
     """At the published site the ground pushes outwards; near a pole it holds, and there is nothing to warn of."""
     site = {"surface": {"gravity": "site"}, "bed": {"settle_gravity": 2e-5}}
     equator = changed(**site, site={"latitude_deg": 0.0, "longitude_deg": 0.0})
-    assert equator.surface.gravity == pytest.approx(-push_at_site(equator)[2])
+    assert equator.surface.gravity == pytest.approx(-effective_acceleration_at_site(equator)[2])
     assert equator.surface.gravity < 0.0
     assert "push outwards" in site_warning(equator)
     pole = changed(**site, site={"latitude_deg": 80.0})

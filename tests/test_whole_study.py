@@ -11,7 +11,11 @@ import time
 from pathlib import Path
 from typing import Any
 
+import h5py
 import pytest
+
+from lithobrake.results import open_study
+from lithobrake.results.key_words import leaves, words_of
 
 STUDY = """
 title = "A few grains"
@@ -74,7 +78,7 @@ def lithobrake(study: Path, out: Path, workers: int) -> "subprocess.CompletedPro
 
 
 def summary(out: Path) -> dict[str, Any]:
-    content: dict[str, Any] = json.loads((out / "summary.json").read_text())
+    content: dict[str, Any] = open_study(out).summary
     return content
 
 
@@ -119,6 +123,25 @@ def test_every_file_is_there_and_the_summary_adds_up(out: Path) -> None:
     assert results["kept_share"]["speed_out"] >= 0.9
 
 
+def test_every_key_that_soil_and_beds_write_is_described(out: Path) -> None:
+    for name in ("summary.json", "scores.json", "screening.json", "refined.json"):
+        places = set(leaves(json.loads((out / name).read_text())))
+        assert all(words_of(name, place) for place in places)
+    assert open_study(out).beds.columns["surface_height_m"].units == "m"
+
+
+def test_every_data_set_of_the_files_says_what_it_holds(out: Path) -> None:
+    for name in ("samples.h5", "landing.h5", "beds/bed_0.h5"):
+        sets: dict[str, Any] = {}
+        with h5py.File(out / name) as file:
+            file.visititems(sets.__setitem__)
+            described = [
+                {"units", "long_name"} <= set(entry.attrs) for entry in sets.values() if hasattr(entry, "shape")
+            ]
+        assert described
+        assert all(described)
+
+
 def test_the_same_command_on_a_finished_study_computes_nothing(study: Path, out: Path) -> None:
     before = {name: (out / name).stat().st_mtime_ns for name in FILES if name != "study.toml"}
     assert lithobrake(study, out, workers=2).returncode == 0
@@ -151,7 +174,7 @@ def test_ctrl_c_keeps_the_runs_and_one_worker_ends_with_the_same_bits(study: Pat
     process.send_signal(signal.SIGINT)
     _, said = process.communicate(timeout=60)
     assert process.returncode == 130
-    assert "the same command goes on from there" in said
+    assert "to continue, run the same command" in said
     assert "Traceback" not in said
     kept = finished_runs(other)
     assert 2 <= kept < finished_runs(out)

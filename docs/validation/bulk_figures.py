@@ -6,6 +6,7 @@ Reads every bulk_*.json and bed_size.json beside it that is there; a check that 
 """
 
 import json
+import textwrap
 from collections import defaultdict
 from pathlib import Path
 from typing import Any
@@ -19,6 +20,7 @@ from bulk import CHECKS
 
 HERE = Path(__file__).parent
 Rows = list[dict[str, Any]]
+WHOLE_WORDS: dict[str, Any] = {"break_long_words": False, "break_on_hyphens": False}
 
 
 def grouped(rows: Rows, by: str, what: str) -> dict[Any, np.ndarray]:
@@ -120,6 +122,8 @@ def main() -> None:
         page += [f"![{name}](bulk_{name}.png)", ""]
     path = HERE / "bed_size.json"
     page += ["## Size of the bed", "", *(bed_size(json.loads(path.read_text())) if path.exists() else ["Not run yet."])]
+    # Tables and pictures stay on their lines.
+    page = [line if line.startswith(("|", "!", "`")) else textwrap.fill(line, 100, **WHOLE_WORDS) for line in page]
     (HERE / "bulk.md").write_text("\n".join(page) + "\n", encoding="utf-8")
 
 

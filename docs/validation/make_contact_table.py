@@ -18,9 +18,10 @@ ROOT = Path(__file__).parents[2]
 PAGE = Path(__file__).with_name("contact.md")
 ROWS = Path(__file__).with_name("contact_rows.csv")
 NOT_TESTS = (
-    "Measured are the left sides of the comparisons that the tests make, among them some that only make sure that what",
-    "is meant to happen does. Compression, angle of repose, Froude scaling and packings are in [bulk.md](bulk.md),",
-    "the distances of a million pairs in `benchmarks/results/fuzz_distance.txt`.",
+    "Measured are the left sides of the comparisons that the tests make, among them some that only make",
+    "sure that what is meant to happen does. Compression, angle of repose, Froude scaling and packings",
+    "are in [bulk.md](bulk.md), the distances of a million pairs in",
+    "`benchmarks/results/fuzz_distance.txt`.",
 )
 SECTIONS = {
     "test_two_bodies.py": "Two bodies",
@@ -132,9 +133,9 @@ def main() -> None:
     lines = [
         "# What the contact physics reproduces",
         "",
-        "First the facts that were set before the code was written, then every physical test with what its assertions",
-        "compared: what was found, and the value and tolerance asked for. Where a test repeats an assertion, the last",
-        'one stands here; "True" is a comparison of arrays that held.',
+        "First the facts that were set before the code was written, then every physical test with what its",
+        "assertions compared: what was found, and the value and tolerance asked for. Where a test repeats an",
+        'assertion, the last one stands here; "True" is a comparison of arrays that held.',
         "Written by `python docs/validation/make_contact_table.py`; do not edit.",
         "",
         f"{time.strftime('%Y-%m-%d')}, {platform.machine()}, {sys.platform}, Python {platform.python_version()}: "

@@ -29,15 +29,15 @@ class Ellipses:
     semi_axes_deg: dict[float, tuple[float, float]]
 
 
-def landing_ellipses(
+def dispersion_ellipses(
     latitude_deg: ArrayLike, longitude_deg: ArrayLike, shares: tuple[float, ...] = (0.5, 0.95)
 ) -> Ellipses | None:
-    """Ellipses that hold shares of places, shape [count] both; None where these are few, all around, or one place.
+    """Ellipses that hold shares of places, both of shape [count]; None if these are few, all around, or one place.
 
     The places are laid flat about their mean direction, keeping distance and direction from it (azimuthal equidistant);
     the axes are those of their second moments, and each ellipse is as large as it takes to hold its share of them: no
     law is assumed. Raises ValueError for shares outside 0 to 1.
-    Source: Mardia and Jupp (2000), Directional Statistics, section 9.2 (mean direction, resultant length).
+    Source: [Mardia-2000], section 9.2 (mean direction, resultant length).
     """
     if not all(0.0 < share < 1.0 for share in shares):
         raise ValueError(f"shares are {shares}; each must lie between 0 and 1")

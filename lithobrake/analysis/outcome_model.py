@@ -15,8 +15,8 @@ _BLOCK = 65_536
 class OutcomeModel:
     """Logistic regression on a quadratic in the inputs, each put on the scale of its distribution.
 
-    The penalty of the regression keeps it finite when few runs, or all on one side of a plane, had an outcome. One
-    that no run had gets the probability 0 everywhere, which `upper_limit` puts right.
+    The penalty of the regression keeps it finite when few runs, or all on one side of a plane, had an outcome. An
+    outcome that no run had gets probability 0 everywhere; `upper_limit` bounds it.
     """
 
     def __init__(
@@ -71,7 +71,7 @@ class OutcomeModel:
 def upper_limit(run_count: int, level: float = 0.95) -> float:
     """Largest probability that an event may have, at a level of confidence, which none of so many runs has met.
 
-    Source: Clopper and Pearson (1934), Biometrika 26, 404, at a count of 0; about 3 / run_count for .95.
+    Source: [Clopper-1934], at a count of 0; about 3 / run_count for .95.
     """
     if run_count < 1:
         return 1.0

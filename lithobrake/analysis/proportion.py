@@ -8,9 +8,9 @@ NORMAL_QUANTILE_95 = 1.959963984540054
 def wilson_interval(count: int, total: int, quantile: float = NORMAL_QUANTILE_95) -> tuple[float, float]:
     """Interval of the true share when `count` of `total` independent draws have a property.
 
-    quantile: of the standard normal law (1.96: 95 %). It stays within [0, 1] and is right near 0 and 1, where the
-    usual plus-minus is not. Raises ValueError for counts that cannot be.
-    Source: Wilson 1927, J. Am. Stat. Assoc. 22, 209.
+    quantile: of the standard normal distribution (1.96: 95 %). The interval stays within [0, 1] and holds near 0 and
+    1, where the usual plus-minus does not. Raises ValueError for counts that cannot be.
+    Source: [Wilson-1927].
     """
     if total < 1 or not 0 <= count <= total:
         raise ValueError(f"{count} of {total} is no share; the count must lie between 0 and a total of at least 1")

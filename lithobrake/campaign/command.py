@@ -32,7 +32,7 @@ class Command:
 
     The program reads `inputs.json`: {"inputs": numbers by name, "seed": whole number}, and writes `outputs.json`: its
     outputs by name, or {"outcome": how the run ended, "outputs": numbers by name, "draws": what it drew by chance}.
-    What it prints goes to `log.txt`, of much the beginning and the end.
+    What it prints goes to `log.txt`; of a long log, the beginning and the end.
     """
 
     command: str
@@ -51,7 +51,7 @@ class Command:
         return answer
 
     def ask(self, question: Mapping[str, Any]) -> dict[str, Any]:
-        """Give a program what it asks for in `inputs.json`, and return what it wrote."""
+        """Write `inputs.json` for a program, run it, and return what it wrote."""
         with self._run_folder(run_key(question["inputs"], question["seed"], 0, {})[:16]) as folder:
             text = json.dumps(question, indent=2, allow_nan=False)
             (folder / "inputs.json").write_text(text + "\n", encoding="utf-8")
@@ -68,7 +68,7 @@ class Command:
     def identity(self) -> list[str]:
         """The words of the command, a hash of its content for each that names a file: what decides the results.
 
-        It belongs into the context of a campaign, so that runs of a changed program are other runs.
+        Put it into the context of a campaign, so that runs of a changed program count as other runs.
         """
         return [_content_hash(Path(word)) if os.path.isfile(word) else word for word in self.words()]
 

@@ -47,7 +47,7 @@ class DaskExecutor(Executor):
 
     @property
     def capacity(self) -> int:
-        """Calls that the cluster makes at once, as it was a few seconds ago."""
+        """Number of calls that the cluster makes at once, as of a few seconds ago."""
         if time.monotonic() > self._asked + _POLL_INTERVAL:
             self._asked, self._thread_count = time.monotonic(), sum(self._client.nthreads().values())
         return max(self._thread_count, _SMALLEST_CAPACITY)
@@ -76,7 +76,7 @@ class DaskExecutor(Executor):
             here.set_exception(error)
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
-        """Leave the cluster; with cancel_futures, calls that have not begun are taken back."""
+        """Leave the cluster; with cancel_futures, withdraw calls that have not begun."""
         if cancel_futures and self._client.status == "running":
             self._client.cancel(list(self._submitted))
         self._client.close()

@@ -105,9 +105,9 @@ class Ledger:
             self._database.execute(f"PRAGMA user_version = {FORMAT_VERSION}")
 
     def queue(self, runs: Iterable[tuple[str, Mapping[str, float], int, int]], version: str) -> None:
-        """Enter the runs that are to be made now (key, inputs, seed, replicate); ended runs among them start anew.
+        """Enter the runs that are to be made now (key, inputs, seed, replicate); ended runs among them start again.
 
-        What was queued before and never ended is forgotten: whoever still wants it asks for it again.
+        Runs that were queued before and never ended are forgotten: whoever still wants them queues them again.
         """
         rows = [
             (key, RunStatus.QUEUED, json.dumps(dict(inputs)), seed, replicate, version)
@@ -150,7 +150,7 @@ class Ledger:
             )
 
     def forget_tries(self, keys: Iterable[str]) -> None:
-        """Count failed runs as never tried, so that the next campaign tries them whatever its number of retries."""
+        """Count failed runs as never tried, so that the next campaign tries them whatever its retry_count."""
         with self._transaction():
             self._database.executemany("UPDATE runs SET attempts = 0 WHERE key = ?", [(key,) for key in keys])
 

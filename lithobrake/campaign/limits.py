@@ -29,7 +29,7 @@ class Limits:
             )
 
     def exceeded(self, wall_s: float, memory_bytes: float) -> str | None:
-        """The reason why a run has to end; None while it may go on."""
+        """The reason why a run must end; None while it may continue."""
         if wall_s > self.wall_s:
             return f"it ran longer than its limit of {self.wall_s:g} s"
         if memory_bytes > self.memory_bytes:

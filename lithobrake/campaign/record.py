@@ -14,7 +14,7 @@ from lithobrake.reading import NUMBER, check, parsed, reading
 
 
 class RunStatus(StrEnum):
-    """Where a run stands in its ledger; running: handed to a worker. How a run that is done came out is its outcome."""
+    """State of a run in its ledger; running: handed to a worker. How a run that is done ended is its outcome."""
 
     QUEUED = "queued"
     RUNNING = "running"
@@ -82,9 +82,9 @@ def utc_now() -> str:
 
 
 def read_records(path: str | PathLike[str]) -> list[Record]:
-    """All runs of a ledger in the order of their ends, the unended last; a campaign may be at work on it meanwhile.
+    """Read all runs of a ledger in the order in which they ended, unended ones last; a campaign may be writing to it.
 
-    Raises ValueError when there is no ledger at the path, or a damaged one.
+    Raises ValueError when the path holds no ledger, or a damaged one.
     """
     path = Path(path)
     if not path.is_file():
@@ -109,6 +109,6 @@ def lock_path(path: Path) -> Path:
 
 
 def campaign_began(path: str | PathLike[str]) -> str | None:
-    """When the campaign that is at work on a ledger began (ISO, UTC); None when none is."""
+    """When the campaign now at work on a ledger began (ISO, UTC); None if there is none."""
     holder = lock_holder(lock_path(Path(path)))
     return holder.get("began") if holder else None

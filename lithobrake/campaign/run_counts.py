@@ -35,7 +35,7 @@ class Spread:
 
 @dataclass
 class Tally:
-    """Counts of the distinct runs of a campaign, and what can be told from them.
+    """Counts of the distinct runs of a campaign, and what follows from them.
 
     done, failed: ended, reused ones included; reused: known before the campaign began; running: handed to a worker.
     seconds: since the campaign began.
@@ -51,7 +51,7 @@ class Tally:
 
     @property
     def ended(self) -> int:
-        """Runs that have an end, good or bad."""
+        """Runs that ended, done or failed."""
         return self.done + self.failed
 
     @property
@@ -100,12 +100,12 @@ def common_reasons(reasons: Iterable[str | None]) -> str:
 
 
 def per_time(rate: float, things: str = "") -> str:
-    """A rate [1/s] of things in the unit that suits it."""
+    """Return a rate [1/s] as text in a suitable unit."""
     return f"{rate:.3g}{things}/s" if rate >= 1 else f"{60 * rate:.3g}{things}/min"
 
 
 def duration(seconds: float) -> str:
-    """A time in the unit that suits it."""
+    """Return a time [s] as text in a suitable unit."""
     for limit, unit, size in ((120.0, "s", 1.0), (7200.0, "min", 60.0), (172_800.0, "h", 3600.0)):
         if seconds < limit:
             return f"{seconds / size:.0f} {unit}"

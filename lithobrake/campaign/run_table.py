@@ -40,7 +40,7 @@ def _shown(value: Any) -> Any:
 
 
 def run_lines(records: Sequence[Record], units: Mapping[str, str], width: int | None) -> list[str]:
-    """Runs as lines under a head: key, status, wall time, the inputs that differ between runs, outcome or reason.
+    """Return runs as lines under a header: key, status, wall time, inputs that differ, outcome or reason.
 
     units: of inputs by name. width: of the terminal; inputs that do not fit in are named below, and a reason that does
     not is cut and marked by three dots. None: all of both.

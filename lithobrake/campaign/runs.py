@@ -30,7 +30,7 @@ class Runs:
 
     @property
     def outcomes(self) -> list[str]:
-        """How each run ended: the model's own word, or "failed"."""
+        """How each run ended: in the model's own word, or "failed"."""
         return [record.outcome or RunStatus.FAILED.value for record in self.records]
 
     @property
@@ -48,7 +48,7 @@ class Runs:
 
 @dataclass(frozen=True)
 class RunOptions:
-    """What few campaigns set.
+    """Settings that few campaigns need.
 
     seed: of the random numbers of all runs; replicate: another one repeats the same inputs with other random numbers.
     retry_count: how often a failed run is tried again. log_folder: takes what each run prints; None keeps nothing.
@@ -72,7 +72,7 @@ def run(
     options: RunOptions | None = None,
     progress: Callable[[Tally], None] | None = None,
 ) -> Runs:
-    """Run a model on every row of an array; runs that the ledger knows are read from it.
+    """Run a model on every row of an array; read runs that the ledger has from it.
 
     x: inputs, shape [run_count, len(names)]. context: whatever else the results depend on, as JSON values; "version"
     stands in the ledger. executor: with the interface of concurrent.futures (None: the cores of this machine). limits:

@@ -20,7 +20,7 @@ COMPILED_FROM = 20_000
 
 
 @dataclass(frozen=True)
-class Plan:
+class EvaluationPlan:
     """The order of multiplications for an index set.
 
     offset: first row of each input in the stacked univariate tables [input_count + 1]; center, spread: recurrence from
@@ -38,7 +38,7 @@ class Plan:
     coefficients: Array
 
 
-def make_plan(inputs: Mapping[str, Distribution], indices: Indices, coefficients: Array) -> Plan:
+def make_plan(inputs: Mapping[str, Distribution], indices: Indices, coefficients: Array) -> EvaluationPlan:
     """Order the terms so that each is its parent (the same index without its last input) times one factor."""
     recurrences = recurrences_of(inputs, indices)
     offset = np.concatenate([[0], np.cumsum([one.degree + 1 for one in recurrences])])
@@ -62,10 +62,10 @@ def make_plan(inputs: Mapping[str, Distribution], indices: Indices, coefficients
     np.add.at(table, rows, coefficients)
     center = np.concatenate([np.append(one.center, 0.0) for one in recurrences])
     spread = np.concatenate([np.append(one.spread, 1.0) for one in recurrences])
-    return Plan(recurrences, offset, center, spread, np.array(parent), np.array(factor), table)
+    return EvaluationPlan(recurrences, offset, center, spread, np.array(parent), np.array(factor), table)
 
 
-def evaluate(inputs: Mapping[str, Distribution], plan: Plan, points: Array) -> Array:
+def evaluate(inputs: Mapping[str, Distribution], plan: EvaluationPlan, points: Array) -> Array:
     """Values of the expansion at points in physical units [count, input_count]; result [count, output_count].
 
     Many points go through the compiled loop where Numba is present, few through NumPy (equal up to rounding).
@@ -79,7 +79,7 @@ def evaluate(inputs: Mapping[str, Distribution], plan: Plan, points: Array) -> A
     return result
 
 
-def _fill(plan: Plan, germs: Array, result: Array) -> None:
+def _fill(plan: EvaluationPlan, germs: Array, result: Array) -> None:
     table = np.concatenate([one.values(germ) for one, germ in zip(plan.recurrences, germs, strict=True)])
     rows = np.ones((len(plan.parent), germs.shape[1]))
     for row in range(1, len(plan.parent)):
@@ -87,5 +87,5 @@ def _fill(plan: Plan, germs: Array, result: Array) -> None:
     np.matmul(rows.T, plan.coefficients, out=result)
 
 
-def _fill_compiled(loop: Loop, plan: Plan, germs: Array, result: Array) -> None:
+def _fill_compiled(loop: Loop, plan: EvaluationPlan, germs: Array, result: Array) -> None:
     loop(germs, plan.offset, plan.center, plan.spread, plan.parent, plan.factor, plan.coefficients, result)

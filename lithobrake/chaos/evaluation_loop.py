@@ -28,7 +28,8 @@ def expansion_loop(
     """Evaluate an expansion at germs [input_count, count]; only result [count, output_count] is written.
 
     offset [input_count + 1]: first table row of each input; center, spread [row_count of the tables]: recurrence that
-    leads from a row to the next; parent, factor [term_count]: as in `Plan`; coefficients [term_count, output_count].
+    leads from a row to the next; parent, factor [term_count]: as in `EvaluationPlan`; coefficients [term_count,
+    output_count].
     """
     input_count, count = germs.shape
     term_count, output_count = coefficients.shape

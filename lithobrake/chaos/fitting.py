@@ -39,7 +39,7 @@ def fit(
 
     degree: total degree; None chooses it by cross-validation. method: "ols" least squares; "lars", "omp" sparse;
     "gaussian_process" the projection of a process on the basis; None with a degree is "ols", None without a degree
-    takes for each output whichever of least squares, pursuit and processes promises the smallest error at new points.
+    takes for each output whichever of least squares, pursuit and processes has the smallest estimated error.
     q_norm: hyperbolic index set, None is 1 (sparse methods without a degree choose). max_degrees: highest degree of
     each input, and weights: of the points [count], both for "ols". Rows of y that are all NaN are dropped and counted.
     progress: called with the number of outputs that are fitted, and that of all.

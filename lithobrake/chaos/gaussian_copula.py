@@ -111,17 +111,17 @@ class DependentSurrogate:
 
     @property
     def sobol_first(self) -> NoReturn:
-        """Refused with a ValueError: dependent inputs have no such shares."""
+        """Raises ValueError: dependent inputs have no such shares."""
         self._refuse()
 
     @property
     def sobol_total(self) -> NoReturn:
-        """Refused with a ValueError: dependent inputs have no such shares."""
+        """Raises ValueError: dependent inputs have no such shares."""
         self._refuse()
 
 
 def load_dependent(path: str | os.PathLike[str]) -> DependentSurrogate:
-    """Read what `DependentSurrogate.save` wrote. Raises ValueError if the file is another thing or damaged."""
+    """Read what `DependentSurrogate.save` wrote. Raises ValueError if the file is of another kind or damaged."""
 
     def build(content: dict[str, Any]) -> DependentSurrogate:
         copula = GaussianCopula(inputs_from_json(content["dependent_inputs"]), content["rank_correlation"])

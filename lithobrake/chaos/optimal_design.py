@@ -118,8 +118,8 @@ def d_optimal(
 ) -> Array:
     """Choose `count` new points for the total-degree basis one by one, each where the fit knows least; physical units.
 
-    existing: points already run [any, input_count], which the new ones complete. candidates: points to choose from
-    (each at most once), None is Christoffel-weighted random ones. The determinant of the information matrix grows as
+    existing: points already run [any, input_count], which the new ones extend. candidates: points to choose from
+    (each at most once); None: random ones weighted by Christoffel. The determinant of the information matrix grows as
     fast as one point at a time can make it. Result [count, input_count]. Raises ValueError for too few candidates.
     Source: [Fedorov-1972] (greedy exchange of D-optimality).
     """

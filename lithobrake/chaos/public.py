@@ -24,7 +24,7 @@ from lithobrake.chaos.postprocessing import (
     shape_moments,
 )
 from lithobrake.chaos.scores import absolute_percentage_error
-from lithobrake.chaos.sparse_grid import smolyak
+from lithobrake.chaos.smolyak_grid import smolyak
 from lithobrake.chaos.stochastic import StochasticSurrogate, fit_stochastic, joint_scatter, load_stochastic
 from lithobrake.chaos.surrogate import Surrogate, load
 from lithobrake.chaos.unbounded_distributions import Exponential, Gamma, LogNormal, Normal

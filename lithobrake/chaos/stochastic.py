@@ -51,7 +51,7 @@ class StochasticSurrogate:
 
 
 def load_stochastic(path: str | os.PathLike[str]) -> StochasticSurrogate:
-    """Read what `StochasticSurrogate.save` wrote. Raises ValueError if the file is another thing or damaged."""
+    """Read what `StochasticSurrogate.save` wrote. Raises ValueError if the file is of another kind or damaged."""
 
     def build(content: dict[str, Any]) -> StochasticSurrogate:
         mean, spread = Surrogate.from_content(content["mean"]), Surrogate.from_content(content["log_variance"])
@@ -94,7 +94,7 @@ def fit_stochastic(
 
 
 def joint_scatter(surrogate: Surrogate, x: ArrayLike, y: ArrayLike) -> Array:
-    """Scatter of runs x, y, one row for each run that tells of it, [row_count, output_count], to be drawn from jointly.
+    """Scatter of runs x, y, one row for each run that shows it, [row_count, output_count], to be drawn from jointly.
 
     With runs of equal inputs these are their deviations from their means, widened to the spread of single runs; else
     the residuals of the expansion, brought to the scatter that its report knows (the nugget of a process) or, without

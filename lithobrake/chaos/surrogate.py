@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from lithobrake.chaos import noise, scores, sensitivity
 from lithobrake.chaos.abstract_distribution import Distribution, checked_inputs
 from lithobrake.chaos.basis import outside_count, points_of
-from lithobrake.chaos.evaluation import Plan, evaluate, make_plan
+from lithobrake.chaos.evaluation import EvaluationPlan, evaluate, make_plan
 from lithobrake.chaos.moments import ShapeMoments, skewness_and_kurtosis
 from lithobrake.chaos.multi_index import Indices
 from lithobrake.chaos.polynomials import Array
@@ -84,7 +84,7 @@ class Surrogate:
         return int(self.report.get("dropped_count", 0))
 
     @cached_property
-    def _plan(self) -> Plan:
+    def _plan(self) -> EvaluationPlan:
         return make_plan(self.inputs, self.multi_indices, self._coefficients)
 
     def __call__(self, x: ArrayLike, *, outside: str = "raise") -> Array:
@@ -239,5 +239,5 @@ class Surrogate:
 
 
 def load(path: str | os.PathLike[str]) -> Surrogate:
-    """Read an expansion that `Surrogate.save` wrote. Raises ValueError if the file is another thing or damaged."""
+    """Read an expansion that `Surrogate.save` wrote. Raises ValueError if the file is of another kind or damaged."""
     return read(FORMAT, Surrogate.from_content, path)

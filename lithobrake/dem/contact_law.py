@@ -1,7 +1,7 @@
 """Contact law of a pair: Hertz with damping that gives the entered restitution, cohesion, friction and rolling.
 
-Source: the paper, Eqs (1) to (9), with Mindlin's (1949) shear modulus; the no-tension end of contact and the damping
-that makes up for it, see material.restitution_of.
+Source: [Landings-PCE], Eqs 1 to 9, with the shear modulus of [Mindlin-1949]; the no-tension end of contact and
+the damping that makes up for it, see material.restitution_of.
 """
 
 from typing import NamedTuple
@@ -12,7 +12,7 @@ from lithobrake.dem.effective_mass import inverse_mass_at
 from lithobrake.dem.patch_energy import DEEP_EDGES
 from lithobrake.dem.rolling_resistance import end_couples
 from lithobrake.dem.scratch import Patch
-from lithobrake.dem.spring import spring_force, stored, tangential_part, turned_spring
+from lithobrake.dem.tangential_spring import spring_force, stored, tangential_part, turned_spring
 from lithobrake.dem.vectors import Vector, cross, dot, minus, plus, put, row, scaled
 
 DAMPING, FRICTION, ROLLING = 0, 1, 2  # columns of Pairs.lost
@@ -128,6 +128,19 @@ def friction_force(
     pairs.lost[pair, FRICTION] += held.slid
     pairs.lost[pair, DAMPING] += held.damped * time_step
     return held.total
+
+
+@kernel
+def record_contact(
+    pair: int, pairs: Pairs, overlap: float, point: Vector, normal: Vector, tangential: Vector, total: float,
+    elastic: float, cohesion: float,
+) -> None:  # fmt: skip
+    """Keep where a pair touches and what its forces are [N]. Writes to pairs."""
+    pairs.overlap[pair], pairs.normal_force[pair], pairs.elastic_force[pair] = overlap, total, elastic
+    pairs.cohesion[pair] = cohesion
+    put(pairs.normal, pair, normal)
+    put(pairs.point, pair, point)
+    put(pairs.tangential_force, pair, tangential)
 
 
 @kernel

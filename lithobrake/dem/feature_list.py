@@ -14,7 +14,7 @@ from lithobrake.dem.gjk import APART, CLOSE, PENETRATING, weighted
 from lithobrake.dem.motion import surface_speed_bound
 from lithobrake.dem.patch_energy import DEEP_TO
 from lithobrake.dem.scratch import Scratch, Simplex, TurnedFeatures
-from lithobrake.dem.vectors import dot, minus, row, scaled, transposed_times
+from lithobrake.dem.vectors import Vector, dot, minus, row, scaled, transposed_times
 
 # The margin is this part of the rounding radii, which themselves count for at most this part of the contact radii.
 MARGIN_OF_ROUNDING, ROUNDING_OF_RADIUS = 0.1, 0.04
@@ -89,6 +89,14 @@ def list_plane(pair: int, bodies: Bodies, cores: Cores, planes: Planes, pairs: P
     return gap
 
 
+@kernel
+def closest_approach(simplex: Simplex, found: int, count: int) -> tuple[float, Vector]:
+    """Return distance and direction, first to second, of the closest points of two cores; zero where they cross."""
+    between = weighted(simplex.difference, simplex.weight, count) if found == CLOSE else (0.0, 0.0, 0.0)
+    distance = dot(between, between) ** 0.5
+    return distance, scaled(-1.0 / distance, between) if distance > 0.0 else between
+
+
 @large_kernel
 def list_bodies(
     pair: int, bodies: Bodies, cores: Cores, pairs: Pairs, simplex: Simplex, turned: TurnedFeatures, relative: Floats,
@@ -121,12 +129,9 @@ def list_bodies(
         return (1.0 - DEEP_TO) * reach
     write_relative(bodies.rotation, first, second, relative)
     there = transposed_times(bodies.rotation, first, apart)
-    between = weighted(simplex.difference, simplex.weight, count) if found == CLOSE else (0.0, 0.0, 0.0)
-    distance = dot(between, between) ** 0.5
-    direction = scaled(-1.0 / distance, between) if distance > 0.0 else between
-    band = band_along(
-        cores, relative, shapes, there, transposed_times(bodies.rotation, first, direction), reach + margin
-    )
+    distance, direction = closest_approach(simplex, found, count)
+    axis = transposed_times(bodies.rotation, first, direction)
+    band = band_along(cores, relative, shapes, there, axis, reach + margin)
     list_corners(pair, cores, pairs, relative, shapes, there, band)
     if not hulls:
         return margin

@@ -1,21 +1,25 @@
 """Contact forces of all pairs, and their sums on the bodies: by contact_law.py, at the points of contact_patch.py."""
 
+from typing import NamedTuple
+
 from lithobrake.compiled import kernel, large_kernel
 from lithobrake.dem.arrays import Bodies, Cores, Laws, Pairs, Partition, Planes, Reactions, Step
 from lithobrake.dem.contact_law import (
     DAMPING,
     FRICTION,
     ROLLING,
+    RelativeMotion,
     end_contact,
     friction_force,
     normal_force,
+    record_contact,
     relative_motion,
 )
 from lithobrake.dem.contact_patch import find_contact
 from lithobrake.dem.effective_mass import inverse_inertia_across, inverse_inertia_along
 from lithobrake.dem.patch_energy import spin_radii
 from lithobrake.dem.rolling_resistance import resist_rolling, resist_twisting
-from lithobrake.dem.scratch import Scratch
+from lithobrake.dem.scratch import Patch, Scratch
 from lithobrake.dem.stability import patch_tilt_stiffness
 from lithobrake.dem.vectors import Vector, add, cross, dot, minus, plus, put, row, scaled
 
@@ -48,6 +52,58 @@ def hand_over(
             add_wrench(bodies, second, 1.0, force, second_torque)
 
 
+class ContactSprings(NamedTuple):
+    """How the materials of a pair answer an overlap."""
+
+    secant: float  # N/m, elastic force over overlap
+    shear: float  # N/m
+    dashpot: float  # N s/m, along the normal
+    damping_ratio: float
+    radius: float  # m, R*
+
+
+@kernel
+def contact_springs(laws: Laws, here: int, there: int, overlap: float, motion: RelativeMotion) -> ContactSprings:
+    """Return the springs and the dashpot of two materials at an overlap."""
+    radius, damping_ratio = 1.0 / motion.curvature, laws.damping_ratio[here, there]
+    # The root is taken of the product: a length scaled by a power of two then scales every bit.
+    root = (overlap * radius) ** 0.5
+    secant = 4.0 / 3.0 * laws.young_modulus[here, there] * root
+    shear = 8.0 * laws.shear_modulus[here, there] * root
+    dashpot = 2.0 * damping_ratio * (1.25 * secant * (1.0 / motion.inverse_mass)) ** 0.5
+    return ContactSprings(secant, shear, dashpot, damping_ratio, radius)
+
+
+@kernel
+def resist_turning(
+    pair: int, bodies: Bodies, pairs: Pairs, laws: Laws, step: Step, patch: Patch, count: int, here: int, there: int,
+    point: Vector, normal: Vector, motion: RelativeMotion, springs: ContactSprings, repulsion: float, torque: Vector,
+) -> Vector:  # fmt: skip
+    """Return the torque on the second body with the couples against twisting, spinning and rolling. Writes to pairs."""
+    first, second = pairs.first[pair], pairs.second[pair]
+    lever = laws.spinning_friction[here, there] * springs.radius
+    square, mean = spin_radii(patch, count, point, normal)
+    square += lever * lever
+    if square > 0.0 or pairs.twist_stiffness[pair] > 0.0:
+        limit = laws.friction[here, there] * repulsion * mean + repulsion * lever
+        couple, slid, damped = resist_twisting(
+            pair, pairs, dot(motion.spin, normal), limit, springs.shear * square, springs.damping_ratio,
+            inverse_inertia_along(bodies, first, second, normal), step.time_step,
+        )  # fmt: skip
+        torque = plus(torque, scaled(couple, normal))
+        pairs.lost[pair, FRICTION] += slid
+        pairs.lost[pair, DAMPING] += damped
+    lever = laws.rolling_friction[here, there] * springs.radius
+    if lever > 0.0:
+        rolling, lost = resist_rolling(
+            pair, pairs, normal, motion.spin, motion.twist, lever, repulsion, springs.secant, springs.damping_ratio,
+            inverse_inertia_across(bodies, first, second, normal), step.time_step,
+        )  # fmt: skip
+        torque = plus(torque, rolling)
+        pairs.lost[pair, ROLLING] += lost
+    return torque
+
+
 @kernel
 def contact_force(
     pair: int, bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, laws: Laws, step: Step, scratch: Scratch,
@@ -58,8 +114,7 @@ def contact_force(
     Returns the square [1/s2] of the rate of its spring or dashpot, 0 where nothing touches.
     Writes to bodies, pairs, scratch and reactions.
     """
-    patch = scratch.patch
-    first, second = pairs.first[pair], pairs.second[pair]
+    patch, first, second = scratch.patch, pairs.first[pair], pairs.second[pair]
     if pairs.feature_count[pair] == 0:
         end_contact(pair, pairs)
         return 0.0
@@ -70,51 +125,24 @@ def contact_force(
     # A force through the centroid turns nothing: it meets the whole mass.
     motion = relative_motion(bodies, first, second, point, normal, through_centroids or step.paper_mass)
     here, there = bodies.material[first], bodies.material[second] if second >= 0 else planes.material[-1 - second]
-    damping_ratio = laws.damping_ratio[here, there]
-    radius = 1.0 / motion.curvature
-    # The root is taken of the product: a length scaled by a power of two then scales every bit.
-    root = (overlap * radius) ** 0.5
-    stiffness = 4.0 / 3.0 * laws.young_modulus[here, there] * root
-    shear_stiffness = 8.0 * laws.shear_modulus[here, there] * root
-    dashpot = 2.0 * damping_ratio * (1.25 * stiffness * (1.0 / motion.inverse_mass)) ** 0.5
-    elastic = stiffness * overlap
-    cohesion = laws.cohesion_force[here, there] + laws.cohesion_line[here, there] * radius
-    load = normal_force(bodies, patch, count, first, second, motion, normal, elastic, cohesion, dashpot, step.time_step)
+    springs = contact_springs(laws, here, there, overlap, motion)
+    elastic = springs.secant * overlap
+    cohesion = laws.cohesion_force[here, there] + laws.cohesion_line[here, there] * springs.radius
+    dashpot, time_step = springs.dashpot, step.time_step
+    load = normal_force(bodies, patch, count, first, second, motion, normal, elastic, cohesion, dashpot, time_step)
     pairs.lost[pair, DAMPING] += load.damped
-    shear_dashpot = dashpot * laws.shear_damping[here, there]
-    limit = laws.friction[here, there] * load.repulsion
-    tangential = friction_force(pair, pairs, normal, motion, limit, shear_stiffness, shear_dashpot, step.time_step)
+    limit, shear_dashpot = laws.friction[here, there] * load.repulsion, dashpot * laws.shear_damping[here, there]
+    tangential = friction_force(pair, pairs, normal, motion, limit, springs.shear, shear_dashpot, time_step)
     central = plus(scaled(load.left, normal), tangential)
-    force = plus(load.force, central)
     torque = plus(load.torque, cross(minus(point, row(bodies.position, first)), central))
-
-    lever = laws.spinning_friction[here, there] * radius
-    square, mean = spin_radii(patch, count, point, normal)
-    square += lever * lever
-    if square > 0.0 or pairs.twist_stiffness[pair] > 0.0:
-        couple, slid, damped = resist_twisting(
-            pair, pairs, dot(motion.spin, normal), limit * mean + load.repulsion * lever, shear_stiffness * square,
-            damping_ratio, inverse_inertia_along(bodies, first, second, normal), step.time_step,
-        )  # fmt: skip
-        torque = plus(torque, scaled(couple, normal))
-        pairs.lost[pair, FRICTION] += slid
-        pairs.lost[pair, DAMPING] += damped
-    pairs.tilt_stiffness[pair] = patch_tilt_stiffness(patch, count, point, normal, overlap, stiffness)
-    lever = laws.rolling_friction[here, there] * radius
-    if lever > 0.0:
-        rolling, lost = resist_rolling(
-            pair, pairs, normal, motion.spin, motion.twist, lever, load.repulsion, stiffness, damping_ratio,
-            inverse_inertia_across(bodies, first, second, normal), step.time_step,
-        )  # fmt: skip
-        torque = plus(torque, rolling)
-        pairs.lost[pair, ROLLING] += lost
-    hand_over(pair, bodies, pairs, reactions, force, torque, kept)
-    pairs.overlap[pair], pairs.normal_force[pair], pairs.elastic_force[pair] = overlap, load.total, elastic
-    pairs.cohesion[pair] = cohesion
-    put(pairs.normal, pair, normal)
-    put(pairs.point, pair, point)
-    put(pairs.tangential_force, pair, tangential)
-    return 1.5 * stiffness * motion.inverse_mass * max(1.0, 2.0 * damping_ratio) ** 2
+    torque = resist_turning(
+        pair, bodies, pairs, laws, step, patch, count, here, there, point, normal, motion, springs, load.repulsion,
+        torque,
+    )  # fmt: skip
+    hand_over(pair, bodies, pairs, reactions, plus(load.force, central), torque, kept)
+    pairs.tilt_stiffness[pair] = patch_tilt_stiffness(patch, count, point, normal, overlap, springs.secant)
+    record_contact(pair, pairs, overlap, point, normal, tangential, load.total, elastic, cohesion)
+    return 1.5 * springs.secant * motion.inverse_mass * max(1.0, 2.0 * springs.damping_ratio) ** 2
 
 
 @large_kernel

@@ -1,6 +1,6 @@
 """Distance of two convex cores, and the points where they come closest.
 
-Source: Gilbert, Johnson and Keerthi (1988). Positions are relative to the first body's centroid, so that precision does
+Source: [Gilbert-1988]. Positions are relative to the first body's centroid, so that precision does
 not depend on where in the world the pair stands. All tolerances are relative to the sizes met on the way.
 """
 

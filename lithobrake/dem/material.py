@@ -20,11 +20,11 @@ class Material:
     [kg/m3] > 0. A rigid body is any large finite Young's modulus.
 
     rolling_friction, spinning_friction [-] >= 0: a contact resists rolling, and spinning about its normal, up to this
-    times contact radius R* times normal force. Source: Ai, Chen, Rotter and Ooi (2011), model C.
+    times contact radius R* times normal force. Source: [Ai-2011], model C.
 
     cohesion_force [N] >= 0 and surface_energy [J/m2] >= 0: contacts pull with cohesion_force + 4 pi surface_energy R*
-    while they last, not beyond. Source: Derjaguin, Muller and Toporov (1975). Perko, Nelson and Sadeh (2001) give lunar
-    soil a pull of 0.036 S^2 R* newtons, S the cleanliness from 0 to 1: a surface energy of 0.0029 S^2 J/m2.
+    while they last, not beyond. Source: [Derjaguin-1975]. Lunar soil has, by [Perko-2001], a pull
+    of 0.036 S^2 R* newtons, S the cleanliness from 0 to 1: a surface energy of 0.0029 S^2 J/m2.
 
     Raises ValueError outside these ranges.
     """
@@ -84,7 +84,7 @@ def restitution_of(damping_ratio: float) -> float:
 
     With w = sqrt(4 K / 5 m) overlap^(5/4) the damped Hertz collision is the linear oscillator w' = v,
     v' = -w - 2 zeta v, in its own time; contact ends where the total force w + 2 zeta v turns negative.
-    Source: substitution of Schwager and Poeschel (1998), with the no-tension end of Schwager and Poeschel (2008).
+    Source: substitution of [Schwager-1998], with the no-tension end of [Schwager-2008].
     """
     zeta = damping_ratio
     if zeta == 0.0:
@@ -123,8 +123,8 @@ def pair_value(a: float, b: float, rule: str) -> float:
 def pair_law(a: Material, b: Material, shear_modulus_rule: str = "mindlin", pair_rule: str = "smaller") -> PairLaw:
     """Return the effective moduli, damping ratio, frictions and cohesion of two materials.
 
-    The "paper" rule takes the shear modulus as printed there, 1.1 to 1.6 times too stiff.
-    Source: Hertz (1882); Mindlin (1949), 1/G* = sum 2 (2 - nu)(1 + nu)/E; the paper, Eqs (7) and (8).
+    The "paper" rule takes the shear modulus as [Landings-PCE] prints it, 1.1 to 1.6 times too stiff.
+    Source: [Hertz-1882]; [Mindlin-1949], 1/G* = sum 2 (2 - nu)(1 + nu)/E; [Landings-PCE], Eqs 7 and 8.
     """
     young = 1.0 / sum((1.0 - m.poisson_ratio**2) / m.young_modulus for m in (a, b))
     if shear_modulus_rule == "mindlin":

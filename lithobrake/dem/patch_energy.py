@@ -5,6 +5,8 @@ point carries the derivative of that energy by its own overlap. So the forces co
 pose, move smoothly from corner to corner, and hold a face by all of its corners.
 """
 
+from typing import NamedTuple
+
 from lithobrake.compiled import kernel
 from lithobrake.dem.scratch import Patch
 from lithobrake.dem.vectors import Vector, dot, minus, plus, put, row, scaled
@@ -72,26 +74,22 @@ def power_above_tangent(ratio: float, start: float) -> tuple[float, float]:
     return power * grown, seventh * derivative
 
 
-@kernel
-def combine_overlaps(
-    patch: Patch, count: int, deep: float, derivative: float, reach: float
-) -> tuple[float, Vector, Vector]:
-    """Combine the overlaps of a patch into one, and write the weight of each point in the force.
+class PatchSums(NamedTuple):
+    """Sums over the points of a patch: eighth powers of the overlap over the deepest, by family, and weighted ones."""
 
-    D^8 = sum of d^8 over the corners + 1/4 (1 - deep) sum of d^8 over edges apart + 1/4 deep sum of d^8 over deep
-    edges + d^8 of the penetration less its tangent at d = reach, where the cores begin to cross, with `deep` a function
-    of the deepest overlap, `derivative` [1/m] its derivative, and `reach` [m] both roundings. One corner is Hertz
-    exactly until cores cross, four or eight equal ones are 1.5 or 1.9 times as stiff. Returns D [m], the centre of
-    pressure, and the unit normal of the whole force. Writes to patch.
-    """
-    if count == 1 and (patch.family[0] == CORNER or (patch.family[0] == EDGES_APART and deep == 0.0)):
-        weight = 1.0 if patch.family[0] == CORNER else EDGE_ALONE
-        patch.weight[0] = weight
-        return weight * patch.depth[0], row(patch.point, 0), row(patch.normal, 0)
-    deepest, corners, apart, below = 0.0, 0.0, 0.0, 0.0
+    corners: float  # with the penetration
+    apart: float  # edges apart
+    below: float  # deep edges
+    weight: float
+    centre: Vector  # m, of the points
+    force: Vector  # of their normals
+
+
+@kernel
+def weigh_points(patch: Patch, count: int, deepest: float, deep: float, reach: float) -> PatchSums:
+    """Sum up the points of a patch, each by its family, and write their weights in that sum. Writes to patch."""
+    corners, apart, below = 0.0, 0.0, 0.0
     centre, force, weight_sum = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), 0.0
-    for k in range(count):
-        deepest = max(deepest, patch.depth[k])
     for k in range(count):
         ratio, family = patch.depth[k] / deepest, patch.family[k]
         eighth, seventh = power_eight(ratio)
@@ -113,19 +111,42 @@ def combine_overlaps(
         centre = plus(centre, scaled(weight, row(patch.point, k)))
         force = plus(force, scaled(weight, row(patch.normal, k)))
         weight_sum += weight
-    total = corners + (1.0 - deep) * apart + deep * below
+    return PatchSums(corners, apart, below, weight_sum, centre, force)
+
+
+@kernel
+def combine_overlaps(
+    patch: Patch, count: int, deep: float, derivative: float, reach: float
+) -> tuple[float, Vector, Vector]:
+    """Combine the overlaps of a patch into one, and write the weight of each point in the force.
+
+    D^8 = sum of d^8 over the corners + 1/4 (1 - deep) sum of d^8 over edges apart + 1/4 deep sum of d^8 over deep
+    edges + d^8 of the penetration less its tangent at d = reach, where the cores begin to cross, with `deep` a function
+    of the deepest overlap, `derivative` [1/m] its derivative, and `reach` [m] both roundings. One corner is Hertz
+    exactly until cores cross, four or eight equal ones are 1.5 or 1.9 times as stiff. Returns D [m], the centre of
+    pressure, and the unit normal of the whole force. Writes to patch.
+    """
+    if count == 1 and (patch.family[0] == CORNER or (patch.family[0] == EDGES_APART and deep == 0.0)):
+        weight = 1.0 if patch.family[0] == CORNER else EDGE_ALONE
+        patch.weight[0] = weight
+        return weight * patch.depth[0], row(patch.point, 0), row(patch.normal, 0)
+    deepest = 0.0
+    for k in range(count):
+        deepest = max(deepest, patch.depth[k])
+    sums = weigh_points(patch, count, deepest, deep, reach)
+    total = sums.corners + (1.0 - deep) * sums.apart + deep * sums.below
     root = ((total**0.5) ** 0.5) ** 0.5
     for k in range(count):
         patch.weight[k] *= root / total
     if derivative > 0.0:
         # As the patch deepens, edges apart pass into deep ones: that too changes the energy.
         patch.weight[deepest_shallow_point(patch, count)] += (
-            0.125 * (below - apart) * derivative * deepest * root / total
+            0.125 * (sums.below - sums.apart) * derivative * deepest * root / total
         )
-    size = dot(force, force) ** 0.5
+    size = dot(sums.force, sums.force) ** 0.5
     # Forces of all directions that cancel: every normal is as good as another.
-    normal = scaled(1.0 / size, force) if size > 0.0 else (0.0, 0.0, 1.0)
-    return deepest * root, scaled(1.0 / weight_sum, centre), normal
+    normal = scaled(1.0 / size, sums.force) if size > 0.0 else (0.0, 0.0, 1.0)
+    return deepest * root, scaled(1.0 / sums.weight, sums.centre), normal
 
 
 @kernel

@@ -120,7 +120,7 @@ class MassProperties:
 def mass_properties(vertices: NDArray[np.float64], triangles: NDArray[np.int64]) -> MassProperties:
     """Integrate 1, x and x x^T over a closed, outward oriented triangle mesh (exact up to round-off).
 
-    Source: signed tetrahedra, e.g. Blow and Binstock (2004).
+    Source: [Blow-2004] (signed tetrahedra).
     """
     middle = vertices.mean(axis=0)
     corners = (vertices - middle)[triangles]

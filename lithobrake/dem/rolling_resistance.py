@@ -2,7 +2,7 @@
 
 from lithobrake.compiled import kernel
 from lithobrake.dem.arrays import Pairs
-from lithobrake.dem.spring import spring_force, stored, tangential_part, turned_spring, unloaded
+from lithobrake.dem.tangential_spring import spring_force, stored, tangential_part, turned_spring, unloaded
 from lithobrake.dem.vectors import Vector, dot, put, row, scaled
 
 # Stiffness of rolling over that of the normal contact times the lever squared.
@@ -39,7 +39,7 @@ def resist_rolling(
 
     A spring of 2.25 times the normal stiffness times the lever squared, the lever being rolling friction times contact
     radius, up to lever times normal force, with a dashpot of the contact's damping ratio.
-    Source: Ai, Chen, Rotter and Ooi (2011), Powder Technology 206, 269-282, model C. Writes to pairs.
+    Source: [Ai-2011], model C. Writes to pairs.
     """
     before = turned_spring(row(pairs.roll, pair), row(pairs.normal, pair), normal, twist * time_step)
     rolling = ROLLING_STIFFNESS * stiffness * lever * lever

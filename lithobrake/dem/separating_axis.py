@@ -1,7 +1,7 @@
 """Signed distance of two cores that cross: the shortest way out, over all faces and edge pairs.
 
 The way out of a convex difference set leads through one of its faces, and these are the faces of either core and the
-edge pairs whose arcs on the sphere of normals intersect. Source: Gregorius, "The separating axis test" (2013).
+edge pairs whose arcs on the sphere of normals intersect. Source: [Gregorius-2013].
 """
 
 import math

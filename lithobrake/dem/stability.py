@@ -5,7 +5,7 @@ c dt + (w dt)^2 / 4 <= 1: there the root of its recurrence, 2 z (z - 1)^2 + 2 (w
 + c dt (z - 1)^2 = 0, leaves the unit circle at z = -1. No mode of bodies joined by contacts is faster than what the
 contacts of two that touch add up to.
 
-Source: Anderson and Morley (1985), Linear and Multilinear Algebra 18, 141-145, for the bound by two neighbours.
+Source: [Anderson-1985], for the bound by two neighbours.
 """
 
 import math
@@ -15,7 +15,7 @@ from lithobrake.compiled import kernel, large_kernel
 from lithobrake.dem.arrays import Bodies, Floats, Laws, Pairs, Planes, Step
 from lithobrake.dem.effective_mass import inverse_inertia_across, inverse_mass_at
 from lithobrake.dem.scratch import Patch
-from lithobrake.dem.spring import tangential_part
+from lithobrake.dem.tangential_spring import tangential_part
 from lithobrake.dem.vectors import Vector, dot, minus, row, times
 
 # Largest c dt + (w dt)^2 / 4 that is allowed; 1 is the limit of stability.

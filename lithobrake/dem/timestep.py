@@ -13,17 +13,10 @@ from lithobrake.dem.shape import ConvexHull, Shape, equivalent_radius
 STEPS_PER_CONTACT = 50.0
 
 
-def checked_step(time_step: float, allowed: str = "a finite value above 0") -> float:
-    """Return a time step [s]. Raises ValueError for one that is not finite and positive; `allowed` says what is."""
-    if not 0.0 < time_step < math.inf:
-        raise ValueError(f"World time_step is {time_step!r} s; allowed is {allowed}: change it")
-    return float(time_step)
-
-
 def contact_duration(mass: float, radius: float, young_modulus: float, speed: float) -> float:
     """Return the duration [s] of an elastic Hertz collision from effective mass, radius and modulus (SI).
 
-    Source: Hertz (1882); Johnson, Contact Mechanics (1985), Eq. (11.24), for F = 4/3 E* sqrt(R*) overlap^(3/2).
+    Source: [Hertz-1882]; [Johnson-1985], Eq 11.24, for F = 4/3 E* sqrt(R*) overlap^(3/2).
     """
     return 2.868 * (mass * mass / (radius * young_modulus**2 * speed)) ** 0.2
 

@@ -3,8 +3,7 @@
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from lithobrake import __version__
-from lithobrake.hashing import content_hash, json_hash
+from lithobrake.hashing import content_hash, hashed_seed
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.kernels import compile_kernels
 from lithobrake.pipeline.solver import solver_reads
@@ -20,6 +19,7 @@ from lithobrake.touchdown_model import (
     landing,
     medians,
     stored_bed,
+    touchdown_version,
 )
 
 if TYPE_CHECKING:
@@ -82,7 +82,7 @@ def bed_recipe(study: Study, index: int) -> "BedRecipe":
         material=grain(values),
         gravity=acceleration(values, study.bed.settle_gravity or values["surface.gravity"]),
         pour_gravity=study.bed.pour_gravity,
-        seed=int(json_hash([study.seed, "bed", index])[:12], 16),
+        seed=hashed_seed(study.seed, "bed", index),
         contact=contact(study),
     )
 
@@ -101,7 +101,7 @@ def touchdown_reads(study: Study) -> dict[str, Any]:
         "lander": study.lander.model_dump(include={"shape", "edges", "inertia", "unit"}),
         "mesh": None if study.lander.file is None else content_hash(Path(study.lander.file)),
         "time_limit": study.landing.time_limit,
-        "version": f"{__version__}+{engine_hash()}",
+        "version": touchdown_version(),
     }
 
 
@@ -119,5 +119,5 @@ def land_once(job: Job) -> None:
     bed = stored_bed(job.folder / bed_files(job.study)[round(values["bed"])])
     with in_words_of_the_study():
         body, arrival = lander(job.study, values), landing(job.study, values)
-        outcome = land(bed, body, arrival, SNAPSHOT_FRAMES, lambda share, what: job.progress(share, 1.0, what))
+        outcome = land(bed, body, arrival, SNAPSHOT_FRAMES, lambda fraction, what: job.progress(fraction, 1.0, what))
     outcome.save_frames(job.folder / "landing.h5", bed, body, arrival)

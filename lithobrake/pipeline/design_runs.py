@@ -12,10 +12,11 @@ import numpy as np
 
 from lithobrake.atomic import atomic_path
 from lithobrake.campaign import Runs
+from lithobrake.outcomes import TouchdownOutcome
 from lithobrake.outputs import OUTPUTS
 from lithobrake.pipeline.folder import AGAIN, StudyFolder
 from lithobrake.reading import read_rows
-from lithobrake.study.units import OUTPUT_UNITS, input_units
+from lithobrake.study.units import run_units
 
 # What is known of every run, whatever its inputs and outputs; times stand in the ledger alone: they never repeat.
 PLAIN_COLUMNS = ("key", "outcome", "reason")
@@ -80,7 +81,7 @@ class DesignRuns:
     def y(self) -> np.ndarray:
         """Fitted outputs, shape [run_count, output_count]; a row of NaN where the lander did not leave."""
         y = np.column_stack([self.output(name) for name in OUTPUTS])
-        clear = np.array(self.outcomes) == "clear"
+        clear = np.array(self.outcomes) == TouchdownOutcome.CLEAR
         return np.where((clear & ~np.isnan(y).any(axis=1))[:, None], y, np.nan)
 
     @property
@@ -102,7 +103,7 @@ class DesignRuns:
 
     def save(self, folder: StudyFolder, design: str) -> None:
         """Write designs/NAME.csv, one row a run, units in the header."""
-        units = input_units() | OUTPUT_UNITS
+        units = run_units()
         head = [f"input:{name}" + _unit(name, units) for name in self.inputs]
         head += [f"output:{name}" + _unit(name, units) for name in self.outputs]
         columns = [*self.inputs.values(), *self.outputs.values()]

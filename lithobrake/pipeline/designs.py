@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from lithobrake.hashing import json_hash
+from lithobrake.hashing import hashed_seed
 from lithobrake.pipeline.beds import touchdown_reads
 from lithobrake.pipeline.touchdown_runs import drawn_reads
 from lithobrake.study import Study
@@ -51,7 +51,7 @@ def points(study: Study, design: str, kept: Sequence[str]) -> np.ndarray:
 
     inputs = design_inputs(study)
     varied = inputs if design in ("screening", "test_all") else {name: inputs[name] for name in kept}
-    seed = int(json_hash([study.seed, design])[:12], 16)
+    seed = hashed_seed(study.seed, design)
     if design.startswith("test"):
         x = sample_inputs(varied, study.design.test_count, seed=seed)
     else:

@@ -10,6 +10,8 @@ import numpy as np
 
 from lithobrake.atomic import atomic_path
 from lithobrake.hashing import content_hash
+from lithobrake.outcomes import FlightStatus
+from lithobrake.outputs import FLIGHT, quantity
 from lithobrake.pipeline.folder import AGAIN, StudyFolder
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.samples import Samples, sampling_seed
@@ -17,6 +19,7 @@ from lithobrake.pipeline.site import SITE_KEYS, frames, site_body, site_medians,
 from lithobrake.reading import read_rows
 from lithobrake.study import BUILT_IN_BODIES, Study
 from lithobrake.study.quantity import uncertain
+from lithobrake.study.units import input_units
 
 if TYPE_CHECKING:
     from lithobrake.smallbody import Body, Flights
@@ -30,12 +33,6 @@ COLUMNS = (
     *(f"site_{key}" for key in SITE_KEYS),
     "status", "time_s", "latitude_deg", "longitude_deg", "facet", "impact_speed", "impact_incidence_deg",
 )  # fmt: skip
-# Of the columns here and in rest.csv whose names do not say it; readers drop it from the headers.
-UNITS = {
-    **dict.fromkeys(("start_speed", "velocity_x", "velocity_y", "velocity_z", "impact_speed"), "m/s"),
-    **dict.fromkeys(("site_north_error", "site_east_error", "path_length"), "m"),
-    "site_mass": "kg", "site_spin_period": "s",
-}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -111,9 +108,14 @@ def fly_samples(job: Job) -> None:
 
 def write_table(folder: StudyFolder, name: str, columns: Sequence[str], rows: Iterable[list[Any]]) -> None:
     """Write a CSV file of the folder, with the unit behind each name that does not hold it."""
+    study_units = input_units()
+    units = {column: quantity(column, FLIGHT, study_units).units for column in columns}
+    titles = [
+        column if not unit or column.endswith(f"_{unit}") else f"{column} [{unit}]" for column, unit in units.items()
+    ]
     with atomic_path(folder / name) as draft, draft.open("w", newline="", encoding="utf-8") as file:
         table = csv.writer(file)
-        table.writerow(f"{column} [{UNITS[column]}]" if column in UNITS else column for column in columns)
+        table.writerow(titles)
         table.writerows(rows)
 
 
@@ -133,7 +135,7 @@ def fly_starts(body: "Body", start: Starts, study: Study, job: Job, what: str) -
         mass=start.site["mass"],
         spin_period=start.site["spin_period"],
         threads=getattr(job.executor, "worker_count", None),
-        progress=lambda share: job.progress(round(share * count), count, what),
+        progress=lambda fraction: job.progress(round(fraction * count), count, what),
     )
 
 
@@ -181,14 +183,14 @@ def _rows(start: Starts, flown: "Flights") -> Iterator[list[Any]]:
     for row, sample in enumerate(start.sample.tolist()):
         latitude, longitude, speed_there, incidence = after[row] if down[row] else [""] * 4
         # The partner's facets are not those of body.obj.
-        facet = int(flown.facet[row]) if flown.status[row] == "impact" else ""
+        facet = int(flown.facet[row]) if flown.status[row] == FlightStatus.IMPACT else ""
         end = [str(flown.status[row]), float(flown.time[row]), latitude, longitude, facet, speed_there, incidence]
         yield [sample, *before[row], *end]
 
 
 def flight_numbers(flights: Sequence[dict[str, str]]) -> dict[str, Any]:
     """Median and the middle nine tenths of time of flight, speed and incidence of the impacts on the body."""
-    down = [row for row in flights if row["status"] == "impact"]
+    down = [row for row in flights if row["status"] == FlightStatus.IMPACT]
     table: dict[str, Any] = {}
     for name in ("time_s", "impact_speed", "impact_incidence_deg") if down else ():
         values = np.array([float(row[name]) for row in down])

@@ -96,7 +96,7 @@ class StudyFolder:
             draft.write_bytes(content)
 
     def is_current(self, files: Iterable[str], key: str) -> bool:
-        """Tell whether all these files stand, are whole, and were made from what the key names."""
+        """Whether all these files exist, are whole, and were made from what the key names."""
         notes = Notes.read(self.path)
         return all(file_state(self.path, notes, name, key) is FileState.CURRENT for name in files)
 

@@ -2,6 +2,8 @@
 
 from typing import Any
 
+from lithobrake.outcomes import FlightStatus, SampleOutcome, TouchdownOutcome
+from lithobrake.pipeline.samples import MISSING
 from lithobrake.pipeline.scope import scope
 from lithobrake.study import Study
 
@@ -13,21 +15,24 @@ def answer(study: Study, results: dict[str, Any]) -> list[str]:
     shares, site, hours = results["shares"], results["site"], f"{study.flight.duration / 3600:.3g} h"
     holds = site["effective_acceleration_outward"] < 0.0
     down = f"are captured or come down again within {hours}" if holds else f"come down again within {hours}"
-    share = {name: _percent(shares[name]["share"]) for name in ("remains", "escaped", "flying", "partner", "captured")}
-    beside = [f"{share['escaped']} escape", f"{share['flying']} are still flying"]
-    beside += [f"{share['partner']} come down on the partner"] if shares["partner"]["count"] else []
-    beside += [] if holds or not shares["captured"]["count"] else [f"{share['captured']} are captured and lifted again"]
+    remains = _percent(shares["remains"]["share"])
+    ways = {FlightStatus.ESCAPED: "escape", FlightStatus.FLYING: "are still flying"}
+    if shares[FlightStatus.PARTNER]["count"]:
+        ways[FlightStatus.PARTNER] = "come down on the partner"
+    beside = [f"{_percent(shares[status]['share'])} {words}" for status, words in ways.items()]
+    captured = shares[SampleOutcome.CAPTURED]
+    if captured["count"] and not holds:
+        beside.append(f"{_percent(captured['share'])} are captured and lifted again")
     sentences = [
-        f"{scope(study).where}: {share['remains']} of the landers {down}; {', '.join(beside)}.",
+        f"{scope(study).where}: {remains} of the landers {down}; {', '.join(beside)}.",
         scope(study).why,
     ]
     if shares["missing"]["count"]:
+        lost = [f"{_percent(shares[outcome]['share'])} {outcome.label}" for outcome in MISSING]
         low, high = (_percent(bound) for bound in results["stays"]["if_missing"])
         sentences.append(
             f"Of {_percent(shares['missing']['share'])} of the samples nobody knows where they went ("
-            f"{_percent(shares['left_sideways']['share'])} left over the rim of the bed, "
-            f"{_percent(shares['time_limit']['share'])} were in contact at the time limit, "
-            f"{_percent(shares['outside']['share'])} were drawn with an elevation outside 0 to 90 deg): "
+            f"{', '.join(lost)}): "
             f"{low} if none, {high} if all of them came down again."
         )
     return [*sentences, *([site["warning"]] if site["warning"] else [])]
@@ -51,14 +56,10 @@ def _touchdowns(designs: Any) -> str:
         for outcome, count in design["outcomes"].items():
             counts[outcome] = counts.get(outcome, 0) + count
     failed = counts.pop("failed", 0)
-    words = {
-        "captured": "were captured",
-        "left_sideways": "left over the rim of the bed",
-        "time_limit": "were in contact at the time limit",
-    }
-    others = [f"{counts[name]} {text}" for name, text in words.items() if counts.get(name)]
+    left, *unclear = TouchdownOutcome
+    others = [f"{counts[one]} {one.label}" for one in unclear if counts.get(one)]
     others += [f"{failed} more failed"] if failed else []
-    return "; ".join([f"{counts.get('clear', 0)} of {sum(counts.values())} touchdowns left the surface", *others]) + "."
+    return "; ".join([f"{counts.get(left, 0)} of {sum(counts.values())} touchdowns {left.label}", *others]) + "."
 
 
 def _speed(study: Study, speed: dict[str, float] | None) -> list[str]:

@@ -5,10 +5,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from lithobrake.outcomes import JourneyStatus
 from lithobrake.pipeline.flights import partner_time, sample_sites, write_table
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.outgoing import VELOCITY
-from lithobrake.pipeline.samples import SAMPLE_OUTCOMES, Samples, sampling_seed, touchdown_values
+from lithobrake.pipeline.samples import CAPTURED, Samples, sampling_seed, touchdown_values
 from lithobrake.pipeline.site import frames, site_body
 from lithobrake.pipeline.surrogate_bounce import rolling_spin, soil_bounce, trained_ranges, why_no_soil
 from lithobrake.study import Study
@@ -22,7 +23,10 @@ COLUMNS = (
     "impact_speed", "impact_incidence_deg",
 )  # fmt: skip
 # Statuses of landers that lie on, or have just touched, the ground of the body.
-DOWN = ("settled", "lofted", "outside", "sliding", "bouncing")
+DOWN = (
+    *(JourneyStatus.SETTLED, JourneyStatus.LOFTED, JourneyStatus.OUTSIDE, JourneyStatus.SLIDING),
+    JourneyStatus.BOUNCING,
+)
 
 
 def rest_reads(study: Study) -> dict[str, Any]:
@@ -59,7 +63,7 @@ def _on_soil(job: Job, samples: Samples) -> tuple["Rebounds", "Bounce"]:
 
     velocity = np.column_stack([samples.output(name) for name in VELOCITY])
     spin = rolling_spin(velocity, np.maximum(samples.output("spin_out"), 0.0))
-    captured = samples.outcome == SAMPLE_OUTCOMES.index("captured")
+    captured = samples.outcome == CAPTURED
     inputs = {name: samples.inputs[samples.leaves, index] for index, name in enumerate(samples.input_names)}
     return Rebounds(velocity, spin, captured, ~captured & ~samples.leaves), soil_bounce(job, inputs)
 
@@ -74,7 +78,7 @@ def _on_hard_ground(study: Study, sites: "Sites") -> tuple["Rebounds", "Bounce"]
         for name in ("speed", "incidence_deg", "spin_x", "spin_y", "spin_z")
     )
     lander = np.arange(len(samples.outcome))
-    first = Impacts(speed, np.radians(incidence_deg), np.column_stack(spin), sites.push, lander)
+    first = Impacts(speed, np.radians(incidence_deg), np.column_stack(spin), sites.effective_acceleration, lander)
     # Hard ground has no scatter, so no random number is drawn.
     return bounce(first, np.random.default_rng(0)), bounce
 
@@ -83,7 +87,7 @@ def _on_hard_ground(study: Study, sites: "Sites") -> tuple["Rebounds", "Bounce"]
 class Sites:
     """Where each of the first samples touches down, all arrays [sample_count, ...].
 
-    origin [m] and axes, in rows, of the local frames, body-fixed; push: gravity and rotation together along the outward
+    origin [m] and axes, in rows, of the local frames, body-fixed; effective_acceleration: along the outward
     normal [m/s2]; site: the numbers of SITE_KEYS.
     """
 
@@ -92,7 +96,7 @@ class Sites:
     site: dict[str, np.ndarray]
     origin: np.ndarray
     axes: np.ndarray
-    push: np.ndarray
+    effective_acceleration: np.ndarray
 
     @classmethod
     def of(cls, job: Job) -> "Sites":
@@ -100,8 +104,8 @@ class Sites:
         body, samples = site_body(job.study), Samples.load(job.folder).first(job.study.rest.count)
         site = sample_sites(job.study, len(samples.outcome))
         origin, axes = frames(body, site)
-        push = body.effective_acceleration(origin, mass=site["mass"], spin_period=site["spin_period"])
-        return cls(body, samples, site, origin, axes, np.einsum("ni,ni->n", push, axes[:, 2]))
+        felt = body.effective_acceleration(origin, mass=site["mass"], spin_period=site["spin_period"])
+        return cls(body, samples, site, origin, axes, np.einsum("ni,ni->n", felt, axes[:, 2]))
 
     def follow(self, job: Job, ground: str, first: "Rebounds", bounce: "Bounce") -> list[list[Any]]:
         """A row of rest.csv for each sample, in their order: from how it leaves the first impact to where it ends."""
@@ -117,11 +121,11 @@ class Sites:
             gravity=job.study.flight.gravity,
             seed=sampling_seed(job.study, f"rest on {ground} ground"),
             threads=getattr(job.executor, "worker_count", None),
-            progress=lambda share: job.progress(round(share * len(going)), len(going), f"bounces, {ground} ground"),
+            progress=lambda done: job.progress(round(done * len(going)), len(going), f"bounces, {ground} ground"),
         )
         latitude, longitude = self.body.shape.latitude_longitude(self.origin)
-        held = np.where(self.push < 0.0, "settled", "lofted")
-        status = np.where(first.outside, "outside", held).tolist()
+        held = np.where(self.effective_acceleration < 0.0, JourneyStatus.SETTLED, JourneyStatus.LOFTED)
+        status = np.where(first.outside, JourneyStatus.OUTSIDE, held).tolist()
         rows = [
             [ground, sample, end, 0.0, *place, 0, 0.0, "", ""]
             for sample, (end, *place) in enumerate(zip(status, latitude.tolist(), longitude.tolist(), strict=True))

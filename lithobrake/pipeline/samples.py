@@ -7,29 +7,30 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lithobrake.atomic import atomic_path
-from lithobrake.hashing import json_hash
-from lithobrake.outputs import DESIGNS
+from lithobrake.hashing import hashed_seed
+from lithobrake.outcomes import SampleOutcome, TouchdownOutcome
+from lithobrake.outputs import DESIGNS, RUN, TOUCHDOWN, quantity
 from lithobrake.pipeline.design_runs import DesignRuns
 from lithobrake.pipeline.designs import design_inputs
 from lithobrake.pipeline.folder import AGAIN, StudyFolder
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.outgoing import outgoing
 from lithobrake.pipeline.run_noise import Scatter
-from lithobrake.pipeline.solver import OUTCOMES
 from lithobrake.reading import reading
 from lithobrake.study import Study
 from lithobrake.study.quantity import median
+from lithobrake.study.units import input_units
 
 if TYPE_CHECKING:
     from lithobrake.analysis import OutcomeModel
     from lithobrake.chaos import Surrogate
 
 FORMAT_VERSION = 2
-# What may become of a sample at the touchdown: as of a run, or the expansion gave a way to leave that there is not.
-SAMPLE_OUTCOMES = (*OUTCOMES, "outside")
-CLEAR, OUTSIDE = SAMPLE_OUTCOMES.index("clear"), SAMPLE_OUTCOMES.index("outside")
+SAMPLE_OUTCOMES = tuple(SampleOutcome)
+CLEAR, CAPTURED = SAMPLE_OUTCOMES.index(SampleOutcome.CLEAR), SAMPLE_OUTCOMES.index(SampleOutcome.CAPTURED)
+OUTSIDE = SAMPLE_OUTCOMES.index(SampleOutcome.OUTSIDE)
 # Those after which nobody knows where the lander is.
-MISSING = ("left_sideways", "time_limit", "outside")
+MISSING = (SampleOutcome.LEFT_SIDEWAYS, SampleOutcome.TIME_LIMIT, SampleOutcome.OUTSIDE)
 # Points at which the expansion is evaluated at once; between two blocks progress is shown.
 _BLOCK = 1 << 20
 
@@ -90,17 +91,25 @@ class Samples:
         return replace(self, without_scatter=None, **part)
 
     def save(self, folder: StudyFolder) -> None:
-        """Write samples.h5."""
+        """Write samples.h5; each data set says of its columns what they are."""
         import h5py
 
+        study_units = input_units()
         with atomic_path(folder / "samples.h5") as draft, h5py.File(draft, "w") as file:
             for name in ("inputs", "outputs", "outcome"):
                 file.create_dataset(name, data=getattr(self, name))
             if self.without_scatter is not None:
                 file.create_dataset("without_scatter", data=self.without_scatter)
+            file["outcome"].attrs.update(RUN["outcome"].attributes)
+            for name in (name for name in file if name != "outcome"):
+                names = self.input_names if name == "inputs" else self.output_names
+                columns = [quantity(column, TOUCHDOWN, study_units) for column in names]
+                # One word for each column.
+                for attribute in ("units", "long_name", "frame"):
+                    file[name].attrs[attribute] = [getattr(column, attribute) for column in columns]
             file.attrs["format_version"] = FORMAT_VERSION
             file.attrs["input_names"], file.attrs["output_names"] = self.input_names, self.output_names
-            file.attrs["outcomes"] = list(SAMPLE_OUTCOMES)
+            file.attrs["outcomes"] = [outcome.value for outcome in SAMPLE_OUTCOMES]
 
     @classmethod
     def load(cls, folder: StudyFolder) -> "Samples":
@@ -114,7 +123,7 @@ class Samples:
 
 def sampling_seed(study: Study, purpose: str) -> int:
     """Seed of the random numbers of one purpose."""
-    return int(json_hash([study.seed, purpose])[:12], 16)
+    return hashed_seed(study.seed, purpose)
 
 
 def draw_samples(job: Job) -> None:
@@ -160,10 +169,11 @@ def outcome_model(job: Job) -> "OutcomeModel":
     runs = [DesignRuns.load(job.folder, design) for design in DESIGNS]
     x = np.concatenate([one.columns(list(inputs)) for one in runs])
     outcomes = [outcome for one in runs for outcome in one.outcomes]
-    ended = np.isin(outcomes, OUTCOMES)
+    names = tuple(TouchdownOutcome)
+    ended = np.isin(outcomes, names)
     if not ended.any():
         raise ValueError("every run has failed (runs.sqlite has the reasons); mend what they name")
-    return OutcomeModel(inputs, x[ended], [outcome for outcome in outcomes if outcome in OUTCOMES], OUTCOMES)
+    return OutcomeModel(inputs, x[ended], [outcome for outcome in outcomes if outcome in names], names)
 
 
 def _evaluate(surrogate: "Surrogate", x: np.ndarray, job: Job) -> np.ndarray:

@@ -50,7 +50,7 @@ def has_heading(study: Study) -> bool:
     """Whether the heading has a median: one that is uncertain over the circle has none.
 
     It has none where a draw points hardly anywhere in the mean (resultant length below a tenth; an even spread over
-    325 degrees has that). Source: Mardia and Jupp (2000), Directional Statistics, section 2.3.
+    325 degrees has that). Source: [Mardia-2000], section 2.3.
     """
     heading = site_values(study)["heading_deg"]
     if not isinstance(heading, Uncertain):
@@ -127,19 +127,19 @@ def _delivered(
     return there
 
 
-def push_at_site(study: Study) -> np.ndarray:
+def effective_acceleration_at_site(study: Study) -> np.ndarray:
     """Acceleration [m/s2] of a point at rest on the ground at the site, at medians: along heading, left of it, out."""
     body, values = site_body(study), site_medians(study)
     origin, axes = frames(body, {key: np.array([value]) for key, value in values.items()})
-    push: np.ndarray = axes[0] @ body.effective_acceleration(origin[0])
-    return push
+    felt: np.ndarray = axes[0] @ body.effective_acceleration(origin[0])
+    return felt
 
 
 def site_warning(study: Study) -> str | None:
     """What it means that the ground at the site does not hold what lies on it, or hardly; None where it does."""
     body, values = site_body(study), site_medians(study)
     origin, _ = frames(body, {key: np.array([value]) for key, value in values.items()})
-    outward, pull = float(push_at_site(study)[2]), float(np.linalg.norm(body.acceleration(origin[0])))
+    outward, pull = float(effective_acceleration_at_site(study)[2]), float(np.linalg.norm(body.acceleration(origin[0])))
     if outward < -NEARLY_NONE * pull:
         return None
     where = f"At the site gravity ({pull:.2g} m/s2) and rotation together"
@@ -157,7 +157,7 @@ def site_warning(study: Study) -> str | None:
 
 def gravity_warning(study: Study) -> str | None:
     """What it means that touchdowns and flights feel another acceleration; None where the two are alike."""
-    at_site = -float(push_at_site(study)[2])
+    at_site = -float(effective_acceleration_at_site(study)[2])
     given = study.surface.gravity
     lower, upper = (at_site, at_site) if isinstance(given, str) else usual_reach(given)
     # That end of surface.gravity which is nearest to the acceleration at the site.
@@ -188,7 +188,7 @@ def with_site_gravity(study: Study, name: str = "study.toml") -> Study:
     """
     if study.surface.gravity != "site":
         return study
-    gravity = -float(push_at_site(study)[2])
+    gravity = -float(effective_acceleration_at_site(study)[2])
     problems = [f"{name}: {text}" for text in settling_problems(study, gravity)]
     if not math.isfinite(gravity):
         problems = [f"{name}: surface.gravity: the acceleration at the site is not finite; mend site.mass or its mesh"]

@@ -12,11 +12,10 @@ from typing import Any
 from lithobrake import __version__
 from lithobrake.campaign import Command
 from lithobrake.hashing import content_hash
+from lithobrake.outcomes import TouchdownOutcome
 from lithobrake.outputs import OUTPUTS
 from lithobrake.study import Study
 
-# How a touchdown may end; one that is clear has outputs.
-OUTCOMES = ("clear", "captured", "left_sideways", "time_limit")
 # What speed and elevation may be off their components: numbers printed with six digits, as C and C++ do, agree so far.
 PRINTED = 2e-5
 
@@ -71,12 +70,12 @@ def function_identity(function: Model) -> str:
 
 def checked(what: str, answer: Mapping[str, Any]) -> dict[str, Any]:
     """An answer as a study keeps it; what: who says it. Raises ValueError for one that a study cannot use."""
-    outcome, outputs = answer.get("outcome", "clear"), completed(answer["outputs"])
-    if outcome not in OUTCOMES:
-        raise ValueError(f"{what} has the outcome {outcome!r}; allowed: {', '.join(OUTCOMES)}")
-    if outcome == "clear":
+    outcome, outputs = answer.get("outcome", TouchdownOutcome.CLEAR), completed(answer["outputs"])
+    if outcome not in list(TouchdownOutcome):
+        raise ValueError(f"{what} has the outcome {outcome!r}; allowed: {', '.join(TouchdownOutcome)}")
+    if outcome == TouchdownOutcome.CLEAR:
         refuse_contradictions(what, outputs)
-    return {"outcome": outcome, "outputs": outputs, "draws": answer.get("draws", {})}
+    return {"outcome": str(outcome), "outputs": outputs, "draws": answer.get("draws", {})}
 
 
 def completed(outputs: Mapping[str, float]) -> dict[str, float]:

@@ -62,7 +62,8 @@ def _write_report(job: Job) -> None:
     write_report(job.folder.path, lambda done, total: job.progress(done, total, "figures"))
 
 
-FIT, FLY = ("pipeline", "chaos", "analysis"), ("pipeline", "smallbody", "site.py", "mesh.py", "mesh_files.py")
+FIT = ("pipeline", "chaos", "analysis", "outputs.py")
+FLY = ("pipeline", "smallbody", "mesh.py", "mesh_files.py", "outputs.py")
 # The points of one design are best for the degree that is fitted to them.
 _SCREENING_RUNS = ("method", "replicate_count", "screening_level", "screening_count", "screening_degree")
 _REFINED_RUNS = _design("refined_level", "refined_count", "refined_degree", "kept_share", "kept_outputs")
@@ -101,7 +102,15 @@ STAGES = (
     Stage("fly", "flights", _files(*FLIGHT_FILES), flight_reads, ("sample",), FLY, fly_samples),
     Stage("rest", "bounces until rest", _files("rest.csv", "rest.json"), rest_reads, ("fly",), FLY, follow_samples),
     Stage("summary", "summary", _files("summary.json"), study_tables, ("landing", "rest"), FIT, write_summary),
-    Stage("report", "report", _files("report/index.html"), _nothing, ("summary",), ("report",), _write_report),
+    Stage(
+        "report",
+        "report",
+        _files("report/index.html"),
+        _nothing,
+        ("summary",),
+        ("report", "results", "outputs.py"),
+        _write_report,
+    ),
 )
 
 
@@ -126,7 +135,7 @@ def setting(study: Study) -> dict[str, dict[str, Any]]:
 
 
 def make(job: Job, until: str, note: Callable[..., None]) -> None:
-    """Make every file up to and with a stage that is not there, or no longer what the study says.
+    """Make every missing or outdated file of the stages up to and including `until`.
 
     note: notes for other processes which stage is being made.
     """

@@ -64,7 +64,7 @@ def read_state(path: Path) -> FolderState:
 
 
 def report_page(path: Path) -> tuple[Path, str]:
-    """The page of a study's report, and in a sentence why it may not be of the files beside it; empty where it is.
+    """Return the page of a study's report, and a sentence if it may not match the files beside it, else "".
 
     Raises ValueError when there is no report.
     """

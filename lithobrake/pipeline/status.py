@@ -5,29 +5,30 @@ from pathlib import Path
 from typing import Any
 
 from lithobrake.atomic import lock_holder
-from lithobrake.campaign import Record, campaign_began, ledger_tally, read_records
+from lithobrake.campaign import Record, campaign_began, ledger_tally
 from lithobrake.outputs import OUTPUTS
 from lithobrake.pipeline.folder import LOCK
 from lithobrake.pipeline.notes import NAME, Notes
 from lithobrake.pipeline.state import STUDY_FILE, FolderState, grouped, read_state
+from lithobrake.results import open_study
 
 
 def study_status(path: Path) -> list[str]:
-    """Say who is at work on a study, which stages it has come through, and where its runs stand, in lines.
+    """Return lines that say who is at work on a study, which stages are done, and the state of its runs.
 
-    A folder that has a ledger alone is that of a campaign. Raises ValueError when it has neither study nor ledger.
+    A folder with only a ledger is that of a campaign. Raises ValueError when it has neither study nor ledger.
     """
     ledger, is_study = path / "runs.sqlite", any((path / name).is_file() for name in (STUDY_FILE, NAME))
     if not (is_study or ledger.is_file()):
         raise ValueError(f"{path} has neither study.toml nor runs.sqlite; name the folder of a study that ran, or runs")
     if not is_study:
         work = "a campaign" if campaign_began(ledger) else "nobody"
-        return [f"{path}: {work} is at work", *_runs(ledger, Notes())]
+        return [f"{path}: {work} is at work", *_runs(path, Notes())]
     # Who is at work is looked at first: a stage that ends in between is then one that is still to come.
     holder = lock_holder(path / LOCK)
     state = read_state(path)
     lines = [_work(path, holder, state), *_files(holder, state)]
-    return lines + (_runs(ledger, state.notes) if ledger.is_file() else [])
+    return lines + (_runs(path, state.notes) if ledger.is_file() else [])
 
 
 def _work(path: Path, holder: dict[str, Any] | None, state: FolderState) -> str:
@@ -64,11 +65,11 @@ def _files(holder: dict[str, Any] | None, state: FolderState) -> list[str]:
 
 def _runs(path: Path, notes: Notes) -> list[str]:
     """Where the runs stand that the study asks for as it is now, and how many others its ledger has."""
-    every = read_records(path)
+    every = open_study(path).ledger
     asked = {key for keys in notes.designs.values() for key in keys}
     # A ledger of which nothing is noted is that of a campaign, or of an earlier format.
     records = [entry for entry in every if entry.key in asked] if notes.stages else every
-    state = ledger_tally(records, campaign_began(path))
+    state = ledger_tally(records, campaign_began(path / "runs.sqlite"))
     lines = [state.sentence()]
     if len(records) < len(every):
         lines.append(f"{len(every) - len(records)} more runs in the ledger are of earlier settings of the study")

@@ -31,16 +31,18 @@ def run(
     report: bool = True,
     progress: Progress | None = None,
 ) -> StudyResults:
-    """Run a study to its end and give its results; what its folder already has is kept.
+    """Run a study to its end and return its results; reuse what its folder already has.
 
     study: path of a study file, or its tables as a dict, in which relative paths count from the current folder.
-    out: folder of the study; None: runs/NAME, with the name of the file; tables need one. workers: processes (None: one
-    for each core); a script must start them under `if __name__ == "__main__":`.
+    out: folder of the study; None: runs/NAME, after the name of the file; tables need one.
+    workers: number of processes; None: one a core. A script must start them under `if __name__ == "__main__":`.
     model: a callable that can be pickled, `(inputs, seed) -> {"outcome": ..., "outputs": {...}}`, which makes the
     touchdowns in place of the soil, under the contract of docs/own_solver.md (outcomes clear, captured, left_sideways,
     time_limit). No bed is poured for it. Its inputs are all numbers of the study by dotted key and what the run drew.
-    It is known again by its pickle, which holds the name of a function and not its body: for an edited one take
-    another `out`. report: also make the page. progress: shows the stages as they go on; None: silence.
+    It is identified by its pickle, which holds the name of a function and not its body: after an edit, use another
+    `out`.
+    report: also make the page.
+    progress: shows the stages as they run; None: silence.
     Raises ValueError for a study or folder that is refused, too few runs with outputs, a model that cannot be pickled.
     """
     function = None if model is None else function_identity(model)
@@ -69,11 +71,13 @@ def run_study(
     shown: Progress | None = None,
     keeps_logs: bool = False,
 ) -> None:
-    """Make what a study asks for, up to and with a stage; what the folder already has is kept.
+    """Run the stages of a study up to and including `until`; reuse what the folder already has.
 
-    worker_count: processes here (None: one for each core); scheduler: address of a Dask scheduler, whose workers make
-    the runs instead. model: makes the touchdowns in place of the soil. shown: shows the progress. keeps_logs: each run
-    leaves a log in the folder.
+    worker_count: number of processes here; None: one a core.
+    scheduler: address of a Dask scheduler, whose workers make the runs instead.
+    model: makes the touchdowns in place of the soil.
+    shown: shows the progress.
+    keeps_logs: each run leaves a log in the folder.
     Raises ValueError for a study that is refused, a folder that is not the study's or cannot be written, too few runs
     with outputs.
     """

@@ -4,6 +4,7 @@ import os
 import platform
 import sys
 from collections import Counter
+from collections.abc import Mapping
 from datetime import UTC, datetime
 from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
@@ -11,33 +12,37 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from lithobrake.campaign import read_records
-from lithobrake.outputs import DESIGNS, OUTPUTS
+from lithobrake.outcomes import TouchdownOutcome
+from lithobrake.outputs import DESIGNS, OUTPUTS, TOUCHDOWN
 from lithobrake.pipeline.beds import bed_files
 from lithobrake.pipeline.design_runs import DesignRuns
 from lithobrake.pipeline.designs import kept_inputs, replicate_count
+from lithobrake.pipeline.dispersion_statistics import dispersion_results
 from lithobrake.pipeline.flights import read_table
 from lithobrake.pipeline.headline import answer, headline
 from lithobrake.pipeline.job import Job
-from lithobrake.pipeline.landing_statistics import landing_results
 from lithobrake.pipeline.samples import Samples
 from lithobrake.pipeline.site import (
+    effective_acceleration_at_site,
     escape_speed,
     gravity_warning,
     has_heading,
-    push_at_site,
     site_body,
     site_medians,
     site_warning,
 )
-from lithobrake.pipeline.solver import OUTCOMES
+from lithobrake.results.study_results import SUMMARY_FORMAT
 from lithobrake.study import BUILT_IN_BODIES, Study
-from lithobrake.study.units import OUTPUT_UNITS
 
 if TYPE_CHECKING:
     from lithobrake.chaos import Surrogate
 
-FORMAT_VERSION = 2
 QUANTILES = (0.05, 0.5, 0.95)
+
+
+def _without_runs(table: Mapping[str, Mapping[str, Any]]) -> dict[str, dict[str, Any]]:
+    """Scores by output, less the errors of each run."""
+    return {output: {name: value for name, value in score.items() if name != "ape"} for output, score in table.items()}
 
 
 def write_summary(job: Job) -> None:
@@ -47,11 +52,11 @@ def write_summary(job: Job) -> None:
     screening, refined = load(job.folder / "screening.json"), load(job.folder / "refined.json")
     runs = {design: DesignRuns.load(job.folder, design) for design in DESIGNS}
     distinct = DesignRuns.distinct(list(runs.values()))
-    ended = Counter(outcome for outcome in distinct.outcomes if outcome in OUTCOMES)
+    ended = Counter(outcome for outcome in distinct.outcomes if outcome in list(TouchdownOutcome))
     samples, scores = Samples.load(job.folder), job.folder.read_json("scores.json")
     kept, flights = kept_inputs(job.study, screening), read_table(job.folder, "flights.csv")
     results = {
-        "units": {name: OUTPUT_UNITS[name] for name in OUTPUTS},
+        "units": {name: TOUCHDOWN[name].units for name in OUTPUTS},
         "beds": [_bed(job, name) for name in bed_files(job.study)],
         "node_counts": _node_counts(job.study, len(screening.input_names)),
         "designs": {design: _design(runs[design], replicate_count(job.study, design)) for design in DESIGNS},
@@ -60,23 +65,17 @@ def write_summary(job: Job) -> None:
         "refined": _expansion(job, "refined", refined, runs["refined"]),
         "kept_inputs": list(kept),
         "kept_share": _by_output(screening, np.asarray(screening.sobol_group(kept))),
-        "scores": {
-            stage: {
-                output: {name: value for name, value in score.items() if name != "ape"}
-                for output, score in table.items()
-            }
-            for stage, table in scores.items()
-        },
+        "scores": {stage: _without_runs(table) for stage, table in scores.items()},
         "monte_carlo": _monte_carlo(samples),
         "site": _site(job.study),
-        **landing_results(job, samples, flights, ended),
+        **dispersion_results(job, samples, flights, ended),
     }
     results["answer"] = answer(job.study, results)
     results["headline"] = headline(job.study, results)
     job.folder.write_json(
         "summary.json",
         {
-            "format_version": FORMAT_VERSION,
+            "format_version": SUMMARY_FORMAT,
             "study": study_tables(job.study, job.tables),
             "results": results,
             "provenance": _provenance(job, sum(one.run_count for one in runs.values()), distinct),
@@ -149,7 +148,7 @@ def _outputs_of_runs(runs: DesignRuns) -> dict[str, Any]:
         if len(values):
             table[name] = {
                 "median": float(np.median(values)), "smallest": float(values.min()), "largest": float(values.max()),
-                "unit": OUTPUT_UNITS[name],
+                "unit": TOUCHDOWN[name].units,
             }  # fmt: skip
     return table
 
@@ -213,7 +212,7 @@ def _monte_carlo(samples: Samples) -> dict[str, Any]:
 
 def _site(study: Study) -> dict[str, Any]:
     """The body at the medians, and the acceleration of a point at rest on the ground at the site."""
-    body, site, effective = site_body(study), site_medians(study), push_at_site(study)
+    body, site, effective = site_body(study), site_medians(study), effective_acceleration_at_site(study)
     built_in, heads = study.site.body in BUILT_IN_BODIES, has_heading(study)
     partner = None if body.partner is None else body.partner.body.name
     return {

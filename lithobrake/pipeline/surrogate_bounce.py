@@ -9,8 +9,7 @@ from lithobrake.pipeline.designs import design_inputs, points
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.outgoing import VELOCITY, outgoing
 from lithobrake.pipeline.run_noise import Scatter
-from lithobrake.pipeline.samples import CLEAR, outcome_model
-from lithobrake.pipeline.solver import OUTCOMES
+from lithobrake.pipeline.samples import CAPTURED, CLEAR, outcome_model
 from lithobrake.study import Study
 
 if TYPE_CHECKING:
@@ -50,7 +49,7 @@ class SoilBounce:
     ranges    of the runs; an impact outside them is not answered
     scatter   drawn anew at each impact; None: none
 
-    Of speed, incidence, spin and the push of gravity and rotation at an impact those enter that are inputs of the
+    Of speed, incidence, spin and effective acceleration at an impact those enter that are inputs of the
     study; the others stay as the study has them. The expansion gives the size of the outgoing spin; its axis is taken
     as that of rolling along the outgoing velocity.
     """
@@ -77,7 +76,7 @@ class SoilBounce:
         names = self.surrogate.output_names
         outputs, possible = outgoing(outputs, names)
         drawn = self.outcome.draw(x, random)
-        captured = drawn == OUTCOMES.index("captured")
+        captured = drawn == CAPTURED
         outside |= ~captured & ~((drawn == CLEAR) & possible)
         velocity = outputs[:, [names.index(name) for name in VELOCITY]]
         spin = rolling_spin(velocity, np.maximum(outputs[:, names.index("spin_out")], 0.0))

@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from lithobrake.report.hulls import Body, Camera, draw_box, frame_axes, paint
+from lithobrake.report.hulls import Camera, Hull, draw_box, frame_axes, paint
 from lithobrake.report.style import GRAIN, LANDER, QUIET, SITE
 
 Array = NDArray[np.float64]
@@ -21,7 +21,7 @@ def three_moments(position: Array) -> tuple[int, int, int]:
 
 
 def bed_figure(
-    bodies: Sequence[Body],
+    bodies: Sequence[Hull],
     time: Array,
     position: Array,
     orientation: Array,
@@ -71,7 +71,7 @@ def _aspect(extent: tuple[tuple[float, float], tuple[float, float]]) -> float:
 
 
 def _extent(
-    position: Array, bodies: Sequence[Body], width: tuple[float, float], camera: Camera
+    position: Array, bodies: Sequence[Hull], width: tuple[float, float], camera: Camera
 ) -> tuple[tuple[float, float], tuple[float, float]]:
     """Part of the picture plane [m] that holds all grains of the frames shown, and the box."""
     margin = max(float(np.linalg.norm(body.vertices, axis=1).max()) for body in bodies)

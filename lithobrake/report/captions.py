@@ -3,25 +3,19 @@
 import math
 from typing import Any
 
+from lithobrake.outcomes import FlightStatus, JourneyStatus, TouchdownOutcome
 from lithobrake.report.error_figure import Score
 from lithobrake.report.page import fixed, number
 from lithobrake.report.results import Results
 from lithobrake.report.scatter_figure import DRAWN_COUNT
 from lithobrake.report.style import PAPER_OUTPUTS, output
 
-PLAIN_SYMBOLS = {"speed_out": "V+", "elevation_out": "theta+", "spin_out": "omega+"}
 FIELD_WORDS = {"young_modulus": "Young's modulus", "poisson_ratio": "Poisson's ratio"}
 METHOD_WORDS = {
     "smolyak": "on the Smolyak grid",
     "sobol_sequence": "of a Sobol sequence",
     "latin_hypercube": "of a Latin hypercube",
     "fekete": "at approximate Fekete points",
-}
-STATUS_WORDS = {
-    "clear": "leaves the surface",
-    "captured": "is captured",
-    "left_sideways": "leaves the bed sideways",
-    "time_limit": "is still in contact at the time limit",
 }
 
 
@@ -106,13 +100,13 @@ def landing(data: Results) -> str:
     """Figure 2."""
     if data.landing is None:
         return "The pictures of a touchdown are that program's own."
-    attributes, time = data.landing.attributes, data.landing.time
-    status = str(attributes.get("status", ""))
+    attributes, time = data.landing.moving.attributes, data.landing.moving.time
+    ended = TouchdownOutcome(str(attributes["status"])).sentence.rstrip(".")
     return (
         "With every uncertain input at its median, the lander arrives at "
         f"{number(_float(attributes['speed']))} m/s and "
-        f"{math.degrees(_float(attributes['incidence'])):.3g} deg from the normal and "
-        f"{STATUS_WORDS.get(status, status)} after {number(float(time[-1] - time[0]))} s of simulated time; "
+        f"{math.degrees(_float(attributes['incidence'])):.3g} deg from the normal. "
+        f"{ended} after {number(float(time[-1] - time[0]))} s of simulated time; "
         "the line is the way of its centre."
     )
 
@@ -146,7 +140,7 @@ def sobol(data: Results) -> str:
     screening = data.results["screening"]
     leaders = [_leader(name, screening) for name in PAPER_OUTPUTS]
     shares = {name: screening["fits"][name]["noise_share"] for name in PAPER_OUTPUTS}
-    scatter = [f"{percent(share, 0)} of {PLAIN_SYMBOLS[name]}" for name, share in shares.items() if share is not None]
+    scatter = [f"{percent(share, 0)} of {output(name).sign}" for name, share in shares.items() if share is not None]
     rest = f"; of the variance of the runs {listing(scatter)} is scatter, which no input decides" if scatter else ""
     kept = listing([input_words(name) for name in data.results["kept_inputs"]])
     share = min(data.results["kept_share"][name] for name in data.study["design"]["kept_outputs"])
@@ -161,10 +155,10 @@ def _leader(name: str, screening: dict[str, Any]) -> str:
     first = screening["sobol_first"][name]
     main = max(first, key=lambda key: first[key])
     if first[main] <= 0.0:
-        return f"no input was found that {PLAIN_SYMBOLS[name]} varies with"
+        return f"no input was found that {output(name).sign} varies with"
     low, high = (percent(end, 0) for end in screening["sobol_first_interval"][name][main])
     return (
-        f"{PLAIN_SYMBOLS[name]} varies most with the {input_words(main)} ({percent(first[main], 0)}, {low} to {high}, "
+        f"{output(name).sign} varies most with the {input_words(main)} ({percent(first[main], 0)}, {low} to {high}, "
         "of its explained variance)"
     )
 
@@ -180,12 +174,12 @@ def errors(data: Results) -> str:
 
 
 def _explained(table: dict[str, Score]) -> str:
-    """Explained share of the variance and mean error of the paper's outputs on one set of runs."""
+    """Explained share of the variance and mean error of the outputs of [Landings-PCE] on one set of runs."""
     parts = []
     for name in PAPER_OUTPUTS:
         q2, mape = table[name].q2, table[name].mape
         words = "an undefined share" if q2 is None else f"Q2 = {table[name].q2_words}"
-        parts.append(f"{words} of {PLAIN_SYMBOLS[name]} (MAPE {'undefined' if mape is None else f'{mape:.2g} %'})")
+        parts.append(f"{words} of {output(name).sign} (MAPE {'undefined' if mape is None else f'{mape:.2g} %'})")
     return listing(parts)
 
 
@@ -206,16 +200,17 @@ def scatter(data: Results, colour_name: str) -> str:
     )
 
 
-def landing_map(data: Results) -> str:
+def impact_map(data: Results) -> str:
     """Figure 7."""
     shares, site = data.results["shares"], data.results["site"]
     extents = " x ".join(f"{length:.0f}" for length in site["extents_m"])
     outward = site["effective_acceleration_outward"]
     direction = "outward" if outward > 0 else "inward"
     known = gravity_words(data)
+    down = percent(shares[FlightStatus.IMPACT]["share"])
     return (
         f"Of {_thousands(shares['sample_count'])} samples, of which {_thousands(shares['flight_count'])} were flown, "
-        f"{percent(shares['impact']['share'])} come down again within {hours(data.study['flight']['duration'])}, "
+        f"{down} come down again within {hours(data.study['flight']['duration'])}, "
         f"where the map shows (body: {number(site['mass_kg'])} kg, {extents} m, one turn in "
         f"{site['spin_period_s'] / 3600:.4g} h; at the site gravity and spin together pull "
         f"{number(abs(outward), 2)} m/s2 {direction}{known and f'; {known}'})."
@@ -246,13 +241,15 @@ def rest(data: Results) -> str:
     if hard is None:
         return "No sample was followed beyond its next impact (rest.count is 0)."
     limit = hours(data.study["rest"]["duration"])
-    settled = percent(hard["settled"]["share"])
+    settled = percent(hard[JourneyStatus.SETTLED]["share"])
     words = f"Followed from bounce to bounce for up to {limit}, on hard ground {settled} come to rest"
     if soil is None:
         return f"{words}; on the soil it is not known: {table['why_no_soil']}."
-    outside = percent(soil["outside"]["share"])
+    settled_on_soil, outside = (
+        percent(soil[status]["share"]) for status in (JourneyStatus.SETTLED, JourneyStatus.OUTSIDE)
+    )
     return (
-        f"{words}, on the soil {percent(soil['settled']['share'])}; there {outside} stop where the expansion has no "
+        f"{words}, on the soil {settled_on_soil}; there {outside} stop where the expansion has no "
         "answer: at an impact unlike those of the runs, or drawn in a way that there is not."
     )
 

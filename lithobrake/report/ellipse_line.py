@@ -21,7 +21,7 @@ def outline(
     """Latitude and longitude [deg] of a closed line round a middle, both of shape [POINTS].
 
     semi_axes_deg: the longer at heading_deg from north toward east, the shorter across, laid round the sphere along
-    great circles from the middle. Source: Snyder (1987), Map Projections - A Working Manual, Eqs 20-14 and 20-15.
+    great circles from the middle. Source: [Snyder-1987], Eqs 20-14 and 20-15.
     """
     turn = np.linspace(0.0, 2.0 * np.pi, POINTS)
     along, across = (np.radians(axis) * wave(turn) for axis, wave in zip(semi_axes_deg, (np.cos, np.sin), strict=True))

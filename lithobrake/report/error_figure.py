@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from lithobrake.report.page import fixed, number
-from lithobrake.report.style import INK, PAPER_OUTPUTS, QUIET, TEST, TEST_ALL, TRAINING, output
+from lithobrake.report.style import INK, PAPER_OUTPUTS, QUIET, TEST, TEST_ALL, TRAINING, Output, output
 
 Array = NDArray[np.float64]
 
@@ -93,7 +93,11 @@ def _panel(axes: Axes, name: str, series: Sequence[tuple[str, Score, str]]) -> N
         axes.annotate(
             f"{beyond} beyond", (1.0, 1.0), xycoords="axes fraction", ha="right", va="top", fontsize=7, color=QUIET
         )
-    # The figures stand above the panel, where no bar can run into them; the last series is the lowest.
+    _write_figures(axes, shown, series)
+
+
+def _write_figures(axes: Axes, shown: Output, series: Sequence[tuple[str, Score, str]]) -> None:
+    """Write the figures of each series above the panel, where no bar can run into them; the last is the lowest."""
     y = 1.03
     for words, score, colour in reversed(series):
         mape = "undefined" if score.mape is None else f"{score.mape:.3g} %"

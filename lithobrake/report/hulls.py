@@ -24,7 +24,7 @@ LARGE = 1.5
 
 
 @dataclass(frozen=True)
-class Body:
+class Hull:
     """A convex body: vertices [m], shape [vertex, 3], centroid at the origin; faces, shape [face, 3]; its colour."""
 
     vertices: Array
@@ -80,7 +80,7 @@ def subdivide(triangles: Array, longest: float) -> Array:
     return np.concatenate([triangles[~large], subdivide(np.concatenate(pieces), longest)])
 
 
-def world_triangles(bodies: Sequence[Body], position: Array, orientation: Array) -> tuple[Array, NDArray[np.int64]]:
+def world_triangles(bodies: Sequence[Hull], position: Array, orientation: Array) -> tuple[Array, NDArray[np.int64]]:
     """Faces of all bodies in the world, shape [face, 3, 3] [m], wound outwards, and the body each belongs to."""
     turns = rotation(orientation)
     large = _is_large(bodies)
@@ -101,7 +101,7 @@ def world_triangles(bodies: Sequence[Body], position: Array, orientation: Array)
 
 def paint(
     axes: Axes,
-    bodies: Sequence[Body],
+    bodies: Sequence[Hull],
     position: Array,
     orientation: Array,
     camera: Camera,
@@ -135,7 +135,7 @@ def paint(
     axes.add_collection(PolyCollection(stack, facecolors=colours, edgecolors=edges, linewidths=0.3))
 
 
-def _is_large(bodies: Sequence[Body]) -> NDArray[np.bool_]:
+def _is_large(bodies: Sequence[Hull]) -> NDArray[np.bool_]:
     """Which bodies are large beside the middle one, shape [body]."""
     sizes = np.array([np.linalg.norm(body.vertices, axis=1).max() for body in bodies])
     large: NDArray[np.bool_] = sizes > LARGE * np.median(sizes)

@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from lithobrake.report.hulls import Body, Camera, draw_box, frame_axes, paint
+from lithobrake.report.hulls import Camera, Hull, draw_box, frame_axes, paint
 from lithobrake.report.style import INK, SITE
 
 Array = NDArray[np.float64]
@@ -27,7 +27,7 @@ def instants(lander_height: Array, count: int = 6) -> list[int]:
 
 
 def landing_figure(
-    bodies: Sequence[Body], time: Array, position: Array, orientation: Array, width: tuple[float, float]
+    bodies: Sequence[Hull], time: Array, position: Array, orientation: Array, width: tuple[float, float]
 ) -> Figure:
     """Draw a landing; the lander is the last body and its path so far is a line.
 
@@ -66,7 +66,7 @@ def _camera(path: Array, surface_height: float, width: tuple[float, float]) -> C
 
 
 def _extent(
-    path: Array, bodies: Sequence[Body], surface_height: float, width: tuple[float, float], camera: Camera
+    path: Array, bodies: Sequence[Hull], surface_height: float, width: tuple[float, float], camera: Camera
 ) -> tuple[tuple[float, float], tuple[float, float]]:
     """Part of the picture plane [m] that holds the box and the lander in all frames shown."""
     # A little more than its radius, since perspective enlarges what comes towards the viewer.

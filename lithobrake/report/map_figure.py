@@ -155,7 +155,7 @@ def draw_relief(axes: Axes, vertices: Array) -> None:
 
 
 def draw_shares(axes: Axes, shares: list[Share], whole: str) -> None:
-    """One bar a fate, the interval of a share that has one, and in the margin to the right its figure in per cent.
+    """One bar an outcome, the interval of a share that has one, and in the margin to the right its figure in per cent.
 
     whole: what they are shares of, "all samples".
     """

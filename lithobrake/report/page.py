@@ -39,7 +39,7 @@ class Tile:
 
 
 @dataclass(frozen=True)
-class Table:
+class PageTable:
     """A table of the page; a column whose name stands in `numbers` is set to the right, a cell in `links` is one."""
 
     title: str
@@ -50,14 +50,23 @@ class Table:
     links: Mapping[str, str] = field(default_factory=dict)
 
 
+def _header(title: str, answer: str, facts: str) -> str:
+    return f"""<header>
+<p class="kind">Landing study</p>
+<h1>{escape(title)}</h1>
+<p class="answer">{escape(answer)}</p>
+<p class="facts">{escape(facts)}</p>
+</header>"""
+
+
 def page(
     title: str,
     answer: str,
     facts: str,
     tiles: Sequence[Tile],
     panels: Sequence[Panel],
-    tables: Sequence[Table],
-    provenance: Sequence[Table],
+    tables: Sequence[PageTable],
+    provenance: Sequence[PageTable],
     study_text: str,
 ) -> str:
     """Put the page together; all words are plain text and are escaped here."""
@@ -73,12 +82,7 @@ def page(
 {style}</style>
 </head>
 <body><main>
-<header>
-<p class="kind">Landing study</p>
-<h1>{escape(title)}</h1>
-<p class="answer">{escape(answer)}</p>
-<p class="facts">{escape(facts)}</p>
-</header>
+{_header(title, answer, facts)}
 <ul class="tiles">
 {"".join(_tile(tile) for tile in tiles)}</ul>
 <h2>Figures</h2>
@@ -118,7 +122,7 @@ def _figure(number: int, panel: Panel) -> str:
     )
 
 
-def _table(table: Table) -> str:
+def _table(table: PageTable) -> str:
     kinds = [' class="number"' if name in table.numbers else "" for name in table.columns]
     head = "".join(f"<th{kind}>{escape(name)}</th>" for name, kind in zip(table.columns, kinds, strict=True))
     body = "".join(

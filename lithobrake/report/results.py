@@ -1,7 +1,6 @@
-"""The files of a study as the report reads them."""
+"""The results of a study as the page shows them: a view, in which whatever is missing is told with its file."""
 
-import shlex
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -9,22 +8,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lithobrake.reading import NUMBER, DamagedFileError, parsed, read_json, read_rows, reading
+from lithobrake.outcomes import FlightStatus, JourneyStatus
+from lithobrake.reading import DamagedFileError, reading
 from lithobrake.report.error_figure import Score
-from lithobrake.report.scene import Scene, read_scene
+from lithobrake.report.scene import Scene, scene
+from lithobrake.results import StudyResults, Table
 
 Array = NDArray[np.float64]
 FILES = ("summary.json", "scores.json", "samples.h5", "flights.csv", "rest.csv", "body.obj", "study.toml")
-FORMAT_VERSION = 2
-
-
-@dataclass(frozen=True)
-class Samples:
-    """The Monte Carlo: inputs in the study file's units and outputs [SI] by name, shape [sample]; which leave."""
-
-    inputs: dict[str, Array]
-    outputs: dict[str, Array]
-    leaves: NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
@@ -44,7 +35,7 @@ class Results:
     bed: Scene | None
     landing: Scene | None
     scores: dict[str, dict[str, Score]]
-    samples: Samples
+    samples: Table
     latitude: Array
     longitude: Array
     facet: NDArray[np.int64]
@@ -53,7 +44,7 @@ class Results:
     rest: dict[str, tuple[Array, Array]]
 
 
-class Table(dict[str, Any]):
+class SummaryTable(dict[str, Any]):
     """A table of summary.json; a key that it lacks, as where another version wrote it, is named with the file."""
 
     def __init__(self, content: Mapping[str, Any], path: Path, remedy: str, inside: str = "") -> None:
@@ -62,60 +53,40 @@ class Table(dict[str, Any]):
         self._lacks = f"{path} lacks {inside}{{key}}; {remedy}"
         for key, value in content.items():
             if isinstance(value, dict):
-                self[key] = Table(value, path, remedy, f"{inside}{key}.")
+                self[key] = SummaryTable(value, path, remedy, f"{inside}{key}.")
 
     def __missing__(self, key: str) -> Any:
         """Raise DamagedFileError for a key that is not there."""
         raise DamagedFileError(self._lacks.format(key=key))
 
 
-def read_results(folder: Path) -> Results:
-    """Read a study's folder. Raises ValueError that names the file when one is missing or damaged."""
-    _refuse_without(folder, FILES)
-    remedy = f"make it again with: lithobrake run STUDY.toml --out {shlex.quote(str(folder))}"
-
-    def read(name: str, reader: Callable[..., Any], *arguments: Any) -> Any:
-        with reading(folder / name, remedy):
-            return reader(folder / name, *arguments)
-
-    summary = read_summary(folder / "summary.json", remedy)
+def page_results(found: StudyResults) -> Results:
+    """What the page shows of a study. Raises ValueError that names the file when one is missing or damaged."""
+    _refuse_without(found.folder, FILES)
+    summary = SummaryTable(found.summary, found.folder / "summary.json", found.remedy)
     # A program or function of the user's own has neither beds nor pictures.
     has_scenes = bool(summary["results"]["beds"])
     if has_scenes:
-        _refuse_without(folder, ("landing.h5", "beds/bed_0.h5"))
-    places = ("latitude_deg", "longitude_deg")
-    impacts = read("flights.csv", read_columns, remedy, {"status": "impact"}, *places, "facet")
-    rest = {
-        ground: read("rest.csv", read_columns, remedy, {"ground": ground, "status": "settled"}, *places)
-        for ground in ("soil", "hard")
-    }
-    vertices, faces = read("body.obj", read_body)
+        _refuse_without(found.folder, ("landing.h5", "beds/bed_0.h5"))
+    impacts = found.flights.where(found.flights["status"] == FlightStatus.IMPACT)
+    latitude, longitude = _places(found.folder / "flights.csv", impacts, found.remedy)
+    vertices, faces = found.body_shape
     return Results(
         study=summary["study"],
         results=summary["results"],
         provenance=summary["provenance"],
-        study_text=read("study.toml", lambda path: path.read_text(encoding="utf-8")),
-        bed=read("beds/bed_0.h5", read_scene, False) if has_scenes else None,
-        landing=read("landing.h5", read_scene, True) if has_scenes else None,
-        scores=read("scores.json", read_scores),
-        samples=read("samples.h5", read_samples),
-        latitude=impacts[0],
-        longitude=impacts[1],
-        facet=impacts[2].astype(np.int64),
+        study_text=found.study_text,
+        bed=scene(found.bed_bodies(0), has_lander=False) if has_scenes else None,
+        landing=scene(found.median_landing, has_lander=True) if has_scenes else None,
+        scores=_scores(found),
+        samples=found.samples,
+        latitude=latitude,
+        longitude=longitude,
+        facet=impacts["facet"].astype(np.int64),
         body_vertices=vertices,
         body_faces=faces,
-        rest={ground: (columns[0], columns[1]) for ground, columns in rest.items()},
+        rest={ground: _resting(found, ground) for ground in ("soil", "hard")},
     )
-
-
-def read_summary(path: Path, remedy: str) -> Table:
-    """The tables of summary.json. Raises DamagedFileError for a damaged file, and for another format."""
-    content = read_json(path, {"format_version": int, "study": dict, "results": dict, "provenance": dict}, remedy)
-    if content["format_version"] != FORMAT_VERSION:
-        raise DamagedFileError(
-            f"{path} has format {content['format_version']}; this version reads {FORMAT_VERSION}; {remedy}"
-        )
-    return Table(content, path, remedy)
 
 
 def _refuse_without(folder: Path, needed: tuple[str, ...]) -> None:
@@ -126,57 +97,33 @@ def _refuse_without(folder: Path, needed: tuple[str, ...]) -> None:
         )
 
 
-def read_scores(path: Path) -> dict[str, dict[str, Score]]:
+def _resting(found: StudyResults, ground: str) -> tuple[Array, Array]:
+    """Where the landers lie that rest on a ground."""
+    chosen = (found.rest["status"] == JourneyStatus.SETTLED) & (found.rest["ground"] == ground)
+    return _places(found.folder / "rest.csv", found.rest.where(chosen), found.remedy)
+
+
+def _places(path: Path, table: Table, remedy: str) -> tuple[Array, Array]:
+    """Latitude and longitude [deg], shape [row_count] each. Raises DamagedFileError where a row has none."""
+    latitude, longitude = table["latitude_deg"], table["longitude_deg"]
+    if not np.isfinite(latitude + longitude).all():
+        raise DamagedFileError(f"{path} has a row without latitude and longitude; {remedy}")
+    return latitude, longitude
+
+
+def _scores(found: StudyResults) -> dict[str, dict[str, Score]]:
     """Scores by stage and output; a score that does not exist is None."""
-    known, absent = (
-        {"rmse": NUMBER, "std": NUMBER},
-        {"ape": [NUMBER | None], "mape": NUMBER | None, "q2": NUMBER | None},
+    with reading(found.folder / "scores.json", found.remedy):
+        return {stage: {name: _score(score) for name, score in table.items()} for stage, table in found.scores.items()}
+
+
+def _score(score: Mapping[str, Any]) -> Score:
+    return Score(
+        # A run whose true value is zero has no percentage; it still counts in all other scores.
+        ape=np.array([value for value in score["ape"] if value is not None], dtype=float),
+        mape=score["mape"],
+        q2=score["q2"],
+        q2_interval=tuple(score["q2_interval"]),
+        rmse=score["rmse"],
+        std=score["std"],
     )
-    content = parsed(path.read_text(encoding="utf-8"), {str: {str: known | absent}})
-    return {
-        stage: {
-            name: Score(
-                # A run whose true value is zero has no percentage; it still counts in all other scores.
-                ape=np.array([value for value in score["ape"] if value is not None], dtype=float),
-                mape=score["mape"],
-                q2=score["q2"],
-                q2_interval=tuple(score["q2_interval"]),
-                rmse=score["rmse"],
-                std=score["std"],
-            )
-            for name, score in table.items()
-        }
-        for stage, table in content.items()
-    }
-
-
-def read_samples(path: Path) -> Samples:
-    """Samples by name."""
-    import h5py
-
-    with h5py.File(path, "r") as file:
-        inputs, outputs = file["inputs"][:], file["outputs"][:]
-        leaves = file["outcome"][:] == list(file.attrs["outcomes"]).index("clear")
-        input_names, output_names = [str(name) for name in file.attrs["input_names"]], list(file.attrs["output_names"])
-    return Samples(
-        {name: inputs[:, column] for column, name in enumerate(input_names)},
-        {str(name): outputs[:, column] for column, name in enumerate(output_names)},
-        leaves,
-    )
-
-
-def read_columns(path: Path, remedy: str, wanted: Mapping[str, str], *names: str) -> list[Array]:
-    """Columns of numbers of a CSV file, of the rows that have the wanted words, shape [row] each."""
-    rows = read_rows(path, (*wanted, *names), remedy)
-    chosen = [row for row in rows if all(row[key] == word for key, word in wanted.items())]
-    return [np.array([float(row[name]) for row in chosen]) for name in names]
-
-
-def read_body(path: Path) -> tuple[Array, NDArray[np.int64]]:
-    """Vertices of the body [m], shape [vertex, 3], and its faces, counted from 0, shape [face, 3]."""
-    lines = [line.split() for line in path.read_text(encoding="utf-8").splitlines()]
-    vertices = np.array([[float(word) for word in words[1:4]] for words in lines if words[0] == "v"])
-    faces = np.array([[int(word) - 1 for word in words[1:4]] for words in lines if words[0] == "f"])
-    if vertices.ndim != 2 or faces.ndim != 2 or not 0 <= faces.min() <= faces.max() < len(vertices):
-        raise ValueError("it has no vertices, or faces without them")
-    return vertices, faces

@@ -1,5 +1,6 @@
 """Figure 6: the outputs of the Monte Carlo on the expansion, coloured by one input."""
 
+from collections.abc import Mapping
 from itertools import combinations
 
 import matplotlib
@@ -7,7 +8,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from lithobrake.report.style import PAPER_OUTPUTS, QUIET, input_label, output
+from lithobrake.report.style import PAPER_OUTPUTS, QUIET, output
 
 Array = NDArray[np.float64]
 
@@ -15,12 +16,10 @@ Array = NDArray[np.float64]
 DRAWN_COUNT = 200_000
 
 
-def scatter_figure(
-    outputs: dict[str, Array], colour_name: str, colour_value: Array, leaves: NDArray[np.bool_]
-) -> Figure:
+def scatter_figure(outputs: Mapping[str, Array], colour: tuple[str, Array], leaves: NDArray[np.bool_]) -> Figure:
     """Draw every pair of outputs of the samples that leave the surface, of the first `DRAWN_COUNT` of them.
 
-    outputs: name to values [SI], shape [sample]; colour_value: the input, shape [sample]; leaves: shape [sample].
+    outputs: name to values [SI], shape [sample]; colour: label and values of an input; leaves: shape [sample].
     """
     names = [name for name in PAPER_OUTPUTS if name in outputs]
     pairs = list(combinations(names, 2))
@@ -32,7 +31,7 @@ def scatter_figure(
     for axes, (first, second) in zip(grid, pairs, strict=True):
         x, y = (outputs[name][drawn] * output(name).factor for name in (first, second))
         points = axes.scatter(
-            x, y, c=colour_value[drawn], s=size, cmap="viridis", linewidths=0, alpha=0.55, rasterized=True
+            x, y, c=colour[1][drawn], s=size, cmap="viridis", linewidths=0, alpha=0.55, rasterized=True
         )
         axes.set_xlabel(output(first).label)
         axes.set_ylabel(output(second).label)
@@ -43,7 +42,7 @@ def scatter_figure(
     bar_axes = figure.add_axes((0.92, 0.15, 0.014, 0.81))
     norm = points.norm
     bar = figure.colorbar(matplotlib.cm.ScalarMappable(norm=norm, cmap="viridis"), cax=bar_axes)
-    bar.set_label(input_label(colour_name))
+    bar.set_label(colour[0])
     bar.outline.set_visible(False)
     bar_axes.tick_params(colors=QUIET)
     return figure

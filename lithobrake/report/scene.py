@@ -1,59 +1,36 @@
-"""Moving bodies as a study keeps them: reads the pictures' part of a bed or landing file."""
+"""Moving bodies of a study as the page draws them."""
 
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from lithobrake.report.hulls import Body
+from lithobrake.report.hulls import Hull
 from lithobrake.report.style import GRAIN, LANDER
+from lithobrake.results import MovingBodies
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
 class Scene:
-    """Bodies and their frames: time [s], shape [frame]; position [m], shape [frame, body, 3]; orientation (w, x, y, z),
-    shape [frame, body, 4]; the file's attributes; the settling history by name, empty for a landing.
-    """
+    """Bodies as they are drawn, each about its centroid, and how they moved."""
 
-    bodies: tuple[Body, ...]
-    time: Array
-    position: Array
-    orientation: Array
-    attributes: dict[str, object]
-    history: dict[str, Array]
+    bodies: tuple[Hull, ...]
+    moving: MovingBodies
 
 
-def read_scene(path: Path, has_lander: bool) -> Scene:
-    """Read a bed (`beds/bed_0.h5`) or a landing (`landing.h5`), in which the lander is the last body.
-
-    Raises ValueError when the file holds no frames.
-    """
-    import h5py
-
-    with h5py.File(path, "r") as file:
-        if "frames" not in file:
-            raise ValueError(f"{path} has no group 'frames': it was written without pictures; make it again")
-        vertices, faces = file["vertices"][:], file["faces"][:].astype(np.int64)
-        vertex_start, face_start = file["vertex_start"][:], file["face_start"][:]
-        frames = {name: file[f"frames/{name}"][:] for name in ("time", "position", "orientation")}
-        history = {name: data[:] for name, data in file["history"].items()} if "history" in file else {}
-        attributes = {name: _plain(value) for name, value in file.attrs.items()}
-    count = len(vertex_start) - 1
+def scene(moving: MovingBodies, has_lander: bool) -> Scene:
+    """The bodies of a bed, or of a landing, in which the lander is the last."""
+    last = len(moving.vertices) - 1
     bodies = tuple(
-        _body(
-            vertices[vertex_start[k] : vertex_start[k + 1]],
-            faces[face_start[k] : face_start[k + 1]],
-            LANDER if has_lander and k == count - 1 else GRAIN,
-        )
-        for k in range(count)
+        _body(vertices, faces, LANDER if has_lander and number == last else GRAIN)
+        for number, (vertices, faces) in enumerate(zip(moving.vertices, moving.faces, strict=True))
     )
-    return Scene(bodies, frames["time"], frames["position"], frames["orientation"], attributes, history)
+    return Scene(bodies, moving)
 
 
-def _body(vertices: Array, faces: NDArray[np.int64], colour: str) -> Body:
+def _body(vertices: Array, faces: NDArray[np.int64], colour: str) -> Hull:
     """A body about its centroid, which is what its position in the file means."""
     corners = vertices[faces]
     middle = vertices.mean(axis=0)
@@ -63,11 +40,4 @@ def _body(vertices: Array, faces: NDArray[np.int64], colour: str) -> Body:
     )
     centres = (corners.sum(axis=1) + middle) / 4
     centroid = np.average(centres, axis=0, weights=volumes)
-    return Body(vertices - centroid, faces, colour)
-
-
-def _plain(value: object) -> object:
-    """An HDF5 attribute as an ordinary Python value."""
-    if isinstance(value, np.ndarray):
-        return value.tolist()
-    return value.item() if isinstance(value, np.generic) else value
+    return Hull(vertices - centroid, faces, colour)

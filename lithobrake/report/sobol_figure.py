@@ -25,7 +25,7 @@ def sobol_figure(
     """
     names = [name for name in PAPER_OUTPUTS if name in sobol_first]
     colours = input_colours(input_names)
-    handles = [Patch(color=colours[key], label=input_label(key, with_unit=False)) for key in input_names]
+    handles = [Patch(color=colours[key], label=input_label(key)) for key in input_names]
     handles.append(Patch(color=INTERACTIONS, label="interactions"))
     columns = 3 if len(handles) > 4 else len(handles)
     # In inches: the rings with their titles, and a row of the legend for every three inputs.

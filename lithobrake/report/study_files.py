@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from urllib.parse import quote
 
-from lithobrake.report.page import Table
+from lithobrake.report.page import PageTable
 
 CONTENTS = {
     "study.toml": "the study as it was asked",
@@ -25,23 +25,23 @@ CONTENTS = {
 }
 
 
-def data_files(folder: Path) -> Table:
+def data_files(folder: Path) -> PageTable:
     """The data files that the folder has; the links hold as long as the page stays in it."""
     found = [(path, words) for name, words in CONTENTS.items() for path in sorted(folder.glob(name))]
     return _table("Data files", folder, found)
 
 
-def picture_files(folder: Path, pictures: Sequence[tuple[str, str]]) -> Table:
+def picture_files(folder: Path, pictures: Sequence[tuple[str, str]]) -> PageTable:
     """The figures that stand beside the page: name of the file and title of each."""
     return _table("Figures as files", folder, [(folder / "report" / name, title) for name, title in pictures])
 
 
-def _table(title: str, folder: Path, found: Sequence[tuple[Path, str]]) -> Table:
+def _table(title: str, folder: Path, found: Sequence[tuple[Path, str]]) -> PageTable:
     names = [path.relative_to(folder).as_posix() for path, _ in found]
     rows = [[name, words, size(path.stat().st_size)] for name, (path, words) in zip(names, found, strict=True)]
     # The page stands in the folder `report`.
     links = {name: f"../{quote(name)}" for name in names}
-    return Table(title, ["file", "what it holds", "size"], rows, numbers=frozenset({"size"}), links=links)
+    return PageTable(title, ["file", "what it holds", "size"], rows, numbers=frozenset({"size"}), links=links)
 
 
 def size(byte_count: int) -> str:

@@ -8,37 +8,39 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lithobrake.atomic import atomic_path
+from lithobrake.outcomes import JourneyStatus
 from lithobrake.report import captions
 from lithobrake.report.bed_figure import bed_figure
 from lithobrake.report.body_figure import body_figure
 from lithobrake.report.captions import hours
 from lithobrake.report.count_figure import Design, count_figure
+from lithobrake.report.dispersion_tables import GROUND_WORDS, SUMS, followed, outcome_words
 from lithobrake.report.error_figure import error_figure
 from lithobrake.report.landing_figure import landing_figure
-from lithobrake.report.landing_tables import GROUND_WORDS, SUMS, fates, followed
 from lithobrake.report.map_figure import Share, map_figure
 from lithobrake.report.page import Panel, page
 from lithobrake.report.rest_figure import RestMap, rest_figure
-from lithobrake.report.results import Results, read_results
+from lithobrake.report.results import Results, page_results
 from lithobrake.report.scatter_figure import scatter_figure
 from lithobrake.report.sobol_figure import sobol_figure
 from lithobrake.report.study_files import data_files, picture_files
-from lithobrake.report.style import PAPER_OUTPUTS, figure_style
+from lithobrake.report.style import PAPER_OUTPUTS, figure_style, input_label
 from lithobrake.report.tables import provenance, tables, tiles
+from lithobrake.results import open_study
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 # What may become of a lander after all bounces, as short as it has to be beside a bar.
-SHORT_END_WORDS = {
-    "settled": "at rest",
-    "lofted": "lifted off again",
-    "outside": "outside the runs",
-    "sliding": "sliding",
-    "bouncing": "still bouncing",
-    "flying": "not at rest, {hours}",
-    "escaped": "escaped",
-    "partner": "on the partner",
+SHORT_JOURNEY_WORDS = {
+    JourneyStatus.SETTLED: "at rest",
+    JourneyStatus.LOFTED: "lifted off again",
+    JourneyStatus.OUTSIDE: "outside the runs",
+    JourneyStatus.SLIDING: JourneyStatus.SLIDING.label,
+    JourneyStatus.BOUNCING: "still bouncing",
+    JourneyStatus.FLYING: "not at rest, {hours}",
+    JourneyStatus.ESCAPED: JourneyStatus.ESCAPED.label,
+    JourneyStatus.PARTNER: "on the partner",
 }
 
 
@@ -47,7 +49,7 @@ def write_report(folder: Path, progress: Callable[[int, int], None]) -> Path:
 
     Raises ValueError when a file that the report reads is missing.
     """
-    data = read_results(folder)
+    data = page_results(open_study(folder))
     (folder / "report").mkdir(exist_ok=True)
     panels, pictures, figures = [], [], _figures(data)
     for number, (name, title, sentence, draw) in enumerate(figures, start=1):
@@ -81,7 +83,7 @@ def _figures(data: Results) -> list[tuple[str, str, str, Callable[[], "Figure | 
         ("sobol", "What matters", captions.sobol(data), lambda: _sobol(data)),
         ("errors", "How good the expansion is", captions.errors(data), lambda: _errors(data)),
         ("outputs", "What may come out", captions.scatter(data, colour), lambda: _outputs(data, colour)),
-        ("map", "Where the lander comes down", captions.landing_map(data), lambda: _map(data)),
+        ("map", "Where the lander comes down", captions.impact_map(data), lambda: _map(data)),
         ("body", "The same on the body", captions.body(data), lambda: _body(data)),
         ("rest", "Where it rests", captions.rest(data), lambda: _rest(data)),
     ]
@@ -97,20 +99,19 @@ def _png(figure: "Figure") -> bytes:
 def _bed(data: Results) -> "Figure | None":
     if data.bed is None:
         return None
-    scene, first = data.bed, data.results["beds"][0]
+    moving, first = data.bed.moving, data.results["beds"][0]
     width = tuple(data.study["bed"]["width"])
     return bed_figure(
-        scene.bodies, scene.time, scene.position, scene.orientation, width, first["surface_height_m"], scene.history
+        *(data.bed.bodies, moving.time, moving.position, moving.orientation),
+        *(width, first["surface_height_m"], moving.history),
     )
 
 
 def _landing(data: Results) -> "Figure | None":
     if data.landing is None:
         return None
-    scene = data.landing
-    return landing_figure(
-        scene.bodies, scene.time, scene.position, scene.orientation, tuple(data.study["bed"]["width"])
-    )
+    moving, width = data.landing.moving, tuple(data.study["bed"]["width"])
+    return landing_figure(data.landing.bodies, moving.time, moving.position, moving.orientation, width)
 
 
 def _counts(data: Results) -> "Figure":
@@ -143,8 +144,8 @@ def _errors(data: Results) -> "Figure":
 
 
 def _colour_input(data: Results) -> str:
-    """The restitution of the grains, as in the paper; where it is certain, the input that decides the speed most."""
-    if "grain.restitution" in data.samples.inputs:
+    """The restitution of the grains, as in [Landings-PCE], or the input that decides the speed most."""
+    if "grain.restitution" in data.samples:
         return "grain.restitution"
     total: dict[str, float] = data.results["screening"]["sobol_total"]["speed_out"]
     return max(total, key=lambda name: total[name])
@@ -152,16 +153,18 @@ def _colour_input(data: Results) -> str:
 
 def _outputs(data: Results, colour_name: str) -> "Figure | None":
     samples = data.samples
-    if not samples.leaves.any():
+    leaves = samples["outcome"] == "clear"
+    if not leaves.any():
         return None
-    return scatter_figure(samples.outputs, colour_name, samples.inputs[colour_name], samples.leaves)
+    colour = samples.columns[colour_name]
+    return scatter_figure(samples, (input_label(colour_name, colour.units), colour.values), leaves)
 
 
 def _map(data: Results) -> "Figure":
     table, site, limit = data.results["shares"], data.results["site"], hours(data.study["flight"]["duration"])
     shares = [
         Share(words.format(hours=limit), table[key]["share"], upper=table[key].get("upper_limit"))
-        for key, words in fates(data).items()
+        for key, words in outcome_words(data).items()
         if key not in SUMS
     ]
     where = (site["latitude_deg"], site["longitude_deg"])
@@ -185,8 +188,8 @@ def _rest(data: Results) -> "Figure | None":
     found, site, limit = followed(data), data.results["site"], hours(data.study["rest"]["duration"])
     if not found:
         return None
-    # The same ends on both sides, so that rows and colours match.
-    met = {key: words for key, words in SHORT_END_WORDS.items() if any(one[key]["count"] for one in found.values())}
+    # The same statuses on both sides, so that rows and colours match.
+    met = {key: words for key, words in SHORT_JOURNEY_WORDS.items() if any(one[key]["count"] for one in found.values())}
     maps = []
     for ground, (latitude, longitude) in data.rest.items():
         table = found.get(ground)

@@ -1,5 +1,6 @@
 """How every figure looks: colours that colour-blind readers tell apart, one type size, names and units of outputs."""
 
+import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -8,6 +9,8 @@ from typing import Any
 import matplotlib
 import numpy as np
 from numpy.typing import NDArray
+
+from lithobrake.outputs import TOUCHDOWN
 
 INK = "#1c2733"
 QUIET = "#66717d"
@@ -70,9 +73,10 @@ STYLE: Any = {
 
 @dataclass(frozen=True)
 class Output:
-    """An output as a figure shows it: symbol, words, unit, and the factor from SI to that unit."""
+    """An output as the page shows it: symbol in a figure and in a sentence, words, unit, and the factor from SI."""
 
     symbol: str
+    sign: str
     words: str
     unit: str
     factor: float
@@ -80,66 +84,75 @@ class Output:
     @property
     def label(self) -> str:
         """Axis label with the unit."""
-        return f"{self.words} {self.symbol} [{self.unit}]"
+        return f"{self.words} {self.symbol} [{self.unit}]".strip()
+
+    @property
+    def row(self) -> str:
+        """Title of a row."""
+        return f"{self.words} {self.sign}".strip()
 
 
-OUTPUTS = {
-    "speed_out": Output("$V^+$", "outgoing speed", "m/s", 1.0),
-    "elevation_out": Output(r"$\theta^+$", "elevation", "deg", 180.0 / np.pi),
-    "spin_out": Output(r"$\omega^+$", "spin", "rad/s", 1.0),
-    "velocity_out_x": Output("$V^+_x$", "velocity along", "m/s", 1.0),
-    "velocity_out_y": Output("$V^+_y$", "velocity across", "m/s", 1.0),
-    "velocity_out_z": Output("$V^+_z$", "velocity up", "m/s", 1.0),
+# In a figure, and in a sentence.
+SYMBOLS = {
+    "speed_out": ("$V^+$", "V+"),
+    "elevation_out": (r"$\theta^+$", "theta+"),
+    "spin_out": (r"$\omega^+$", "omega+"),
+    "velocity_out_x": ("$V^+_x$", ""),
+    "velocity_out_y": ("$V^+_y$", ""),
+    "velocity_out_z": ("$V^+_z$", ""),
 }
-# The three outputs of the paper, in its order.
+# The three outputs of [Landings-PCE], in its order.
 PAPER_OUTPUTS = ("speed_out", "elevation_out", "spin_out")
 
 INPUT_LABELS = {
-    "grain.young_modulus": "Young's modulus $E$, grains [Pa]",
+    "grain.young_modulus": "Young's modulus $E$, grains",
     "grain.poisson_ratio": r"Poisson's ratio $\nu$, grains",
     "grain.restitution": "restitution $e$, grains",
     "grain.friction": r"friction $\mu$, grains",
     "grain.rolling_friction": "rolling friction, grains",
     "grain.spinning_friction": "spinning friction, grains",
-    "grain.cohesion_force": "cohesion, grains [N]",
-    "grain.surface_energy": "surface energy, grains [J/m$^2$]",
-    "grain.density": r"density $\rho$, grains [kg/m$^3$]",
-    "lander.young_modulus": "Young's modulus $E$, lander [Pa]",
+    "grain.cohesion_force": "cohesion, grains",
+    "grain.surface_energy": "surface energy, grains",
+    "grain.density": r"density $\rho$, grains",
+    "lander.young_modulus": "Young's modulus $E$, lander",
     "lander.poisson_ratio": r"Poisson's ratio $\nu$, lander",
     "lander.restitution": "restitution $e$, lander",
     "lander.friction": r"friction $\mu$, lander",
     "lander.rolling_friction": "rolling friction, lander",
     "lander.spinning_friction": "spinning friction, lander",
-    "lander.cohesion_force": "cohesion, lander [N]",
-    "lander.surface_energy": "surface energy, lander [J/m$^2$]",
-    "lander.mass": "mass of the lander [kg]",
-    "lander.diameter": "diameter of the lander [m]",
-    "impact.speed": "impact speed [m/s]",
-    "impact.incidence_deg": "incidence [deg]",
-    "impact.azimuth_deg": "azimuth [deg]",
-    "impact.place.x": "place x [m]",
-    "impact.place.y": "place y [m]",
-    "impact.spin_x": "spin about x [rad/s]",
-    "impact.spin_y": "spin about y [rad/s]",
-    "impact.spin_z": "spin about z [rad/s]",
-    "surface.gravity": "gravity [m/s$^2$]",
-    "surface.slope_deg": "slope [deg]",
-    "surface.slope_azimuth_deg": "azimuth of the slope [deg]",
+    "lander.cohesion_force": "cohesion, lander",
+    "lander.surface_energy": "surface energy, lander",
+    "lander.mass": "mass of the lander",
+    "lander.diameter": "diameter of the lander",
+    "impact.speed": "impact speed",
+    "impact.incidence_deg": "incidence",
+    "impact.azimuth_deg": "azimuth",
+    "impact.place.x": "place x",
+    "impact.place.y": "place y",
+    "impact.spin_x": "spin about x",
+    "impact.spin_y": "spin about y",
+    "impact.spin_z": "spin about z",
+    "surface.gravity": "gravity",
+    "surface.slope_deg": "slope",
+    "surface.slope_azimuth_deg": "azimuth of the slope",
 }
 
 
 def output(name: str) -> Output:
-    """How an output is shown; one that has no entry keeps its own name and SI value."""
-    return OUTPUTS.get(name, Output(name, "", "SI", 1.0))
+    """How an output is shown, angles in degrees; one that is not known keeps its own name and SI value."""
+    if name not in TOUCHDOWN:
+        return Output("", "", name, "SI", 1.0)
+    known, (symbol, sign) = TOUCHDOWN[name], SYMBOLS.get(name, ("", ""))
+    unit, factor = ("deg", 180.0 / np.pi) if known.units == "rad" else (known.units, 1.0)
+    return Output(symbol, sign, known.title or name, unit, factor)
 
 
-def input_label(name: str, with_unit: bool = True) -> str:
-    """How a design input is shown; one that has no entry keeps its dotted key in words."""
-    label = INPUT_LABELS.get(name)
-    if label is None:
-        words = name.removeprefix("solver.inputs.").replace("_", " ").replace(".", ": ")
-        label = f"{words.removesuffix(' deg')} [deg]" if words.endswith(" deg") else words
-    return label if with_unit else label.split(" [")[0]
+def input_label(name: str, unit: str = "") -> str:
+    """How a design input is shown, with its unit if it has one; without an entry it keeps its dotted key in words."""
+    words = name.removeprefix("solver.inputs.").replace("_", " ").replace(".", ": ")
+    label = INPUT_LABELS.get(name, words.removesuffix(" deg"))
+    shown = re.sub(r"(\d)", r"$^\1$", unit)
+    return f"{label} [{shown}]" if shown else label
 
 
 def input_colours(names: tuple[str, ...]) -> dict[str, str]:

@@ -4,19 +4,11 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from lithobrake.report.captions import hours, input_words, percent
-from lithobrake.report.landing_tables import fates, landing_tables
-from lithobrake.report.page import Table, Tile, fixed, flat, number, show, unit_scales
+from lithobrake.report.dispersion_tables import dispersion_tables, outcome_words
+from lithobrake.report.page import PageTable, Tile, fixed, flat, number, show, unit_scales
 from lithobrake.report.results import Results
 from lithobrake.report.style import PAPER_OUTPUTS, output
 
-OUTPUT_WORDS = {
-    "speed_out": "outgoing speed V+",
-    "elevation_out": "elevation theta+",
-    "spin_out": "spin omega+",
-    "velocity_out_x": "velocity along x",
-    "velocity_out_y": "velocity across y",
-    "velocity_out_z": "velocity up z",
-}
 STAGE_WORDS = {
     "screening": "screening: its own runs",
     "test_screening": "screening: test, all inputs vary",
@@ -46,7 +38,7 @@ def tiles(data: Results) -> list[Tile]:
         Tile(
             f"{100 * shares['remains']['share']:.1f}",
             "%",
-            f"{fates(data)['remains'].format(hours=hours(data.study['flight']['duration']))}; {_scope(data)}",
+            f"{outcome_words(data)['remains'].format(hours=hours(data.study['flight']['duration']))}; {_scope(data)}",
         ),
         _touchdowns_tile(list(designs)),
         Tile(
@@ -91,7 +83,7 @@ def _touchdowns_tile(designs: list[dict[str, Any]]) -> Tile:
     return Tile(str(left), f"of {ended}", f"simulated touchdowns left the surface{beside}")
 
 
-def tables(data: Results) -> list[Table]:
+def tables(data: Results) -> list[PageTable]:
     """All tables, in the order of the stages."""
     return [
         _inputs(data),
@@ -102,15 +94,15 @@ def tables(data: Results) -> list[Table]:
         _sobol(data),
         _outputs(data),
         _touchdowns(data),
-        *landing_tables(data),
+        *dispersion_tables(data),
     ]
 
 
-def provenance(data: Results) -> list[Table]:
+def provenance(data: Results) -> list[PageTable]:
     """Where the numbers come from: seed, times, versions."""
     rows = [("seed", show(data.study.get("seed"))), *flat(data.provenance)]
     return [
-        Table(
+        PageTable(
             "Execution",
             ["name", "value"],
             rows,
@@ -119,7 +111,7 @@ def provenance(data: Results) -> list[Table]:
     ]
 
 
-def _inputs(data: Results) -> Table:
+def _inputs(data: Results) -> PageTable:
     kept = data.results["kept_inputs"]
     rows = []
     for name in data.results["screening"]["inputs"]:
@@ -129,26 +121,26 @@ def _inputs(data: Results) -> Table:
         parameters = ", ".join(f"{key} {show(entry)}" for key, entry in value.items() if key != "distribution")
         law = value["distribution"].replace("_", "-")
         rows.append([input_words(name), name, law, parameters, "yes" if name in kept else "no"])
-    return Table("Uncertain inputs", ["input", "key in the study file", "distribution", "parameters", "kept"], rows)
+    return PageTable("Uncertain inputs", ["input", "key in the study file", "distribution", "parameters", "kept"], rows)
 
 
-def _runs(data: Results) -> Table:
+def _runs(data: Results) -> PageTable:
     rows = []
     for name, design in data.results["designs"].items():
         outcomes = ", ".join(f"{count} {outcome.replace('_', ' ')}" for outcome, count in design["outcomes"].items())
         rows.append([DESIGN_WORDS.get(name, name), str(design["run_count"]), str(design["with_outputs"]), outcomes])
     numbers = frozenset({"runs", "left the surface"})
-    return Table("Touchdowns", ["design", "runs", "left the surface", "outcomes"], rows, numbers=numbers)
+    return PageTable("Touchdowns", ["design", "runs", "left the surface", "outcomes"], rows, numbers=numbers)
 
 
-def _beds(data: Results) -> Table:
+def _beds(data: Results) -> PageTable:
     columns = ["bed", "solid fraction", "contacts a grain", "surface height [m]", "mean diameter [m]"]
     keys = ("solid_fraction", "coordination_number", "surface_height_m", "mean_diameter_m")
     rows = [[str(index), *(_cell(bed[key]) for key in keys)] for index, bed in enumerate(data.results["beds"])]
-    return Table("Beds", columns, rows, numbers=frozenset(columns[1:]))
+    return PageTable("Beds", columns, rows, numbers=frozenset(columns[1:]))
 
 
-def _fits(data: Results) -> Table:
+def _fits(data: Results) -> PageTable:
     columns = [
         "expansion",
         "output",
@@ -167,7 +159,7 @@ def _fits(data: Results) -> Table:
             rows.append(
                 [
                     stage if row == 0 else "",
-                    OUTPUT_WORDS.get(name, name),
+                    shown.row,
                     shown.unit,
                     fit["method"].replace("_", " "),
                     str(fit["term_count"]),
@@ -182,10 +174,10 @@ def _fits(data: Results) -> Table:
         "Expected error: at a new run, by cross-validation, scatter included; no expansion comes below the scatter, "
         "which is known from points that were run several times, or from the nugget of a Gaussian process."
     )
-    return Table("How the expansions were fitted", columns, rows, note, frozenset(columns[4:]))
+    return PageTable("How the expansions were fitted", columns, rows, note, frozenset(columns[4:]))
 
 
-def _scores(data: Results) -> Table:
+def _scores(data: Results) -> PageTable:
     columns = ["expansion and runs", "output", "unit", "MAPE [%]", "Q2", "RMSE", "spread (std)", "RMSE/spread"]
     scale = _output_scales(data.results["scores"].values(), "std")
     rows = []
@@ -195,7 +187,7 @@ def _scores(data: Results) -> Table:
             rows.append(
                 [
                     STAGE_WORDS.get(stage, stage) if row == 0 else "",
-                    OUTPUT_WORDS.get(name, name),
+                    shown.row,
                     shown.unit,
                     _with_interval(score, "mape"),
                     _with_interval(score, "q2"),
@@ -208,12 +200,12 @@ def _scores(data: Results) -> Table:
         "Q2: explained share of the variance. A MAPE is small wherever an output hardly varies, so read it with Q2. "
         "In brackets: 95 % interval, by drawing the runs anew. Runs that were fitted flatter the expansion."
     )
-    return Table("Errors of the expansions", columns, rows, note, frozenset(columns[3:]))
+    return PageTable("Errors of the expansions", columns, rows, note, frozenset(columns[3:]))
 
 
-def _sobol(data: Results) -> Table:
+def _sobol(data: Results) -> PageTable:
     table = data.results["screening"]
-    words = [OUTPUT_WORDS[name].split()[-1] for name in PAPER_OUTPUTS]
+    words = [output(name).sign for name in PAPER_OUTPUTS]
     columns = ["input", *(f"{word} first" for word in words), *(f"{word} total" for word in words)]
     rows = [
         [
@@ -227,10 +219,10 @@ def _sobol(data: Results) -> Table:
         "freed of what scatter adds. First: alone. Total: with all interactions. In brackets: 95 % interval, by "
         "drawing the residuals of the runs anew."
     )
-    return Table("Sobol indices", columns, rows, note, frozenset(columns[1:]))
+    return PageTable("Sobol indices", columns, rows, note, frozenset(columns[1:]))
 
 
-def _outputs(data: Results) -> Table:
+def _outputs(data: Results) -> PageTable:
     columns = ["output", "unit", "mean", "std", "5 %", "median", "95 %"]
     keys = ("mean", "std", "quantile_0.05", "quantile_0.5", "quantile_0.95")
     outputs = data.results["monte_carlo"]["outputs"]
@@ -239,11 +231,11 @@ def _outputs(data: Results) -> Table:
     for name, table in outputs.items():
         shown = output(name)
         cells = (_cell(table[key] * shown.factor, scale[shown.unit]) for key in keys)
-        rows.append([OUTPUT_WORDS.get(name, name), shown.unit, *cells])
-    return Table("Outputs of the samples that leave", columns, rows, numbers=frozenset(columns[2:]))
+        rows.append([shown.row, shown.unit, *cells])
+    return PageTable("Outputs of the samples that leave", columns, rows, numbers=frozenset(columns[2:]))
 
 
-def _touchdowns(data: Results) -> Table:
+def _touchdowns(data: Results) -> PageTable:
     found, keys = data.results["outputs_of_runs"], ("smallest", "median", "largest")
     scale = unit_scales((table["unit"], table[key]) for table in found.values() for key in keys)
     rows = [
@@ -251,7 +243,7 @@ def _touchdowns(data: Results) -> Table:
         for name, table in found.items()
     ]
     columns = ["quantity", "unit", "smallest", "median", "largest"]
-    return Table("What else the touchdowns gave", columns, rows, "Over all distinct runs.", frozenset(columns[2:]))
+    return PageTable("What else the touchdowns gave", columns, rows, "Over all distinct runs.", frozenset(columns[2:]))
 
 
 def _output_scales(tables: Iterable[Mapping[str, Any]], *keys: str) -> dict[str, float]:

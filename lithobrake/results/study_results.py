@@ -1,44 +1,61 @@
 """The results of a study, read from its folder as they are asked for."""
 
+import math
 import os
-from collections.abc import Mapping, Sequence
+import shlex
+from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
-from lithobrake.outputs import DESIGNS
-from lithobrake.reading import read_json, read_rows, reading
-from lithobrake.results.columns import described
-from lithobrake.results.table import Table
+from lithobrake.outputs import BEDS, DESIGNS, FLIGHT, RUN, TOUCHDOWN, Quantity, quantity
+from lithobrake.reading import NUMBER, DamagedFileError, read_json, read_rows, reading
 
 if TYPE_CHECKING:
-    from lithobrake.results.named_surrogate import NamedSurrogate
+    import numpy as np
+    from numpy.typing import NDArray
 
-REMEDY = "have it made again with: lithobrake run STUDY.toml --out DIR"
-_TABLE = dict
+    from lithobrake.campaign import Record
+    from lithobrake.results.moving_bodies import MovingBodies
+    from lithobrake.results.named_surrogate import NamedSurrogate
+    from lithobrake.results.table import Table
+    from lithobrake.touchdown import Outcome
+
+SUMMARY_FORMAT = 2
+# Columns that a table has even without rows.
+_RUN = ("key", "outcome")
+_PLACES = ("sample", "status", "latitude_deg", "longitude_deg")
+# Columns that hold no numbers.
+_WORDS = {"key", "design", "outcome", "reason", "status", "ground"}
+_SCORE = {"ape": [NUMBER | None], "mape": NUMBER | None, "q2": NUMBER | None, "rmse": NUMBER, "std": NUMBER}
 
 
 class StudyResults:
     """What came out of a study; every table says of its columns what they are.
 
-    Nothing is written and nothing computed: it works on a folder that may only be read, on an archived copy, and beside
-    a study that runs, as far as that has come.
+    Nothing is written: it works on a folder that may only be read, on an archived copy, and beside a study that runs,
+    as far as that has come. Whatever is asked for raises ValueError, with what to do, where its file is damaged or not
+    there yet.
     """
+
+    # What is light here stays light: a second terminal looks at a running study every few seconds.
 
     def __init__(self, folder: str | os.PathLike[str]) -> None:
         """Look at a study's folder. Raises ValueError when it is none."""
         self.folder = Path(folder)
         if not any((self.folder / name).is_file() for name in ("summary.json", "keys.json", "runs.sqlite")):
             raise ValueError(f"{self.folder} holds no results of a study; name the folder of one that ran")
+        self.remedy = f"make it again with: lithobrake run STUDY.toml --out {shlex.quote(str(self.folder))}"
 
     @cached_property
     def summary(self) -> dict[str, Any]:
         """summary.json: the tables "study", "results" and "provenance" (docs/summary.md has every key)."""
-        content: dict[str, Any] = read_json(
-            self.folder / "summary.json", {"study": _TABLE, "results": _TABLE, "provenance": _TABLE}, REMEDY
-        )
+        path, tables = self.folder / "summary.json", dict.fromkeys(("study", "results", "provenance"), dict)
+        content: dict[str, Any] = read_json(path, {"format_version": int, **tables}, self.remedy)
+        if content["format_version"] != SUMMARY_FORMAT:
+            raise DamagedFileError(
+                f"{path} has format {content['format_version']}; this version reads {SUMMARY_FORMAT}; {self.remedy}"
+            )
         return content
 
     @property
@@ -48,55 +65,127 @@ class StudyResults:
         return tables
 
     @cached_property
-    def runs(self) -> Table:
-        """Every touchdown of the study once: outcome, inputs in the file's units, outputs [SI]."""
-        rows: dict[str, dict[str, str]] = {}
-        for design in DESIGNS:
-            path = self.folder / "designs" / f"{design}.csv"
-            for row in read_rows(path, ("key", "outcome"), REMEDY) if path.is_file() else ():
-                rows.setdefault(row["key"], {"design": design, **row})
-        return self._table("run", list(rows.values()), ("design", "key", "outcome", "reason"))
+    def study_text(self) -> str:
+        """The study file as it was written."""
+        with reading(self.folder / "study.toml", self.remedy):
+            return (self.folder / "study.toml").read_text(encoding="utf-8")
+
+    @property
+    def headline(self) -> list[str]:
+        """The answer, and the most telling numbers behind it, each in a sentence."""
+        with reading(self.folder / "summary.json", self.remedy):
+            return [str(sentence) for sentence in self.summary["results"]["headline"]]
+
+    @property
+    def ledger(self) -> "list[Record]":
+        """Every run that was ever made or asked for, those of earlier settings among them, as it stands now."""
+        from lithobrake.campaign import read_records
+
+        return read_records(self.folder / "runs.sqlite")
 
     @cached_property
-    def samples(self) -> Table:
+    def runs(self) -> "Table":
+        """Every touchdown of the study once: outcome, inputs in the file's units, outputs [SI]."""
+        rows: dict[str, dict[str, Any]] = {}
+        for design in DESIGNS:
+            name = f"designs/{design}.csv"
+            for row in self._rows(name, _RUN) if (self.folder / name).is_file() else ():
+                rows.setdefault(row["key"], {"design": design, **row})
+        return self._table("run", list(rows.values()), ("design", *_RUN), RUN | TOUCHDOWN)
+
+    @cached_property
+    def scores(self) -> dict[str, dict[str, dict[str, Any]]]:
+        """Errors of the expansions by set of runs and output (docs/summary.md), with those of single runs in "ape"."""
+        content: dict[str, Any] = read_json(self.folder / "scores.json", {str: {str: _SCORE}}, self.remedy)
+        return content
+
+    @cached_property
+    def samples(self) -> "Table":
         """The samples of the Monte Carlo: inputs in the file's units, outcome, and outputs [SI] of those that leave."""
         import h5py
+        import numpy as np
 
         path = self.folder / "samples.h5"
-        with reading(path, REMEDY), h5py.File(path, "r") as file:
+        with reading(path, self.remedy), h5py.File(path, "r") as file:
             names = [str(name) for name in file.attrs["outcomes"]]
             outcome = np.array(names)[file["outcome"][:]]
-            parts = [
+            inputs, outputs = (
                 dict(zip(map(str, file.attrs[f"{part}_names"]), file[f"{part}s"][:].T, strict=True))
                 for part in ("input", "output")
-            ]
-        columns = {**parts[0], "outcome": outcome, **parts[1]}
-        return Table("sample", {name: described(name, values, self._units) for name, values in columns.items()})
+            )
+        return self._described("sample", {**inputs, "outcome": outcome, **outputs}, RUN | TOUCHDOWN)
 
     @cached_property
-    def flights(self) -> Table:
+    def flights(self) -> "Table":
         """The flights of the samples that leave, to the next impact (docs/flights.md)."""
-        return self._table("flight", self._rows("flights.csv"), ("status",))
+        columns = (*_PLACES, "facet")
+        return self._table("flight", self._rows("flights.csv", columns), columns, FLIGHT)
 
     @cached_property
-    def rest(self) -> Table:
+    def rest(self) -> "Table":
         """Where samples end after all bounces, on each ground (docs/flights.md)."""
-        return self._table("journey", self._rows("rest.csv"), ("ground", "status"))
+        columns = ("ground", *_PLACES)
+        return self._table("journey", self._rows("rest.csv", columns), columns, FLIGHT)
 
     @cached_property
-    def beds(self) -> Table:
+    def beds(self) -> "Table":
         """Numbers of each bed; a study whose touchdowns are made by its own program has none."""
-        beds: list[dict[str, Any]] = self.summary["results"]["beds"]
-        names = list(beds[0]) if beds else []
-        columns = {name: np.array([bed[name] for bed in beds]) for name in names}
-        return Table("bed", {name: described(name, values, {}) for name, values in columns.items()})
+        with reading(self.folder / "summary.json", self.remedy):
+            beds: list[dict[str, Any]] = self.summary["results"]["beds"]
+            columns = {name: [bed[name] for bed in beds] for name in (beds[0] if beds else ())}
+        return self._described("bed", columns, BEDS)
+
+    def bed_bodies(self, number: int = 0) -> "MovingBodies":
+        """The grains of a bed, and how they were poured and settled."""
+        return self._bodies(f"beds/bed_{number}.h5")
+
+    @cached_property
+    def median_landing(self) -> "MovingBodies":
+        """The landing with all inputs at their medians: grains and, as the last body, the lander."""
+        return self._bodies("landing.h5")
+
+    def landing(
+        self,
+        run: str | int,
+        *,
+        frame_count: int = 120,
+        progress: Callable[[float, str], None] = lambda fraction, what: None,
+    ) -> "Outcome":
+        """A touchdown of the study made once more, with its frames; nothing is written.
+
+        run: its row in `runs`, or its key there, or how that begins. progress: called with the fraction that is done
+        of what is being done.
+        Raises ValueError for a run that is none of the study or has no outcome, a program of the user's own, other
+        code than made the run, and where what comes out is not, bit for bit, what the ledger has.
+        """
+        from lithobrake.results.landing_again import land_again
+
+        key = self._key(run)
+        record = next((one for one in self.ledger if one.key == key), None)
+        if record is None:
+            raise ValueError(f"{self.folder / 'runs.sqlite'} lacks run {key}; {self.remedy}")
+        return land_again(self.folder, record, frame_count, progress)
+
+    @cached_property
+    def body_shape(self) -> "tuple[NDArray[np.float64], NDArray[np.int64]]":
+        """Vertices of the body [m], shape [vertex_count, 3], body-fixed, and its faces, from 0, [face_count, 3]."""
+        import numpy as np
+
+        with reading(self.folder / "body.obj", self.remedy):
+            lines = [line.split() for line in (self.folder / "body.obj").read_text(encoding="utf-8").splitlines()]
+            vertices = np.array([[float(word) for word in words[1:4]] for words in lines if words[0] == "v"])
+            faces = np.array([[int(word) - 1 for word in words[1:4]] for words in lines if words[0] == "f"])
+            if vertices.ndim != 2 or faces.ndim != 2 or not 0 <= faces.min() <= faces.max() < len(vertices):
+                raise ValueError("it has no vertices, or faces without them")
+        return vertices, faces
 
     @cached_property
     def surrogate(self) -> "NamedSurrogate":
         """The refined expansion, called by the names of its inputs."""
         from lithobrake.results.named_surrogate import NamedSurrogate
 
-        return NamedSurrogate.read(self.folder / "refined.json")
+        with reading(self.folder / "refined.json", self.remedy):
+            return NamedSurrogate.read(self.folder / "refined.json")
 
     @cached_property
     def _units(self) -> dict[str, str]:
@@ -104,19 +193,44 @@ class StudyResults:
 
         return input_units()
 
-    def _rows(self, name: str) -> list[dict[str, str]]:
-        return read_rows(self.folder / name, ("sample",), REMEDY)
+    def _key(self, run: str | int) -> str:
+        """The key of a run of the study. Raises ValueError where it has none, or several that begin like that."""
+        keys = [str(key) for key in self.runs["key"]]
+        found = [key for row, key in enumerate(keys) if (key.startswith(run) if isinstance(run, str) else row == run)]
+        if len(found) != 1:
+            raise ValueError(
+                f"run is {run!r}, which {len(found) or 'none'} of the {len(keys)} runs of {self.folder} have; "
+                "give a row of its table `runs`, from 0, or how the key of one run begins"
+            )
+        return found[0]
 
-    def _table(self, row: str, rows: Sequence[Mapping[str, str]], words: Sequence[str]) -> Table:
-        """A table of the rows of a CSV file; words: columns that are no numbers."""
-        titles = dict.fromkeys(title for one in rows for title in one)
-        columns = {}
-        for title in titles:
-            name = title.removeprefix("input:").removeprefix("output:")
-            cells = [one.get(title, "") for one in rows]
-            values: Any = cells if name in words else [float(cell) if cell else np.nan for cell in cells]
-            columns[name] = described(name, values, self._units)
-        return Table(row, columns)
+    def _bodies(self, name: str) -> "MovingBodies":
+        from lithobrake.results.moving_bodies import MovingBodies
+
+        return MovingBodies.read(self.folder / name, self.remedy)
+
+    def _rows(self, name: str, columns: Sequence[str]) -> list[dict[str, Any]]:
+        """The rows of a CSV file, numbers as numbers; columns: that it has to have."""
+        path = self.folder / name
+        with reading(path, self.remedy):
+            return [
+                {title: cell if title in _WORDS else float(cell or "nan") for title, cell in row.items()}
+                for row in read_rows(path, columns, self.remedy)
+            ]
+
+    def _table(
+        self, row: str, rows: Sequence[Mapping[str, Any]], first: Sequence[str], known: Mapping[str, Quantity]
+    ) -> "Table":
+        """A table of rows by title; a row that lacks a number has none there. first: columns that it has at least."""
+        absent = {title: "" if title in _WORDS else math.nan for title in (*first, *(t for one in rows for t in one))}
+        names = {title: title.removeprefix("input:").removeprefix("output:") for title in absent}
+        columns = {names[title]: [one.get(title, none) for one in rows] for title, none in absent.items()}
+        return self._described(row, columns, known)
+
+    def _described(self, row: str, columns: Mapping[str, Any], known: Mapping[str, Quantity]) -> "Table":
+        from lithobrake.results.table import Table
+
+        return Table.of(row, {name: (quantity(name, known, self._units), values) for name, values in columns.items()})
 
     def __repr__(self) -> str:
         """Say where they are, and the answer."""

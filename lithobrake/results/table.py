@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from lithobrake.outputs import Quantity
+
 if TYPE_CHECKING:
     import pandas
     import xarray
@@ -32,8 +34,7 @@ class Column:
     @property
     def attributes(self) -> dict[str, str]:
         """What the column is, as other programs keep it beside the values."""
-        frame = {"frame": self.frame} if self.frame else {}
-        return {"units": self.units, "long_name": self.long_name, **frame}
+        return Quantity(self.units, self.long_name, self.frame).attributes
 
 
 class Table(Mapping[str, np.ndarray]):
@@ -46,6 +47,11 @@ class Table(Mapping[str, np.ndarray]):
             raise ValueError(f"columns have {sorted(lengths)} rows; all columns of a table must have the same")
         self.row, self.columns = row, dict(columns)
         self.row_count = lengths.pop() if lengths else 0
+
+    @classmethod
+    def of(cls, row: str, columns: Mapping[str, tuple[Quantity, Any]]) -> "Table":
+        """A table of values by name, each with what it is."""
+        return cls(row, {name: Column(np.asarray(values), *what[:3]) for name, (what, values) in columns.items()})
 
     def __getitem__(self, name: str) -> np.ndarray:
         """Values of a column, shape [row_count]. Raises KeyError with the names that there are."""

@@ -1,5 +1,6 @@
 """Small bodies: shape, gravity, rotation and flight."""
 
+from lithobrake.outcomes import FlightStatus, JourneyStatus
 from lithobrake.smallbody.body import Body, Partner
 from lithobrake.smallbody.bounce import Bounce, HardSurface, Impacts, Rebounds
 from lithobrake.smallbody.built_in_bodies import didymos, dimorphos
@@ -7,7 +8,6 @@ from lithobrake.smallbody.flight import fly
 from lithobrake.smallbody.flight_results import Flights
 from lithobrake.smallbody.hopping import Journeys, Launch, hop
 from lithobrake.smallbody.shape import Shape
-from lithobrake.smallbody.status import FlightStatus, JourneyStatus
 
 __all__ = [
     "Body",

@@ -8,7 +8,7 @@ from lithobrake.compiled import kernel, large_kernel
 from lithobrake.smallbody.arrays import Floats, Integers
 from lithobrake.smallbody.attraction import Gravity, Workspace, attract
 from lithobrake.smallbody.orbit import Orbit
-from lithobrake.smallbody.polyhedron import PULL_X
+from lithobrake.smallbody.polyhedron_gravity import PULL_X
 from lithobrake.smallbody.simd import LANES
 
 

@@ -9,14 +9,14 @@ from lithobrake.compiled import compiled, kernel, large_kernel
 from lithobrake.smallbody.arrays import Floats, Integers
 from lithobrake.smallbody.gravity_table import GravityTable, level_of, read_table
 from lithobrake.smallbody.multipole import SCRATCH, Multipole, series_block
-from lithobrake.smallbody.polyhedron import ROWS, Polyhedron, field_block
+from lithobrake.smallbody.polyhedron_gravity import ROWS, PolyhedronTerms, field_block
 from lithobrake.smallbody.simd import LANES, WIDTH
 
 
 class Gravity(NamedTuple):
     """What the gravity of one shape is read from: its facets, its series, and a table, which may be empty."""
 
-    polyhedron: Polyhedron
+    polyhedron: PolyhedronTerms
     multipole: Multipole
     table: GravityTable
 

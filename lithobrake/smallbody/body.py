@@ -22,8 +22,8 @@ class Body:
     spin_period   sidereal, counter-clockwise seen from +z [s]; infinite for a body that does not turn
     partner       the other body of a binary, which flights feel and may hit; None: the body is alone
 
-    Acceleration and potential are those of the body itself, without its partner. Its centre of mass is taken to be at
-    the origin in what concerns the partner.
+    Acceleration and potential are those of the body itself, without its partner. For the partner, its centre of mass
+    counts as the origin.
     """
 
     shape: Shape
@@ -99,7 +99,7 @@ class Body:
         return laplacian
 
     def gradient(self, points: ArrayLike) -> NDArray[np.float64]:
-        """Derivatives of the acceleration by place [1/s2], shape [..., 3, 3], at body-fixed points [m], [..., 3].
+        """Derivatives of the acceleration by position [1/s2], shape [..., 3, 3], at body-fixed points [m], [..., 3].
 
         Symmetric; its trace is the Laplacian. On an edge of the shape, where it has no limit, it is large and finite.
         """
@@ -172,11 +172,11 @@ class Body:
 
 @dataclass(frozen=True)
 class Partner:
-    """The other body of a binary, seen from the one that holds this: it goes round in the sense of that one's spin.
+    """The other body of a binary, seen from the one that holds this: it orbits in the sense of that one's spin.
 
     body            its shape, mass and spin, about the same direction
     period          of the mutual orbit [s]; the distance follows from it and both masses (Kepler's third law)
-    longitude_deg   east longitude of its centre at time 0, in the frame of the body that holds this
+    longitude_deg   east longitude of its centre at time 0, in the frame of the body that holds it
     facing_deg      the longitude on the partner that faces that body at time 0, and always where it turns once an orbit
     """
 

@@ -37,7 +37,7 @@ class Rebounds:
     velocity    [m/s], [count, 3]
     spin        [rad/s], [count, 3]
     captured    the lander stays, [count]
-    outside     the model does not know such an impact, [count]; neither velocity nor captured is then read
+    outside     the model does not cover this impact, [count]; neither velocity nor captured is then read
     """
 
     velocity: NDArray[np.float64]
@@ -60,8 +60,7 @@ class HardSurface:
     horizontal velocity squared over twice friction times that acceleration, is not followed. Spin is kept: a point has
     none to change.
 
-    Source: Tardivel, Scheeres, Michel, Van wal and Sanchez (2014), Contact motion on surface of asteroid, Journal of
-    Spacecraft and Rockets 51, 1857-1871: an impact as normal restitution and Coulomb friction.
+    Source: [Tardivel-2014]: an impact as normal restitution and Coulomb friction.
     """
 
     normal_restitution: float

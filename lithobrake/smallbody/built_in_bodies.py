@@ -12,7 +12,7 @@ from lithobrake.smallbody.shape import Shape
 # -72.725 deg (J2000) in the frames kernel of the Didymos system, version 007 (Nair 2023, JHU/APL; orbit solution 542,
 # before the impact of DART). No flight depends on it.
 DIDYMOS_POLE = (310.0, -80.6)
-MUTUAL_PERIOD = 11.3674 * 3600.0  # [s], since the impact of DART; Naidu et al. (2024)
+MUTUAL_PERIOD = 11.3674 * 3600.0  # [s], since the impact of DART; [Naidu-2024]
 RINGS = 15  # between a pole and the band along the equator: 8 * 15 * 16 = 1920 facets
 
 
@@ -24,10 +24,9 @@ def didymos(*, partner: bool = True) -> Body:
     The flanks are an ellipsoid; the ridge stands 20 m above it, narrowing over 12 degrees of latitude. Both are choices
     within the 15 m by which the extents are known; no boulder or crater is drawn. The pole is DIDYMOS_POLE.
 
-    Sources: extents (+-15 m) Daly et al. (2023), Successful kinetic impact into an asteroid for planetary defence,
-    Nature 616, 443-447; period before the DART impact Naidu et al. (2020), Radar observations and a physical model of
-    binary near-Earth asteroid 65803 Didymos, Icarus 348, 113777. The mass is a choice inside the published 5.4 +- .4
-    e11 kg of the system less Dimorphos; the density follows as 2396 kg/m3, published is 2400 +- 300.
+    Sources: [Daly-2023] (extents, +-15 m); [Naidu-2020] (period before the DART impact). The mass is a choice inside
+    the published 5.4 +- .4 e11 kg of the system less Dimorphos; the density follows as 2396 kg/m3, published is
+    2400 +- 300.
     """
     other = Partner(_dimorphos(), period=MUTUAL_PERIOD, longitude_deg=0.0) if partner else None
     return replace(_didymos(), partner=other)
@@ -43,11 +42,8 @@ def dimorphos(*, partner: bool = True) -> Body:
     radius follows from period and masses as 1149 m, published are 1144 +- 70 m. The pole is that of the orbit,
     DIDYMOS_POLE.
 
-    Sources: extents and mass Daly et al. (2023), Nature 616, 443-447; period Naidu et al. (2024), Orbital and physical
-    characterization of asteroid Dimorphos following the DART impact, Planetary Science Journal 5, 74; distance and
-    eccentricity Thomas et al. (2023), Orbital period change of Dimorphos due to the DART kinetic impact, Nature 616,
-    448-451, and Scheirich et al. (2024), Dimorphos orbit determination from mutual events photometry, Planetary Science
-    Journal 5, 17.
+    Sources: [Daly-2023] (extents and mass); [Naidu-2024] (period); [Thomas-2023] and [Scheirich-2024] (distance and
+    eccentricity).
     """
     # From Dimorphos, which always shows the same face, Didymos never moves; it turns once in its own period.
     other = Partner(_didymos(), period=MUTUAL_PERIOD, longitude_deg=0.0) if partner else None

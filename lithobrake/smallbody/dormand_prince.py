@@ -1,7 +1,6 @@
 """The embedded Runge-Kutta pair 5(4) with seven stages, and its polynomial between the ends of a step.
 
-Sources: Dormand and Prince (1980), A family of embedded Runge-Kutta formulae, J. Comput. Appl. Math. 6, 19-26; Hairer,
-Norsett and Wanner (1993), Solving Ordinary Differential Equations I, sections II.4 (step size) and II.6 (dense output).
+Sources: [Dormand-1980]; [Hairer-1993], sections II.4 (step size) and II.6 (dense output).
 
 A state is x, y, z [m] and their rates [m/s]; `derivative` holds that of each stage. Lanes stand last: state
 [6, lane], derivative [7, 6, lane].

@@ -13,7 +13,7 @@ from lithobrake.smallbody.arrays import Floats
 from lithobrake.smallbody.attraction import Gravity
 from lithobrake.smallbody.body import GRAVITATIONAL_CONSTANT, Body
 from lithobrake.smallbody.flight_results import ESCAPE_ORBITS, ESCAPE_RADII, STATUSES, Flights, StartStates
-from lithobrake.smallbody.impact import ALOFT, ON_SURFACE, Ground
+from lithobrake.smallbody.impact_search import ALOFT, ON_SURFACE, Ground
 from lithobrake.smallbody.integration import FAILED, FlightEnds, integrate_flights
 from lithobrake.smallbody.orbit import Orbit
 from lithobrake.smallbody.shape import Shape
@@ -49,11 +49,11 @@ def fly(
     gravity              "exact": the polyhedron's; "table": read from grids that are built once for a shape and kept
                          on disk, with the error shape.table_error
     mass, spin_period    [kg], [s], of the body in each flight, in place of its own: for a body that is not well known
-    tolerance            error that one step may make: this share of the body's radius in position, and the same share
+    tolerance            error that one step may make: this part of the body's radius in position, and the same part
                          of radius over dynamical time in velocity; by default 3e-7 (impacts within centimetres), with
                          the table 3e-6, whose own error is larger
     threads              defaults to the number of cores; the result does not depend on it
-    progress             called with the finished share of the flights, from this thread
+    progress             called with the finished fraction of the flights, from this thread
 
     A start on the surface (within a millionth of the radius, at most 1 mm) is no impact; the first meeting with the
     ground after the flight has left it is. A flight that starts on the surface and moves into it at once has its impact
@@ -65,14 +65,7 @@ def fly(
     times = _one_each("duration", duration, len(starts))
     if not (times > 0.0).all():
         raise ValueError(f"duration is {duration!r} s; it must be finite and above 0.")
-    if frame not in ("body", "inertial"):
-        raise ValueError(f"frame is {frame!r}; allowed are 'body' and 'inertial'.")
-    if gravity not in ("exact", "table"):
-        raise ValueError(f"gravity is {gravity!r}; allowed are 'exact' and 'table'.")
-    if tolerance is None:
-        tolerance = 3e-7 if gravity == "exact" else 3e-6
-    if not 1e-13 <= tolerance <= 1e-3:
-        raise ValueError(f"tolerance is {tolerance}; it must lie in 1e-13 to 1e-3.")
+    tolerance = _checked_choices(frame, gravity, tolerance)
     count = len(starts)
     masses = _one_each("mass", body.mass if mass is None else mass, count, "kg")
     periods = _one_each("spin_period", body.spin_period if spin_period is None else spin_period, count, infinite=True)
@@ -80,14 +73,7 @@ def fly(
     if frame == "inertial":
         starts = _into_turning_frame(starts, dynamics.spin_rate, begin)
     phase, grounds = _phases(body, starts, dynamics.orbit, begin)
-    sources = _sources(body, gravity)
-    ends = FlightEnds(
-        status=np.zeros(count, dtype=np.int64),
-        time=np.zeros(count),
-        state=np.zeros((count, 6)),
-        facet=np.full(count, -1),
-        step_count=np.zeros(count, dtype=np.int64),
-    )
+    sources, ends = _sources(body, gravity), FlightEnds.of_count(count)
 
     def part(first: int) -> None:
         piece = slice(first, first + CHUNK)
@@ -96,10 +82,22 @@ def fly(
 
     _run(part, count, threads, progress)
     _refuse_failed(starts, ends, tolerance)
-    where, rate = starts[:, :3].copy(), starts[:, 3:].copy()
-    begins = StartStates(begin, where, rate, masses, periods)
-    place, velocity_there = ends.state[:, :3], ends.state[:, 3:]
-    return Flights(body, begins, STATUSES[ends.status], ends.time, place, velocity_there, ends.facet, ends.step_count)
+    begins = StartStates(begin, starts[:, :3].copy(), starts[:, 3:].copy(), masses, periods)
+    place, rate = ends.state[:, :3], ends.state[:, 3:]
+    return Flights(body, begins, STATUSES[ends.status], ends.time, place, rate, ends.facet, ends.step_count)
+
+
+def _checked_choices(frame: str, gravity: str, tolerance: float | None) -> float:
+    """The tolerance, by default that of the gravity. Raises ValueError for a word or a number that is not allowed."""
+    if frame not in ("body", "inertial"):
+        raise ValueError(f"frame is {frame!r}; allowed are 'body' and 'inertial'.")
+    if gravity not in ("exact", "table"):
+        raise ValueError(f"gravity is {gravity!r}; allowed are 'exact' and 'table'.")
+    if tolerance is None:
+        return 3e-7 if gravity == "exact" else 3e-6
+    if not 1e-13 <= tolerance <= 1e-3:
+        raise ValueError(f"tolerance is {tolerance}; it must lie in 1e-13 to 1e-3.")
+    return tolerance
 
 
 def _sources(body: Body, gravity: str) -> tuple[Gravity, Gravity]:

@@ -6,8 +6,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from lithobrake.outcomes import FlightStatus
 from lithobrake.smallbody.body import GRAVITATIONAL_CONSTANT, Body
-from lithobrake.smallbody.status import FlightStatus
 
 STATUSES = np.array([status.value for status in FlightStatus])
 ESCAPE_RADII = 10.0  # radii of the body beyond which a flight with positive energy has escaped

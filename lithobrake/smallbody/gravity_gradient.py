@@ -1,8 +1,7 @@
 """How gravity changes from place to place: the second derivatives of the potential, near and far.
 
-Sources: Werner and Scheeres (1996), Exterior gravitation of a polyhedron, Celestial Mechanics and Dynamical Astronomy
-65, 313-344, Eq 17's companion for the gradient matrix (sum of edge dyads and logarithms less facet dyads and solid
-angles); far away the harmonics of multipole.py, whose derivative is a series again, with shifted moments.
+Source: [Werner-1996], Eq 17's companion for the gradient matrix (sum of edge dyads and logarithms less facet dyads and
+solid angles); far away the harmonics of multipole.py, whose derivative is a series again, with shifted moments.
 """
 
 import numpy as np
@@ -11,14 +10,14 @@ from numpy.typing import NDArray
 from lithobrake.compiled import compiled
 from lithobrake.smallbody.arrays import Floats
 from lithobrake.smallbody.multipole import Multipole
-from lithobrake.smallbody.polyhedron import Polyhedron
+from lithobrake.smallbody.polyhedron_gravity import PolyhedronTerms
 from lithobrake.smallbody.simd import angle, log_ratio
 
 # Place of xx, yy, zz, xy, xz, yz in a 3 x 3 matrix.
 MATRIX = np.array([[0, 3, 4], [3, 1, 5], [4, 5, 2]])
 
 
-def gradient(points: NDArray[np.float64], polyhedron: Polyhedron, multipole: Multipole) -> NDArray[np.float64]:
+def gradient(points: NDArray[np.float64], polyhedron: PolyhedronTerms, multipole: Multipole) -> NDArray[np.float64]:
     """Derivatives of the field sums without the factor G density, at points [m], shape [count, 3]: [count, 3, 3].
 
     On an edge they grow without bound; there, and nearer than 1e-16 of its length, a large finite value is given. On a
@@ -66,7 +65,7 @@ def _acceleration_series(multipole: Multipole) -> list[Multipole]:
 
 
 @compiled
-def _near(points: Floats, result: Floats, polyhedron: Polyhedron) -> None:
+def _near(points: Floats, result: Floats, polyhedron: PolyhedronTerms) -> None:
     """Add to result [count, 6], point by point, the edges' sums E L less the facets' sums n n omega."""
     vertices, ends, edge_terms = polyhedron.vertices, polyhedron.edge_ends, polyhedron.edge_terms
     corners, facet_terms = polyhedron.facet_corners, polyhedron.facet_terms

@@ -4,8 +4,7 @@ A grid holds the acceleration less that of a point mass, as coefficients of cubi
 sees has two continuous derivatives. The innermost grid is the finest and covers the body; each of the others is coarser
 and reaches farther. Below the surface the field outside is continued, because a kink would spoil the spline above it.
 
-Source of the coefficients: the quasi-interpolant that reproduces cubics, de Boor (2001), A Practical Guide to Splines,
-chapter XII.
+Source of the coefficients: the quasi-interpolant that reproduces cubics, [de-Boor-2001], chapter XII.
 """
 
 from typing import NamedTuple

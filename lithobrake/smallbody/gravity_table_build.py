@@ -18,7 +18,7 @@ from lithobrake.smallbody.attraction import Gravity
 from lithobrake.smallbody.gravity_table import CORE, MARGIN, RIM, GravityTable, point_mass, spline_coefficients
 from lithobrake.smallbody.grid import Grid
 from lithobrake.smallbody.multipole import Multipole
-from lithobrake.smallbody.polyhedron import Polyhedron
+from lithobrake.smallbody.polyhedron_gravity import PolyhedronTerms
 from lithobrake.smallbody.signed_distance import near_heights, pseudonormals
 
 SKIN = 6  # cells below the surface over which the continued field goes over into the one inside
@@ -40,7 +40,7 @@ Levels = tuple[tuple[float, float], ...]
 
 
 def gravity_table_of(
-    polyhedron: Polyhedron, multipole: Multipole, volume: float, levels: Levels
+    polyhedron: PolyhedronTerms, multipole: Multipole, volume: float, levels: Levels
 ) -> tuple[GravityTable, TableError]:
     """The table of a shape and its error, from disk where it was built before; the name there is a hash of the mesh.
 
@@ -76,20 +76,18 @@ def _file(table: GravityTable, error: TableError) -> bytes:
     return file.getvalue()
 
 
-def _build(polyhedron: Polyhedron, multipole: Multipole, volume: float, levels: Levels) -> GravityTable:
+def _build(polyhedron: PolyhedronTerms, multipole: Multipole, volume: float, levels: Levels) -> GravityTable:
     """Sample each grid with the facets' sums or the series, continue below the surface, turn into splines."""
     # From two radii on the series is off by 1e-7 or less, far below what the splines lose, and ten times faster.
     closer = multipole._replace(nearest=min(multipole.nearest, 2.0 * multipole.radius))
     gravity = Gravity(polyhedron, closer, GravityTable.empty())
     core = CORE * (3.0 * volume / (4.0 * math.pi)) ** (1.0 / 3.0)
     lower, upper = polyhedron.vertices.min(axis=0), polyhedron.vertices.max(axis=0)
-    corners: list[NDArray[np.float64]] = []
-    edges: list[float] = []
-    sizes: list[NDArray[np.int64]] = []
+    grids: list[tuple[NDArray[np.float64], NDArray[np.int64], float]] = []
     values: list[NDArray[np.float64]] = []
     served: tuple[NDArray[np.float64], NDArray[np.float64]] | None = None
-    for share, reach in levels:
-        edge = share * multipole.radius
+    for fineness, reach in levels:
+        edge = fineness * multipole.radius
         if served is None:
             first, last = lower - MARGIN * edge, upper + MARGIN * edge
         else:
@@ -106,12 +104,10 @@ def _build(polyhedron: Polyhedron, multipole: Multipole, volume: float, levels: 
         if served is None:
             sample -= 4.0 * math.pi * _continuation(nodes, polyhedron, SKIN * edge)
         values.append(spline_coefficients(sample.reshape(*size, 3)).reshape(-1))
-        corners.append(first)
-        edges.append(edge)
-        sizes.append(size)
+        grids.append((first, size, edge))
         served = first + RIM * edge, first + (size - 1 - RIM) * edge
     starts = np.cumsum([0, *(len(level) for level in values[:-1])])
-    corner, cells, cell = np.array(corners), np.array(sizes), np.array(edges)
+    corner, cells, cell = (np.array(column) for column in zip(*grids, strict=True))
     rim = RIM * cell[:, None]
     return GravityTable(
         *(multipole.centre, volume, core, corner, cell, cells, starts, np.concatenate(values)),
@@ -144,7 +140,7 @@ def _subtract(points: Floats, sample: Floats, centre: Floats, volume: float, cor
         sample[i, 2] -= z
 
 
-def _continuation(nodes: NDArray[np.float64], polyhedron: Polyhedron, skin: float) -> NDArray[np.float64]:
+def _continuation(nodes: NDArray[np.float64], polyhedron: PolyhedronTerms, skin: float) -> NDArray[np.float64]:
     """What density adds below the surface, over 4 pi: the depth along the normal [m], faded out over `skin`, [count,
     3].
 
@@ -163,13 +159,13 @@ def _continuation(nodes: NDArray[np.float64], polyhedron: Polyhedron, skin: floa
     under = np.flatnonzero((height < 0.0) & (height > -skin))
     normal = normals[facet[under]]
     depth = np.einsum("ni,ni->n", corner[facet[under], 0] - nodes[under], normal)
-    share = np.clip(-height[under] / skin, 0.0, 1.0)
-    fade = np.where(share < 0.5, 1.0, 0.5 * (1.0 + np.cos(2.0 * np.pi * (share - 0.5))))
+    sunk = np.clip(-height[under] / skin, 0.0, 1.0)
+    fade = np.where(sunk < 0.5, 1.0, 0.5 * (1.0 + np.cos(2.0 * np.pi * (sunk - 0.5))))
     result[under] = (depth * fade)[:, None] * normal
     return result
 
 
-def _measure(table: GravityTable, polyhedron: Polyhedron, multipole: Multipole) -> TableError:
+def _measure(table: GravityTable, polyhedron: PolyhedronTerms, multipole: Multipole) -> TableError:
     """Compare on points from the surface out to the last grid, most of them near the surface."""
     exact = Gravity(polyhedron, multipole, GravityTable.empty())
     random = np.random.default_rng(0)

@@ -7,11 +7,11 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from lithobrake.outcomes import FlightStatus, JourneyStatus
 from lithobrake.smallbody.body import Body
 from lithobrake.smallbody.bounce import Bounce, Impacts
 from lithobrake.smallbody.flight import fly
 from lithobrake.smallbody.flight_results import Flights
-from lithobrake.smallbody.status import FlightStatus, JourneyStatus
 
 GRAZE = 1e-5  # cosine of the incidence below which a lander does not hit the ground but slides along it
 
@@ -87,11 +87,10 @@ def hop(
     bounce     called once a round with the impacts of all landers still under way and a generator of random numbers
     gravity    as of `fly`, and so are threads
     seed       of the generator: the same call gives the same result
-    progress   called with the share of landers that have ended
+    progress   called with the fraction of landers that have ended
     """
     state = _State.of(body, launch)
-    count = len(state.time)
-    going = np.arange(count)
+    going = np.arange(len(state.time))
     for number in range(bounce_limit + 1):
         flights = fly(
             *(body, state.position[going], state.velocity[going], duration - state.time[going]),
@@ -114,7 +113,7 @@ def hop(
             state.status[going] = JourneyStatus.BOUNCING
             going = going[:0]
         if progress:
-            progress(1.0 - len(going) / max(count, 1))
+            progress(1.0 - len(going) / max(len(state.time), 1))
         if not len(going):
             break
     return state.journeys()

@@ -9,9 +9,9 @@ from typing import NamedTuple
 import numpy as np
 
 from lithobrake.compiled import compiled, kernel, large_kernel
-from lithobrake.smallbody.acceleration import Forces, accelerate, has_escaped
+from lithobrake.smallbody.acceleration import Dynamics, Forces, accelerate, has_escaped
 from lithobrake.smallbody.arrays import Floats, Integers
-from lithobrake.smallbody.attraction import workspace
+from lithobrake.smallbody.attraction import Workspace, workspace
 from lithobrake.smallbody.dormand_prince import (
     NODES,
     STAGES,
@@ -21,12 +21,13 @@ from lithobrake.smallbody.dormand_prince import (
     stage_state,
     step_error,
 )
-from lithobrake.smallbody.impact import Ground, find_impact
+from lithobrake.smallbody.impact_search import Ground, find_impact
 from lithobrake.smallbody.orbit import Motion, motion_over
-from lithobrake.smallbody.polyhedron import ROWS
+from lithobrake.smallbody.polyhedron_gravity import ROWS
 from lithobrake.smallbody.simd import LANES
 
 FLYING, IMPACT, ESCAPED, PARTNER, FAILED = range(5)  # the first four in the order of FlightStatus
+MOST_STEPS = 1_000_000  # of a flight whose steps are refused
 
 
 class Lanes(NamedTuple):
@@ -39,6 +40,15 @@ class Lanes(NamedTuple):
     flight: Integers  # [LANES], which flight it is
 
 
+class StepRoom(NamedTuple):
+    """What a step of the lanes is worked out in; overwritten by the next."""
+
+    end: Floats  # [6, LANES], state at the end of the step, m and m/s
+    when: Floats  # [LANES], time of the last stage, s
+    curve: Floats  # [5, 6], see dense_coefficients
+    frame: Floats  # [3, 3], see find_impact
+
+
 class FlightEnds(NamedTuple):
     """How flights ended, written by integrate_flights."""
 
@@ -47,6 +57,12 @@ class FlightEnds(NamedTuple):
     state: Floats  # [flight_count, 6], m and m/s
     facet: Integers  # [flight_count], -1: none
     step_count: Integers  # [flight_count]
+
+    @classmethod
+    def of_count(cls, count: int) -> "FlightEnds":
+        """Room for so many, none of which has hit anything."""
+        numbers = np.zeros(count, dtype=np.int64), np.zeros(count), np.zeros((count, 6)), np.full(count, -1)
+        return cls(*numbers, np.zeros(count, dtype=np.int64))
 
     def of_flights(self, piece: slice) -> "FlightEnds":
         """Views of those of some flights."""
@@ -96,7 +112,8 @@ def _first_impact(
 ) -> tuple[float, int, int]:
     """Fraction of lane j's step [s] at which it ends on the ground, the facet, and the status.
 
-    phase [2] of this flight, for the body and its partner, is read and written (see impact); motion: of the partner.
+    phase [2] of this flight, for the body and its partner, is read and written (see impact_search); motion: of the
+    partner.
     """
     ground, partner_ground = grounds
     still = Motion(0.0, 0.0, 0.0, 0.0, 0.0)
@@ -112,6 +129,90 @@ def _first_impact(
 
 
 @compiled
+def _new_lanes() -> Lanes:
+    """Lanes without flights."""
+    return Lanes(
+        np.empty((6, LANES)),
+        np.empty((STAGES, 6, LANES)),
+        np.empty(LANES),
+        np.empty(LANES),
+        np.empty(LANES, dtype=np.int64),
+    )
+
+
+@kernel
+def _pass_stages(
+    lanes: Lanes, active: int, begin: Floats, forces: Forces, room: StepRoom, lane: Floats, scratch: Workspace
+) -> None:
+    """Take all stages of a step of the active lanes. Writes to lanes and room; lane and scratch: see accelerate."""
+    state, derivative, step, clock, flight = lanes
+    for stage in range(1, STAGES):
+        stage_state(state, derivative, step, stage, active, room.end)
+        for j in range(active):
+            room.when[j] = begin[flight[j]] + clock[j] + NODES[stage] * step[j]
+        accelerate(room.end, derivative, stage, active, lane, scratch, forces, room.when, flight)
+
+
+@kernel
+def _write_end(lanes: Lanes, j: int, curve: Floats, fraction: float, taken: float, ends: FlightEnds) -> None:
+    """Write where lane j's flight ended: at a fraction of the step of `taken` [s] on a facet, else where it is."""
+    f = lanes.flight[j]
+    hit = ends.facet[f] >= 0
+    ends.time[f] = lanes.clock[j]
+    if hit:
+        ends.time[f] -= (1.0 - fraction) * taken
+    for i in range(6):
+        ends.state[f, i] = dense_output(curve, fraction, i) if hit else lanes.state[i, j]
+
+
+@kernel
+def _finish_step(
+    lanes: Lanes,
+    j: int,
+    begin: Floats,
+    duration: Floats,
+    phase: Integers,
+    dynamics: Dynamics,
+    grounds: tuple[Ground, Ground],
+    room: StepRoom,
+    ends: FlightEnds,
+) -> bool:
+    """Take lane j's step, or make it shorter; whether its flight is over, which is then written to ends."""
+    state, derivative, step, clock, flight = lanes
+    f = flight[j]
+    if step[j] == 0.0:
+        _reuse_last_derivative(derivative, j)
+        step[j] = min(dynamics.first_step[f], duration[f])
+        return False
+    ends.step_count[f] += 1
+    error = step_error(derivative, step[j], j, dynamics.length_tolerance[f], dynamics.speed_tolerance[f])
+    taken, last = step[j], step[j] >= duration[f] - clock[j]
+    step[j] = next_step(taken, error)
+    if not error <= 1.0:
+        if clock[j] + step[j] > clock[j] and ends.step_count[f] < MOST_STEPS:
+            return False
+        ends.status[f] = FAILED
+        _write_end(lanes, j, room.curve, 0.0, taken, ends)
+        return True
+    dense_coefficients(state, room.end, derivative, taken, j, room.curve)
+    motion = motion_over(dynamics.orbit, f, begin[f] + clock[j], taken)
+    fraction, ends.facet[f], ends.status[f] = _first_impact(
+        room.curve, derivative, taken, j, phase[f], grounds, motion, room.frame
+    )
+    if ends.status[f] == FLYING and has_escaped(room.end, j, dynamics, f, room.when[j]):
+        ends.status[f] = ESCAPED
+    _reuse_last_derivative(derivative, j)
+    for i in range(6):
+        state[i, j] = room.end[i, j]
+    clock[j] = duration[f] if last else clock[j] + taken
+    step[j] = min(step[j], duration[f] - clock[j])
+    if ends.status[f] == FLYING and not last:
+        return False
+    _write_end(lanes, j, room.curve, fraction, taken, ends)
+    return True
+
+
+@compiled
 def integrate_flights(
     starts: Floats,
     begin: Floats,
@@ -124,68 +225,23 @@ def integrate_flights(
     """Fly all starts [count, 6] to their ends.
 
     begin     time at the start [s], [count]; duration [s], [count]
-    phase     [count, 2], read and written: whether the flight has left the body, the partner (see impact)
+    phase     [count, 2], read and written: whether the flight has left the body, the partner (see impact_search)
     grounds   of the body and its partner
     ends      written
     """
-    dynamics = forces.dynamics
-    status, time, final, touched, steps = ends
-    lanes = Lanes(
-        np.empty((6, LANES)),
-        np.empty((STAGES, 6, LANES)),
-        np.empty(LANES),
-        np.empty(LANES),
-        np.empty(LANES, dtype=np.int64),
-    )
-    state, derivative, step, clock, flight = lanes
-    end, when = np.empty((6, LANES)), np.empty(LANES)
-    lane, curve, room = np.zeros(ROWS * LANES), np.empty((5, 6)), np.empty((3, 3))
+    lanes = _new_lanes()
+    room = StepRoom(np.empty((6, LANES)), np.empty(LANES), np.empty((5, 6)), np.empty((3, 3)))
+    lane = np.zeros(ROWS * LANES)
     scratch = workspace(max(len(forces.gravity.polyhedron.vertices), len(forces.partner_gravity.polyhedron.vertices)))
     active = queued = 0
     for j in range(min(LANES, len(starts))):
         _fill_lane(lanes, j, starts, queued)
         active, queued = active + 1, queued + 1
     while active > 0:
-        for stage in range(1, STAGES):
-            stage_state(state, derivative, step, stage, active, end)
-            for j in range(active):
-                when[j] = begin[flight[j]] + clock[j] + NODES[stage] * step[j]
-            accelerate(end, derivative, stage, active, lane, scratch, forces, when, flight)
+        _pass_stages(lanes, active, begin, forces, room, lane, scratch)
         for j in range(active - 1, -1, -1):
-            f = flight[j]
-            if step[j] == 0.0:
-                _reuse_last_derivative(derivative, j)
-                step[j] = min(dynamics.first_step[f], duration[f])
+            if not _finish_step(lanes, j, begin, duration, phase, forces.dynamics, grounds, room, ends):
                 continue
-            steps[f] += 1
-            error = step_error(derivative, step[j], j, dynamics.length_tolerance[f], dynamics.speed_tolerance[f])
-            taken, last = step[j], step[j] >= duration[f] - clock[j]
-            step[j] = next_step(taken, error)
-            if not error <= 1.0:
-                if clock[j] + step[j] > clock[j] and steps[f] < 1_000_000:
-                    continue
-                status[f], fraction = FAILED, 0.0
-            else:
-                dense_coefficients(state, end, derivative, taken, j, curve)
-                motion = motion_over(dynamics.orbit, f, begin[f] + clock[j], taken)
-                fraction, touched[f], status[f] = _first_impact(
-                    curve, derivative, taken, j, phase[f], grounds, motion, room
-                )
-                if status[f] == FLYING and has_escaped(end, j, dynamics, f, when[j]):
-                    status[f] = ESCAPED
-                _reuse_last_derivative(derivative, j)
-                for i in range(6):
-                    state[i, j] = end[i, j]
-                clock[j] = duration[f] if last else clock[j] + taken
-                step[j] = min(step[j], duration[f] - clock[j])
-                if status[f] == FLYING and not last:
-                    continue
-            # The flight is over.
-            time[f] = clock[j]
-            if touched[f] >= 0:
-                time[f] -= (1.0 - fraction) * taken
-            for i in range(6):
-                final[f, i] = dense_output(curve, fraction, i) if touched[f] >= 0 else state[i, j]
             if queued < len(starts):
                 _fill_lane(lanes, j, starts, queued)
                 queued += 1

@@ -1,9 +1,8 @@
 """Gravity far from a body as a series of solid harmonics, where the sums over facets lose their digits.
 
-Far away the facets' terms cancel to ever fewer digits, while a series needs ever fewer terms. Sources: Dehnen (2014), A
-fast multipole method for stellar dynamics, Computational Astrophysics and Cosmology 1, 1, appendix A (harmonics, their
-recursions and derivatives); Werner (1997), Spherical harmonic coefficients for the potential of a constant-density
-polyhedron, Computers and Geosciences 23, 1071-1077 (cones from the centre reduce the integrals to facets).
+Far away the facets' terms cancel to ever fewer digits, while a series needs ever fewer terms. Sources:
+[Dehnen-2014], appendix A (harmonics, their recursions and derivatives); [Werner-1997] (cones from the centre reduce the
+integrals to facets).
 """
 
 from typing import NamedTuple
@@ -13,7 +12,7 @@ from numpy.typing import NDArray
 
 from lithobrake.compiled import compiled
 from lithobrake.smallbody.arrays import Floats
-from lithobrake.smallbody.polyhedron import POTENTIAL, PULL_X, PULL_Y, PULL_Z, Polyhedron
+from lithobrake.smallbody.polyhedron_gravity import POTENTIAL, PULL_X, PULL_Y, PULL_Z, PolyhedronTerms
 from lithobrake.smallbody.simd import LANES
 
 DEGREE = 20
@@ -42,7 +41,7 @@ class Multipole(NamedTuple):
     error: float
 
     @classmethod
-    def of(cls, polyhedron: Polyhedron, centre: NDArray[np.float64]) -> "Multipole":
+    def of(cls, polyhedron: PolyhedronTerms, centre: NDArray[np.float64]) -> "Multipole":
         """Moments of a polyhedron, and the radius from which they are as good as the polyhedron itself."""
         offset = polyhedron.vertices - centre
         radius = float(np.linalg.norm(offset, axis=1).max())
@@ -50,20 +49,20 @@ class Multipole(NamedTuple):
         node, weight = np.polynomial.legendre.leggauss(DEGREE // 2 + 2)
         real, imaginary = np.zeros((DEGREE + 2, DEGREE + 3)), np.zeros((DEGREE + 2, DEGREE + 3))
         _moments(corner, 0.5 * (node + 1.0), 0.5 * weight, real, imaginary)
-        for share in RADII:
-            trial = cls(centre, radius, real, imaginary, share * radius, 0.0)
+        for fraction in RADII:
+            trial = cls(centre, radius, real, imaginary, fraction * radius, 0.0)
             error = trial._error(polyhedron)
             if error < LARGEST_ERROR:
                 break
-        return cls(centre, radius, real, imaginary, share * radius, error)
+        return cls(centre, radius, real, imaginary, fraction * radius, error)
 
     def field(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
-        """As Polyhedron.field (the Laplacian is zero), at points [m], shape [count, 3], outside the body's sphere."""
+        """As PolyhedronTerms.field (the Laplacian is zero), at points [m], [count, 3], outside the body's sphere."""
         result = np.empty((len(points), 5))
         _series(np.ascontiguousarray(points, dtype=np.float64), result, self)
         return result
 
-    def _error(self, polyhedron: Polyhedron) -> float:
+    def _error(self, polyhedron: PolyhedronTerms) -> float:
         """Largest relative difference of the two accelerations over a sphere of the nearest radius."""
         index = np.arange(400) + 0.5
         height, turn = 1.0 - index / 200.0, np.pi * (1.0 + np.sqrt(5.0)) * index
@@ -96,12 +95,12 @@ def _moments(corner: Floats, node: Floats, weight: Floats, real: Floats, imagina
                 x = a[0] + s * (b[0] - a[0]) + t * (c[0] - b[0])
                 y = a[1] + s * (b[1] - a[1]) + t * (c[1] - b[1])
                 z = a[2] + s * (b[2] - a[2]) + t * (c[2] - b[2])
-                share = six * weight[p] * weight[q] * node[p]
+                part = six * weight[p] * weight[q] * node[p]
                 _regular(x, y, z, re, im)
                 for n in range(top + 1):
                     for m in range(n + 1):
-                        real[n, m] += share * re[n, m] / (n + 3.0)
-                        imaginary[n, m] -= share * im[n, m] / (n + 3.0)
+                        real[n, m] += part * re[n, m] / (n + 3.0)
+                        imaginary[n, m] -= part * im[n, m] / (n + 3.0)
 
 
 @compiled

@@ -1,7 +1,6 @@
 """Where a straight line meets the facets of a shape.
 
-Source: Moeller and Trumbore (1997), Fast, minimum storage ray-triangle intersection, Journal of Graphics Tools 2,
-21-28.
+Source: [Moeller-1997].
 """
 
 import numpy as np

@@ -14,7 +14,7 @@ from lithobrake.smallbody.gravity_table import LEVELS, GravityTable
 from lithobrake.smallbody.gravity_table_build import TableError, gravity_table_of
 from lithobrake.smallbody.grid import Grid
 from lithobrake.smallbody.multipole import Multipole
-from lithobrake.smallbody.polyhedron import Polyhedron
+from lithobrake.smallbody.polyhedron_gravity import PolyhedronTerms
 from lithobrake.smallbody.ray_facet import outermost_hit
 from lithobrake.smallbody.signed_distance import heights, pseudonormals
 
@@ -31,7 +31,7 @@ class Shape:
     inertia_per_density   about the centroid [m5], shape [3, 3]
 
     Raises ValueError for a mesh that is open, non-manifold, degenerate or in pieces; warns where it turns facets
-    outward. Facets that cut through each other are not looked for.
+    outward. It does not look for facets that intersect.
     """
 
     def __init__(self, vertices: ArrayLike, faces: ArrayLike, *, name: str = "shape") -> None:
@@ -66,13 +66,13 @@ class Shape:
         return shape
 
     @cached_property
-    def polyhedron(self) -> Polyhedron:
+    def polyhedron(self) -> PolyhedronTerms:
         """The arrays of the gravity kernels."""
-        return Polyhedron.of(self.vertices, self.faces)
+        return PolyhedronTerms.of(self.vertices, self.faces)
 
     @cached_property
     def multipole(self) -> Multipole:
-        """The moments of the shape, and from where on they give its gravity."""
+        """Moments of the shape, and the distance beyond which they give its gravity."""
         return Multipole.of(self.polyhedron, self.centroid)
 
     @property
@@ -82,17 +82,17 @@ class Shape:
 
     @property
     def tabled_gravity(self) -> Gravity:
-        """The same with the table, which serves all points but the farthest."""
+        """The same with the table, which covers all but the farthest points."""
         return Gravity(self.polyhedron, self.multipole, self._table[0])
 
     @property
     def distant_gravity(self) -> Gravity:
-        """The same for a body that flights hardly come near: from a coarser table, which takes a tenth of the time."""
+        """The same for a body that flights rarely approach: from a coarser table, built in a tenth of the time."""
         return Gravity(self.polyhedron, self.multipole, self._coarse_table[0])
 
     @property
     def table_error(self) -> TableError:
-        """How far the table is off the facets' sums."""
+        """Error of the table against the sum over the facets."""
         return self._table[1]
 
     @cached_property
@@ -155,8 +155,8 @@ class Shape:
         Raises ValueError where the direction does not meet the surface (the origin lies outside the body).
         """
         ground = self.locate(latitude_deg, longitude_deg)[0]
-        share = np.asarray(height, dtype=np.float64) / np.linalg.norm(ground, axis=-1)
-        return ground + np.asarray(share)[..., None] * ground
+        ratio = np.asarray(height, dtype=np.float64) / np.linalg.norm(ground, axis=-1)
+        return ground + np.asarray(ratio)[..., None] * ground
 
     def locate(
         self, latitude_deg: ArrayLike, longitude_deg: ArrayLike

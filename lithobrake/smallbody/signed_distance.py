@@ -1,8 +1,6 @@
 """Distance from a point to the surface of a shape, negative inside.
 
-Sources: Ericson (2005), Real-Time Collision Detection, section 5.1.5 (closest point of a triangle); Baerentzen and
-Aanaes (2005), Signed distance computation using the angle weighted pseudonormal, IEEE Trans. Vis. Comput. Graph. 11,
-243-253.
+Sources: [Ericson-2005], section 5.1.5 (closest point of a triangle); [Baerentzen-2005].
 """
 
 import numpy as np
@@ -65,8 +63,8 @@ def _closest_feature(p: Floats, a: Floats, b: Floats, c: Floats) -> tuple[float,
         return 0.0, d2 / (d2 - d6), 3
     area_a = d3 * d6 - d5 * d4
     if area_a <= 0.0 and d4 - d3 >= 0.0 and d5 - d6 >= 0.0:
-        share = (d4 - d3) / (d4 - d3 + d5 - d6)
-        return 1.0 - share, share, 2
+        fraction = (d4 - d3) / (d4 - d3 + d5 - d6)
+        return 1.0 - fraction, fraction, 2
     total = area_a + area_b + area_c
     return area_b / total, area_c / total, 0
 

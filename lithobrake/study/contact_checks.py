@@ -54,8 +54,8 @@ def contact_problems(study: Study) -> Iterator[str]:
 def _first_overlap(study: Study, mass: float, radius: float) -> float:
     """Largest overlap [m] of a flat lander and a grain of a radius [m] at the highest speed.
 
-    mass [kg]: of the lighter of the two, which for unlike bodies is that of the collision. Source: Johnson (1985),
-    Contact Mechanics, Eq. (11.23): (15 m v^2 / (16 E sqrt(R)))^(2/5) of a Hertz collision.
+    mass [kg]: of the lighter of the two, which for unlike bodies is that of the collision. Source: [Johnson-1985],
+    Eq 11.23: (15 m v^2 / (16 E sqrt(R)))^(2/5) of a Hertz collision.
     """
     grain, lander, give = study.grain, study.lander, 0.0
     for modulus, ratio in (

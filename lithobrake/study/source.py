@@ -41,10 +41,10 @@ class StudySource:
 
     @property
     def name(self) -> str:
-        """What messages call it."""
+        """The name that messages use."""
         return f"{TABLES}.toml" if self.path is None else self.path.name
 
     @property
     def stem(self) -> str:
-        """Its name without the ending."""
+        """The name without its suffix."""
         return TABLES if self.path is None else self.path.stem

@@ -5,17 +5,9 @@ from typing import get_args
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
+from lithobrake.outputs import PURE, TOUCHDOWN
 from lithobrake.study.quantity import Number
 from lithobrake.study.study import Study
-
-# Of what a touchdown gives; a program of the user's own is asked for the same units.
-OUTPUT_UNITS = {
-    "speed_out": "m/s", "elevation_out": "rad", "spin_out": "rad/s",
-    "velocity_out_x": "m/s", "velocity_out_y": "m/s", "velocity_out_z": "m/s", "azimuth_out": "rad",
-    "contact_duration": "s", "penetration": "m", "peak_acceleration": "m/s2", "energy_lost": "J",
-}  # fmt: skip
-# A number without a unit.
-PURE = "-"
 
 
 def input_units() -> dict[str, str]:
@@ -25,6 +17,11 @@ def input_units() -> dict[str, str]:
     """
     orientation = {f"impact.orientation.{part}": PURE for part in "wxyz"}
     return {**_units("", Study), **orientation}
+
+
+def run_units() -> dict[str, str]:
+    """The unit of each input and output of a run by its name; a program of the user's own is asked for the same."""
+    return input_units() | {name: quantity.units for name, quantity in TOUCHDOWN.items()}
 
 
 def _units(path: str, model: type[BaseModel]) -> dict[str, str]:

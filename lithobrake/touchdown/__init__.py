@@ -4,12 +4,12 @@ from lithobrake.touchdown.bed import Bed, ContactModel
 from lithobrake.touchdown.grains import GrainSizes
 from lithobrake.touchdown.lander import Lander, read_hull
 from lithobrake.touchdown.landing import Landing
-from lithobrake.touchdown.outcome import FATES, OUTPUTS, Outcome
+from lithobrake.touchdown.outcome import OUTPUTS, Outcome
 from lithobrake.touchdown.pouring import BedRecipe, pour_bed
 from lithobrake.touchdown.simulation import land
 from lithobrake.touchdown.smallest_bed import smallest_bed, wave_speed
 
 __all__ = [
-    "FATES", "OUTPUTS", "Bed", "BedRecipe", "ContactModel", "GrainSizes", "Lander", "Landing", "Outcome", "land",
+    "OUTPUTS", "Bed", "BedRecipe", "ContactModel", "GrainSizes", "Lander", "Landing", "Outcome", "land",
     "pour_bed", "read_hull", "smallest_bed", "wave_speed",
 ]  # fmt: skip

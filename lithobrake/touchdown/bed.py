@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from lithobrake.atomic import atomic_path
 from lithobrake.dem import ConvexHull, Material, World
+from lithobrake.outputs import describe
 from lithobrake.reading import reading
 
 Floats = NDArray[np.float64]
@@ -78,6 +79,7 @@ class Bed:
             for group in ("frames", "history"):
                 for name, values in getattr(self, group).items():
                     file[f"{group}/{name}"] = values
+            describe(file)
             file.attrs["format"], file.attrs["format_version"] = "lithobrake bed", FORMAT_VERSION
             for name in SCALARS:
                 file.attrs[name] = getattr(self, name)

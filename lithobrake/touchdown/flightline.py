@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lithobrake.dem import World
+from lithobrake.outcomes import TouchdownOutcome
 from lithobrake.touchdown.bed import Bed
 from lithobrake.touchdown.lander import Lander
 from lithobrake.touchdown.landing import Landing
@@ -29,7 +30,7 @@ class FlightLine:
         self.start_time = world.time
         self.start_energy = self.energy()
         self.clear_height = bed.surface_height + bed.grain_diameter
-        self.fate: str | None = None
+        self.ended: TouchdownOutcome | None = None
         self.height_at_contact: float | None = None
         self.lowest = self.height()
         self.still_since: float | None = None
@@ -47,9 +48,9 @@ class FlightLine:
         return self.lander.lowest(self.world.position[self.number], rotation)
 
     def look(self) -> None:
-        """Take note of the lander, and settle its fate if it can be settled.
+        """Take note of the lander, and tell its outcome once it can be told.
 
-        Raises ValueError for a lander that went through the floor: no fate is to be told of that.
+        Raises ValueError for a lander that went through the floor: no outcome is to be told of that.
         """
         height, touched = self.height(), self.world.watched
         if height < -SUNK_FRACTION * self.lander.smallest_edge:
@@ -63,29 +64,30 @@ class FlightLine:
         self.lowest = min(self.lowest, height)
         self.looks += 1
         self.keep_frame()
-        self.fate = self.judge(height, touched["first_contact"] > 0.0)
+        self.ended = self.judge(height, touched["first_contact"] > 0.0)
 
-    def judge(self, height: float, has_touched: bool) -> str | None:
-        """Return the fate of the lander, or None while it is open."""
+    def judge(self, height: float, has_touched: bool) -> TouchdownOutcome | None:
+        """Return how the touchdown ended, or None while it is open."""
         world, k = self.world, self.number
         position, velocity = world.position[k], world.velocity[k]
         if abs(position[0]) > 0.5 * self.bed.width[0] or abs(position[1]) > 0.5 * self.bed.width[1]:
-            return "left_sideways"
+            return TouchdownOutcome.LEFT_SIDEWAYS
         free, energy = not np.any(world.contact_force[k]), self.energy() if has_touched else math.inf
         if has_touched and free:
             if velocity[2] > 0.0 and height > self.clear_height:
-                return "clear"
+                return TouchdownOutcome.CLEAR
             lift = -world.gravity[2] * CAPTURED_APEX * self.lander.smallest_edge
             if energy < self.lander.mass * lift:
-                return "captured"
+                return TouchdownOutcome.CAPTURED
         if has_touched and energy < CAPTURED_ENERGY * self.start_energy:
             self.still_since = world.time if self.still_since is None else self.still_since
             patience = CAPTURED_CONTACTS * self.landing.contact.steps_per_contact * world.time_step
             if world.time - self.still_since > patience:
-                return "captured"
+                return TouchdownOutcome.CAPTURED
         else:
             self.still_since = None
-        return "time_limit" if world.time - self.start_time >= self.landing.time_limit else None
+        over = world.time - self.start_time >= self.landing.time_limit
+        return TouchdownOutcome.TIME_LIMIT if over else None
 
     def keep_frame(self) -> None:
         """Keep a frame now and then: never more than twice those asked for, evenly spread over the whole landing."""
@@ -98,8 +100,8 @@ class FlightLine:
     def outcome(self) -> Outcome:
         """Return what came of the landing."""
         world, k, watched = self.world, self.number, self.world.watched
-        assert self.fate is not None
-        left = self.fate == "clear"
+        assert self.ended is not None
+        left = self.ended == TouchdownOutcome.CLEAR
         outputs = outgoing(world.velocity[k], world.spin[k], self.landing.azimuth, left)
         touched = watched["first_contact"] > 0.0
         steps = watched["last_contact"] - watched["first_contact"] + 1.0 if touched else 0.0
@@ -116,4 +118,4 @@ class FlightLine:
             }
         if not all(math.isfinite(value) for value in outputs.values()) and left:
             raise FloatingPointError(f"the landing gave values that are not finite: {outputs}")
-        return Outcome(self.fate, outputs, world.time - self.start_time, frames)
+        return Outcome(self.ended, outputs, world.time - self.start_time, frames)

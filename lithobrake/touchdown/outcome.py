@@ -9,12 +9,13 @@ from numpy.typing import NDArray
 
 from lithobrake.atomic import atomic_path
 from lithobrake.dem import Box, ConvexHull, Sphere
+from lithobrake.outcomes import TouchdownOutcome
+from lithobrake.outputs import describe
 from lithobrake.touchdown.bed import Bed, write_hulls
 from lithobrake.touchdown.lander import Lander
 from lithobrake.touchdown.landing import Landing
 
 Floats = NDArray[np.float64]
-FATES = ("clear", "captured", "left_sideways", "time_limit")
 OUTPUTS = (
     "speed_out", "elevation_out", "azimuth_out", "spin_out", "velocity_out_x", "velocity_out_y", "velocity_out_z",
     "contact_duration", "penetration", "peak_acceleration", "energy_lost",
@@ -24,13 +25,13 @@ SPHERE_PICTURE_POINTS = 200
 
 @dataclass(frozen=True, eq=False)
 class Outcome:
-    """status is one of FATES; outputs has the keys OUTPUTS (SI); the *_out values are NaN unless the lander is clear.
+    """How it ended, and its outputs: the keys OUTPUTS (SI); the *_out values are NaN unless the lander is clear.
 
     frames holds "time" [s, frame_count], "position" [m, frame_count, body_count, 3] and "orientation"; the last body is
     the lander.
     """
 
-    status: str
+    status: TouchdownOutcome
     outputs: dict[str, float]
     simulated_time: float  # s
     frames: dict[str, Floats] | None = None
@@ -47,8 +48,9 @@ class Outcome:
                 file[f"frames/{name}"] = values
             file["position"], file["orientation"] = self.frames["position"][-1], self.frames["orientation"][-1]
             file["diameter"] = bed.diameter
+            describe(file)
             file.attrs["format"], file.attrs["format_version"] = "lithobrake landing", 1
-            file.attrs["status"], file.attrs["width"] = self.status, bed.width
+            file.attrs["status"], file.attrs["width"] = self.status.value, bed.width
             file.attrs["speed"], file.attrs["incidence"] = landing.speed, landing.incidence
 
 

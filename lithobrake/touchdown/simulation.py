@@ -26,7 +26,7 @@ def land(
     frame_count: int = 0,
     progress: Callable[[float, str], None] = lambda fraction, what: None,
 ) -> Outcome:
-    """Let a lander meet a bed whose grains have taken on the landing's material, until its fate is clear.
+    """Let a lander meet a bed whose grains have taken on the landing's material, until its outcome is known.
 
     progress: called with the fraction that is done of what is being done; a landing may end long before its time limit.
     Raises ValueError where bed and landing do not fit and where the lander goes through the floor, FloatingPointError
@@ -46,7 +46,7 @@ def land(
     world.watch(number)
     line = FlightLine(bed, lander, landing, world, number, frame_count)
     chunk = max(1, int(landing.contact.steps_per_contact / CHECKS_PER_CONTACT))
-    while line.fate is None:
+    while line.ended is None:
         world.run(steps=chunk)
         line.look()
         progress(min((world.time - line.start_time) / landing.time_limit, 1.0), "landing, up to its time limit")

@@ -11,7 +11,7 @@ def wave_speed(rock: Material, diameter: float, speed: float) -> float:
 
     Loose grains carry no sound of their own: the stronger the blow, the faster the wave, (16/25)^(1/5) c^(4/5) v^(1/5)
     with c^2 = K d^(5/2) / m for Hertz contacts K overlap^(3/2) of grains of diameter d [m] and mass m.
-    Source: Nesterenko (1983), J. Appl. Mech. Tech. Phys. 24, 733, the solitary wave of an unloaded chain.
+    Source: [Nesterenko-1983], the solitary wave of an unloaded chain.
     """
     stiffness = 4.0 / 3.0 * 0.5 * rock.young_modulus / (1.0 - rock.poisson_ratio**2) * math.sqrt(0.25 * diameter)
     mass = rock.density * math.pi / 6.0 * diameter**3

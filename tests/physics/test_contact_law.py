@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from lithobrake.dem import Box, Material, Sphere, World
-from lithobrake.dem.spring import spring_force
+from lithobrake.dem.tangential_spring import spring_force
 from lithobrake.dem.timestep import contact_duration
 
 

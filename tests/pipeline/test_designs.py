@@ -1,6 +1,5 @@
 """Designs other than the sparse grid, points that are run several times, and scatter in the samples."""
 
-import json
 import subprocess
 import sys
 import tomllib
@@ -14,6 +13,7 @@ import pytest
 from lithobrake.outputs import OUTPUTS
 from lithobrake.pipeline import stage_keys
 from lithobrake.pipeline.designs import points
+from lithobrake.results import open_study
 from lithobrake.study import Study, check_tables
 from lithobrake.study.template import template
 
@@ -128,7 +128,7 @@ def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_points_run_twice_tell_the_scatter(out: Path) -> None:
-    results = json.loads((out / "summary.json").read_text())["results"]
+    results = open_study(out).summary["results"]
     screening = results["designs"]["screening"]
     assert (screening["point_count"], screening["replicate_count"], screening["run_count"]) == (20, 2, 40)
     assert results["designs"]["test_all"]["run_count"] == 8
@@ -166,7 +166,7 @@ def test_samples_have_the_scatter_and_are_kept_without_it(out: Path) -> None:
 
 
 def test_the_page_gives_no_interval_that_would_hold_for_these_runs_only(out: Path) -> None:
-    results = json.loads((out / "summary.json").read_text())["results"]
+    results = open_study(out).summary["results"]
     shares = [value for value in results["shares"].values() if isinstance(value, dict)]
     shares += [value for ground in ("soil", "hard") for value in (results["rest"][ground] or {}).values()
                if isinstance(value, dict) and "share" in value]  # fmt: skip

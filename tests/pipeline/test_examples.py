@@ -13,8 +13,8 @@ from pathlib import Path
 
 import pytest
 
-from lithobrake.campaign import read_records
 from lithobrake.pipeline.solver import completed, solver_reads
+from lithobrake.results import open_study
 from lithobrake.study import StudyError, read_study
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -35,7 +35,7 @@ def plate(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_a_study_with_a_program_goes_to_its_report(plate: Path) -> None:
-    results = json.loads((plate / "summary.json").read_text())["results"]
+    results = open_study(plate).summary["results"]
     assert results["beds"] == []
     assert results["designs"]["test_all"]["outcomes"] == {"clear": 10}
     assert results["scores"]["test_all"]["speed_out"]["q2"] > 0.9
@@ -48,7 +48,7 @@ def test_a_study_with_a_program_goes_to_its_report(plate: Path) -> None:
 
 
 def test_the_summary_says_when_it_was_made(plate: Path) -> None:
-    content = json.loads((plate / "summary.json").read_text())
+    content = open_study(plate).summary
     date = datetime.fromisoformat(content["provenance"]["date"])
     assert date.utcoffset() == timedelta(0)
     assert abs(date.timestamp() - (plate / "summary.json").stat().st_mtime) < 60.0
@@ -56,7 +56,7 @@ def test_the_summary_says_when_it_was_made(plate: Path) -> None:
 
 
 def test_the_runs_are_told_from_another_terminal(plate: Path) -> None:
-    records = read_records(plate / "runs.sqlite")
+    records = open_study(plate).ledger
     said = lithobrake("status", plate).stdout
     assert f"{len(records)} runs: {len(records)} done, 0 running, 0 failed" in said
     assert f"outcomes: {len(records)} clear" in said
@@ -80,7 +80,7 @@ def test_a_higher_order_and_more_test_runs_reuse_what_is_still_valid_and_say_so(
     (tmp_path / "more.toml").write_text(more)
     # The folder goes over to the study under its new name.
     shutil.copy(tmp_path / "more.toml", plate / "study.toml")
-    before = len(read_records(plate / "runs.sqlite"))
+    before = len(open_study(plate).ledger)
     ended = lithobrake("test", tmp_path / "more.toml", "--out", plate, "--workers", 2)
     assert ended.returncode == 0, ended.stderr
     said = " ".join(ended.stderr.split())
@@ -88,7 +88,7 @@ def test_a_higher_order_and_more_test_runs_reuse_what_is_still_valid_and_say_so(
     assert "screening: 85 of 137 runs were known and are reused" in said
     assert "refined: 69 of 69 runs were known and are reused" in said
     assert "test all: 10 of 12 runs were known and are reused" in said
-    assert len(read_records(plate / "runs.sqlite")) == before + 52 + 2 + 2
+    assert len(open_study(plate).ledger) == before + 52 + 2 + 2
 
 
 def test_the_function_gives_what_the_program_gives(plate: Path, tmp_path: Path) -> None:
@@ -106,12 +106,12 @@ def test_the_function_gives_what_the_program_gives(plate: Path, tmp_path: Path) 
     centre = {"incidence_deg": 35.0, "restitution": 0.6, "friction": 0.225}
     (here,) = (
         entry.outputs
-        for entry in read_records(tmp_path / "runs.sqlite")
+        for entry in open_study(tmp_path).ledger
         if all(math.isclose(entry.inputs[name], value) for name, value in centre.items())
     )
     (there,) = (
         entry.outputs
-        for entry in read_records(plate / "runs.sqlite")
+        for entry in open_study(plate).ledger
         if math.isclose(entry.inputs["impact.incidence_deg"], 35.0)
         and math.isclose(entry.inputs["lander.restitution"], 0.6)
         and math.isclose(entry.inputs["lander.friction"], 0.225)

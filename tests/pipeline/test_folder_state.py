@@ -14,31 +14,15 @@ import pytest
 from typer.testing import CliRunner
 
 from lithobrake.atomic import locked
-from lithobrake.campaign import read_records
 from lithobrake.cli import app
+from lithobrake.results import open_study
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
-SMALL = {
-    "python3 ball_on_plate.py": f"{sys.executable} {EXAMPLES / 'ball_on_plate.py'}",
-    'friction = { distribution = "uniform", lower = 0.05, upper = 0.4 }': "friction = 0.2",
-    "screening_level = 2": "screening_level = 1",
-    "screening_degree = 2": "screening_degree = 1",
-    "refined_level = 3": "refined_level = 1",
-    "refined_degree = 3": "refined_degree = 1",
-    "test_count = 10": "test_count = 2",
-    "sample_count = 10_000": "sample_count = 200",
-    "flight_count = 50": "flight_count = 5",
-    "count = 200 ": "count = 5 ",
-}
+from .ball_studies import FEW_RUNS, FEW_SAMPLES, edit, write_ball
+
+SMALL = (
+    FEW_RUNS | FEW_SAMPLES | {'friction = { distribution = "uniform", lower = 0.05, upper = 0.4 }': "friction = 0.2"}
+)
 RUNNER = CliRunner()
-
-
-def edit(path: Path, *changes: tuple[str, str]) -> None:
-    text = path.read_text()
-    for old, new in changes:
-        assert old in text
-        text = text.replace(old, new)
-    path.write_text(text)
 
 
 def run(home: Path, command: str = "run", code: int = 0) -> str:
@@ -64,8 +48,7 @@ def said_by(command: str, home: Path, code: int = 0) -> str:
 def finished(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A study file and beside it the folder of the finished study."""
     home = tmp_path_factory.mktemp("finished")
-    shutil.copy(EXAMPLES / "ball_on_plate.toml", home / "ball.toml")
-    edit(home / "ball.toml", *SMALL.items())
+    write_ball(home / "ball.toml", SMALL)
     run(home)
     return home
 
@@ -85,8 +68,8 @@ def test_a_whole_folder_is_current_and_its_report_can_be_written_again(home: Pat
     assert lines[0] == f"{home / 'out'}: nobody is at work; the report is there"
     assert lines[1].startswith("11 of 11 stages are current: screening runs, screening, refined runs, refinement, ")
     assert not any("earlier" in line for line in lines)
-    assert said_by("view", home).startswith("No browser answers here")
-    headline = json.loads((home / "out" / "summary.json").read_text())["results"]["headline"]
+    assert said_by("view", home).startswith("No browser found")
+    headline = open_study(home / "out").summary["results"]["headline"]
     assert len(said_by("report", home).splitlines()) == len(headline) + 1
     changed = {path.name for path, content in before.items() if path.read_bytes() != content}
     assert changed <= {".lock", "keys.json"}
@@ -94,10 +77,10 @@ def test_a_whole_folder_is_current_and_its_report_can_be_written_again(home: Pat
 
 
 def test_a_changed_study_makes_old_files_stale_and_tells_runs_of_earlier_settings(home: Path) -> None:
-    edit(home / "ball.toml", ("speed = 0.15", "speed = 0.2"))
+    edit(home / "ball.toml", {"speed = 0.15": "speed = 0.2"})
     assert f"{home / 'ball.toml'} was edited since" in said_by("status", home)
     assert f"{home / 'ball.toml'} was edited after this report was made" in said_by("view", home)
-    before = len(read_records(home / "out" / "runs.sqlite"))
+    before = len(open_study(home / "out").ledger)
     run(home, "screen")
     lines = said_by("status", home).splitlines()
     assert lines[0].endswith("nobody is at work; the report is there, but not of the files as they are")
@@ -105,7 +88,7 @@ def test_a_changed_study_makes_old_files_stale_and_tells_runs_of_earlier_setting
     assert lines[2].startswith(
         "of an earlier setting or version: designs/refined.csv, refined.json, designs/test_kept.csv, "
     )
-    made = len(read_records(home / "out" / "runs.sqlite")) - before
+    made = len(open_study(home / "out").ledger) - before
     assert lines[3] == f"{made} runs: {made} done, 0 running, 0 failed"
     assert lines[4] == f"{before} more runs in the ledger are of earlier settings of the study"
     refused = said_by("report", home, code=2)
@@ -116,7 +99,7 @@ def test_a_changed_study_makes_old_files_stale_and_tells_runs_of_earlier_setting
 
 def test_edited_and_swapped_files_are_named_and_not_reported_on(home: Path) -> None:
     out = home / "out"
-    edit(out / "summary.json", ('"format_version": 2', '"format_version":  2'))
+    edit(out / "summary.json", {'"format_version": 2': '"format_version":  2'})
     (out / "flights.csv").unlink()
     shutil.copy(out / "rest.json", out / "flights.json")
     said = said_by("report", home, code=2)
@@ -126,7 +109,7 @@ def test_edited_and_swapped_files_are_named_and_not_reported_on(home: Path) -> N
 
 
 def test_the_study_file_of_another_study_is_named(home: Path) -> None:
-    edit(home / "out" / "study.toml", ("speed = 0.15", "speed = 0.2"))
+    edit(home / "out" / "study.toml", {"speed = 0.15": "speed = 0.2"})
     assert "changed after it was made: study.toml" in said_by("report", home, code=2)
 
 
@@ -172,7 +155,7 @@ FILES: dict[str, tuple[str, Callable[[Path], object]]] = {
     "3000 brackets": ("summary.json", lambda path: path.write_text("[" * 3000)),
     "400 digits": (
         "flights.json",
-        lambda path: edit(path, ('"jacobi_flight_count": ', '"a": ' + 400 * "9" + ', "b": ')),
+        lambda path: edit(path, {'"jacobi_flight_count": ': '"a": ' + 400 * "9" + ', "b": '}),
     ),
     "empty flights": ("flights.csv", lambda path: path.write_text("")),
     "another table": ("flights.csv", lambda path: path.write_text("a,b\n1,2\n")),
@@ -251,8 +234,8 @@ def test_a_damaged_ledger_is_not_written_over(name: str, home: Path) -> None:
 
 def test_a_run_makes_damaged_files_again_with_the_same_bytes(home: Path) -> None:
     out = home / "out"
-    results = json.loads((out / "summary.json").read_text())["results"]
-    runs, before = read_records(out / "runs.sqlite"), {}
+    results = open_study(out).summary["results"]
+    runs, before = open_study(out).ledger, {}
     for name, damage in dict(FILES.values()).items():
         before[name] = (out / name).read_bytes()
         damage(out / name)
@@ -260,8 +243,8 @@ def test_a_run_makes_damaged_files_again_with_the_same_bytes(home: Path) -> None
     del before["summary.json"]
     assert {name: (out / name).read_bytes() for name in before} == before
     # The summary has the times of this execution too.
-    assert json.loads((out / "summary.json").read_text())["results"] == results
-    assert read_records(out / "runs.sqlite") == runs
+    assert open_study(out).summary["results"] == results
+    assert open_study(out).ledger == runs
 
 
 def test_a_run_with_damaged_keys_says_so_and_makes_the_files_again(home: Path) -> None:

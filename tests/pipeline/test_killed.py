@@ -15,6 +15,7 @@ import pytest
 
 from lithobrake.atomic import lock_holder
 from lithobrake.pipeline import STAGES
+from lithobrake.results import open_study
 from lithobrake.study import read_study
 
 STUDY = """
@@ -172,6 +173,6 @@ def test_a_study_killed_at_20_random_moments_ends_with_the_same_bits(tmp_path: P
     for stage, names in files.items():
         for name in names if stage not in ("summary", "report") else ():
             assert (killed / name).read_bytes() == (calm / name).read_bytes(), name
-    summaries = [json.loads((out / "summary.json").read_text()) for out in (killed, calm)]
+    summaries = [open_study(out).summary for out in (killed, calm)]
     assert summaries[0]["results"] == summaries[1]["results"]
     assert summaries[0]["study"] == summaries[1]["study"]

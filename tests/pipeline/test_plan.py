@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from lithobrake.campaign import Record, RunStatus, available_cores, read_records
+from lithobrake.campaign import Record, RunStatus, available_cores
 from lithobrake.cli import app
 from lithobrake.outputs import OUTPUTS
 from lithobrake.pipeline import Plan, StudyFolder, plan_study
@@ -28,29 +28,18 @@ from lithobrake.pipeline.planning.planner import plan_of
 from lithobrake.pipeline.planning.study_warnings import study_warnings
 from lithobrake.pipeline.samples import Samples
 from lithobrake.pipeline.study_run import run_study
+from lithobrake.results import open_study
 from lithobrake.study import Study, StudySource, check_tables, load_tables, read_study
 
+from .ball_studies import BALL, FEW_RUNS, write_ball
+
 HERE = Path(__file__).parents[2]
-EXAMPLES, SCENARIOS = HERE / "examples", HERE / "scenarios"
-FEW = {
+SCENARIOS = HERE / "scenarios"
+FEW = FEW_RUNS | {
     "lower = 0.05, upper = 0.4": "lower = 0.1, upper = 0.3",
-    "python3 ball_on_plate.py": f"{sys.executable} {EXAMPLES / 'ball_on_plate.py'}",
-    "screening_level = 2": "screening_level = 1",
-    "screening_degree = 2": "screening_degree = 1",
     "refined_level = 3": "refined_level = 2",
-    "refined_degree = 3": "refined_degree = 1",
     "test_count = 10": "test_count = 3",
 }
-
-
-def written(folder: Path, changes: dict[str, str], source: Path = EXAMPLES / "ball_on_plate.toml") -> Path:
-    """A study file of the repository with these changes of its text."""
-    text = source.read_text()
-    for old, new in changes.items():
-        assert old in text
-        text = text.replace(old, new)
-    (folder / "study.toml").write_text(text)
-    return folder / "study.toml"
 
 
 def soft(**changes: dict[str, Any]) -> Study:
@@ -66,7 +55,7 @@ def soil_of(study: Study) -> ExpectedSoil:
 
 
 def test_the_runs_that_are_counted_are_those_that_are_made(tmp_path: Path) -> None:
-    study, out = written(tmp_path, FEW), tmp_path / "out"
+    study, out = write_ball(tmp_path / "study.toml", FEW), tmp_path / "out"
     before = plan_study(study, out)
     fewest, most = before.runs
     assert (fewest.kept_count, most.kept_count, most.screening, most.test) == (1, 4, 9, 6)
@@ -79,17 +68,17 @@ def test_the_runs_that_are_counted_are_those_that_are_made(tmp_path: Path) -> No
     assert (len(left.known), left.total) == (9, screened.made["touchdowns"][0] + 9)
     assert fewest.total <= left.total <= most.total
     run_study(StudySource.read(study), out, worker_count=1, until="test")
-    assert len(read_records(out / "runs.sqlite")) == left.total
+    assert len(open_study(out).ledger) == left.total
     tested = plan_study(study, out)
     assert tested.made["touchdowns"] == (0, 0)
     assert (tested.runs[0].new, tested.stages[0]) == (0, "samples")
     # One more test run in each set, and all others as before.
-    more = written(tmp_path, FEW | {"test_count = 10": "test_count = 4"})
+    more = write_ball(tmp_path / "study.toml", FEW | {"test_count = 10": "test_count = 4"})
     assert plan_study(more, out).made["touchdowns"] == (2, 2)
 
 
 def test_planning_makes_and_changes_nothing(tmp_path: Path) -> None:
-    study, out = written(tmp_path, FEW), tmp_path / "out"
+    study, out = write_ball(tmp_path / "study.toml", FEW), tmp_path / "out"
     plan_study(study, out)
     assert [path.name for path in tmp_path.iterdir()] == ["study.toml"]
     run_study(StudySource.read(study), out, worker_count=1, until="screen")
@@ -103,7 +92,7 @@ def test_planning_makes_and_changes_nothing(tmp_path: Path) -> None:
 
 
 def test_a_folder_that_a_run_refuses_is_refused_by_its_plan(tmp_path: Path) -> None:
-    study, out = written(tmp_path, FEW), tmp_path / "out"
+    study, out = write_ball(tmp_path / "study.toml", FEW), tmp_path / "out"
     out.mkdir()
     (out / "thesis.tex").touch()
     with pytest.raises(ValueError, match=r"holds thesis\.tex, and no study made it; choose another folder"):
@@ -111,7 +100,7 @@ def test_a_folder_that_a_run_refuses_is_refused_by_its_plan(tmp_path: Path) -> N
 
 
 def test_the_command_says_what_is_planned(tmp_path: Path) -> None:
-    study, out = written(tmp_path, FEW), tmp_path / "out"
+    study, out = write_ball(tmp_path / "study.toml", FEW), tmp_path / "out"
     said = CliRunner().invoke(app, ["plan", str(study), "--out", str(out), "--workers", "1"])
     assert said.exit_code == 0, said.output
     assert "To make: 17 to 47 touchdowns, 10 000 samples, up to 50 flights, 200 journeys" in said.stdout
@@ -124,7 +113,7 @@ def test_the_command_says_what_is_planned(tmp_path: Path) -> None:
 
 
 def test_a_run_begins_with_its_plan_in_three_lines(tmp_path: Path) -> None:
-    study, said = written(tmp_path, FEW), list[str]()
+    study, said = write_ball(tmp_path / "study.toml", FEW), list[str]()
 
     class Begun(Exception):
         """The first stage."""
@@ -161,7 +150,7 @@ def test_what_a_run_refuses_the_plan_refuses_with_the_same_words(
     changes: dict[str, str], said: str, tmp_path: Path
 ) -> None:
     (tmp_path / "open.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\nf 2 3 4\n")
-    study = str(written(tmp_path, FEW | changes))
+    study = str(write_ball(tmp_path / "study.toml", FEW | changes))
     plan, run = (
         CliRunner().invoke(app, [word, study, "--out", str(tmp_path / word)]) for word in ("plan", "run")
     )  # fmt: skip
@@ -202,7 +191,7 @@ def test_what_an_analyst_should_know_is_said(changes: dict[str, Any], said: str 
 def test_a_disk_that_is_too_small_is_the_first_warning(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     room = shutil.disk_usage(tmp_path)
     monkeypatch.setattr(shutil, "disk_usage", lambda place: room._replace(free=2_000_000))
-    plan = plan_study(written(tmp_path, FEW), tmp_path / "not" / "yet")
+    plan = plan_study(write_ball(tmp_path / "study.toml", FEW), tmp_path / "not" / "yet")
     assert plan.warnings[0].startswith("The files will take about ")
     assert "only 2 MB are free" in plan.warnings[0]
 
@@ -273,7 +262,7 @@ def test_without_a_compiled_engine_the_pace_is_that_of_the_reference_machine(tmp
 
 
 def test_the_samples_take_the_room_that_is_expected(tmp_path: Path) -> None:
-    study = read_study(EXAMPLES / "ball_on_plate.toml")
+    study = read_study(BALL)
     names, count = list(design_inputs(study)), study.monte_carlo.sample_count
     inputs, outputs = np.zeros((count, len(names))), np.zeros((count, len(OUTPUTS)))
     Samples(names, list(OUTPUTS), inputs, outputs, np.zeros(count, dtype=np.uint8)).save(StudyFolder(tmp_path))

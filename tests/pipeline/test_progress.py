@@ -1,22 +1,21 @@
 """What a study tells of its long pieces of work while it runs."""
 
 import sys
-from pathlib import Path
 
 import pytest
 
 from lithobrake.pipeline import run_study
 from lithobrake.study import StudySource
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
-FEW = {
-    "python3 ball_on_plate.py": f"{sys.executable} {EXAMPLES / 'ball_on_plate.py'}",
-    "screening_level = 2\nscreening_degree = 2": "screening_level = 1\nscreening_degree = 1\nfit = 'omp'",
-    "refined_level = 3\nrefined_degree = 3": "refined_level = 2\nrefined_degree = 1",
+from .ball_studies import FEW_RUNS, FEW_SAMPLES, PROGRAM, write_ball
+
+FEW = FEW_RUNS | FEW_SAMPLES
+FEW |= {
+    "screening_degree = 2": "screening_degree = 1\nfit = 'omp'",
+    "refined_level = 3": "refined_level = 2",
     "test_count = 10": "test_count = 6",
     "sample_count = 10_000": "sample_count = 200\nscatter = true",
-    "flight_count = 50\nduration = 7200.0": "flight_count = 5\nduration = 600.0",
-    "count = 200 ": "count = 5 ",
+    "duration = 7200.0": "duration = 600.0",
 }
 # What was done of how much, by stage and piece of work.
 Told = dict[str, dict[str, list[tuple[float, float]]]]
@@ -37,11 +36,7 @@ WORKS = {
 def study(tmp_path_factory: pytest.TempPathFactory) -> tuple[Told, list[str]]:
     """What a study has told of its work, and what it has said before the first stage."""
     folder = tmp_path_factory.mktemp("told")
-    text = (EXAMPLES / "ball_on_plate.toml").read_text()
-    for old, new in FEW.items():
-        assert old in text
-        text = text.replace(old, new)
-    (folder / "study.toml").write_text(text)
+    path = write_ball(folder / "study.toml", FEW)
     stages: Told = {}
     said_first: list[str] = []
 
@@ -58,7 +53,7 @@ def study(tmp_path_factory: pytest.TempPathFactory) -> tuple[Told, list[str]]:
         def progress(self, done: float, total: float, what: str, detail: str = "", /) -> None:
             stages[list(stages)[-1]].setdefault(what, []).append((done, total))
 
-    run_study(StudySource.read(folder / "study.toml"), folder / "out", worker_count=1, until="rest", shown=Shown())
+    run_study(StudySource.read(path), folder / "out", worker_count=1, until="rest", shown=Shown())
     return stages, said_first
 
 
@@ -69,7 +64,7 @@ def told(study: tuple[Told, list[str]]) -> Told:
 
 def test_the_program_of_a_study_is_named_before_anything_starts_it(study: tuple[Told, list[str]]) -> None:
     (said,) = study[1]
-    assert said.endswith(f"every run that is still to be made starts: {sys.executable} {EXAMPLES / 'ball_on_plate.py'}")
+    assert said.endswith(f"every run that is still to be made starts: {sys.executable} {PROGRAM}")
 
 
 @pytest.mark.parametrize("stage", list(WORKS))

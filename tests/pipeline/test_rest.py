@@ -12,15 +12,15 @@ import pytest
 
 from lithobrake.analysis import OutcomeModel
 from lithobrake.chaos import Uniform, fit, smolyak
+from lithobrake.outcomes import JourneyStatus, TouchdownOutcome
 from lithobrake.outputs import OUTPUTS
 from lithobrake.pipeline import Job, StudyFolder
+from lithobrake.pipeline.dispersion_statistics import dispersion_results, proportion
 from lithobrake.pipeline.flights import COLUMNS, read_table, write_table
 from lithobrake.pipeline.job import Silent
-from lithobrake.pipeline.landing_statistics import ENDS, landing_results, proportion
 from lithobrake.pipeline.rest import follow_samples
 from lithobrake.pipeline.run_noise import Scatter
 from lithobrake.pipeline.samples import SAMPLE_OUTCOMES, Samples
-from lithobrake.pipeline.solver import OUTCOMES
 from lithobrake.pipeline.surrogate_bounce import SoilBounce, rolling_spin, trained_ranges, why_no_soil
 from lithobrake.smallbody import Impacts
 from lithobrake.study import Study, check_tables
@@ -46,7 +46,7 @@ def bounce(friction: list[float], scatter: Scatter | None = None, outcome: str =
     """A soil that is exactly as `rebound` says."""
     x = smolyak(INPUTS, level=2)
     surrogate = fit(INPUTS, x, rebound(x), degree=2, method="ols", output_names=OUTPUTS)
-    outcomes = OutcomeModel(INPUTS, x, [outcome] * len(x), OUTCOMES)
+    outcomes = OutcomeModel(INPUTS, x, [outcome] * len(x), tuple(TouchdownOutcome))
     values = np.array(friction)
     inputs = {name: values if name == "grain.friction" else np.full(len(values), 0.3) for name in INPUTS}
     return SoilBounce(surrogate, outcomes, inputs, RANGES, scatter)
@@ -154,11 +154,11 @@ def test_hard_ground_is_followed_from_the_first_impact_and_the_summary_adds_up(t
         follow_samples(job)
         write_table(folder, "flights.csv", COLUMNS, [])
         folder.write_json("flights.json", {})
-        table = landing_results(job, Samples.load(folder), [], {"captured": 40})["rest"]
+        table = dispersion_results(job, Samples.load(folder), [], {"captured": 40})["rest"]
     assert "on hard ground only: impact.speed and" in said[0]
     assert table["soil"] is None
     assert table["hard"]["sample_count"] == 60
-    assert sum(table["hard"][name]["count"] for name in ENDS) == 60
+    assert sum(table["hard"][name]["count"] for name in JourneyStatus) == 60
     assert table["hard"]["settled"] == proportion(60, 60)
     assert (folder / "rest.csv").read_text().splitlines()[0] == (
         "ground,sample,status,time_s,latitude_deg,longitude_deg,rebounds,path_length [m],impact_speed [m/s],"

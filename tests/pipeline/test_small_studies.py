@@ -12,27 +12,17 @@ from pathlib import Path
 
 import pytest
 
-from lithobrake.campaign import Record, read_records
+from lithobrake.campaign import Record
+from lithobrake.results import open_study
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
+from .ball_studies import FEW_RUNS, PROGRAM, write_ball
+
 FRICTION = 'friction = { distribution = "uniform", lower = 0.05, upper = 0.4 }'
-FEW_RUNS = {
-    "screening_level = 2": "screening_level = 1",
-    "screening_degree = 2": "screening_degree = 1",
-    "refined_level = 3": "refined_level = 1",
-    "refined_degree = 3": "refined_degree = 1",
-    "test_count = 10": "test_count = 6",
-}
 
 
-def write_study(folder: Path, changes: dict[str, str], program: Path = EXAMPLES / "ball_on_plate.py") -> Path:
+def write_study(folder: Path, changes: dict[str, str], program: Path = PROGRAM) -> Path:
     """The example's study with few runs and these changes of its text."""
-    text = (EXAMPLES / "ball_on_plate.toml").read_text()
-    for old, new in (FEW_RUNS | {"python3 ball_on_plate.py": f"{sys.executable} {program}"} | changes).items():
-        assert old in text
-        text = text.replace(old, new)
-    (folder / "study.toml").write_text(text)
-    return folder / "study.toml"
+    return write_ball(folder / "study.toml", FEW_RUNS | {"test_count = 10": "test_count = 6"} | changes, program)
 
 
 def lithobrake(*arguments: object) -> "subprocess.CompletedProcess[str]":
@@ -64,32 +54,32 @@ def fixed(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_an_input_that_becomes_uncertain_reuses_the_runs_at_its_median_and_says_so(fixed: Path) -> None:
-    before = what_came(read_records(fixed / "runs.sqlite"))
+    before = what_came(open_study(fixed).ledger)
     said = said_by("screen", write_study(fixed.parent, {}), "--out", fixed, "--workers", 1)
     # Three inputs have 7 nodes, four have 9: the two new ones are the ends of the friction.
     assert "screening: 7 of 9 runs were known and are reused" in said
-    after = what_came(read_records(fixed / "runs.sqlite"))
+    after = what_came(open_study(fixed).ledger)
     assert len(after) == len(before) + 2
     assert {key: after[key] for key in before} == before
 
 
 def test_one_more_bed_reuses_the_runs_that_stay_on_theirs_and_says_so(fixed: Path) -> None:
-    before = what_came(read_records(fixed / "runs.sqlite"))
+    before = what_came(open_study(fixed).ledger)
     changes = {FRICTION: "friction = 0.225", "grain_count = 100": "grain_count = 100\nbed_count = 2"}
     said = said_by("screen", write_study(fixed.parent, changes), "--out", fixed, "--workers", 1)
-    after = what_came(read_records(fixed / "runs.sqlite"))
-    moved = [entry for entry in read_records(fixed / "runs.sqlite") if entry.inputs["bed"] == 1.0]
+    after = what_came(open_study(fixed).ledger)
+    moved = [entry for entry in open_study(fixed).ledger if entry.inputs["bed"] == 1.0]
     assert 0 < len(moved) < 7
     assert f"screening: {7 - len(moved)} of 7 runs were known and are reused" in said
     assert {key: after[key] for key in before} == before
 
 
 def test_one_more_run_at_every_point_reuses_the_first_ones_and_says_so(fixed: Path) -> None:
-    before = what_came(read_records(fixed / "runs.sqlite"))
-    changes = {FRICTION: "friction = 0.225", "screening_level = 1": "screening_level = 1\nreplicate_count = 2"}
+    before = what_came(open_study(fixed).ledger)
+    changes = {FRICTION: "friction = 0.225", "screening_level = 2": "screening_level = 1\nreplicate_count = 2"}
     said = said_by("screen", write_study(fixed.parent, changes), "--out", fixed, "--workers", 1)
     assert "screening: 7 of 14 runs were known and are reused" in said
-    after = read_records(fixed / "runs.sqlite")
+    after = open_study(fixed).ledger
     assert len(after) == len(before) + 7
     assert {entry.replicate for entry in after if entry.key not in before} == {1}
     assert {key: what_came(after)[key] for key in before} == before
@@ -112,9 +102,9 @@ runpy.run_path(PROGRAM, run_name="__main__")
     ],
 )  # fmt: skip
 def test_runs_that_fail_in_a_corner_are_not_fitted_around(share: str, said: str, tmp_path: Path) -> None:
-    (tmp_path / "breaks.py").write_text(FAILS_ABOVE.replace("PROGRAM", repr(str(EXAMPLES / "ball_on_plate.py"))))
+    (tmp_path / "breaks.py").write_text(FAILS_ABOVE.replace("PROGRAM", repr(str(PROGRAM))))
     changes = {
-        "screening_level = 1": "screening_level = 2",
+        "screening_level = 2": "screening_level = 2",
         "failed_share = 0.02": f"failed_share = {share}\nretry_count = 0",
     }
     study = write_study(tmp_path, changes, tmp_path / "breaks.py")
@@ -124,13 +114,13 @@ def test_runs_that_fail_in_a_corner_are_not_fitted_around(share: str, said: str,
 
 def test_a_program_that_never_works_ends_the_study_soon_and_so_does_its_restart(tmp_path: Path) -> None:
     (tmp_path / "never.py").write_text("import sys; sys.exit('\\x1b[31mno [/licence]')")
-    study = write_study(tmp_path, {"screening_level = 1": "screening_level = 2"}, tmp_path / "never.py")
+    study = write_study(tmp_path, {"screening_level = 2": "screening_level = 2"}, tmp_path / "never.py")
     for _ in range(2):
         said = said_by("screen", study, "--out", tmp_path / "out", "--workers", 1, code=2)
         assert "x RuntimeError: the program ended with exit code 1; its last words: no [/licence]), so the" in said
         assert "give the same command again" in said
         # Ten runs, and what was under way beside them.
-        assert 10 <= sum(entry.status == "failed" for entry in read_records(tmp_path / "out" / "runs.sqlite")) <= 12
+        assert 10 <= sum(entry.status == "failed" for entry in open_study(tmp_path / "out").ledger) <= 12
     assert "\x1b" not in lithobrake("runs", tmp_path / "out").stdout
 
 
@@ -147,7 +137,7 @@ def test_a_second_coordinator_is_refused_while_the_first_goes_on(tmp_path: Path)
     assert f"another lithobrake is at work in {tmp_path / 'out'} (process {first.pid} on " in said
     assert f"(process {first.pid} on " in told
     assert first.returncode == 0
-    assert len(read_records(tmp_path / "out" / "runs.sqlite")) == 9
+    assert len(open_study(tmp_path / "out").ledger) == 9
 
 
 @pytest.fixture
@@ -177,16 +167,17 @@ def test_a_disk_that_fills_up_is_one_sentence_and_the_study_goes_on_when_there_i
     database.close()
     subprocess.run(["mount", "-o", "remount,size=20m", str(small_disk)], check=True)
     said_by("test", study, "--out", small_disk / "out", "--workers", 1)
-    again, before = (what_came(read_records(out / "runs.sqlite")) for out in (small_disk / "out", fixed))
+    again, before = (what_came(open_study(out).ledger) for out in (small_disk / "out", fixed))
     assert {key: entry[:4] for key, entry in again.items()} == {key: before[key][:4] for key in again}
 
 
 AS_NOBODY = """
 import os, sys
 from pathlib import Path
-from lithobrake.campaign import Ledger, read_records
+from lithobrake.campaign import Ledger
 from lithobrake.pipeline import study_status
 from lithobrake.pipeline.folder import StudyFolder
+from lithobrake.results import open_study
 
 out = Path(sys.argv[1])
 out.chmod(0o555)
@@ -197,7 +188,7 @@ for open_folder in (lambda: StudyFolder(out), lambda: Ledger(out / "runs.sqlite"
         open_folder()
     except ValueError as error:
         print(error)
-print(len(read_records(out / "runs.sqlite")))
+print(len(open_study(out).ledger))
 print(*study_status(out), sep="\\n")
 """
 

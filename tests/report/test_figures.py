@@ -14,7 +14,7 @@ from lithobrake.report.count_figure import Design, count_figure
 from lithobrake.report.density import WHOLE, close_window, draw_density, neighbour_count
 from lithobrake.report.ellipse_line import draw_ellipses, outline
 from lithobrake.report.error_figure import Score, error_figure
-from lithobrake.report.hulls import Body
+from lithobrake.report.hulls import Hull
 from lithobrake.report.landing_figure import instants, landing_figure
 from lithobrake.report.map_figure import Share, draw_shares, map_figure
 from lithobrake.report.rest_figure import RestMap, rest_figure
@@ -46,9 +46,9 @@ def texts(figure: Figure) -> str:
     return "\n".join([*found, *legends])
 
 
-def falling(frame_count: int) -> tuple[list[Body], np.ndarray, np.ndarray, np.ndarray]:
+def falling(frame_count: int) -> tuple[list[Hull], np.ndarray, np.ndarray, np.ndarray]:
     """Five tetrahedra that sink: bodies, time, position and orientation."""
-    bodies = [Body(0.03 * TETRAHEDRON, FACES, "#aa9977")] * 5
+    bodies = [Hull(0.03 * TETRAHEDRON, FACES, "#aa9977")] * 5
     start = np.column_stack([np.linspace(-0.2, 0.2, 5), np.zeros(5), np.linspace(0.3, 1.0, 5)])
     drop = np.linspace(0.0, 0.25, frame_count)[:, None]
     position = np.repeat(start[None], frame_count, axis=0)
@@ -158,7 +158,7 @@ def test_scatter_figure_leaves_out_samples_that_stay() -> None:
     outputs = {name: np.linspace(0.0, 1.0, 20) for name in PAPER_OUTPUTS}
     leaves = np.arange(20) >= 5
     with figure_style():
-        figure = scatter_figure(outputs, "grain.restitution", np.linspace(0.3, 0.8, 20), leaves)
+        figure = scatter_figure(outputs, ("restitution", np.linspace(0.3, 0.8, 20)), leaves)
     assert [len(axes.collections[0].get_offsets()) for axes in figure.axes[:3]] == [15, 15, 15]
     assert picture(figure)
 
@@ -346,5 +346,6 @@ def test_the_look_leaves_the_settings_of_others_alone() -> None:
 
 def test_an_input_without_a_label_keeps_its_key_in_words() -> None:
     assert input_label("lander.solar_panel_area") == "lander: solar panel area"
-    assert input_label("solver.inputs.plate_tilt_deg") == "plate tilt [deg]"
-    assert input_label("grain.friction", with_unit=False) == r"friction $\mu$, grains"
+    assert input_label("solver.inputs.plate_tilt_deg", "deg") == "plate tilt [deg]"
+    assert input_label("grain.friction") == r"friction $\mu$, grains"
+    assert input_label("grain.density", "kg/m3") == r"density $\rho$, grains [kg/m$^3$]"

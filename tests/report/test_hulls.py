@@ -6,15 +6,15 @@ from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from scipy.spatial import ConvexHull
 
-from lithobrake.report.hulls import Body, Camera, frame_axes, paint, rotation, subdivide
+from lithobrake.report.hulls import Camera, Hull, frame_axes, paint, rotation, subdivide
 from lithobrake.report.shading import SUN, direction
 
 CUBE = np.array([(x, y, z) for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
 STRAIGHT = np.array([[1.0, 0.0, 0.0, 0.0]])
 
 
-def cube(colour: str = "#808080") -> Body:
-    return Body(CUBE, ConvexHull(CUBE).simplices, colour)
+def cube(colour: str = "#808080") -> Hull:
+    return Hull(CUBE, ConvexHull(CUBE).simplices, colour)
 
 
 def test_camera_from_the_front_sees_x_to_the_right_and_z_up() -> None:

@@ -5,7 +5,7 @@ from html.parser import HTMLParser
 
 import pytest
 
-from lithobrake.report.page import LONG, Panel, Table, Tile, flat, number, page, show, unit_scales
+from lithobrake.report.page import LONG, PageTable, Panel, Tile, flat, number, page, show, unit_scales
 
 
 def example() -> str:
@@ -15,13 +15,13 @@ def example() -> str:
         "Study of 2026-03-01.",
         [Tile("48.3", "%", "re-impact")],
         [Panel("Bed", 'A "bed" of 3 grains.', b"\x89PNG"), Panel("Landing", "No landing was kept.", None)],
-        [Table("Errors", ["output", "MAPE"], [["V+", "1.2 %"]], numbers=frozenset({"MAPE"}))],
-        [Table("Versions", ["name", "value"], [["lithobrake", "0.1.0"]])],
+        [PageTable("Errors", ["output", "MAPE"], [["V+", "1.2 %"]], numbers=frozenset({"MAPE"}))],
+        [PageTable("Versions", ["name", "value"], [["lithobrake", "0.1.0"]])],
         'title = "<one>"',
     )
 
 
-def folds(tables: list[Table]) -> list[str]:
+def folds(tables: list[PageTable]) -> list[str]:
     """The parts of a page that can be folded, opening tag first."""
     text = page("Study", "", "", [], [], tables, [], "")
     return re.findall(r"<details.*?</details>", text, flags=re.DOTALL)
@@ -60,7 +60,7 @@ def test_words_are_escaped_and_figures_numbered() -> None:
 
 
 def test_long_tables_are_folded_short_ones_open_and_each_scrolls_in_a_box_of_its_own() -> None:
-    short, long = (Table(name, ["a"], [["1"]] * count) for name, count in (("Short", LONG), ("Long", LONG + 1)))
+    short, long = (PageTable(name, ["a"], [["1"]] * count) for name, count in (("Short", LONG), ("Long", LONG + 1)))
     first, second, study = folds([short, long])
     assert first.startswith("<details open><summary><h3>Short</h3></summary>")
     assert second.startswith(f"<details><summary><h3>Long <small>{LONG + 1} rows</small></h3></summary>")
@@ -75,7 +75,7 @@ def test_a_picture_is_enlarged_without_a_second_copy_of_it() -> None:
 
 
 def test_cells_that_are_links_lead_to_files_and_all_others_are_words() -> None:
-    table = Table("Files", ["file", "size"], [["a.csv", "1 kB"]], links={"a.csv": "../a.csv"})
+    table = PageTable("Files", ["file", "size"], [["a.csv", "1 kB"]], links={"a.csv": "../a.csv"})
     assert '<td><a href="../a.csv">a.csv</a></td><td>1 kB</td>' in folds([table])[0]
 
 

@@ -14,9 +14,10 @@ import numpy as np
 import pytest
 
 from lithobrake.report import captions, write_report
-from lithobrake.report.results import read_results
-from lithobrake.report.scene import read_scene
+from lithobrake.report.results import page_results
+from lithobrake.report.scene import scene
 from lithobrake.report.study_files import size
+from lithobrake.results import MovingBodies, open_study
 
 
 @pytest.fixture(scope="module")
@@ -47,7 +48,7 @@ def test_sentences_carry_the_numbers_of_the_summary(report: str) -> None:
         "at most 3.0 %",
         "12 grains",
         "solid fraction of 0.58",
-        "0.2 m/s and 30 deg from the normal and leaves the surface",
+        "0.2 m/s and 30 deg from the normal. The lander leaves the surface after",
         "25 runs on the Smolyak grid, against 125",
         "V+ varies most with the restitution of the grains (50 %, 45 % to 55 %, of its explained variance)",
         "of the variance of the runs 6 % of V+, 6 % of theta+ and 6 % of omega+ is scatter, which no input decides",
@@ -104,11 +105,11 @@ def test_no_number_of_a_symmetric_study_is_rounding(report: str) -> None:
 
 
 def test_a_summary_without_date_and_escape_speed_is_read_too(study_folder: Path) -> None:
-    data = read_results(study_folder)
+    data = page_results(open_study(study_folder))
     site = {key: value for key, value in data.results["site"].items() if key[:6] not in ("escape", "bulk_d")}
     older = replace(data, provenance={}, results=data.results | {"site": site})
     assert captions.facts(older) == ""
-    assert captions.landing_map(older).endswith("outward).")
+    assert captions.impact_map(older).endswith("outward).")
 
 
 @pytest.mark.parametrize(
@@ -152,6 +153,8 @@ DAMAGED: list[tuple[str, Callable[[Path], object]]] = [
     ("scores.json", lambda path: path.write_text('{"refined": 3}')),
     ("flights.csv", lambda path: path.write_text("")),
     ("flights.csv", lambda path: path.write_text(path.read_text()[:-9])),
+    ("flights.csv", lambda path: path.write_text(re.sub("impact,([^,]*),[^,]*,", r"impact,\1,,", path.read_text()))),
+    ("flights.csv", lambda path: path.write_text(path.read_text().replace("0.05", "fast"))),
     ("rest.csv", lambda path: path.write_text("a,b\n1,2\n")),
     ("body.obj", lambda path: path.write_text("\n")),
     ("body.obj", lambda path: path.write_text("v 0 0 0\nf 1 2 3\n")),
@@ -212,7 +215,7 @@ def test_a_body_is_drawn_about_its_centroid(tmp_path: Path) -> None:
         file["vertex_start"], file["face_start"] = [0, 4], [0, 4]
         file["frames/time"], file["frames/position"] = [0.0], np.zeros((1, 1, 3))
         file["frames/orientation"] = [[[1.0, 0.0, 0.0, 0.0]]]
-    body = read_scene(path, has_lander=False).bodies[0]
+    body = scene(MovingBodies.read(path, "make it again"), has_lander=False).bodies[0]
     np.testing.assert_allclose(body.vertices, tetrahedron - 1.0, atol=1e-12)
 
 
@@ -221,7 +224,7 @@ def test_a_file_without_frames_is_refused(tmp_path: Path) -> None:
     with h5py.File(path, "w") as file:
         file["vertices"] = np.zeros((4, 3))
     with pytest.raises(ValueError, match="no group 'frames'"):
-        read_scene(path, has_lander=True)
+        MovingBodies.read(path, "make it again")
 
 
 def test_importing_the_part_loads_no_matplotlib_and_no_engine() -> None:

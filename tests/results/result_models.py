@@ -1,7 +1,11 @@
-"""Touchdowns by functions, which worker processes import by name."""
+"""Touchdowns by functions, which worker processes import by name, and a study that they are made for."""
 
 import math
+import tomllib
+from pathlib import Path
 from typing import Any
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
 
 
 def bounce(inputs: dict[str, float], seed: int) -> dict[str, Any]:
@@ -36,3 +40,15 @@ def lifted(inputs: dict[str, float], seed: int) -> dict[str, Any]:
         "spin_out": inputs["impact.speed"],
     }
     return {"outcome": "clear", "outputs": outputs}
+
+
+def small_study() -> dict[str, Any]:
+    """The ball on a plate without its program, with few runs."""
+    tables = tomllib.loads((EXAMPLES / "ball_on_plate.toml").read_text())
+    del tables["solver"]
+    tables["design"] |= {"screening_level": 1, "screening_degree": 1, "refined_level": 2, "refined_degree": 1}
+    tables["design"] |= {"test_count": 4}
+    tables["monte_carlo"] = {"sample_count": 400}
+    tables["flight"] = {"flight_count": 6, "duration": 600.0, "gravity": "exact"}
+    tables["rest"] = {"count": 0}
+    return tables

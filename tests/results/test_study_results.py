@@ -3,10 +3,9 @@
 import copy
 import subprocess
 import sys
-import tomllib
 from pathlib import Path
-from typing import Any
 
+import h5py
 import numpy as np
 import pytest
 import result_models as models
@@ -17,23 +16,11 @@ from lithobrake.results import StudyResults
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
 
-def small_study() -> dict[str, Any]:
-    """The ball on a plate without its program, with few runs."""
-    tables = tomllib.loads((EXAMPLES / "ball_on_plate.toml").read_text())
-    del tables["solver"]
-    tables["design"] |= {"screening_level": 1, "screening_degree": 1, "refined_level": 2, "refined_degree": 1}
-    tables["design"] |= {"test_count": 4}
-    tables["monte_carlo"] = {"sample_count": 400}
-    tables["flight"] = {"flight_count": 6, "duration": 600.0, "gravity": "exact"}
-    tables["rest"] = {"count": 0}
-    return tables
-
-
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The folder of a finished study."""
     out = tmp_path_factory.mktemp("face") / "out"
-    lithobrake.run(small_study(), out, workers=1, model=models.bounce, report=False)
+    lithobrake.run(models.small_study(), out, workers=1, model=models.bounce, report=False)
     return out
 
 
@@ -72,6 +59,19 @@ def test_columns_say_what_they_are(results: StudyResults) -> None:
     assert "speed_out [m/s]" in results.samples._repr_html_()
 
 
+def test_every_data_set_of_the_samples_says_of_its_columns_what_they_are(folder: Path) -> None:
+    with h5py.File(folder / "samples.h5") as file:
+        assert set(file) == {"inputs", "outputs", "outcome"}
+        assert file["outcome"].attrs["long_name"] == "how the touchdown ended"
+        for name in ("inputs", "outputs"):
+            attributes, count = file[name].attrs, file[name].shape[1]
+            assert len(attributes["units"]) == len(attributes["frame"]) == count
+            assert all(attributes["long_name"][:])
+        assert list(file["outputs"].attrs["units"]) == ["m/s", "rad", "rad/s", "m/s", "m/s", "m/s"]
+        degrees = list(file.attrs["input_names"]).index("impact.incidence_deg")
+        assert file["inputs"].attrs["units"][degrees] == "deg"
+
+
 def test_the_expansion_is_called_by_the_names_of_its_inputs(results: StudyResults) -> None:
     names = results.surrogate.expansion.input_names
     inputs = {name: np.full((2, 3), results.surrogate.expansion.inputs[name].median) for name in names}
@@ -93,14 +93,14 @@ def test_opening_writes_nothing_and_a_folder_of_something_else_is_refused(folder
 
 def test_the_same_call_makes_nothing_again_and_another_study_is_refused_the_folder(folder: Path) -> None:
     before = (folder / "summary.json").stat().st_mtime_ns
-    lithobrake.run(small_study(), folder, workers=1, model=models.bounce, report=False)
+    lithobrake.run(models.small_study(), folder, workers=1, model=models.bounce, report=False)
     assert (folder / "summary.json").stat().st_mtime_ns == before
     with pytest.raises(ValueError, match="choose another folder"):
         lithobrake.run(EXAMPLES / "ball_on_plate.toml", folder, workers=1, report=False)
 
 
 def test_what_cannot_be_run_is_refused_before_anything_is_made(tmp_path: Path) -> None:
-    tables, out = small_study(), tmp_path / "out"
+    tables, out = models.small_study(), tmp_path / "out"
     with pytest.raises(ValueError, match="out is None"):
         lithobrake.run(tables, model=models.bounce)
     with pytest.raises(ValueError, match="cannot be sent to a process"):
@@ -115,7 +115,7 @@ def test_what_cannot_be_run_is_refused_before_anything_is_made(tmp_path: Path) -
 
 
 def test_a_model_has_inputs_of_its_own_and_no_grain_stands_in_its_way(tmp_path: Path) -> None:
-    tables = small_study()
+    tables = models.small_study()
     tables["solver"] = {"inputs": {"lift": {"distribution": "uniform", "lower": 0.5, "upper": 1.0}}}
     # No contact law would take so heavy a lander on these grains; the model has its own.
     tables["lander"]["mass"] = 1e12
@@ -127,10 +127,11 @@ def test_a_model_has_inputs_of_its_own_and_no_grain_stands_in_its_way(tmp_path: 
 
 def test_a_model_that_contradicts_itself_fails_with_the_reason(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match="a lander that leaves moves outwards"):
-        lithobrake.run(small_study(), tmp_path / "out", workers=1, model=models.contradicts_itself, report=False)
+        lithobrake.run(models.small_study(), tmp_path / "out", workers=1, model=models.contradicts_itself, report=False)
 
 
 def test_importing_the_package_loads_no_other() -> None:
-    code = "import lithobrake, sys; print(sorted({name.split('.')[0] for name in sys.modules} & {'numpy', 'pydantic'}))"
+    heavy = "{'numpy', 'pydantic', 'h5py'}"
+    code = f"import lithobrake.results, sys; print(sorted({heavy} & set(sys.modules)))"
     found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert found.stdout.strip() == "[]"

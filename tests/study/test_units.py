@@ -1,12 +1,14 @@
-"""Units of the inputs of runs come from the schema of the study file, those of outputs from one table."""
+"""Units of the inputs of runs come from the schema of the study file, those of all that comes out from one table."""
 
 import tomllib
 from pathlib import Path
 
-from lithobrake.outputs import OUTPUTS
+from lithobrake.outputs import BEDS, FLIGHT, OUTPUTS, RUN, TOUCHDOWN, quantity
+from lithobrake.pipeline import flights, rest
+from lithobrake.pipeline.design_runs import PLAIN_COLUMNS
 from lithobrake.study import check_tables
 from lithobrake.study.template import template
-from lithobrake.study.units import OUTPUT_UNITS, input_units
+from lithobrake.study.units import input_units, run_units
 from lithobrake.touchdown import OUTPUTS as OUTPUTS_OF_A_TOUCHDOWN
 from lithobrake.touchdown_model import draw, medians
 
@@ -21,4 +23,24 @@ def test_every_input_of_a_run_has_its_unit() -> None:
 
 
 def test_every_output_has_its_unit() -> None:
-    assert {*OUTPUTS, *OUTPUTS_OF_A_TOUCHDOWN} == set(OUTPUT_UNITS)
+    assert {*OUTPUTS, *OUTPUTS_OF_A_TOUCHDOWN} == set(TOUCHDOWN)
+    assert all(one.units and one.long_name for one in TOUCHDOWN.values())
+    assert run_units()["peak_acceleration"] == "m/s2"
+
+
+def test_every_column_of_the_tables_has_words() -> None:
+    assert set(PLAIN_COLUMNS) <= set(RUN)
+    own = {name for name in (*flights.COLUMNS, *rest.COLUMNS) if not name.startswith("site_")}
+    assert own == set(FLIGHT)
+    assert all(one.long_name for one in (FLIGHT | RUN | BEDS).values())
+    # A name that ends with its unit has that unit.
+    assert all(one.units == name.rpartition("_")[2] for name, one in FLIGHT.items() if name.endswith(("_s", "_deg")))
+
+
+def test_columns_of_the_study_file_have_its_units_and_own_names_have_none() -> None:
+    units = input_units()
+    assert quantity("site_spin_period", FLIGHT, units) == ("s", "spin period of the sample", "", "")
+    assert quantity("grain.young_modulus", TOUCHDOWN, units)[:2] == ("Pa", "grain, young modulus")
+    assert quantity("grain.friction", TOUCHDOWN, units).units == ""
+    # What a program of the user's own calls gravity need not be that of a bed.
+    assert quantity("gravity", TOUCHDOWN, units) == ("", "gravity", "", "")

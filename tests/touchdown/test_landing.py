@@ -110,6 +110,23 @@ def test_recorded_landing_is_written(bed, tmp_path):
         assert file["frames/position"].shape[1:] == (25, 3)
 
 
+def test_every_data_set_of_a_bed_and_of_a_landing_says_what_it_holds(bed, tmp_path):
+    import h5py
+
+    outcome = land(bed, ball(), landing(), frame_count=1)
+    outcome.save_frames(tmp_path / "landing.h5", bed, ball(), landing())
+    bed.save(tmp_path / "bed.h5")
+    for name, count in (("landing.h5", 10), ("bed.h5", 14)):
+        with h5py.File(tmp_path / name) as file:
+            found = {}
+            file.visititems(lambda key, entry, found=found: found.update({key: dict(entry.attrs)}))
+        sets = {key: attributes for key, attributes in found.items() if key not in ("frames", "history")}
+        assert len(sets) == count
+        assert all(attributes["long_name"] and "units" in attributes for attributes in sets.values())
+        assert (sets["frames/time"]["units"], sets["frames/position"]["units"]) == ("s", "m")
+        assert sets["position"]["frame"].startswith("of the bed")
+
+
 @pytest.mark.parametrize(
     ("name", "value"), [("speed", 0.0), ("incidence", 1.6), ("time_limit", 0.0), ("azimuth", math.nan)]
 )

@@ -111,7 +111,7 @@ class ExpectedSoil:
         return RELAXING * STEPS_PER_PERIOD * settling.PERIODS_RELAXED, lasting / step
 
     def touchdown_time(self, lander: "Lander", landing: "Landing") -> float:
-        """Time [s] until the fate of a lander is clear, were there no limit."""
+        """Time [s] until the outcome of a touchdown is known, were there no limit."""
         from lithobrake.touchdown.flightline import CAPTURED_APEX
 
         rise = -landing.gravity[2] * CAPTURED_APEX * lander.smallest_edge

@@ -14,7 +14,7 @@ NAMES = {
 
 
 def plan_lines(plan: Plan) -> list[str]:
-    """All that a plan says, in lines."""
+    """Return the whole plan as lines of text."""
     lines = [f"{plan.study}, in {plan.folder}"]
     if not plan.stages:
         lines += ["Nothing is left to make: every file is there and still good."]

@@ -125,6 +125,34 @@ def _fraction_at_surface(
     return 0.5 * (low + high), facet
 
 
+@kernel
+def _chord_limits(ground: Ground, pace: float, acceleration: float, step: float) -> tuple[float, float]:
+    """Largest speed [m/s] of a step [s], and the longest time [s] of a chord near the surface."""
+    fastest = pace + 0.5 * acceleration * step
+    # Half a cell keeps a chord among few cells; the sagitta of a chord of time t is at most acceleration t**2 / 8.
+    longest = min(
+        np.sqrt(8.0 * SAGITTA * ground.slack / acceleration) if acceleration > 0.0 else step,
+        0.5 * ground.grid.edge / fastest if fastest > 0.0 else step,
+    )
+    return fastest, longest
+
+
+@kernel
+def _sink(curve: Floats, ground: Ground, motion: Motion, there: Floats, fraction: float) -> tuple[float, int]:
+    """Height [m] at a fraction of the step, and the facet there if that is below the surface, else -1. Writes there."""
+    _position_at(curve, fraction, motion, there)
+    height, facet = height_near(ground.grid, ground.corners, ground.pseudonormals, there)
+    return height, facet if height < -ground.slack else -1
+
+
+@kernel
+def _entered_facet(ground: Ground, here: Floats, there: Floats, chord: Floats) -> int:
+    """First facet that the chord between two points enters from outside, -1: none. Writes chord."""
+    for i in range(3):
+        chord[i] = there[i] - here[i]
+    return first_entry(ground.grid, ground.corners, here, chord)[1]
+
+
 @large_kernel
 def find_impact(
     curve: Floats, derivative: Floats, step: float, j: int, phase: int, ground: Ground, motion: Motion, room: Floats
@@ -134,7 +162,7 @@ def find_impact(
 
     room [3, 3] is scratch.
     """
-    grid, corner, outward, slack = ground.grid, ground.corners, ground.pseudonormals, ground.slack
+    grid, slack = ground.grid, ground.slack
     here, there, chord = room[0], room[1], room[2]
     pace, acceleration = _motion_bounds(curve, derivative, step, j, motion)
     _position_at(curve, 0.0, motion, here)
@@ -142,22 +170,16 @@ def find_impact(
         _position_at(curve, 1.0, motion, there)
         if _closest_approach(here, there) > ground.radius + 0.125 * acceleration * step * step:
             return 1.0, -1, phase
-    fastest = pace + 0.5 * acceleration * step
-    # Half a cell keeps a chord among few cells; the sagitta of a chord of time t is at most acceleration t**2 / 8.
-    longest = min(
-        np.sqrt(8.0 * SAGITTA * slack / acceleration) if acceleration > 0.0 else step,
-        0.5 * grid.edge / fastest if fastest > 0.0 else step,
-    )
+    fastest, longest = _chord_limits(ground, pace, acceleration, step)
     stride = min(longest, 4.0 * slack / pace) if pace > 0.0 else longest
     time, height = 0.0, 0.0
     if phase == ON_SURFACE:
-        height = height_near(grid, corner, outward, here)[0]
+        height = height_near(grid, ground.corners, ground.pseudonormals, here)[0]
     while time < step:
         if phase == ON_SURFACE:
             until = min(time + stride, step)
-            _position_at(curve, until / step, motion, there)
-            height_there, facet = height_near(grid, corner, outward, there)
-            if height_there < -slack:
+            height_there, facet = _sink(curve, ground, motion, there, until / step)
+            if facet >= 0:
                 if height > 0.0:
                     fraction, facet = _fraction_at_surface(curve, ground, motion, there, time / step, until / step)
                     return fraction, facet, phase
@@ -170,13 +192,10 @@ def find_impact(
             gap = clearance(grid, here[0], here[1], here[2])
             until = min(time + (gap / fastest if gap > 0.0 else longest), step)
             _position_at(curve, until / step, motion, there)
-            if gap == 0.0:
-                for i in range(3):
-                    chord[i] = there[i] - here[i]
-                _, facet = first_entry(grid, corner, here, chord)
-                if facet >= 0:
-                    fraction = _fraction_at_plane(curve, ground, motion, facet, there, time / step, until / step)
-                    return fraction, facet, phase
+            facet = _entered_facet(ground, here, there, chord) if gap == 0.0 else -1
+            if facet >= 0:
+                fraction = _fraction_at_plane(curve, ground, motion, facet, there, time / step, until / step)
+                return fraction, facet, phase
         time = until
         for i in range(3):
             here[i] = there[i]

@@ -5,36 +5,36 @@ from typing import Any
 
 import numpy as np
 
+from lithobrake.outcomes import FlightStatus, JourneyStatus, SampleOutcome, TouchdownOutcome
 from lithobrake.pipeline.flights import QUANTILES, flight_numbers, read_table
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.samples import MISSING, SAMPLE_OUTCOMES, Samples
 from lithobrake.pipeline.scope import scope
-from lithobrake.pipeline.site import push_at_site, site_body
-from lithobrake.pipeline.solver import OUTCOMES
+from lithobrake.pipeline.site import effective_acceleration_at_site, site_body
 from lithobrake.study import Study
 
-# How a journey from bounce to bounce may end (docs/flights.md).
-ENDS = ("settled", "lofted", "outside", "flying", "escaped", "partner", "sliding", "bouncing")
+# In the order of the summary.
+FLIGHTS = (FlightStatus.IMPACT, FlightStatus.FLYING, FlightStatus.ESCAPED, FlightStatus.PARTNER)
 NORMAL_QUANTILE_90 = 1.6448536269514722
 Rows = Sequence[dict[str, str]]
 
 
-def landing_results(job: Job, samples: Samples, flights: Rows, run_outcomes: Mapping[str, int]) -> dict[str, Any]:
+def dispersion_results(job: Job, samples: Samples, flights: Rows, run_outcomes: Mapping[str, int]) -> dict[str, Any]:
     """The parts of the summary that come from flights and journeys; run_outcomes: how often each came in the runs."""
     study = job.study
-    holds = bool(push_at_site(study)[2] < 0.0)
+    holds = bool(effective_acceleration_at_site(study)[2] < 0.0)
     results: dict[str, Any] = {}
     results["shares"] = shares(samples, flights, run_outcomes, holds=holds) | {"why": scope(study).why}
     results["stays"] = stays(study, results["shares"], sum(run_outcomes.values()))
     results["flights"] = flight_numbers(flights) | job.folder.read_json("flights.json")
-    results["ellipses"] = ellipses(study, flights, ("impact",))
+    results["ellipses"] = ellipses(study, flights, FlightStatus.IMPACT)
     results["without_scatter"] = None
     if samples.without_scatter is not None:
         alone = read_table(job.folder, "flights_without_scatter.csv")
         results["without_scatter"] = {
             "shares": shares(samples.expansion_alone(), alone, run_outcomes, holds=holds),
             "flights": flight_numbers(alone),
-            "ellipses": ellipses(study, alone, ("impact",)),
+            "ellipses": ellipses(study, alone, FlightStatus.IMPACT),
         }
     results["rest"] = _rest(job)
     return results
@@ -55,14 +55,14 @@ def shares(samples: Samples, flights: Rows, run_outcomes: Mapping[str, int], *, 
         total = int(flights[-1]["sample"]) + 1
     met = np.bincount(samples.outcome[:total], minlength=len(SAMPLE_OUTCOMES)).tolist()
     counts = dict(zip(SAMPLE_OUTCOMES, met, strict=True))
-    del counts["clear"]
+    del counts[SampleOutcome.CLEAR]
     statuses = [row["status"] for row in flights]
-    counts |= {status: statuses.count(status) for status in ("impact", "flying", "escaped", "partner")}
-    counts["remains"] = counts["impact"] + (counts["captured"] if holds else 0)
+    counts |= {status: statuses.count(status) for status in FLIGHTS}
+    counts["remains"] = counts[FlightStatus.IMPACT] + (counts[SampleOutcome.CAPTURED] if holds else 0)
     counts["missing"] = sum(counts[name] for name in MISSING)
     table: dict[str, Any] = {"sample_count": total, "flight_count": len(flights)}
     table |= {name: proportion(count, total) for name, count in counts.items()}
-    for name in set(OUTCOMES) - {"clear", *run_outcomes}:
+    for name in set(TouchdownOutcome) - {TouchdownOutcome.CLEAR, *run_outcomes}:
         table[name]["upper_limit"] = upper_limit(sum(run_outcomes.values()))
     return table
 
@@ -91,16 +91,16 @@ def stays(study: Study, table: Mapping[str, Any], run_count: int) -> dict[str, A
     }
 
 
-def ellipses(study: Study, rows: Rows, statuses: Sequence[str]) -> dict[str, Any] | None:
-    """Ellipses that hold half and 95 % of the places of the rows with these statuses; None where there are none.
+def ellipses(study: Study, rows: Rows, status: str) -> dict[str, Any] | None:
+    """Ellipses that hold half and 95 % of the places of the rows with this status; None where there are none.
 
     The axes in metres are the angles times the radius at the middle.
     """
-    from lithobrake.analysis import landing_ellipses
+    from lithobrake.analysis import dispersion_ellipses
 
-    down = [row for row in rows if row["status"] in statuses]
+    down = [row for row in rows if row["status"] == status]
     latitude, longitude = (np.array([float(row[f"{name}_deg"]) for row in down]) for name in ("latitude", "longitude"))
-    found = landing_ellipses(latitude, longitude)
+    found = dispersion_ellipses(latitude, longitude)
     if found is None:
         return None
     centre = site_body(study).shape.surface_point(found.latitude_deg, found.longitude_deg)
@@ -130,15 +130,15 @@ def _ends(study: Study, rows: Rows, ranges: dict[str, list[float]]) -> dict[str,
     """Shares of each end, and the numbers of the landers that settled."""
     statuses = [row["status"] for row in rows]
     table: dict[str, Any] = {"sample_count": len(rows)}
-    table |= {name: proportion(statuses.count(name), len(rows)) for name in ENDS}
-    settled = [row for row in rows if row["status"] == "settled"]
+    table |= {name: proportion(statuses.count(name), len(rows)) for name in JourneyStatus}
+    settled = [row for row in rows if row["status"] == JourneyStatus.SETTLED]
     for name in ("time_s", "path_length", "rebounds") if settled else ():
         values = np.array([float(row[name]) for row in settled])
         table[name] = {f"quantile_{level:g}": float(np.quantile(values, level)) for level in QUANTILES}
-    table["ellipses"] = ellipses(study, rows, ("settled",))
+    table["ellipses"] = ellipses(study, rows, JourneyStatus.SETTLED)
     lowest = ranges.get("impact.speed", [0.0])[0]
     # Most journeys that leave the range of the runs have become too slow for it.
-    too_slow = sum(row["status"] == "outside" and float(row["impact_speed"]) < lowest for row in rows)
+    too_slow = sum(row["status"] == JourneyStatus.OUTSIDE and float(row["impact_speed"]) < lowest for row in rows)
     table["outside_too_slow"] = proportion(too_slow, len(rows))
     return table
 

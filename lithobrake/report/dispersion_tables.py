@@ -3,59 +3,58 @@
 from collections.abc import Mapping
 from typing import Any
 
+from lithobrake.outcomes import FlightStatus, JourneyStatus, SampleOutcome
 from lithobrake.report.captions import hours, percent
-from lithobrake.report.page import Table, fixed, flat, number
+from lithobrake.report.page import PageTable, fixed, flat, number
 from lithobrake.report.results import Results
 
-FATE_WORDS = {
-    "impact": "down again within {hours}",
-    "flying": "still flying after {hours}",
-    "escaped": "escaped",
-    "partner": "on the partner within {hours}",
-    "captured": "captured",
-    "left_sideways": "left over the rim of the bed",
-    "time_limit": "in contact at the time limit",
-    "outside": "drawn outside 0 to 90 deg",
+OUTCOME_WORDS: dict[str, str] = {
+    FlightStatus.IMPACT: "down again within {hours}",
+    FlightStatus.FLYING: "still flying after {hours}",
+    FlightStatus.ESCAPED: FlightStatus.ESCAPED.label,
+    FlightStatus.PARTNER: "on the partner within {hours}",
+    **{outcome: outcome.label for outcome in SampleOutcome if outcome != SampleOutcome.CLEAR},
     "remains": "{remains}",
     "missing": "nobody knows where (over the rim, time limit, drawn outside)",
 }
 # Each holds others of the table.
 SUMS = ("remains", "missing")
-END_WORDS = {
-    "settled": "at rest",
-    "lofted": "captured, and lifted off again by the spin",
-    "outside": "stopped where the expansion has no answer",
+JOURNEY_WORDS: dict[str, str] = {
+    JourneyStatus.SETTLED: "at rest",
+    JourneyStatus.LOFTED: "captured, and lifted off again by the spin",
+    JourneyStatus.OUTSIDE: "stopped where the expansion has no answer",
     "outside_too_slow": "(of these: slower than any run)",
-    "sliding": "sliding along the ground",
-    "bouncing": "still bouncing after a thousand bounces",
-    "flying": "not at rest after {hours}",
-    "escaped": "escaped",
-    "partner": "on the partner",
+    JourneyStatus.SLIDING: "sliding along the ground",
+    JourneyStatus.BOUNCING: "still bouncing after a thousand bounces",
+    JourneyStatus.FLYING: "not at rest after {hours}",
+    JourneyStatus.ESCAPED: JourneyStatus.ESCAPED.label,
+    JourneyStatus.PARTNER: "on the partner",
 }
 GROUND_WORDS = {"soil": "soil", "hard": "hard ground"}
 QUANTILES = ("quantile_0.05", "quantile_0.5", "quantile_0.95")
 ACCELERATIONS = ("effective_acceleration_outward", "effective_acceleration_along_heading")
 
 
-def fates(data: Results) -> dict[str, str]:
+def outcome_words(data: Results) -> dict[str, str]:
     """What may become of a sample, in words; the partner is left out where there is none."""
     holds = data.results["site"]["effective_acceleration_outward"] < 0.0
     remains = "down again within {hours}, or captured" if holds else "down again within {hours}"
-    words = FATE_WORDS | {"remains": remains}
-    return {key: text for key, text in words.items() if key != "partner" or data.results["site"].get("partner")}
+    words = OUTCOME_WORDS | {"remains": remains}
+    alone = not data.results["site"].get("partner")
+    return {key: text for key, text in words.items() if not (alone and key == FlightStatus.PARTNER)}
 
 
-def landing_tables(data: Results) -> list[Table]:
+def dispersion_tables(data: Results) -> list[PageTable]:
     """All of them, in the order of the journey."""
-    return [_fates(data), _flights(data), _ends(data), _journeys(data), _ellipses(data), _site(data)]
+    return [_outcomes(data), _flights(data), _statuses(data), _journeys(data), _ellipses(data), _site(data)]
 
 
-def _fates(data: Results) -> Table:
+def _outcomes(data: Results) -> PageTable:
     shares, limit = data.results["shares"], hours(data.study["flight"]["duration"])
     alone = data.results["without_scatter"]
     columns = ["what became of the sample", "samples", "share", *(["without scatter"] if alone else [])]
     rows = []
-    for key, words in fates(data).items():
+    for key, words in outcome_words(data).items():
         row = [words.format(hours=limit), str(shares[key]["count"]), _share(shares[key])]
         rows.append(row + ([_share(alone["shares"][key])] if alone else []))
     stays = data.results["stays"]
@@ -69,7 +68,7 @@ def _fates(data: Results) -> Table:
             " The first shares have the scatter from run to run; without it stand those of the expansion alone, of "
             f"{alone['shares']['sample_count']} samples."
         )
-    return Table("After the first bounce", columns, rows, note, frozenset(columns[1:]))
+    return PageTable("After the first bounce", columns, rows, note, frozenset(columns[1:]))
 
 
 def _share(entry: Mapping[str, Any]) -> str:
@@ -78,7 +77,7 @@ def _share(entry: Mapping[str, Any]) -> str:
     return percent(entry["share"], 2) if limit is None else f"at most {percent(limit, 1)}"
 
 
-def _flights(data: Results) -> Table:
+def _flights(data: Results) -> PageTable:
     """Times, speeds and incidences of the impacts, and how exact the flights are."""
     flights, words = data.results["flights"], {"time_s": "time of flight [s]", "impact_speed": "impact speed [m/s]"}
     words |= {"impact_incidence_deg": "incidence at the impact, from the normal [deg]"}
@@ -96,7 +95,7 @@ def _flights(data: Results) -> Table:
             f" The Jacobi constant of {flights['jacobi_flight_count']} flights changes by {number(drift, 2)} m2/s2 at "
             "most, without the partner."
         )
-    return Table("The flights to the next impact", columns, rows, note, frozenset(columns[1:]))
+    return PageTable("The flights to the next impact", columns, rows, note, frozenset(columns[1:]))
 
 
 def followed(data: Results) -> dict[str, Mapping[str, Any]]:
@@ -104,13 +103,13 @@ def followed(data: Results) -> dict[str, Mapping[str, Any]]:
     return {ground: data.results["rest"][ground] for ground in GROUND_WORDS if data.results["rest"][ground]}
 
 
-def _ends(data: Results) -> Table:
+def _statuses(data: Results) -> PageTable:
     found, limit = followed(data), hours(data.study["rest"]["duration"])
     columns = ["after all bounces"]
     for ground in found:
         columns += [GROUND_WORDS[ground]]
     rows = []
-    for key, words in END_WORDS.items():
+    for key, words in JOURNEY_WORDS.items():
         if any(table[key]["count"] for table in found.values()):
             shares = [percent(table[key]["share"], 2) for table in found.values()]
             rows.append([words.format(hours=limit), *shares])
@@ -118,10 +117,10 @@ def _ends(data: Results) -> Table:
     note = f"Shares of {counts.pop()} samples, followed from the first impact." if counts else "No sample was followed."
     why = data.results["rest"]["why_no_soil"]
     note += f" The soil could not be asked: {why}." if why and found else ""
-    return Table("From bounce to bounce", columns, rows, note, frozenset(columns[1:]))
+    return PageTable("From bounce to bounce", columns, rows, note, frozenset(columns[1:]))
 
 
-def _journeys(data: Results) -> Table:
+def _journeys(data: Results) -> PageTable:
     columns = ["landers that rest", "ground", "5 %", "median", "95 %"]
     words = {"time_s": "time to rest [s]", "rebounds": "rebounds", "path_length": "path [m]"}
     rows = [
@@ -136,10 +135,10 @@ def _journeys(data: Results) -> Table:
         f"along the ground, friction {rest['friction']:g}; at rest where a rebound rises less than "
         f"{rest['rest_height']:g} m. The path is the sum of straight lines between impacts."
     )
-    return Table("Journeys to rest", columns, rows, note, frozenset(columns[2:]))
+    return PageTable("Journeys to rest", columns, rows, note, frozenset(columns[2:]))
 
 
-def _ellipses(data: Results) -> Table:
+def _ellipses(data: Results) -> PageTable:
     columns = ["places", "share inside", "latitude [deg]", "longitude [deg]", "semi-axes [m]", "heading [deg]"]
     sets = {"next impact": data.results["ellipses"]}
     if data.results["without_scatter"]:
@@ -158,9 +157,9 @@ def _ellipses(data: Results) -> Table:
         "Each holds that share of the places, which need follow no law; the heading is that of the longer axis, from "
         "north toward east. None: fewer than ten places, or places too far around the body to have a middle."
     )
-    return Table("Landing ellipses", columns, rows, note, frozenset(columns[1:]))
+    return PageTable("Landing ellipses", columns, rows, note, frozenset(columns[1:]))
 
 
-def _site(data: Results) -> Table:
+def _site(data: Results) -> PageTable:
     rows = flat(data.results["site"], alike=(("extents_m", "centroid_m", "place_m"), ACCELERATIONS))
-    return Table("Site and body", ["name", "value"], rows, "m, kg, s, m/s2; degrees where named.")
+    return PageTable("Site and body", ["name", "value"], rows, "m, kg, s, m/s2; degrees where named.")

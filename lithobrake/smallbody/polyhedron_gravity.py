@@ -1,8 +1,6 @@
 """The gravity of a body of constant density whose surface is plane triangles, exactly.
 
-Source: Werner and Scheeres (1996), Exterior gravitation of a polyhedron derived and compared with harmonic and mascon
-gravitation representations of asteroid 4769 Castalia, Celestial Mechanics and Dynamical Astronomy 65, 313-344, Eqs
-10-17.
+Source: [Werner-1996], Eqs 10-17.
 """
 
 from typing import NamedTuple
@@ -19,7 +17,7 @@ X, Y, Z, PULL_X, PULL_Y, PULL_Z, POTENTIAL, SOLID_ANGLE = 0, 1, 2, 3, 4, 5, 6, 7
 ROWS = 8
 
 
-class Polyhedron(NamedTuple):
+class PolyhedronTerms(NamedTuple):
     """What the kernels read of a shape, all lengths [m].
 
     vertices          [vertex_count, 3]
@@ -36,7 +34,7 @@ class Polyhedron(NamedTuple):
     facet_terms: NDArray[np.float64]
 
     @classmethod
-    def of(cls, vertices: NDArray[np.float64], faces: NDArray[np.int64]) -> "Polyhedron":
+    def of(cls, vertices: NDArray[np.float64], faces: NDArray[np.int64]) -> "PolyhedronTerms":
         """Precompute normals and edge dyads of a closed, outward oriented surface of triangles."""
         corner = vertices[faces]
         doubled = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
@@ -88,7 +86,7 @@ def _distances(lane: Floats, count: int, distance: Floats, vertices: Floats) -> 
 
 
 @compiled
-def _add_edges(lane: Floats, count: int, distance: Floats, polyhedron: Polyhedron) -> None:
+def _add_edges(lane: Floats, count: int, distance: Floats, polyhedron: PolyhedronTerms) -> None:
     """Add the edge sums: E r L to the pull (sign turned), r E r L to the potential."""
     vertices, ends, terms = polyhedron.vertices, polyhedron.edge_ends, polyhedron.edge_terms
     for e in range(len(ends)):
@@ -112,7 +110,7 @@ def _add_edges(lane: Floats, count: int, distance: Floats, polyhedron: Polyhedro
 
 
 @compiled
-def _add_facets(lane: Floats, count: int, distance: Floats, polyhedron: Polyhedron) -> None:
+def _add_facets(lane: Floats, count: int, distance: Floats, polyhedron: PolyhedronTerms) -> None:
     """Add the facet sums with the solid angle of Eq 27, which is 2 atan2(r1.(r2 x r3), ...)."""
     vertices, corners, terms = polyhedron.vertices, polyhedron.facet_corners, polyhedron.facet_terms
     for f in range(len(corners)):
@@ -146,7 +144,7 @@ def _add_facets(lane: Floats, count: int, distance: Floats, polyhedron: Polyhedr
 
 
 @compiled
-def field_block(lane: Floats, count: int, distance: Floats, polyhedron: Polyhedron) -> None:
+def field_block(lane: Floats, count: int, distance: Floats, polyhedron: PolyhedronTerms) -> None:
     """Field of one block. lane [ROWS * LANES]: reads X, Y, Z of the first `count` points, writes the other rows.
 
     distance [vertex_count * LANES] is scratch. The pull is acceleration / (G density), POTENTIAL twice the potential.
@@ -160,7 +158,7 @@ def field_block(lane: Floats, count: int, distance: Floats, polyhedron: Polyhedr
 
 
 @compiled
-def _field(points: Floats, result: Floats, polyhedron: Polyhedron) -> None:
+def _field(points: Floats, result: Floats, polyhedron: PolyhedronTerms) -> None:
     """Field at many points, block by block."""
     lane = np.zeros(ROWS * LANES)
     distance = np.empty(len(polyhedron.vertices) * LANES)

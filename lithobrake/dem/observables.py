@@ -1,0 +1,136 @@
+"""What a person reads of a world: its motion, its forces and contacts, its energies."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lithobrake.dem import energy, timestep
+from lithobrake.dem.arrays import Floats, Step
+from lithobrake.dem.contacts import contacts_of
+from lithobrake.dem.engine import Engine
+from lithobrake.dem.rigid_body import Plane, RigidBody, vector
+from lithobrake.dem.stability import largest_step
+from lithobrake.dem.time_loop import WATCHED
+from lithobrake.dem.world_state import WorldState
+
+
+class Observables:
+    """Bodies and planes under a constant acceleration, to be read; nothing here changes them.
+
+    gravity [m/s2], shape [3].
+    """
+
+    def __init__(self, state: WorldState, gravity: Sequence[float]) -> None:
+        self.gravity = vector(gravity, "World gravity")
+        self.drag = 0.0  # 1/s, viscous damping of all motion, for settling only
+        self._state = state
+
+    def _step(self, time_step: float) -> Step:
+        reduced = self._state.options["damping_mass"] == "paper"
+        return Step(time_step, float(self.drag), tuple(self.gravity), reduced)
+
+    def _assembled(self) -> Engine:
+        return self._state.assembled(self._step(0.0))
+
+    @property
+    def bodies(self) -> list[RigidBody]:
+        """The bodies as they were added."""
+        return self._state.bodies
+
+    @property
+    def planes(self) -> list[Plane]:
+        """The planes as they stand."""
+        return self._state.planes
+
+    @property
+    def mass(self) -> Floats:
+        """Masses [kg], shape [body_count]."""
+        return np.array([body.mass for body in self.bodies])
+
+    @property
+    def inertia(self) -> Floats:
+        """Principal moments of inertia [kg m2], ascending, shape [body_count, 3]."""
+        return np.array([np.linalg.eigvalsh(body.inertia) for body in self.bodies]).reshape(-1, 3)
+
+    # --- motion --------------------------------------------------------------------------------------------------
+
+    @property
+    def position(self) -> Floats:
+        """Centroids [m], shape [body_count, 3]."""
+        return self._state.motion["position"].copy()
+
+    @property
+    def velocity(self) -> Floats:
+        """Velocities of the centroids [m/s], shape [body_count, 3]."""
+        return self._state.motion["velocity"].copy()
+
+    @property
+    def orientation(self) -> Floats:
+        """Orientations, unit quaternions w, x, y, z, body to world, shape [body_count, 4]."""
+        return self._state.motion["quaternion"].copy()
+
+    @property
+    def angular_momentum(self) -> Floats:
+        """Angular momenta about the centroids [kg m2/s], shape [body_count, 3], world frame."""
+        return self._state.motion["angular_momentum"].copy()
+
+    @property
+    def spin(self) -> Floats:
+        """Angular velocities [rad/s], shape [body_count, 3], world frame."""
+        return self._state.spin()
+
+    # --- forces and contacts -------------------------------------------------------------------------------------
+
+    @property
+    def contact_force(self) -> Floats:
+        """Sum of the contact forces on each body [N], shape [body_count, 3]."""
+        return self._assembled().bodies.force.copy()
+
+    @property
+    def contact_torque(self) -> Floats:
+        """Sum of the torques of the contacts on each body about its centroid [N m], world frame, [body_count, 3]."""
+        return self._assembled().bodies.torque.copy()
+
+    @property
+    def watched(self) -> dict[str, float]:
+        """Largest contact force [N] on the watched body; steps from `watch` to its first and last contact (0: none)."""
+        return {name: float(self._state.watch_record[place]) for name, place in WATCHED.items()}
+
+    def contacts(self) -> NDArray[Any]:
+        """Return the contacts (overlap > 0), a structured array.
+
+        body_a, body_b (plane k is -1 - k), point [m], normal from a to b, overlap [m], normal_force [N],
+        tangential_force on b [N, 3].
+        """
+        return contacts_of(self._assembled().pairs)
+
+    @property
+    def largest_step(self) -> float:
+        """Largest safe time step [s] for the contacts at their present overlaps; infinite where nothing touches.
+
+        How it follows from them: stability.py.
+        """
+        engine, paper_mass = self._assembled(), self._step(0.0).paper_mass
+        return float(largest_step(engine.bodies, engine.planes, engine.pairs, engine.laws, paper_mass))
+
+    def shortest_contact(self, speed: float) -> float:
+        """Return the duration [s] of the shortest collision that can happen at a relative speed [m/s].
+
+        Raises ValueError for a speed of zero, and where no two things can meet.
+        """
+        return timestep.shortest_contact(self.bodies, self.planes, self._state.options, speed)
+
+    # --- energies ------------------------------------------------------------------------------------------------
+
+    @property
+    def kinetic_energy(self) -> Floats:
+        """Kinetic energy of each body [J], shape [body_count]."""
+        return energy.kinetic(self.mass, self.velocity, self.spin, self.angular_momentum)
+
+    def energy(self) -> dict[str, float]:
+        """Return the energy ledger [J]: see energy.ledger: kinetic, potential, elastic, cohesive, lost ones, total."""
+        engine = self._assembled()
+        kinetic = float(self.kinetic_energy.sum())
+        return energy.ledger(kinetic, self.mass, self.position, self.gravity, engine.pairs, engine.losses())

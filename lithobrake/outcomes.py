@@ -1,0 +1,62 @@
+"""How touchdowns, flights and journeys may end: words as they stand in files, each with its sentence."""
+
+from enum import StrEnum
+
+
+class _Ending(StrEnum):
+    """A word that compares equal to plain text, and what it means; label: a few words for it beside a number."""
+
+    sentence: str
+    label: str
+
+    def __new__(cls, word: str, sentence: str = "", label: str = "") -> "_Ending":
+        """Keep sentence and label beside the word."""
+        member = str.__new__(cls, word)
+        member._value_, member.sentence, member.label = word, sentence, label or word
+        return member
+
+    @property
+    def texts(self) -> tuple[str, str, str]:
+        """Word, sentence and label, for an enumeration that has the same ending."""
+        return self.value, self.sentence, self.label
+
+
+class TouchdownOutcome(_Ending):
+    """How a touchdown ended; one that is clear has outputs."""
+
+    CLEAR = "clear", "The lander leaves the surface.", "left the surface"
+    CAPTURED = "captured", "The lander is captured."
+    LEFT_SIDEWAYS = "left_sideways", "The lander leaves the bed sideways.", "left over the rim of the bed"
+    TIME_LIMIT = "time_limit", "The lander is still in contact at the time limit.", "in contact at the time limit"
+
+
+class SampleOutcome(_Ending):
+    """What became of a sample at the touchdown: as of a run, or the expansion gave a way to leave that there is not."""
+
+    CLEAR = TouchdownOutcome.CLEAR.texts
+    CAPTURED = TouchdownOutcome.CAPTURED.texts
+    LEFT_SIDEWAYS = TouchdownOutcome.LEFT_SIDEWAYS.texts
+    TIME_LIMIT = TouchdownOutcome.TIME_LIMIT.texts
+    OUTSIDE = "outside", "The elevation was drawn outside 0 to 90 deg.", "drawn outside 0 to 90 deg"
+
+
+class FlightStatus(_Ending):
+    """How a flight ended."""
+
+    FLYING = "flying", "The lander still flew when the time was over."
+    IMPACT = "impact", "The lander came down on the body."
+    ESCAPED = "escaped", "The lander left for good: far out, moving outwards, with positive two-body energy."
+    PARTNER = "partner", "The lander came down on the partner of the body."
+
+
+class JourneyStatus(_Ending):
+    """How a journey from bounce to bounce ended."""
+
+    SETTLED = "settled", "The lander was captured where gravity and rotation together hold it."
+    LOFTED = "lofted", "The lander was captured where gravity and rotation together push it outwards."
+    OUTSIDE = "outside", "The model of the bounce does not know the impact, and the journey stops there."
+    FLYING = FlightStatus.FLYING.texts
+    ESCAPED = FlightStatus.ESCAPED.texts
+    PARTNER = FlightStatus.PARTNER.value, "The lander came down on the partner, where no bounce is followed."
+    SLIDING = "sliding", "The lander moves along the ground, which is not followed."
+    BOUNCING = "bouncing", "The largest number of bounces did not bring the lander to rest."

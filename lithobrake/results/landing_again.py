@@ -1,0 +1,65 @@
+"""A touchdown of a study made once more, for its frames; nothing is written."""
+
+import shlex
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from lithobrake.reading import read_json
+from lithobrake.study import Study, check_tables, load_tables
+from lithobrake.touchdown_model import TouchdownModel, engine_hash, touchdown_version
+
+if TYPE_CHECKING:
+    from lithobrake.campaign import Record
+    from lithobrake.touchdown import Outcome
+
+
+def land_again(
+    folder: Path, record: "Record", frame_count: int, progress: Callable[[float, str], None]
+) -> "Outcome":  # fmt: skip
+    """Land with the inputs of a run on its bed, and record frame_count frames at least.
+
+    progress: called with the fraction that is done of what is being done.
+    Raises ValueError for a run that has no landing to show, and where what comes out is not what the ledger has.
+    """
+    name, again = f"run {record.key}", f"lithobrake run STUDY.toml --out {shlex.quote(str(folder))}"
+    if record.version.partition("+")[2] == "":
+        raise ValueError(
+            f"{name} was made by a program or function of the study's own, whose motion nobody here knows; "
+            "ask that program for its frames"
+        )
+    if record.outcome is None:
+        raise ValueError(f"{name} has no outcome ({record.reason or record.status}); choose a run that has one")
+    if record.version != touchdown_version():
+        raise ValueError(
+            f"{name} was made by the code {record.version}, and this is {touchdown_version()}, which may land "
+            f"elsewhere; use that version of lithobrake, or make the study again with: {again}"
+        )
+    beds = tuple(folder / f"beds/bed_{number}.h5" for number in range(round(record.inputs["bed"]) + 1))
+    if not beds[-1].is_file():
+        raise ValueError(f"{beds[-1]}, the bed of {name}, is not there; make it again with: {again}")
+    outcome = TouchdownModel(_study(folder), beds, engine_hash()).land(record.inputs, frame_count, progress)
+    _refuse_another_landing(name, record, outcome, again)
+    return outcome
+
+
+def _study(folder: Path) -> Study:
+    """The study of a folder, as far as a landing reads it."""
+    # Nothing of a landing follows from the site, whose mesh need not be where this folder was taken.
+    tables = {key: table for key, table in load_tables(folder / "study.toml").items() if key != "site"}
+    noted = {"file": ""}
+    if (folder / "keys.json").is_file():
+        noted = read_json(folder / "keys.json", {"study": {"file": str}}, "put a copy of it back")["study"]
+    # Paths in a study file count from where it lies, which is not where its copy does.
+    return check_tables(tables, (folder / noted["file"]).resolve().parent if noted["file"] else Path.cwd())
+
+
+def _refuse_another_landing(name: str, record: "Record", outcome: "Outcome", again: str) -> None:
+    """Raise ValueError unless a landing gave what the ledger has, bit for bit."""
+    found = {"outcome": outcome.status, **outcome.outputs}
+    for key, known in {"outcome": record.outcome, **record.outputs}.items():
+        if found.get(key) != known:
+            raise ValueError(
+                f"{name} has {known} for {key}, and landing again gave {found.get(key)}: the study, its bed or this "
+                f"machine is another; make the study again with: {again}"
+            )

@@ -1,0 +1,58 @@
+"""Hulls and how they moved, as the files of beds and landings keep them."""
+
+from dataclasses import dataclass
+from itertools import pairwise
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from lithobrake.reading import reading
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+    Faces = NDArray[np.int64]
+
+
+@dataclass(frozen=True, eq=False)
+class MovingBodies:
+    """Convex hulls and their frames; in a landing the last is the lander.
+
+    vertices: of each hull [m], shape [vertex_count, 3]; faces: of each, shape [face_count, 3], counted from its first
+    vertex; time [s], shape [frame_count]; position [m], shape [frame_count, body_count, 3]; orientation (w, x, y, z),
+    shape [frame_count, body_count, 4]; attributes of the file; history of the settling by name, empty for a landing.
+    """
+
+    vertices: "tuple[Array, ...]"
+    faces: "tuple[Faces, ...]"
+    time: "Array"
+    position: "Array"
+    orientation: "Array"
+    attributes: dict[str, Any]
+    history: "dict[str, Array]"
+
+    @classmethod
+    def read(cls, path: Path, remedy: str) -> "MovingBodies":
+        """Read a bed or a landing. Raises DamagedFileError, with the remedy, for a file that is neither."""
+        import h5py
+
+        with reading(path, remedy), h5py.File(path, "r") as file:
+            if "frames" not in file:
+                raise ValueError("it has no group 'frames': it was written without pictures")
+            frames = {name: file[f"frames/{name}"][:] for name in ("time", "position", "orientation")}
+            history = {name: data[:] for name, data in file["history"].items()} if "history" in file else {}
+            return cls(
+                vertices=_parts(file["vertices"][:], file["vertex_start"][:]),
+                faces=_parts(file["faces"][:], file["face_start"][:]),
+                attributes={
+                    name: value.tolist() if hasattr(value, "tolist") else value for name, value in file.attrs.items()
+                },
+                history=history,
+                **frames,
+            )
+
+
+def _parts(rows: Any, start: Any) -> tuple[Any, ...]:
+    """The rows of each body."""
+    return tuple(rows[first:last] for first, last in pairwise(start))

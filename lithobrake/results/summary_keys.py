@@ -1,0 +1,267 @@
+"""What every key of the summary of a study means; docs/summary.md is made of it.
+
+`*` stands for any one name: of an output, an input by its dotted key, a design, an outcome. Lists have no place of
+their own: `results.beds.solid_fraction` is that of each bed. SI, where no unit is named; null: there is no such number.
+"""
+
+from dataclasses import dataclass
+
+from lithobrake.outputs import BEDS
+
+SUMMARY = "summary.json"
+
+
+@dataclass(frozen=True)
+class Section:
+    """A table of a file that stands at these places, in words, and its keys; the keys of inner tables have points."""
+
+    file: str
+    places: tuple[str, ...]
+    words: str
+    keys: dict[str, str]
+
+
+COUNTED = {
+    "*.count": "samples of which this is so",
+    "*.share": "the same as a share of sample_count",
+    "*.lower": "null: one bed, place and attitude give no interval",
+    "*.upper": "null likewise",
+}
+QUANTILES = "quantile of this level"
+SUMMARY_SECTIONS = (
+    Section(
+        SUMMARY,
+        ("",),
+        "The file",
+        {
+            "format_version": "of the file; another number, another set of keys",
+            "study.**": "the study as it was understood, with all defaults, in the units of the study file (every key "
+            "with its unit, range and meaning: lithobrake new)",
+        },
+    ),
+    Section(
+        SUMMARY,
+        ("results",),
+        "What came out; two executions of one study have the same",
+        {
+            "units.*": "unit of each output of the expansions",
+            "kept_inputs": "inputs that the refined design varies, by dotted key",
+            "kept_share.*": "share of the variance of the screening expansion that the kept inputs explain together",
+            "answer": "what becomes of the landers, over what that holds, and what is missing, in sentences",
+            "headline": "the answer, then the numbers that tell most, in sentences",
+            "without_scatter": "null where the samples have no scatter from run to run",
+        },
+    ),
+    Section(
+        SUMMARY,
+        ("results.beds",),
+        "Each bed, in the order of the files; none where a program or function of the user's own makes the touchdowns",
+        {name: one.long_name + (f" [{one.units}]" if one.units else "") for name, one in BEDS.items()},
+    ),
+    Section(
+        SUMMARY,
+        ("results.node_counts",),
+        "Nodes of grids, whatever design the study has",
+        {
+            "input_counts": "numbers of inputs, the rows of the two tables",
+            "levels": "levels, their columns",
+            "tensor": "nodes of the full tensor grid",
+            "smolyak": "nodes of the sparse grid",
+        },
+    ),
+    Section(
+        SUMMARY,
+        ("results.designs.*",),
+        "The runs of each design: screening, refined, test_kept, test_all",
+        {
+            "point_count": "points, each run replicate_count times",
+            "replicate_count": "runs at every point",
+            "run_count": "runs, of which several may be one in the ledger",
+            "with_outputs": "runs after which the lander left, with all outputs",
+            "outcomes.*": "runs that ended so; failed: runs without an outcome",
+        },
+    ),
+    Section(
+        SUMMARY,
+        ("results.outputs_of_runs.*",),
+        "What else the touchdowns gave, over distinct runs that have it",
+        {
+            "median": "in the unit beside it",
+            "smallest": "likewise",
+            "largest": "likewise",
+            "unit": "of the three numbers",
+        },
+    ),
+    Section(
+        SUMMARY,
+        ("results.screening", "results.refined"),
+        "Each expansion: in all inputs, then in the kept ones",
+        {
+            "inputs": "inputs by dotted key, in the order of the study file",
+            "term_count": "terms that any output uses",
+            "degree": "highest total degree of a term",
+            "mean.*": "mean of the output over the distributions of the inputs",
+            "std.*": "standard deviation likewise, without scatter from run to run",
+            "sobol_first.*.*": "share of the variance of the expansion that the input explains alone, freed of scatter",
+            "sobol_total.*.*": "the same with all its interactions",
+            "sobol_first_interval.*.*": "its 95 % interval, by drawing the residuals of the runs anew: lower, upper",
+            "sobol_total_interval.*.*": "likewise",
+            "fits.*.method": "how the output was fitted: ols, omp, lars, gaussian_process",
+            "fits.*.term_count": "terms of this output",
+            "fits.*.condition_number": "of the least squares; null for a Gaussian process",
+            "fits.*.rmse_estimate": "root-mean-square error expected at a new run with scatter, in the output's unit",
+            "fits.*.rrmse_estimate": "the same over the standard deviation of the runs; null where they do not vary",
+            "fits.*.noise_std": "standard deviation between equal runs, in the output's unit; null where not known",
+            "fits.*.noise_from": "what tells it: repeated points, or the nugget of a Gaussian process",
+            "fits.*.noise_share": "share of the variance of the runs that is scatter; null where not known",
+        },
+    ),
+    Section(
+        SUMMARY,
+        ("results.scores.*.*",),
+        "Errors of the expansions, by set of runs and output: screening and refined on their own runs, test_screening, "
+        "test_kept and test_all on runs that they have not seen; scores.json has those of single runs beside them",
+        {},
+    ),
+    Section(
+        SUMMARY,
+        ("results.monte_carlo",),
+        "The samples of the refined expansion",
+        {
+            "sample_count": "samples",
+            "leaving_count": "samples that leave the surface",
+            "outputs.*.mean": "over the samples that leave, in the unit of the output",
+            "outputs.*.std": "likewise",
+            "outputs.*.quantile_*": QUANTILES,
+        },
+    ),
+    Section(
+        SUMMARY,
+        ("results.site",),
+        "The body, and a point at rest on the ground of the site; what is uncertain at its median",
+        {
+            "body": "name of the built-in body, or mesh",
+            "mass_kg": "mass of the body",
+            "bulk_density_kg_m3": "mass over the volume of the shape",
+            "spin_period_s": "time of a turn",
+            "extents_m": "along x, y and z",
+            "facet_count": "facets of the shape",
+            "centroid_m": "of the shape, from the origin of its file",
+            "partner": "name of the other body of a binary, or null",
+            "partner_distance_m": "between the two centres, or null",
+            "latitude_deg": "planetocentric latitude of the aim",
+            "longitude_deg": "east longitude of the aim",
+            "heading_deg": "of the incoming horizontal velocity, from north toward east; null where it has no median",
+            "place_m": "of the aim on the shape, body-fixed",
+            "effective_acceleration_outward": "gravity and rotation along the outward normal [m/s2]; above 0: lifts",
+            "effective_acceleration_along_heading": "the same along the heading [m/s2]; null without heading",
+            "escape_speed_m_s": "from the site, in axes that do not turn, from this body alone",
+            "warning": "what the site does to landers that lie there, in a sentence; null where it holds them",
+            "gravity_warning": "how touchdowns and site differ in acceleration, in a sentence; null where alike",
+        },
+    ),
+    Section(
+        SUMMARY,
+        ("results.stays",),
+        "The answer as numbers: the share of landers that remain",
+        {
+            "share": "results.shares.remains.share",
+            "lower": "null: other beds and places would move the share, and these runs do not say how far",
+            "upper": "null likewise",
+            "level": "probability that bounds of this table stand for",
+            "from": "of how many samples, runs and beds",
+            "next_bed": "null: the range in which the share of another bed lies is not known",
+            "if_missing": "the share if none, and if all, of the missing samples remained",
+            "flight_sampling": "half the interval (level) that the number of samples alone would give",
+            "emulator": "the share that the expansion gives: share",
+            "why": "why there is no interval, in a sentence",
+        },
+    ),
+    Section(
+        SUMMARY,
+        ("results.shares", "results.without_scatter.shares"),
+        "What became of the samples up to the last that flew: captured, left_sideways, time_limit, outside (drawn with "
+        "an elevation or speed that there is not), impact, flying (at the end of the time), escaped, partner; remains "
+        "(impact, and captured where the site holds), missing (left_sideways, time_limit, outside)",
+        {
+            "sample_count": "samples looked at",
+            "flight_count": "of those, samples that flew",
+            **COUNTED,
+            "*.upper_limit": "95 % limit of the share of an outcome that no run had",
+            "why": "why the shares have no interval, in a sentence",
+        },
+    ),
+    Section(
+        SUMMARY,
+        ("results.flights", "results.without_scatter.flights"),
+        "The flights that end on the body, and how exact all flights are (flights.json)",
+        {
+            "time_s.quantile_*": f"time of flight [s], {QUANTILES}",
+            "impact_speed.quantile_*": f"speed of the impact against the ground [m/s], {QUANTILES}",
+            "impact_incidence_deg.quantile_*": f"angle of that velocity from the inward normal [deg], {QUANTILES}",
+            "gravity": "table or exact",
+            "gravity_table_error": "null where the gravity is exact",
+            "gravity_table_error.median": "error of the table over the mean gravity on the surface",
+            "gravity_table_error.p95": "the same, 95th percentile",
+            "gravity_table_error.largest": "the same, largest",
+            "gravity_table_error.point_count": "points looked at",
+            "jacobi_flight_count": "flights whose Jacobi constant was looked at, without the partner",
+            "jacobi_drift_median_m2_s2": "how far it drifts, in the median; null without flights",
+            "jacobi_drift_largest_m2_s2": "the same, largest",
+        },
+    ),
+    Section(
+        SUMMARY,
+        tuple(f"results.{place}ellipses" for place in ("", "without_scatter.", "rest.soil.", "rest.hard.")),
+        "Ellipses that hold the places of the impacts, or of the landers that settled; null where there are too few",
+        {
+            "latitude_deg": "of the middle",
+            "longitude_deg": "of the middle",
+            "heading_deg": "of the longer axis, from north toward east",
+            "shares.share": "share of the places inside",
+            "shares.semi_axes_deg": "longer and shorter half axis, as angles from the centre of the body",
+            "shares.semi_axes_m": "the same angles times the radius at the middle",
+        },
+    ),
+    Section(
+        SUMMARY,
+        ("results.rest",),
+        "From bounce to bounce until the landers rest",
+        {
+            "why_no_soil": "why the soil could not be asked beyond the first impact, in a sentence, or null",
+            "trained_ranges.*": "smallest and largest value of the input in the screening runs, in the file's units",
+        },
+    ),
+    Section(
+        SUMMARY,
+        ("results.rest.soil", "results.rest.hard"),
+        "Where the followed samples end on each ground (statuses: docs/flights.md); null where none were followed",
+        {
+            "sample_count": "samples followed",
+            **COUNTED,
+            "time_s.quantile_*": f"time until rest [s] of those that settled, {QUANTILES}",
+            "path_length.quantile_*": f"sum of the straight lines between impacts [m] likewise, {QUANTILES}",
+            "rebounds.quantile_*": f"impacts after which the lander went on likewise, {QUANTILES}",
+        },
+    ),
+    Section(
+        SUMMARY,
+        ("provenance",),
+        "Where it comes from; all that may differ between two executions of one study",
+        {
+            "date": "when the summary was made, UTC",
+            "folder": "folder of the study, as it was given",
+            "host": "name of the machine",
+            "system": "its operating system",
+            "cores": "its cores",
+            "python": "version of Python",
+            "packages.*": "version of each package that numbers depend on",
+            "wall_s.*": "wall time of each stage when its files were made",
+            "runs.asked": "runs of all designs",
+            "runs.distinct": "those that differ, as the ledger has them",
+            "runs.wall_s": "wall time of all of them together",
+            "runs.cpu_s": "CPU time likewise",
+            "runs.longest_wall_s": "wall time of the longest",
+        },
+    ),
+)

@@ -1,0 +1,36 @@
+"""The example of a ball on a plate with few runs: a whole study within seconds, and no bed."""
+
+import sys
+from pathlib import Path
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+BALL, PROGRAM = EXAMPLES / "ball_on_plate.toml", EXAMPLES / "ball_on_plate.py"
+# Changes of its text, old by new; a later change of the same text takes the place of an earlier one.
+FEW_RUNS = {
+    "screening_level = 2": "screening_level = 1",
+    "screening_degree = 2": "screening_degree = 1",
+    "refined_level = 3": "refined_level = 1",
+    "refined_degree = 3": "refined_degree = 1",
+    "test_count = 10": "test_count = 2",
+}
+FEW_SAMPLES = {
+    "sample_count = 10_000": "sample_count = 200",
+    "flight_count = 50": "flight_count = 5",
+    "count = 200 ": "count = 5 ",
+}
+
+
+def write_ball(path: Path, changes: dict[str, str], program: Path = PROGRAM) -> Path:
+    """Write the study file of the example, with these changes of its text and the Python of these tests."""
+    path.write_text(BALL.read_text())
+    return edit(path, {"python3 ball_on_plate.py": f"{sys.executable} {program}"} | changes)
+
+
+def edit(path: Path, changes: dict[str, str]) -> Path:
+    """Change the text of a file; each old text has to be there."""
+    text = path.read_text()
+    for old, new in changes.items():
+        assert old in text
+        text = text.replace(old, new)
+    path.write_text(text)
+    return path

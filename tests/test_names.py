@@ -1,0 +1,50 @@
+"""One name means one thing, and functions stay short enough to be read at once."""
+
+import ast
+from collections import Counter
+from pathlib import Path
+
+import pytest
+
+PACKAGE = Path(__file__).parents[1] / "lithobrake"
+TREES = {path: ast.parse(path.read_text(encoding="utf-8")) for path in sorted(PACKAGE.rglob("*.py"))}
+# Both are public: what a grain is, and what a body is.
+SAME_NAME_ON_PURPOSE = {"Shape"}
+# Lines beside the docstring; a kernel, which a call would slow down, may have twice as many.
+LONGEST = 40
+LONGEST_KERNEL = 80
+# Compiled where Numba is there, and by NumPy alone where it is not.
+ALSO_KERNELS = ("expansion_loop",)
+# Where a newcomer who looks for these words among the names of files finds them.
+LOOKED_FOR = {
+    "tangential_spring": "dem", "rolling_resistance": "dem", "gjk": "dem", "penetration": "dem",
+    "settling": "touchdown", "bootstrap": "chaos", "smolyak": "chaos", "polyhedron_gravity": "smallbody",
+    "impact_search": "smallbody",
+    "ledger": "campaign",
+}  # fmt: skip
+
+
+def test_each_class_is_defined_once() -> None:
+    names = Counter(node.name for tree in TREES.values() for node in tree.body if isinstance(node, ast.ClassDef))
+    assert {name for name, count in names.items() if count > 1} <= SAME_NAME_ON_PURPOSE
+
+
+@pytest.mark.parametrize(("word", "part"), LOOKED_FOR.items())
+def test_what_is_looked_for_is_the_name_of_a_file(word: str, part: str) -> None:
+    assert [path for path in (PACKAGE / part).glob("*.py") if word in path.stem]
+
+
+def lines_of(function: ast.FunctionDef) -> int:
+    """Lines of a function beside its docstring."""
+    first = function.body[0]
+    said = first.end_lineno - first.lineno + 1 if ast.get_docstring(function) else 0
+    return function.end_lineno - function.lineno + 1 - said
+
+
+def test_functions_are_short() -> None:
+    for path, tree in TREES.items():
+        for node in ast.walk(tree):
+            if isinstance(node, ast.FunctionDef):
+                marks = " ".join(ast.unparse(mark) for mark in node.decorator_list)
+                is_kernel = "kernel" in marks or "compiled" in marks or node.name in ALSO_KERNELS
+                assert lines_of(node) <= (LONGEST_KERNEL if is_kernel else LONGEST), f"{path.name}: {node.name}"
