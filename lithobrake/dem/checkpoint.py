@@ -38,7 +38,7 @@ def write_checkpoint(path: str | os.PathLike[str], state: WorldState, step: Step
     """Write a state, the gravity and drag of its steps, and a clock of plain numbers to an HDF5 file."""
     import h5py
 
-    engine = state.assembled(step)
+    engine = state.stepping_together(step)
     shapes, materials = shapes_of(state.bodies), materials_of(state.bodies, state.planes)
     with atomic_path(path) as draft, h5py.File(draft, "w") as file:
         file.attrs["format"], file.attrs["format_version"] = "lithobrake world", FORMAT_VERSION

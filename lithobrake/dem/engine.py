@@ -112,6 +112,11 @@ class Engine:
         self.skin = skin
         self.gather(pairs)
 
+    def renew(self, pairs: Pairs) -> None:
+        """Go on with pairs that came and went one by one: neighbours are listed anew, contacts keep their history."""
+        self.pairs = pairs
+        self._list_neighbours()
+
     def use_threads(self, thread_count: int) -> None:
         """Go on with so many threads."""
         self.thread_count, self.pool = thread_count, pool_of(thread_count)
@@ -119,14 +124,15 @@ class Engine:
 
     def gather(self, pairs: Pairs) -> None:
         """Take on pairs: make scratch for them, and divide them among the threads."""
-        self.pairs, self.scratch = pairs, self._scratch(pairs)
+        self.pairs, self.scratch = pairs, self.scratch_of(pairs)
         self.whole, *_ = partitions_of(pairs, len(self.bodies.mass), 1)
         self.team = None
         if self.pool is not None:
-            scratches = [self._scratch(pairs) for _ in range(self.thread_count)]
+            scratches = [self.scratch_of(pairs) for _ in range(self.thread_count)]
             self.team = Team(self.pool, scratches, len(self.bodies.mass), pairs)
 
-    def _scratch(self, pairs: Pairs) -> Scratch:
+    def scratch_of(self, pairs: Pairs) -> Scratch:
+        """Return scratch with room for every contact of these pairs."""
         shape = self.bodies.shape
         vertices, edges = (
             np.sort(np.diff(start)[shape])[-2:] for start in (self.cores.vertex_start, self.cores.edge_start)

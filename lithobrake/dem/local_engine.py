@@ -1,107 +1,133 @@
-"""The arrays of a world whose contacts take steps of their own, and the loop that gives them room."""
+"""The arrays of a world whose contacts take steps of their own: made from those of an engine, and given back to it."""
+
+from typing import NamedTuple
 
 import numpy as np
 
-from lithobrake.dem.agenda import new_agenda
-from lithobrake.dem.arrays import Pairs, Step
+from lithobrake.dem.agenda import Agenda, new_agenda
+from lithobrake.dem.arrays import Floats, Pairs, Step
+from lithobrake.dem.contact_plans import Plans
 from lithobrake.dem.engine import Engine
-from lithobrake.dem.local_steps import (
-    DIVERGED,
-    DONE,
-    FEATURES_OVERFLOW,
-    PAIRS_FULL,
-    Flight,
-    Plans,
-    Rules,
-    advance_locally,
-    catch_up,
-    duration_of,
-    link,
-)
-from lithobrake.dem.agenda import put_on
+from lithobrake.dem.free_flight import Flight, Rules, fly_all_to
+from lithobrake.dem.local_steps import NO_ROOM, advance_locally, sum_forces
+from lithobrake.dem.neighbour_search import LISTED, NO_SLOT, enter_all
 from lithobrake.dem.neighbours import new_pairs, with_more_overflow
+from lithobrake.dem.rigid_body import RigidBody
 from lithobrake.dem.threads import new_reactions
 from lithobrake.dem.timestep import smallest_mass_at_contact
 
+# Skin of the neighbour lists over the median bounding radius: costs or saves time.
 SKIN = 0.25
-ROOM = 1.5
-TUNE = [0.5, 0.02]
+# Slots for pairs at the start, for each body.
+SLOTS = 16
+# Fewer steps in a collision do not follow it.
+FEWEST_STEPS = 5.0
+
+
+class Setting(NamedTuple):
+    """What a run depends on; with another setting, plans are made anew."""
+
+    step: Step
+    steps_per_contact: float
+    watched: int
+
+
+def flight_of(engine: Engine, bodies: list[RigidBody], time: float) -> Flight:
+    """Return bodies that have just arrived at an instant [s] and were never planned."""
+    n = len(bodies)
+    turning: Floats = np.linalg.eigvalsh(engine.bodies.inverse_inertia_body)[:, -1].astype(np.float64)
+    mass = np.array([smallest_mass_at_contact(body.shape, body.mass, body.inertia) for body in bodies])
+    never = np.full((n, 3), np.nan)
+    stamp = np.full(n + len(engine.planes.offset), -1)
+    return Flight(np.full(n, time), never, np.zeros((n, 3)), np.zeros(n), turning, mass, np.full(n, -1), stamp)
+
+
+def plans_of(capacity: int, used: int, time: float) -> Plans:
+    """Return slots for pairs, of which the first are used, looked at now [s]."""
+    free = np.arange(capacity - 1, -1, -1)
+    return Plans(
+        last=np.full(capacity, time), interval=np.zeros(capacity), inverse_mass=np.ones(capacity),
+        duration=np.zeros(capacity), apart=np.zeros((capacity, 3)), spin=np.zeros((capacity, 2, 3)),
+        link=np.full(2 * capacity, -1), free=free, free_count=np.array([capacity - used]),
+    )  # fmt: skip
 
 
 class LocalEngine:
-    def __init__(self, engine: Engine, rigid, steps_per_contact: float, step: Step, time: float, watched: int) -> None:
-        self.engine, self.bodies = engine, engine.bodies
-        n = len(self.bodies.mass)
-        turning = np.array([np.linalg.eigvalsh(m).max() for m in self.bodies.inverse_inertia_body])
-        mass = np.array([smallest_mass_at_contact(b.shape, b.mass, b.inertia) for b in rigid])
-        self.flight = Flight(
-            np.full(n, time), np.full((n, 3), np.nan), np.zeros((n, 3)), np.zeros(n), turning, mass,
-            np.full(n, -1), np.full(n, -1), np.zeros(8, np.int64),
-        )
-        self.rules = Rules(step.gravity, step.drag, step.paper_mass, steps_per_contact, SKIN * float(np.median(self.bodies.bounding_radius)), *TUNE)
-        self.watched, self.record, self.counts = watched, np.array([0.0, -1.0, 0.0, 0.0]), np.zeros(2, np.int64)
-        self.time = time
-        self.give_room(engine.pairs, int(ROOM * len(engine.pairs.first)) + 8 * n + 64, fresh=True)
+    """Moves the bodies of an engine on, each contact at its own steps, until it is given back."""
 
-    def give_room(self, pairs: Pairs, capacity: int, fresh=False) -> None:
+    def __init__(self, engine: Engine, bodies: list[RigidBody], setting: Setting, time: float) -> None:
+        self.engine, self.setting, self.time = engine, setting, time
+        self.flight = flight_of(engine, bodies, time)
+        step = setting.step
+        skin = SKIN * float(np.median(engine.bodies.bounding_radius))
+        self.rules = Rules(step.gravity, step.drag, step.paper_mass, setting.steps_per_contact, skin)
+        self.record: Floats = np.array([0.0, -1.0, -1.0])
+        self.plans: Plans
+        self.agenda: Agenda
+        count = len(engine.pairs.first)
+        engine.book()
+        self._take(engine.pairs, max(SLOTS * len(bodies), 2 * count))
+        # All neighbours are searched anew: the skin is another.
+        self._enter(np.full(len(bodies) + count, time))
+
+    @property
+    def pairs(self) -> Pairs:
+        """The pairs in their slots, those that are free with first = -1."""
+        return self.engine.pairs
+
+    def _take(self, pairs: Pairs, capacity: int) -> None:
+        """Put pairs into the first of so many slots."""
         used = np.flatnonzero(pairs.first >= 0)
-        n = len(self.bodies.mass)
-        new = new_pairs(np.full(capacity, -1), np.zeros(capacity, np.int64))
+        slots = new_pairs(np.full(capacity, -1), np.zeros(capacity, dtype=np.int64))._replace(overflow=pairs.overflow)
         for name in Pairs._fields[:-1]:
-            getattr(new, name)[: len(used)] = getattr(pairs, name)[used]
-        new = new._replace(overflow=pairs.overflow)
-        reactions, last, interval, inverse_mass = new_reactions(capacity), np.full(capacity, self.time), np.zeros(capacity), np.ones(capacity)
-        due = np.full(len(used), self.time)
-        body_due = np.full(n, self.time)
-        if not fresh:
-            for name in reactions._fields:
-                getattr(reactions, name)[: len(used)] = getattr(self.reactions, name)[used]
-            last[: len(used)], interval[: len(used)] = self.plans.last[used], self.plans.interval[used]
-            due, body_due = self.agenda.due[n + used], self.agenda.due[:n].copy()
-        free = np.arange(capacity - 1, -1, -1)
-        apart, spin = np.zeros((capacity, 3)), np.zeros((capacity, 2, 3))
-        if not fresh:
-            inverse_mass[: len(used)] = self.plans.inverse_mass[used]
-            apart[: len(used)], spin[: len(used)] = self.plans.apart[used], self.plans.spin[used]
-        self.pairs, self.reactions = new, reactions
-        self.plans = Plans(last, interval, inverse_mass, np.zeros(capacity), apart, spin, np.full(2 * capacity, -1), free, np.array([capacity - len(used)]))
-        self.agenda = new_agenda(n + capacity)
-        self.flight.head[:], self.flight.stamp[:] = -1, -1
-        enter(self.bodies, self.engine.planes, new, self.engine.laws, self.flight, self.plans, self.agenda, len(used), due, body_due)
-        self.scratch = self.engine._scratch(new)
+            getattr(slots, name)[: len(used)] = getattr(pairs, name)[used]
+        self.engine.pairs, self.engine.scratch = slots, self.engine.scratch_of(slots)
+        self.reactions = new_reactions(capacity)
+        self.plans, self.agenda = plans_of(capacity, len(used), self.time), new_agenda(len(self.flight.time) + capacity)
 
-    def run(self, duration: float) -> int:
-        end = self.time + duration
+    def _enter(self, due: Floats) -> None:
+        """Enter bodies and pairs in their lists, due at instants [body_count + pair_count]."""
+        self.flight.head[:], self.flight.stamp[:] = -1, -1
+        engine = self.engine
+        enter_all(engine.bodies, engine.planes, self.pairs, engine.laws, self.flight, self.plans, self.agenda, due)
+
+    def _widen(self) -> None:
+        """Make twice as many slots."""
+        pairs, plans, agenda, reactions = self.pairs, self.plans, self.agenda, self.reactions
+        used, n = np.flatnonzero(pairs.first >= 0), len(self.flight.time)
+        self.engine.book()
+        self._take(pairs, 2 * len(pairs.first))
+        for name in ("last", "interval", "inverse_mass", "apart", "spin"):
+            getattr(self.plans, name)[: len(used)] = getattr(plans, name)[used]
+        for name in reactions._fields:
+            getattr(self.reactions, name)[: len(used)] = getattr(reactions, name)[used]
+        self._enter(np.concatenate([agenda.due[:n], agenda.due[n + used]]))
+
+    def run(self, duration: float) -> bool:
+        """Move on by a duration [s]; tell whether all is still finite."""
+        engine, end = self.engine, self.time + duration
         while True:
             reason = advance_locally(
-                self.bodies, self.engine.cores, self.engine.planes, self.pairs, self.engine.laws, self.scratch,
-                self.reactions, self.flight, self.plans, self.agenda, end, self.watched, self.record, self.rules, self.counts,
-            )
-            if reason == DONE:
-                break
-            if reason == PAIRS_FULL:
-                self.give_room(self.pairs, 2 * len(self.pairs.first))
-            elif reason == FEATURES_OVERFLOW:
-                self.pairs = with_more_overflow(self.pairs)
-                self.scratch = self.engine._scratch(self.pairs)
+                engine.bodies, engine.cores, engine.planes, self.pairs, engine.laws, engine.scratch, self.reactions,
+                self.flight, self.plans, self.agenda, end, self.rules, self.setting.watched, self.record,
+            )  # fmt: skip
+            if reason == NO_SLOT:
+                self._widen()
+            elif reason == NO_ROOM:
+                engine.pairs = with_more_overflow(self.pairs)
+                engine.scratch = engine.scratch_of(self.pairs)
             else:
-                raise FloatingPointError("diverged")
+                break
         self.time = end
-        catch_up(self.bodies, self.flight, end, self.rules)
-        return reason
+        fly_all_to(engine.bodies, self.flight, end, self.rules)
+        sum_forces(engine.bodies, self.pairs, self.reactions)
+        return reason == LISTED and bool(np.isfinite(engine.bodies.travel).all())
 
-
-from lithobrake.compiled import large_kernel
-
-
-@large_kernel
-def enter(bodies, planes, pairs, laws, flight, plans, agenda, used, due, body_due):
-    for pair in range(used):
-        first, second = pairs.first[pair], pairs.second[pair]
-        plans.duration[pair] = duration_of(bodies, planes, laws, flight, first, second)
-        link(flight, plans, first, 2 * pair)
-        if second >= 0:
-            link(flight, plans, second, 2 * pair + 1)
-        put_on(agenda, len(bodies.mass) + pair, due[pair])
-    for body in range(len(bodies.mass)):
-        put_on(agenda, body, body_due[body])
+    def give_back(self) -> None:
+        """Leave the engine with its pairs in order, ready for steps that all contacts share."""
+        pairs = self.pairs
+        self.engine.book()
+        used = np.flatnonzero(pairs.first >= 0)
+        used = used[np.lexsort((pairs.second[used], pairs.first[used]))]
+        arrays = {name: getattr(pairs, name)[used] for name in Pairs._fields[:-1]}
+        self.engine.renew(Pairs(**arrays, overflow=pairs.overflow))

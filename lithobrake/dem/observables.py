@@ -95,7 +95,13 @@ class Observables:
 
     @property
     def watched(self) -> dict[str, float]:
-        """Largest contact force [N] on the watched body; steps from `watch` to its first and last contact (0: none)."""
+        """Largest contact force [N] on the watched body; steps from `watch` to its first and last contact (0: none).
+
+        Of contacts at steps of their own: instants [s] in place of steps (-1: none).
+        """
+        local = self._state.local
+        if local is not None:
+            return dict(zip(WATCHED, local.record.tolist(), strict=True))
         return {name: float(self._state.watch_record[place]) for name, place in WATCHED.items()}
 
     def contacts(self) -> NDArray[Any]:

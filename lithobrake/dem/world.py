@@ -1,5 +1,6 @@
 """The world: bodies and planes under a constant acceleration, and their motion in time."""
 
+import math
 import os
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict
@@ -10,6 +11,7 @@ from lithobrake.dem import timestep
 from lithobrake.dem.assembly import rotation_matrices
 from lithobrake.dem.checkpoint import read_checkpoint, write_checkpoint
 from lithobrake.dem.clock import Clock, checked_count, checked_step
+from lithobrake.dem.local_engine import FEWEST_STEPS, Setting
 from lithobrake.dem.material import Material, contact_options
 from lithobrake.dem.observables import Observables
 from lithobrake.dem.rigid_body import Plane, new_body, unit, vector
@@ -147,6 +149,14 @@ class World(Observables):
             raise ValueError(f"World thread_count is {value!r}; allowed is a whole number of at least 1: change it")
         self._state.use_threads(int(value))
 
+    @property
+    def touch_duration(self) -> float | None:
+        """Time from the first to the last touch of the watched body [s]; None where it was not touched."""
+        first, last = self.watched["first_contact"], self.watched["last_contact"]
+        if self._state.local is not None:
+            return last - first if first >= 0.0 else None
+        return (last - first + 1.0) * self.time_step if first > 0.0 else None
+
     def run(self, duration: float | None = None, *, steps: int | None = None) -> None:
         """Advance by a duration [s], rounded to whole steps, or by a number of steps.
 
@@ -161,10 +171,34 @@ class World(Observables):
         if count == 0:
             return
         self._clock.time_step = self.time_step
-        taken, reason = self._assembled().advance(count, self._step(self.time_step), self._state.watched)
+        engine = self._state.stepping_together(self._step(0.0))
+        taken, reason = engine.advance(count, self._step(self.time_step), self._state.watched)
         self.time += taken * self.time_step
         if reason in (STEP_TOO_LARGE, DIVERGED):
             self._refuse(reason)
+
+    def run_locally(self, duration: float, steps_per_contact: float) -> None:
+        """Advance by a duration [s], every contact at steps of its own, so many in the time of its collision.
+
+        What is slow or far from anything then costs little; a landing is 4 to 10 times as fast (docs/performance.md).
+        Energy is kept to about a hundredth of the impact's with 15 steps, to a thousandth with 40. The time step plays
+        no part. Raises ValueError for a duration below 0 or less than 5 steps, FloatingPointError where the motion
+        diverged.
+        """
+        if not self.bodies:
+            raise ValueError("World.run_locally has no body to move: add one first")
+        if not 0.0 <= duration < math.inf:
+            raise ValueError(f"World.run_locally duration is {duration!r} s; allowed is a finite value of at least 0")
+        if not FEWEST_STEPS <= steps_per_contact < math.inf:
+            raise ValueError(
+                f"World.run_locally steps_per_contact is {steps_per_contact!r}; allowed is a finite value of at least "
+                f"{FEWEST_STEPS:g}: raise it"
+            )
+        setting = Setting(self._step(0.0), float(steps_per_contact), self._state.watched)
+        if not self._state.stepping_locally(setting, self.time).run(duration):
+            self._refuse(DIVERGED)
+        assert self._state.local is not None
+        self.time = self._state.local.time
 
     def _refuse(self, reason: int) -> None:
         """Say why the time loop could not go on."""

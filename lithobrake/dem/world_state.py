@@ -9,6 +9,7 @@ from lithobrake.dem.arrays import Floats, Pairs, Step
 from lithobrake.dem.assembly import inverse_inertias, rotation_matrices
 from lithobrake.dem.contact_law import LOSSES
 from lithobrake.dem.engine import Engine
+from lithobrake.dem.local_engine import LocalEngine, Setting
 from lithobrake.dem.motion import write_spins
 from lithobrake.dem.neighbours import no_pairs
 from lithobrake.dem.rigid_body import Plane, RigidBody
@@ -33,6 +34,7 @@ class WorldState:
         self.watched, self.watch_record = NOTHING_WATCHED, np.zeros(4)  # see time_loop.py
         self.thread_count = 1
         self.engine: Engine | None = None
+        self.local: LocalEngine | None = None
         self._inverse_inertia = np.zeros((0, 3, 3))
 
     def add_body(self, body: RigidBody, motion: dict[str, Floats]) -> int:
@@ -55,8 +57,26 @@ class WorldState:
             self.engine.advance(1, step._replace(time_step=0.0), NOTHING_WATCHED)
         return self.engine
 
+    def stepping_together(self, step: Step) -> Engine:
+        """Return the engine, all contacts at the same steps again."""
+        self._step_together()
+        return self.assembled(step)
+
+    def _step_together(self) -> None:
+        if self.local is not None:
+            self.local.give_back()
+            self.local = None
+
+    def stepping_locally(self, setting: Setting, time: float) -> LocalEngine:
+        """Return the engine that moves each contact at its own steps, from an instant [s] on."""
+        if self.local is None or self.local.setting != setting or self.local.time != time:
+            engine = self.stepping_together(setting.step)
+            self.local = LocalEngine(engine, self.bodies, setting, time)
+        return self.local
+
     def disassemble(self) -> None:
         """Make ready for a change of what is in the world; contacts keep their history."""
+        self._step_together()
         if self.engine is not None:
             self.engine.book()
             self.pairs = self.engine.pairs
@@ -66,6 +86,7 @@ class WorldState:
     def use_threads(self, thread_count: int) -> None:
         """Take steps on so many threads from now on."""
         self.thread_count = thread_count
+        self._step_together()
         if self.engine is not None:
             self.engine.use_threads(thread_count)
 

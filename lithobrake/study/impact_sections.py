@@ -75,7 +75,10 @@ class ContactSection(Section):
     pair_rule: Literal["smaller", "mean", "geometric"] = "smaller"
     """Restitution and friction of a pair of materials."""
     steps_per_contact: Annotated[float, Number("", at_least=10, at_most=1000)] = 50.0
-    """Time steps in the shortest contact."""
+    """Time steps in the shortest contact that the impact can make, or in each contact."""
+    stepping: Literal["global", "local"] = "global"
+    """Steps of a touchdown: "global", the same for all contacts, or "local", each contact at steps of its own, which is
+    several times as fast."""
 
 
 class LandingSection(Section):

@@ -19,12 +19,21 @@ FORMAT_VERSION = 1
 
 @dataclass(frozen=True, kw_only=True)
 class ContactModel:
-    """Options of the contact law, see `dem.World`, and the steps that resolve the shortest contact."""
+    """Options of the contact law, see `dem.World`, and how contacts are stepped in a landing.
+
+    steps_per_contact: in the shortest contact that the impact can make, or in each ("local", see World.run_locally).
+    stepping: "global", the same steps for all contacts, or "local", steps of its own for each.
+    """
 
     shear_modulus_rule: str = "mindlin"
     damping_mass: str = "contact"
     pair_rule: str = "smaller"
     steps_per_contact: float = 50.0
+    stepping: str = "global"
+
+    def __post_init__(self) -> None:
+        if self.stepping not in ("global", "local"):
+            raise ValueError(f'ContactModel.stepping is {self.stepping!r}; allowed are "global" and "local": change it')
 
     def world(self, gravity: tuple[float, float, float]) -> World:
         """Return an empty world under these options."""

@@ -52,19 +52,19 @@ class FlightLine:
 
         Raises ValueError for a lander that went through the floor: no outcome is to be told of that.
         """
-        height, touched = self.height(), self.world.watched
+        height, has_touched = self.height(), self.world.touch_duration is not None
         if height < -SUNK_FRACTION * self.lander.smallest_edge:
             raise ValueError(
                 f"the lander went through the floor: it is {-height:.3g} m below it, of {self.lander.mass:.3g} kg and "
                 f"come with {self.landing.speed:.3g} m/s, for which these grains are too soft or too few; raise "
                 "grain.young_modulus or bed.grain_count, or lower lander.mass or impact.speed"
             )
-        if touched["first_contact"] > 0.0 and self.height_at_contact is None:
+        if has_touched and self.height_at_contact is None:
             self.height_at_contact = self.lowest
         self.lowest = min(self.lowest, height)
         self.looks += 1
         self.keep_frame()
-        self.ended = self.judge(height, touched["first_contact"] > 0.0)
+        self.ended = self.judge(height, has_touched)
 
     def judge(self, height: float, has_touched: bool) -> TouchdownOutcome | None:
         """Return how the touchdown ended, or None while it is open."""
@@ -99,15 +99,13 @@ class FlightLine:
 
     def outcome(self) -> Outcome:
         """Return what came of the landing."""
-        world, k, watched = self.world, self.number, self.world.watched
+        world, k = self.world, self.number
         assert self.ended is not None
         left = self.ended == TouchdownOutcome.CLEAR
         outputs = outgoing(world.velocity[k], world.spin[k], self.landing.azimuth, left)
-        touched = watched["first_contact"] > 0.0
-        steps = watched["last_contact"] - watched["first_contact"] + 1.0 if touched else 0.0
-        outputs["contact_duration"] = steps * world.time_step
+        outputs["contact_duration"] = world.touch_duration or 0.0
         outputs["penetration"] = 0.0 if self.height_at_contact is None else self.height_at_contact - self.lowest
-        outputs["peak_acceleration"] = watched["peak_force"] / self.lander.mass
+        outputs["peak_acceleration"] = world.watched["peak_force"] / self.lander.mass
         outputs["energy_lost"] = self.start_energy - self.energy()
         frames = None
         if self.frame_count:

@@ -17,6 +17,12 @@ from lithobrake.touchdown.surface import rotation_matrix
 
 RELAX_FADING = 5.0  # periods in which the damping of contacts falls by a factor of e: what has to slide must be free to
 CHECKS_PER_CONTACT = 5  # looks at the lander in the time of the shortest contact
+# Where contacts step for themselves, looks are farther apart: until the lander moves by this part of its smallest edge,
+# and never farther than this part of the time limit.
+LOOK_WAY, LOOK_TIME = 0.02, 1e-3
+# A bed takes on another soil at once where its grains, if all that their contacts hold set them in motion, would not
+# reach this part of the impact speed.
+RELEASED_SPEED = 1e-3
 
 
 def land(
@@ -40,17 +46,39 @@ def land(
             f"{min(bed.width)} m: make the bed wider"
         )
     world = bed.world(landing.grain, bed.gravity, landing.contact)
-    relax(world, bed, landing, lambda fraction: progress(fraction, "bed taking on the soil of the landing"))
+    locally = landing.contact.stepping == "local"
+    if locally and released_speed(world) < RELEASED_SPEED * landing.speed:
+        world.gravity = np.array(landing.gravity)
+    else:
+        relax(world, bed, landing, lambda fraction: progress(fraction, "bed taking on the soil of the landing"))
     number = release(world, bed, lander, landing)
     world.time_step = world.shortest_contact(landing.speed) / landing.contact.steps_per_contact
     world.watch(number)
     line = FlightLine(bed, lander, landing, world, number, frame_count)
     chunk = max(1, int(landing.contact.steps_per_contact / CHECKS_PER_CONTACT))
     while line.ended is None:
-        world.run(steps=chunk)
+        if locally:
+            world.run_locally(look_interval(world, number, lander, landing), landing.contact.steps_per_contact)
+        else:
+            world.run(steps=chunk)
         line.look()
         progress(min((world.time - line.start_time) / landing.time_limit, 1.0), "landing, up to its time limit")
     return line.outcome()
+
+
+def released_speed(world: World) -> float:
+    """Return the speed [m/s] of bodies if all elastic energy of their contacts set them in motion."""
+    return math.sqrt(2.0 * world.energy()["elastic"] / float(world.mass.sum()))
+
+
+def look_interval(world: World, number: int, lander: Lander, landing: Landing) -> float:
+    """Return the time [s] until the lander is to be looked at again, where contacts step for themselves."""
+    turning = float(np.linalg.norm(world.spin[number])) * lander.shape.bounding_radius
+    speed = float(np.linalg.norm(world.velocity[number])) + turning
+    shortest = world.time_step * landing.contact.steps_per_contact / CHECKS_PER_CONTACT
+    longest = LOOK_TIME * landing.time_limit
+    way = LOOK_WAY * lander.smallest_edge
+    return max(shortest, min(way / speed, longest) if speed > 0.0 else longest)
 
 
 def relax(

@@ -1,0 +1,143 @@
+"""When is a pair to be looked at next: a contact at steps of its own, what is apart when it could touch."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from lithobrake.compiled import kernel
+from lithobrake.dem.agenda import Agenda, put_on
+from lithobrake.dem.approach import Approach, closing_speed, longest_turn
+from lithobrake.dem.arrays import Bodies, Floats, Integers, Pairs
+from lithobrake.dem.free_flight import Flight, Rules, surface_speed, time_to_close, weight
+from lithobrake.dem.vectors import Vector, cross, dot, minus, plus, put, row
+
+# A body's pairs are planned anew when the speed of its surface has changed by this part of what it was.
+NOTED_CHANGE = 0.5
+# Largest (w dt)^2 / 4 of the tilting of a patch in a step of its contact; 1 is the limit of stability.
+TILT_STEP = 0.02
+# A contact keeps its step until the one that it should have is shorter by this factor, or longer.
+KEPT_STEP = 0.5
+# Time from first to deepest touch and back, over deepest overlap by speed: Hertz (1882), see timestep.py.
+HERTZ_TIME = 2.943
+
+
+class Plans(NamedTuple):
+    """Per slot for a pair, used or free."""
+
+    last: Floats  # [pair_capacity], s, when it was last looked at
+    interval: Floats  # [pair_capacity], s, from then until it is to be looked at again, where it touches; else 0
+    inverse_mass: Floats  # [pair_capacity], 1/kg, that the contact meets, more where its damping is strong
+    duration: Floats  # [pair_capacity], s (m/s)^(1/5), duration of a collision times the fifth root of its speed
+    apart: Floats  # [pair_capacity, 3], m, from the first's centroid to the second's, at the last look
+    spin: Floats  # [pair_capacity, 2, 3], rad/s, of both after the last kick
+    link: Integers  # [2 pair_capacity], next entry in the list of the first's, and of the second's pairs; -1: none
+    free: Integers  # [pair_capacity], slots that are free
+    free_count: Integers  # [1]
+
+
+@kernel
+def collision_step(pair: int, plans: Plans, speed: float, rules: Rules) -> float:
+    """Return the step [s] of a contact that begins at a speed [m/s]."""
+    return plans.duration[pair] * speed**-0.2 / rules.steps if speed > 0.0 else np.inf
+
+
+@kernel
+def contact_step(pair: int, bodies: Bodies, pairs: Pairs, plans: Plans, rules: Rules) -> float:
+    """Return the step [s] of a contact: a part of the collision with the energy that it has now."""
+    first, second = pairs.first[pair], pairs.second[pair]
+    normal, overlap, elastic = row(pairs.normal, pair), pairs.overlap[pair], pairs.elastic_force[pair]
+    speed = dot(closing_velocity(pair, bodies, pairs, plans), normal)
+    inverse_mass = plans.inverse_mass[pair]
+    energy = 0.4 * elastic * overlap + 0.5 * speed * speed / inverse_mass
+    deepest = (2.5 * energy * overlap**1.5 / elastic) ** 0.4
+    step = HERTZ_TIME * deepest / ((2.0 * energy * inverse_mass) ** 0.5 * rules.steps)
+    couple = inverse_inertia_trace(bodies, first) + (inverse_inertia_trace(bodies, second) if second >= 0 else 0.0)
+    tilt = (pairs.tilt_stiffness[pair] + pairs.roll_stiffness[pair] + pairs.twist_stiffness[pair]) * couple
+    return min(step, 2.0 * (TILT_STEP / tilt) ** 0.5) if tilt > 0.0 else step
+
+
+@kernel
+def closing_velocity(pair: int, bodies: Bodies, pairs: Pairs, plans: Plans) -> Vector:
+    """Return the velocity of the first against the second at their centre of pressure, spins as at the last look."""
+    first, second, point = pairs.first[pair], pairs.second[pair], row(pairs.point, pair)
+    arm = minus(point, row(bodies.position, first))
+    velocity = plus(row(bodies.velocity, first), cross(row(plans.spin[pair], 0), arm))
+    if second >= 0:
+        arm = minus(point, row(bodies.position, second))
+        velocity = minus(velocity, plus(row(bodies.velocity, second), cross(row(plans.spin[pair], 1), arm)))
+    return velocity
+
+
+@kernel
+def inverse_inertia_trace(bodies: Bodies, body: int) -> float:
+    """Return the trace of the inverse inertia [1/(kg m2)], which no direction passes."""
+    inverse = bodies.inverse_inertia
+    return inverse[body, 0, 0] + inverse[body, 1, 1] + inverse[body, 2, 2]
+
+
+@kernel
+def plan_apart(
+    pair: int, bodies: Bodies, pairs: Pairs, flight: Flight, agenda: Agenda, now: float, rules: Rules
+) -> None:  # fmt: skip
+    """Make a pair due when it could touch first, as nothing near has been found. Writes to agenda."""
+    first, second = pairs.first[pair], pairs.second[pair]
+    gap = pairs.wake[pair] - bodies.travel[first] - (now - flight.time[first]) * surface_speed(bodies, flight, first)
+    acceleration = weight(rules)
+    if second >= 0:
+        acceleration = 0.0
+        gap -= bodies.travel[second] + (now - flight.time[second]) * surface_speed(bodies, flight, second)
+    speed = closing_speed(bodies, flight, first, second)
+    put_on(agenda, len(bodies.mass) + pair, now + (time_to_close(gap, speed, acceleration) if gap > 0.0 else 0.0))
+
+
+@kernel
+def plan_approach(
+    pair: int, bodies: Bodies, pairs: Pairs, flight: Flight, plans: Plans, agenda: Agenda, approach: Approach,
+    now: float, rules: Rules,
+) -> None:  # fmt: skip
+    """Make a pair due when its features could touch first, or a step of their contact later. Writes to agenda."""
+    wait = max(approach.time, collision_step(pair, plans, approach.speed, rules))
+    wait = min(wait, longest_turn(bodies, flight, pairs.first[pair], pairs.second[pair]))
+    put_on(agenda, len(bodies.mass) + pair, now + wait)
+
+
+@kernel
+def plan_search(bodies: Bodies, flight: Flight, agenda: Agenda, body: int, now: float, rules: Rules) -> None:
+    """Make a body due when it could have left the reach of its list of neighbours. Writes to agenda."""
+    left = 0.5 * rules.skin - (bodies.travel[body] - bodies.travel_listed[body])
+    speed = surface_speed(bodies, flight, body) + flight.slack[body]
+    put_on(agenda, body, now + (time_to_close(left, speed, weight(rules)) if left > 0.0 else 0.0))
+
+
+@kernel
+def has_changed(bodies: Bodies, flight: Flight, body: int) -> bool:
+    """Tell whether a body was kicked so that the plans of its pairs hold no longer."""
+    change = minus(row(bodies.velocity, body), row(flight.velocity, body))
+    turn = minus(row(bodies.angular_momentum, body), row(flight.momentum, body))
+    turning = bodies.turning_radius[body] * flight.turning[body]
+    # Of a body that was never planned the change is not a number.
+    return not dot(change, change) ** 0.5 + turning * dot(turn, turn) ** 0.5 <= flight.slack[body]
+
+
+@kernel
+def replan(
+    bodies: Bodies, pairs: Pairs, flight: Flight, plans: Plans, agenda: Agenda, body: int, now: float, rules: Rules
+) -> None:
+    """Plan the pairs of a body anew after a kick. Writes to flight and agenda."""
+    put(flight.velocity, body, row(bodies.velocity, body))
+    put(flight.momentum, body, row(bodies.angular_momentum, body))
+    flight.slack[body] = NOTED_CHANGE * surface_speed(bodies, flight, body)
+    plan_search(bodies, flight, agenda, body, now, rules)
+    entry = flight.head[body]
+    while entry >= 0:
+        pair, item = entry >> 1, len(bodies.mass) + (entry >> 1)
+        if pairs.overlap[pair] > 0.0:
+            step = contact_step(pair, bodies, pairs, plans, rules)
+            # A contact keeps its steps even while it can: uneven ones take energy from it.
+            if step < KEPT_STEP * plans.interval[pair]:
+                put_on(agenda, item, min(agenda.due[item], max(plans.last[pair] + step, now)))
+        elif pairs.feature_count[pair] == 0:
+            plan_apart(pair, bodies, pairs, flight, agenda, now, rules)
+        else:
+            put_on(agenda, item, now)
+        entry = plans.link[entry]

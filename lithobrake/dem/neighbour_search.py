@@ -1,0 +1,169 @@
+"""The neighbours of one body, listed anew when it has moved by half the skin; pairs come and go one by one.
+
+Every body has a list of its pairs: entries 2 k and 2 k + 1 stand for the first and the second of the pair in slot k.
+"""
+
+import numpy as np
+
+from lithobrake.compiled import kernel, large_kernel
+from lithobrake.dem.agenda import Agenda, put_on, take_off
+from lithobrake.dem.arrays import Bodies, Floats, Laws, Pairs, Planes
+from lithobrake.dem.contact_plans import Plans, plan_search
+from lithobrake.dem.free_flight import Flight, Rules, fly_to, place_at
+from lithobrake.dem.vectors import Vector, dot, minus, row
+
+LISTED, NO_SLOT, LOST = 0, 1, 2
+
+
+@kernel
+def link(flight: Flight, plans: Plans, body: int, entry: int) -> None:
+    """Enter a pair in the list of a body's. Writes to flight and plans."""
+    plans.link[entry] = flight.head[body]
+    flight.head[body] = entry
+
+
+@kernel
+def unlink(flight: Flight, plans: Plans, body: int, entry: int) -> None:
+    """Take an entry out of the list of a body's pairs. Writes to flight and plans."""
+    if flight.head[body] == entry:
+        flight.head[body] = plans.link[entry]
+        return
+    at = flight.head[body]
+    while plans.link[at] != entry:
+        at = plans.link[at]
+    plans.link[at] = plans.link[entry]
+
+
+@kernel
+def collision_duration(bodies: Bodies, planes: Planes, laws: Laws, flight: Flight, first: int, second: int) -> float:
+    """Return the duration of a collision of two times the fifth root of its speed, see timestep.contact_duration."""
+    here, there = bodies.material[first], planes.material[-1 - second] if second < 0 else bodies.material[second]
+    inverse, curvature = 1.0 / flight.mass[first], bodies.curvature[first]
+    if second >= 0:
+        inverse, curvature = inverse + 1.0 / flight.mass[second], curvature + bodies.curvature[second]
+    modulus, ratio = laws.young_modulus[here, there], laws.damping_ratio[here, there]
+    return 2.868 * (curvature / (inverse * modulus) ** 2) ** 0.2 / max(1.0, 2.0 * ratio)
+
+
+@kernel
+def enter_pair(
+    pair: int, bodies: Bodies, planes: Planes, pairs: Pairs, laws: Laws, flight: Flight, plans: Plans, agenda: Agenda,
+    due: float,
+) -> None:  # fmt: skip
+    """Enter the pair of a slot in the lists of its bodies, due at an instant [s].
+
+    Writes to flight, plans and agenda.
+    """
+    first, second = pairs.first[pair], pairs.second[pair]
+    plans.duration[pair] = collision_duration(bodies, planes, laws, flight, first, second)
+    link(flight, plans, first, 2 * pair)
+    if second >= 0:
+        link(flight, plans, second, 2 * pair + 1)
+    put_on(agenda, len(bodies.mass) + pair, due)
+
+
+@large_kernel
+def enter_all(
+    bodies: Bodies, planes: Planes, pairs: Pairs, laws: Laws, flight: Flight, plans: Plans, agenda: Agenda,
+    due: Floats,
+) -> None:  # fmt: skip
+    """Enter the bodies and then the pairs of the first slots, due at instants [body_count + pair_count].
+
+    Writes to flight, plans and agenda.
+    """
+    n = len(bodies.mass)
+    for body in range(n):
+        put_on(agenda, body, due[body])
+    for pair in range(len(due) - n):
+        enter_pair(pair, bodies, planes, pairs, laws, flight, plans, agenda, due[n + pair])
+
+
+@kernel
+def add_pair(
+    bodies: Bodies, planes: Planes, pairs: Pairs, laws: Laws, flight: Flight, plans: Plans, agenda: Agenda, one: int,
+    other: int, now: float,
+) -> bool:  # fmt: skip
+    """List two as neighbours, due at once; tell whether there was a slot. Writes to pairs, flight, plans and agenda."""
+    if plans.free_count[0] == 0:
+        return False
+    plans.free_count[0] -= 1
+    pair = plans.free[plans.free_count[0]]
+    pairs.first[pair], pairs.second[pair] = (min(one, other), max(one, other)) if other >= 0 else (one, other)
+    pairs.wake[pair], pairs.feature_count[pair] = 0.0, 0
+    plans.last[pair], plans.interval[pair] = now, 0.0
+    enter_pair(pair, bodies, planes, pairs, laws, flight, plans, agenda, now)
+    return True
+
+
+@kernel
+def forget_pair(
+    pair: int, pairs: Pairs, flight: Flight, plans: Plans, agenda: Agenda, body_count: int
+) -> None:  # fmt: skip
+    """Take a pair off the lists of its bodies. Writes to pairs, flight, plans and agenda."""
+    take_off(agenda, body_count + pair)
+    unlink(flight, plans, pairs.first[pair], 2 * pair)
+    if pairs.second[pair] >= 0:
+        unlink(flight, plans, pairs.second[pair], 2 * pair + 1)
+    pairs.first[pair], pairs.feature_count[pair] = -1, 0
+    plans.free[plans.free_count[0]] = pair
+    plans.free_count[0] += 1
+
+
+@kernel
+def gap_to(
+    bodies: Bodies, planes: Planes, flight: Flight, here: Vector, other: int, now: float, rules: Rules
+) -> float:  # fmt: skip
+    """Return how far a place is from the bounding sphere of a body where it is now, or from a plane [m]."""
+    if other < 0:
+        return dot(row(planes.normal, -1 - other), here) - planes.offset[-1 - other]
+    between = minus(place_at(bodies, flight, other, now, rules), here)
+    return dot(between, between) ** 0.5 - bodies.bounding_radius[other]
+
+
+@large_kernel
+def search_neighbours(
+    bodies: Bodies, planes: Planes, pairs: Pairs, laws: Laws, flight: Flight, plans: Plans, agenda: Agenda, body: int,
+    now: float, rules: Rules,
+) -> int:  # fmt: skip
+    """List the neighbours of a body anew; return LISTED, NO_SLOT where one more is needed, or LOST.
+
+    Writes to bodies, pairs, flight, plans and agenda.
+    """
+    fly_to(bodies, flight, body, now, rules)
+    if not np.isfinite(bodies.travel[body]):
+        return LOST
+    here, reach, n = row(bodies.position, body), bodies.bounding_radius[body] + rules.skin, len(bodies.mass)
+    drop_distant(bodies, planes, pairs, flight, plans, agenda, body, here, reach, now, rules)
+    for other in range(-len(planes.offset), n):
+        if other == body or (other < 0 and not planes.meets[-1 - other, body]):
+            continue
+        stamp = other if other >= 0 else n - 1 - other
+        if flight.stamp[stamp] == body:
+            flight.stamp[stamp] = -1
+            continue
+        near = gap_to(bodies, planes, flight, here, other, now, rules) < reach
+        if near and not add_pair(bodies, planes, pairs, laws, flight, plans, agenda, body, other, now):
+            return NO_SLOT
+    bodies.travel_listed[body] = bodies.travel[body]
+    plan_search(bodies, flight, agenda, body, now, rules)
+    return LISTED
+
+
+@kernel
+def drop_distant(
+    bodies: Bodies, planes: Planes, pairs: Pairs, flight: Flight, plans: Plans, agenda: Agenda, body: int,
+    here: Vector, reach: float, now: float, rules: Rules,
+) -> None:  # fmt: skip
+    """Forget the pairs of a body that are no longer near it, and stamp the others.
+
+    Writes to pairs, flight, plans and agenda.
+    """
+    entry, n = flight.head[body], len(bodies.mass)
+    while entry >= 0:
+        after, pair = plans.link[entry], entry >> 1
+        other = pairs.second[pair] if pairs.first[pair] == body else pairs.first[pair]
+        if pairs.overlap[pair] == 0.0 and gap_to(bodies, planes, flight, here, other, now, rules) > reach:
+            forget_pair(pair, pairs, flight, plans, agenda, n)
+        else:
+            flight.stamp[other if other >= 0 else n - 1 - other] = body
+        entry = after
