@@ -13,10 +13,10 @@ from lithobrake.dem.vectors import Vector, cross, dot, minus, plus, put, row
 
 # A body's pairs are planned anew when the speed of its surface has changed by this part of what it was.
 NOTED_CHANGE = 0.5
-# Largest (w dt)^2 / 4 of the tilting of a patch in a step of its contact; 1 is the limit of stability.
-TILT_STEP = 0.02
-# A contact keeps its step until the one that it should have is shorter by this factor, or longer.
-KEPT_STEP = 0.5
+# A contact keeps its step until the one that it should have is below, or above, these parts of it.
+SHORTER, LONGER = 0.8, 2.0
+# One that has become shorter by this factor does not wait for the next look.
+URGENT = 0.5
 # Time from first to deepest touch and back, over deepest overlap by speed: Hertz (1882), see timestep.py.
 HERTZ_TIME = 2.943
 
@@ -27,6 +27,7 @@ class Plans(NamedTuple):
     last: Floats  # [pair_capacity], s, when it was last looked at
     interval: Floats  # [pair_capacity], s, from then until it is to be looked at again, where it touches; else 0
     inverse_mass: Floats  # [pair_capacity], 1/kg, that the contact meets, more where its damping is strong
+    longest: Floats  # [pair_capacity], s, step at which sliding, tilting and damping are followed stably
     duration: Floats  # [pair_capacity], s (m/s)^(1/5), duration of a collision times the fifth root of its speed
     apart: Floats  # [pair_capacity, 3], m, from the first's centroid to the second's, at the last look
     spin: Floats  # [pair_capacity, 2, 3], rad/s, of both after the last kick
@@ -36,24 +37,24 @@ class Plans(NamedTuple):
 
 
 @kernel
-def collision_step(pair: int, plans: Plans, speed: float, rules: Rules) -> float:
-    """Return the step [s] of a contact that begins at a speed [m/s]."""
+def collision_step(pair: int, pairs: Pairs, plans: Plans, speed: float, rules: Rules) -> float:
+    """Return the step [s] of a contact that begins at a speed [m/s]; on a plane gravity adds to that."""
+    if pairs.second[pair] < 0:
+        # What gravity adds within a collision at the speed that it adds.
+        speed += (weight(rules) * plans.duration[pair]) ** (5.0 / 6.0)
     return plans.duration[pair] * speed**-0.2 / rules.steps if speed > 0.0 else np.inf
 
 
 @kernel
 def contact_step(pair: int, bodies: Bodies, pairs: Pairs, plans: Plans, rules: Rules) -> float:
     """Return the step [s] of a contact: a part of the collision with the energy that it has now."""
-    first, second = pairs.first[pair], pairs.second[pair]
     normal, overlap, elastic = row(pairs.normal, pair), pairs.overlap[pair], pairs.elastic_force[pair]
     speed = dot(closing_velocity(pair, bodies, pairs, plans), normal)
     inverse_mass = plans.inverse_mass[pair]
     energy = 0.4 * elastic * overlap + 0.5 * speed * speed / inverse_mass
     deepest = (2.5 * energy * overlap**1.5 / elastic) ** 0.4
     step = HERTZ_TIME * deepest / ((2.0 * energy * inverse_mass) ** 0.5 * rules.steps)
-    couple = inverse_inertia_trace(bodies, first) + (inverse_inertia_trace(bodies, second) if second >= 0 else 0.0)
-    tilt = (pairs.tilt_stiffness[pair] + pairs.roll_stiffness[pair] + pairs.twist_stiffness[pair]) * couple
-    return min(step, 2.0 * (TILT_STEP / tilt) ** 0.5) if tilt > 0.0 else step
+    return min(step, plans.longest[pair])
 
 
 @kernel
@@ -66,13 +67,6 @@ def closing_velocity(pair: int, bodies: Bodies, pairs: Pairs, plans: Plans) -> V
         arm = minus(point, row(bodies.position, second))
         velocity = minus(velocity, plus(row(bodies.velocity, second), cross(row(plans.spin[pair], 1), arm)))
     return velocity
-
-
-@kernel
-def inverse_inertia_trace(bodies: Bodies, body: int) -> float:
-    """Return the trace of the inverse inertia [1/(kg m2)], which no direction passes."""
-    inverse = bodies.inverse_inertia
-    return inverse[body, 0, 0] + inverse[body, 1, 1] + inverse[body, 2, 2]
 
 
 @kernel
@@ -96,7 +90,7 @@ def plan_approach(
     now: float, rules: Rules,
 ) -> None:  # fmt: skip
     """Make a pair due when its features could touch first, or a step of their contact later. Writes to agenda."""
-    wait = max(approach.time, collision_step(pair, plans, approach.speed, rules))
+    wait = max(approach.time, collision_step(pair, pairs, plans, approach.speed, rules))
     wait = min(wait, longest_turn(bodies, flight, pairs.first[pair], pairs.second[pair]))
     put_on(agenda, len(bodies.mass) + pair, now + wait)
 
@@ -134,7 +128,7 @@ def replan(
         if pairs.overlap[pair] > 0.0:
             step = contact_step(pair, bodies, pairs, plans, rules)
             # A contact keeps its steps even while it can: uneven ones take energy from it.
-            if step < KEPT_STEP * plans.interval[pair]:
+            if step < URGENT * plans.interval[pair]:
                 put_on(agenda, item, min(agenda.due[item], max(plans.last[pair] + step, now)))
         elif pairs.feature_count[pair] == 0:
             plan_apart(pair, bodies, pairs, flight, agenda, now, rules)

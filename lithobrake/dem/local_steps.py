@@ -10,10 +10,11 @@ Source: [Lew-2003], asynchronous variational integrators.
 
 from lithobrake.compiled import kernel, large_kernel
 from lithobrake.dem.agenda import Agenda, put_on
-from lithobrake.dem.approach import approach_of, closing_speed
+from lithobrake.dem.approach import Approach, approach_of, closing_speed
 from lithobrake.dem.arrays import Bodies, Cores, Floats, Laws, Pairs, Planes, Reactions, Step
 from lithobrake.dem.contact_plans import (
-    KEPT_STEP,
+    LONGER,
+    SHORTER,
     Plans,
     collision_step,
     contact_step,
@@ -35,12 +36,15 @@ from lithobrake.dem.force import contact_force
 from lithobrake.dem.free_flight import Flight, Rules, fly_to, spin_of
 from lithobrake.dem.neighbour_search import LISTED, search_neighbours
 from lithobrake.dem.scratch import Scratch
+from lithobrake.dem.stability import pair_step
 from lithobrake.dem.vectors import Vector, add, dot, minus, plus, put, row, scaled, times
 
 # Why a run stops: besides what neighbour_search.py says.
 NO_ROOM = 3
 # Steps of motion for which what is near and does not touch is listed; narrowest part of the widest margin.
 STEPS_NEAR, NARROWEST = 3.0, 1e-3
+# Largest c dt + (w dt)^2 / 4 of one contact, see stability.py; kicks follow each other, so each must be stable alone.
+STABLE_PART = 0.6
 # What is recorded of a watched body, and where: largest force [N], first and last instant of touch [s; -1: none].
 PEAK, FIRST_TOUCH, LAST_TOUCH = 0, 1, 2
 
@@ -60,7 +64,7 @@ def list_features(
     if pairs.feature_count[pair] != 0 and travel < pairs.wake[pair]:
         return True
     speed = closing_speed(bodies, flight, first, second)
-    step = plans.interval[pair] if touching else collision_step(pair, plans, speed, rules)
+    step = plans.interval[pair] if touching else collision_step(pair, pairs, plans, speed, rules)
     radius = bodies.contact_radius[first] + (bodies.contact_radius[second] if second >= 0 else 0.0)
     most = ROUNDING_OF_RADIUS * radius
     way = (STEPS_LISTED if touching else STEPS_NEAR) * speed * step if speed > 0.0 else 0.0
@@ -154,15 +158,17 @@ def kick_members(
 
 @kernel
 def next_step(
-    pair: int, bodies: Bodies, pairs: Pairs, plans: Plans, planned: float, rate: float, rules: Rules
+    pair: int, bodies: Bodies, planes: Planes, pairs: Pairs, laws: Laws, plans: Plans, planned: float, rate: float,
+    rules: Rules,
 ) -> float:  # fmt: skip
     """Return the interval [s] until a contact is due again; planned: the last one, 0 where it touches anew.
 
     Writes to plans.
     """
     plans.inverse_mass[pair] = rate * pairs.overlap[pair] / (1.5 * pairs.elastic_force[pair])
+    plans.longest[pair] = pair_step(pair, bodies, planes, pairs, laws, rules.paper_mass, STABLE_PART)
     step = contact_step(pair, bodies, pairs, plans, rules)
-    return planned if planned > 0.0 and KEPT_STEP * planned <= step <= planned / KEPT_STEP else step
+    return planned if SHORTER * planned <= step <= LONGER * planned else step
 
 
 @kernel
@@ -190,7 +196,7 @@ def touch(
     impulse, moment, other_moment = scaled(cut, force), scaled(cut, torque), scaled(cut, other_torque)
     interval = 0.0
     if pairs.overlap[pair] > 0.0:
-        interval = next_step(pair, bodies, pairs, plans, planned, rate, rules)
+        interval = next_step(pair, bodies, planes, pairs, laws, plans, planned, rate, rules)
         time = 0.5 * (interval + (passed if planned > 0.0 else min(passed, interval)))
         impulse = plus(impulse, scaled(time, row(reactions.force, pair)))
         moment = plus(moment, scaled(time, row(reactions.first_torque, pair)))
@@ -227,7 +233,12 @@ def meet(
             plan_approach(pair, bodies, pairs, flight, plans, agenda, approach, now, rules)
             return True
     interval = touch(pair, bodies, cores, planes, pairs, laws, scratch, reactions, plans, passed, rules)
-    put_on(agenda, len(bodies.mass) + pair, now + interval)
+    if interval > 0.0:
+        put_on(agenda, len(bodies.mass) + pair, now + interval)
+    else:
+        # It has ended, or begins at the very instant: wait for a step of what may come.
+        speed = closing_speed(bodies, flight, pairs.first[pair], pairs.second[pair])
+        plan_approach(pair, bodies, pairs, flight, plans, agenda, Approach(0.0, speed, 0.0), now, rules)
     for member in (pairs.first[pair], pairs.second[pair]):
         if member >= 0 and has_changed(bodies, flight, member):
             replan(bodies, pairs, flight, plans, agenda, member, now, rules)

@@ -16,7 +16,7 @@ from lithobrake.dem.arrays import Bodies, Floats, Laws, Pairs, Planes, Step
 from lithobrake.dem.effective_mass import inverse_inertia_across, inverse_mass_at
 from lithobrake.dem.scratch import Patch
 from lithobrake.dem.tangential_spring import tangential_part
-from lithobrake.dem.vectors import Vector, dot, minus, row, times
+from lithobrake.dem.vectors import Vector, dot, minus, plus, row, times
 
 # Largest c dt + (w dt)^2 / 4 that is allowed; 1 is the limit of stability.
 STABLE_FRACTION = 0.8
@@ -40,6 +40,14 @@ class ContactStiffness(NamedTuple):
     normal_dashpot: float  # N s/m
     shear_dashpot: float  # N s/m
     tilt_dashpot: float  # N m s
+
+
+class ContactRates(NamedTuple):
+    """A contact, and what it meets of its two bodies."""
+
+    stiffness: ContactStiffness
+    ours: Vector  # 1/kg along and across the normal, 1/(kg m2) for couples, of the first
+    theirs: Vector  # the same of the second
 
 
 @kernel
@@ -105,6 +113,24 @@ def add_contact_rates(
     )
 
 
+@kernel
+def pair_rates(pair: int, bodies: Bodies, planes: Planes, pairs: Pairs, laws: Laws, paper_mass: bool) -> ContactRates:
+    """Return what a contact that touches does to each of its bodies, as if there were no other."""
+    first, second = pairs.first[pair], pairs.second[pair]
+    point, normal = row(pairs.point, pair), row(pairs.normal, pair)
+    here = bodies.material[first]
+    there = planes.material[-1 - second] if second < 0 else bodies.material[second]
+    ours = inverse_masses(bodies, first, minus(point, row(bodies.position, first)), normal)
+    theirs = (0.0, 0.0, 0.0)
+    inverse_mass = bodies.inverse_mass[first] if paper_mass else ours[0]
+    if second >= 0:
+        theirs = inverse_masses(bodies, second, minus(point, row(bodies.position, second)), normal)
+        inverse_mass += bodies.inverse_mass[second] if paper_mass else theirs[0]
+    law = Damping(laws.damping_ratio[here, there], laws.shear_damping[here, there])
+    stiffness = contact_stiffness(pair, bodies, pairs, inverse_mass, ours[2] + theirs[2], law)
+    return ContactRates(stiffness, ours, theirs)
+
+
 @large_kernel
 def write_rates(bodies: Bodies, planes: Planes, pairs: Pairs, laws: Laws, paper_mass: bool) -> None:
     """Sum up for every body how its contacts hold it. Writes to bodies."""
@@ -112,21 +138,23 @@ def write_rates(bodies: Bodies, planes: Planes, pairs: Pairs, laws: Laws, paper_
     for pair in range(len(pairs.first)):
         if pairs.overlap[pair] == 0.0:
             continue
-        first, second = pairs.first[pair], pairs.second[pair]
-        point, normal = row(pairs.point, pair), row(pairs.normal, pair)
-        here = bodies.material[first]
-        ours = inverse_masses(bodies, first, minus(point, row(bodies.position, first)), normal)
-        theirs = (0.0, 0.0, 0.0)
-        there = planes.material[-1 - second] if second < 0 else bodies.material[second]
-        inverse_mass = bodies.inverse_mass[first] if paper_mass else ours[0]
-        if second >= 0:
-            theirs = inverse_masses(bodies, second, minus(point, row(bodies.position, second)), normal)
-            inverse_mass += bodies.inverse_mass[second] if paper_mass else theirs[0]
-        law = Damping(laws.damping_ratio[here, there], laws.shear_damping[here, there])
-        stiffness = contact_stiffness(pair, bodies, pairs, inverse_mass, ours[2] + theirs[2], law)
-        add_contact_rates(bodies.rates, first, stiffness, ours)
-        if second >= 0:
-            add_contact_rates(bodies.rates, second, stiffness, theirs)
+        rates = pair_rates(pair, bodies, planes, pairs, laws, paper_mass)
+        add_contact_rates(bodies.rates, pairs.first[pair], rates.stiffness, rates.ours)
+        if pairs.second[pair] >= 0:
+            add_contact_rates(bodies.rates, pairs.second[pair], rates.stiffness, rates.theirs)
+
+
+@kernel
+def pair_step(
+    pair: int, bodies: Bodies, planes: Planes, pairs: Pairs, laws: Laws, paper_mass: bool, fraction: float
+) -> float:
+    """Return the step [s] at which c dt + (w dt)^2 / 4 of one contact alone comes to a fraction."""
+    rates = pair_rates(pair, bodies, planes, pairs, laws, paper_mass)
+    (along, sideways, couple), held = plus(rates.ours, rates.theirs), rates.stiffness
+    square = max(held.normal * along + held.tilt * couple, held.shear * sideways)
+    damping = max(held.normal_dashpot * along + held.tilt_dashpot * couple, held.shear_dashpot * sideways)
+    most = damping + (damping * damping + fraction * square) ** 0.5
+    return 2.0 * fraction / most if most > 0.0 else math.inf
 
 
 @large_kernel

@@ -1,0 +1,160 @@
+"""Contacts at steps of their own obey the same laws, and keep momentum to the last bits."""
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from lithobrake.dem import Box, ConvexHull, Material, Sphere, World, local_engine
+
+ROCK = {"young_modulus": 1e7, "poisson_ratio": 0.25, "density": 2500.0}
+
+
+def rock(restitution: float, friction: float) -> Material:
+    return Material(**ROCK, restitution=restitution, friction=friction)
+
+
+def cluster(material: Material, count: int = 12, gravity: float = 0.0) -> World:
+    """Rounded rocks that fly toward the middle of an empty space, and turn."""
+    generator = np.random.default_rng(7)
+    world = World(gravity=(0.0, 0.0, -gravity))
+    places = 0.16 * np.array([(i, j, k) for i in range(3) for j in range(2) for k in range(2)])[:count]
+    for place in places - places.mean(axis=0):
+        hull = ConvexHull(0.05 * generator.normal(size=(14, 3)))
+        turn = generator.normal(size=4)
+        world.add_body(hull, material, place, -0.5 * place, tuple(turn), tuple(generator.normal(size=3)))
+    return world
+
+
+def momenta(world: World) -> tuple[np.ndarray, np.ndarray]:
+    """Sum of the momenta, and of the angular momenta about the origin."""
+    linear = world.mass[:, None] * world.velocity
+    return linear.sum(axis=0), (np.cross(world.position, linear) + world.angular_momentum).sum(axis=0)
+
+
+@pytest.mark.parametrize("restitution", [0.3, 0.5, 0.8, 1.0])
+@pytest.mark.parametrize(("steps", "error"), [(15.0, 0.01), (40.0, 0.004)])
+def test_spheres_bounce_with_their_restitution(restitution: float, steps: float, error: float) -> None:
+    world = World()
+    world.add_body(Sphere(0.05), rock(restitution, 0.5), (0.0, 0.0, 0.0))
+    world.add_body(Sphere(0.05), rock(restitution, 0.5), (0.11, 0.0, 0.0), (-0.2, 0.0, 0.0))
+    world.run_locally(0.3, steps)
+    speed = world.velocity[1, 0] - world.velocity[0, 0]
+    assert speed / 0.2 == pytest.approx(restitution, abs=error)
+
+
+def test_momentum_and_angular_momentum_stay() -> None:
+    world = cluster(rock(0.6, 0.5))
+    before, scale = momenta(world), float((world.mass * np.linalg.norm(world.velocity, axis=1)).sum())
+    world.run_locally(3.0, 15.0)
+    assert world.energy()["friction"] > 0.0
+    linear, angular = momenta(world)
+    assert np.abs(linear - before[0]).max() < 1e-13 * scale
+    assert np.abs(angular - before[1]).max() < 1e-13 * scale
+
+
+@pytest.mark.parametrize(("restitution", "friction"), [(1.0, 0.0), (0.6, 0.0), (0.6, 0.5)])
+@pytest.mark.parametrize(("steps", "error"), [(15.0, 0.02), (60.0, 0.005)])
+def test_the_ledger_of_energy_closes(restitution: float, friction: float, steps: float, error: float) -> None:
+    world = cluster(rock(restitution, friction))
+    before = world.energy()["total"]
+    for _ in range(4):
+        world.run_locally(1.0, steps)
+        assert world.energy()["total"] == pytest.approx(before, rel=error)
+
+
+def test_free_fall_is_exact_however_long_it_is() -> None:
+    world = World(gravity=(0.0, 0.0, -1e-3))
+    world.add_body(Box((0.1, 0.1, 0.2)), rock(0.5, 0.5), (0.0, 0.0, 10.0), (0.1, 0.0, 0.02), spin=(0.1, 0.02, 0.3))
+    world.add_body(Sphere(0.1), rock(0.5, 0.5), (50.0, 0.0, 0.0))
+    kinetic = float(world.kinetic_energy[0]) - 0.5 * world.mass[0] * float(world.velocity[0] @ world.velocity[0])
+    world.run_locally(100.0, 15.0)
+    assert world.position[0] == pytest.approx((10.0, 0.0, 10.0 + 2.0 - 5.0), abs=1e-12)
+    assert world.velocity[0] == pytest.approx((0.1, 0.0, 0.02 - 0.1), abs=1e-14)
+    moving = 0.5 * world.mass[0] * float(world.velocity[0] @ world.velocity[0])
+    assert float(world.kinetic_energy[0]) - moving == pytest.approx(kinetic, rel=1e-3)
+
+
+def test_a_sliding_ball_comes_to_roll_at_five_sevenths_of_its_speed() -> None:
+    world = World(gravity=(0.0, 0.0, -1.0))
+    world.add_plane((0.0, 0.0, 0.0), (0.0, 0.0, 1.0), rock(0.3, 0.4))
+    world.add_body(Sphere(0.05), rock(0.3, 0.4), (0.0, 0.0, 0.05), (0.5, 0.0, 0.0))
+    world.run_locally(2.0, 15.0)
+    assert world.velocity[0, 0] == pytest.approx(5.0 / 7.0 * 0.5, rel=2e-3)
+    assert world.spin[0, 1] * 0.05 == pytest.approx(world.velocity[0, 0], rel=2e-3)
+
+
+def test_drag_slows_as_it_should_and_is_booked() -> None:
+    world = World(gravity=(0.0, 0.0, -0.1))
+    world.add_body(Sphere(0.1), rock(0.5, 0.5), (0.0, 0.0, 0.0), (1.0, 0.0, 0.0))
+    world.add_body(Sphere(0.1), rock(0.5, 0.5), (50.0, 0.0, 0.0))
+    world.drag = 0.5
+    world.run_locally(2.0, 15.0)
+    kept = math.exp(-1.0)
+    assert world.velocity[0] == pytest.approx((kept, 0.0, -0.2 * (1.0 - kept)), abs=1e-14)
+    assert world.position[0, 0] == pytest.approx((1.0 - kept) / 0.5, abs=1e-14)
+
+
+def test_contacts_go_on_at_common_steps_and_back(tmp_path: Path) -> None:
+    world = cluster(rock(0.5, 0.5), gravity=0.5)
+    world.add_plane((0.0, 0.0, -0.4), (0.0, 0.0, 1.0), rock(0.5, 0.5))
+    world.run_locally(2.0, 15.0)
+    touching = {(int(one["body_a"]), int(one["body_b"])) for one in world.contacts()}
+    assert touching
+    springs = np.abs(world.contacts()["tangential_force"]).max()
+    world.save(tmp_path / "world.h5")
+    assert {(int(one["body_a"]), int(one["body_b"])) for one in world.contacts()} == touching
+    assert np.abs(world.contacts()["tangential_force"]).max() == pytest.approx(springs)
+    total = world.energy()["total"]
+    world.time_step = world.shortest_contact(0.5) / 50.0
+    world.run(0.05)
+    world.run_locally(0.05, 30.0)
+    assert world.energy()["total"] == pytest.approx(total, rel=5e-3)
+    again = World.load(tmp_path / "world.h5")
+    again.run_locally(0.5, 15.0)
+    assert np.isfinite(again.position).all()
+
+
+def test_the_same_bits_each_time_and_with_slots_that_do_not_suffice(monkeypatch: pytest.MonkeyPatch) -> None:
+    def ends() -> tuple[bytes, int]:
+        world = cluster(rock(0.6, 0.5))
+        world.run_locally(2.0, 15.0)
+        local = world._state.local
+        assert local is not None
+        return world.position.tobytes(), len(local.pairs.first)
+
+    first, again = ends(), ends()
+    assert first == again
+    monkeypatch.setattr(local_engine, "SLOTS", 0)
+    tight = ends()
+    assert tight[1] < first[1]
+    # Items keep their order when they get other slots, but for those that were listed meanwhile.
+    assert np.frombuffer(tight[0]) == pytest.approx(np.frombuffer(first[0]), abs=0.05)
+
+
+def test_a_watched_body_tells_how_long_it_was_touched() -> None:
+    world = World()
+    world.add_body(Sphere(0.05), rock(1.0, 0.0), (0.0, 0.0, 0.0))
+    world.add_body(Sphere(0.05), rock(1.0, 0.0), (0.11, 0.0, 0.0), (-0.2, 0.0, 0.0))
+    world.watch(0)
+    world.run_locally(0.01, 40.0)
+    assert world.touch_duration is None
+    world.run_locally(0.3, 40.0)
+    # Of 40 steps one may be missed at either end.
+    assert world.touch_duration == pytest.approx(world.shortest_contact(0.2), rel=0.06)
+    # Hertz: the deepest overlap has all of the energy of the reduced mass.
+    reduced, stiffness = 0.5 * world.mass[0], 4.0 / 3.0 * (1e7 / (2.0 * (1.0 - 0.25**2))) * math.sqrt(0.025)
+    deepest = (1.25 * reduced * 0.2**2 / stiffness) ** 0.4
+    assert world.watched["peak_force"] == pytest.approx(stiffness * deepest**1.5, rel=0.01)
+
+
+def test_what_cannot_be_run_is_refused() -> None:
+    world = World()
+    with pytest.raises(ValueError, match="no body to move"):
+        world.run_locally(1.0, 15.0)
+    world.add_body(Sphere(0.05), rock(1.0, 0.0), (0.0, 0.0, 0.0))
+    with pytest.raises(ValueError, match=r"duration is -1\.0 s"):
+        world.run_locally(-1.0, 15.0)
+    with pytest.raises(ValueError, match="steps_per_contact is 2; allowed is a finite value of at least 5"):
+        world.run_locally(1.0, 2)
