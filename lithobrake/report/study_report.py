@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lithobrake.atomic import atomic_path
-from lithobrake.outcomes import JourneyStatus
+from lithobrake.outcomes import JourneyStatus, TouchdownOutcome
 from lithobrake.report import captions
 from lithobrake.report.bed_figure import bed_figure
 from lithobrake.report.body_figure import body_figure
@@ -153,7 +153,7 @@ def _colour_input(data: Results) -> str:
 
 def _outputs(data: Results, colour_name: str) -> "Figure | None":
     samples = data.samples
-    leaves = samples["outcome"] == "clear"
+    leaves = samples["outcome"] == TouchdownOutcome.CLEAR
     if not leaves.any():
         return None
     colour = samples.columns[colour_name]

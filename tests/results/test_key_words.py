@@ -7,7 +7,7 @@ import pytest
 import result_models as models
 
 import lithobrake
-from lithobrake.results.key_words import SECTIONS, leaves, page, words_of
+from lithobrake.results.key_words import KEY_TABLES, leaves, page, words_of
 
 PAGE = Path(__file__).parents[2] / "docs" / "summary.md"
 
@@ -38,7 +38,7 @@ def test_a_key_that_nothing_is_said_of_is_named() -> None:
 
 
 def test_no_key_is_described_twice() -> None:
-    said = [(section.file, place, key) for section in SECTIONS for place in section.places for key in section.keys]
+    said = [(table.file, place, key) for table in KEY_TABLES for place in table.places for key in table.keys]
     assert len(said) == len(set(said))
 
 
