@@ -172,7 +172,8 @@ def _fits(data: Results) -> PageTable:
             )
     note = (
         "Expected error: at a new run, by cross-validation, scatter included; no expansion comes below the scatter, "
-        "which is known from points that were run several times, or from the nugget of a Gaussian process."
+        "which is known from points that were run several times, or from the nugget of a Gaussian process; where the "
+        "expected error is below the nugget, the scatter is no larger than that error, which stands in its place."
     )
     return PageTable("How the expansions were fitted", columns, rows, note, frozenset(columns[4:]))
 

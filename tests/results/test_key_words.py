@@ -44,3 +44,16 @@ def test_no_key_is_described_twice() -> None:
 
 def test_the_page_is_what_its_script_makes() -> None:
     assert PAGE.read_text(encoding="utf-8") == page(), "make it again with: python docs/make_summary_page.py"
+
+
+@pytest.mark.parametrize(
+    ("path", "unit"),
+    [
+        (("site", "effective_acceleration_outward"), "[m/s2]"),
+        (("site", "effective_acceleration_along_heading"), "[m/s2]"),
+        (("flights", "impact_speed", "quantile_0.5"), "[m/s]"),
+        (("rest", "hard", "path_length", "quantile_0.5"), "[m]"),
+    ],
+)
+def test_a_quantity_without_its_unit_in_the_name_has_it_in_the_words(path: tuple[str, ...], unit: str) -> None:
+    assert unit in words_of("summary.json", ("results", *path))
