@@ -8,7 +8,7 @@ from typing import Any
 
 
 def origin(command: str) -> dict[str, Any]:
-    """Return date, machine, load before the last minute's end, and a command such as `benchmarks/step_parts.py`."""
+    """Return date, machine, mean load of the last minute, and a command that begins with the path of its script."""
     return {
         "date": time.strftime("%Y-%m-%d"), "machine": f"{platform.machine()}, {sys.platform}",
         "load": os.getloadavg()[0], "command": f"python {command}",

@@ -112,7 +112,7 @@ SUMMARY_TABLES = (
             "fits.*.rmse_estimate": "root-mean-square error expected at a new run with scatter, in the output's unit",
             "fits.*.rrmse_estimate": "the same over the standard deviation of the runs; null where they do not vary",
             "fits.*.noise_std": "standard deviation between equal runs, in the output's unit; null where not known",
-            "fits.*.noise_from": "what tells it: repeated points, the nugget of a Gaussian process, or an error below it",
+            "fits.*.noise_from": "what tells it: repeated points, the nugget of a Gaussian process, or a smaller error",
             "fits.*.noise_share": "share of the variance of the runs that is scatter; null where not known",
         },
     ),
