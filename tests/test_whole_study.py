@@ -145,7 +145,12 @@ def test_ctrl_c_keeps_the_runs_and_one_worker_ends_with_the_same_bits(study: Pat
     for name in ("landing.h5", "keys.json"):
         shutil.copy(out / name, other / name)
     process = subprocess.Popen(
-        command(study, other, workers=1), stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+        command(study, other, workers=1),
+        stderr=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
+        # Under tests that a shell runs in the background it would inherit that this signal is ignored.
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
     )
     deadline = time.monotonic() + 300
     while finished_runs(other) < 2 and process.poll() is None and time.monotonic() < deadline:
