@@ -18,8 +18,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from grains_beds import bed, origin, relaxed, touch_down
+from grains_beds import bed, relaxed, touch_down
 from grains_speed import cpu_seconds
+from origin import origin
 
 # Name, file, what stands there, what stands there without the trick.
 SWITCHES = {
@@ -116,7 +117,7 @@ def main() -> None:
 
 def keep(rows: list[dict[str, Any]], path: Path) -> None:
     """Write the rows, and tell the last."""
-    document = {**origin("engine_switches.py BED_FOLDER"), "rows": rows}
+    document = {**origin("benchmarks/engine_switches.py BED_FOLDER"), "rows": rows}
     path.write_text(json.dumps(document, indent=1) + "\n")
     row = rows[-1]
     gains = ", ".join(f"{case} {row[case]['gain']:.2f} ({row[case]['largest_change_m']:.2g} m)" for case in CASES)

@@ -7,7 +7,6 @@ Usage: python benchmarks/flight_speed.py [--table 25000 50000 100000] [--exact 2
 """
 
 import argparse
-import datetime
 import json
 import os
 import platform
@@ -19,6 +18,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from origin import origin
 
 from lithobrake.atomic import atomic_path
 from lithobrake.smallbody import Body, didymos, fly
@@ -43,12 +43,12 @@ def timed(work: Callable[[], Any], repeats: int = 1) -> tuple[float, float, Any]
 def cone(body: Body, count: int) -> tuple[np.ndarray, np.ndarray]:
     """Start states at latitude and longitude 0: .01 to .4 m/s, even within 60 deg of the outward normal."""
     random = np.random.default_rng(1)
-    origin, axes = body.local_frame(0.0, 0.0, 0.0)
+    place, axes = body.local_frame(0.0, 0.0, 0.0)
     turn = random.uniform(0.0, 2.0 * np.pi, count)
     up = random.uniform(0.5, 1.0, count)
     across = np.sqrt(1.0 - up**2)
     local = random.uniform(0.01, 0.4, count)[:, None] * np.stack([across * np.cos(turn), across * np.sin(turn), up], 1)
-    return np.tile(origin, (count, 1)), local @ axes
+    return np.tile(place, (count, 1)), local @ axes
 
 
 def gravity_rows(body: Body) -> list[Row]:
@@ -126,23 +126,18 @@ def main() -> None:
     options = parser.parse_args()
     alone, both = didymos(partner=False), didymos()
     error = alone.shape.table_error._asdict()
-    load = os.getloadavg()[0]
+    result = {
+        **origin(" ".join(["benchmarks/flight_speed.py", *sys.argv[1:]])),
+        "processor": processor(),
+        "cores": os.cpu_count(),
+        "python": platform.python_version(),
+        "table_error": error,
+    }
     rows = gravity_rows(alone)
     for body in (alone, both):
         rows += flight_rows(body, "table", options.table, options.threads)
         rows += flight_rows(body, "exact", options.exact, options.threads)
-    result = {
-        "date": datetime.datetime.now(datetime.UTC).date().isoformat(),
-        "command": " ".join(["python", "benchmarks/flight_speed.py", *sys.argv[1:]]),
-        "machine": {
-            "processor": processor(),
-            "cores": os.cpu_count(),
-            "load_average_before": load,
-            "python": platform.python_version(),
-        },
-        "table_error": error,
-        "rows": rows,
-    }
+    result["rows"] = rows
     with atomic_path(RESULTS) as draft:
         draft.write_text(json.dumps(result, indent=1) + "\n", encoding="utf-8")
 

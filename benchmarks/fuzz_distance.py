@@ -19,6 +19,7 @@ import numpy as np
 from distance_check import Meshes, gap_along, meshes_of, surface_distance, turned, widest_gap
 from distance_pairs import FAMILIES, Family, Floats, Integers, Library, Poses, library, poses
 from distance_queries import DISTANCE, FIRST, NORMAL, SECOND, STEPS, closest, kept, over_plane
+from origin import origin
 
 # Where the distance is a smaller part of the smaller body, round-off turns the line between the points too far.
 NORMAL_COUNTS = 1e-3
@@ -140,8 +141,8 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--shapes", type=int, default=100, help="of every kind")
     chosen = parser.parse_args()
-    day = time.strftime("%Y-%m-%d", time.gmtime())
-    print(f"# python {' '.join(sys.argv)}; {day}, {platform.machine()}, {sys.platform},")
+    made = origin(" ".join(sys.argv))
+    print(f"# {made['command']}; {made['date']}, {made['machine']},")
     print(f"# Python {platform.python_version()}, NumPy {np.__version__}, Numba {numba.__version__}, one thread")
     print(f"{'family':18}   pairs  overlap  not finite  distance   points   normal  steps: most  mean")
     start = time.process_time()

@@ -1,14 +1,9 @@
 """The beds of hulls and spheres that other engines were timed on, and larger ones laid out of copies of them.
 
-And a CubeSat that comes down on them, and what is kept with every figure.
+And a CubeSat that comes down on them.
 """
 
-import os
-import platform
-import sys
-import time
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -94,14 +89,6 @@ def touch_down(world: World, speed: float) -> None:
     world.add_body(Box((0.2, 0.1, 0.1)), ROCK, (0.0, 0.0, top + 0.1), velocity=(0.5 * speed, 0, -speed), mass=6.0)
     world.time_step = TIME_STEP
     world.run(steps=100)
-
-
-def origin(command: str) -> dict[str, Any]:
-    """Return when, where, beside what and by which command something was measured."""
-    return {
-        "date": time.strftime("%Y-%m-%d"), "machine": f"{platform.machine()}, {sys.platform}",
-        "load": os.getloadavg()[0], "command": f"python benchmarks/{command}",
-    }  # fmt: skip
 
 
 def coordination(world: World) -> float:

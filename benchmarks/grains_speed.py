@@ -24,7 +24,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from grains_beds import ROCK, WIDTH, bed, boxes, coordination, origin, relaxed, touch_down
+from grains_beds import ROCK, WIDTH, bed, boxes, coordination, relaxed, touch_down
+from origin import origin
 
 from lithobrake.dem import Box, World
 
@@ -219,7 +220,7 @@ def main() -> None:
     known = json.loads(chosen.out.read_text()) if chosen.out.exists() else {}
     for name in chosen.case:
         found = CASES[name](chosen.folder)
-        known[name] = {"result": found, **origin(f"grains_speed.py BED_FOLDER {name}")}
+        known[name] = {"result": found, **origin(f"benchmarks/grains_speed.py BED_FOLDER {name}")}
         chosen.out.write_text(json.dumps(known, indent=1) + "\n")
         for row in found if isinstance(found, list) else [found]:
             values = ", ".join(f"{key} {value:.4g}" if isinstance(value, float) else f"{key} {value}"

@@ -14,7 +14,7 @@ import time
 from pathlib import Path
 from typing import Any
 
-from grains_beds import origin
+from origin import origin
 
 from lithobrake.dem import World
 from lithobrake.pipeline.planning.expected_steps import FALLS, SETTLING, STEPS_PER_PERIOD, ExpectedSoil
@@ -134,7 +134,7 @@ def main() -> None:
     parser.add_argument("count", type=int)
     chosen = parser.parse_args()
     known = json.loads(RESULTS.read_text()) if RESULTS.exists() else {}
-    command = f"plan_estimate.py {chosen.study} {chosen.count}"
+    command = f"benchmarks/plan_estimate.py {chosen.study} {chosen.count}"
     known[chosen.study] = {"result": measure(chosen.study, chosen.count), **origin(command)}
     RESULTS.write_text(json.dumps(known, indent=1) + "\n")
     print(json.dumps(known[chosen.study]))

@@ -13,8 +13,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from grains_beds import bed, coordination, origin, relaxed
+from grains_beds import bed, coordination, relaxed
 from grains_speed import RELAX_STEPS, cpu_seconds
+from origin import origin
 
 from lithobrake.dem import World
 from lithobrake.dem.arrays import Pairs
@@ -85,7 +86,7 @@ def main() -> None:
         for row in rows:
             print(f"{case}: {row['part']:45s} {row['a_body']:6.3f} a body {row['ns_a_body']:7.1f} ns a body "
                   f"{row['ns_a_body'] / total:6.1%}", flush=True)  # fmt: skip
-    document = {**origin("step_parts.py BED_FOLDER"), "cases": cases}
+    document = {**origin("benchmarks/step_parts.py BED_FOLDER"), "cases": cases}
     chosen.out.write_text(json.dumps(document, indent=1) + "\n")
 
 

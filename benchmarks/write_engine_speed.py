@@ -5,6 +5,7 @@ python benchmarks/write_engine_speed.py
 
 import json
 from pathlib import Path
+from textwrap import fill
 from typing import Any
 
 HERE = Path(__file__).parent
@@ -23,7 +24,13 @@ def table(head: list[str], rows: list[list[Any]]) -> list[str]:
     return ["| " + " | ".join(line) + " |" for line in lines]
 
 
-def origin(found: dict[str, Any]) -> str:
+def wrapped(line: str) -> str:
+    """A line in lines of 100 characters, those of an item under its first word."""
+    inset = "  " if line.startswith("- ") else ""
+    return fill(line, 100, subsequent_indent=inset, break_long_words=False, break_on_hyphens=False)
+
+
+def measured(found: dict[str, Any]) -> str:
     """Where, when and how something was measured."""
     return f"`{found['command']}`, {found['date']}, {found['machine']}, load {found['load']:.2g}."
 
@@ -63,7 +70,7 @@ def step_parts(found: dict[str, Any]) -> list[str]:
         for case, entry in found["cases"].items()
         for row in entry["parts"]
     ]
-    return [*table(["case", "part", "number a body", "ns a body"], rows), "", origin(found)]
+    return [*table(["case", "part", "number a body", "ns a body"], rows), "", measured(found)]
 
 
 def switches(found: dict[str, Any]) -> list[str]:
@@ -74,7 +81,7 @@ def switches(found: dict[str, Any]) -> list[str]:
         for row in found["rows"]
     ]
     head = ["trick", *(text for case in cases for text in (f"{case}: gain", "change [m]"))]
-    return [*table(head, rows), "", origin(found)]
+    return [*table(head, rows), "", measured(found)]
 
 
 def main() -> None:
@@ -87,16 +94,17 @@ def main() -> None:
         "# Speed of the soft-surface engine", "",
         "Written by `python benchmarks/write_engine_speed.py`. What was tried and did not pay: "
         "[performance.md](performance.md).", "",
-        "## Beds at rest, and landings", "", *beds(speed), "", origin(speed["hull1000"]), "",
+        "## Beds at rest, and landings", "", *beds(speed), "", measured(speed["hull1000"]), "",
         "The aims were set on a machine of this kind whose searches (the yardstick, below) took 460 ns.", "",
         *others(speed), "",
         "## What a step is made of", "", *step_parts(parts), "",
         "## What each trick gains", "",
-        "Time without it over time with it; beside it, how far from where they end with all tricks the bodies end.",
-        "Rows that cannot touch a case (spheres' tricks on hulls) show the noise; ratios measured in turns, more",
+        "Time without it over time with it; beside it, how far from where they end with all tricks the bodies end. "
+        "Rows that cannot touch a case (spheres' tricks on hulls) show the noise; ratios measured in turns, more "
         "exact ones, stand in performance.md.", "",
         *switches(tricks),
     ]  # fmt: skip
+    page = [line if line.startswith("|") else wrapped(line) for line in page]
     (HERE.parent / "docs" / "engine_speed.md").write_text("\n".join(page) + "\n", encoding="utf-8")
 
 

@@ -18,9 +18,9 @@ ALSO_KERNELS = ("expansion_loop",)
 # Where a newcomer who looks for these words among the names of files finds them.
 LOOKED_FOR = {
     "tangential_spring": "dem", "rolling_resistance": "dem", "gjk": "dem", "penetration": "dem",
-    "settling": "touchdown", "bootstrap": "chaos", "smolyak": "chaos", "polyhedron_gravity": "smallbody",
-    "impact_search": "smallbody",
-    "ledger": "campaign",
+    "settling": "touchdown", "outcome_judge": "touchdown", "bootstrap": "chaos", "smolyak": "chaos",
+    "polyhedron_gravity": "smallbody", "impact_search": "smallbody", "ledger": "campaign", "refusals": "study",
+    "captions": "report",
 }  # fmt: skip
 
 

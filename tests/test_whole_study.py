@@ -17,34 +17,12 @@ import pytest
 from lithobrake.results import open_study
 from lithobrake.results.key_words import leaves, words_of
 
-STUDY = """
-title = "A few grains"
-[bed]
-grain_count = 45
-width = [0.5, 0.5]
-diameter = { distribution = "constant", value = 0.08 }
-cloud_point_count = 10
-pour_gravity = 0.1
-[grain]
-density = 2500.0
-young_modulus = 1e6
-poisson_ratio = 0.25
-restitution = { distribution = "uniform", lower = 0.5, upper = 0.8 }
-friction = { distribution = "uniform", lower = 0.5, upper = 0.9 }
-[lander]
-shape = "sphere"
-diameter = 0.14
-mass = 0.1
-restitution = 0.95
-[impact]
-speed = 0.4
-incidence_deg = 5.0
-[surface]
-gravity = 1e-4
-[contact]
-pair_rule = "mean"
-steps_per_contact = 20.0
-[design]
+from .few_grains import few_grains
+
+STUDY = (
+    'title = "A few grains"'
+    + few_grains(45, width=0.5, lander_diameter=0.14)
+    + """[design]
 screening_level = 1
 screening_degree = 1
 refined_level = 1
@@ -63,6 +41,7 @@ duration = 20000.0
 count = 20
 duration = 20000.0
 """
+)
 FILES = (
     "study.toml", "beds/bed_0.h5", "landing.h5", "runs.sqlite", "screening.json", "refined.json", "scores.json",
     "samples.h5", "flights.csv", "rest.csv", "summary.json", "report/index.html",
@@ -166,7 +145,12 @@ def test_ctrl_c_keeps_the_runs_and_one_worker_ends_with_the_same_bits(study: Pat
     for name in ("landing.h5", "keys.json"):
         shutil.copy(out / name, other / name)
     process = subprocess.Popen(
-        command(study, other, workers=1), stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+        command(study, other, workers=1),
+        stderr=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
+        # Under tests that a shell runs in the background it would inherit that this signal is ignored.
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
     )
     deadline = time.monotonic() + 300
     while finished_runs(other) < 2 and process.poll() is None and time.monotonic() < deadline:

@@ -11,7 +11,6 @@ import argparse
 import csv
 import json
 import math
-import platform
 import sys
 import time
 from collections import Counter
@@ -23,6 +22,9 @@ import numpy as np
 from lithobrake.dem import Box, Material
 from lithobrake.touchdown import Bed, BedRecipe, ContactModel, GrainSizes, Lander, Landing, land, pour_bed
 from lithobrake.touchdown.smallest_bed import smallest_bed
+
+sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
+from origin import origin
 
 ROCK = Material(young_modulus=1.5e6, poisson_ratio=0.25, restitution=0.5, friction=0.7, density=2500.0)
 GRAVITY, DIAMETER, CONTACT = 5e-5, 0.09, ContactModel(steps_per_contact=30.0)
@@ -138,8 +140,7 @@ def main() -> None:
     for name, seed in turns:
         rows += landings(name, seed, chosen.placements, chosen.out)
         document = {
-            "date": time.strftime("%Y-%m-%d"), "machine": f"{platform.machine()}, {sys.platform}",
-            "command": f"python docs/validation/bed_size.py --placements {chosen.placements}",
+            **origin(f"docs/validation/bed_size.py --placements {chosen.placements}"),
             "cpu_s": round(time.process_time() - start), "smallest_width_and_depth_m": rule, "landings": summary(rows),
         }  # fmt: skip
         (chosen.out / "bed_size.json").write_text(json.dumps(document, indent=1) + "\n")

@@ -10,7 +10,6 @@ import argparse
 import itertools
 import json
 import math
-import platform
 import sys
 import time
 from collections.abc import Callable, Iterator
@@ -28,6 +27,9 @@ from lithobrake.touchdown.grains import make_grain
 from lithobrake.touchdown.pouring import rain
 from lithobrake.touchdown.simulation import relax, release
 from lithobrake.touchdown.surface import rotation_matrix
+
+sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
+from origin import origin
 
 Floats = NDArray[np.float64]
 Result = dict[str, Any]
@@ -332,9 +334,8 @@ def main() -> None:
         for row in CHECKS[name]():
             rows.append(row)
             document = {
-                "check": name, "date": time.strftime("%Y-%m-%d"), "machine": f"{platform.machine()}, {sys.platform}",
-                "command": f"python docs/validation/bulk.py {name}", "cpu_s": round(time.process_time() - start),
-                "rows": rows,
+                "check": name, **origin(f"docs/validation/bulk.py {name}"),
+                "cpu_s": round(time.process_time() - start), "rows": rows,
             }  # fmt: skip
             (chosen.out / f"bulk_{name}.json").write_text(json.dumps(document, indent=1) + "\n")
             print(f"{name}: {document['cpu_s']} s of CPU time, {row}", flush=True)

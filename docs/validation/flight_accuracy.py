@@ -8,7 +8,6 @@ Usage: python docs/validation/flight_accuracy.py [--oracle 200] [--own 2000]
 """
 
 import argparse
-import datetime
 import json
 import platform
 import sys
@@ -24,6 +23,9 @@ from scipy.integrate import solve_ivp
 from lithobrake.atomic import atomic_path
 from lithobrake.smallbody import Body, didymos, fly
 
+sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
+from origin import origin
+
 RESULTS = Path(__file__).with_suffix(".json")
 DURATION = 12 * 3600.0
 TIGHT = 1e-11
@@ -33,11 +35,11 @@ Row = dict[str, Any]
 def cone(body: Body, count: int, seed: int) -> tuple[np.ndarray, np.ndarray]:
     """Start states on the ground, even in solid angle and in speed."""
     random = np.random.default_rng(seed)
-    origin, axes = body.local_frame(0.0, 0.0, 0.0)
+    place, axes = body.local_frame(0.0, 0.0, 0.0)
     turn, up = random.uniform(0.0, 2.0 * np.pi, count), random.uniform(0.5, 1.0, count)
     across = np.sqrt(1.0 - up**2)
     local = random.uniform(0.01, 0.4, count)[:, None] * np.stack([across * np.cos(turn), across * np.sin(turn), up], 1)
-    return np.tile(origin, (count, 1)), local @ axes
+    return np.tile(place, (count, 1)), local @ axes
 
 
 def gravity(body: Body) -> tuple[str, Callable[[np.ndarray], np.ndarray]]:
@@ -128,9 +130,9 @@ def main() -> None:
             name = f"{kind}, {which}, against exact at a tolerance of {TIGHT:g}"
             rows.append(compared(name, truth, ends(body, start, gravity=kind)))
     result = {
-        "date": datetime.datetime.now(datetime.UTC).date().isoformat(),
-        "command": " ".join(["python", "docs/validation/flight_accuracy.py", *sys.argv[1:]]),
-        "machine": {"system": platform.machine(), "python": platform.python_version(), "scipy": scipy.__version__},
+        **origin(" ".join(["docs/validation/flight_accuracy.py", *sys.argv[1:]])),
+        "python": platform.python_version(),
+        "scipy": scipy.__version__,
         "rows": rows,
     }
     with atomic_path(RESULTS) as draft:

@@ -8,7 +8,6 @@ Usage: python docs/validation/landing_shares.py [--radar didymos_radar2020_1996.
 """
 
 import argparse
-import datetime
 import json
 import sys
 from dataclasses import replace
@@ -22,6 +21,9 @@ from lithobrake.analysis import wilson_interval
 from lithobrake.atomic import atomic_path
 from lithobrake.smallbody import Body, Shape, didymos, fly
 
+sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
+from origin import origin
+
 RESULTS = Path(__file__).with_suffix(".json")
 DURATION = 12 * 3600.0
 BANDS = (0.01, 0.1, 0.15, 0.2, 0.25, 0.3, 0.4)
@@ -33,14 +35,14 @@ BEFORE = ("95-97 %", "86 %", "73 %", "63 %", "54 %", "41 %")
 def shares(body: Body, count: int) -> list[dict[str, Any]]:
     """What becomes of the starts in each band of speed."""
     random = np.random.default_rng(5)
-    origin, axes = body.local_frame(0.0, 0.0, 0.0)
+    place, axes = body.local_frame(0.0, 0.0, 0.0)
     rows = []
     for low, high in pairwise(BANDS):
         turn, up = random.uniform(0.0, 2.0 * np.pi, count), random.uniform(0.5, 1.0, count)
         across = np.sqrt(1.0 - up**2)
         local = np.stack([across * np.cos(turn), across * np.sin(turn), up], axis=1)
         velocity = random.uniform(low, high, count)[:, None] * local @ axes
-        flights = fly(body, np.tile(origin, (count, 1)), velocity, DURATION, gravity="table")
+        flights = fly(body, np.tile(place, (count, 1)), velocity, DURATION, gravity="table")
         row: dict[str, Any] = {"speed_m_s": [low, high]}
         for status in ("impact", "flying", "escaped", "partner"):
             found = int((flights.status == status).sum())
@@ -70,14 +72,13 @@ def main() -> None:
     table = {}
     for name, body in cases(options.radar).items():
         rows = shares(body, options.flights)
-        origin, axes = body.local_frame(0.0, 0.0, 0.0)
-        push = float(axes[2] @ body.effective_acceleration(origin))
+        place, axes = body.local_frame(0.0, 0.0, 0.0)
+        push = float(axes[2] @ body.effective_acceleration(place))
         table[name] = {"outward_acceleration_m_s2": push, "spin_period_s": body.spin_period, "bands": rows}
         print(f"{name}: {push:.2g} m/s2 outward;", *(f"{100 * row['impact']['share']:.1f}" for row in rows))
     arguments = [Path(word).name for word in sys.argv[1:]]
     result = {
-        "date": datetime.datetime.now(datetime.UTC).date().isoformat(),
-        "command": " ".join(["python", "docs/validation/landing_shares.py", *arguments]),
+        **origin(" ".join(["docs/validation/landing_shares.py", *arguments])),
         "published": PUBLISHED,
         "before": dict(zip([f"{low}-{high} m/s" for low, high in pairwise(BANDS)], BEFORE, strict=True)),
         "cases": table,

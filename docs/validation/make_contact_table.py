@@ -8,11 +8,13 @@ import platform
 import re
 import sys
 import tempfile
-import time
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+
+sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
+from origin import origin
 
 ROOT = Path(__file__).parents[2]
 PAGE = Path(__file__).with_name("contact.md")
@@ -130,15 +132,16 @@ def main() -> None:
             plugins=[notes],
         )  # fmt: skip
     passed = sum(outcome == "passed" for outcome in notes.outcome.values())
+    made = origin("docs/validation/make_contact_table.py")
     lines = [
         "# What the contact physics reproduces",
         "",
         "First the facts that were set before the code was written, then every physical test with what its",
         "assertions compared: what was found, and the value and tolerance asked for. Where a test repeats an",
         'assertion, the last one stands here; "True" is a comparison of arrays that held.',
-        "Written by `python docs/validation/make_contact_table.py`; do not edit.",
+        f"Written by `{made['command']}`; do not edit.",
         "",
-        f"{time.strftime('%Y-%m-%d')}, {platform.machine()}, {sys.platform}, Python {platform.python_version()}: "
+        f"{made['date']}, {made['machine']}, Python {platform.python_version()}: "
         f"{passed} of {len(notes.outcome)} passed.",
     ]
     lines += [*facts(notes), "", *NOT_TESTS]

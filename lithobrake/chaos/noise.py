@@ -61,10 +61,15 @@ def replicates(x: Array, y: Array) -> Replicates | None:
 
 
 def with_noise(report: dict[str, Any], pooled: Replicates | None) -> dict[str, Any]:
-    """Add to a report the scatter of each output (from repeated points where there are, else from a nugget)."""
+    """Add to a report the scatter of each output: of repeated points where there are, else the nugget of a process.
+
+    The expected error holds the scatter, so a larger nugget is only the smallest that the process can do with.
+    """
     if pooled is None:
         for entry in report["outputs"].values():
             entry["noise_from"] = "nugget of a Gaussian process" if "noise_std" in entry else None
+            if entry.get("noise_std", 0.0) > entry["rmse_estimate"]:
+                entry["noise_std"], entry["noise_from"] = entry["rmse_estimate"], "expected error, below the nugget"
         return report
     for k, entry in enumerate(report["outputs"].values()):
         entry["noise_std"] = float(pooled.std[k])

@@ -5,6 +5,7 @@ from typing import Any
 from lithobrake.outcomes import FlightStatus, SampleOutcome, TouchdownOutcome
 from lithobrake.pipeline.samples import MISSING
 from lithobrake.pipeline.scope import scope
+from lithobrake.results.telling_numbers import MainInput, TellingNumbers
 from lithobrake.study import Study
 
 CENTIMETRES = 100.0
@@ -40,26 +41,22 @@ def answer(study: Study, results: dict[str, Any]) -> list[str]:
 
 def headline(study: Study, results: dict[str, Any]) -> list[str]:
     """The answer, and the most telling numbers behind it, each in a sentence."""
+    telling = TellingNumbers.of(results)
     return [
         *results["answer"],
-        _touchdowns(results["designs"].values()),
-        *_speed(study, results["monte_carlo"]["outputs"].get("speed_out")),
-        _main_input(results),
-        _explained(results["scores"]["test_all"]["speed_out"]),
+        _touchdowns(telling),
+        *_speed(study, telling.speed),
+        _main_input(telling.main_input),
+        _explained(telling.score),
     ]
 
 
-def _touchdowns(designs: Any) -> str:
+def _touchdowns(telling: TellingNumbers) -> str:
     """How the touchdowns ended."""
-    counts: dict[str, int] = {}
-    for design in designs:
-        for outcome, count in design["outcomes"].items():
-            counts[outcome] = counts.get(outcome, 0) + count
-    failed = counts.pop("failed", 0)
     left, *unclear = TouchdownOutcome
-    others = [f"{counts[one]} {one.label}" for one in unclear if counts.get(one)]
-    others += [f"{failed} more failed"] if failed else []
-    return "; ".join([f"{counts.get(left, 0)} of {sum(counts.values())} touchdowns {left.label}", *others]) + "."
+    others = [f"{telling.ended[one]} {one.label}" for one in unclear if telling.ended[one]]
+    others += [f"{telling.failed} more failed"] if telling.failed else []
+    return "; ".join([f"{telling.left_count} of {telling.ended.total()} touchdowns {left.label}", *others]) + "."
 
 
 def _speed(study: Study, speed: dict[str, float] | None) -> list[str]:
@@ -74,21 +71,18 @@ def _speed(study: Study, speed: dict[str, float] | None) -> list[str]:
     ]
 
 
-def _main_input(results: dict[str, Any]) -> str:
+def _main_input(main: MainInput) -> str:
     """The input that the outgoing speed varies with most, with its interval, and of what it is a share."""
-    screening = results["screening"]
-    total = screening["sobol_total"]["speed_out"]
-    main = max(total, key=lambda name: total[name])
-    if total[main] <= 0.0:
+    if main.total <= 0.0:
         return "No input was found to decide the outgoing speed."
-    low, high = screening["sobol_total_interval"]["speed_out"][main]
-    noise = screening["fits"]["speed_out"]["noise_share"]
+    low, high = main.interval
+    noise = main.noise_share
     rest = (
         "" if noise is None else f"; {100 * noise:.0f} % of the variance of the runs is scatter that no input decides"
     )
     return (
-        f"{main} decides most of what the expansion explains of the outgoing speed: total Sobol index "
-        f"{total[main]:.2f} ({low:.2f} to {high:.2f}, 95 %) of that variance{rest}."
+        f"{main.name} decides most of what the expansion explains of the outgoing speed: total Sobol index "
+        f"{main.total:.2f} ({low:.2f} to {high:.2f}, 95 %) of that variance{rest}."
     )
 
 

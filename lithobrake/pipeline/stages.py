@@ -63,6 +63,7 @@ def _write_report(job: Job) -> None:
 
 
 FIT = ("pipeline", "chaos", "analysis", "outputs.py")
+SUM_UP = (*FIT, "results/telling_numbers.py")
 FLY = ("pipeline", "smallbody", "mesh.py", "mesh_files.py", "outputs.py")
 # The points of one design are best for the degree that is fitted to them.
 _SCREENING_RUNS = ("method", "replicate_count", "screening_level", "screening_count", "screening_degree")
@@ -101,7 +102,7 @@ STAGES = (
     Stage("sample", "samples", _files("samples.h5"), _sample, ("refine", "test"), FIT, draw_samples),
     Stage("fly", "flights", _files(*FLIGHT_FILES), flight_reads, ("sample",), FLY, fly_samples),
     Stage("rest", "bounces until rest", _files("rest.csv", "rest.json"), rest_reads, ("fly",), FLY, follow_samples),
-    Stage("summary", "summary", _files("summary.json"), study_tables, ("landing", "rest"), FIT, write_summary),
+    Stage("summary", "summary", _files("summary.json"), study_tables, ("landing", "rest"), SUM_UP, write_summary),
     Stage(
         "report",
         "report",

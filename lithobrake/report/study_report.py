@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lithobrake.atomic import atomic_path
-from lithobrake.outcomes import JourneyStatus
+from lithobrake.outcomes import JourneyStatus, TouchdownOutcome
 from lithobrake.report import captions
 from lithobrake.report.bed_figure import bed_figure
 from lithobrake.report.body_figure import body_figure
@@ -27,6 +27,7 @@ from lithobrake.report.study_files import data_files, picture_files
 from lithobrake.report.style import PAPER_OUTPUTS, figure_style, input_label
 from lithobrake.report.tables import provenance, tables, tiles
 from lithobrake.results import open_study
+from lithobrake.results.telling_numbers import TellingNumbers
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -147,13 +148,12 @@ def _colour_input(data: Results) -> str:
     """The restitution of the grains, as in [Landings-PCE], or the input that decides the speed most."""
     if "grain.restitution" in data.samples:
         return "grain.restitution"
-    total: dict[str, float] = data.results["screening"]["sobol_total"]["speed_out"]
-    return max(total, key=lambda name: total[name])
+    return TellingNumbers.of(data.results).main_input.name
 
 
 def _outputs(data: Results, colour_name: str) -> "Figure | None":
     samples = data.samples
-    leaves = samples["outcome"] == "clear"
+    leaves = samples["outcome"] == TouchdownOutcome.CLEAR
     if not leaves.any():
         return None
     colour = samples.columns[colour_name]

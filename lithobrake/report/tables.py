@@ -8,6 +8,7 @@ from lithobrake.report.dispersion_tables import dispersion_tables, outcome_words
 from lithobrake.report.page import PageTable, Tile, fixed, flat, number, show, unit_scales
 from lithobrake.report.results import Results
 from lithobrake.report.style import PAPER_OUTPUTS, output
+from lithobrake.results.telling_numbers import TellingNumbers
 
 STAGE_WORDS = {
     "screening": "screening: its own runs",
@@ -25,27 +26,23 @@ DESIGN_WORDS = {
 
 
 def tiles(data: Results) -> list[Tile]:
-    """The five numbers that a reader takes away."""
-    results = data.results
-    designs, shares = results["designs"].values(), results["shares"]
-    total = results["screening"]["sobol_total"]["speed_out"]
-    main = max(total, key=lambda name: total[name])
-    noise = results["screening"]["fits"]["speed_out"]["noise_share"]
-    score = results["scores"]["test_all"]["speed_out"]
-    low, high = results["screening"]["sobol_total_interval"]["speed_out"][main]
-    speed = results["monte_carlo"]["outputs"].get("speed_out")
+    """The share that remains, and the most telling numbers beside it."""
+    telling = TellingNumbers.of(data.results)
+    main, score, speed = telling.main_input, telling.score, telling.speed
+    low, high = main.interval
+    noise = main.noise_share
     found = [
         Tile(
-            f"{100 * shares['remains']['share']:.1f}",
+            f"{100 * data.results['shares']['remains']['share']:.1f}",
             "%",
             f"{outcome_words(data)['remains'].format(hours=hours(data.study['flight']['duration']))}; {_scope(data)}",
         ),
-        _touchdowns_tile(list(designs)),
+        _touchdowns_tile(telling),
         Tile(
-            f"{total[main]:.2f}",
+            f"{main.total:.2f}",
             "Sobol",
-            f"({low:.2f} to {high:.2f}, 95 %) {input_words(main)} decides most of what the expansion explains of the "
-            "outgoing speed (total index)" + ("" if noise is None else f"; {percent(noise, 0)} of it is scatter"),
+            f"({low:.2f} to {high:.2f}, 95 %) {input_words(main.name)} decides most of what the expansion explains of "
+            "the outgoing speed (total index)" + ("" if noise is None else f"; {percent(noise, 0)} of it is scatter"),
         ),
         Tile(
             "none" if score["q2"] is None else fixed(score["q2"]),
@@ -74,13 +71,11 @@ def _bounds(score: Mapping[str, Any], key: str) -> str:
     return "" if high is None else f"({'no bound' if low is None else fixed(low)} to {fixed(high)}, 95 %) "
 
 
-def _touchdowns_tile(designs: list[dict[str, Any]]) -> Tile:
+def _touchdowns_tile(telling: TellingNumbers) -> Tile:
     """How many left the surface, of those that came to an end."""
-    left = sum(design["with_outputs"] for design in designs)
-    failed = sum(design["outcomes"].get("failed", 0) for design in designs)
-    ended = sum(design["run_count"] for design in designs) - failed
-    beside = f"; {failed} more runs failed" if failed else ""
-    return Tile(str(left), f"of {ended}", f"simulated touchdowns left the surface{beside}")
+    beside = f"; {telling.failed} more runs failed" if telling.failed else ""
+    words = f"simulated touchdowns left the surface{beside}"
+    return Tile(str(telling.left_count), f"of {telling.ended.total()}", words)
 
 
 def tables(data: Results) -> list[PageTable]:
@@ -172,7 +167,8 @@ def _fits(data: Results) -> PageTable:
             )
     note = (
         "Expected error: at a new run, by cross-validation, scatter included; no expansion comes below the scatter, "
-        "which is known from points that were run several times, or from the nugget of a Gaussian process."
+        "which is known from points that were run several times, or from the nugget of a Gaussian process; where the "
+        "expected error is below the nugget, the scatter is no larger than that error, which stands in its place."
     )
     return PageTable("How the expansions were fitted", columns, rows, note, frozenset(columns[4:]))
 

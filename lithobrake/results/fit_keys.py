@@ -1,10 +1,10 @@
 """What every key of the scores and the expansions of a study means; docs/summary.md is made of it."""
 
-from lithobrake.results.summary_keys import Section
+from lithobrake.results.summary_keys import KeyTable
 
 SCORES, EXPANSIONS = "scores.json", "screening.json, refined.json"
-FIT_SECTIONS = (
-    Section(
+FIT_TABLES = (
+    KeyTable(
         SCORES,
         ("*.*",),
         "By set of runs and output; in the summary too, but for ape",
@@ -18,7 +18,7 @@ FIT_SECTIONS = (
             "*_interval": "95 % interval, by drawing the runs anew: lower, upper; null: no such end",
         },
     ),
-    Section(
+    KeyTable(
         EXPANSIONS,
         ("",),
         "The file (lithobrake.chaos.load reads it)",
@@ -34,7 +34,7 @@ FIT_SECTIONS = (
             "residuals": "what each run is off the expansion, one column an output",
         },
     ),
-    Section(
+    KeyTable(
         EXPANSIONS,
         ("report",),
         "How the expansion was fitted",

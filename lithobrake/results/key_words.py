@@ -2,13 +2,15 @@
 
 from collections.abc import Iterator, Sequence
 from fnmatch import fnmatchcase
+from textwrap import wrap
 from typing import Any
 
-from lithobrake.results.fit_keys import FIT_SECTIONS, SCORES
-from lithobrake.results.summary_keys import SUMMARY, SUMMARY_SECTIONS
+from lithobrake.results.fit_keys import FIT_TABLES, SCORES
+from lithobrake.results.summary_keys import SUMMARY, SUMMARY_TABLES
 
 Path = tuple[str, ...]
-SECTIONS = (*SUMMARY_SECTIONS, *FIT_SECTIONS)
+LINE = 100  # characters, as on every page of the documentation
+KEY_TABLES = (*SUMMARY_TABLES, *FIT_TABLES)
 
 
 def leaves(value: Any, path: Path = ()) -> Iterator[Path]:
@@ -25,12 +27,12 @@ def leaves(value: Any, path: Path = ()) -> Iterator[Path]:
 
 def words_of(file: str, path: Sequence[str]) -> str:
     """What stands at a place of a file of a study. Raises KeyError for one that nothing is said of."""
-    for section in SECTIONS:
-        for place in section.places if file in section.file.split(", ") else ():
+    for table in KEY_TABLES:
+        for place in table.places if file in table.file.split(", ") else ():
             start = place.split(".") if place else []
             if start and _fits(path, start):
-                return section.words
-            for key, words in section.keys.items():
+                return table.words
+            for key, words in table.keys.items():
                 if _fits(path, [*start, *key.split(".")]):
                     return words
     if file == SUMMARY and tuple(path[:2]) == ("results", "scores"):
@@ -45,19 +47,23 @@ def page() -> str:
     lines = [
         "# The keys of summary.json, scores.json and the expansions", "",
         "<!-- Made by docs/make_summary_page.py from lithobrake/results/summary_keys.py and fit_keys.py. -->", "",
-        "`*` stands for any one name: of an output, an input by its dotted key, a design, an outcome. In a list of",
-        "tables every table has these keys. Numbers are in SI where no unit is named; `null`: there is no such number.",
+        *wrap(
+            "`*` stands for any one name: of an output, an input by its dotted key, a design, an outcome. In a list of "
+            "tables every table has these keys. Numbers are in SI where no unit is named; `null`: there is no such "
+            "number.", LINE,
+        ),
     ]  # fmt: skip
     file = ""
-    for section in SECTIONS:
-        if section.file != file:
-            file = section.file
+    for table in KEY_TABLES:
+        if table.file != file:
+            file = table.file
             lines += ["", f"## {' and '.join(f'`{name}`' for name in file.split(', '))}"]
-        places = ", ".join(f"`{place}`" for place in section.places if place)
-        lines += ["", f"### {places or 'At the top'}", "", f"{section.words}."]
-        if section.keys:
+        first, *others = (f"`{place}`" if place else "At the top" for place in table.places)
+        also = f" Also {', '.join(others)}." if others else ""
+        lines += ["", f"### {first}", "", *wrap(f"{table.words}.{also}", LINE, break_on_hyphens=False)]
+        if table.keys:
             lines += ["", "| key | meaning |", "|---|---|"]
-            lines += [f"| `{key.removesuffix('.**')}` | {words} |" for key, words in section.keys.items()]
+            lines += [f"| `{key.removesuffix('.**')}` | {words} |" for key, words in table.keys.items()]
     return "\n".join([*lines, ""])
 
 

@@ -12,7 +12,7 @@ SUMMARY = "summary.json"
 
 
 @dataclass(frozen=True)
-class Section:
+class KeyTable:
     """A table of a file that stands at these places, in words, and its keys; the keys of inner tables have points."""
 
     file: str
@@ -28,8 +28,8 @@ COUNTED = {
     "*.upper": "null likewise",
 }
 QUANTILES = "quantile of this level"
-SUMMARY_SECTIONS = (
-    Section(
+SUMMARY_TABLES = (
+    KeyTable(
         SUMMARY,
         ("",),
         "The file",
@@ -39,7 +39,7 @@ SUMMARY_SECTIONS = (
             "with its unit, range and meaning: lithobrake new)",
         },
     ),
-    Section(
+    KeyTable(
         SUMMARY,
         ("results",),
         "What came out; two executions of one study have the same",
@@ -52,13 +52,13 @@ SUMMARY_SECTIONS = (
             "without_scatter": "null where the samples have no scatter from run to run",
         },
     ),
-    Section(
+    KeyTable(
         SUMMARY,
         ("results.beds",),
         "Each bed, in the order of the files; none where a program or function of the user's own makes the touchdowns",
         {name: one.long_name + (f" [{one.units}]" if one.units else "") for name, one in BEDS.items()},
     ),
-    Section(
+    KeyTable(
         SUMMARY,
         ("results.node_counts",),
         "Nodes of grids, whatever design the study has",
@@ -69,7 +69,7 @@ SUMMARY_SECTIONS = (
             "smolyak": "nodes of the sparse grid",
         },
     ),
-    Section(
+    KeyTable(
         SUMMARY,
         ("results.designs.*",),
         "The runs of each design: screening, refined, test_kept, test_all",
@@ -81,7 +81,7 @@ SUMMARY_SECTIONS = (
             "outcomes.*": "runs that ended so; failed: runs without an outcome",
         },
     ),
-    Section(
+    KeyTable(
         SUMMARY,
         ("results.outputs_of_runs.*",),
         "What else the touchdowns gave, over distinct runs that have it",
@@ -92,7 +92,7 @@ SUMMARY_SECTIONS = (
             "unit": "of the three numbers",
         },
     ),
-    Section(
+    KeyTable(
         SUMMARY,
         ("results.screening", "results.refined"),
         "Each expansion: in all inputs, then in the kept ones",
@@ -112,18 +112,18 @@ SUMMARY_SECTIONS = (
             "fits.*.rmse_estimate": "root-mean-square error expected at a new run with scatter, in the output's unit",
             "fits.*.rrmse_estimate": "the same over the standard deviation of the runs; null where they do not vary",
             "fits.*.noise_std": "standard deviation between equal runs, in the output's unit; null where not known",
-            "fits.*.noise_from": "what tells it: repeated points, or the nugget of a Gaussian process",
+            "fits.*.noise_from": "what tells it: repeated points, the nugget of a Gaussian process, or a smaller error",
             "fits.*.noise_share": "share of the variance of the runs that is scatter; null where not known",
         },
     ),
-    Section(
+    KeyTable(
         SUMMARY,
         ("results.scores.*.*",),
         "Errors of the expansions, by set of runs and output: screening and refined on their own runs, test_screening, "
         "test_kept and test_all on runs that they have not seen; scores.json has those of single runs beside them",
         {},
     ),
-    Section(
+    KeyTable(
         SUMMARY,
         ("results.monte_carlo",),
         "The samples of the refined expansion",
@@ -135,7 +135,7 @@ SUMMARY_SECTIONS = (
             "outputs.*.quantile_*": QUANTILES,
         },
     ),
-    Section(
+    KeyTable(
         SUMMARY,
         ("results.site",),
         "The body, and a point at rest on the ground of the site; what is uncertain at its median",
@@ -160,7 +160,7 @@ SUMMARY_SECTIONS = (
             "gravity_warning": "how touchdowns and site differ in acceleration, in a sentence; null where alike",
         },
     ),
-    Section(
+    KeyTable(
         SUMMARY,
         ("results.stays",),
         "The answer as numbers: the share of landers that remain",
@@ -177,7 +177,7 @@ SUMMARY_SECTIONS = (
             "why": "why there is no interval, in a sentence",
         },
     ),
-    Section(
+    KeyTable(
         SUMMARY,
         ("results.shares", "results.without_scatter.shares"),
         "What became of the samples up to the last that flew: captured, left_sideways, time_limit, outside (drawn with "
@@ -191,7 +191,7 @@ SUMMARY_SECTIONS = (
             "why": "why the shares have no interval, in a sentence",
         },
     ),
-    Section(
+    KeyTable(
         SUMMARY,
         ("results.flights", "results.without_scatter.flights"),
         "The flights that end on the body, and how exact all flights are (flights.json)",
@@ -210,7 +210,7 @@ SUMMARY_SECTIONS = (
             "jacobi_drift_largest_m2_s2": "the same, largest",
         },
     ),
-    Section(
+    KeyTable(
         SUMMARY,
         tuple(f"results.{place}ellipses" for place in ("", "without_scatter.", "rest.soil.", "rest.hard.")),
         "Ellipses that hold the places of the impacts, or of the landers that settled; null where there are too few",
@@ -223,7 +223,7 @@ SUMMARY_SECTIONS = (
             "shares.semi_axes_m": "the same angles times the radius at the middle",
         },
     ),
-    Section(
+    KeyTable(
         SUMMARY,
         ("results.rest",),
         "From bounce to bounce until the landers rest",
@@ -232,7 +232,7 @@ SUMMARY_SECTIONS = (
             "trained_ranges.*": "smallest and largest value of the input in the screening runs, in the file's units",
         },
     ),
-    Section(
+    KeyTable(
         SUMMARY,
         ("results.rest.soil", "results.rest.hard"),
         "Where the followed samples end on each ground (statuses: docs/flights.md); null where none were followed",
@@ -244,7 +244,7 @@ SUMMARY_SECTIONS = (
             "rebounds.quantile_*": f"impacts after which the lander went on likewise, {QUANTILES}",
         },
     ),
-    Section(
+    KeyTable(
         SUMMARY,
         ("provenance",),
         "Where it comes from; all that may differ between two executions of one study",

@@ -9,10 +9,10 @@ import numpy as np
 from lithobrake.dem import World
 from lithobrake.touchdown import settling
 from lithobrake.touchdown.bed import Bed
-from lithobrake.touchdown.flightline import FlightLine
 from lithobrake.touchdown.lander import Lander
 from lithobrake.touchdown.landing import Landing
 from lithobrake.touchdown.outcome import Outcome
+from lithobrake.touchdown.outcome_judge import OutcomeJudge
 from lithobrake.touchdown.surface import rotation_matrix
 
 RELAX_FADING = 5.0  # periods in which the damping of contacts falls by a factor of e: what has to slide must be free to
@@ -54,16 +54,16 @@ def land(
     number = release(world, bed, lander, landing)
     world.time_step = world.shortest_contact(landing.speed) / landing.contact.steps_per_contact
     world.watch(number)
-    line = FlightLine(bed, lander, landing, world, number, frame_count)
+    judge = OutcomeJudge(bed, lander, landing, world, number, frame_count)
     chunk = max(1, int(landing.contact.steps_per_contact / CHECKS_PER_CONTACT))
-    while line.ended is None:
+    while judge.ended is None:
         if locally:
             world.run_locally(look_interval(world, number, lander, landing), landing.contact.steps_per_contact)
         else:
             world.run(steps=chunk)
-        line.look()
-        progress(min((world.time - line.start_time) / landing.time_limit, 1.0), "landing, up to its time limit")
-    return line.outcome()
+        judge.look()
+        progress(min((world.time - judge.start_time) / landing.time_limit, 1.0), "landing, up to its time limit")
+    return judge.outcome()
 
 
 def released_speed(world: World) -> float:

@@ -59,6 +59,15 @@ def test_noise_is_recognised_and_not_chased():
         surrogate.runs_needed(0.0)
 
 
+def test_a_model_without_scatter_is_given_none_above_its_error():
+    x = sobol(FIVE, 60, seed=4)
+    surrogate = fit(FIVE, x, x[:, 0] - 2.0 * x[:, 1])
+    entry = surrogate.report["outputs"]["y"]
+    assert 0.0 < entry["rmse_estimate"] < 1e-12
+    assert entry["noise_std"] == entry["rmse_estimate"]
+    assert entry["noise_from"] == "expected error, below the nugget"
+
+
 def test_repeated_runs_give_the_scatter():
     x = np.repeat(sobol(FIVE, 60, seed=4), 3, axis=0)
     scatter = np.random.default_rng(1).normal(size=len(x))

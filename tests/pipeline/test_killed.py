@@ -18,34 +18,12 @@ from lithobrake.pipeline import STAGES
 from lithobrake.results import open_study
 from lithobrake.study import read_study
 
-STUDY = """
-seed = 2
-[bed]
-grain_count = 12
-width = [0.3, 0.3]
-diameter = { distribution = "constant", value = 0.08 }
-cloud_point_count = 10
-pour_gravity = 0.1
-[grain]
-density = 2500.0
-young_modulus = 1e6
-poisson_ratio = 0.25
-restitution = { distribution = "uniform", lower = 0.5, upper = 0.8 }
-friction = { distribution = "uniform", lower = 0.5, upper = 0.9 }
-[lander]
-shape = "sphere"
-diameter = 0.1
-mass = 0.1
-restitution = 0.95
-[impact]
-speed = 0.4
-incidence_deg = 5.0
-[surface]
-gravity = 1e-4
-[contact]
-pair_rule = "mean"
-steps_per_contact = 20.0
-[campaign]
+from ..few_grains import few_grains
+
+STUDY = (
+    "seed = 2"
+    + few_grains(12, width=0.3, lander_diameter=0.1)
+    + """[campaign]
 retry_count = 20
 [design]
 screening_level = 2
@@ -62,6 +40,7 @@ duration = 20000.0
 [rest]
 count = 10
 """
+)
 # Of each run, what it follows from and what came of it; not where, when and how fast it was made, or how often tried.
 DETERMINED = "key, status, outcome, inputs, draws, outputs, seed, replicate, reason, version"
 # Stages in which to kill; those in which much is made several times. Fits and scores end within a blink, before a kill

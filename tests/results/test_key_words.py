@@ -7,7 +7,7 @@ import pytest
 import result_models as models
 
 import lithobrake
-from lithobrake.results.key_words import SECTIONS, leaves, page, words_of
+from lithobrake.results.key_words import KEY_TABLES, leaves, page, words_of
 
 PAGE = Path(__file__).parents[2] / "docs" / "summary.md"
 
@@ -38,9 +38,22 @@ def test_a_key_that_nothing_is_said_of_is_named() -> None:
 
 
 def test_no_key_is_described_twice() -> None:
-    said = [(section.file, place, key) for section in SECTIONS for place in section.places for key in section.keys]
+    said = [(table.file, place, key) for table in KEY_TABLES for place in table.places for key in table.keys]
     assert len(said) == len(set(said))
 
 
 def test_the_page_is_what_its_script_makes() -> None:
     assert PAGE.read_text(encoding="utf-8") == page(), "make it again with: python docs/make_summary_page.py"
+
+
+@pytest.mark.parametrize(
+    ("path", "unit"),
+    [
+        (("site", "effective_acceleration_outward"), "[m/s2]"),
+        (("site", "effective_acceleration_along_heading"), "[m/s2]"),
+        (("flights", "impact_speed", "quantile_0.5"), "[m/s]"),
+        (("rest", "hard", "path_length", "quantile_0.5"), "[m]"),
+    ],
+)
+def test_a_quantity_without_its_unit_in_the_name_has_it_in_the_words(path: tuple[str, ...], unit: str) -> None:
+    assert unit in words_of("summary.json", ("results", *path))

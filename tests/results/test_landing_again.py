@@ -11,39 +11,18 @@ from lithobrake.pipeline import run_study
 from lithobrake.results import StudyResults, open_study
 from lithobrake.study import StudySource
 
-STUDY = """
-[bed]
-grain_count = 30
-width = [0.45, 0.45]
-diameter = { distribution = "constant", value = 0.08 }
-cloud_point_count = 10
-pour_gravity = 0.1
-[grain]
-density = 2500.0
-young_modulus = 1e6
-poisson_ratio = 0.25
-restitution = { distribution = "uniform", lower = 0.5, upper = 0.8 }
-friction = 0.7
-[lander]
-shape = "sphere"
-diameter = 0.12
-mass = 0.1
-restitution = 0.95
-[impact]
-speed = 0.4
-incidence_deg = 5.0
-azimuth_deg = "random"
+from ..few_grains import few_grains
+
+STUDY = (
+    few_grains(30, width=0.45, lander_diameter=0.12, friction="0.7")
+    + """azimuth_deg = "random"
 orientation = "random"
-[surface]
-gravity = 1e-4
-[contact]
-pair_rule = "mean"
-steps_per_contact = 20.0
 [design]
 screening_level = 1
 screening_degree = 1
 kept_outputs = ["speed_out"]
 """
+)
 
 
 @pytest.fixture(scope="module")

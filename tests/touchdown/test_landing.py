@@ -1,5 +1,6 @@
 """Landings on a small bed: outcomes, outputs, frames, refusals."""
 
+import dataclasses
 import math
 
 import numpy as np
@@ -8,6 +9,7 @@ import pytest
 from lithobrake.dem import Box, Material, Sphere
 from lithobrake.touchdown import OUTPUTS, ContactModel, Lander, Landing, land, read_hull
 from lithobrake.touchdown.outcome import outgoing
+from lithobrake.touchdown.simulation import RELEASED_SPEED, released_speed
 
 BOUNCY = Material(young_modulus=1e6, poisson_ratio=0.25, restitution=0.9, friction=0.3, density=2500.0)
 DEAD = Material(young_modulus=1e6, poisson_ratio=0.25, restitution=0.05, friction=0.9, density=2500.0)
@@ -202,3 +204,30 @@ def test_an_inertia_that_no_body_has_is_refused(moments, said):
 def test_a_lander_needs_a_mass():
     with pytest.raises(ValueError, match=r"Lander\.mass is 0\.0 kg"):
         ball(mass=0.0)
+
+
+def test_contacts_at_steps_of_their_own_tell_the_same_story(bed):
+    local = ContactModel(steps_per_contact=30.0, stepping="local")
+    found = [land(bed, ball(), landing(contact=local), frame_count=6) for _ in range(2)]
+    one, again = (outcome.outputs for outcome in found)
+    assert one == again
+    together = land(bed, ball(), landing(contact=ContactModel(steps_per_contact=60.0))).outputs
+    assert found[0].status == "clear"
+    # What the first blow decides agrees; what follows it is chance.
+    assert one["peak_acceleration"] == pytest.approx(together["peak_acceleration"], rel=0.05)
+    assert one["energy_lost"] == pytest.approx(together["energy_lost"], rel=0.05)
+    assert 6 <= len(found[0].frames["time"]) <= 12
+    assert (np.diff(found[0].frames["time"]) > 0.0).all()
+
+
+def test_a_bed_takes_on_its_soil_at_once_where_that_frees_little(bed):
+    soft, stiff = BOUNCY, dataclasses.replace(BOUNCY, young_modulus=1e8)
+    speeds = [released_speed(bed.world(material, bed.gravity, ContactModel())) for material in (soft, stiff)]
+    # Of overlaps that stay, a soil a hundred times as stiff holds a hundred times the energy.
+    assert speeds[1] == pytest.approx(10.0 * speeds[0], rel=1e-6)
+    assert speeds[0] < RELEASED_SPEED * 0.3 < speeds[1]
+
+
+def test_another_stepping_is_refused():
+    with pytest.raises(ValueError, match=r"stepping is 'own'; allowed are"):
+        ContactModel(stepping="own")

@@ -112,7 +112,7 @@ class ExpectedSoil:
 
     def touchdown_time(self, lander: "Lander", landing: "Landing") -> float:
         """Time [s] until the outcome of a touchdown is known, were there no limit."""
-        from lithobrake.touchdown.flightline import CAPTURED_APEX
+        from lithobrake.touchdown.outcome_judge import CAPTURED_APEX
 
         rise = -landing.gravity[2] * CAPTURED_APEX * lander.smallest_edge
         leaves = 0.5 * (OUTGOING * landing.speed) ** 2 > rise

@@ -1,4 +1,4 @@
-"""Watching one landing: when it is over, and what is to be told of it."""
+"""Watching one landing, and judging it: when it is over, how it ended, and what is to be told of it."""
 
 import math
 
@@ -22,8 +22,8 @@ CAPTURED_CONTACTS = 10.0
 SUNK_FRACTION = 0.5
 
 
-class FlightLine:
-    """The lander's way, looked at every few steps."""
+class OutcomeJudge:
+    """Looks at the lander every few steps, until it can tell how the touchdown ended."""
 
     def __init__(self, bed: Bed, lander: Lander, landing: Landing, world: World, number: int, frame_count: int) -> None:
         self.bed, self.lander, self.landing, self.world, self.number = bed, lander, landing, world, number

@@ -1,0 +1,36 @@
+"""The numbers that tell most: picked once, and the same in the sentences of a study and on its page."""
+
+from typing import Any
+
+from lithobrake.results.telling_numbers import TellingNumbers
+
+
+def results() -> dict[str, Any]:
+    """What of a summary's results they are picked from."""
+    return {
+        "designs": {
+            "screening": {"outcomes": {"clear": 9, "captured": 2, "failed": 1}},
+            "test_all": {"outcomes": {"clear": 4, "left_sideways": 1}},
+        },
+        "monte_carlo": {"outputs": {"speed_out": {"quantile_0.5": 0.1}}},
+        "scores": {"test_all": {"speed_out": {"q2": 0.8}}},
+        "screening": {
+            "sobol_total": {"speed_out": {"grain.friction": 0.3, "grain.restitution": 0.6}},
+            "sobol_total_interval": {"speed_out": {"grain.friction": [0.2, 0.4], "grain.restitution": [0.5, 0.7]}},
+            "fits": {"speed_out": {"noise_share": None}},
+        },
+    }
+
+
+def test_touchdowns_are_counted_over_all_designs_and_failed_runs_apart() -> None:
+    telling = TellingNumbers.of(results())
+    assert (telling.left_count, telling.ended.total(), telling.failed) == (13, 16, 1)
+    assert telling.ended["time_limit"] == 0
+
+
+def test_the_main_input_has_the_largest_total_index() -> None:
+    telling = TellingNumbers.of(results())
+    assert telling.main_input.name == "grain.restitution"
+    assert telling.main_input.interval == (0.5, 0.7)
+    assert telling.speed == {"quantile_0.5": 0.1}
+    assert telling.score == {"q2": 0.8}
