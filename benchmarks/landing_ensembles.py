@@ -1,0 +1,137 @@
+"""The same landings with contacts stepped in several ways: what they cost, and whether their statistics are the same.
+
+    python benchmarks/landing_ensembles.py STUDY.toml BED_FOLDER --region .1 --beds 8 --landings 200
+        --stepping global:30 local:15 local:25 --out FILE
+
+Soils, beds, places (within the region [m] about the middle), headings and attitudes are drawn; every draw lands once
+in each way, one after the other, so that ratios of CPU times are of the same minutes. Beds are poured into BED_FOLDER
+where they are not there yet. FILE.csv gets a row a landing as it comes, FILE.json the comparison with the first way:
+means with their errors, mean difference of pairs, correlation, p of the Kolmogorov-Smirnov test, ratio of CPU times.
+"""
+
+import argparse
+import csv
+import json
+import math
+import time
+import tomllib
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from origin import origin
+from scipy.stats import ks_2samp
+
+from lithobrake.chaos import sobol_sequence
+from lithobrake.pipeline.beds import bed_recipe
+from lithobrake.pipeline.designs import design_inputs
+from lithobrake.pipeline.site import with_site_gravity
+from lithobrake.study import Study, check_tables
+from lithobrake.touchdown import Bed, Lander, Landing, land, pour_bed
+from lithobrake.touchdown_model import draw, lander, landing, medians
+
+COMPARED = ("speed_out", "elevation_out", "spin_out", "contact_duration", "penetration", "peak_acceleration")
+Row = dict[str, Any]
+
+
+def drawn_study(path: Path, bed_count: int, region: float) -> Study:
+    """The study with places, headings and attitudes drawn."""
+    tables = tomllib.loads(path.read_text())
+    tables["bed"]["bed_count"] = bed_count
+    tables["impact"].pop("place", None)
+    ends = [-region, region]
+    tables["impact"] |= {"region": {"x": ends, "y": ends}, "orientation": "random", "azimuth_deg": "random"}
+    return with_site_gravity(check_tables(tables, path.parent))
+
+
+def beds_of(study: Study, folder: Path) -> list[Bed]:
+    """The beds of a study, poured where they are not there yet."""
+    folder.mkdir(parents=True, exist_ok=True)
+    for index in range(study.bed.bed_count):
+        path = folder / f"bed_{index}.h5"
+        if not path.exists():
+            pour_bed(bed_recipe(study, index)).save(path)
+    return [Bed.load(folder / f"bed_{index}.h5") for index in range(study.bed.bed_count)]
+
+
+def draws(study: Study, count: int) -> Iterator[tuple[int, Lander, Landing]]:
+    """Number of the bed, lander and landing of each draw."""
+    inputs = design_inputs(study)
+    for number, row in enumerate(sobol_sequence(inputs, count, seed=3).tolist()):
+        values = draw(study, medians(study) | dict(zip(inputs, row, strict=True)), 1000 + number)
+        yield round(values["bed"]), lander(study, values), landing(study, values)
+
+
+def landed(bed: Bed, body: Lander, arrival: Landing, way: str) -> Row:
+    """Land once with contacts stepped in a way, as "local:15"."""
+    stepping, steps = way.split(":")
+    contact = replace(arrival.contact, stepping=stepping, steps_per_contact=float(steps))
+    start = time.process_time()
+    outcome = land(bed, body, replace(arrival, contact=contact))
+    cpu = time.process_time() - start
+    return {"way": way, "outcome": str(outcome.status), "simulated_s": outcome.simulated_time, "cpu_s": cpu} | {
+        name: outcome.outputs[name] for name in COMPARED
+    }
+
+
+def compared(plain: list[Row], other: list[Row]) -> Row:
+    """How one way does beside the first."""
+    found: Row = {
+        "outcomes": dict(Counter(row["outcome"] for row in other)),
+        "same_outcome": float(np.mean([a["outcome"] == b["outcome"] for a, b in zip(plain, other, strict=True)])),
+        # The first landing compiles the kernels.
+        "cpu_ratio": sum(row["cpu_s"] for row in plain[1:]) / sum(row["cpu_s"] for row in other[1:]),
+        "cpu_s_a_landing": float(np.mean([row["cpu_s"] for row in other[1:]])),
+    }
+    for name in COMPARED:
+        x, y = (np.array([row[name] for row in rows], dtype=float) for rows in (plain, other))
+        both = np.isfinite(x) & np.isfinite(y)
+        difference, known = (y - x)[both], y[np.isfinite(y)]
+        found[name] = {
+            "mean": float(known.mean()), "error": float(known.std() / math.sqrt(len(known))),
+            "difference": float(difference.mean()),
+            "difference_error": float(difference.std() / math.sqrt(both.sum())),
+            "correlation": float(np.corrcoef(x[both], y[both])[0, 1]),
+            "ks_p": float(ks_2samp(x[np.isfinite(x)], known).pvalue),
+        }  # fmt: skip
+    return found
+
+
+def main() -> None:
+    """Land, compare, write."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("study", type=Path)
+    parser.add_argument("beds_in", type=Path)
+    parser.add_argument("--region", type=float, default=0.1)
+    parser.add_argument("--beds", type=int, default=8)
+    parser.add_argument("--landings", type=int, default=200)
+    parser.add_argument("--stepping", nargs="+", default=["global:30", "local:15", "local:25"])
+    parser.add_argument("--out", type=Path, required=True)
+    given = parser.parse_args()
+    study = drawn_study(given.study, given.beds, given.region)
+    beds, rows = beds_of(study, given.beds_in), {way: list[Row]() for way in given.stepping}
+    command = (
+        f"benchmarks/landing_ensembles.py {given.study} BED_FOLDER --region {given.region} --beds {given.beds} "
+        f"--landings {given.landings} --stepping {' '.join(given.stepping)}"
+    )
+    with given.out.with_suffix(".csv").open("w", newline="") as file:
+        writer = csv.DictWriter(file, ["landing", "bed", "way", "outcome", "simulated_s", "cpu_s", *COMPARED])
+        writer.writeheader()
+        for number, (bed, body, arrival) in enumerate(draws(study, given.landings)):
+            for way in given.stepping:
+                row = landed(beds[bed], body, arrival, way)
+                rows[way].append(row)
+                writer.writerow({"landing": number, "bed": bed, **row})
+            file.flush()
+            plain = rows[given.stepping[0]]
+            if number > 1:
+                table = {way: compared(plain, rows[way]) for way in given.stepping}
+                text = json.dumps({**origin(command), "landings": number + 1, "ways": table}, indent=1)
+                given.out.with_suffix(".json").write_text(text + "\n")
+
+
+if __name__ == "__main__":
+    main()
