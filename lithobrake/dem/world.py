@@ -180,7 +180,7 @@ class World(Observables):
     def run_locally(self, duration: float, steps_per_contact: float) -> None:
         """Advance by a duration [s], every contact at steps of its own, so many in the time of its collision.
 
-        What is slow or far from anything then costs little; a landing is 4 to 10 times as fast (docs/performance.md).
+        What is slow or far from anything then costs little; a landing is 4 to 5 times as fast (docs/performance.md).
         Energy is kept to about a hundredth of the impact's with 15 steps, to a thousandth with 40. The time step plays
         no part. Raises ValueError for a duration below 0 or less than 5 steps, FloatingPointError where the motion
         diverged.
