@@ -43,6 +43,25 @@ def list_margin(bodies: Bodies, cores: Cores, first: int, second: int, time_step
     return max(MARGIN_OF_ROUNDING * min(rounding, most), min(STEPS_LISTED * speed * time_step, most))
 
 
+@kernel
+def renew_list(
+    pair: int, bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, scratch: Scratch, margin: float,
+    travel: float,
+) -> bool:  # fmt: skip
+    """List the features of a pair within a margin [m], to serve from a travel [m] on; tell whether there was room.
+
+    Writes to pairs and scratch.
+    """
+    if pairs.second[pair] < 0:
+        serves = max(margin, list_plane(pair, bodies, cores, planes, pairs, margin))
+    else:
+        serves = list_bodies(pair, bodies, cores, pairs, scratch.simplex, scratch.turned, scratch.relative, margin)
+    if pairs.feature_count[pair] > feature_capacity(pair, pairs):
+        return False
+    pairs.wake[pair] = travel + (1.0 - BOUND_SLACK) * serves
+    return True
+
+
 @large_kernel
 def update_feature_lists(
     bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, scratch: Scratch, time_step: float, start: int,
@@ -59,14 +78,8 @@ def update_feature_lists(
         if travel < pairs.wake[pair]:
             continue
         margin = list_margin(bodies, cores, first, second, time_step)
-        if second < 0:
-            serves = max(margin, list_plane(pair, bodies, cores, planes, pairs, margin))
-        else:
-            serves = list_bodies(pair, bodies, cores, pairs, scratch.simplex, scratch.turned, scratch.relative, margin)
-        if pairs.feature_count[pair] > feature_capacity(pair, pairs):
+        if not renew_list(pair, bodies, cores, planes, pairs, scratch, margin, travel):
             lacking += 1
-        else:
-            pairs.wake[pair] = travel + (1.0 - BOUND_SLACK) * serves
     return lacking
 
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from lithobrake.compiled import kernel, large_kernel
 from lithobrake.dem.arrays import Bodies, Floats, Integers
-from lithobrake.dem.motion import turned, write_inverse_inertia, write_rotation
+from lithobrake.dem.motion import turn_by
 from lithobrake.dem.vectors import Vector, add, cross, dot, minus, plus, put, row, scaled, times
 
 # Largest angle [rad] by which a body turns freely at once.
@@ -102,12 +102,7 @@ def turn_freely(bodies: Bodies, body: int, time: float) -> None:
     if not bodies.isotropic[body]:
         # Euler's equations: the angular momentum stands still while the body turns under it.
         spin = plus(spin, scaled(0.5 * time, times(bodies.inverse_inertia, body, cross(momentum, spin))))
-    q = bodies.quaternion
-    after = turned((q[body, 0], q[body, 1], q[body, 2], q[body, 3]), spin, time)
-    q[body, 0], q[body, 1], q[body, 2], q[body, 3] = after
-    write_rotation(after, bodies.rotation[body])
-    if not bodies.isotropic[body]:
-        write_inverse_inertia(bodies, body)
+    turn_by(bodies, body, spin, time)
 
 
 @large_kernel

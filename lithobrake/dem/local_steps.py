@@ -23,16 +23,8 @@ from lithobrake.dem.contact_plans import (
     plan_approach,
     replan,
 )
-from lithobrake.dem.feature_id import feature_capacity
-from lithobrake.dem.feature_list import (
-    BOUND_SLACK,
-    ROUNDING_OF_RADIUS,
-    STEPS_LISTED,
-    list_bodies,
-    list_plane,
-    travelled,
-)
-from lithobrake.dem.force import contact_force
+from lithobrake.dem.feature_list import ROUNDING_OF_RADIUS, STEPS_LISTED, renew_list, travelled
+from lithobrake.dem.force import add_wrench, contact_force
 from lithobrake.dem.free_flight import Flight, Rules, fly_to, spin_of
 from lithobrake.dem.neighbour_search import LISTED, search_neighbours
 from lithobrake.dem.scratch import Scratch
@@ -69,14 +61,7 @@ def list_features(
     most = ROUNDING_OF_RADIUS * radius
     way = (STEPS_LISTED if touching else STEPS_NEAR) * speed * step if speed > 0.0 else 0.0
     margin = max(NARROWEST * most, min(way, most))
-    if second < 0:
-        serves = max(margin, list_plane(pair, bodies, cores, planes, pairs, margin))
-    else:
-        serves = list_bodies(pair, bodies, cores, pairs, scratch.simplex, scratch.turned, scratch.relative, margin)
-    if pairs.feature_count[pair] > feature_capacity(pair, pairs):
-        return False
-    pairs.wake[pair] = travel + (1.0 - BOUND_SLACK) * serves
-    return True
+    return renew_list(pair, bodies, cores, planes, pairs, scratch, margin, travel)
 
 
 @kernel
@@ -301,8 +286,7 @@ def sum_forces(bodies: Bodies, pairs: Pairs, reactions: Reactions) -> None:
     for pair in range(len(pairs.first)):
         if pairs.overlap[pair] > 0.0:
             first, second = pairs.first[pair], pairs.second[pair]
-            add(bodies.force, first, -1.0, row(reactions.force, pair))
-            add(bodies.torque, first, -1.0, row(reactions.first_torque, pair))
+            force = row(reactions.force, pair)
+            add_wrench(bodies, first, -1.0, force, row(reactions.first_torque, pair))
             if second >= 0:
-                add(bodies.force, second, 1.0, row(reactions.force, pair))
-                add(bodies.torque, second, 1.0, row(reactions.second_torque, pair))
+                add_wrench(bodies, second, 1.0, force, row(reactions.second_torque, pair))

@@ -100,6 +100,18 @@ def spin_at_mid_step(bodies: Bodies, body: int, momentum: Vector, time_step: flo
 
 
 @kernel
+def turn_by(bodies: Bodies, body: int, spin: Vector, time: float) -> None:
+    """Turn a body by a spin of the world frame [rad/s] for a time [s]. Writes to bodies."""
+    q = bodies.quaternion
+    after = turned((q[body, 0], q[body, 1], q[body, 2], q[body, 3]), spin, time)
+    q[body, 0], q[body, 1], q[body, 2], q[body, 3] = after
+    write_rotation(after, bodies.rotation[body])
+    if not bodies.isotropic[body]:
+        write_inverse_inertia(bodies, body)
+    put(bodies.half_spin, body, spin)
+
+
+@kernel
 def rotate(bodies: Bodies, body: int, time_step: float) -> None:
     """Turn a body over one step by the spin at mid-step, which follows from the angular momentum held fixed.
 
@@ -110,13 +122,7 @@ def rotate(bodies: Bodies, body: int, time_step: float) -> None:
         spin = times(bodies.inverse_inertia, body, momentum)
     else:
         spin = spin_at_mid_step(bodies, body, momentum, time_step)
-    q = bodies.quaternion
-    after = turned((q[body, 0], q[body, 1], q[body, 2], q[body, 3]), spin, time_step)
-    q[body, 0], q[body, 1], q[body, 2], q[body, 3] = after
-    write_rotation(after, bodies.rotation[body])
-    if not bodies.isotropic[body]:
-        write_inverse_inertia(bodies, body)
-    put(bodies.half_spin, body, spin)
+    turn_by(bodies, body, spin, time_step)
 
 
 @large_kernel

@@ -10,6 +10,7 @@ from lithobrake.dem.agenda import Agenda, put_on, take_off
 from lithobrake.dem.arrays import Bodies, Floats, Laws, Pairs, Planes
 from lithobrake.dem.contact_plans import Plans, plan_search
 from lithobrake.dem.free_flight import Flight, Rules, fly_to, place_at
+from lithobrake.dem.timestep import HERTZ_DURATION
 from lithobrake.dem.vectors import Vector, dot, minus, row
 
 LISTED, NO_SLOT, LOST = 0, 1, 2
@@ -42,7 +43,7 @@ def collision_duration(bodies: Bodies, planes: Planes, laws: Laws, flight: Fligh
     if second >= 0:
         inverse, curvature = inverse + 1.0 / flight.mass[second], curvature + bodies.curvature[second]
     modulus, ratio = laws.young_modulus[here, there], laws.damping_ratio[here, there]
-    return 2.868 * (curvature / (inverse * modulus) ** 2) ** 0.2 / max(1.0, 2.0 * ratio)
+    return HERTZ_DURATION * (curvature / (inverse * modulus) ** 2) ** 0.2 / max(1.0, 2.0 * ratio)
 
 
 @kernel

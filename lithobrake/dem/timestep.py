@@ -11,6 +11,8 @@ from lithobrake.dem.shape import ConvexHull, Shape, equivalent_radius
 
 # Steps in the shortest contact when a world chooses its own step.
 STEPS_PER_CONTACT = 50.0
+# Factor of the duration of an elastic Hertz collision, see contact_duration.
+HERTZ_DURATION = 2.868
 
 
 def contact_duration(mass: float, radius: float, young_modulus: float, speed: float) -> float:
@@ -18,7 +20,7 @@ def contact_duration(mass: float, radius: float, young_modulus: float, speed: fl
 
     Source: [Hertz-1882]; [Johnson-1985], Eq 11.24, for F = 4/3 E* sqrt(R*) overlap^(3/2).
     """
-    return 2.868 * (mass * mass / (radius * young_modulus**2 * speed)) ** 0.2
+    return HERTZ_DURATION * (mass * mass / (radius * young_modulus**2 * speed)) ** 0.2
 
 
 def smallest_mass_at_contact(shape: Shape, mass: float, inertia: Floats) -> float:
