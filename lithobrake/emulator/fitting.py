@@ -49,8 +49,8 @@ def fit(
     terms = terms_up_to(runs.inputs, highest_degree(len(runs.y)))
     matrix = terms.matrix(runs.x)
     of_outputs = matrix[runs.has_outputs]
-    choices, scores = choices_by_groups(runs, of_outputs, terms.degrees)
-    law = fit_law(of_outputs, terms.degrees, runs.coordinates, choices, np.ones(len(runs.y)))
+    choices, scores = choices_by_groups(runs, terms.indices, of_outputs)
+    law = fit_law(terms.indices, of_outputs, runs.coordinates, choices, np.ones(len(runs.y)))
     linear, class_count = matrix[:, : len(runs.inputs)], len(runs.outcome_names)
     fold = folds_of(runs.group, OUTCOME_FOLDS)
     inverse_penalty = best_inverse_penalty(linear, runs.outcome, class_count, fold)

@@ -1,7 +1,7 @@
 """Mean law E[y | x] as an expansion: how much of the variance it has, and which inputs, freed of noise.
 
 Squares of coefficients hold their noise too: the square of each standard error is taken off. A ridge would shrink
-them, so they are fitted by least squares, to the terms of the rung that the ladder stands on.
+them, so they are fitted by least squares, to the terms up to the degree that the ladder stands on.
 """
 
 from collections.abc import Sequence
@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from lithobrake.chaos.polynomials import Array
-from lithobrake.emulator.ridge_ladder import Rung
+from lithobrake.emulator.ridge_ladder import Ladder, degree_of
 from lithobrake.emulator.terms import Terms
 
 # Least squares with fewer runs to a term has standard errors that are themselves hardly known.
@@ -31,22 +31,22 @@ class MeanLaw:
     sobol_total: Array
 
 
-def mean_law(terms: Terms, matrix: Array, target: Array, rungs: Sequence[Rung], weights: Array) -> MeanLaw:
-    """Fit the mean law of targets [run_count, output_count] whose ladders stand on these rungs [output_count].
+def mean_law(terms: Terms, matrix: Array, target: Array, ladders: Sequence[Ladder], weights: Array) -> MeanLaw:
+    """Fit the mean law of targets [run_count, output_count] with these ladders [output_count].
 
     matrix: terms [run_count, term_count]; weights: how often each run counts [run_count].
     """
     columns = [
-        _one_output(terms, matrix, y, _degree(rung, terms, weights), weights)
-        for y, rung in zip(target.T, rungs, strict=True)
+        _one_output(terms, matrix, y, _degree(ladder, terms, weights), weights)
+        for y, ladder in zip(target.T, ladders, strict=True)
     ]
     mean, variance, share, first, total = zip(*columns, strict=True)
     return MeanLaw(np.array(mean), np.array(variance), np.array(share), np.column_stack(first), np.column_stack(total))
 
 
-def _degree(rung: Rung, terms: Terms, weights: Array) -> int:
-    """Highest degree of the terms that a rung uses and the runs support."""
-    wanted = 3 if rung.third > 0.0 else 2 if rung.second > 0.0 else 1
+def _degree(ladder: Ladder, terms: Terms, weights: Array) -> int:
+    """Highest degree of the terms that a ladder stands on and the runs support."""
+    wanted = degree_of(ladder)
     supported = [d for d in range(1, wanted + 1) if RUNS_PER_TERM * (terms.degrees <= d).sum() <= weights.sum()]
     return max(supported, default=1)
 

@@ -138,8 +138,8 @@ class Emulator(Parts):
         counted = np.asarray(weights, dtype=float)
         matrix = self._run_matrix
         law = fit_law(
+            self.terms.indices,
             matrix[self.runs.has_outputs],
-            self.terms.degrees,
             self.runs.coordinates,
             self.choices,
             counted[self.runs.has_outputs],
@@ -202,7 +202,7 @@ class Emulator(Parts):
         run_linear = self._linear(self._run_matrix)[self.runs.has_outputs]
         chances = row_weights(linear, run_linear, self.law.weights, self.choices.bandwidth)
         row = drawn_rows(chances, count, random)
-        location, scale = self.law.at(matrix, len(self.runs.inputs))
+        location, scale = self.law.at(matrix)
         size, root = smoothing(self.law.rows, self.law.weights)
         scatter = smoothed(self.law.rows[row], size, root, random)
         y = self.runs.y[row]

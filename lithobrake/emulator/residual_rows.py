@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from lithobrake.chaos.polynomials import Array
 
 # Widths of the kernel, in units of the root mean square distance of two points; infinite draws from all rows alike.
-BANDWIDTHS = (np.inf, 0.9, 0.65, 0.45)
+BANDWIDTHS = (np.inf, 0.9, 0.65)
 # Of the normal rule for the smoothing; the rule itself would take a third off the skewness of a few hundred rows.
 SMOOTHING_FACTOR = 0.5
 

@@ -6,18 +6,19 @@ from lithobrake.chaos.polynomials import Array
 
 
 def energy_scores(points: Array, weights: Array, scales: Array, observed: Array) -> Array:
-    """Energy score of ensembles that share their shape, [case_count]; the smaller, the better.
+    """Energy score of ensembles that share their members, [weighting_count, case_count]; the smaller, the better.
 
     points [member_count, output_count], which case i stretches by scales [case_count, output_count]; weights
-    [case_count, member_count] sum to 1; observed [case_count, output_count], relative to the ensemble's location.
-    Source: [Gneiting-2007], Eq 22.
+    [weighting_count, case_count, member_count] sum to 1; observed [case_count, output_count], from the ensemble's
+    location. Source: [Gneiting-2007], Eq 22.
     """
     squares = (points[:, None] - points) ** 2
-    scores = np.empty(len(observed))
-    for case, (weight, scale, seen) in enumerate(zip(weights, scales, observed, strict=True)):
+    scores = np.empty(weights.shape[:2])
+    for case, (scale, seen) in enumerate(zip(scales, observed, strict=True)):
+        weight = weights[:, case]
         distances = np.sqrt(((seen - scale * points) ** 2).sum(axis=1))
         spread = np.sqrt(squares @ scale**2)
-        scores[case] = weight @ distances - 0.5 * weight @ spread @ weight
+        scores[:, case] = weight @ distances - 0.5 * ((weight @ spread) * weight).sum(axis=1)
     return scores
 
 

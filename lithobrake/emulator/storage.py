@@ -3,7 +3,7 @@
 Nothing in the file is executed, and whoever has lost this program can still read what was fitted to what.
 """
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
@@ -19,13 +19,13 @@ from lithobrake.chaos.storage import (
 )
 from lithobrake.emulator.law import Choices, Law
 from lithobrake.emulator.outcome_classes import OutcomeClasses
-from lithobrake.emulator.ridge_ladder import Rung
+from lithobrake.emulator.ridge_ladder import Ladder, Rung
 from lithobrake.emulator.terms import Terms
 from lithobrake.emulator.training import TrainingRuns
 from lithobrake.emulator.validation import Scores
 
 FORMAT = "lithobrake emulator"
-# JSON has no infinity: no bound, no dependence on inputs and no kernel are null.
+# JSON has no infinity: no bound and no kernel are null.
 SCORES = ("energy", "energy_of_rows", "gain", "gain_error")
 
 
@@ -57,8 +57,8 @@ def content_of(model: Parts, statement: str) -> dict[str, Any]:
         "crps_skill": model.scores.crps_skill.tolist(),
         "band_90": model.scores.band_90.tolist(),
         "bandwidth": _finite(model.choices.bandwidth),
-        "location_rungs": [_rung_to_json(rung) for rung in model.choices.location],
-        "scale_rungs": [_rung_to_json(rung) for rung in model.choices.scale],
+        "location_ladders": [[asdict(rung) for rung in ladder] for ladder in model.choices.location],
+        "scale_ladders": [[asdict(rung) for rung in ladder] for ladder in model.choices.scale],
         "multi_indices": model.terms.indices.tolist(),
         "location": model.law.location.tolist(),
         "log_scale": model.law.log_scale.tolist(),
@@ -88,8 +88,8 @@ def parts_of(content: dict[str, Any]) -> Parts:
         raise ValueError("multi_indices must begin with the linear terms in the order of the inputs")
     bandwidth = content["bandwidth"]
     choices = Choices(
-        tuple(_rung_from_json(row) for row in content["location_rungs"]),
-        tuple(_rung_from_json(row) for row in content["scale_rungs"]),
+        tuple(_ladder_from_json(rows, inputs) for rows in content["location_ladders"]),
+        tuple(_ladder_from_json(rows, inputs) for rows in content["scale_ladders"]),
         float("inf") if bandwidth is None else float(bandwidth),
     )
     weights = _column("weights", content["weights"], len(runs.x))
@@ -112,7 +112,7 @@ def parts_of(content: dict[str, Any]) -> Parts:
         pit=_table("pit", content["pit"], (len(runs.y), modelled)),
     )
     if len(choices.location) != modelled or len(choices.scale) != modelled:
-        raise ValueError("location_rungs and scale_rungs must have one entry for each modelled output")
+        raise ValueError("location_ladders and scale_ladders must have one entry for each modelled output")
     penalty = float(content["class_inverse_penalty"])
     return Parts(runs, Terms(runs.inputs, indices), choices, penalty, weights, law, classes, scores)
 
@@ -146,13 +146,12 @@ def _finite(value: float) -> float | None:
     return float(value) if np.isfinite(value) else None
 
 
-def _rung_to_json(rung: Rung) -> dict[str, float | None]:
-    return {"second": rung.second, "third": rung.third, "penalty": _finite(rung.penalty)}
-
-
-def _rung_from_json(row: dict[str, Any]) -> Rung:
-    penalty = float("inf") if row["penalty"] is None else float(row["penalty"])
-    return Rung(float(row["second"]), float(row["third"]), penalty)
+def _ladder_from_json(rows: Any, input_count: int) -> Ladder:
+    """Rungs of a ladder; raises ValueError for inputs that are not there."""
+    ladder = tuple(Rung(**{**row, "inputs": tuple(row["inputs"])}) for row in rows)
+    if not {one for rung in ladder for one in rung.inputs} <= set(range(input_count)):
+        raise ValueError(f"a ladder has inputs outside 0 to {input_count - 1}")
+    return ladder
 
 
 def _table_to_json(bounds: Array) -> list[list[float | None]]:

@@ -1,13 +1,14 @@
 """What a law is worth on groups that it has not seen, beside drawing one of the runs whatever the inputs."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from lithobrake.chaos.multi_index import Indices
 from lithobrake.chaos.polynomials import Array
 from lithobrake.emulator.coordinates import from_coordinate
-from lithobrake.emulator.law import Choices, best_choices, fit_law, rows_alone
+from lithobrake.emulator.law import Choices, Law, best_choices, fit_law, rows_alone
 from lithobrake.emulator.residual_rows import BANDWIDTHS, row_weights
 from lithobrake.emulator.scores import crps, energy_scores, pit
 from lithobrake.emulator.training import TrainingRuns
@@ -39,11 +40,12 @@ class Scores:
 
 
 @dataclass(frozen=True)
-class _Ensembles:
-    """Foretold distributions of the runs of one fold: members [case_count, member_count, coordinate_count]."""
+class _Fold:
+    """Runs that are left out, test [output_run_count], and what is fitted to the others: a law, and rows alone."""
 
-    members: Array
-    weights: Array
+    test: NDArray[np.bool_]
+    law: Law
+    rows: Law
 
 
 def folds_of(group: NDArray[np.int64], most: int) -> NDArray[np.int64]:
@@ -53,84 +55,77 @@ def folds_of(group: NDArray[np.int64], most: int) -> NDArray[np.int64]:
     return np.asarray(numbers % min(most, int(numbers.max()) + 1), dtype=np.int64)
 
 
-def choices_by_groups(runs: TrainingRuns, matrix: Array, degrees: NDArray[np.int64]) -> tuple[Choices, Scores]:
+def choices_by_groups(runs: TrainingRuns, indices: Indices, matrix: Array) -> tuple[Choices, Scores]:
     """Choose law and width of the kernel, leaving groups out; matrix [output_run_count, term_count].
 
-    Where the law does worse than rows alone by more than a standard error, rows alone are chosen.
+    Where the law does no better than rows alone, rows alone are chosen.
     """
-    group, fold = runs.group[runs.has_outputs], folds_of(runs.group[runs.has_outputs], MOST_FOLDS)
-    spread = runs.coordinates.std(axis=0)
-    unit = np.where(spread > 0.0, spread, 1.0)
-    coordinates, count = runs.coordinates / unit, len(fold)
-    energy, energy_of_rows = np.empty((len(BANDWIDTHS), count)), np.empty(count)
-    for number in range(int(fold.max()) + 1):
-        test, kept = fold == number, fold != number
-        chosen = best_choices(matrix[kept], degrees, coordinates[kept])
-        energy[:, test] = _energies(matrix, degrees, coordinates, test, chosen, BANDWIDTHS)
-        alone = rows_alone(coordinates.shape[1])
-        energy_of_rows[test] = _energies(matrix, degrees, coordinates, test, alone, BANDWIDTHS[:1])[0]
+    group, outputs = runs.group[runs.has_outputs], runs.coordinates.shape[1]
+    folds = _folds(runs, indices, matrix, folds_of(group, MOST_FOLDS))
+    energy, energy_of_rows = np.empty((len(BANDWIDTHS), len(group))), np.empty(len(group))
+    for fold in folds:
+        energy[:, fold.test] = _energies(runs, matrix, fold, fold.law, BANDWIDTHS)
+        energy_of_rows[fold.test] = _energies(runs, matrix, fold, fold.rows, BANDWIDTHS[:1])[0]
     best = int(np.argmin(energy.mean(axis=1)))
     gain, error = _mean_by_groups(energy_of_rows - energy[best], group)
-    choices = replace(best_choices(matrix, degrees, coordinates), bandwidth=BANDWIDTHS[best])
-    if gain < -error:
-        choices, energy[best], gain, error = rows_alone(coordinates.shape[1]), energy_of_rows, 0.0, 0.0
-    skill, held, places = _calibration(runs, matrix, degrees, fold, choices)
+    choices = best_choices(indices, matrix, runs.coordinates, BANDWIDTHS[best])
+    if gain <= 0.0:
+        choices, energy[best], gain, error = rows_alone(outputs), energy_of_rows, 0.0, 0.0
+    skill, held, places = _calibration(runs, matrix, folds, choices)
     return choices, Scores(float(energy[best].mean()), float(energy_of_rows.mean()), gain, error, skill, held, places)
 
 
-def _energies(
-    matrix: Array,
-    degrees: NDArray[np.int64],
-    coordinates: Array,
-    test: NDArray[np.bool_],
-    choices: Choices,
-    bandwidths: tuple[float, ...],
-) -> Array:
-    """Energy scores [bandwidth_count, case_count] of the runs under test, fitted to all others."""
-    inputs = int((degrees == 1).sum())
-    law = fit_law(matrix[~test], degrees, coordinates[~test], choices, np.ones((~test).sum()))
-    location, scale = law.at(matrix[test], inputs)
-    thinned = slice(None, None, -(-len(law.rows) // MOST_MEMBERS))
-    rows, points = law.rows[thinned], matrix[~test][thinned, :inputs]
-    scores = []
-    for bandwidth in bandwidths:
-        weights = row_weights(matrix[test, :inputs], points, np.ones(len(rows)), bandwidth)
-        scores.append(energy_scores(rows, weights, scale, coordinates[test] - location))
-    return np.stack(scores)
-
-
-def _calibration(
-    runs: TrainingRuns, matrix: Array, degrees: NDArray[np.int64], fold: NDArray[np.int64], choices: Choices
-) -> tuple[Array, Array, Array]:
-    """CRPS skill and share in the 90 % band [modelled_count], and PIT [output_run_count, modelled_count]."""
-    columns = list(runs.modelled)
-    y, places = runs.y[:, columns], np.empty(runs.coordinates.shape)
-    losses = np.empty((2, *y.shape))
-    alone = rows_alone(len(columns))
+def _folds(runs: TrainingRuns, indices: Indices, matrix: Array, fold: NDArray[np.int64]) -> list[_Fold]:
+    """Fit anew without each fold, and choose anew too: a choice must not have seen what it is tested on."""
+    folds = []
     for number in range(int(fold.max()) + 1):
         test = fold == number
-        for k, chosen in enumerate((choices, alone)):
-            foretold = _foretold(runs, matrix, degrees, test, chosen)
-            for j in range(len(columns)):
-                losses[k, test, j] = crps(foretold.members[:, :, j], foretold.weights, y[test, j])
-                if chosen is choices:
-                    places[test, j] = pit(foretold.members[:, :, j], foretold.weights, y[test, j])
-    losses_of_law, losses_of_rows = losses.mean(axis=1)
-    skill = 1.0 - losses_of_law / np.where(losses_of_rows > 0.0, losses_of_rows, 1.0)
+        rest, kept, ones = matrix[~test], runs.coordinates[~test], np.ones((~test).sum())
+        laws = [
+            fit_law(indices, rest, kept, choices, ones)
+            for choices in (best_choices(indices, rest, kept), rows_alone(kept.shape[1]))
+        ]
+        folds.append(_Fold(test, laws[0], laws[1]))
+    return folds
+
+
+def _energies(runs: TrainingRuns, matrix: Array, fold: _Fold, law: Law, bandwidths: tuple[float, ...]) -> Array:
+    """Energy scores [bandwidth_count, case_count] of the runs that a law has not seen, in units of the spread."""
+    spread = runs.coordinates.std(axis=0)
+    unit = np.where(spread > 0.0, spread, 1.0)
+    location, scale = law.at(matrix[fold.test])
+    observed = (runs.coordinates[fold.test] - location) / unit
+    inputs = len(runs.inputs)
+    thinned = slice(None, None, -(-len(law.rows) // MOST_MEMBERS))
+    rows, points = law.rows[thinned], matrix[~fold.test][thinned, :inputs]
+    weights = [row_weights(matrix[fold.test, :inputs], points, np.ones(len(rows)), one) for one in bandwidths]
+    return energy_scores(rows, np.stack(weights), scale / unit, observed)
+
+
+def _calibration(runs: TrainingRuns, matrix: Array, folds: list[_Fold], choices: Choices) -> tuple[Array, Array, Array]:
+    """CRPS skill and share in the 90 % band [modelled_count], and PIT [output_run_count, modelled_count]."""
+    columns, inputs = list(runs.modelled), len(runs.inputs)
+    y, places = runs.y[:, columns], np.empty(runs.coordinates.shape)
+    losses, losses_of_rows = np.empty(y.shape), np.empty(y.shape)
+    for fold in folds:
+        test, law = fold.test, fold.law if choices.follows_inputs else fold.rows
+        weights = row_weights(matrix[test, :inputs], matrix[~test, :inputs], law.weights, choices.bandwidth)
+        alike = row_weights(matrix[test, :inputs], matrix[~test, :inputs], law.weights, float("inf"))
+        members, members_of_rows = (_members(runs, matrix, test, one) for one in (law, fold.rows))
+        for j in range(len(columns)):
+            losses[test, j] = crps(members[:, :, j], weights, y[test, j])
+            losses_of_rows[test, j] = crps(members_of_rows[:, :, j], alike, y[test, j])
+            places[test, j] = pit(members[:, :, j], weights, y[test, j])
+    worst = losses_of_rows.mean(axis=0)
+    skill = 1.0 - losses.mean(axis=0) / np.where(worst > 0.0, worst, 1.0)
     return skill, ((places >= BAND[0]) & (places <= BAND[1])).mean(axis=0), places
 
 
-def _foretold(
-    runs: TrainingRuns, matrix: Array, degrees: NDArray[np.int64], test: NDArray[np.bool_], choices: Choices
-) -> _Ensembles:
-    """Foretold outputs of the runs under test, from all others."""
-    inputs, columns = int((degrees == 1).sum()), list(runs.modelled)
-    law = fit_law(matrix[~test], degrees, runs.coordinates[~test], choices, np.ones((~test).sum()))
-    location, scale = law.at(matrix[test], inputs)
-    members = location[:, None] + scale[:, None] * law.rows
-    low, high = (bound[test][:, None, columns] for bound in (runs.lower, runs.upper))
-    weights = row_weights(matrix[test, :inputs], matrix[~test, :inputs], law.weights, choices.bandwidth)
-    return _Ensembles(from_coordinate(members, low, high), weights)
+def _members(runs: TrainingRuns, matrix: Array, test: NDArray[np.bool_], law: Law) -> Array:
+    """Outputs that each row of a law gives at the runs under test, [case_count, row_count, modelled_count]."""
+    location, scale = law.at(matrix[test])
+    low, high = (bound[test][:, None, list(runs.modelled)] for bound in (runs.lower, runs.upper))
+    return from_coordinate(location[:, None] + scale[:, None] * law.rows, low, high)
 
 
 def _mean_by_groups(values: Array, group: NDArray[np.int64]) -> tuple[float, float]:
