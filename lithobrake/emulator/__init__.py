@@ -6,11 +6,16 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from lithobrake.emulator.fitting import fit as fit
+    from lithobrake.emulator.mean_law import MeanLaw as MeanLaw
     from lithobrake.emulator.model import Draws as Draws
     from lithobrake.emulator.model import Emulator as Emulator
     from lithobrake.emulator.model import load as load
+    from lithobrake.emulator.validation import Scores as Scores
 
-_PLACES = {"Draws": "model", "Emulator": "model", "fit": "fitting", "load": "model"}
+_PLACES = {
+    "Draws": "model", "Emulator": "model", "MeanLaw": "mean_law", "Scores": "validation", "fit": "fitting",
+    "load": "model",
+}  # fmt: skip
 
 
 def __getattr__(name: str) -> Any:

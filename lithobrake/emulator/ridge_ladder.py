@@ -21,7 +21,7 @@ THIRD_FACTORS = (0.0, 0.15)
 # Cubic terms of five inputs are 35: with fewer runs than this they are mostly noise.
 CUBIC_FROM = 500
 # Penalties in units of the number of runs: of a term of an orthonormal basis 1 / (1 + penalty) is left.
-PENALTIES = (3e-3, 1e-2, 3e-2, 0.1, 0.3, 1.0)
+PENALTIES = (1e-5, 1e-4, 1e-3, 1e-2, 3e-2, 0.1, 0.3, 1.0)
 # Rungs of less weight are left out of the average.
 LEAST_WEIGHT = 0.005
 

@@ -50,7 +50,8 @@ def _evidence(terms: Terms, matrix: Array, table: Array) -> Array:
         for k in range(len(terms.inputs)):
             without = _unexplained(columns[:, ~active[:, k]], centred)
             count = int(active[:, k].sum())
-            ratio = (without - left) / count / (left / freedom)
+            # What rounding leaves of outputs without scatter is no scatter.
+            ratio = (without - left) / count / (np.maximum(left, 1e-12 * (centred**2).sum(axis=0)) / freedom)
             evidence[k] = np.maximum(evidence[k], -stats.f.logsf(ratio, count, freedom))
     return evidence
 

@@ -1,5 +1,7 @@
 """Errors of an emulator's conditional law against the synthetic truth, in squared Wasserstein distances."""
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from lithobrake import emulator
@@ -30,7 +32,23 @@ def fitted(truth: Truth, run_count: int, bed_count: int, seed: int) -> emulator.
     )  # fmt: skip
 
 
-def law_errors(truth: Truth, model: emulator.Emulator, point_count: int = 30, draw_count: int = 1500) -> np.ndarray:
+@dataclass(frozen=True)
+class DrawnRuns:
+    """The emulator to beat: one of the runs, whatever the inputs."""
+
+    model: emulator.Emulator
+
+    def sample(self, x: np.ndarray, count: int, seed: int = 0) -> np.ndarray:
+        """Draw runs [point_count, count, output_count], NaN where the run has no outputs."""
+        runs = self.model.runs
+        y = np.full((len(runs.x), runs.y.shape[1]), np.nan)
+        y[runs.has_outputs] = runs.y
+        return y[np.random.default_rng(seed).integers(len(y), size=(len(x), count))]
+
+
+def law_errors(
+    truth: Truth, model: emulator.Emulator | DrawnRuns, point_count: int = 30, draw_count: int = 1500
+) -> np.ndarray:
     """Errors [4] at soils that were not run: of speed, mean W2**2 / variance; of all outputs, sliced, each by its
     standard deviation; of the share that stays, root mean square [points]; of the marginal speed, W2 / deviation.
     """

@@ -7,35 +7,29 @@ import pytest
 from scipy import special, stats
 
 from lithobrake.emulator import Emulator
-from lithobrake.emulator.law import rows_alone
 
 from ..synthetic_landings import ELEVATION_LIMIT, NO_SOIL, SPEED_LIMIT, STRONG, WEAK, Truth, random_soils
-from .conditional_errors import fitted, law_errors
-
-
-def drawing_rows(model: Emulator) -> Emulator:
-    """The same runs, drawn whatever the inputs."""
-    return replace(model, choices=rows_alone(len(model.runs.modelled))).reweighted(model.weights)
+from .conditional_errors import DrawnRuns, fitted, law_errors
 
 
 @pytest.mark.parametrize(
     ("truth", "limits", "of_rows"),
-    # Of the error of rows in the weak case half is the luck of 300 runs, which no emulator is spared; over 20 studies
-    # the ratio is .6 (docs/emulator.md), over these four it may be .8.
+    # Half of the error of drawing runs is the luck of 300 runs in the weak case, which no emulator is spared: over ten
+    # studies the ratio is .6 (docs/emulator.md), over these four it may be .8.
     [(WEAK, (0.06, 0.04, 2.2), 0.8), (STRONG, (0.30, 0.15, 4.5), 0.4)],
 )
 def test_the_conditional_law_is_near_the_truth(truth: Truth, limits: tuple[float, ...], of_rows: float) -> None:
     models = [fitted(truth, 300, 30, seed) for seed in range(100, 104)]
     errors = np.mean([law_errors(truth, model) for model in models], axis=0)
     assert (errors[:3] <= limits).all()
-    assert errors[0] <= of_rows * np.mean([law_errors(truth, drawing_rows(model))[0] for model in models])
+    assert errors[0] <= of_rows * np.mean([law_errors(truth, DrawnRuns(model))[0] for model in models])
 
 
 def test_without_an_effect_it_is_as_good_as_drawing_rows() -> None:
     scores, found = [], []
     for seed in range(6):
         model = fitted(NO_SOIL, 150, 15, seed)
-        scores.append([fresh_energy_score(one) for one in (model, drawing_rows(model))])
+        scores.append([fresh_energy_score(one) for one in (model, DrawnRuns(model))])
         found.append(any(model.found_inputs().values()))
     of_model, of_rows = np.mean(scores, axis=0)
     assert of_model <= 1.01 * of_rows
@@ -43,7 +37,7 @@ def test_without_an_effect_it_is_as_good_as_drawing_rows() -> None:
     assert sum(found) <= 2
 
 
-def fresh_energy_score(model: Emulator, count: int = 4000) -> float:
+def fresh_energy_score(model: Emulator | DrawnRuns, count: int = 4000) -> float:
     """Energy score of single draws at fresh landings without an effect of the soil, coordinates in standard units."""
     rng = np.random.default_rng(11)
     soils = random_soils(count, rng)
