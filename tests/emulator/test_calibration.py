@@ -81,3 +81,19 @@ def test_bands_hold_on_beds_left_out() -> None:
     for one in scores:
         counts = np.histogram(one.pit[:, 0], bins=10, range=(0.0, 1.0))[0]
         assert stats.chisquare(counts).pvalue > 0.001
+
+
+def test_intervals_from_refits_hold_the_truth() -> None:
+    bed_count, refit_count = 12, 40
+    truth = replace(WEAK, rho=0.1)
+    exact = np.median(replace(truth, capture=0.0).study(100_000, 100_000, 1)[1][:, 0])
+    soils = random_soils(1000, np.random.default_rng(0))
+    held = 0
+    for seed in range(8):
+        model = fitted(truth, 120, bed_count, seed)
+        # The same seed for all: they differ by what they were fitted to, and less by their draws.
+        medians = [np.nanmedian(refit.sample(soils, 1)[:, 0, 0]) for refit in model.refits(refit_count)]
+        half = stats.t.ppf(0.95, bed_count - 1) * np.std(medians) * np.sqrt(bed_count / (bed_count - 1.0))
+        held += abs(np.nanmedian(model.sample(soils, 5)[:, :, 0]) - exact) <= half
+    # Nine of ten intervals hold; four or fewer of eight with probability .005.
+    assert held >= 5
