@@ -58,7 +58,7 @@ def standardised(y: np.ndarray) -> np.ndarray:
 def test_draws_have_the_skewness_of_the_scatter() -> None:
     truth = Truth(soil=1.0, rho=0.0, capture=0.0, skewness=2.0, branch_gap=0.0)
     skewness = []
-    for seed in range(5):
+    for seed in range(3):
         drawn = fitted(truth, 300, 30, seed).sample(random_soils(4000, np.random.default_rng(seed)), 5)[:, :, 0]
         # A rare draw is captured, as no run was, and has no speed.
         skewness.append(stats.skew(special.logit(drawn[~np.isnan(drawn)] / SPEED_LIMIT)))
@@ -84,7 +84,7 @@ def test_bands_hold_on_beds_left_out() -> None:
 
 
 def test_intervals_from_refits_hold_the_truth() -> None:
-    bed_count, refit_count = 12, 40
+    bed_count, refit_count = 12, 20
     truth = replace(WEAK, rho=0.1)
     exact = np.median(replace(truth, capture=0.0).study(100_000, 100_000, 1)[1][:, 0])
     soils = random_soils(1000, np.random.default_rng(0))
