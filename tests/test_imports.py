@@ -1,4 +1,4 @@
-"""Imports run one way: dem <- touchdown <- pipeline <- cli; chaos, campaign and smallbody stand alone."""
+"""Imports run one way: dem <- touchdown <- pipeline <- cli; chaos <- emulator; campaign and smallbody stand alone."""
 
 import ast
 from graphlib import TopologicalSorter
@@ -18,7 +18,8 @@ ALLOWED: dict[str, set[str]] = {
     "chaos": set(),
     "campaign": set(),
     "smallbody": set(),
-    "analysis": {"chaos"},
+    "emulator": {"chaos"},
+    "analysis": {"chaos", "emulator"},
     # What of a study a touchdown reads, in the words of the engine.
     "touchdown_model": {"dem", "touchdown", "study"},
     "results": {"campaign", "chaos", "study", "touchdown", "touchdown_model"},
@@ -26,7 +27,7 @@ ALLOWED: dict[str, set[str]] = {
     # The reader makes words of a command absolute as the campaign starts them.
     "study": {"chaos", "campaign", "smallbody", "touchdown"},
     "pipeline": {
-        *("dem", "touchdown", "chaos", "campaign", "smallbody", "analysis", "report", "results"),
+        *("dem", "touchdown", "chaos", "emulator", "campaign", "smallbody", "analysis", "report", "results"),
         "study",
         "touchdown_model",
     },

@@ -10,7 +10,7 @@ from pathlib import Path
 import lithobrake
 
 ROOT = Path(__file__).parents[1]
-PARTS = ("dem", "touchdown", "chaos", "campaign", "smallbody", "analysis", "report")
+PARTS = ("dem", "touchdown", "chaos", "emulator", "campaign", "smallbody", "analysis", "report")
 
 
 def readme_commands() -> list[str]:

@@ -1,0 +1,31 @@
+"""Bounded outputs as unbounded coordinates: logit between two bounds, logarithm beyond one, the output itself else.
+
+A law that is fitted in these coordinates cannot leave the bounds, whatever it draws.
+"""
+
+import numpy as np
+
+from lithobrake.chaos.polynomials import Array
+
+
+def to_coordinate(y: Array, lower: Array, upper: Array) -> Array:
+    """Coordinates of outputs y strictly between bounds of the same shape; an infinite bound is none."""
+    has_lower, has_upper = np.isfinite(lower), np.isfinite(upper)
+    # Where there is no bound the distance is 1, of which the logarithm is 0.
+    above = np.where(has_lower, y - np.where(has_lower, lower, 0.0), 1.0)
+    below = np.where(has_upper, np.where(has_upper, upper, 0.0) - y, 1.0)
+    return np.where(has_lower | has_upper, np.log(above) - np.log(below), y)
+
+
+def from_coordinate(coordinate: Array, lower: Array, upper: Array) -> Array:
+    """Outputs of coordinates, strictly between bounds that broadcast to their shape."""
+    has_lower, has_upper = np.isfinite(lower), np.isfinite(upper)
+    start, end = np.where(has_lower, lower, 0.0), np.where(has_upper, upper, 0.0)
+    # Of a coordinate far out no more than the bound itself would be left: the exponent is the smaller one.
+    share = 1.0 / (1.0 + np.exp(-np.clip(coordinate, -700.0, 700.0)))
+    grown = np.exp(np.clip(coordinate, -700.0, 700.0))
+    two_sided = start + (end - start) * share
+    one_sided = np.where(has_lower, start + grown, end - 1.0 / grown)
+    y = np.where(has_lower & has_upper, two_sided, np.where(has_lower | has_upper, one_sided, coordinate))
+    # Rounding may put a draw onto a bound, which no output reaches.
+    return np.clip(y, np.nextafter(lower, np.inf), np.nextafter(upper, -np.inf))

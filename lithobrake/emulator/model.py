@@ -1,0 +1,222 @@
+"""An emulator: what a stochastic model does at inputs that nobody has run, as draws."""
+
+import os
+from dataclasses import dataclass, fields, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lithobrake.chaos.counts import whole_number
+from lithobrake.chaos.polynomials import Array
+from lithobrake.chaos.storage import read, write
+from lithobrake.chaos.threads import one_thread
+from lithobrake.emulator.coordinates import from_coordinate
+from lithobrake.emulator.law import fit_law
+from lithobrake.emulator.mean_law import MeanLaw, mean_law
+from lithobrake.emulator.outcome_classes import fit_classes
+from lithobrake.emulator.residual_rows import drawn_rows, row_weights, smoothed, smoothing
+from lithobrake.emulator.significance import found_inputs
+from lithobrake.emulator.storage import FORMAT, Parts, content_of, parts_of
+from lithobrake.emulator.training import checked_bounds, checked_points
+
+# Draws that are made at once: bounds the memory, and belongs to what a seed gives.
+_BLOCK = 1 << 18
+
+
+@dataclass(frozen=True)
+class Draws:
+    """y [point_count, count, output_count], NaN where the drawn outcome has no outputs; outcome [point_count, count],
+    places among the outcome names; row [point_count, count], the run whose scatter and riders a draw has, or -1.
+    """
+
+    y: Array
+    outcome: NDArray[np.int64]
+    row: NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class Emulator(Parts):
+    """The law of a stochastic model's outputs at given inputs; `fit` makes one."""
+
+    @property
+    def outcome_names(self) -> tuple[str, ...]:
+        """Names of the outcomes, in the order of their chances."""
+        return self.runs.outcome_names
+
+    @property
+    def output_names(self) -> tuple[str, ...]:
+        """Names of the outputs, in the order of their columns."""
+        return self.runs.output_names
+
+    @property
+    def follows_inputs(self) -> bool:
+        """Whether draws depend on the inputs; else each is one of the runs."""
+        return self.choices.follows_inputs
+
+    @property
+    def statement(self) -> str:
+        """What the emulator makes of the inputs, in a sentence."""
+        count, groups = len(self.runs.y), len(np.unique(self.runs.group))
+        if not self.follows_inputs:
+            return (
+                f"The inputs do not change the outputs noticeably: no law of them did better on groups left out than "
+                f"drawing one of the {count} runs with outputs ({groups} groups), so draws are runs alone."
+            )
+        share = self.scores.gain / self.scores.energy_of_rows
+        return (
+            f"On groups left out the inputs make the energy score {100 * share:.1f} % better "
+            f"(standard error {100 * self.scores.gain_error / self.scores.energy_of_rows:.1f}) than drawing one of the "
+            f"{count} runs with outputs ({groups} groups)."
+        )
+
+    def outcome_probability(self, x: ArrayLike) -> Array:
+        """Chances of the outcomes at x [point_count, input_count], shape [point_count, outcome_count]."""
+        return self.classes.chances(self._linear(self._matrix(x)))
+
+    def sample(
+        self,
+        x: ArrayLike,
+        count: int,
+        seed: int = 0,
+        *,
+        lower: ArrayLike | None = None,
+        upper: ArrayLike | None = None,
+    ) -> Array:
+        """Draw `count` runs at each x [point_count, input_count], shape [point_count, count, output_count].
+
+        NaN where the drawn outcome has no outputs. lower, upper: bounds at x, as in `fit`; bounds that were the same
+        in all runs are known. Raises ValueError for points outside the inputs, and where bounds are missing.
+        """
+        return self.draw(x, count, seed, lower=lower, upper=upper).y
+
+    @one_thread()
+    def draw(
+        self,
+        x: ArrayLike,
+        count: int,
+        seed: int = 0,
+        *,
+        lower: ArrayLike | None = None,
+        upper: ArrayLike | None = None,
+    ) -> Draws:
+        """Draw as `sample` does, and say with which outcome and from which run."""
+        whole_number("count", count, 1)
+        matrix = self._matrix(x)
+        low, high = self._bounds(lower, upper, len(matrix))
+        random = np.random.default_rng(seed)
+        parts = []
+        step = max(1, _BLOCK // max(count, len(self.runs.y)))
+        for start in range(0, len(matrix), step):
+            block = slice(start, start + step)
+            parts.append(self._block(matrix[block], count, low[block], high[block], random))
+        if not parts:
+            empty = np.empty((0, count), dtype=np.int64)
+            return Draws(np.empty((0, count, len(self.output_names))), empty, empty)
+        return Draws(*(np.concatenate(part) for part in zip(*parts, strict=True)))
+
+    def refits(self, count: int = 200, seed: int = 0) -> list["Emulator"]:
+        """Fit anew to groups drawn with replacement, `count` times: how far the emulator itself is uncertain.
+
+        TrainingRuns within a group stay as they are, and what was chosen by leaving groups out is kept.
+        Source: [Field-2007]; [Huang-2018] (few groups).
+        """
+        random = np.random.default_rng(seed)
+        group_count = int(self.runs.group.max()) + 1
+        refits: list[Emulator] = []
+        while len(refits) < whole_number("count", count, 1):
+            drawn = np.bincount(random.integers(group_count, size=group_count), minlength=group_count)
+            weights = drawn[self.runs.group].astype(float)
+            # Groups without any outputs, drawn alone, have no law.
+            if (weights[self.runs.has_outputs] > 0.0).sum() > 1:
+                refits.append(self.reweighted(weights))
+        return refits
+
+    @one_thread()
+    def reweighted(self, weights: ArrayLike) -> "Emulator":
+        """Fit anew with each run counted as often as weights say [run_count]."""
+        counted = np.asarray(weights, dtype=float)
+        matrix = self._run_matrix
+        law = fit_law(
+            self.terms.indices,
+            matrix[self.runs.has_outputs],
+            self.runs.coordinates,
+            self.choices,
+            counted[self.runs.has_outputs],
+        )
+        linear, names = self._linear(matrix), self.outcome_names
+        classes = fit_classes(linear, self.runs.outcome, len(names), self.inverse_penalty, counted)
+        return replace(self, weights=counted, law=law, classes=classes)
+
+    def mean_law(self, physical: bool = False) -> MeanLaw:
+        """Mean and Sobol indices of E[y | x] for each modelled output, freed of noise.
+
+        physical: of the outputs in their units; else of their coordinates (logit, logarithm), in which the law is made.
+        """
+        target = self.runs.y[:, list(self.runs.modelled)] if physical else self.runs.coordinates
+        there = self.runs.has_outputs
+        return mean_law(self.terms, self._run_matrix[there], target, self.choices.location, self.weights[there])
+
+    def found_inputs(self, level: float = 0.9, seed: int = 0) -> dict[str, bool]:
+        """Say which inputs change the mean of any output, at one level for all inputs and outputs together.
+
+        If none does, none is found with probability `level`.
+        """
+        there = self.runs.has_outputs
+        found = found_inputs(self.terms, self._run_matrix[there], self.runs.coordinates, level, seed)
+        return dict(zip(self.runs.inputs, found.tolist(), strict=True))
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write everything into one readable JSON file, from which `load` gives the same draws."""
+        write(FORMAT, content_of(self, self.statement), path)
+
+    @cached_property
+    def _run_matrix(self) -> Array:
+        return self.terms.matrix(self.runs.x)
+
+    def _matrix(self, x: ArrayLike) -> Array:
+        return self.terms.matrix(checked_points(self.runs.inputs, x))
+
+    def _linear(self, matrix: Array) -> Array:
+        return matrix[:, : len(self.runs.inputs)]
+
+    def _bounds(self, lower: ArrayLike | None, upper: ArrayLike | None, count: int) -> tuple[Array, Array]:
+        """Bounds [count, output_count] at points: those given, or those of the runs where they never differed."""
+        known = []
+        for name, given, of_runs in (("lower", lower, self.runs.lower), ("upper", upper, self.runs.upper)):
+            if given is None and (of_runs != of_runs[0]).any():
+                raise ValueError(f"{name} is missing, but it differed between the runs: give it at each point")
+            known.append(of_runs[0] if given is None else given)
+        tables = checked_bounds(known[0], known[1], (count, len(self.output_names)))
+        for name, table, of_runs in zip(("lower", "upper"), tables, (self.runs.lower, self.runs.upper), strict=True):
+            if (np.isfinite(table) != np.isfinite(of_runs[0])).any():
+                raise ValueError(f"{name} must be finite for the same outputs as in the runs: give it as fit was given")
+        return tables
+
+    def _block(
+        self, matrix: Array, count: int, lower: Array, upper: Array, random: np.random.Generator
+    ) -> tuple[Array, NDArray[np.int64], NDArray[np.int64]]:
+        """Draws at some points: y, outcome and row, as in Draws."""
+        linear, columns = self._linear(matrix), list(self.runs.modelled)
+        outcome = drawn_rows(self.classes.chances(linear), count, random)
+        run_linear = self._linear(self._run_matrix)[self.runs.has_outputs]
+        chances = row_weights(linear, run_linear, self.law.weights, self.choices.bandwidth)
+        row = drawn_rows(chances, count, random)
+        location, scale = self.law.at(matrix)
+        size, root = smoothing(self.law.rows, self.law.weights)
+        scatter = smoothed(self.law.rows[row], size, root, random)
+        y = self.runs.y[row]
+        coordinate = location[:, None] + scale[:, None] * scatter
+        y[:, :, columns] = from_coordinate(coordinate, lower[:, None, columns], upper[:, None, columns])
+        without = outcome != self.runs.output_outcome
+        y[without] = np.nan
+        # A place among the runs with outputs becomes one among all runs.
+        places = np.nonzero(self.runs.has_outputs)[0][row]
+        places[without] = -1
+        return y, outcome, places
+
+
+def load(path: str | os.PathLike[str]) -> Emulator:
+    """Read what `Emulator.save` wrote. Raises ValueError if the file is of another kind, or damaged."""
+    parts = read(FORMAT, parts_of, path)
+    return Emulator(**{field.name: getattr(parts, field.name) for field in fields(parts)})

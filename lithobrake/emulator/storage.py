@@ -1,0 +1,179 @@
+"""One readable JSON file for each emulator: its runs, its choices and its coefficients, bit for bit.
+
+Nothing in the file is executed, and whoever has lost this program can still read what was fitted to what.
+"""
+
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+
+from lithobrake.chaos.multi_index import multi_index_set
+from lithobrake.chaos.polynomials import Array
+from lithobrake.chaos.storage import (
+    indices_from_json,
+    inputs_from_json,
+    inputs_to_json,
+    names_from_json,
+    numbers_from_json,
+)
+from lithobrake.emulator.law import Choices, Law
+from lithobrake.emulator.outcome_classes import OutcomeClasses
+from lithobrake.emulator.ridge_ladder import Ladder, Rung
+from lithobrake.emulator.terms import Terms
+from lithobrake.emulator.training import TrainingRuns
+from lithobrake.emulator.validation import Scores
+
+FORMAT = "lithobrake emulator"
+# JSON has no infinity: no bound and no kernel are null.
+SCORES = ("energy", "energy_of_rows", "gain", "gain_error")
+
+
+@dataclass(frozen=True)
+class Parts:
+    """What an emulator is made of. weights: how often each run counts [run_count], 1 but for refits."""
+
+    runs: TrainingRuns
+    terms: Terms
+    choices: Choices
+    inverse_penalty: float
+    weights: Array
+    law: Law
+    classes: OutcomeClasses
+    scores: Scores
+
+
+def content_of(model: Parts, statement: str) -> dict[str, Any]:
+    """The parts of an emulator as JSON values."""
+    runs = model.runs
+    return {
+        "inputs": inputs_to_json(runs.inputs),
+        "output_names": list(runs.output_names),
+        "riders": [runs.output_names[k] for k in runs.riders],
+        "outcome_names": list(runs.outcome_names),
+        "output_outcome": runs.outcome_names[runs.output_outcome],
+        "statement": statement,
+        "scores": {key: getattr(model.scores, key) for key in SCORES},
+        "crps_skill": model.scores.crps_skill.tolist(),
+        "band_90": model.scores.band_90.tolist(),
+        "bandwidth": _finite(model.choices.bandwidth),
+        "location_ladders": [[asdict(rung) for rung in ladder] for ladder in model.choices.location],
+        "scale_ladders": [[asdict(rung) for rung in ladder] for ladder in model.choices.scale],
+        "multi_indices": model.terms.indices.tolist(),
+        "location": model.law.location.tolist(),
+        "log_scale": model.law.log_scale.tolist(),
+        "class_inverse_penalty": model.inverse_penalty,
+        "class_intercepts": model.classes.intercepts.tolist(),
+        "class_slopes": model.classes.slopes.tolist(),
+        "class_never": model.classes.never.tolist(),
+        "group": runs.group.tolist(),
+        "outcome": runs.outcome.tolist(),
+        "weights": model.weights.tolist(),
+        "x": runs.x.tolist(),
+        "y": runs.y.tolist(),
+        "lower": _table_to_json(runs.lower),
+        "upper": _table_to_json(runs.upper),
+        "rows": model.law.rows.tolist(),
+        "pit": model.scores.pit.tolist(),
+    }
+
+
+def parts_of(content: dict[str, Any]) -> Parts:
+    """The parts that `content_of` wrote; raises ValueError where they do not fit together."""
+    runs = _runs(content)
+    modelled, inputs = len(runs.modelled), len(runs.inputs)
+    indices = indices_from_json(content["multi_indices"], inputs)
+    linear = multi_index_set(inputs, 1)[1:]
+    if not np.array_equal(indices[:inputs], linear) or (indices[inputs:].sum(axis=1) < 2).any():
+        raise ValueError("multi_indices must begin with the linear terms in the order of the inputs")
+    bandwidth = content["bandwidth"]
+    choices = Choices(
+        tuple(_ladder_from_json(rows, inputs) for rows in content["location_ladders"]),
+        tuple(_ladder_from_json(rows, inputs) for rows in content["scale_ladders"]),
+        float("inf") if bandwidth is None else float(bandwidth),
+    )
+    weights = _column("weights", content["weights"], len(runs.x))
+    law = Law(
+        _table("location", content["location"], (1 + len(indices), modelled)),
+        _table("log_scale", content["log_scale"], (1 + inputs, modelled)),
+        _table("rows", content["rows"], (len(runs.y), modelled)),
+        weights[runs.has_outputs],
+    )
+    count = len(runs.outcome_names)
+    classes = OutcomeClasses(
+        _column("class_intercepts", content["class_intercepts"], count),
+        _table("class_slopes", content["class_slopes"], (count, inputs)),
+        _column("class_never", content["class_never"], count),
+    )
+    scores = Scores(
+        **{key: float(content["scores"][key]) for key in SCORES},
+        crps_skill=_column("crps_skill", content["crps_skill"], modelled),
+        band_90=_column("band_90", content["band_90"], modelled),
+        pit=_table("pit", content["pit"], (len(runs.y), modelled)),
+    )
+    if len(choices.location) != modelled or len(choices.scale) != modelled:
+        raise ValueError("location_ladders and scale_ladders must have one entry for each modelled output")
+    penalty = float(content["class_inverse_penalty"])
+    return Parts(runs, Terms(runs.inputs, indices), choices, penalty, weights, law, classes, scores)
+
+
+def _runs(content: dict[str, Any]) -> TrainingRuns:
+    """The runs of a file; raises ValueError where its tables do not fit together."""
+    inputs, names = inputs_from_json(content["inputs"]), tuple(names_from_json(content["output_names"]))
+    outcome_names = tuple(names_from_json(content["outcome_names"]))
+    x = numbers_from_json("x", content["x"], len(inputs))
+    outcome, group = (_column(key, content[key], len(x)).astype(np.int64) for key in ("outcome", "group"))
+    if outcome.min() < 0 or outcome.max() >= len(outcome_names) or group.min() < 0:
+        raise ValueError("outcome and group must be places from 0 on, one for each run")
+    output_outcome = outcome_names.index(content["output_outcome"])
+    count = int((outcome == output_outcome).sum())
+    return TrainingRuns(
+        inputs,
+        x,
+        outcome,
+        outcome_names,
+        output_outcome,
+        group,
+        _table("y", content["y"], (count, len(names))),
+        _table_from_json("lower", content["lower"], (count, len(names)), -np.inf),
+        _table_from_json("upper", content["upper"], (count, len(names)), np.inf),
+        names,
+        tuple(names.index(rider) for rider in content["riders"]),
+    )
+
+
+def _finite(value: float) -> float | None:
+    return float(value) if np.isfinite(value) else None
+
+
+def _ladder_from_json(rows: Any, input_count: int) -> Ladder:
+    """Rungs of a ladder; raises ValueError for inputs that are not there."""
+    ladder = tuple(Rung(**{**row, "inputs": tuple(row["inputs"])}) for row in rows)
+    if not {one for rung in ladder for one in rung.inputs} <= set(range(input_count)):
+        raise ValueError(f"a ladder has inputs outside 0 to {input_count - 1}")
+    return ladder
+
+
+def _table_to_json(bounds: Array) -> list[list[float | None]]:
+    """Bounds, one row for all runs where they never differ."""
+    rows = bounds[:1] if (bounds == bounds[0]).all() else bounds
+    return [[_finite(value) for value in row] for row in rows.tolist()]
+
+
+def _table_from_json(name: str, rows: Any, shape: tuple[int, int], none: float) -> Array:
+    table = np.array([[none if value is None else value for value in row] for row in rows], dtype=float)
+    if table.ndim != 2 or len(table) not in (1, shape[0]) or table.shape[1] != shape[1]:
+        raise ValueError(f"{name} must be one row, or one for each run with outputs, of {shape[1]} numbers or null")
+    return np.array(np.broadcast_to(table, shape))
+
+
+def _table(name: str, rows: Any, shape: tuple[int, int]) -> Array:
+    table = numbers_from_json(name, rows, shape[1])
+    if len(table) != shape[0]:
+        raise ValueError(f"{name} has {len(table)} rows, but must have {shape[0]}")
+    return table
+
+
+def _column(name: str, values: Any, count: int) -> Array:
+    """A list of finite numbers [count]."""
+    return _table(name, [[value] for value in values], (count, 1))[:, 0]

@@ -1,0 +1,173 @@
+"""The runs that an emulator is made from, checked."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lithobrake.chaos.abstract_distribution import Distribution, checked_inputs
+from lithobrake.chaos.basis import outside_count, points_of
+from lithobrake.chaos.polynomials import Array
+from lithobrake.emulator.coordinates import to_coordinate
+
+WITH_OUTPUTS, WITHOUT_OUTPUTS = "with_outputs", "without_outputs"
+# Fewer residuals than this are no distribution to draw from.
+FEWEST = 8
+
+
+@dataclass(frozen=True)
+class TrainingRuns:
+    """Runs of a model. x [run_count, input_count]; outcome [run_count], places among the outcome names; group
+    [run_count], numbers from 0; y, lower, upper [output_run_count, output_count] of the runs with outputs alone.
+
+    riders: columns of y that are drawn with their row unchanged.
+    """
+
+    inputs: dict[str, Distribution]
+    x: Array
+    outcome: NDArray[np.int64]
+    outcome_names: tuple[str, ...]
+    output_outcome: int
+    group: NDArray[np.int64]
+    y: Array
+    lower: Array
+    upper: Array
+    output_names: tuple[str, ...]
+    riders: tuple[int, ...]
+
+    @cached_property
+    def has_outputs(self) -> NDArray[np.bool_]:
+        """Which runs have outputs [run_count]."""
+        return self.outcome == self.output_outcome
+
+    @cached_property
+    def modelled(self) -> tuple[int, ...]:
+        """Columns of y that have a law of their own."""
+        return tuple(k for k in range(self.y.shape[1]) if k not in self.riders)
+
+    @cached_property
+    def coordinates(self) -> Array:
+        """Coordinates of the modelled outputs [output_run_count, modelled_count]."""
+        columns = list(self.modelled)
+        return to_coordinate(self.y[:, columns], self.lower[:, columns], self.upper[:, columns])
+
+
+def checked_points(inputs: Mapping[str, Distribution], x: ArrayLike) -> Array:
+    """Points [count, input_count] inside the support of all inputs; raises ValueError for others."""
+    points = points_of(inputs, x)
+    count, sentence = outside_count(inputs, points)
+    if count:
+        raise ValueError(f"x has {count} of {len(points)} points outside the inputs: {sentence}")
+    return points
+
+
+def checked_bounds(lower: ArrayLike | None, upper: ArrayLike | None, shape: tuple[int, int]) -> tuple[Array, Array]:
+    """Bounds as tables of a shape [count, output_count]; None is no bound. Raises ValueError for other shapes."""
+    tables = []
+    for name, given, none in (("lower", lower, -np.inf), ("upper", upper, np.inf)):
+        table = np.asarray(none if given is None else given, dtype=float)
+        try:
+            tables.append(np.array(np.broadcast_to(table, shape)))
+        except ValueError:
+            raise ValueError(
+                f"{name} has shape {table.shape}, but must be a number, [{shape[1]}] (one for each output) or "
+                f"[{shape[0]}, {shape[1]}] (one for each point and output)"
+            ) from None
+    if not (tables[0] < tables[1]).all():
+        raise ValueError("lower must be less than upper everywhere, and neither may be NaN: give -inf or inf for none")
+    return tables[0], tables[1]
+
+
+def checked_runs(
+    inputs: Mapping[str, Distribution],
+    x: ArrayLike,
+    y: ArrayLike,
+    groups: ArrayLike | None,
+    outcome: ArrayLike | None,
+    outcomes: Sequence[str] | None,
+    lower: ArrayLike | None,
+    upper: ArrayLike | None,
+    riders: Sequence[int | str],
+    output_names: Sequence[str] | None,
+) -> TrainingRuns:
+    """Check what `fit` was given; raises ValueError for shapes, values and labels that do not fit together."""
+    distributions = checked_inputs(inputs)
+    points = checked_points(distributions, x)
+    table = np.atleast_2d(np.asarray(y, dtype=float).T).T
+    if table.ndim != 2 or len(table) != len(points) or table.shape[1] == 0:
+        raise ValueError(f"y has shape {table.shape}, but must be [{len(points)}, output_count]: one row for each run")
+    names = tuple(output_names) if output_names is not None else tuple(f"y{k}" for k in range(table.shape[1]))
+    if len(names) != table.shape[1] or len(set(names)) < len(names):
+        raise ValueError(f"output_names are {names}, but must be {table.shape[1]} different names")
+    labels, outcome_names, output_outcome = _checked_outcome(table, outcome, outcomes)
+    there = labels == output_outcome
+    low, high = (bound[there] for bound in checked_bounds(lower, upper, (len(table), table.shape[1])))
+    carried = _checked_riders(riders, names)
+    for bound in (low, high):
+        # NaN marks no bound alike in all runs, so that a column has one kind of coordinate.
+        if (np.isfinite(bound).any(axis=0) != np.isfinite(bound).all(axis=0)).any():
+            raise ValueError("a bound must be finite in all runs of an output or in none")
+    wrong = ~((low < table[there]) & (table[there] < high))
+    wrong[:, list(carried)] = False
+    if wrong.any():
+        run, k = np.argwhere(wrong)[0]
+        raise ValueError(
+            f"{names[k]} is {table[there][run, k]:g}, but must lie between its bounds {low[run, k]:g} and "
+            f"{high[run, k]:g}, and on neither: widen the bounds"
+        )
+    group, values = _checked_groups(groups, len(points)), table[there]
+    return TrainingRuns(
+        distributions, points, labels, outcome_names, output_outcome, group, values, low, high, names, carried
+    )
+
+
+def _checked_outcome(
+    y: Array, outcome: ArrayLike | None, outcomes: Sequence[str] | None
+) -> tuple[NDArray[np.int64], tuple[str, ...], int]:
+    """Outcome of each run as a place among the names, the names, and the place of the one that has outputs."""
+    there = np.isfinite(y).all(axis=1)
+    if (np.isnan(y).any(axis=1) & ~np.isnan(y).all(axis=1)).any() or np.isinf(y).any():
+        raise ValueError("each row of y must be all numbers, or all NaN where its outcome has no outputs")
+    given = np.where(there, WITH_OUTPUTS, WITHOUT_OUTPUTS) if outcome is None else np.asarray(outcome).astype(str)
+    if given.shape != (len(y),):
+        raise ValueError(f"outcome has shape {given.shape}, but must be [{len(y)}]: one label for each run")
+    names = tuple(dict.fromkeys([*(outcomes or ()), *sorted(set(given.tolist()))]))
+    if outcomes is not None and len(names) > len(outcomes):
+        raise ValueError(f"outcome holds {names[len(outcomes)]!r}, but outcomes are {', '.join(outcomes)}")
+    with_outputs = sorted(set(given[there].tolist()))
+    if len(with_outputs) != 1 or with_outputs[0] in given[~there]:
+        raise ValueError(
+            f"rows of y are there for the outcomes {with_outputs}, but one outcome must have outputs in all its runs, "
+            "and the others in none: give runs with outputs one label, and fit another kind apart"
+        )
+    if there.sum() < FEWEST:
+        raise ValueError(f"{there.sum()} runs have outputs, but an emulator needs at least {FEWEST}: make more runs")
+    place = {name: index for index, name in enumerate(names)}
+    return np.array([place[label] for label in given.tolist()]), names, place[with_outputs[0]]
+
+
+def _checked_riders(riders: Sequence[int | str], names: tuple[str, ...]) -> tuple[int, ...]:
+    """Columns of the riders, given as columns or names; at least one output must be left."""
+    carried = []
+    for one in riders:
+        if one not in names and one not in range(len(names)):
+            raise ValueError(f"riders hold {one!r}, but must be columns of y, 0 to {len(names) - 1}, or names: {names}")
+        carried.append(names.index(one) if isinstance(one, str) else int(one))
+    if len(set(carried)) == len(names):
+        raise ValueError("all outputs are riders, but at least one must not be: it is what a law is fitted to")
+    return tuple(sorted(set(carried)))
+
+
+def _checked_groups(groups: ArrayLike | None, count: int) -> NDArray[np.int64]:
+    """Groups as numbers from 0 [count]; each run is its own where none are given."""
+    if groups is None:
+        return np.arange(count)
+    given = np.asarray(groups)
+    if given.shape != (count,):
+        raise ValueError(f"groups has shape {given.shape}, but must be [{count}]: one label for each run")
+    numbers = np.unique(given, return_inverse=True)[1].astype(np.int64)
+    if numbers.max() == 0:
+        raise ValueError("groups hold one group, but leaving one out needs two: leave groups out to score run by run")
+    return numbers

@@ -1,0 +1,136 @@
+"""What a law is worth on groups that it has not seen, beside drawing one of the runs whatever the inputs."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lithobrake.chaos.multi_index import Indices
+from lithobrake.chaos.polynomials import Array
+from lithobrake.emulator.coordinates import from_coordinate
+from lithobrake.emulator.law import Choices, Law, best_choices, fit_law, rows_alone
+from lithobrake.emulator.residual_rows import BANDWIDTHS, row_weights
+from lithobrake.emulator.scores import crps, energy_scores, pit
+from lithobrake.emulator.training import TrainingRuns
+
+# Groups beyond this many are left out several at a time: the time grows with the folds, the answer hardly changes.
+MOST_FOLDS = 24
+# Rows of an ensemble whose mutual distances are taken; of more than this every second, third, ... one.
+MOST_MEMBERS = 300
+BAND = (0.05, 0.95)
+
+
+@dataclass(frozen=True)
+class Scores:
+    """Of runs in groups left out, coordinates in units of their spread; the smaller a score, the better.
+
+    energy, energy_of_rows: mean energy scores of the law and of drawing rows alone. gain: their mean difference, and
+    gain_error its standard error over groups. crps_skill: 1 - CRPS / CRPS of rows alone, for each modelled output.
+    band_90: share of runs inside the middle 90 % of what was foretold [modelled_count]. pit: where in its foretold
+    distribution each run lay [output_run_count, modelled_count].
+    """
+
+    energy: float
+    energy_of_rows: float
+    gain: float
+    gain_error: float
+    crps_skill: Array
+    band_90: Array
+    pit: Array
+
+
+@dataclass(frozen=True)
+class _Fold:
+    """Runs that are left out, test [output_run_count], and what is fitted to the others: a law, and rows alone."""
+
+    test: NDArray[np.bool_]
+    law: Law
+    rows: Law
+
+
+def folds_of(group: NDArray[np.int64], most: int) -> NDArray[np.int64]:
+    """Fold of each run [run_count], whole groups together, numbered from 0."""
+    numbers = np.unique(group, return_inverse=True)[1]
+    # Neighbours in a sequence of runs fall into different folds.
+    return np.asarray(numbers % min(most, int(numbers.max()) + 1), dtype=np.int64)
+
+
+def choices_by_groups(runs: TrainingRuns, indices: Indices, matrix: Array) -> tuple[Choices, Scores]:
+    """Choose law and width of the kernel, leaving groups out; matrix [output_run_count, term_count].
+
+    Where the law does no better than rows alone, rows alone are chosen.
+    """
+    group, outputs = runs.group[runs.has_outputs], runs.coordinates.shape[1]
+    folds = _folds(runs, indices, matrix, folds_of(group, MOST_FOLDS))
+    energy, energy_of_rows = np.empty((len(BANDWIDTHS), len(group))), np.empty(len(group))
+    for fold in folds:
+        energy[:, fold.test] = _energies(runs, matrix, fold, fold.law, BANDWIDTHS)
+        energy_of_rows[fold.test] = _energies(runs, matrix, fold, fold.rows, BANDWIDTHS[:1])[0]
+    best = int(np.argmin(energy.mean(axis=1)))
+    gain, error = _mean_by_groups(energy_of_rows - energy[best], group)
+    choices = best_choices(indices, matrix, runs.coordinates, BANDWIDTHS[best])
+    if gain <= 0.0:
+        choices, energy[best], gain, error = rows_alone(outputs), energy_of_rows, 0.0, 0.0
+    skill, held, places = _calibration(runs, matrix, folds, choices)
+    return choices, Scores(float(energy[best].mean()), float(energy_of_rows.mean()), gain, error, skill, held, places)
+
+
+def _folds(runs: TrainingRuns, indices: Indices, matrix: Array, fold: NDArray[np.int64]) -> list[_Fold]:
+    """Fit anew without each fold, and choose anew too: a choice must not have seen what it is tested on."""
+    folds = []
+    for number in range(int(fold.max()) + 1):
+        test = fold == number
+        rest, kept, ones = matrix[~test], runs.coordinates[~test], np.ones((~test).sum())
+        laws = [
+            fit_law(indices, rest, kept, choices, ones)
+            for choices in (best_choices(indices, rest, kept), rows_alone(kept.shape[1]))
+        ]
+        folds.append(_Fold(test, laws[0], laws[1]))
+    return folds
+
+
+def _energies(runs: TrainingRuns, matrix: Array, fold: _Fold, law: Law, bandwidths: tuple[float, ...]) -> Array:
+    """Energy scores [bandwidth_count, case_count] of the runs that a law has not seen, in units of the spread."""
+    spread = runs.coordinates.std(axis=0)
+    unit = np.where(spread > 0.0, spread, 1.0)
+    location, scale = law.at(matrix[fold.test])
+    observed = (runs.coordinates[fold.test] - location) / unit
+    inputs = len(runs.inputs)
+    thinned = slice(None, None, -(-len(law.rows) // MOST_MEMBERS))
+    rows, points = law.rows[thinned], matrix[~fold.test][thinned, :inputs]
+    weights = [row_weights(matrix[fold.test, :inputs], points, np.ones(len(rows)), one) for one in bandwidths]
+    return energy_scores(rows, np.stack(weights), scale / unit, observed)
+
+
+def _calibration(runs: TrainingRuns, matrix: Array, folds: list[_Fold], choices: Choices) -> tuple[Array, Array, Array]:
+    """CRPS skill and share in the 90 % band [modelled_count], and PIT [output_run_count, modelled_count]."""
+    columns, inputs = list(runs.modelled), len(runs.inputs)
+    y, places = runs.y[:, columns], np.empty(runs.coordinates.shape)
+    losses, losses_of_rows = np.empty(y.shape), np.empty(y.shape)
+    for fold in folds:
+        test, law = fold.test, fold.law if choices.follows_inputs else fold.rows
+        weights = row_weights(matrix[test, :inputs], matrix[~test, :inputs], law.weights, choices.bandwidth)
+        alike = row_weights(matrix[test, :inputs], matrix[~test, :inputs], law.weights, float("inf"))
+        members, members_of_rows = (_members(runs, matrix, test, one) for one in (law, fold.rows))
+        for j in range(len(columns)):
+            losses[test, j] = crps(members[:, :, j], weights, y[test, j])
+            losses_of_rows[test, j] = crps(members_of_rows[:, :, j], alike, y[test, j])
+            places[test, j] = pit(members[:, :, j], weights, y[test, j])
+    worst = losses_of_rows.mean(axis=0)
+    skill = 1.0 - losses.mean(axis=0) / np.where(worst > 0.0, worst, 1.0)
+    return skill, ((places >= BAND[0]) & (places <= BAND[1])).mean(axis=0), places
+
+
+def _members(runs: TrainingRuns, matrix: Array, test: NDArray[np.bool_], law: Law) -> Array:
+    """Outputs that each row of a law gives at the runs under test, [case_count, row_count, modelled_count]."""
+    location, scale = law.at(matrix[test])
+    low, high = (bound[test][:, None, list(runs.modelled)] for bound in (runs.lower, runs.upper))
+    return from_coordinate(location[:, None] + scale[:, None] * law.rows, low, high)
+
+
+def _mean_by_groups(values: Array, group: NDArray[np.int64]) -> tuple[float, float]:
+    """Mean of values [run_count] and its standard error, as groups and not runs are independent."""
+    numbers = np.unique(group, return_inverse=True)[1]
+    sums = np.bincount(numbers, weights=values - values.mean())
+    count = len(sums)
+    return float(values.mean()), float(np.sqrt(count / (count - 1.0) * (sums**2).sum()) / len(values))

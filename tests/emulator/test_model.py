@@ -1,0 +1,150 @@
+"""The public face of an emulator: what it is given, what it draws, what it refuses."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from lithobrake import emulator
+from lithobrake.chaos import Uniform
+
+INPUTS = {"a": Uniform(0.0, 1.0), "b": Uniform(0.0, 1.0)}
+COUNT = 120
+
+
+def runs(seed: int = 0) -> dict[str, Any]:
+    """Arguments of `fit`: a speed below 1 + a, a spin, the run's number as a rider; one run in eight has stopped."""
+    rng = np.random.default_rng(seed)
+    x = rng.random((COUNT, 2))
+    limit = 1.0 + x[:, 0]
+    speed = limit / (1.0 + np.exp(-(2.0 * x[:, 1] - 1.0 + rng.gamma(2.0, 0.4, COUNT))))
+    y = np.column_stack([speed, rng.exponential(size=COUNT), np.arange(COUNT)])
+    outcome = np.where(rng.random(COUNT) < 0.125, "stopped", "left")
+    y[outcome == "stopped"] = np.nan
+    upper = np.column_stack([limit, np.full((COUNT, 2), np.inf)])
+    return {
+        "x": x, "y": y, "groups": np.arange(COUNT) % 12, "outcome": outcome, "lower": [0.0, 0.0, -np.inf],
+        "upper": upper, "riders": [2], "output_names": ("speed", "spin", "run"),
+    }  # fmt: skip
+
+
+MODEL = emulator.fit(INPUTS, **runs())
+X = np.random.default_rng(5).random((40, 2))
+UPPER = np.column_stack([1.0 + X[:, 0], np.full((40, 2), np.inf)])
+
+
+def test_draws_have_their_shape_and_come_again() -> None:
+    first, again = (MODEL.sample(X, 100, seed=3, upper=UPPER) for _ in range(2))
+    assert first.shape == (40, 100, 3)
+    np.testing.assert_array_equal(first, again)
+    assert (MODEL.sample(X, 100, seed=4, upper=UPPER) != first).any()
+    assert MODEL.sample(X[:0], 5, upper=UPPER[:0]).shape == (0, 5, 3)
+
+
+def test_outputs_are_there_where_the_outcome_has_them() -> None:
+    draws = MODEL.draw(X, 500, upper=UPPER)
+    stopped = draws.outcome == MODEL.outcome_names.index("stopped")
+    assert np.isnan(draws.y[stopped]).all()
+    assert not np.isnan(draws.y[~stopped]).any()
+    assert (draws.row[stopped] == -1).all()
+    chances = MODEL.outcome_probability(X)[:, MODEL.outcome_names.index("stopped")]
+    # Five standard deviations of 20 000 draws.
+    assert abs(stopped.mean() - chances.mean()) < 5.0 * np.sqrt(0.125 * 0.875 / stopped.size)
+
+
+def test_riders_come_unchanged_with_their_row() -> None:
+    draws = MODEL.draw(X, 200, upper=UPPER)
+    there = draws.row >= 0
+    np.testing.assert_array_equal(draws.y[there][:, 2], draws.row[there])
+
+
+def test_no_draw_leaves_bounds_that_follow_the_inputs() -> None:
+    speed, spin = np.moveaxis(MODEL.sample(X, 25_000, upper=UPPER)[:, :, :2], 2, 0)
+    assert np.nanmin(speed) > 0.0
+    assert (np.nanmax(speed, axis=1) < UPPER[:, 0]).all()
+    assert np.nanmin(spin) > 0.0
+
+
+def test_bounds_at_new_inputs_are_asked_for_only_where_they_differed() -> None:
+    with pytest.raises(ValueError, match=r"upper is missing"):
+        MODEL.sample(X, 1)
+    with pytest.raises(ValueError, match=r"upper must be finite for the same outputs"):
+        MODEL.sample(X, 1, upper=2.0)
+
+
+def test_a_law_is_followed_and_said() -> None:
+    medians = np.nanmedian(MODEL.sample([[0.5, 0.1], [0.5, 0.9]], 4000, upper=[1.5, np.inf, np.inf])[:, :, 0], axis=1)
+    assert medians[1] > medians[0] + 0.2
+    assert MODEL.follows_inputs
+    assert "better" in MODEL.statement
+
+
+def test_without_a_law_draws_are_runs() -> None:
+    rng = np.random.default_rng(1)
+    x, y = rng.random((150, 2)), rng.standard_normal(150)
+    model = emulator.fit(INPUTS, x, y)
+    assert not model.follows_inputs
+    assert "drawing one of the 150 runs" in model.statement
+    drawn = model.sample([[0.1, 0.1], [0.9, 0.9]], 20_000)
+    assert abs(drawn[0].mean() - drawn[1].mean()) < 5.0 * np.sqrt(2.0 / 20_000)
+    assert abs(drawn.std() - y.std()) < 0.02
+
+
+def test_refits_differ_by_whole_groups() -> None:
+    refits = MODEL.refits(30, seed=2)
+    for refit in refits:
+        by_group = refit.weights.reshape(-1, 12)
+        assert (by_group == by_group[0]).all()
+        assert refit.weights.sum() == COUNT
+    slopes = [refit.law.location[2, 0] for refit in refits]
+    assert 0.0 < np.std(slopes) < abs(MODEL.law.location[2, 0])
+    again = MODEL.refits(30, seed=2)[-1]
+    np.testing.assert_array_equal(again.sample(X, 3, upper=UPPER), refits[-1].sample(X, 3, upper=UPPER))
+
+
+def test_a_refit_with_weights_of_one_is_the_fit() -> None:
+    same = MODEL.reweighted(np.ones(COUNT))
+    np.testing.assert_array_equal(same.sample(X, 10, upper=UPPER), MODEL.sample(X, 10, upper=UPPER))
+
+
+def test_an_output_that_is_always_the_same_stays_so() -> None:
+    x = np.random.default_rng(0).random((30, 2))
+    model = emulator.fit(INPUTS, x, np.full(30, 7.0))
+    np.testing.assert_allclose(model.sample(X, 5), 7.0, rtol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"groups": np.zeros(COUNT)}, "groups hold one group"),
+        ({"groups": np.zeros(3)}, "groups has shape"),
+        ({"y": np.zeros((3, 3))}, "y has shape"),
+        ({"outcome": np.full(COUNT, "left")}, "one outcome must have outputs in all its runs"),
+        ({"outcomes": ("left", "lost")}, "outcome holds 'stopped'"),
+        ({"upper": [0.5, np.inf, np.inf]}, "speed is"),
+        ({"upper": np.ones((2, 2))}, "upper has shape"),
+        ({"lower": 5.0, "upper": 1.0}, "lower must be less than upper"),
+        ({"riders": ["mass"]}, "riders hold 'mass'"),
+        ({"riders": [0, 1, 2]}, "all outputs are riders"),
+        ({"output_names": ("speed", "spin")}, "output_names are"),
+        ({"x": np.full((COUNT, 2), 2.0)}, "120 of 120 points outside"),
+    ],
+)
+def test_what_does_not_fit_together_is_refused_in_a_sentence(change: dict[str, Any], words: str) -> None:
+    with pytest.raises(ValueError, match=words):
+        emulator.fit(INPUTS, **{**runs(), **change})
+
+
+def test_too_few_outputs_are_refused() -> None:
+    y = np.full(COUNT, np.nan)
+    y[:5] = np.arange(5)
+    with pytest.raises(ValueError, match="5 runs have outputs"):
+        emulator.fit(INPUTS, runs()["x"], y)
+
+
+def test_part_of_a_row_missing_is_refused() -> None:
+    y = runs()["y"]
+    y[0, 0] = np.nan
+    y[0, 1] = 1.0
+    with pytest.raises(ValueError, match="each row of y"):
+        emulator.fit(INPUTS, runs()["x"], y)
