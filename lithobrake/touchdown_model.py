@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from lithobrake import __version__
+from lithobrake.attitude import pointed
 from lithobrake.hashing import source_hash
 from lithobrake.study import Study
 from lithobrake.study.quantity import median
@@ -134,7 +135,7 @@ def draw(study: Study, values: Values, seed: int) -> dict[str, float]:
 
     Source: [Thaler-1998].
     """
-    bed = int(np.argmax(np.random.Generator(np.random.PCG64([seed, 1])).random(study.bed.bed_count)))
+    bed = int(np.argmax(np.random.Generator(np.random.PCG64([seed, 1])).random(study.bed_count)))
     generator = np.random.Generator(np.random.PCG64(seed))
     fractions, turn = generator.random(2), generator.random()
     # Four normal numbers point evenly over the unit quaternions.
@@ -147,7 +148,7 @@ def draw(study: Study, values: Values, seed: int) -> dict[str, float]:
         place = [low + fraction * (high - low) for fraction, (low, high) in zip(fractions.tolist(), ends, strict=True)]
     azimuth = 360 * turn if impact.azimuth_deg == "random" else values["impact.azimuth_deg"]
     if impact.orientation != "random":
-        quaternion = np.array(impact.orientation)
+        quaternion = given_attitude(study, *generator.random(2).tolist())
     orientation = (quaternion / np.linalg.norm(quaternion)).tolist()
     return {
         **values,
@@ -156,6 +157,14 @@ def draw(study: Study, values: Values, seed: int) -> dict[str, float]:
         "impact.azimuth_deg": float(azimuth),
         **dict(zip(ORIENTATION, orientation, strict=True)),
     }
+
+
+def given_attitude(study: Study, distance: float, direction: float) -> np.ndarray:
+    """The attitude that the study gives, off by its error of pointing as two uniform numbers say."""
+    orientation = np.array(study.impact.orientation)
+    if study.impact.pointing_error_deg is None:
+        return orientation
+    return pointed(orientation, math.radians(study.impact.pointing_error_deg), distance, direction)
 
 
 def contact(study: Study) -> "ContactModel":

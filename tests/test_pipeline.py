@@ -52,7 +52,7 @@ REMADE = [
     ({"grain": {"friction": {"distribution": "uniform", "lower": 0.35, "upper": 0.85}}}, "screening_runs"),
     ({"design": {"screening_level": 3}}, "screening_runs"),
     ({"design": {"fit": "best"}}, "screen"),
-    ({"design": {"method": "sobol_sequence", "screening_count": 40, "refined_count": 60}}, "screening_runs"),
+    ({"design": {"points": "sobol_sequence", "screening_count": 40, "refined_count": 60}}, "screening_runs"),
     ({"design": {"kept_share": 0.8}}, "refined_runs"),
     ({"design": {"test_count": 11}}, "test_runs"),
     ({"monte_carlo": {"sample_count": 200}}, "sample"),

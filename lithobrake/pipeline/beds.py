@@ -32,7 +32,7 @@ def bed_files(study: Study) -> list[str]:
     """Names of the bed files; a solver of the user's own has its own surface."""
     if not study.has_soil:
         return []
-    return [f"beds/bed_{index}.h5" for index in range(study.bed.bed_count)]
+    return [f"beds/bed_{index}.h5" for index in range(study.bed_count)]
 
 
 def bed_reads(study: Study) -> dict[str, Any]:
@@ -59,7 +59,7 @@ def pour_beds(job: Job) -> None:
             continue
 
         def show(done: float, what: str, index: int = index) -> None:
-            numbered = f"bed {index + 1} of {study.bed.bed_count}: " if study.bed.bed_count > 1 else ""
+            numbered = f"bed {index + 1} of {study.bed_count}: " if study.bed_count > 1 else ""
             job.progress(done, 1.0, f"{numbered}{what}")
 
         with in_words_of_the_study():

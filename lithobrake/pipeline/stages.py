@@ -66,7 +66,7 @@ FIT = ("pipeline", "chaos", "analysis", "outputs.py")
 SUM_UP = (*FIT, "results/telling_numbers.py")
 FLY = ("pipeline", "smallbody", "mesh.py", "mesh_files.py", "outputs.py")
 # The points of one design are best for the degree that is fitted to them.
-_SCREENING_RUNS = ("method", "replicate_count", "screening_level", "screening_count", "screening_degree")
+_SCREENING_RUNS = ("points", "replicate_count", "screening_level", "screening_count", "screening_degree")
 _REFINED_RUNS = _design("refined_level", "refined_count", "refined_degree", "kept_share", "kept_outputs")
 _FIT, _TEST = _design("fit"), _design("test_count")
 

@@ -62,9 +62,9 @@ def touchdowns(job: Job, rows: Sequence[dict[str, float]], title: str, replicate
 def drawn_reads(study: Study) -> dict[str, Any]:
     """What the draws of a run depend on, beside its seed."""
     return {
-        "bed_count": study.bed.bed_count,
+        "bed_count": study.bed_count,
         "azimuth": "random" if study.impact.azimuth_deg == "random" else "fixed",
-        **study.impact.model_dump(include={"region", "orientation"}),
+        **study.impact.model_dump(include={"region", "orientation", "pointing_error_deg"}),
     }
 
 

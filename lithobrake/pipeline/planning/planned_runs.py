@@ -106,7 +106,7 @@ def _point_count(study: Study, design: str, kept_count: int) -> int:
     section = study.design
     if design.startswith("test"):
         return section.test_count
-    if section.method != "smolyak":
+    if section.points != "smolyak":
         return int(getattr(section, f"{design}_count"))
     input_count = kept_count if design == "refined" else len(design_inputs(study))
     return smolyak_count(input_count, getattr(section, f"{design}_level"))

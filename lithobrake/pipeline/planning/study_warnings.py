@@ -118,7 +118,7 @@ def _bounces(study: Study) -> Iterator[str]:
 def _one_place(study: Study) -> Iterator[str]:
     """An answer that holds for one place of one bed."""
     places = study.impact.region or any(isinstance(study.touchdown_values().get(name), Uncertain) for name in PLACE)
-    if study.bed.bed_count == 1 and not places and study.has_soil:
+    if study.bed_count == 1 and not places and study.has_soil:
         yield (
             "All runs come down on the same place of the same bed, so the answer holds for these stones only: raise "
             "bed.bed_count, or draw the place in impact.region."
