@@ -10,8 +10,9 @@ from typing import Any, Literal, NamedTuple, get_args
 OutputName = Literal["speed_out", "elevation_out", "spin_out", "velocity_out_x", "velocity_out_y", "velocity_out_z"]
 # What every touchdown gives that leaves the surface, and an expansion is fitted to.
 OUTPUTS: tuple[OutputName, ...] = get_args(OutputName)
-# The designs of a study, in the order in which their runs are made.
+# The designs of a study in two stages, in the order in which their runs are made, and of a drawn one.
 DESIGNS = ("screening", "refined", "test_kept", "test_all")
+SEQUENCE_DESIGNS = ("sequence", "soil_pairs", "twins")
 # The unit of a number that has none, where a header has to say so.
 PURE = "-"
 

@@ -18,7 +18,7 @@ from lithobrake.study.quantity import median
 
 if TYPE_CHECKING:
     from lithobrake.dem import Material
-    from lithobrake.touchdown import Bed, ContactModel, Lander, Landing, Outcome
+    from lithobrake.touchdown import Bed, ContactModel, GrainSizes, Lander, Landing, Outcome
 
 Values = Mapping[str, float]
 # What a material is to a contact, by the names of the study file and of dem.Material.
@@ -172,6 +172,16 @@ def contact(study: Study) -> "ContactModel":
     from lithobrake.touchdown import ContactModel
 
     return ContactModel(**study.contact.model_dump())
+
+
+def grain_sizes(study: Study) -> "GrainSizes":
+    """The sizes of the grains."""
+    from lithobrake.touchdown import GrainSizes
+
+    sizes = study.bed.diameter.model_dump()
+    if sizes["distribution"] == "constant":
+        sizes = {"distribution": "constant", "lower": sizes["value"], "upper": sizes["value"]}
+    return GrainSizes(**sizes)
 
 
 def grain(values: Values) -> "Material":

@@ -1,7 +1,9 @@
-"""The beds, and one landing on the first of them to look at."""
+"""The beds of a study: what they follow from, and how they are poured."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from lithobrake.hashing import content_hash, hashed_seed
 from lithobrake.pipeline.job import Job
@@ -11,21 +13,16 @@ from lithobrake.study import Study
 from lithobrake.touchdown_model import (
     acceleration,
     contact,
-    draw,
     engine_hash,
     grain,
+    grain_sizes,
     in_words_of_the_study,
-    lander,
-    landing,
     medians,
-    stored_bed,
     touchdown_version,
 )
 
 if TYPE_CHECKING:
     from lithobrake.touchdown import BedRecipe
-
-SNAPSHOT_FRAMES = 120
 
 
 def bed_files(study: Study) -> list[str]:
@@ -39,7 +36,7 @@ def bed_reads(study: Study) -> dict[str, Any]:
     """What the beds depend on: uncertain quantities count with their medians."""
     values = medians(study)
     return {
-        "seed": study.seed,
+        "seed": pour_seed(study, 0),
         "bed": study.bed.model_dump(exclude={"bed_count"}),
         "values": {name: value for name, value in values.items() if name.startswith(("grain.", "surface."))},
         "contact": study.contact.model_dump(exclude={"stepping"}),
@@ -69,27 +66,29 @@ def pour_beds(job: Job) -> None:
 
 def bed_recipe(study: Study, index: int) -> "BedRecipe":
     """What the bed of a number follows from, uncertain quantities at their median."""
-    from lithobrake.touchdown import BedRecipe, GrainSizes
+    from lithobrake.touchdown import BedRecipe
 
-    values, sizes = medians(study), study.bed.diameter.model_dump()
-    if sizes["distribution"] == "constant":
-        sizes = {"distribution": "constant", "lower": sizes["value"], "upper": sizes["value"]}
+    values = medians(study)
     return BedRecipe(
         grain_count=study.bed.grain_count,
-        sizes=GrainSizes(**sizes),
+        sizes=grain_sizes(study),
         cloud_point_count=study.bed.cloud_point_count,
         width=study.bed.width,
         material=grain(values),
         gravity=acceleration(values, study.bed.settle_gravity or values["surface.gravity"]),
         pour_gravity=study.bed.pour_gravity,
-        seed=hashed_seed(study.seed, "bed", index),
+        seed=pour_seed(study, index),
         contact=contact(study),
     )
 
 
-def landing_files(study: Study) -> list[str]:
-    """Name of the file of the landing at the medians."""
-    return [] if not study.has_soil else ["landing.h5"]
+def pour_seed(study: Study, index: int) -> int:
+    """Seed of the pour of a bed: two seeds of studies share none. The beds of the paper's method are as they were."""
+    if study.design.method == "paper":
+        return hashed_seed(study.seed, "bed", index)
+    state = np.random.SeedSequence(study.seed, spawn_key=(index,)).generate_state(1, np.uint64)
+    # Below 2**53, so that it is the same number in every file.
+    return int(state[0]) >> 11
 
 
 def touchdown_reads(study: Study) -> dict[str, Any]:
@@ -104,21 +103,3 @@ def touchdown_reads(study: Study) -> dict[str, Any]:
         "time_limit": study.landing.time_limit,
         "version": touchdown_version(),
     }
-
-
-def landing_reads(study: Study) -> dict[str, Any]:
-    """What the landing at the medians depends on."""
-    return {"touchdown": touchdown_reads(study), "values": draw(study, medians(study), study.seed)}
-
-
-def land_once(job: Job) -> None:
-    """Land at the medians of all inputs and keep the pictures."""
-    from lithobrake.touchdown import land
-
-    compile_kernels(job)
-    values = draw(job.study, medians(job.study), job.study.seed)
-    bed = stored_bed(job.folder / bed_files(job.study)[round(values["bed"])])
-    with in_words_of_the_study():
-        body, arrival = lander(job.study, values), landing(job.study, values)
-        outcome = land(bed, body, arrival, SNAPSHOT_FRAMES, lambda fraction, what: job.progress(fraction, 1.0, what))
-    outcome.save_frames(job.folder / "landing.h5", bed, body, arrival)

@@ -109,8 +109,9 @@ def _place_problems(study: Study) -> Iterator[str]:
         yield "impact.place and impact.region are both given; keep one: a place for all runs, or a region to draw from"
     if impact.pointing_error_deg is not None and impact.orientation == "random":
         yield (
-            f'impact.pointing_error_deg is {impact.pointing_error_deg:g}, and impact.orientation "random", which points '
-            "anywhere already; allowed: a quaternion that the error is about; give one, or leave the error out"
+            f"impact.pointing_error_deg is {impact.pointing_error_deg:g}, and impact.orientation is "
+            '"random", which points anywhere already; allowed: a quaternion that the error is about; give one, or '
+            "leave the error out"
         )
     length = math.hypot(*impact.orientation) if isinstance(impact.orientation, tuple) else 1.0
     if not 1.0 / LONGEST_QUATERNION <= length <= LONGEST_QUATERNION:

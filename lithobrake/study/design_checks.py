@@ -3,7 +3,6 @@
 import math
 from collections.abc import Iterator
 
-from lithobrake.study.design_sections import SEQUENCE_KEYS
 from lithobrake.study.quantity import reach, uncertain
 from lithobrake.study.study import Study
 
@@ -28,9 +27,9 @@ def design_problems(study: Study) -> Iterator[str]:
 
 def _method_problems(study: Study) -> Iterator[str]:
     """Keys of the method that is not asked for."""
-    method, given = study.design.method, study.design.model_fields_set - {"method"}
+    method = study.design.method
     other = "paper" if method == "sequence" else "sequence"
-    if stray := sorted(key for key in given if (key in SEQUENCE_KEYS) != (method == "sequence")):
+    if stray := sorted(study.design.model_fields_set & study.design.keys_of_the_other_method):
         one = len(stray) == 1
         yield (
             f'design.{", design.".join(stray)} {"goes" if one else "go"} with design.method = "{other}", and it is '
@@ -95,5 +94,6 @@ def _replicate_problems(study: Study) -> Iterator[str]:
     if count > 1 and not drawn and study.has_soil:
         yield (
             f"design.replicate_count is {count}, but runs draw nothing by chance, so all {count} would be equal; "
-            'give them something to draw (bed.bed_count, impact.region, azimuth_deg or orientation "random", pointing_error_deg) or write 1'
+            'give them something to draw (bed.bed_count, impact.region, azimuth_deg or orientation "random", an error '
+            "of pointing) or write 1"
         )

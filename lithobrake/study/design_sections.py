@@ -61,6 +61,12 @@ class DesignSection(Section):
     test_count: Annotated[int, Whole("", at_least=2, at_most=100_000)] = Field(default=40, examples=["10"])
     """Fresh random runs in each of the two test sets (kept inputs vary; all inputs vary)."""
 
+    @property
+    def keys_of_the_other_method(self) -> set[str]:
+        """Keys that mean nothing here."""
+        is_sequence = self.method == "sequence"
+        return {key for key in type(self).model_fields if key != "method" and (key in SEQUENCE_KEYS) != is_sequence}
+
 
 class MonteCarloSection(Section):
     """Samples of the refined expansion."""
