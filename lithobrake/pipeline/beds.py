@@ -1,5 +1,6 @@
 """The beds of a study: what they follow from, and how they are poured."""
 
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -22,7 +23,7 @@ from lithobrake.touchdown_model import (
 )
 
 if TYPE_CHECKING:
-    from lithobrake.touchdown import BedRecipe
+    from lithobrake.touchdown import Bed, BedRecipe
 
 
 def bed_files(study: Study) -> list[str]:
@@ -45,23 +46,27 @@ def bed_reads(study: Study) -> dict[str, Any]:
 
 
 def pour_beds(job: Job) -> None:
-    """Pour and settle every bed that is not there yet, or no longer good."""
+    """Put every bed into the folder that is not there yet, or no longer good: from the library, or poured."""
+    from lithobrake.touchdown import stored_or_poured
+
+    (job.folder / "beds").mkdir(exist_ok=True)
+    found = 0
+    for index, name in enumerate(bed_files(job.study)):
+        if name in job.wanted:
+            with in_words_of_the_study():
+                recipe = bed_recipe(job.study, index)
+                found += not stored_or_poured(recipe, job.folder / name, partial(_pour, job, recipe, index))
+    if found:
+        job.say(f"bed: {found} of {len(job.wanted)} {'was' if found == 1 else 'were'} in the library of beds")
+
+
+def _pour(job: Job, recipe: "BedRecipe", index: int) -> "Bed":
     from lithobrake.touchdown import pour_bed
 
+    count = job.study.bed_count
+    numbered = f"bed {index + 1} of {count}: " if count > 1 else ""
     compile_kernels(job)
-    study = job.study
-    (job.folder / "beds").mkdir(exist_ok=True)
-    for index, name in enumerate(bed_files(study)):
-        if name not in job.wanted:
-            continue
-
-        def show(done: float, what: str, index: int = index) -> None:
-            numbered = f"bed {index + 1} of {study.bed_count}: " if study.bed_count > 1 else ""
-            job.progress(done, 1.0, f"{numbered}{what}")
-
-        with in_words_of_the_study():
-            bed = pour_bed(bed_recipe(study, index), progress=show)
-        bed.save(job.folder / name)
+    return pour_bed(recipe, progress=lambda done, what: job.progress(done, 1.0, f"{numbered}{what}"))
 
 
 def bed_recipe(study: Study, index: int) -> "BedRecipe":
