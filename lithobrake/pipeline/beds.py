@@ -88,7 +88,8 @@ def bed_recipe(study: Study, index: int) -> "BedRecipe":
 
 
 def pour_seed(study: Study, index: int) -> int:
-    """Seed of the pour of a bed: two seeds of studies share none. The beds of the paper's method are as they were."""
+    """Seed of the pour of a bed: two seeds of studies share none."""
+    # Studies of this method keep the beds that they have always had.
     if study.design.method == "paper":
         return hashed_seed(study.seed, "bed", index)
     state = np.random.SeedSequence(study.seed, spawn_key=(index,)).generate_state(1, np.uint64)

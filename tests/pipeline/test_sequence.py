@@ -16,7 +16,7 @@ from lithobrake.pipeline.touchdown_runs import touchdown_keys
 from lithobrake.study import Study, check_tables
 from lithobrake.study.study import default_bed_count
 from lithobrake.study.template import template
-from lithobrake.touchdown_model import ORIENTATION, PLACE
+from lithobrake.touchdown_model import ORIENTATION, PLACE, draw, medians
 
 TABLES: dict[str, Any] = tomllib.loads(template()) | {"design": {"method": "sequence"}}
 SOIL = ("grain.young_modulus", "grain.friction", "lander.restitution")
@@ -116,6 +116,20 @@ def test_an_error_of_pointing_tilts_each_run_within_its_cone() -> None:
     tilt = np.degrees(2.0 * np.arccos(w))
     assert 9.0 < tilt.max() <= 10.0
     assert np.all(columns(rows, ORIENTATION[3]) == 0.0)
+
+
+def test_the_papers_runs_take_an_error_of_pointing_too() -> None:
+    arrival = {"orientation": [1, 0, 0, 0], "pointing_error_deg": 10.0}
+    study = check_tables(TABLES | {"design": {"method": "paper"}, "impact": {**TABLES["impact"], **arrival}}, Path())
+    draws = [draw(study, medians(study), seed) for seed in range(50)]
+    tilt = np.degrees(2.0 * np.arccos(columns(draws, ORIENTATION[0])[:, 0]))
+    assert 8.0 < tilt.max() <= 10.0
+    # The error is drawn after all else, which is as it was without it.
+    given = {**TABLES["impact"], "orientation": [1, 0, 0, 0]}
+    without = check_tables(TABLES | {"design": {"method": "paper"}, "impact": given}, Path())
+    assert draw(without, medians(without), 3) | dict.fromkeys(ORIENTATION, 0.0) == draws[3] | dict.fromkeys(
+        ORIENTATION, 0.0
+    )
 
 
 def test_places_are_drawn_where_the_smallest_bed_leaves_room() -> None:
