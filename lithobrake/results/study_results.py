@@ -196,9 +196,10 @@ class StudyResults:
         """The files of the study's designs, by their names; a folder may also have those of an earlier method."""
         found = {design: f"designs/{design}.csv" for design in (*DESIGNS, *SEQUENCE_DESIGNS)}
         if (self.folder / "keys.json").is_file():
-            noted = read_json(self.folder / "keys.json", {"stages": {str: {"files": [str]}}}, self.remedy)["stages"]
+            # An early format notes no stages, and knows of one method only.
+            noted = read_json(self.folder / "keys.json", dict, self.remedy).get("stages", {})
             asked = {file for stage in noted.values() for file in stage["files"]}
-            found = {design: name for design, name in found.items() if name in asked}
+            found = {design: name for design, name in found.items() if name in asked or not noted}
         return {design: name for design, name in found.items() if (self.folder / name).is_file()}
 
     def _key(self, run: str | int) -> str:

@@ -99,6 +99,9 @@ def test_a_folder_that_changes_its_method_has_the_runs_of_the_present_one(
     lithobrake("screen", study, "--out", tmp_path / "out")
     assert (tmp_path / "out" / "designs" / "sequence.csv").is_file()
     assert set(open_study(tmp_path / "out").runs["design"]) == {"screening"}
+    # A folder of an early format does not note its stages: it has no other runs.
+    (tmp_path / "out" / "keys.json").write_text('{"format_version": 1, "files": {}, "wall_s": {}}')
+    assert set(open_study(tmp_path / "out").runs["design"]) == {"screening", "sequence", "soil_pairs", "twins"}
 
 
 @pytest.fixture(scope="module")
