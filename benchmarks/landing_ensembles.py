@@ -50,11 +50,11 @@ def drawn_study(path: Path, bed_count: int, region: float) -> Study:
 def beds_of(study: Study, folder: Path) -> list[Bed]:
     """The beds of a study, poured where they are not there yet."""
     folder.mkdir(parents=True, exist_ok=True)
-    for index in range(study.bed.bed_count):
+    for index in range(study.bed_count):
         path = folder / f"bed_{index}.h5"
         if not path.exists():
             pour_bed(bed_recipe(study, index)).save(path)
-    return [Bed.load(folder / f"bed_{index}.h5") for index in range(study.bed.bed_count)]
+    return [Bed.load(folder / f"bed_{index}.h5") for index in range(study.bed_count)]
 
 
 def draws(study: Study, count: int) -> Iterator[tuple[int, Lander, Landing]]:

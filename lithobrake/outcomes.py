@@ -26,7 +26,11 @@ class TouchdownOutcome(_Ending):
 
     CLEAR = "clear", "The lander leaves the surface.", "left the surface"
     CAPTURED = "captured", "The lander is captured."
-    LEFT_SIDEWAYS = "left_sideways", "The lander leaves the bed sideways.", "left over the rim of the bed"
+    LEFT_SIDEWAYS = (
+        "left_sideways",
+        "The lander goes over the rim of the bed, and does not clearly fly.",
+        "lost over the rim of the bed",
+    )
     TIME_LIMIT = "time_limit", "The lander is still in contact at the time limit.", "in contact at the time limit"
 
 

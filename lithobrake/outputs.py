@@ -10,8 +10,9 @@ from typing import Any, Literal, NamedTuple, get_args
 OutputName = Literal["speed_out", "elevation_out", "spin_out", "velocity_out_x", "velocity_out_y", "velocity_out_z"]
 # What every touchdown gives that leaves the surface, and an expansion is fitted to.
 OUTPUTS: tuple[OutputName, ...] = get_args(OutputName)
-# The designs of a study, in the order in which their runs are made.
+# The designs of a study in two stages, in the order in which their runs are made, and of a drawn one.
 DESIGNS = ("screening", "refined", "test_kept", "test_all")
+SEQUENCE_DESIGNS = ("sequence", "soil_pairs", "twins")
 # The unit of a number that has none, where a header has to say so.
 PURE = "-"
 
@@ -39,6 +40,11 @@ FIXED = "of the body, turning with it"
 BED = "of the bed: origin in the middle of the floor, x and y along the walls, z upward"
 HULL = "of each hull: origin at its centroid, turning with it"
 
+# How the lander turns and stands when it leaves, beside what is fitted; a program of the user's own may leave them out.
+SPIN_OUT = ("spin_out_x", "spin_out_y", "spin_out_z")
+ORIENTATION_OUT = ("orientation_out_w", "orientation_out_x", "orientation_out_y", "orientation_out_z")
+OVER_RIM = "over_rim"
+
 TOUCHDOWN = {
     "speed_out": Quantity("m/s", "speed after the touchdown", LOCAL, "outgoing speed"),
     "elevation_out": Quantity(
@@ -49,6 +55,12 @@ TOUCHDOWN = {
     "velocity_out_x": Quantity("m/s", "velocity after the touchdown along x", LOCAL, "velocity along x"),
     "velocity_out_y": Quantity("m/s", "velocity after the touchdown along y", LOCAL, "velocity across y"),
     "velocity_out_z": Quantity("m/s", "velocity after the touchdown along z", LOCAL, "velocity up z"),
+    **{name: Quantity("rad/s", f"angular velocity after the touchdown along {name[-1]}", LOCAL) for name in SPIN_OUT},
+    **{
+        name: Quantity("", f"{name[-1]} of the unit quaternion that turns the lander as given into place", LOCAL)
+        for name in ORIENTATION_OUT
+    },
+    OVER_RIM: Quantity("", "whether the lander left over the rim of the bed, touching nothing and going up (1 or 0)"),
     "contact_duration": Quantity("s", "time from the first to the last touch of lander and soil"),
     "penetration": Quantity("m", "largest depth of the lander below where it first touched"),
     "peak_acceleration": Quantity("m/s2", "largest acceleration of the lander by contacts"),

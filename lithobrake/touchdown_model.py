@@ -11,13 +11,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from lithobrake import __version__
+from lithobrake.attitude import pointed
 from lithobrake.hashing import source_hash
 from lithobrake.study import Study
 from lithobrake.study.quantity import median
 
 if TYPE_CHECKING:
     from lithobrake.dem import Material
-    from lithobrake.touchdown import Bed, ContactModel, Lander, Landing, Outcome
+    from lithobrake.touchdown import Bed, ContactModel, GrainSizes, Lander, Landing, Outcome
 
 Values = Mapping[str, float]
 # What a material is to a contact, by the names of the study file and of dem.Material.
@@ -134,7 +135,7 @@ def draw(study: Study, values: Values, seed: int) -> dict[str, float]:
 
     Source: [Thaler-1998].
     """
-    bed = int(np.argmax(np.random.Generator(np.random.PCG64([seed, 1])).random(study.bed.bed_count)))
+    bed = int(np.argmax(np.random.Generator(np.random.PCG64([seed, 1])).random(study.bed_count)))
     generator = np.random.Generator(np.random.PCG64(seed))
     fractions, turn = generator.random(2), generator.random()
     # Four normal numbers point evenly over the unit quaternions.
@@ -147,7 +148,7 @@ def draw(study: Study, values: Values, seed: int) -> dict[str, float]:
         place = [low + fraction * (high - low) for fraction, (low, high) in zip(fractions.tolist(), ends, strict=True)]
     azimuth = 360 * turn if impact.azimuth_deg == "random" else values["impact.azimuth_deg"]
     if impact.orientation != "random":
-        quaternion = np.array(impact.orientation)
+        quaternion = given_attitude(study, *generator.random(2).tolist())
     orientation = (quaternion / np.linalg.norm(quaternion)).tolist()
     return {
         **values,
@@ -158,11 +159,29 @@ def draw(study: Study, values: Values, seed: int) -> dict[str, float]:
     }
 
 
+def given_attitude(study: Study, distance: float, direction: float) -> np.ndarray:
+    """The attitude that the study gives, off by its error of pointing as two uniform numbers say."""
+    orientation = np.array(study.impact.orientation)
+    if study.impact.pointing_error_deg is None:
+        return orientation
+    return pointed(orientation, math.radians(study.impact.pointing_error_deg), distance, direction)
+
+
 def contact(study: Study) -> "ContactModel":
     """The readings of the contact law."""
     from lithobrake.touchdown import ContactModel
 
     return ContactModel(**study.contact.model_dump())
+
+
+def grain_sizes(study: Study) -> "GrainSizes":
+    """The sizes of the grains."""
+    from lithobrake.touchdown import GrainSizes
+
+    sizes = study.bed.diameter.model_dump()
+    if sizes["distribution"] == "constant":
+        sizes = {"distribution": "constant", "lower": sizes["value"], "upper": sizes["value"]}
+    return GrainSizes(**sizes)
 
 
 def grain(values: Values) -> "Material":

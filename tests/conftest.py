@@ -6,3 +6,5 @@ import os
 # which costs many times what it gains on arrays of this size. Set before NumPy is imported for the first time.
 for name in ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS"):
     os.environ.setdefault(name, "1")
+# Beds that a test needs are poured: the tests of the library have one of their own.
+os.environ["LITHOBRAKE_BED_LIBRARY_GB"] = "0"

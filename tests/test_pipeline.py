@@ -12,7 +12,7 @@ import pytest
 
 from lithobrake.chaos import Uniform, fit, smolyak
 from lithobrake.outputs import OUTPUTS
-from lithobrake.pipeline import STAGES, StudyFolder, rest, stage_keys
+from lithobrake.pipeline import StudyFolder, rest, stage_keys, stages_of
 from lithobrake.pipeline.designs import design_inputs, kept_inputs, points
 from lithobrake.pipeline.dispersion_statistics import shares, stays
 from lithobrake.pipeline.flights import COLUMNS, partner_time, starts
@@ -52,7 +52,7 @@ REMADE = [
     ({"grain": {"friction": {"distribution": "uniform", "lower": 0.35, "upper": 0.85}}}, "screening_runs"),
     ({"design": {"screening_level": 3}}, "screening_runs"),
     ({"design": {"fit": "best"}}, "screen"),
-    ({"design": {"method": "sobol_sequence", "screening_count": 40, "refined_count": 60}}, "screening_runs"),
+    ({"design": {"points": "sobol_sequence", "screening_count": 40, "refined_count": 60}}, "screening_runs"),
     ({"design": {"kept_share": 0.8}}, "refined_runs"),
     ({"design": {"test_count": 11}}, "test_runs"),
     ({"monte_carlo": {"sample_count": 200}}, "sample"),
@@ -69,7 +69,7 @@ REMADE = [
 @pytest.mark.parametrize(("change", "first"), REMADE, ids=[str(change) for change, _ in REMADE])
 def test_a_change_makes_again_what_depends_on_it_and_nothing_before(change: dict[str, Any], first: str) -> None:
     before, after = stage_keys(changed()), stage_keys(changed(**change))
-    names = [stage.name for stage in STAGES]
+    names = [stage.name for stage in stages_of(changed())]
     different = [name for name in names if before[name] != after[name]]
     assert different[0] == first
     assert set(names[names.index("summary") :]) <= set(different)

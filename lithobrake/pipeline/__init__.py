@@ -9,13 +9,12 @@ if TYPE_CHECKING:
     from lithobrake.pipeline.planning.plan import Plan
     from lithobrake.pipeline.planning.plan_in_words import plan_lines
     from lithobrake.pipeline.planning.planner import plan_study
-    from lithobrake.pipeline.stages import STAGES, Stage, make, stage_keys
+    from lithobrake.pipeline.stages import Stage, make, stage_keys, stages_of
     from lithobrake.pipeline.state import report_page
     from lithobrake.pipeline.status import study_status
     from lithobrake.pipeline.study_run import run_study, write_report_again
 
 _HOME = {
-    "STAGES": "stages",
     "Job": "job",
     "Plan": "planning.plan",
     "Stage": "stages",
@@ -26,11 +25,11 @@ _HOME = {
     "report_page": "state",
     "run_study": "study_run",
     "stage_keys": "stages",
+    "stages_of": "stages",
     "study_status": "status",
     "write_report_again": "study_run",
 }
 __all__ = [
-    "STAGES",
     "Job",
     "Plan",
     "Stage",
@@ -41,6 +40,7 @@ __all__ = [
     "report_page",
     "run_study",
     "stage_keys",
+    "stages_of",
     "study_status",
     "write_report_again",
 ]

@@ -1,7 +1,10 @@
-"""The beds, and one landing on the first of them to look at."""
+"""The beds of a study: what they follow from, and how they are poured."""
 
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from lithobrake.hashing import content_hash, hashed_seed
 from lithobrake.pipeline.job import Job
@@ -11,35 +14,30 @@ from lithobrake.study import Study
 from lithobrake.touchdown_model import (
     acceleration,
     contact,
-    draw,
     engine_hash,
     grain,
+    grain_sizes,
     in_words_of_the_study,
-    lander,
-    landing,
     medians,
-    stored_bed,
     touchdown_version,
 )
 
 if TYPE_CHECKING:
-    from lithobrake.touchdown import BedRecipe
-
-SNAPSHOT_FRAMES = 120
+    from lithobrake.touchdown import Bed, BedRecipe
 
 
 def bed_files(study: Study) -> list[str]:
     """Names of the bed files; a solver of the user's own has its own surface."""
     if not study.has_soil:
         return []
-    return [f"beds/bed_{index}.h5" for index in range(study.bed.bed_count)]
+    return [f"beds/bed_{index}.h5" for index in range(study.bed_count)]
 
 
 def bed_reads(study: Study) -> dict[str, Any]:
     """What the beds depend on: uncertain quantities count with their medians."""
     values = medians(study)
     return {
-        "seed": study.seed,
+        "seed": pour_seed(study, 0),
         "bed": study.bed.model_dump(exclude={"bed_count"}),
         "values": {name: value for name, value in values.items() if name.startswith(("grain.", "surface."))},
         "contact": study.contact.model_dump(exclude={"stepping"}),
@@ -48,48 +46,55 @@ def bed_reads(study: Study) -> dict[str, Any]:
 
 
 def pour_beds(job: Job) -> None:
-    """Pour and settle every bed that is not there yet, or no longer good."""
+    """Put every bed into the folder that is not there yet, or no longer good: from the library, or poured."""
+    from lithobrake.touchdown import stored_or_poured
+
+    (job.folder / "beds").mkdir(exist_ok=True)
+    found = 0
+    for index, name in enumerate(bed_files(job.study)):
+        if name in job.wanted:
+            with in_words_of_the_study():
+                recipe = bed_recipe(job.study, index)
+                found += not stored_or_poured(recipe, job.folder / name, partial(_pour, job, recipe, index))
+    if found:
+        job.say(f"bed: {found} of {len(job.wanted)} {'was' if found == 1 else 'were'} in the library of beds")
+
+
+def _pour(job: Job, recipe: "BedRecipe", index: int) -> "Bed":
     from lithobrake.touchdown import pour_bed
 
+    count = job.study.bed_count
+    numbered = f"bed {index + 1} of {count}: " if count > 1 else ""
     compile_kernels(job)
-    study = job.study
-    (job.folder / "beds").mkdir(exist_ok=True)
-    for index, name in enumerate(bed_files(study)):
-        if name not in job.wanted:
-            continue
-
-        def show(done: float, what: str, index: int = index) -> None:
-            numbered = f"bed {index + 1} of {study.bed.bed_count}: " if study.bed.bed_count > 1 else ""
-            job.progress(done, 1.0, f"{numbered}{what}")
-
-        with in_words_of_the_study():
-            bed = pour_bed(bed_recipe(study, index), progress=show)
-        bed.save(job.folder / name)
+    return pour_bed(recipe, progress=lambda done, what: job.progress(done, 1.0, f"{numbered}{what}"))
 
 
 def bed_recipe(study: Study, index: int) -> "BedRecipe":
     """What the bed of a number follows from, uncertain quantities at their median."""
-    from lithobrake.touchdown import BedRecipe, GrainSizes
+    from lithobrake.touchdown import BedRecipe
 
-    values, sizes = medians(study), study.bed.diameter.model_dump()
-    if sizes["distribution"] == "constant":
-        sizes = {"distribution": "constant", "lower": sizes["value"], "upper": sizes["value"]}
+    values = medians(study)
     return BedRecipe(
         grain_count=study.bed.grain_count,
-        sizes=GrainSizes(**sizes),
+        sizes=grain_sizes(study),
         cloud_point_count=study.bed.cloud_point_count,
         width=study.bed.width,
         material=grain(values),
         gravity=acceleration(values, study.bed.settle_gravity or values["surface.gravity"]),
         pour_gravity=study.bed.pour_gravity,
-        seed=hashed_seed(study.seed, "bed", index),
+        seed=pour_seed(study, index),
         contact=contact(study),
     )
 
 
-def landing_files(study: Study) -> list[str]:
-    """Name of the file of the landing at the medians."""
-    return [] if not study.has_soil else ["landing.h5"]
+def pour_seed(study: Study, index: int) -> int:
+    """Seed of the pour of a bed: two seeds of studies share none."""
+    # Studies of this method keep the beds that they have always had.
+    if study.design.method == "paper":
+        return hashed_seed(study.seed, "bed", index)
+    state = np.random.SeedSequence(study.seed, spawn_key=(index,)).generate_state(1, np.uint64)
+    # Below 2**53, so that it is the same number in every file.
+    return int(state[0]) >> 11
 
 
 def touchdown_reads(study: Study) -> dict[str, Any]:
@@ -104,21 +109,3 @@ def touchdown_reads(study: Study) -> dict[str, Any]:
         "time_limit": study.landing.time_limit,
         "version": touchdown_version(),
     }
-
-
-def landing_reads(study: Study) -> dict[str, Any]:
-    """What the landing at the medians depends on."""
-    return {"touchdown": touchdown_reads(study), "values": draw(study, medians(study), study.seed)}
-
-
-def land_once(job: Job) -> None:
-    """Land at the medians of all inputs and keep the pictures."""
-    from lithobrake.touchdown import land
-
-    compile_kernels(job)
-    values = draw(job.study, medians(job.study), job.study.seed)
-    bed = stored_bed(job.folder / bed_files(job.study)[round(values["bed"])])
-    with in_words_of_the_study():
-        body, arrival = lander(job.study, values), landing(job.study, values)
-        outcome = land(bed, body, arrival, SNAPSHOT_FRAMES, lambda fraction, what: job.progress(fraction, 1.0, what))
-    outcome.save_frames(job.folder / "landing.h5", bed, body, arrival)

@@ -66,12 +66,12 @@ def _training_points(study: Study, design: str, varied: "dict[str, Distribution]
     from lithobrake.chaos import fekete, latin_hypercube, smolyak, sobol_sequence
 
     section = study.design
-    if section.method == "smolyak":
+    if section.points == "smolyak":
         return smolyak(varied, level=getattr(section, f"{design}_level"))
     count = getattr(section, f"{design}_count")
-    if section.method == "fekete":
+    if section.points == "fekete":
         return fekete(varied, count, seed, degree=getattr(section, f"{design}_degree"))
-    return (sobol_sequence if section.method == "sobol_sequence" else latin_hypercube)(varied, count, seed)
+    return (sobol_sequence if section.points == "sobol_sequence" else latin_hypercube)(varied, count, seed)
 
 
 def replicate_count(study: Study, design: str) -> int:

@@ -44,7 +44,7 @@ def _fit(job: Job, design: str, runs: DesignRuns, names: Sequence[str]) -> "Surr
     if found < terms:
         counts = ", ".join(f"{count} {name}" for name, count in runs.outcome_counts().items())
         reason = next((f"; the first failure: {reason}" for reason in runs.reasons if reason), "")
-        measure = "level" if study.design.method == "smolyak" else "count"
+        measure = "level" if study.design.points == "smolyak" else "count"
         raise ValueError(
             f"of {runs.run_count} {design} runs {found} have outputs ({counts}), fewer than the {terms} terms that are "
             f"fitted; raise design.{design}_{measure}, lower design.{design}_degree, or choose an impact that rebounds"

@@ -1,6 +1,6 @@
 """The stages that make runs; whatever comes after only reads them."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -9,16 +9,14 @@ from lithobrake.pipeline.design_runs import DesignRuns
 from lithobrake.pipeline.designs import design_inputs, points, replicate_count
 from lithobrake.pipeline.expansions import screened_inputs
 from lithobrake.pipeline.job import Job
+from lithobrake.pipeline.sequence import SIDE_DESIGNS, inputs_of, sequence_rows, side_rows
 from lithobrake.pipeline.site import gravity_warning
 from lithobrake.pipeline.touchdown_runs import drawn_rows, touchdown_keys, touchdowns
 
 
 def make_screening_runs(job: Job) -> None:
     """Make the runs in which all inputs vary, at the nodes of the screening design."""
-    # Said before the landings are made, as it may be a reason not to make them.
-    warning = gravity_warning(job.study)
-    if warning:
-        job.say(warning)
+    _say_gravity(job)
     make_runs(job, "screening")
 
 
@@ -41,15 +39,40 @@ def make_runs(job: Job, design: str, kept: Sequence[str] = ()) -> None:
     Raises ValueError when too many have failed, or those that failed lie together.
     """
     inputs, x = tuple(design_inputs(job.study)), points(job.study, design, kept)
-    count, title = replicate_count(job.study, design), f"{design.replace('_', ' ')} runs"
+    replicates = range(replicate_count(job.study, design))
+    _make_rows(job, design, [drawn_rows(job.study, inputs, x, replicate) for replicate in replicates])
+
+
+def make_drawn_runs(job: Job) -> None:
+    """Make the runs of the sequence."""
+    _say_gravity(job)
+    _make_rows(job, "sequence", [sequence_rows(job.study)])
+
+
+def make_side_runs(job: Job) -> None:
+    """Make the runs beside the sequence: on a second soil, and at places a little beside."""
+    for design in SIDE_DESIGNS if job.study.design.side_runs else ():
+        _make_rows(job, design, [side_rows(job.study, design)])
+
+
+def _make_rows(job: Job, design: str, rows: Sequence[Sequence[Mapping[str, float]]]) -> None:
+    """Make runs with all their inputs, a list for each time that they are made, and write their table."""
+    count, title = len(rows), f"{design.replace('_', ' ')} runs"
     titles = [f"{title}, {number} of {count} times" if count > 1 else title for number in range(1, count + 1)]
-    rows = [drawn_rows(job.study, inputs, x, replicate) for replicate in range(count)]
     keys = [key for replicate, one in enumerate(rows) for key in touchdown_keys(job.study, one, replicate)]
     job.folder.note_runs(design, keys)
     made = [touchdowns(job, rows[replicate], words, replicate) for replicate, words in enumerate(titles)]
     runs = Runs([record for one in made for record in one.records], sum(one.reused_count for one in made))
-    _account(job, design, runs, np.tile(x, (count, 1)), inputs)
+    inputs = tuple(design_inputs(job.study))
+    _account(job, design, runs, inputs_of([row for one in rows for row in one], inputs), inputs)
     DesignRuns.of(runs).save(job.folder, design)
+
+
+def _say_gravity(job: Job) -> None:
+    """Say that touchdowns and flights feel another acceleration, which may be a reason not to make the landings."""
+    warning = gravity_warning(job.study)
+    if warning:
+        job.say(warning)
 
 
 def _account(job: Job, design: str, runs: Runs, x: np.ndarray, inputs: Sequence[str]) -> None:

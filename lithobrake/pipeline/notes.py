@@ -30,7 +30,8 @@ _FORM = {
 _ABSENT: dict[str, Any] = {name: {} for name in _FORM} | {"study": {"file": "", "sha256": ""}}
 # The stage whose key says whether a design is still what the study asks for.
 _STAGE_OF_DESIGN = {
-    "screening": "screening_runs", "refined": "refined_runs", "test_kept": "test_runs", "test_all": "test_runs"
+    "screening": "screening_runs", "refined": "refined_runs", "test_kept": "test_runs", "test_all": "test_runs",
+    "sequence": "runs", "soil_pairs": "side_runs", "twins": "side_runs",
 }  # fmt: skip
 
 
@@ -64,7 +65,7 @@ class Notes:
             tables = {name: content.get(name, absent) for name, absent in _ABSENT.items()}
             check(tables, _FORM)
             if tables["stages"]:
-                check(tables["stages"], dict.fromkeys((*_STAGE_OF_DESIGN.values(), "report"), dict), "stages")
+                check(tables["stages"], {"bed": dict}, "stages")
         return cls(**tables)
 
     def write(self, folder: Path) -> None:
@@ -75,7 +76,8 @@ class Notes:
 
     def of_setting(self, study: dict[str, str], stages: dict[str, dict[str, Any]]) -> "Notes":
         """The same for a study that is to run now: designs that it no longer asks for like that are left out."""
-        kept = [design for design, stage in _STAGE_OF_DESIGN.items() if self.stages.get(stage) == stages[stage]]
+        same = {name for name, stage in stages.items() if self.stages.get(name) == stage}
+        kept = [design for design, stage in _STAGE_OF_DESIGN.items() if stage in same]
         designs = {design: self.designs[design] for design in kept if design in self.designs}
         return replace(self, study=study, stages=stages, designs=designs)
 

@@ -23,7 +23,7 @@ def scope(study: Study) -> Scope:
             "Other touchdowns give another figure; this study cannot say how different.",
             "of the study's own program",
         )
-    count = study.bed.bed_count
+    count = study.bed_count
     fixed = ["on this bed"] if count == 1 else []
     fixed += ["at this place"] if _one_place(study) else []
     beds = "on 1 bed" if count == 1 else f"on {count} beds"

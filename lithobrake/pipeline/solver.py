@@ -13,7 +13,7 @@ from lithobrake import __version__
 from lithobrake.campaign import Command
 from lithobrake.hashing import content_hash
 from lithobrake.outcomes import TouchdownOutcome
-from lithobrake.outputs import OUTPUTS
+from lithobrake.outputs import ORIENTATION_OUT, OUTPUTS, SPIN_OUT
 from lithobrake.study import Study
 
 # What speed and elevation may be off their components: numbers printed with six digits, as C and C++ do, agree so far.
@@ -79,12 +79,14 @@ def checked(what: str, answer: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def completed(outputs: Mapping[str, float]) -> dict[str, float]:
-    """The outputs with speed [m/s] and elevation [rad], where only the components of the velocity were given."""
+    """The outputs with speed [m/s], elevation [rad] and spin [rad/s], where only components of them were given."""
     found = {name: float(value) for name, value in outputs.items()}
     if all(f"velocity_out_{axis}" in found for axis in "xyz"):
         x, y, z = (found[f"velocity_out_{axis}"] for axis in "xyz")
         found.setdefault("speed_out", math.hypot(x, y, z))
         found.setdefault("elevation_out", math.atan2(z, math.hypot(x, y)))
+    if all(name in found for name in SPIN_OUT):
+        found.setdefault("spin_out", math.hypot(*(found[name] for name in SPIN_OUT)))
     return found
 
 
@@ -100,13 +102,29 @@ def refuse_contradictions(what: str, outputs: Mapping[str, float]) -> None:
         )
     if outputs["spin_out"] < 0.0:
         raise ValueError(f"{what} has a spin_out of {outputs['spin_out']:g} rad/s; it is a size: at least 0")
-    components = {name: value for name, value in outputs.items() if name.startswith("velocity_out_")}
+    _refuse_parts(what, outputs)
+    components = {name: value for name, value in outputs.items() if name.startswith(("velocity_out_", "spin_out_"))}
     for name, follows in completed(components).items():
         if not math.isclose(outputs[name], follows, rel_tol=PRINTED, abs_tol=0.0):
             raise ValueError(
-                f"{what} has {outputs[name]:.8g} for {name}, and {follows:.8g} follows from velocity_out_x, _y "
-                "and _z (SI, angles in rad): leave it out, or mend one of them"
+                f"{what} has {outputs[name]:.8g} for {name}, and {follows:.8g} follows from "
+                f"{'spin' if name == 'spin_out' else 'velocity'}_out_x, _y and _z (SI, angles in rad): leave it out, "
+                "or mend one of them"
             )
+
+
+def _refuse_parts(what: str, outputs: Mapping[str, float]) -> None:
+    """Raise ValueError where of a spin or an attitude a part is missing, or an attitude is no unit quaternion."""
+    for names in (SPIN_OUT, ORIENTATION_OUT):
+        given = [name for name in names if name in outputs]
+        if given and len(given) < len(names):
+            lacking = ", ".join(name for name in names if name not in given)
+            raise ValueError(f"{what} has {', '.join(given)} and lacks {lacking}; give all of them, or none")
+    length = math.hypot(*(outputs[name] for name in ORIENTATION_OUT if name in outputs))
+    if ORIENTATION_OUT[0] in outputs and not math.isclose(length, 1.0, rel_tol=PRINTED):
+        raise ValueError(
+            f"{what} has a quaternion orientation_out_w, _x, _y, _z of length {length:.8g}; allowed: 1; divide by it"
+        )
 
 
 def solver_command(study: Study, folder: Path) -> Command:

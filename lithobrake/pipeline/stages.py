@@ -6,15 +6,24 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from lithobrake.hashing import json_hash, source_hash
-from lithobrake.pipeline.beds import bed_files, bed_reads, land_once, landing_files, landing_reads, pour_beds
+from lithobrake.pipeline.beds import bed_files, bed_reads, pour_beds
 from lithobrake.pipeline.design_runs import file_of
 from lithobrake.pipeline.designs import design_reads
 from lithobrake.pipeline.expansions import fit_refined, fit_screening, score_all
 from lithobrake.pipeline.flights import flight_reads, fly_samples
 from lithobrake.pipeline.job import Job
-from lithobrake.pipeline.making_runs import make_refined_runs, make_screening_runs, make_test_runs
+from lithobrake.pipeline.making_runs import (
+    make_drawn_runs,
+    make_refined_runs,
+    make_screening_runs,
+    make_side_runs,
+    make_test_runs,
+)
+from lithobrake.pipeline.place_region import place_region
 from lithobrake.pipeline.rest import follow_samples, rest_reads
 from lithobrake.pipeline.samples import draw_samples
+from lithobrake.pipeline.sequence import SIDE_DESIGNS, beds_of_runs
+from lithobrake.pipeline.shown_landing import land_once, landing_files, landing_reads
 from lithobrake.pipeline.summary import study_tables, write_summary
 from lithobrake.study import Study
 
@@ -48,6 +57,19 @@ def _screening_runs(study: Study) -> Any:
     return [design_reads(study), study.seed, *_design(*_SCREENING_RUNS)(study)]
 
 
+def _drawn_runs(study: Study) -> Any:
+    count = study.design.run_count
+    return [design_reads(study), place_region(study), study.seed, count, beds_of_runs(study, count)]
+
+
+def _side_runs(study: Study) -> Any:
+    return [study.design.side_runs, study.design.twin_shift]
+
+
+def _side_files(study: Study) -> list[str]:
+    return [file_of(design) for design in SIDE_DESIGNS] if study.design.side_runs else []
+
+
 def _sample(study: Study) -> Any:
     return study.monte_carlo.model_dump()
 
@@ -62,18 +84,20 @@ def _write_report(job: Job) -> None:
     write_report(job.folder.path, lambda done, total: job.progress(done, total, "figures"))
 
 
+RUNS = ("pipeline", "chaos", "outputs.py", "attitude.py")
 FIT = ("pipeline", "chaos", "analysis", "outputs.py")
 SUM_UP = (*FIT, "results/telling_numbers.py")
 FLY = ("pipeline", "smallbody", "mesh.py", "mesh_files.py", "outputs.py")
 # The points of one design are best for the degree that is fitted to them.
-_SCREENING_RUNS = ("method", "replicate_count", "screening_level", "screening_count", "screening_degree")
+_SCREENING_RUNS = ("points", "replicate_count", "screening_level", "screening_count", "screening_degree")
 _REFINED_RUNS = _design("refined_level", "refined_count", "refined_degree", "kept_share", "kept_outputs")
 _FIT, _TEST = _design("fit"), _design("test_count")
 
 FLIGHT_FILES = ("flights.csv", "flights_without_scatter.csv", "flights.json", "body.obj")
 
-STAGES = (
-    Stage("bed", "bed", bed_files, bed_reads, (), (), pour_beds),
+BED = Stage("bed", "bed", bed_files, bed_reads, (), (), pour_beds)
+PAPER = (
+    BED,
     Stage("landing", "median landing", landing_files, landing_reads, ("bed",), (), land_once),
     Stage(
         "screening_runs",
@@ -114,11 +138,41 @@ STAGES = (
     ),
 )
 
+# What follows the runs of a sequence, from the emulator to the report, goes behind them here.
+SEQUENCE = (
+    BED,
+    Stage("landing", "first landing", landing_files, landing_reads, ("bed",), (), land_once),
+    Stage("runs", "runs", _files(file_of("sequence")), _drawn_runs, ("bed",), RUNS, make_drawn_runs),
+    Stage("side_runs", "side runs", _side_files, _side_runs, ("runs",), RUNS, make_side_runs),
+)
+
+
+def stages_of(study: Study) -> tuple[Stage, ...]:
+    """The stages of a study in order, by its method."""
+    return PAPER if study.design.method == "paper" else SEQUENCE
+
+
+def stages_until(study: Study, until: str) -> tuple[Stage, ...]:
+    """The stages of a study up to and including one; a method that has no report yet ends with its last stage.
+
+    Raises ValueError for a stage that the method of the study does not have.
+    """
+    stages, method = stages_of(study), study.design.method
+    names = [stage.name for stage in stages]
+    if until in names:
+        return stages[: names.index(until) + 1]
+    if until in ("summary", "report"):
+        return stages
+    raise ValueError(
+        f'"{until}" is no stage of a study with design.method = "{method}"; allowed: {", ".join(names)}; '
+        "run all of it with: lithobrake run"
+    )
+
 
 def stage_keys(study: Study) -> dict[str, str]:
     """The key of each stage: what it reads of the study, its code, and the keys of the stages before it."""
     keys: dict[str, str] = {}
-    for stage in STAGES:
+    for stage in stages_of(study):
         before = [keys[name] for name in stage.after]
         keys[stage.name] = json_hash([stage.name, stage.reads(study), source_hash(*stage.parts), before])
     return keys
@@ -131,7 +185,8 @@ def setting(study: Study) -> dict[str, dict[str, Any]]:
     """
     keys = stage_keys(study)
     return {
-        stage.name: {"title": stage.title, "key": keys[stage.name], "files": stage.files(study)} for stage in STAGES
+        stage.name: {"title": stage.title, "key": keys[stage.name], "files": stage.files(study)}
+        for stage in stages_of(study)
     }
 
 
@@ -140,12 +195,11 @@ def make(job: Job, until: str, note: Callable[..., None]) -> None:
 
     note: notes for other processes which stage is being made.
     """
-    keys = stage_keys(job.study)
-    last = [stage.name for stage in STAGES].index(until)
+    keys, stages = stage_keys(job.study), stages_until(job.study, until)
     kept: list[str] = []
-    for number, stage in enumerate(STAGES[: last + 1], start=1):
-        note(stage=stage.title, number=number, count=last + 1)
-        job.shown.begin(stage.title, number, last + 1)
+    for number, stage in enumerate(stages, start=1):
+        note(stage=stage.title, number=number, count=len(stages))
+        job.shown.begin(stage.title, number, len(stages))
         files = stage.files(job.study)
         wanted = tuple(name for name in files if not job.folder.is_current([name], keys[stage.name]))
         if not wanted:

@@ -84,8 +84,8 @@ def write_summary(job: Job) -> None:
 
 
 def study_tables(study: Study, tables: Any = None) -> dict[str, Any]:
-    """The study with its defaults, as the tables of its file; paths of meshes as they were written."""
-    dump: dict[str, Any] = _plain(study.model_dump())
+    """The study with the defaults of its method, as the tables of its file; paths of meshes as they were written."""
+    dump: dict[str, Any] = _plain(study.model_dump(exclude={"design": study.design.keys_of_the_other_method}))
     for section, key in (("lander", "file"), ("site", "body"), ("solver", "command")):
         dump[section][key] = (tables or {}).get(section, {}).get(key, dump[section][key])
     return dump

@@ -1,7 +1,7 @@
 """Touchdowns of a study as a campaign: which model makes them, from which values, and what was drawn by chance."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -27,13 +27,13 @@ def drawn_rows(study: Study, names: Sequence[str], x: np.ndarray, replicate: int
     return [_drawn(study, names, row, replicate) for row in x.tolist()]
 
 
-def touchdown_keys(study: Study, rows: Sequence[dict[str, float]], replicate: int) -> list[str]:
+def touchdown_keys(study: Study, rows: Sequence[Mapping[str, float]], replicate: int) -> list[str]:
     """The keys of these runs in the ledger."""
     context = touchdown_reads(study)
     return [run_key(row, study.seed, replicate, context) for row in rows]
 
 
-def touchdowns(job: Job, rows: Sequence[dict[str, float]], title: str, replicate: int) -> Runs:
+def touchdowns(job: Job, rows: Sequence[Mapping[str, float]], title: str, replicate: int) -> Runs:
     """Make the touchdowns with these inputs; those that the ledger has are read from it."""
     study = job.study
 
@@ -62,9 +62,9 @@ def touchdowns(job: Job, rows: Sequence[dict[str, float]], title: str, replicate
 def drawn_reads(study: Study) -> dict[str, Any]:
     """What the draws of a run depend on, beside its seed."""
     return {
-        "bed_count": study.bed.bed_count,
+        "bed_count": study.bed_count,
         "azimuth": "random" if study.impact.azimuth_deg == "random" else "fixed",
-        **study.impact.model_dump(include={"region", "orientation"}),
+        **study.impact.model_dump(include={"region", "orientation", "pointing_error_deg"}),
     }
 
 

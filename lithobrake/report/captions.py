@@ -11,7 +11,7 @@ from lithobrake.report.scatter_figure import DRAWN_COUNT
 from lithobrake.report.style import PAPER_OUTPUTS, output
 
 FIELD_WORDS = {"young_modulus": "Young's modulus", "poisson_ratio": "Poisson's ratio"}
-METHOD_WORDS = {
+POINT_WORDS = {
     "smolyak": "on the Smolyak grid",
     "sobol_sequence": "of a Sobol sequence",
     "latin_hypercube": "of a Latin hypercube",
@@ -115,10 +115,10 @@ def counts(data: Results) -> str:
     """Figure 3."""
     table, design, designs = data.results["node_counts"], data.study["design"], data.results["designs"]
     level, inputs = design["screening_level"], len(data.results["screening"]["inputs"])
-    grid = design["method"] == "smolyak"
+    grid = design["points"] == "smolyak"
     place = f"at level {level}" if grid else f"of degree {design['screening_degree']}"
     words = (
-        f"The screening of {inputs} inputs {place} takes {_runs(designs['screening'])} {METHOD_WORDS[design['method']]}"
+        f"The screening of {inputs} inputs {place} takes {_runs(designs['screening'])} {POINT_WORDS[design['points']]}"
     )
     if grid and inputs in table["input_counts"] and level in table["levels"]:
         full = table["tensor"][table["input_counts"].index(inputs)][table["levels"].index(level)]

@@ -117,7 +117,7 @@ def _landing(data: Results) -> "Figure | None":
 
 def _counts(data: Results) -> "Figure":
     table, results, design = data.results["node_counts"], data.results, data.study["design"]
-    measure = "level" if design["method"] == "smolyak" else "degree"
+    measure = "level" if design["points"] == "smolyak" else "degree"
     designs = [
         Design(
             name,

@@ -8,7 +8,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from lithobrake.outputs import BEDS, DESIGNS, FLIGHT, RUN, TOUCHDOWN, Quantity, quantity
+from lithobrake.outputs import BEDS, DESIGNS, FLIGHT, RUN, SEQUENCE_DESIGNS, TOUCHDOWN, Quantity, quantity
 from lithobrake.reading import NUMBER, DamagedFileError, read_json, read_rows, reading
 
 if TYPE_CHECKING:
@@ -87,9 +87,8 @@ class StudyResults:
     def runs(self) -> "Table":
         """Every touchdown of the study once: outcome, inputs in the file's units, outputs [SI]."""
         rows: dict[str, dict[str, Any]] = {}
-        for design in DESIGNS:
-            name = f"designs/{design}.csv"
-            for row in self._rows(name, _RUN) if (self.folder / name).is_file() else ():
+        for design, name in self._designs().items():
+            for row in self._rows(name, _RUN):
                 rows.setdefault(row["key"], {"design": design, **row})
         return self._table("run", list(rows.values()), ("design", *_RUN), RUN | TOUCHDOWN)
 
@@ -141,7 +140,7 @@ class StudyResults:
 
     @cached_property
     def median_landing(self) -> "MovingBodies":
-        """The landing with all inputs at their medians: grains and, as the last body, the lander."""
+        """The landing at the medians, or the first of a sequence: grains and, as the last body, the lander."""
         return self._bodies("landing.h5")
 
     def landing(
@@ -192,6 +191,16 @@ class StudyResults:
         from lithobrake.study.units import input_units
 
         return input_units()
+
+    def _designs(self) -> dict[str, str]:
+        """The files of the study's designs, by their names; a folder may also have those of an earlier method."""
+        found = {design: f"designs/{design}.csv" for design in (*DESIGNS, *SEQUENCE_DESIGNS)}
+        if (self.folder / "keys.json").is_file():
+            # An early format notes no stages, and knows of one method only.
+            noted = read_json(self.folder / "keys.json", dict, self.remedy).get("stages", {})
+            asked = {file for stage in noted.values() for file in stage["files"]}
+            found = {design: name for design, name in found.items() if name in asked or not noted}
+        return {design: name for design, name in found.items() if (self.folder / name).is_file()}
 
     def _key(self, run: str | int) -> str:
         """The key of a run of the study. Raises ValueError where it has none, or several that begin like that."""

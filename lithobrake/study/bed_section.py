@@ -56,8 +56,9 @@ class BedSection(Section):
     )
     """Diameter of the sphere of equal volume: constant (value), uniform (lower, upper), normal (mean, std, lower,
     upper) or power_law (exponent, lower, upper)."""
-    bed_count: Annotated[int, Whole("", at_least=1, at_most=1000)] = 1
-    """How many beds; with more than one, each run draws its bed."""
+    bed_count: Annotated[int, Whole("", at_least=1, at_most=1000)] | None = None
+    """How many beds; with more than one, each run draws its bed. Absent: one; with design.method = "sequence", on whose
+    beds land equally many runs, a tenth of these (rounded up), at least 12 and at most 60."""
     cloud_point_count: Annotated[int, Whole("", at_least=4, at_most=100)] = 14
     """Points in the random cloud whose hull is a grain."""
     pour_gravity: Annotated[float, Number("m/s2", above=0)] = 9.81

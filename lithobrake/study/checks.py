@@ -10,7 +10,8 @@ from pathlib import Path
 
 from lithobrake.study.body_checks import body_problems
 from lithobrake.study.contact_checks import contact_problems, inertia_problems
-from lithobrake.study.quantity import reach, uncertain
+from lithobrake.study.design_checks import design_problems
+from lithobrake.study.quantity import reach
 from lithobrake.study.refusals import show
 from lithobrake.study.study import Study
 
@@ -28,7 +29,7 @@ def problems(study: Study) -> Iterator[str]:
     yield from inertia_problems(study)
     yield from _grain_problems(study)
     yield from _place_problems(study)
-    yield from _design_problems(study)
+    yield from design_problems(study)
     yield from _solver_problems(study)
     if study.has_soil:
         yield from contact_problems(study)
@@ -106,6 +107,12 @@ def _place_problems(study: Study) -> Iterator[str]:
     impact, half = study.impact, [width / 2 for width in study.bed.width]
     if impact.place is not None and impact.region is not None:
         yield "impact.place and impact.region are both given; keep one: a place for all runs, or a region to draw from"
+    if impact.pointing_error_deg is not None and impact.orientation == "random":
+        yield (
+            f"impact.pointing_error_deg is {impact.pointing_error_deg:g}, and impact.orientation is "
+            '"random", which points anywhere already; allowed: a quaternion that the error is about; give one, or '
+            "leave the error out"
+        )
     length = math.hypot(*impact.orientation) if isinstance(impact.orientation, tuple) else 1.0
     if not 1.0 / LONGEST_QUATERNION <= length <= LONGEST_QUATERNION:
         yield (
@@ -124,64 +131,6 @@ def _place_problems(study: Study) -> Iterator[str]:
                     f"impact.{key}.{axis} reaches from {lower:g} to {upper:g} m; allowed: -{limit:g} to {limit:g} m, "
                     "counted from the middle of the bed; move it inside or widen the bed"
                 )
-
-
-def _design_problems(study: Study) -> Iterator[str]:
-    from lithobrake.chaos import smolyak_count, term_count
-
-    input_count = len(uncertain(study.touchdown_values()))
-    if input_count == 0:
-        yield (
-            "nothing in grain, lander, impact or surface is uncertain; give at least one key a distribution, "
-            'such as young_modulus = { distribution = "log_uniform", lower = 1e6, upper = 1e8 }'
-        )
-        return
-    yield from _unbounded_problems(study)
-    yield from _replicate_problems(study)
-    design = study.design
-    for stage, counts in (("screening", [input_count]), ("refined", range(1, input_count + 1))):
-        level, degree = getattr(design, f"{stage}_level"), getattr(design, f"{stage}_degree")
-        point_count, smolyak = getattr(design, f"{stage}_count"), design.method == "smolyak"
-        key = f"design.{stage}_{'level' if smolyak else 'count'}"
-        if smolyak == (point_count is not None):
-            yield (
-                f"design.{stage}_count {'does not go with' if smolyak else 'is missing; it is needed by'} "
-                f'design.method = "{design.method}"; allowed: "smolyak" takes levels, every other method counts'
-            )
-            continue
-        for count in counts:
-            found = smolyak_count(count, level) if smolyak else int(point_count or 0)
-            terms = term_count(count, degree)
-            if found < terms and (design.fit == "ols" or design.method == "fekete"):
-                where = f"{found} nodes of level {level}" if smolyak else f"{found} points of {key}"
-                yield (
-                    f"design.{stage}_degree is {degree}; with {count} inputs it has {terms} terms, more than the "
-                    f"{where}; lower the degree or raise {key}"
-                )
-                break
-
-
-def _unbounded_problems(study: Study) -> Iterator[str]:
-    """Inputs that have no end, on a grid that puts nodes at the ends."""
-    if study.design.method != "smolyak":
-        return
-    for name, value in uncertain(study.touchdown_values()).items():
-        if not all(map(math.isfinite, reach(value))):
-            yield (
-                f'{name} is {value.distribution}, which has no end, and design.method = "smolyak" puts runs at the '
-                "ends; give it two limits (truncated_normal, log_uniform, uniform, beta), or take another design.method"
-            )
-
-
-def _replicate_problems(study: Study) -> Iterator[str]:
-    """Runs that would be made several times to the same end."""
-    impact, count = study.impact, study.design.replicate_count
-    drawn = study.bed.bed_count > 1 or impact.region or "random" in (impact.azimuth_deg, impact.orientation)
-    if count > 1 and not drawn and study.has_soil:
-        yield (
-            f"design.replicate_count is {count}, but runs draw nothing by chance, so all {count} would be equal; "
-            'give them something to draw (bed.bed_count, impact.region, azimuth_deg or orientation "random") or write 1'
-        )
 
 
 def _solver_problems(study: Study) -> Iterator[str]:

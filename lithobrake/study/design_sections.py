@@ -13,11 +13,27 @@ Degree = Annotated[int, Whole("", at_least=1, at_most=15)]
 PointCount = Annotated[int, Whole("", at_least=2, at_most=1_000_000)] | None
 
 
-class DesignSection(Section):
-    """Which runs are made, and what is fitted to them: all inputs first, then those that matter at higher order."""
+# What a study that names no method is made by.
+DEFAULT_METHOD: Literal["sequence", "paper"] = "paper"
+# Keys that only the sequence takes; all others belong to the paper's method.
+SEQUENCE_KEYS = ("run_count", "side_runs", "twin_shift")
 
-    method: Literal["smolyak", "sobol_sequence", "latin_hypercube", "fekete"] = "smolyak"
-    """Where the runs stand: "smolyak", the paper's sparse grid, takes the levels and inputs with two limits;
+
+class DesignSection(Section):
+    """Which runs are made, and what is fitted to them; each key but the first belongs to one of the two methods."""
+
+    method: Literal["sequence", "paper"] = DEFAULT_METHOD
+    """How runs are chosen: "sequence", every run with soil, place, azimuth and attitude of its own out of one sequence,
+    on many beds; "paper", a screening over all inputs, then more runs over those that matter."""
+    run_count: Annotated[int, Whole("", at_least=2, at_most=1_000_000)] = 240
+    """sequence: number of runs; a larger one keeps the runs of a smaller one, each on its bed."""
+    side_runs: StrictBool = False
+    """sequence: whether to make, beside it, up to 20 of its runs again on a second soil, and up to 12 at a place a
+    little beside, which tell what soil and chaos do."""
+    twin_shift: Annotated[float, Number("m", above=0)] = 1e-4
+    """sequence: how far beside, with side_runs."""
+    points: Literal["smolyak", "sobol_sequence", "latin_hypercube", "fekete"] = "smolyak"
+    """paper: where the runs stand: "smolyak", its sparse grid, takes the levels and inputs with two limits;
     "sobol_sequence" (a larger count keeps the runs of a smaller one), "latin_hypercube" and "fekete" (best conditioned
     for the degree) take the counts and any input."""
     screening_level: Level = Field(default=3, examples=["2"])
@@ -44,6 +60,12 @@ class DesignSection(Section):
     """Outputs that decide which inputs are kept."""
     test_count: Annotated[int, Whole("", at_least=2, at_most=100_000)] = Field(default=40, examples=["10"])
     """Fresh random runs in each of the two test sets (kept inputs vary; all inputs vary)."""
+
+    @property
+    def keys_of_the_other_method(self) -> set[str]:
+        """Keys that mean nothing here."""
+        is_sequence = self.method == "sequence"
+        return {key for key in type(self).model_fields if key != "method" and (key in SEQUENCE_KEYS) != is_sequence}
 
 
 class MonteCarloSection(Section):

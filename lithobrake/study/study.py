@@ -3,13 +3,14 @@
 A `MaybeUncertain` key takes a number, or a table with a distribution. `lithobrake new` writes these very lines.
 """
 
-from typing import Annotated
+from collections.abc import Mapping
+from typing import Annotated, Any
 
-from pydantic import BaseModel, PrivateAttr
+from pydantic import BaseModel, PrivateAttr, model_validator
 
 from lithobrake.study.bed_section import BedSection
 from lithobrake.study.campaign_sections import CampaignSection, SolverSection
-from lithobrake.study.design_sections import DesignSection, MonteCarloSection
+from lithobrake.study.design_sections import DEFAULT_METHOD, DesignSection, MonteCarloSection
 from lithobrake.study.flight_sections import FlightSection, RestSection, SiteSection
 from lithobrake.study.impact_sections import (
     ContactSection,
@@ -21,6 +22,17 @@ from lithobrake.study.impact_sections import (
 from lithobrake.study.material_sections import GrainSection, LanderSection
 from lithobrake.study.quantity import Scalar, Uncertain, Whole
 from lithobrake.study.section import Section
+
+# Ten landings on a bed cost least for what they tell, where a bed costs some six landings; an interval needs a dozen.
+RUNS_A_BED, FEWEST_BEDS, MOST_BEDS = 10, 12, 60
+
+
+def default_bed_count(run_count: int) -> int:
+    """How many beds a sequence has of which nothing else is said: a tenth of the runs, within limits.
+
+    Source: [Cochran-1977], section 10.6.
+    """
+    return min(run_count, MOST_BEDS, max(FEWEST_BEDS, -(-run_count // RUNS_A_BED)))
 
 
 class Study(Section):
@@ -46,6 +58,19 @@ class Study(Section):
     rest: RestSection = RestSection()
     _function: str | None = PrivateAttr(default=None)
 
+    @model_validator(mode="before")
+    @classmethod
+    def _defaults_of_the_sequence(cls, tables: Any) -> Any:
+        """Fill in what a study of the sequence leaves open; all that is wrong is left for the sections to refuse."""
+        design = tables.get("design", {}) if isinstance(tables, Mapping) else None
+        if not isinstance(design, Mapping) or design.get("method", DEFAULT_METHOD) != "sequence":
+            return tables
+        impact = tables.get("impact")
+        if not isinstance(impact, Mapping):
+            return tables
+        attitude = {} if "pointing_error_deg" in impact else {"orientation": "random"}
+        return {**tables, "impact": {"azimuth_deg": "random", **attitude, **impact}}
+
     def with_function(self, identity: str | None) -> "Study":
         """The same study, its touchdowns made by a Python function of this identity in place of the soil."""
         study = self.model_copy()
@@ -62,11 +87,20 @@ class Study(Section):
         """Whether this program's own soil makes the touchdowns, and not a program or function of the user's own."""
         return self.solver.command is None and self.function is None
 
+    @property
+    def bed_count(self) -> int:
+        """How many beds are landed on."""
+        if self.bed.bed_count is not None:
+            return self.bed.bed_count
+        return default_bed_count(self.design.run_count) if self.design.method == "sequence" else 1
+
     def touchdown_values(self) -> dict[str, Scalar]:
         """Every scalar that the touchdown reads, by dotted key, in the units of the file; absent ones are left out."""
         values: dict[str, Scalar] = {}
         for section in ("grain", "lander", "impact", "surface", "solver"):
             values |= _scalars(section, getattr(self, section))
+        # What a run is given is the attitude that it draws with that error.
+        values.pop("impact.pointing_error_deg", None)
         if self.impact.region is None and self.impact.place is None:
             values |= {"impact.place.x": 0.0, "impact.place.y": 0.0}
         return values

@@ -21,7 +21,7 @@ def input_units() -> dict[str, str]:
 
 def run_units() -> dict[str, str]:
     """The unit of each input and output of a run by its name; a program of the user's own is asked for the same."""
-    return input_units() | {name: quantity.units for name, quantity in TOUCHDOWN.items()}
+    return input_units() | {name: quantity.units or PURE for name, quantity in TOUCHDOWN.items()}
 
 
 def _units(path: str, model: type[BaseModel]) -> dict[str, str]:

@@ -10,22 +10,23 @@ from numpy.typing import NDArray
 from lithobrake.atomic import atomic_path
 from lithobrake.dem import Box, ConvexHull, Sphere
 from lithobrake.outcomes import TouchdownOutcome
-from lithobrake.outputs import describe
+from lithobrake.outputs import ORIENTATION_OUT, OVER_RIM, SPIN_OUT, describe
 from lithobrake.touchdown.bed import Bed, write_hulls
 from lithobrake.touchdown.lander import Lander
 from lithobrake.touchdown.landing import Landing
 
 Floats = NDArray[np.float64]
-OUTPUTS = (
+LEAVING = (
     "speed_out", "elevation_out", "azimuth_out", "spin_out", "velocity_out_x", "velocity_out_y", "velocity_out_z",
-    "contact_duration", "penetration", "peak_acceleration", "energy_lost",
+    *SPIN_OUT, *ORIENTATION_OUT, OVER_RIM,
 )  # fmt: skip
+OUTPUTS = (*LEAVING, "contact_duration", "penetration", "peak_acceleration", "energy_lost")
 SPHERE_PICTURE_POINTS = 200
 
 
 @dataclass(frozen=True, eq=False)
 class Outcome:
-    """How it ended, and its outputs: the keys OUTPUTS (SI); the *_out values are NaN unless the lander is clear.
+    """How it ended, and its outputs: the keys OUTPUTS (SI); those of LEAVING are NaN unless the lander is clear.
 
     frames holds "time" [s, frame_count], "position" [m, frame_count, body_count, 3] and "orientation"; the last body is
     the lander.
@@ -54,18 +55,36 @@ class Outcome:
             file.attrs["speed"], file.attrs["incidence"] = landing.speed, landing.incidence
 
 
-def outgoing(velocity: Floats, spin: Floats, azimuth: float, left: bool) -> dict[str, float]:
-    """Return the outgoing state in the local frame: x along the incoming horizontal velocity, z out of the surface."""
-    if not left:
-        return dict.fromkeys(OUTPUTS[:7], math.nan)
-    cosine, sine = math.cos(azimuth), math.sin(azimuth)
-    x, y = cosine * velocity[0] + sine * velocity[1], cosine * velocity[1] - sine * velocity[0]
-    z = float(velocity[2])
+def outgoing(
+    velocity: Floats, spin: Floats, orientation: Floats, azimuth: float, *, over_rim: bool
+) -> dict[str, float]:
+    """Return how the lander leaves, in the local frame: x along the incoming horizontal velocity, z out of the surface.
+
+    velocity [m/s], spin [rad/s], orientation (w, x, y, z): in the frame of the bed, in which `azimuth` [rad] is that of
+    the incoming velocity.
+    """
+    x, y, z = turned(velocity, -azimuth)
     horizontal = math.hypot(x, y)
     values = (
-        math.hypot(horizontal, z), math.atan2(z, horizontal), math.atan2(y, x), float(np.linalg.norm(spin)), x, y, z
+        math.hypot(horizontal, z), math.atan2(z, horizontal), math.atan2(y, x), float(np.linalg.norm(spin)), x, y, z,
+        *turned(spin, -azimuth), *turned_attitude(orientation, -azimuth), float(over_rim),
     )  # fmt: skip
-    return dict(zip(OUTPUTS[:7], (float(value) for value in values), strict=True))
+    return dict(zip(LEAVING, (float(value) for value in values), strict=True))
+
+
+def turned(vector: Floats, angle: float) -> tuple[float, float, float]:
+    """Return a vector turned about z by an angle [rad]."""
+    cosine, sine = math.cos(angle), math.sin(angle)
+    return cosine * vector[0] - sine * vector[1], cosine * vector[1] + sine * vector[0], float(vector[2])
+
+
+def turned_attitude(orientation: Floats, angle: float) -> tuple[float, float, float, float]:
+    """Return a unit quaternion turned about z by an angle [rad]; of the two of that attitude the one with w >= 0."""
+    cosine, sine = math.cos(0.5 * angle), math.sin(0.5 * angle)
+    w, x, y, z = orientation
+    found = (cosine * w - sine * z, cosine * x - sine * y, cosine * y + sine * x, cosine * z + sine * w)
+    sign = -1.0 if found[0] < 0.0 else 1.0
+    return sign * found[0], sign * found[1], sign * found[2], sign * found[3]
 
 
 def picture(shape: Sphere | Box | ConvexHull) -> ConvexHull:

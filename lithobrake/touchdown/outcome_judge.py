@@ -10,7 +10,7 @@ from lithobrake.outcomes import TouchdownOutcome
 from lithobrake.touchdown.bed import Bed
 from lithobrake.touchdown.lander import Lander
 from lithobrake.touchdown.landing import Landing
-from lithobrake.touchdown.outcome import Outcome, outgoing
+from lithobrake.touchdown.outcome import LEAVING, Outcome, outgoing
 from lithobrake.touchdown.surface import rotation_matrix
 
 Floats = NDArray[np.float64]
@@ -31,6 +31,7 @@ class OutcomeJudge:
         self.start_energy = self.energy()
         self.clear_height = bed.surface_height + bed.grain_diameter
         self.ended: TouchdownOutcome | None = None
+        self.over_rim = False
         self.height_at_contact: float | None = None
         self.lowest = self.height()
         self.still_since: float | None = None
@@ -70,15 +71,18 @@ class OutcomeJudge:
         """Return how the touchdown ended, or None while it is open."""
         world, k = self.world, self.number
         position, velocity = world.position[k], world.velocity[k]
-        if abs(position[0]) > 0.5 * self.bed.width[0] or abs(position[1]) > 0.5 * self.bed.width[1]:
-            return TouchdownOutcome.LEFT_SIDEWAYS
         free, energy = not np.any(world.contact_force[k]), self.energy() if has_touched else math.inf
-        if has_touched and free:
-            if velocity[2] > 0.0 and height > self.clear_height:
-                return TouchdownOutcome.CLEAR
-            lift = -world.gravity[2] * CAPTURED_APEX * self.lander.smallest_edge
-            if energy < self.lander.mass * lift:
-                return TouchdownOutcome.CAPTURED
+        flies, outward = has_touched and free, bool(velocity[2] > 0.0)
+        lift = -world.gravity[2] * CAPTURED_APEX * self.lander.smallest_edge
+        held = energy < self.lander.mass * lift
+        if abs(position[0]) > 0.5 * self.bed.width[0] or abs(position[1]) > 0.5 * self.bed.width[1]:
+            # Soil as it lies in the bed would go on there: what flies up has left it, of anything else nobody knows.
+            self.over_rim = flies and outward and not held
+            return TouchdownOutcome.CLEAR if self.over_rim else TouchdownOutcome.LEFT_SIDEWAYS
+        if flies and outward and height > self.clear_height:
+            return TouchdownOutcome.CLEAR
+        if flies and held:
+            return TouchdownOutcome.CAPTURED
         if has_touched and energy < CAPTURED_ENERGY * self.start_energy:
             self.still_since = world.time if self.still_since is None else self.still_since
             patience = CAPTURED_CONTACTS * self.landing.contact.steps_per_contact * world.time_step
@@ -102,7 +106,10 @@ class OutcomeJudge:
         world, k = self.world, self.number
         assert self.ended is not None
         left = self.ended == TouchdownOutcome.CLEAR
-        outputs = outgoing(world.velocity[k], world.spin[k], self.landing.azimuth, left)
+        state = world.velocity[k], world.spin[k], world.orientation[k]
+        outputs = dict.fromkeys(LEAVING, math.nan)
+        if left:
+            outputs = outgoing(*state, self.landing.azimuth, over_rim=self.over_rim)
         outputs["contact_duration"] = world.touch_duration or 0.0
         outputs["penetration"] = 0.0 if self.height_at_contact is None else self.height_at_contact - self.lowest
         outputs["peak_acceleration"] = world.watched["peak_force"] / self.lander.mass

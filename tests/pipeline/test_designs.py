@@ -54,7 +54,7 @@ poisson_ratio = 0.25
 restitution = 0.5
 friction = 0.5
 [design]
-method = "sobol_sequence"
+points = "sobol_sequence"
 screening_count = 20
 screening_degree = 2
 refined_count = 12
@@ -78,9 +78,9 @@ def changed(**design: Any) -> Study:
     return check_tables(tables, Path())
 
 
-@pytest.mark.parametrize("method", ["sobol_sequence", "latin_hypercube", "fekete"])
-def test_designs_by_count_vary_what_they_should(method: str) -> None:
-    study = changed(method=method, screening_count=60, refined_count=70)
+@pytest.mark.parametrize("points_at", ["sobol_sequence", "latin_hypercube", "fekete"])
+def test_designs_by_count_vary_what_they_should(points_at: str) -> None:
+    study = changed(points=points_at, screening_count=60, refined_count=70)
     kept = ["grain.friction", "grain.restitution"]
     screening, refined = points(study, "screening", ()), points(study, "refined", kept)
     assert (len(screening), len(refined)) == (60, 70)
@@ -90,7 +90,7 @@ def test_designs_by_count_vary_what_they_should(method: str) -> None:
 
 
 def test_a_larger_sobol_sequence_keeps_the_points_of_a_smaller_one() -> None:
-    few, many = (changed(method="sobol_sequence", screening_count=n, refined_count=60) for n in (50, 70))
+    few, many = (changed(points="sobol_sequence", screening_count=n, refined_count=60) for n in (50, 70))
     assert np.array_equal(points(few, "screening", ()), points(many, "screening", ())[:50])
 
 

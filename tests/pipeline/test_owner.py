@@ -12,7 +12,8 @@ from lithobrake.pipeline.owner import refuse_others_folder
 from lithobrake.study import StudySource
 
 STAGES = {
-    name: {"title": name, "key": "1", "files": []} for name in ("screening_runs", "refined_runs", "test_runs", "report")
+    name: {"title": name, "key": "1", "files": []}
+    for name in ("bed", "screening_runs", "refined_runs", "test_runs", "report")
 }
 
 

@@ -12,6 +12,8 @@ from lithobrake.pipeline.solver import SolverModel
 VELOCITY = {"velocity_out_x": 0.03, "velocity_out_y": -0.02, "velocity_out_z": 0.06}
 CLEAR = {**VELOCITY, "spin_out": 1.5}
 
+SPIN = {"spin_out_x": 1.0, "spin_out_y": -2.0, "spin_out_z": 2.0}
+
 
 class Answers:
     """A program that always gives one answer."""
@@ -35,6 +37,15 @@ def test_speed_and_elevation_follow_from_the_components() -> None:
     assert outputs["elevation_out"] == pytest.approx(math.atan2(0.06, math.hypot(0.03, 0.02)), rel=1e-12)
 
 
+def test_the_size_of_a_spin_follows_from_its_parts_and_an_attitude_is_kept() -> None:
+    attitude = {f"orientation_out_{part}": value for part, value in zip("wxyz", (0.5, 0.5, -0.5, 0.5), strict=True)}
+    outputs = made({**VELOCITY, **SPIN, **attitude})["outputs"]
+    assert outputs["spin_out"] == 3.0
+    assert {name: outputs[name] for name in (*SPIN, *attitude)} == {**SPIN, **attitude}
+    # Neither has to be given.
+    assert not {*SPIN, *attitude} & set(made(CLEAR)["outputs"])
+
+
 def test_components_too_large_for_their_speed_give_no_speed_that_is_missing() -> None:
     assert made({**CLEAR, **dict.fromkeys(VELOCITY, 1.5e308)})["outputs"]["speed_out"] == math.inf
 
@@ -56,6 +67,10 @@ def test_numbers_printed_with_six_digits_agree() -> None:
         ({**CLEAR, "elevation_out": 59.0}, "59 for elevation_out, and 1.029"),
         ({**CLEAR, "spin_out": -1.5}, "spin_out of -1.5 rad/s"),
         (VELOCITY, "lacks spin_out"),
+        ({**CLEAR, **SPIN}, "1.5 for spin_out, and 3 follows from spin_out_x, _y and _z"),
+        ({**CLEAR, "spin_out_x": 1.5}, "has spin_out_x and lacks spin_out_y, spin_out_z; give all of them, or none"),
+        ({**CLEAR, "orientation_out_w": 1.0}, "has orientation_out_w and lacks orientation_out_x"),
+        ({**CLEAR, **{f"orientation_out_{part}": 1.0 for part in "wxyz"}}, "of length 2; allowed: 1"),
         ({"speed_out": 0.07, "elevation_out": 1.03, "spin_out": 1.5}, "lacks velocity_out_x"),
     ],
 )

@@ -153,7 +153,7 @@ def made_up_summary(scores: dict[str, dict[str, dict[str, object]]]) -> dict[str
                 "restitution": uniform,
                 "friction": uniform,
             },
-            "design": {"method": "smolyak", "screening_level": 2, "refined_level": 3, "kept_outputs": OUTPUTS},
+            "design": {"points": "smolyak", "screening_level": 2, "refined_level": 3, "kept_outputs": OUTPUTS},
             "flight": {"duration": 43200.0},
             "rest": {
                 "count": 50,

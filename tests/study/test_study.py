@@ -85,10 +85,13 @@ REFUSED = [
     ("bed.diameter", table("constant", value=0.1, upper=3.0), ["bed.diameter.upper is not a known key"]),
     ("contact.pair_rule", "smalest", ["did you mean smaller?"]),
     ("design.screening_degree", 9, ["design.screening_degree is 9", "2002 terms", "61 nodes"]),
-    ("design.method", "sobol", ["did you mean sobol_sequence?"]),
-    ("design.method", "latin_hypercube", ["design.screening_count is missing", "design.refined_count is missing"]),
+    ("design.points", "sobol", ["did you mean sobol_sequence?"]),
+    ("design.points", "latin_hypercube", ["design.screening_count is missing", "design.refined_count is missing"]),
     ("design.refined_count", 50, ["design.refined_count does not go with", '"smolyak" takes levels']),
     ("design.replicate_count", 2, ["draw nothing by chance", "impact.region"]),
+    ("design.method", "paperr", ["allowed: sequence or paper", "did you mean paper?"]),
+    ("design.run_count", 100, ['design.run_count goes with design.method = "sequence", and it is "paper"']),
+    ("impact.pointing_error_deg", 200.0, ["above 0 and at most 180 [deg]"]),
     ("design.replicate_count", 0, ["at least 1 and at most 1000"]),
     ("design.fit", "least squares", ["allowed: ols, lars, omp, gaussian_process or best"]),
     ("monte_carlo.scatter", "yes", ['monte_carlo.scatter is "yes"; allowed: true or false; write it without']),
@@ -96,7 +99,7 @@ REFUSED = [
     (
         "grain.young_modulus",
         table("log_normal", mean=16.0, std=1.0),
-        ["which has no end", "log_uniform", "design.method"],
+        ["which has no end", "log_uniform", "design.points"],
     ),
     ("grain.friction", table("exponential", rate=2.0), ["grain.friction is exponential, which has no end"]),
     ("impact.spin_x", table("normal", mean=0.0, std=0.1), ["impact.spin_x is normal, which has no end"]),
@@ -147,10 +150,10 @@ def test_a_wrong_key_is_named_with_its_value_and_range(key: str, value: Any, wor
         assert word in said
 
 
-SOBOL = {"design.method": "sobol_sequence", "design.screening_count": 100, "design.refined_count": 100}
+SOBOL = {"design.points": "sobol_sequence", "design.screening_count": 100, "design.refined_count": 100}
 ACCEPTED = [
     {"grain.friction": table("exponential", rate=2.0), **SOBOL},
-    {"lander.mass": table("log_normal", mean=1.0, std=0.1), **SOBOL, "design.method": "fekete"},
+    {"lander.mass": table("log_normal", mean=1.0, std=0.1), **SOBOL, "design.points": "fekete"},
     {
         "site.latitude_deg": table("uniform", lower=-10.0, upper=10.0),
         "site.mass": table("gamma", shape=9.0, scale=6e10),
@@ -319,5 +322,5 @@ def test_what_only_the_flight_reads_may_be_uncertain() -> None:
     "path", sorted((Path(__file__).parents[2] / "scenarios").glob("*.toml")), ids=lambda path: path.stem
 )
 def test_the_scenarios_are_studies(path: Path) -> None:
-    counts = {"bounces": 3, "paper": 5, "quick": 5}
+    counts = {"bounces": 3, "one_place": 5, "paper": 5, "quick": 5}
     assert len(uncertain(read_study(path).touchdown_values())) == counts[path.stem]

@@ -24,7 +24,7 @@ def test_every_input_of_a_run_has_its_unit() -> None:
 
 def test_every_output_has_its_unit() -> None:
     assert {*OUTPUTS, *OUTPUTS_OF_A_TOUCHDOWN} == set(TOUCHDOWN)
-    assert all(one.units and one.long_name for one in TOUCHDOWN.values())
+    assert all(run_units()[name] and one.long_name for name, one in TOUCHDOWN.items())
     assert run_units()["peak_acceleration"] == "m/s2"
 
 

@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from lithobrake.dem import Box, Material, Sphere
 from lithobrake.touchdown import OUTPUTS, ContactModel, Lander, Landing, land, read_hull
@@ -94,11 +95,35 @@ def test_any_constant_acceleration_is_accepted(bed, gravity):
 
 
 def test_outgoing_velocity_is_told_along_the_incoming_one():
-    out = outgoing(np.array([0.0, 2.0, 1.0]), np.array([3.0, 0.0, 4.0]), math.pi / 2, True)
+    still = np.array([1.0, 0.0, 0.0, 0.0])
+    out = outgoing(np.array([0.0, 2.0, 1.0]), np.array([3.0, 0.0, 4.0]), still, math.pi / 2, over_rim=False)
     assert out["velocity_out_x"] == pytest.approx(2.0)
     assert out["velocity_out_y"] == pytest.approx(0.0, abs=1e-12)
     assert out["spin_out"] == 5.0
     assert out["azimuth_out"] == pytest.approx(0.0, abs=1e-12)
+    assert [out[f"spin_out_{axis}"] for axis in "xyz"] == pytest.approx([0.0, -3.0, 4.0], abs=1e-12)
+    # Seen from a frame turned to the left, a lander that has not turned is turned to the right.
+    half = math.sqrt(0.5)
+    assert [out[f"orientation_out_{part}"] for part in "wxyz"] == pytest.approx([half, 0.0, 0.0, -half])
+    assert out["over_rim"] == 0.0
+
+
+@pytest.mark.parametrize("azimuth", [0.0, 0.7])
+def test_a_frictionless_ball_leaves_with_the_spin_that_it_came_with_and_turned_by_it(bed, azimuth):
+    slick = dataclasses.replace(BOUNCY, friction=0.0)
+    spin, start = np.array([1.0, -2.0, 0.5]), np.array([0.9, 0.3, 0.2, 0.1])
+    outcome = land(bed, ball(slick), landing(spin=tuple(spin), orientation=tuple(start), azimuth=azimuth))
+    out, rate = outcome.outputs, float(np.linalg.norm(spin))
+    local = Rotation.from_euler("z", -azimuth)
+    assert outcome.status == "clear"
+    assert [out[f"spin_out_{axis}"] for axis in "xyz"] == pytest.approx(local.apply(spin), rel=1e-9)
+    assert out["spin_out"] == pytest.approx(rate, rel=1e-9)
+    after = Rotation.from_rotvec(spin * outcome.simulated_time)
+    expected = local * after * Rotation.from_quat(start, scalar_first=True)
+    found = Rotation.from_quat([out[f"orientation_out_{part}"] for part in "wxyz"], scalar_first=True)
+    # A step turns a body without a couple exactly, so only rounding of some thousand steps is left.
+    assert (found * expected.inv()).magnitude() < 1e-9
+    assert out["orientation_out_w"] >= 0.0
 
 
 def test_recorded_landing_is_written(bed, tmp_path):

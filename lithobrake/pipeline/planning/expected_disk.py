@@ -32,7 +32,7 @@ def expected_bytes(study: Study, runs: PlannedRuns, soil: ExpectedSoil | None) -
     if soil is not None:
         grains = soil.recipe.grain_count
         one = BED_GRAIN * grains + BED_STEP * round(soil.pour_steps())
-        found["beds"] = study.bed.bed_count * one + LANDING_BODY * (grains + 1)
+        found["beds"] = study.bed_count * one + LANDING_BODY * (grains + 1)
     return found
 
 

@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lithobrake.pipeline.beds import bed_recipe
-from lithobrake.pipeline.designs import design_inputs
-from lithobrake.pipeline.planning.planned_runs import planned_points
+from lithobrake.pipeline.planning.planned_runs import planned_rows
+from lithobrake.pipeline.shown_landing import landing_values
 from lithobrake.study import Study
-from lithobrake.touchdown_model import draw, lander, landing, medians
+from lithobrake.touchdown_model import lander, landing
 
 if TYPE_CHECKING:
     from lithobrake.dem import ConvexHull
@@ -43,7 +43,7 @@ STEPS_PER_PERIOD = 80.0
 class ExpectedSoil:
     """A bed that has yet to be poured, and landings on it.
 
-    grains: some, of all sizes. landings: some of those that the study makes; the first is that at the medians.
+    grains: some, of all sizes. landings: some of those that the study makes, after the one that is shown.
     """
 
     recipe: "BedRecipe"
@@ -59,9 +59,7 @@ class ExpectedSoil:
         generator = np.random.default_rng(recipe.seed)
         diameters = recipe.sizes.draw((np.arange(GRAIN_COUNT) + 0.5) / GRAIN_COUNT).tolist()
         grains = tuple(make_grain(generator, recipe.cloud_point_count, size) for size in diameters)
-        x, inputs, middle = planned_points(study, kept_count, LANDING_COUNT), design_inputs(study), medians(study)
-        values = [middle, *(middle | dict(zip(inputs, row, strict=True)) for row in x.tolist())]
-        drawn = [draw(study, one, study.seed) for one in values]
+        drawn = [landing_values(study), *planned_rows(study, kept_count, LANDING_COUNT)]
         return cls(recipe, grains, tuple((lander(study, one), landing(study, one)) for one in drawn))
 
     @property

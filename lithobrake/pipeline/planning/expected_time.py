@@ -54,7 +54,7 @@ def expected_seconds(
         found["compiling the engine, once"] = spread(COMPILING)
     if soil is not None and (made["beds"][1] or made["landings"][1]):
         pours = made["beds"][1] * pour_time(soil) + made["landings"][1] * landing_time(soil, *soil.landings[0])
-        found["beds, and the landing at the medians"] = spread(pace * pours)
+        found["beds, and the landing to look at"] = spread(pace * pours)
     if made["touchdowns"][1]:
         one, (fewest, most) = run_time(soil, ended, pace), made["touchdowns"]
         found["touchdowns"] = (fewest * one[0] / cores, most * one[1] / cores) if one and workers else None

@@ -5,7 +5,7 @@ from lithobrake.pipeline.planning.plan import Plan
 # One, and more.
 NAMES = {
     "beds": ("bed", "beds"),
-    "landings": ("landing at the medians",) * 2,
+    "landings": ("landing to look at",) * 2,
     "touchdowns": ("touchdown", "touchdowns"),
     "samples": ("sample", "samples"),
     "flights": ("flight", "flights"),
@@ -48,6 +48,9 @@ def _made(plan: Plan) -> str:
 def _designs(plan: Plan) -> str:
     """How many touchdowns each design asks for, and how many of all are there."""
     fewest, most = plan.runs[0], plan.runs[-1]
+    if most.drawn:
+        side = f", {most.side} side runs" if most.side else ""
+        return f"{most.drawn} drawn{side}; {most.total} in all, of which {len(most.known)} are known and reused"
     kept = (
         f"{_range(fewest.kept_count, most.kept_count)} kept inputs" if fewest is not most else f"{most.kept_count} kept"
     )

@@ -9,8 +9,10 @@ from lithobrake.campaign import Record, read_records
 from lithobrake.outputs import DESIGNS
 from lithobrake.pipeline.designs import design_inputs, kept_inputs, points, replicate_count
 from lithobrake.pipeline.folder import StudyFolder
+from lithobrake.pipeline.sequence import SIDE_DESIGNS, design_rows, sequence_rows
 from lithobrake.pipeline.touchdown_runs import drawn_rows, touchdown_keys
 from lithobrake.study import Study
+from lithobrake.touchdown_model import draw, medians
 
 # Designs with more runs are not gone through run by run: that would take longer than a second or two.
 MOST_NAMED = 10_000
@@ -21,6 +23,7 @@ class PlannedRuns:
     """Distinct touchdowns of a study in which so many inputs are kept after the screening.
 
     A touchdown that several designs share counts for the first of them. known: keys of those that have ended already.
+    drawn, side: of a sequence, which has none of the others.
     """
 
     kept_count: int
@@ -28,11 +31,13 @@ class PlannedRuns:
     refined: int
     test: int
     known: frozenset[str]
+    drawn: int = 0
+    side: int = 0
 
     @property
     def total(self) -> int:
         """All of them."""
-        return self.screening + self.refined + self.test
+        return self.screening + self.refined + self.test + self.drawn + self.side
 
     @property
     def new(self) -> int:
@@ -61,6 +66,8 @@ def possible_runs(study: Study, folder: StudyFolder, screened: bool, known: Iter
     screened: the folder has the screening of this study. known: keys of runs that have ended.
     """
     inputs = tuple(design_inputs(study))
+    if study.design.method == "sequence":
+        return [_planned_sequence(study, set(known))]
     if screened:
         from lithobrake.chaos import load
 
@@ -71,7 +78,16 @@ def possible_runs(study: Study, folder: StudyFolder, screened: bool, known: Iter
     return [_planned(study, kept, ended) for kept in choices]
 
 
-def planned_points(study: Study, kept_count: int, most: int) -> np.ndarray:
+def planned_rows(study: Study, kept_count: int, most: int) -> list[dict[str, float]]:
+    """All inputs of up to `most` of the touchdowns, drawn by chance."""
+    if study.design.method == "sequence":
+        return sequence_rows(study, min(most, study.design.run_count))
+    middle, inputs = medians(study), design_inputs(study)
+    points_of_runs = _planned_points(study, kept_count, most).tolist()
+    return [draw(study, middle | dict(zip(inputs, row, strict=True)), study.seed) for row in points_of_runs]
+
+
+def _planned_points(study: Study, kept_count: int, most: int) -> np.ndarray:
     """Up to `most` of the points at which touchdowns are made, drawn by chance, shape [point_count, input_count]."""
     from lithobrake.analysis import sample_inputs
 
@@ -80,6 +96,15 @@ def planned_points(study: Study, kept_count: int, most: int) -> np.ndarray:
     if not parts:
         return sample_inputs(design_inputs(study), most, seed=0)
     return np.random.default_rng(0).permutation(np.concatenate(parts))[:most]
+
+
+def _planned_sequence(study: Study, ended: set[str]) -> PlannedRuns:
+    side = SIDE_DESIGNS if study.design.side_runs else ()
+    drawn, *beside = (touchdown_keys(study, design_rows(study, design), 0) for design in ("sequence", *side))
+    side_keys = {key for keys in beside for key in keys} - set(drawn)
+    known = frozenset((set(drawn) | side_keys) & ended)
+    count = len(design_inputs(study))
+    return PlannedRuns(count, 0, 0, 0, known, drawn=len(set(drawn)), side=len(side_keys))
 
 
 def _planned(study: Study, kept: Sequence[str], ended: set[str]) -> PlannedRuns:
@@ -106,7 +131,7 @@ def _point_count(study: Study, design: str, kept_count: int) -> int:
     section = study.design
     if design.startswith("test"):
         return section.test_count
-    if section.method != "smolyak":
+    if section.points != "smolyak":
         return int(getattr(section, f"{design}_count"))
     input_count = kept_count if design == "refined" else len(design_inputs(study))
     return smolyak_count(input_count, getattr(section, f"{design}_level"))

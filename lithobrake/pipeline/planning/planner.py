@@ -16,10 +16,10 @@ from lithobrake.pipeline.planning.plan_in_words import bytes_in_words
 from lithobrake.pipeline.planning.planned_runs import PlannedRuns, known_runs, possible_runs
 from lithobrake.pipeline.planning.study_warnings import study_warnings
 from lithobrake.pipeline.site import with_site_gravity
-from lithobrake.pipeline.stages import STAGES, stage_keys
+from lithobrake.pipeline.stages import stage_keys, stages_of
 from lithobrake.study import Study, StudySource
 
-MAKE_RUNS = frozenset({"screening_runs", "refined_runs", "test_runs"})
+MAKE_RUNS = frozenset({"screening_runs", "refined_runs", "test_runs", "runs", "side_runs"})
 
 
 def plan_study(path: Path, out: Path, worker_count: int | None = None) -> Plan:
@@ -39,7 +39,11 @@ def plan_of(
 ) -> Plan:
     """The plan of a study that has been read."""
     keys = stage_keys(study)
-    stale = {stage.name: stage.title for stage in STAGES if not folder.is_current(stage.files(study), keys[stage.name])}
+    stale = {
+        stage.name: stage.title
+        for stage in stages_of(study)
+        if not folder.is_current(stage.files(study), keys[stage.name])
+    }
     known = known_runs(study, folder)
     runs = tuple(possible_runs(study, folder, "screen" not in stale, known))
     beds = sum(not folder.is_current([file], keys["bed"]) for file in bed_files(study))

@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 
 from lithobrake.pipeline.designs import design_inputs
+from lithobrake.pipeline.place_region import place_region, smallest_width
 from lithobrake.pipeline.planning.expected_steps import ExpectedSoil
 from lithobrake.pipeline.site import gravity_warning, site_warning
 from lithobrake.pipeline.surrogate_bounce import why_no_soil
@@ -45,9 +46,9 @@ def _bed(soil: ExpectedSoil) -> Iterator[str]:
 
 def _rim(study: Study, soil: ExpectedSoil) -> Iterator[str]:
     """A lander that comes down over the rim of the bed."""
-    reach, region = soil.landings[0][0].shape.bounding_radius, study.impact.region
-    for axis, name, width in zip("xy", PLACE, soil.recipe.width, strict=True):
-        low, high = getattr(region, axis) if region else _reach(study.touchdown_values()[name])
+    reach, region = soil.landings[0][0].shape.bounding_radius, place_region(study)
+    for number, (axis, name, width) in enumerate(zip("xy", PLACE, soil.recipe.width, strict=True)):
+        low, high = region[number] if region else _reach(study.touchdown_values()[name])
         room = 0.5 * width - reach
         if max(-low, high) > room:
             yield (
@@ -96,7 +97,7 @@ def _terms(study: Study) -> Iterator[str]:
     from lithobrake.chaos import smolyak_count, term_count
 
     design, count = study.design, len(design_inputs(study))
-    if design.fit != "ols":
+    if design.method != "paper" or design.fit != "ols":
         return
     runs = design.screening_count or smolyak_count(count, design.screening_level)
     terms = term_count(count, design.screening_degree)
@@ -117,8 +118,14 @@ def _bounces(study: Study) -> Iterator[str]:
 
 def _one_place(study: Study) -> Iterator[str]:
     """An answer that holds for one place of one bed."""
-    places = study.impact.region or any(isinstance(study.touchdown_values().get(name), Uncertain) for name in PLACE)
-    if study.bed.bed_count == 1 and not places and study.has_soil:
+    places = any(isinstance(study.touchdown_values().get(name), Uncertain) for name in PLACE)
+    places = places or any(low < high for low, high in place_region(study) or ())
+    if study.design.method == "sequence" and not places:
+        yield (
+            "All runs come down at the same place of their beds: give impact.region, or a bed wider than "
+            f"{smallest_width(study):.2g} m, on whose middle places are drawn."
+        )
+    elif study.bed_count == 1 and not places and study.has_soil:
         yield (
             "All runs come down on the same place of the same bed, so the answer holds for these stones only: raise "
             "bed.bed_count, or draw the place in impact.region."

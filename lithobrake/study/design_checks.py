@@ -1,0 +1,99 @@
+"""What is wrong with the design of a study: keys of the other method, more terms than runs, runs made to no end."""
+
+import math
+from collections.abc import Iterator
+
+from lithobrake.study.quantity import reach, uncertain
+from lithobrake.study.study import Study
+
+
+def design_problems(study: Study) -> Iterator[str]:
+    """One sentence for each thing that is wrong with the design of a study, or between it and what varies."""
+    input_count = len(uncertain(study.touchdown_values()))
+    if input_count == 0:
+        yield (
+            "nothing in grain, lander, impact or surface is uncertain; give at least one key a distribution, "
+            'such as young_modulus = { distribution = "log_uniform", lower = 1e6, upper = 1e8 }'
+        )
+        return
+    yield from _method_problems(study)
+    if study.design.method == "sequence":
+        yield from _bed_count_problems(study)
+        return
+    yield from _unbounded_problems(study)
+    yield from _replicate_problems(study)
+    yield from _stage_problems(study, input_count)
+
+
+def _method_problems(study: Study) -> Iterator[str]:
+    """Keys of the method that is not asked for."""
+    method = study.design.method
+    other = "paper" if method == "sequence" else "sequence"
+    if stray := sorted(study.design.model_fields_set & study.design.keys_of_the_other_method):
+        one = len(stray) == 1
+        yield (
+            f'design.{", design.".join(stray)} {"goes" if one else "go"} with design.method = "{other}", and it is '
+            f'"{method}"; leave {"it" if one else "them"} out, or write design.method = "{other}"'
+        )
+
+
+def _bed_count_problems(study: Study) -> Iterator[str]:
+    """Beds on which nothing would land."""
+    beds, runs = study.bed_count, study.design.run_count
+    if beds > runs:
+        yield (
+            f"bed.bed_count is {beds}, and design.run_count {runs}; allowed: as many beds as runs at most; "
+            "raise the runs, or lower the beds"
+        )
+
+
+def _stage_problems(study: Study, input_count: int) -> Iterator[str]:
+    """Runs of the paper's two stages that do not fit what is fitted to them."""
+    from lithobrake.chaos import smolyak_count, term_count
+
+    design = study.design
+    for stage, counts in (("screening", [input_count]), ("refined", range(1, input_count + 1))):
+        level, degree = getattr(design, f"{stage}_level"), getattr(design, f"{stage}_degree")
+        point_count, smolyak = getattr(design, f"{stage}_count"), design.points == "smolyak"
+        key = f"design.{stage}_{'level' if smolyak else 'count'}"
+        if smolyak == (point_count is not None):
+            yield (
+                f"design.{stage}_count {'does not go with' if smolyak else 'is missing; it is needed by'} "
+                f'design.points = "{design.points}"; allowed: "smolyak" takes levels, all others take counts'
+            )
+            continue
+        for count in counts:
+            found = smolyak_count(count, level) if smolyak else int(point_count or 0)
+            terms = term_count(count, degree)
+            if found < terms and (design.fit == "ols" or design.points == "fekete"):
+                where = f"{found} nodes of level {level}" if smolyak else f"{found} points of {key}"
+                yield (
+                    f"design.{stage}_degree is {degree}; with {count} inputs it has {terms} terms, more than the "
+                    f"{where}; lower the degree or raise {key}"
+                )
+                break
+
+
+def _unbounded_problems(study: Study) -> Iterator[str]:
+    """Inputs that have no end, on a grid that puts nodes at the ends."""
+    if study.design.points != "smolyak":
+        return
+    for name, value in uncertain(study.touchdown_values()).items():
+        if not all(map(math.isfinite, reach(value))):
+            yield (
+                f'{name} is {value.distribution}, which has no end, and design.points = "smolyak" puts runs at the '
+                "ends; give it two limits (truncated_normal, log_uniform, uniform, beta), or take other design.points"
+            )
+
+
+def _replicate_problems(study: Study) -> Iterator[str]:
+    """Runs that would be made several times to the same end."""
+    impact, count = study.impact, study.design.replicate_count
+    drawn = study.bed_count > 1 or impact.region or impact.pointing_error_deg
+    drawn = drawn or "random" in (impact.azimuth_deg, impact.orientation)
+    if count > 1 and not drawn and study.has_soil:
+        yield (
+            f"design.replicate_count is {count}, but runs draw nothing by chance, so all {count} would be equal; "
+            'give them something to draw (bed.bed_count, impact.region, azimuth_deg or orientation "random", an error '
+            "of pointing) or write 1"
+        )

@@ -1,0 +1,144 @@
+"""Studies whose runs are drawn out of one sequence, from the command line: beds and runs, and more of them later."""
+
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from lithobrake.outputs import ORIENTATION_OUT, SPIN_OUT
+from lithobrake.pipeline import StudyFolder, plan_study, run_study, study_status, write_report_again
+from lithobrake.pipeline.design_runs import DesignRuns
+from lithobrake.results import open_study
+from lithobrake.study import StudySource
+
+from ..few_grains import few_grains
+from .ball_studies import FEW_RUNS, write_ball
+
+PAPERS = """screening_level = 2
+screening_degree = 2
+refined_level = 3
+refined_degree = 3
+kept_outputs = ["speed_out"]
+test_count = 10
+"""
+
+
+def drawn(run_count: int, more: str = "") -> str:
+    return f'method = "sequence"\nrun_count = {run_count}\n{more}'
+
+
+def lithobrake(*arguments: object, code: int = 0) -> str:
+    """What a command prints and says, its lines joined."""
+    command = [sys.executable, "-m", "lithobrake", *map(str, arguments)]
+    ended = subprocess.run(command, capture_output=True, text=True, check=False, timeout=600)
+    assert ended.returncode == code, ended.stderr
+    return " ".join(f"{ended.stdout} {ended.stderr}".split())
+
+
+def ball(folder: Path, run_count: int, more: str = "") -> Path:
+    return write_ball(folder / "study.toml", {PAPERS: drawn(run_count, more)})
+
+
+@pytest.fixture(scope="module")
+def grown(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, DesignRuns, str]:
+    """A study of three runs that then had five, and side runs: its folder, its first runs, what was said at last."""
+    folder = tmp_path_factory.mktemp("grown")
+    said = lithobrake("run", ball(folder, 3), "--out", folder / "out", "--workers", 2)
+    assert "stage 3 of 4: runs" in said
+    assert f"Done: {folder / 'out'}" in said
+    first = DesignRuns.load(StudyFolder.only_read(folder / "out"), "sequence")
+    return folder, first, lithobrake("run", ball(folder, 5, "side_runs = true"), "--out", folder / "out")
+
+
+def test_a_study_of_more_runs_makes_only_those_that_are_new(grown: tuple[Path, DesignRuns, str]) -> None:
+    folder, first, said = grown
+    assert "sequence: 3 of 5 runs were known and are reused" in said
+    assert (first.run_count, set(first.outcomes)) == (3, {"clear"})
+    designs = ("sequence", "soil_pairs", "twins")
+    runs = {name: DesignRuns.load(StudyFolder.only_read(folder / "out"), name) for name in designs}
+    assert [one.run_count for one in runs.values()] == [5, 5, 5]
+    assert runs["sequence"].keys[:3] == first.keys
+    assert not set(runs["sequence"].keys) & {*runs["soil_pairs"].keys, *runs["twins"].keys}
+    table = open_study(folder / "out").runs
+    assert len(table["key"]) == 15
+    assert sorted(set(table["design"])) == sorted(designs)
+
+
+def test_what_is_counted_before_is_what_is_made(grown: tuple[Path, DesignRuns, str]) -> None:
+    folder, _, said = grown
+    # Two of five, and the side runs of all.
+    assert "To make: 12 touchdowns." in said
+    plan = plan_study(folder / "study.toml", folder / "out")
+    assert plan.stages == ()
+    assert (plan.runs[0].drawn, plan.runs[0].side, plan.runs[0].new) == (5, 10, 0)
+    assert "2 of 2 stages are current: runs, side runs" in " ".join(study_status(folder / "out"))
+
+
+def test_a_stage_of_the_other_method_and_a_report_that_is_not_there_are_told_so(
+    grown: tuple[Path, DesignRuns, str], tmp_path: Path
+) -> None:
+    source = StudySource.read(grown[0] / "study.toml")
+    with pytest.raises(
+        ValueError, match=r'"fly" is no stage of a study with design.method = "sequence"; allowed: bed,'
+    ):
+        run_study(source, tmp_path / "out", until="fly")
+    assert not (tmp_path / "out").exists()
+    with pytest.raises(ValueError, match="whose method has no report yet"):
+        write_report_again(grown[0] / "out")
+
+
+def test_a_folder_that_changes_its_method_has_the_runs_of_the_present_one(
+    grown: tuple[Path, DesignRuns, str], tmp_path: Path
+) -> None:
+    shutil.copytree(grown[0] / "out", tmp_path / "out")
+    study = write_ball(tmp_path / "study.toml", FEW_RUNS)
+    shutil.copy(study, tmp_path / "out" / "study.toml")
+    lithobrake("screen", study, "--out", tmp_path / "out")
+    assert (tmp_path / "out" / "designs" / "sequence.csv").is_file()
+    assert set(open_study(tmp_path / "out").runs["design"]) == {"screening"}
+    # A folder of an early format does not note its stages: it has no other runs.
+    (tmp_path / "out" / "keys.json").write_text('{"format_version": 1, "files": {}, "wall_s": {}}')
+    assert set(open_study(tmp_path / "out").runs["design"]) == {"screening", "sequence", "soil_pairs", "twins"}
+
+
+@pytest.fixture(scope="module")
+def soil(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A study of four landings of a ball on two beds of a few grains, and its folder, made."""
+    folder = tmp_path_factory.mktemp("soil")
+    text = few_grains(10, 0.3, 0.05) + "region = { x = [-0.03, 0.03], y = [-0.02, 0.02] }\nspin_z = 1.0\n"
+    text = text.replace("[grain]", "bed_count = 2\n[grain]")
+    (folder / "study.toml").write_text(f"{text}[design]\n{drawn(4, 'side_runs = true')}\n[landing]\ntime_limit = 5.0\n")
+    lithobrake("run", folder / "study.toml", "--out", folder / "out")
+    return folder
+
+
+def test_landings_of_a_sequence_use_their_beds_and_tell_how_the_lander_turns(soil: Path) -> None:
+    folder = StudyFolder.only_read(soil / "out")
+    runs = DesignRuns.load(folder, "sequence")
+    assert sorted(runs.inputs["bed"]) == [0.0, 0.0, 1.0, 1.0]
+    assert sorted(path.name for path in (soil / "out" / "beds").iterdir()) == ["bed_0.h5", "bed_1.h5"]
+    assert (soil / "out" / "beds" / "bed_0.h5").read_bytes() != (soil / "out" / "beds" / "bed_1.h5").read_bytes()
+    clear = runs.has_outputs
+    assert clear.sum() >= 2
+    spin = np.column_stack([runs.output(name) for name in SPIN_OUT])[clear]
+    assert np.linalg.norm(spin, axis=1) == pytest.approx(runs.output("spin_out")[clear], rel=1e-12)
+    attitude = np.column_stack([runs.output(name) for name in ORIENTATION_OUT])[clear]
+    assert np.linalg.norm(attitude, axis=1) == pytest.approx(1.0, abs=1e-9)
+    assert set(runs.output("over_rim")[clear]) <= {0.0, 1.0}
+    # A tenth of a millimetre changes a landing, and not by much.
+    twins = DesignRuns.load(folder, "twins")
+    both = clear & twins.has_outputs
+    assert both.any()
+    assert np.all(twins.output("speed_out")[both] != runs.output("speed_out")[both])
+    column = open_study(soil / "out").runs.columns["spin_out_x"]
+    assert (column.units, column.frame.split(":")[0]) == ("rad/s", "of the touchdown")
+
+
+def test_a_landing_of_a_sequence_can_be_made_again_from_its_folder(soil: Path) -> None:
+    results = open_study(soil / "out")
+    clear = [row for row, outcome in enumerate(results.runs["outcome"]) if outcome == "clear"]
+    outcome = results.landing(clear[0], frame_count=4)
+    assert outcome.outputs["speed_out"] == results.runs["speed_out"][clear[0]]

@@ -1,0 +1,61 @@
+"""What the judge says of a lander whose centre has gone over the rim of the bed."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from lithobrake.dem import Material, Sphere
+from lithobrake.touchdown import Lander
+from lithobrake.touchdown.outcome_judge import OutcomeJudge
+
+ROCK = Material(young_modulus=1e6, poisson_ratio=0.25, restitution=0.5, friction=0.5, density=2500.0)
+LANDER = Lander(shape=Sphere(0.1), mass=1.0, material=ROCK)
+BED = SimpleNamespace(width=(1.0, 1.0), surface_height=0.5, grain_diameter=0.1)
+LANDING = SimpleNamespace(azimuth=0.0, time_limit=10.0, contact=SimpleNamespace(steps_per_contact=50.0))
+
+
+def world(velocity=(0.1, 0.0, 0.05), force=(0.0, 0.0, 0.0), touched=1.0, x=0.6):
+    """A lander low over the grains, at x [m], after a blow."""
+    return SimpleNamespace(
+        time=1.0, time_step=1e-3, gravity=np.array([0.0, 0.0, -1e-4]), touch_duration=touched,
+        position=np.array([[x, 0.0, 0.62]]), velocity=np.array([velocity]), spin=np.array([[0.0, 1.0, 0.0]]),
+        orientation=np.array([[1.0, 0.0, 0.0, 0.0]]), contact_force=np.array([force]),
+        kinetic_energy=np.array([0.5 * float(np.dot(velocity, velocity))]), watched={"peak_force": 1.0},
+    )  # fmt: skip
+
+
+def judged(**changes):
+    judge = OutcomeJudge(BED, LANDER, LANDING, world(**changes), 0, 0)
+    judge.look()
+    return judge
+
+
+def test_a_lander_that_flies_up_over_the_rim_is_clear_and_says_so():
+    judge = judged()
+    assert judge.ended == "clear"
+    outputs = judge.outcome().outputs
+    assert outputs["over_rim"] == 1.0
+    assert (outputs["velocity_out_x"], outputs["velocity_out_z"]) == (0.1, 0.05)
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"velocity": (0.1, 0.0, -0.05)},
+        {"force": (0.0, 0.0, 1e-6)},
+        {"touched": None},
+        # Too slow to lift itself by half its size: not known to leave, and never said to stay.
+        {"velocity": (1e-3, 0.0, 1e-3)},
+    ],
+    ids=["goes down", "still touches", "has not touched", "too slow"],
+)
+def test_any_other_lander_over_the_rim_is_missing(changes):
+    judge = judged(**changes)
+    assert judge.ended == "left_sideways"
+    assert np.isnan(judge.outcome().outputs["velocity_out_x"])
+    assert np.isnan(judge.outcome().outputs["over_rim"])
+
+
+def test_a_low_lander_over_the_bed_is_still_open():
+    assert judged(x=0.4).ended is None
