@@ -3,7 +3,6 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import optimize, special
 
 from lithobrake.analysis.confidence import LEVEL, Array, IntervalEstimate, Labels
 
@@ -40,6 +39,8 @@ class BedComponents:
 
         Exact for normal scatter, whatever the counts. Source: [Wald-1947]; [Thomas-1978] (a close approximation to it).
         """
+        from scipy import optimize, special
+
         count = len(self.squares)
         expected = count * self.within * float(special.fdtri(count, self.within_freedom, 1.0 - probability))
 

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy import special
 
 Array = NDArray[np.float64]
 Labels = NDArray[np.int64]
@@ -28,11 +27,15 @@ class IntervalEstimate:
 
 def t_quantile(freedom: float) -> float:
     """Quantile of Student's t that a two-sided interval of the level reaches to."""
+    from scipy import special
+
     return float(special.stdtrit(freedom, 0.5 + 0.5 * LEVEL))
 
 
 def normal_quantile() -> float:
     """Quantile of the standard normal distribution that a two-sided interval of the level reaches to."""
+    from scipy import special
+
     return float(special.ndtri(0.5 + 0.5 * LEVEL))
 
 
@@ -43,8 +46,10 @@ def share_interval(share: float, half_width: float) -> tuple[float, float]:
     """
     if NEAR_CERTAIN <= share <= 1.0 - NEAR_CERTAIN or share in (0.0, 1.0):
         return max(share - half_width, 0.0), min(share + half_width, 1.0)
-    middle, half = math.log(share / (1.0 - share)), half_width / (share * (1.0 - share))
-    return float(special.expit(middle - half)), float(special.expit(middle + half))
+    odds, half = share / (1.0 - share), half_width / (share * (1.0 - share))
+    # Odds of exp(600) are a share of 1 to the last bit, and much larger ones overflow.
+    lower, upper = odds * math.exp(-min(half, 600.0)), odds * math.exp(min(half, 600.0))
+    return lower / (1.0 + lower), upper / (1.0 + upper)
 
 
 def numbered_beds(bed: ArrayLike, run_count: int) -> Labels:

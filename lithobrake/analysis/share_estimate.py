@@ -20,6 +20,7 @@ from lithobrake.analysis.confidence import (
 from lithobrake.analysis.control_variate import control_variate
 from lithobrake.analysis.next_bed import next_bed_half_width
 from lithobrake.analysis.outcome_model import upper_limit
+from lithobrake.chaos.threads import one_thread
 
 Bounds = tuple[float, float]
 ONE_BED = (
@@ -36,7 +37,8 @@ class ShareEstimate:
     lower, upper           its interval; None where the runs cannot give one, and `why` says why not
     level                  probability that each interval stands for
     source                 how many landings on how many beds it comes from
-    next_bed               interval of the share on one bed more; None without an interval
+    next_bed               interval of the share on one bed more; None without an interval, where all runs end alike, or
+                           with one run a bed
     if_missing             the share if none, and if all, of the runs without an answer stayed
     if_missing_interval    the same two, each moved outward by its own sampling error; None without an interval
     flight_sampling        half the interval that the number of flights of each run alone gives; None where not said
@@ -72,6 +74,7 @@ class ShareEstimate:
         }
 
 
+@one_thread()
 def share_estimate(
     stays: ArrayLike,
     bed: ArrayLike,

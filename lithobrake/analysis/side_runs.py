@@ -2,7 +2,6 @@
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy import special
 
 from lithobrake.analysis.confidence import LEVEL, Array, IntervalEstimate
 
@@ -17,6 +16,8 @@ def chaos_variance(differences: ArrayLike) -> IntervalEstimate:
     Twins differ in nothing that anyone could know, so half the mean square of their difference is the variance.
     Raises ValueError where no difference is known. Source: [Searle-1992], section 3.5 (chi-square interval).
     """
+    from scipy import special
+
     squares = _squares(differences)
     total, count = 0.5 * float(squares.sum()), len(squares)
     lower, upper = (total / float(special.chdtri(count, 0.5 - side * LEVEL)) for side in (0.5, -0.5))
@@ -31,6 +32,8 @@ def soil_total_effect(differences: ArrayLike, y: ArrayLike) -> IntervalEstimate:
     squares of both do. Raises ValueError where fewer than two differences or runs are known, or all runs are alike.
     Source: [Jansen-1999]; [Searle-1992] (Satterthwaite's degrees of freedom).
     """
+    from scipy import special
+
     halves, known = 0.5 * _squares(differences), np.asarray(y, dtype=float)
     known = known[np.isfinite(known)]
     if len(halves) < 2 or len(known) < 2 or np.ptp(known) == 0.0:

@@ -11,6 +11,7 @@ from lithobrake.analysis.bed_components import bed_components
 from lithobrake.analysis.confidence import Array, IntervalEstimate, Labels, numbered_beds, t_quantile
 from lithobrake.analysis.control_variate import regression_terms
 from lithobrake.analysis.side_runs import chaos_variance
+from lithobrake.chaos.threads import one_thread
 
 if TYPE_CHECKING:
     from lithobrake.chaos import Distribution
@@ -65,6 +66,7 @@ class _Regression(NamedTuple):
     scatter: float
 
 
+@one_thread()
 def variance_shares(
     inputs: Mapping[str, "Distribution"],
     x: ArrayLike,

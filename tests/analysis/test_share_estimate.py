@@ -70,9 +70,10 @@ def test_an_adaptive_design_is_weighted_back_to_the_law() -> None:
     for _ in range(40):
         u = rng.beta(2.0, 1.0, 200)
         x = np.column_stack([0.2 + 0.7 * u, rng.uniform(0.3, 0.9, 200)])
-        found = share_estimate(u, rng.integers(10, size=200), weights=0.5 / np.maximum(u, 1e-3))
+        noisy = np.clip(u + 0.3 * rng.uniform(-1.0, 1.0, 200) * np.minimum(u, 1.0 - u), 0.0, 1.0)
+        # Density of u: 1 by the law, 2 u as drawn.
+        found = share_estimate(noisy, np.arange(200) % 10, terms=regression_terms(INPUTS, x), weights=0.5 / u)
         shares.append(found.share)
-        assert regression_terms(INPUTS, x)[0].shape == (200, 5)
     # The mean of a uniform number, within three standard errors of 40 studies.
     assert np.mean(shares) == pytest.approx(0.5, abs=3.0 * np.std(shares) / math.sqrt(40))
 
