@@ -168,10 +168,12 @@ def _without_event(share: float, unit_count: int) -> Bounds:
 def _intervals(values: Array, bed: Labels) -> tuple[Bounds, Bounds | None]:
     """Interval of the mean of values [run_count], and of that on the next bed where a bed has more than one run."""
     share, error, bed_count = float(values.mean()), standard_error(values, bed), int(bed.max()) + 1
-    bounds = share_interval(share, t_quantile(bed_count - 1) * error)
+    half = t_quantile(bed_count - 1) * error
+    bounds = share_interval(share, half)
     if len(values) == bed_count:
         return bounds, None
-    return bounds, share_interval(share, next_bed_half_width(bed_components(values, bed), error))
+    # One bed more is never better known than the mean over all, however alike a few beds are.
+    return bounds, share_interval(share, max(next_bed_half_width(bed_components(values, bed), error), half))
 
 
 def _if_missing(

@@ -55,6 +55,13 @@ def test_beds_that_differ_less_than_chance_do_not_narrow_the_interval() -> None:
     assert found.upper - found.share == pytest.approx(stats.t.ppf(0.95, 9) * h.std(ddof=1) / math.sqrt(40))
 
 
+@pytest.mark.parametrize("bed_count", [2, 3, 12])
+def test_the_next_bed_is_never_better_known_than_the_mean(bed_count: int) -> None:
+    for seed in range(20):
+        found = share_estimate(*runs(bed_count, 10, seed, bed_spread=0.0))
+        assert found.next_bed[0] <= found.lower < found.upper <= found.next_bed[1]
+
+
 def test_what_the_inputs_explain_is_taken_off_without_moving_the_mean() -> None:
     x = sobol_sequence(INPUTS, 240, seed=2)
     h, bed = runs(24, 10, bed_spread=0.0)
