@@ -1,8 +1,35 @@
-"""What a fitted expansion says: samples, outcomes, percentages with their intervals."""
+"""What runs and a fitted expansion say: estimates with their intervals, samples, outcomes."""
 
+from lithobrake.analysis.confidence import LEVEL, IntervalEstimate
+from lithobrake.analysis.control_variate import regression_terms
 from lithobrake.analysis.ellipse import Ellipses, dispersion_ellipses
+from lithobrake.analysis.half_width import expected_half_width, runs_for_half_width
 from lithobrake.analysis.outcome_model import OutcomeModel, upper_limit
+from lithobrake.analysis.output_estimates import mean_estimate, quantile_estimates
 from lithobrake.analysis.proportion import wilson_interval
 from lithobrake.analysis.sampling import sample_inputs
+from lithobrake.analysis.share_estimate import ShareEstimate, share_estimate
+from lithobrake.analysis.side_runs import chaos_variance, soil_total_effect
+from lithobrake.analysis.variance_shares import VarianceShares, variance_shares
 
-__all__ = ["Ellipses", "OutcomeModel", "dispersion_ellipses", "sample_inputs", "upper_limit", "wilson_interval"]
+__all__ = [
+    "LEVEL",
+    "Ellipses",
+    "IntervalEstimate",
+    "OutcomeModel",
+    "ShareEstimate",
+    "VarianceShares",
+    "chaos_variance",
+    "dispersion_ellipses",
+    "expected_half_width",
+    "mean_estimate",
+    "quantile_estimates",
+    "regression_terms",
+    "runs_for_half_width",
+    "sample_inputs",
+    "share_estimate",
+    "soil_total_effect",
+    "upper_limit",
+    "variance_shares",
+    "wilson_interval",
+]

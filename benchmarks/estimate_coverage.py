@@ -1,0 +1,280 @@
+"""How often the intervals of the estimates hold the truth, on synthetic landings whose laws are known.
+
+    python benchmarks/estimate_coverage.py [--studies 400]
+
+A row a setting and quantity: studies, truth, how often a nominal 90 % interval held it (or 1 less how often nothing was
+found where there is nothing), mean error, mean half width. Rivals stand beside what is used: intervals of the next bed
+by generalised pivots and by the plain variance of beds; wild bootstrap with Webb's weights where beds are few.
+Writes estimate_coverage.csv and .json beside this file. Sources: [Webb-2014], [Krishnamoorthy-2009].
+"""
+
+import argparse
+import csv
+import json
+import math
+import sys
+import time
+from collections.abc import Iterator
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from origin import origin
+from scipy import special, stats
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
+from synthetic_landings import INPUTS, Truth, exact_share, random_soils, stays
+
+from lithobrake.analysis import (
+    IntervalEstimate,
+    chaos_variance,
+    mean_estimate,
+    quantile_estimates,
+    regression_terms,
+    share_estimate,
+    soil_total_effect,
+    variance_shares,
+)
+from lithobrake.analysis.bed_components import BedComponents, bed_components
+from lithobrake.analysis.confidence import t_quantile
+from lithobrake.analysis.control_variate import control_variate
+from lithobrake.analysis.share_estimate import standard_error
+
+DESIGNS = ((144, 12), (240, 24))
+CORRELATIONS = (0.0, 0.05, 0.2)
+PROBABILITIES = (0.05, 0.5, 0.95)
+DRAW_COUNT = 400_000
+# Beds in equal steps of probability stand for all beds there are.
+BED_EFFECTS = special.ndtri((np.arange(200) + 0.5) / 200)
+NODES = np.linspace(-3.5, 3.5, 15)
+Row = dict[str, Any]
+
+
+@lru_cache
+def bed_means(truth: Truth) -> tuple[np.ndarray, np.ndarray]:
+    """Share that stays and mean speed [m/s] on beds of each effect [200], places and soils averaged over."""
+    rng = np.random.default_rng(11)
+    table = []
+    for effect in NODES:
+        landings = truth.draw(random_soils(40_000, rng), np.full(40_000, effect), rng)
+        chance = stays(landings.left, landings.outcome)
+        table.append((chance.mean(), np.nanmean(landings.left[:, 0])))
+    share, speed = np.array(table).T
+    return np.interp(BED_EFFECTS, NODES, share), np.interp(BED_EFFECTS, NODES, speed)
+
+
+@lru_cache
+def exact_speed(truth: Truth) -> dict[str, float]:
+    """Mean, quantiles, and the bed's and the soil's share of the variance, of the speed of landers that leave."""
+    rng = np.random.default_rng(12)
+    x, beds = random_soils(DRAW_COUNT, rng), rng.standard_normal((2, DRAW_COUNT))
+    first, second = (truth.draw(x, effects, rng).left[:, 0] for effects in beds)
+    both = np.isfinite(first) & np.isfinite(second)
+    variance = float(np.nanvar(first))
+    found = {"mean": float(np.nanmean(first))}
+    found |= {f"quantile {p:g}": float(np.nanquantile(first, p)) for p in PROBABILITIES}
+    # Two landings on one soil have nothing else in common.
+    found["soil share"] = float(np.cov(first[both], second[both])[0, 1]) / variance
+    return found | {"bed share": float(bed_means(truth)[1].var()) / variance if truth.rho > 0.0 else 0.0}
+
+
+def held(estimate: IntervalEstimate, exact: float) -> tuple[float, float, float]:
+    """Whether an interval holds, error, half width."""
+    return (
+        float(estimate.lower <= exact <= estimate.upper),
+        estimate.value - exact,
+        0.5 * (estimate.upper - estimate.lower),
+    )
+
+
+def one_study(truth: Truth, run_count: int, bed_count: int, seed: int) -> dict[str, tuple[float, float, float]]:
+    """Held, error and half width of every estimate of a study, by quantity."""
+    x, y, outcome, bed = truth.study(run_count, bed_count, seed)
+    found = share_estimate(stays(y, outcome), bed, terms=regression_terms(INPUTS, x))
+    share, beds = exact_share(truth), bed_means(truth)[0]
+    lower, upper = found.if_missing_interval
+    result = {"share": held(IntervalEstimate(found.share, found.lower, found.upper), share)}
+    on_beds = np.mean((found.next_bed[0] <= beds) & (beds <= found.next_bed[1]))
+    result["next bed"] = (float(on_beds), 0.0, 0.5 * (found.next_bed[1] - found.next_bed[0]))
+    result["if missing"] = (float(lower <= share <= upper), 0.0, 0.5 * (upper - lower))
+    exact, speed = exact_speed(truth), y[:, 0]
+    result["mean"] = held(mean_estimate(speed, bed), exact["mean"])
+    quantiles = quantile_estimates(speed, bed, PROBABILITIES)
+    result |= {
+        f"quantile {p:g}": held(one, exact[f"quantile {p:g}"]) for p, one in zip(PROBABILITIES, quantiles, strict=True)
+    }
+    parts = variance_shares(INPUTS, x, speed, bed, soil=tuple(INPUTS))
+    result["bed share"] = held(parts.bed, exact["bed share"])
+    result["soil share"] = held(parts.soil, max(exact["soil share"], 0.0) if truth.soil else 0.0)
+    not_found = np.mean([one.lower <= 0.0 for one in parts.soil_by_input.values()])
+    return result | {"inputs not found": (float(not_found), 0.0, 0.0)}
+
+
+def table(truth: Truth, run_count: int, bed_count: int, study_count: int, seed: int = 0) -> dict[str, Row]:
+    """Coverage, bias and half width of every quantity in one setting."""
+    studies = [one_study(truth, run_count, bed_count, seed + k) for k in range(study_count)]
+    return {name: summed(studies, name) | {"truth": exact(truth, name)} for name in studies[0]}
+
+
+def exact(truth: Truth, name: str) -> float | None:
+    """The truth of a quantity, where it is one number."""
+    return exact_share(truth) if name in ("share", "if missing") else exact_speed(truth).get(name)
+
+
+def summed(studies: list[dict[str, tuple[float, float, float]]], name: str) -> Row:
+    """Coverage, mean error and mean half width of one quantity over studies."""
+    coverage, bias, half_width = np.mean([study[name] for study in studies], axis=0)
+    return {"studies": len(studies), "held": float(coverage), "bias": float(bias), "half_width": float(half_width)}
+
+
+def next_bed_rivals(truth: Truth, run_count: int, bed_count: int, seed: int) -> dict[str, tuple[float, float, float]]:
+    """The next bed by generalised pivots, and by the plain variance of beds."""
+    values, bed = adjusted(truth, run_count, bed_count, seed)
+    components, error, beds = bed_components(values, bed), standard_error(values, bed), bed_means(truth)[0]
+    plain = t_quantile(bed_count - 1) * math.sqrt(max(components.bed_variance, 0.0) + error**2)
+    widths = {"next bed, pivots": pivot(components), "next bed, plain": plain}
+    return {name: (float(np.mean(np.abs(beds - values.mean()) <= width)), 0.0, width) for name, width in widths.items()}
+
+
+def pivot(components: BedComponents) -> float:
+    """Half width for the next bed by draws of both mean squares (generalised pivots)."""
+    points = stats.qmc.Sobol(3, rng=np.random.default_rng(0)).random_base2(12)
+    freedom, on_each = len(components.squares), float(components.counts.mean())
+    between = components.squares.sum() / stats.chi2.ppf(points[:, 0], freedom)
+    within = components.within * components.within_freedom / stats.chi2.ppf(points[:, 1], components.within_freedom)
+    bed = np.maximum(between - within, 0.0) / on_each
+    mean = np.maximum(between, within) / (on_each * (freedom + 1))
+    return float(np.quantile(np.abs(special.ndtri(points[:, 2])) * np.sqrt(bed + mean), 0.9))
+
+
+def adjusted(truth: Truth, run_count: int, bed_count: int, seed: int) -> tuple[np.ndarray, np.ndarray]:
+    """Shares of runs less what the inputs say of them, and the beds."""
+    x, y, outcome, bed = truth.study(run_count, bed_count, seed)
+    h, (terms, indices) = stays(y, outcome), regression_terms(INPUTS, x)
+    return h - control_variate(terms, indices.sum(axis=1), h, bed), bed
+
+
+def few_beds(truth: Truth, run_count: int, bed_count: int, seed: int) -> dict[str, tuple[float, float, float]]:
+    """The share by Student's t, as used, and by the wild bootstrap of beds with Webb's six weights."""
+    values, bed = adjusted(truth, run_count, bed_count, seed)
+    share, mean = exact_share(truth), float(values.mean())
+    sums, counts = np.bincount(bed, weights=values - mean), np.bincount(bed)
+    weights = np.random.default_rng(seed).choice(np.sqrt([0.5, 1.0, 1.5]), (999, bed_count))
+    weights = weights * np.random.default_rng(seed + 1).choice([-1.0, 1.0], weights.shape)
+    shift = weights @ sums / len(values)
+    spread = weights * sums - shift[:, None] * counts
+    factor = math.sqrt(bed_count / (bed_count - 1)) / len(values)
+    ratios = np.abs(shift) / (factor * np.sqrt(np.sum(spread**2, axis=1)))
+    widths = {
+        "share, t": t_quantile(bed_count - 1) * standard_error(values, bed),
+        "share, Webb": float(np.quantile(ratios, 0.9)) * factor * math.sqrt(float(np.sum(sums**2))),
+    }
+    return {name: (float(abs(mean - share) <= width), mean - share, width) for name, width in widths.items()}
+
+
+def side_runs(truth: Truth, pair_count: int, seed: int) -> dict[str, tuple[float, float, float]]:
+    """Chaos from twins whose scatter is normal, and the soil's total effect from pairs on one place."""
+    rng = np.random.default_rng(seed)
+    found = {"chaos, 12 twins": held(chaos_variance(math.sqrt(2.0) * 0.3 * rng.standard_normal(12)), 0.09)}
+    first, second = (speeds_of_place(truth, pair_count, seed, soil) for soil in (1, 2))
+    y = truth.study(240, 24, seed)[1][:, 0]
+    return found | {f"soil, {pair_count} pairs": held(soil_total_effect(first - second, y), exact_total(truth))}
+
+
+def speeds_of_place(truth: Truth, count: int, seed: int, soil: int) -> np.ndarray:
+    """Speeds on the beds and places of a seed with soils of their own."""
+    x = random_soils(count, np.random.default_rng([seed, soil]))
+    rng = np.random.default_rng(seed)
+    return truth._leaving(x, rng.standard_normal(count), rng)[:, 0]
+
+
+@lru_cache
+def exact_total(truth: Truth) -> float:
+    """Total effect of the soil on the speed."""
+    first, second = (speeds_of_place(truth, DRAW_COUNT, 13, soil) for soil in (1, 2))
+    return float(np.mean((first - second) ** 2) / (2.0 * first.var()))
+
+
+def flights(truth: Truth, seed: int, systematic: bool) -> float:
+    """Ratio of half widths with 210 and with 21 flights a run; headings in equal steps, or drawn one by one."""
+    x, y, outcome, bed = truth.study(240, 24, seed)
+    h, terms, rng = stays(y, outcome), regression_terms(INPUTS, x), np.random.default_rng(seed)
+    widths = []
+    for count in (21, 210):
+        flown = np.floor(count * h + rng.random(len(h))) if systematic else rng.binomial(count, h)
+        found = share_estimate(np.minimum(flown / count, 1.0), bed, terms=terms, flight_count=count)
+        widths.append(found.upper - found.lower)
+    return widths[1] / widths[0]
+
+
+def no_event(run_count: int, study_count: int) -> float:
+    """How often the upper end covers a chance of 1 / run_count: that of independent runs, or the share's own."""
+    counts = np.random.default_rng(run_count).binomial(run_count, 1.0 / run_count, size=study_count)
+    covered = []
+    for count in counts:
+        stay = (np.arange(run_count) < count).astype(float)
+        found = share_estimate(stay, np.arange(run_count), beds_differ=False).upper
+        covered.append(found is not None and found >= 1.0 / run_count)
+    return float(np.mean(covered))
+
+
+def rows(count: int) -> Iterator[Row]:
+    """All rows, as they come."""
+    for runs, beds in DESIGNS:
+        for rho in CORRELATIONS:
+            truth = Truth(rho=rho)
+            for name, row in table(truth, runs, beds, count).items():
+                yield setting(truth, runs, beds) | {"quantity": name} | row
+            rivals = [next_bed_rivals(truth, runs, beds, k) for k in range(count)]
+            yield from (setting(truth, runs, beds) | {"quantity": n} | summed(rivals, n) for n in rivals[0])
+    for truth in (Truth(rim="random"), Truth(rim="fast_flat"), Truth(soil=0.0), Truth(soil=2.7), Truth(soil=3.0)):
+        for name, row in table(truth, 240, 24, count).items():
+            yield setting(truth, 240, 24) | {"quantity": name} | row
+    for beds, rho in ((4, 0.05), (4, 0.2), (6, 0.0), (6, 0.05), (6, 0.2), (8, 0.05), (8, 0.2)):
+        few = [few_beds(Truth(rho=rho), 240, beds, k) for k in range(count)]
+        yield from (setting(Truth(rho=rho), 240, beds) | {"quantity": n} | summed(few, n) for n in few[0])
+    for truth in (Truth(), Truth(soil=3.0)):
+        pairs = [side_runs(truth, 20, k) for k in range(count)]
+        yield from (setting(truth, 240, 24) | {"quantity": n} | summed(pairs, n) for n in pairs[0])
+    for systematic in (True, False):
+        ratio = float(np.mean([flights(Truth(), k, systematic) for k in range(40)]))
+        name = f"half width, 210 over 21 flights a run, {'equal steps' if systematic else 'drawn one by one'}"
+        yield setting(Truth(), 240, 24) | {"quantity": name, "studies": 40, "half_width": ratio}
+    for runs in (20, 60, 300):
+        yield {
+            "runs": runs,
+            "beds": runs,
+            "quantity": "capture of 1 / n",
+            "studies": count,
+            "held": no_event(runs, count),
+        }
+
+
+def setting(truth: Truth, runs: int, beds: int) -> Row:
+    """What a row was measured with."""
+    return {"runs": runs, "beds": beds, "rho": truth.rho, "soil": truth.soil, "rim": truth.rim}
+
+
+def main() -> None:
+    """Measure and write."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--studies", type=int, default=400)
+    count = parser.parse_args().studies
+    begin = time.process_time()
+    columns = ("quantity", "runs", "beds", "rho", "soil", "rim", "studies", "truth", "held", "bias", "half_width")
+    path = Path(__file__).with_suffix(".csv")
+    with path.open("w", newline="") as file:
+        writer = csv.DictWriter(file, columns, lineterminator="\n")
+        writer.writeheader()
+        for row in rows(count):
+            rounded = {key: float(f"{value:.4g}") if isinstance(value, float) else value for key, value in row.items()}
+            writer.writerow(rounded)
+            file.flush()
+    facts = {"studies": count, "level": 0.9, "cpu_s": round(time.process_time() - begin), "table": path.name}
+    facts |= origin(f"benchmarks/estimate_coverage.py --studies {count}")
+    path.with_suffix(".json").write_text(json.dumps(facts, indent=1) + "\n")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,60 @@
+"""The one level of confidence, and a number with the interval that stands for it."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Array = NDArray[np.float64]
+Labels = NDArray[np.int64]
+
+# Probability with which every interval of an estimate holds the truth; results carry it, so that no reader has to ask.
+LEVEL = 0.9
+# Shares nearer than this to 0 or 1 have skewed errors: their intervals are made on the logit scale.
+NEAR_CERTAIN = 0.1
+
+
+@dataclass(frozen=True)
+class IntervalEstimate:
+    """A number, the bounds that hold the truth with probability `level`, all in the unit of the number."""
+
+    value: float
+    lower: float
+    upper: float
+    level: float = LEVEL
+
+
+def t_quantile(freedom: float) -> float:
+    """Quantile of Student's t that a two-sided interval of the level reaches to."""
+    from scipy import special
+
+    return float(special.stdtrit(freedom, 0.5 + 0.5 * LEVEL))
+
+
+def normal_quantile() -> float:
+    """Quantile of the standard normal distribution that a two-sided interval of the level reaches to."""
+    from scipy import special
+
+    return float(special.ndtri(0.5 + 0.5 * LEVEL))
+
+
+def share_interval(share: float, half_width: float) -> tuple[float, float]:
+    """Bounds of a share, within [0, 1]; the half width is laid on the logit scale where the share is near 0 or 1.
+
+    Source: [Agresti-2013] (delta method: the logit's error is that of the share over p (1 - p)).
+    """
+    if NEAR_CERTAIN <= share <= 1.0 - NEAR_CERTAIN or share in (0.0, 1.0):
+        return max(share - half_width, 0.0), min(share + half_width, 1.0)
+    odds, half = share / (1.0 - share), half_width / (share * (1.0 - share))
+    # Odds of exp(600) are a share of 1 to the last bit, and much larger ones overflow.
+    lower, upper = odds * math.exp(-min(half, 600.0)), odds * math.exp(min(half, 600.0))
+    return lower / (1.0 + lower), upper / (1.0 + upper)
+
+
+def numbered_beds(bed: ArrayLike, run_count: int) -> Labels:
+    """Beds of the runs, [run_count], of any labels, renumbered from 0; raises ValueError for another shape."""
+    labels = np.asarray(bed)
+    if labels.shape != (run_count,):
+        raise ValueError(f"bed has shape {labels.shape}; it must name the bed of each of the {run_count} runs")
+    return np.unique(labels, return_inverse=True)[1].astype(np.int64)

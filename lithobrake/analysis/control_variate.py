@@ -1,0 +1,77 @@
+"""What the inputs alone explain of a run, taken off it so that a mean over runs scatters less."""
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from lithobrake.analysis.confidence import Array, Labels
+
+if TYPE_CHECKING:
+    from lithobrake.chaos import Distribution
+
+# Beds are dealt to so many folds; more folds cost time and change nothing that was measured.
+FOLD_COUNT = 10
+# With fewer runs there is nothing to learn from.
+FEWEST_RUNS = 20
+# How much terms of second degree count beside linear ones, from not at all; the penalties of the ridge, over the runs.
+SECOND_DEGREE = (0.0, 0.15, 0.4, 1.0)
+PENALTIES = np.logspace(-3.0, 2.0, 22)
+
+
+def regression_terms(inputs: Mapping[str, "Distribution"], x: ArrayLike) -> tuple[Array, Labels]:
+    """Terms of first and second degree at x [run_count, input_count], and the multi-index of each.
+
+    Result: terms [run_count, term_count], indices [term_count, input_count]. Each term has mean 0 and variance 1 over
+    the law of the inputs, so the mean over the law of any sum of them is 0, without sampling.
+    Source: [Xiu-2002], section 3 (orthonormal polynomials of the Askey scheme).
+    """
+    from lithobrake.chaos.basis import basis_matrix, points_of
+    from lithobrake.chaos.multi_index import multi_index_set
+
+    indices = multi_index_set(len(inputs), 2)[1:]
+    return basis_matrix(inputs, indices, points_of(inputs, x)), indices
+
+
+def control_variate(terms: Array, degrees: Labels, y: Array, bed: Labels) -> Array:
+    """What a ridge regression on the runs of other beds says of each run, less its mean over the law, [run_count].
+
+    terms [run_count, term_count] of mean 0 over the law of the inputs, with their degrees (1 or 2); y [run_count], NaN
+    where a run has no answer; bed [run_count], from 0. A run is never told by itself or its bed, so taking this off
+    y leaves the mean over runs unbiased, however poor the regression.
+    Source: [Chernozhukov-2018] (cross-fitting).
+    """
+    answered, told = np.isfinite(y), np.zeros(len(y))
+    # On one bed the runs themselves are dealt out.
+    fold = (bed if np.ptp(bed) > 0 else np.arange(len(y))) % FOLD_COUNT
+    for number in np.unique(fold):
+        own = fold == number
+        others = answered & ~own
+        if others.sum() >= FEWEST_RUNS:
+            told[own] = terms[own] @ ridge(terms[others], degrees, y[others])
+    return told
+
+
+def ridge(terms: Array, degrees: Labels, y: Array) -> Array:
+    """Coefficients [term_count] of y [count] on terms [count, term_count]: from no inputs over linear to quadratic.
+
+    The weight of the second degree and the penalty are those of the smallest leave-one-out error.
+    Source: [Allen-1974] (leave one out); [Hoerl-1970] (ridge).
+    """
+    count, centred = len(y), y - y.mean()
+    best, coefficients = np.inf, np.zeros(terms.shape[1])
+    for weight in SECOND_DEGREE:
+        scale = np.where(degrees == 1, 1.0, weight)
+        used = scale > 0.0
+        columns = (terms[:, used] - terms[:, used].mean(axis=0)) * scale[used]
+        left, values, right = np.linalg.svd(columns, full_matrices=False)
+        kept = values[:, None] ** 2 / (values[:, None] ** 2 + count * PENALTIES)
+        fitted, leverage = left @ (kept * (left.T @ centred)[:, None]), left**2 @ kept
+        errors = (((centred[:, None] - fitted) / (1.0 - 1.0 / count - leverage)) ** 2).mean(axis=0)
+        chosen = int(np.argmin(errors))
+        if errors[chosen] < best:
+            best, coefficients = errors[chosen], np.zeros(terms.shape[1])
+            share = np.divide(kept[:, chosen], values, out=np.zeros_like(values), where=values > 0.0)
+            coefficients[used] = scale[used] * (right.T @ (share * (left.T @ centred)))
+    return coefficients

@@ -1,0 +1,52 @@
+"""How wide an interval will be before anything has run, and how many runs a width asks for."""
+
+import math
+
+from lithobrake.analysis.confidence import t_quantile
+
+# As measured on landings with drawn places: standard deviation of a run's share of flights that stay, and the
+# correlation of two of them on one bed.
+SPREAD, CORRELATION = 0.14, 0.05
+
+
+def expected_half_width(
+    run_count: int, bed_count: int, *, spread: float = SPREAD, correlation: float = CORRELATION
+) -> float | None:
+    """Half width of the interval of a mean over runs on beds of equal counts [unit of spread]; None for one bed.
+
+    spread: standard deviation of a run at what the inputs leave open; correlation of two runs on one bed, 0 to 1.
+    Raises ValueError for counts or numbers that cannot be. Source: [Cochran-1977], section 10.3 (two stages).
+    """
+    if not 1 <= bed_count <= run_count:
+        raise ValueError(f"{run_count} runs on {bed_count} beds; give at least one bed, and a run for each")
+    if spread < 0.0 or not 0.0 <= correlation <= 1.0:
+        raise ValueError(f"spread is {spread} and correlation {correlation}; allowed: from 0, and 0 to 1")
+    if bed_count == 1:
+        return None
+    variance = spread**2 * (correlation / bed_count + (1.0 - correlation) / run_count)
+    return t_quantile(bed_count - 1) * math.sqrt(variance)
+
+
+def runs_for_half_width(
+    half_width: float, runs_per_bed: int = 10, *, spread: float = SPREAD, correlation: float = CORRELATION
+) -> int:
+    """Fewest runs, a whole number of beds of so many, whose expected half width is at most this one.
+
+    Raises ValueError for a half width that is not above 0.
+    """
+    if not half_width > 0.0:
+        raise ValueError(f"half_width is {half_width}; it must be above 0")
+
+    def width(bed_count: int) -> float:
+        found = expected_half_width(bed_count * runs_per_bed, bed_count, spread=spread, correlation=correlation)
+        return math.inf if found is None else found
+
+    # The width falls with every bed, so doubling and halving the step finds the fewest.
+    upper = 2
+    while width(upper) > half_width:
+        upper *= 2
+    lower = upper // 2
+    while upper - lower > 1:
+        middle = (lower + upper) // 2
+        lower, upper = (middle, upper) if width(middle) > half_width else (lower, middle)
+    return upper * runs_per_bed

@@ -1,0 +1,61 @@
+"""Forty synthetic studies a setting: the intervals hold the truth as often as they say, as far as forty can tell.
+
+Two hundred studies a setting, and more settings: `benchmarks/estimate_coverage.py`, from which the studies come.
+"""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
+from estimate_coverage import CORRELATIONS, DESIGNS, Row, Truth, flights, no_event, side_runs, summed, table
+
+STUDIES = 40
+HELD = (
+    *("share", "next bed", "if missing", "mean", "quantile 0.05", "quantile 0.5", "quantile 0.95"),
+    *("bed share", "soil share"),
+)
+
+
+def check(found: dict[str, Row]) -> None:
+    """A nominal 90 % interval holds in .78 to 1 of forty studies (2.5 standard deviations)."""
+    assert {name: row["held"] for name, row in found.items() if name in HELD and not 0.78 <= row["held"] <= 1.0} == {}
+    # Half a point of share, and the luck of forty studies: a standard error is a tenth of a half width and less.
+    assert abs(found["share"]["bias"]) < 0.005 + 0.2 * found["share"]["half_width"]
+
+
+@pytest.mark.parametrize(("runs", "beds"), DESIGNS)
+@pytest.mark.parametrize("rho", CORRELATIONS)
+def test_intervals_hold_the_truth(runs: int, beds: int, rho: float) -> None:
+    check(table(Truth(rho=rho), runs, beds, STUDIES))
+
+
+@pytest.mark.parametrize("rim", ["random", "fast_flat"])
+def test_the_truth_lies_within_what_runs_over_the_rim_may_hide(rim: str) -> None:
+    found = table(Truth(rim=rim), 144, 12, STUDIES)
+    assert found["if missing"]["held"] >= 0.9
+
+
+@pytest.mark.parametrize("soil", [0.0, 2.7])
+def test_the_share_of_the_soil_is_free_of_bias(soil: float) -> None:
+    found = table(Truth(soil=soil), 240, 24, STUDIES)
+    assert abs(found["soil share"]["bias"]) < 0.02
+    if soil == 0.0:
+        assert found["inputs not found"]["held"] >= 0.9
+
+
+def test_ten_times_the_flights_hardly_change_the_interval() -> None:
+    assert np.mean([flights(Truth(), seed, systematic=True) for seed in range(10)]) == pytest.approx(1.0, abs=0.03)
+
+
+def test_side_runs_hold_the_truth() -> None:
+    found = [side_runs(Truth(), 20, seed) for seed in range(STUDIES)]
+    for name in found[0]:
+        assert 0.78 <= summed(found, name)["held"] <= 1.0, name
+
+
+@pytest.mark.parametrize("runs", [20, 60, 300])
+def test_a_rare_capture_is_not_ruled_out(runs: int) -> None:
+    assert no_event(runs, 200) >= 0.9

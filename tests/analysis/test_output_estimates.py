@@ -1,0 +1,50 @@
+"""Mean and quantiles of an output with intervals from beds."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from lithobrake.analysis import mean_estimate, quantile_estimates
+
+
+def test_with_a_run_a_bed_the_mean_has_the_interval_of_student() -> None:
+    y = np.random.default_rng(0).exponential(size=40)
+    found = mean_estimate(y, np.arange(40))
+    half = stats.t.ppf(0.95, 39) * y.std(ddof=1) / math.sqrt(40)
+    assert (found.value, found.lower, found.upper) == pytest.approx((y.mean(), y.mean() - half, y.mean() + half))
+
+
+def test_quantiles_follow_the_output_and_hold_their_estimates() -> None:
+    rng, bed = np.random.default_rng(1), np.arange(240) % 24
+    y = rng.exponential(size=240)
+    found = quantile_estimates(y, bed)
+    assert [one.value for one in found] == pytest.approx(np.quantile(y, [0.05, 0.5, 0.95], method="hazen").tolist())
+    assert all(y.min() <= one.lower < one.value < one.upper <= y.max() for one in found)
+    # A monotone scale changes nothing but the scale, up to interpolation between neighbours.
+    logs = quantile_estimates(np.log(y), bed)
+    assert [math.exp(one.upper) for one in logs] == pytest.approx([one.upper for one in found], rel=0.01)
+
+
+def test_runs_on_beds_that_differ_say_less() -> None:
+    rng, bed = np.random.default_rng(2), np.arange(240) % 12
+    y = rng.standard_normal(240)
+    alone, shared = mean_estimate(y, bed), mean_estimate(y + rng.standard_normal(12)[bed], bed)
+    assert shared.upper - shared.lower > 2.0 * (alone.upper - alone.lower)
+
+
+def test_runs_without_the_output_are_left_out() -> None:
+    rng, bed = np.random.default_rng(3), np.arange(60) % 6
+    y = rng.standard_normal(60)
+    y[bed == 5] = np.nan
+    kept = np.isfinite(y)
+    assert mean_estimate(y, bed) == mean_estimate(y[kept], bed[kept])
+    assert quantile_estimates(y, bed) == quantile_estimates(y[kept], bed[kept])
+
+
+def test_one_bed_and_impossible_probabilities_are_refused() -> None:
+    with pytest.raises(ValueError, match="came down on 1 bed"):
+        mean_estimate(np.arange(5.0), np.zeros(5))
+    with pytest.raises(ValueError, match="between 0 and 1"):
+        quantile_estimates(np.arange(5.0), np.arange(5), (0.0,))

@@ -1,0 +1,173 @@
+"""The share of landers that stay: closed forms, what gives no interval, runs without an answer."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from lithobrake.analysis import LEVEL, expected_half_width, regression_terms, runs_for_half_width, share_estimate
+from lithobrake.analysis.share_estimate import standard_error
+from lithobrake.chaos import Uniform, sobol_sequence
+
+INPUTS = {"friction": Uniform(0.2, 0.9), "restitution": Uniform(0.3, 0.9)}
+
+
+def runs(bed_count: int, on_each: int, seed: int = 0, bed_spread: float = 0.05) -> tuple[np.ndarray, np.ndarray]:
+    """Shares of runs, clear of 0 and 1, and their beds."""
+    rng = np.random.default_rng(seed)
+    bed = np.repeat(np.arange(bed_count), on_each)
+    scatter = bed_spread * rng.standard_normal(bed_count)[bed] + 0.1 * rng.uniform(-1.0, 1.0, len(bed))
+    return np.clip(0.5 + scatter, 0.0, 1.0), bed
+
+
+def test_with_a_run_a_bed_it_is_the_interval_of_student() -> None:
+    h, _ = runs(30, 1)
+    found = share_estimate(h, np.arange(30))
+    half = stats.t.ppf(0.95, 29) * h.std(ddof=1) / math.sqrt(30)
+    assert (found.share, found.lower, found.upper) == pytest.approx((h.mean(), h.mean() - half, h.mean() + half))
+    assert (found.level, found.why, found.next_bed) == (LEVEL, None, None)
+    assert found.source == "30 landings on 30 beds"
+
+
+def test_the_error_is_that_of_clusters_in_statsmodels() -> None:
+    statsmodels = pytest.importorskip("statsmodels.api", reason="statsmodels is not installed")
+    h, bed = runs(12, 10, bed_spread=0.1)
+    fit = statsmodels.OLS(h, np.ones(len(h))).fit(cov_type="cluster", cov_kwds={"groups": bed})
+    # Theirs has a factor (N - 1) / (N - p) beside B / (B - 1), which is 1 for a mean.
+    assert standard_error(h, bed) == pytest.approx(float(fit.bse[0]), rel=1e-12)
+
+
+def test_weighted_runs_are_those_of_weighted_least_squares() -> None:
+    statsmodels = pytest.importorskip("statsmodels.api", reason="statsmodels is not installed")
+    h, bed = runs(12, 10, bed_spread=0.1)
+    w = np.random.default_rng(1).uniform(0.5, 2.0, len(h))
+    fit = statsmodels.WLS(h, np.ones(len(h)), weights=w).fit(cov_type="cluster", cov_kwds={"groups": bed})
+    found = share_estimate(h, bed, weights=w)
+    half = stats.t.ppf(0.95, 11) * float(fit.bse[0])
+    assert found.share == pytest.approx(float(fit.params[0]))
+    assert found.upper == pytest.approx(found.share + half, rel=1e-9)
+
+
+def test_beds_that_differ_less_than_chance_do_not_narrow_the_interval() -> None:
+    h = np.tile([0.3, 0.7], 20)
+    found = share_estimate(h, np.repeat(np.arange(10), 4))
+    assert found.upper - found.share == pytest.approx(stats.t.ppf(0.95, 9) * h.std(ddof=1) / math.sqrt(40))
+
+
+@pytest.mark.parametrize("bed_count", [2, 3, 12])
+def test_the_next_bed_is_never_better_known_than_the_mean(bed_count: int) -> None:
+    for seed in range(20):
+        found = share_estimate(*runs(bed_count, 10, seed, bed_spread=0.0))
+        assert found.next_bed[0] <= found.lower < found.upper <= found.next_bed[1]
+
+
+def test_what_the_inputs_explain_is_taken_off_without_moving_the_mean() -> None:
+    x = sobol_sequence(INPUTS, 240, seed=2)
+    h, bed = runs(24, 10, bed_spread=0.0)
+    # Consecutive points of a sequence would be alike on every bed, and their sums over beds scatter little anyhow.
+    h, bed = np.clip(h + 0.5 * (x[:, 0] - 0.55), 0.0, 1.0), np.random.default_rng(1).permutation(bed)
+    plain, less = share_estimate(h, bed), share_estimate(h, bed, terms=regression_terms(INPUTS, x))
+    assert less.share == pytest.approx(plain.share, abs=0.01)
+    assert less.upper - less.lower < 0.8 * (plain.upper - plain.lower)
+
+
+def test_an_adaptive_design_is_weighted_back_to_the_law() -> None:
+    rng, shares = np.random.default_rng(3), []
+    for _ in range(40):
+        u = rng.beta(2.0, 1.0, 200)
+        x = np.column_stack([0.2 + 0.7 * u, rng.uniform(0.3, 0.9, 200)])
+        noisy = np.clip(u + 0.3 * rng.uniform(-1.0, 1.0, 200) * np.minimum(u, 1.0 - u), 0.0, 1.0)
+        # Density of u: 1 by the law, 2 u as drawn.
+        found = share_estimate(noisy, np.arange(200) % 10, terms=regression_terms(INPUTS, x), weights=0.5 / u)
+        shares.append(found.share)
+    # The mean of a uniform number, within three standard errors of 40 studies.
+    assert np.mean(shares) == pytest.approx(0.5, abs=3.0 * np.std(shares) / math.sqrt(40))
+
+
+def test_one_bed_or_a_reason_gives_no_interval_and_says_why() -> None:
+    h, bed = runs(12, 10)
+    one = share_estimate(h, np.zeros(len(h)))
+    assert (one.lower, one.upper, one.next_bed, one.if_missing_interval) == (None, None, None, None)
+    assert one.why is not None
+    assert "bed.bed_count" in one.why
+    place = share_estimate(h, bed, why="all runs came down on one place")
+    assert (place.lower, place.why) == (None, "all runs came down on one place")
+    assert place.share == pytest.approx(h.mean())
+
+
+@pytest.mark.parametrize(("beds_differ", "units"), [(True, 12), (False, 120)])
+def test_where_no_run_stays_the_upper_end_is_that_of_so_many_units(beds_differ: bool, units: int) -> None:
+    bed = np.repeat(np.arange(12), 10)
+    none = share_estimate(np.zeros(120), bed, beds_differ=beds_differ)
+    assert (none.share, none.lower) == (0.0, 0.0)
+    assert (1.0 - none.upper) ** units == pytest.approx(1.0 - LEVEL)
+    every = share_estimate(np.ones(120), bed, beds_differ=beds_differ)
+    assert (every.share, every.lower, every.upper) == pytest.approx((1.0, 1.0 - none.upper, 1.0))
+
+
+@pytest.mark.parametrize("rare", [0.02, 0.98])
+def test_near_0_and_1_the_interval_stays_inside(rare: float) -> None:
+    h = np.full(120, round(1.0 - rare))
+    h[::50] = round(rare)
+    found = share_estimate(h, np.repeat(np.arange(12), 10))
+    assert 0.0 < found.lower < found.share < found.upper < 1.0
+
+
+def test_runs_without_an_answer_give_bounds() -> None:
+    h, bed = runs(12, 10)
+    h[:6] = np.nan
+    found, known = share_estimate(h, bed), h[6:]
+    assert found.share == pytest.approx(known.mean())
+    assert found.if_missing == pytest.approx((known.sum() / 120, (known.sum() + 6) / 120))
+    assert found.if_missing_interval[0] < found.if_missing[0] < found.if_missing[1] < found.if_missing_interval[1]
+    whole = share_estimate(known, bed[6:])
+    assert whole.if_missing == (whole.share, whole.share)
+    assert whole.if_missing_interval == (whole.lower, whole.upper)
+
+
+def test_the_luck_of_flights_is_told_apart() -> None:
+    rng, true = np.random.default_rng(5), np.full(240, 0.7)
+    bed = np.repeat(np.arange(24), 10)
+    means = [rng.binomial(64, true).mean() / 64 for _ in range(400)]
+    found = share_estimate(rng.binomial(64, true) / 64, bed, flight_count=64)
+    assert found.flight_sampling == pytest.approx(1.645 * np.std(means), rel=0.15)
+    assert share_estimate(true, bed).flight_sampling is None
+
+
+def test_the_summary_has_its_keys() -> None:
+    h, bed = runs(12, 10)
+    table = share_estimate(h, bed, emulator=0.5).summary()
+    assert list(table) == [
+        *("share", "lower", "upper", "level", "from", "next_bed", "if_missing", "flight_sampling", "emulator", "why"),
+    ]
+    assert table["emulator"] == 0.5
+    assert table["next_bed"][0] < table["lower"] < table["share"] < table["upper"] < table["next_bed"][1]
+
+
+def test_what_cannot_be_is_refused() -> None:
+    h, bed = runs(12, 10)
+    with pytest.raises(ValueError, match="no answer"):
+        share_estimate(np.full(3, np.nan), [0, 0, 1])
+    with pytest.raises(ValueError, match=r"reaches from .* to 1\.2"):
+        share_estimate(np.append(h, 1.2), np.append(bed, 0))
+    with pytest.raises(ValueError, match="each of the 120 runs"):
+        share_estimate(h, bed[1:])
+    with pytest.raises(ValueError, match="above 0"):
+        share_estimate(h, bed, weights=np.zeros(120))
+
+
+def test_half_widths_are_foreseen() -> None:
+    # STUDENT(23) at .95 is 1.7139; 240 runs on 24 beds without an effect of beds.
+    assert expected_half_width(240, 24, correlation=0.0) == pytest.approx(1.7139 * 0.14 / math.sqrt(240), rel=1e-4)
+    assert expected_half_width(240, 1) is None
+    count = runs_for_half_width(0.02)
+    assert expected_half_width(count, count // 10) <= 0.02 < expected_half_width(count - 10, count // 10 - 1)
+    widths = [share_estimate(*runs(24, 10, seed, bed_spread=0.03)) for seed in range(30)]
+    spread = math.hypot(0.03, 0.1 / math.sqrt(3.0))
+    expected = expected_half_width(240, 24, spread=spread, correlation=(0.03 / spread) ** 2)
+    assert np.mean([0.5 * (one.upper - one.lower) for one in widths]) == pytest.approx(expected, rel=0.05)
+    with pytest.raises(ValueError, match="a run for each"):
+        expected_half_width(5, 6)
+    with pytest.raises(ValueError, match="half_width is 0"):
+        runs_for_half_width(0.0)

@@ -1,0 +1,177 @@
+"""Where the scatter of an output comes from: components of beds, shares that add up, side runs."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from lithobrake.analysis import IntervalEstimate, VarianceShares, chaos_variance, soil_total_effect, variance_shares
+from lithobrake.analysis.bed_components import bed_components
+from lithobrake.analysis.confidence import numbered_beds
+from lithobrake.chaos import Uniform, sobol_sequence
+
+INPUTS = {"friction": Uniform(0.2, 0.9), "restitution": Uniform(0.3, 0.9), "speed": Uniform(0.05, 0.15)}
+SOIL = ("friction", "restitution")
+
+
+def on_beds(bed_count: int, on_each: int, correlation: float, seed: int) -> tuple[np.ndarray, np.ndarray]:
+    """Values of variance 1 on beds of equal counts."""
+    rng, bed = np.random.default_rng(seed), np.repeat(np.arange(bed_count), on_each)
+    effects = math.sqrt(correlation) * rng.standard_normal(bed_count)
+    return effects[bed] + math.sqrt(1.0 - correlation) * rng.standard_normal(len(bed)), bed
+
+
+def split(seed: int, twins: np.ndarray | None = None, count: int = 240) -> VarianceShares:
+    """Shares of a model with .3 soil, .2 arrival, .1 bed, .4 the rest."""
+    x = sobol_sequence(INPUTS, count, seed=seed)
+    u = np.column_stack([math.sqrt(3.0) * entry.germ(x[:, k]) for k, entry in enumerate(INPUTS.values())])
+    # A stream of its own for each, or the scramble of the sequence and the scatter would be of the same draws.
+    bed = np.random.default_rng([seed, 1]).permutation(np.arange(count) % 24)
+    scatter, order = on_beds(24, count // 24, 0.2, 1000 + seed)[0], np.argsort(np.argsort(bed, kind="stable"))
+    y = math.sqrt(0.2) * u[:, 0] + math.sqrt(0.1) * u[:, 0] * u[:, 1]
+    y += math.sqrt(0.2) * u[:, 2] + math.sqrt(0.5) * scatter[order]
+    return variance_shares(INPUTS, x, y, bed, soil=SOIL, twins=twins)
+
+
+def test_mean_squares_are_those_of_the_analysis_of_variance() -> None:
+    values, bed = on_beds(6, 8, 0.3, 1)
+    found = bed_components(values, bed)
+    assert found.squares.sum() / 5 / found.within == pytest.approx(stats.f_oneway(*values.reshape(6, 8)).statistic)
+    assert (found.counts, found.within_freedom) == (pytest.approx(np.full(5, 8.0)), 42)
+
+
+def test_the_variance_of_beds_is_that_of_a_mixed_model() -> None:
+    models = pytest.importorskip("statsmodels.formula.api", reason="statsmodels is not installed")
+    pandas = pytest.importorskip("pandas", reason="pandas is not installed")
+    values, bed = on_beds(12, 10, 0.3, 2)
+    fit = models.mixedlm("y ~ 1", pandas.DataFrame({"y": values, "bed": bed}), groups="bed").fit(reml=True)
+    found = bed_components(values, bed)
+    # For equal counts, restricted likelihood and analysis of variance agree where beds differ; theirs is iterated.
+    assert found.within == pytest.approx(float(fit.scale), rel=1e-4)
+    assert found.bed_variance == pytest.approx(float(fit.cov_re.iloc[0, 0]), rel=1e-3)
+
+
+@pytest.mark.parametrize("correlation", [0.0, 0.05, 0.2])
+def test_the_interval_of_the_correlation_is_exact_for_equal_counts(correlation: float) -> None:
+    inside = []
+    for seed in range(400):
+        interval = bed_components(*on_beds(12, 10, correlation, seed)).correlation
+        inside.append(interval.lower <= correlation <= interval.upper)
+    # Three standard deviations of 400 draws; without an effect the lower end is cut, so only the upper can miss.
+    assert np.mean(inside) == pytest.approx(0.95 if correlation == 0.0 else 0.9, abs=0.045)
+
+
+def test_what_beds_owe_to_inputs_is_not_their_own() -> None:
+    rng, estimates = np.random.default_rng(0), []
+    for seed in range(200):
+        values, bed = on_beds(12, 10, 0.0, seed)
+        terms = rng.standard_normal((120, 30)) + rng.standard_normal((12, 30))[bed]
+        estimates.append(bed_components(values + terms.sum(axis=1), bed, terms).bed_variance)
+    assert np.mean(estimates) == pytest.approx(0.0, abs=3.0 * np.std(estimates) / math.sqrt(200))
+
+
+def test_unequal_counts_do_not_matter() -> None:
+    inside = []
+    for seed in range(400):
+        values, bed = on_beds(12, 20, 0.2, seed)
+        kept = np.random.default_rng(seed).random(240) < np.linspace(0.2, 0.9, 12)[bed]
+        interval = bed_components(values[kept], numbered_beds(bed[kept], kept.sum())).correlation
+        inside.append(interval.lower <= 0.2 <= interval.upper)
+    assert np.mean(inside) == pytest.approx(0.9, abs=0.045)
+
+
+def test_the_parts_add_up_and_are_free_of_bias() -> None:
+    twins = math.sqrt(2.0 * 0.05) * np.random.default_rng(0).standard_normal(12)
+    found = [split(seed, twins) for seed in range(60)]
+    for one in found:
+        parts = (one.soil, one.arrival, one.bed, one.place_and_attitude, one.chaos)
+        assert sum(part.value for part in parts) == pytest.approx(1.0)
+        assert all(0.0 <= part.lower <= part.upper <= 1.0 for part in parts)
+    expected = {"soil": 0.3, "arrival": 0.2, "bed": 0.1}
+    for name, share in expected.items():
+        estimates = np.array([getattr(one, name).value for one in found])
+        assert estimates.mean() == pytest.approx(share, abs=3.0 * estimates.std() / math.sqrt(60))
+        inside = [getattr(one, name).lower <= share <= getattr(one, name).upper for one in found]
+        assert 0.78 <= np.mean(inside) <= 1.0
+    place = [one.place_and_attitude for one in found]
+    chaos = [one.chaos.value for one in found]
+    truth = 0.4 - np.mean(chaos)
+    assert 0.78 <= np.mean([part.lower <= truth <= part.upper for part in place]) <= 1.0
+    friction = np.array([one.soil_by_input["friction"].value for one in found])
+    assert friction.mean() == pytest.approx(0.2, abs=3.0 * friction.std() / math.sqrt(60))
+
+
+def test_where_inputs_do_nothing_none_is_found() -> None:
+    found = []
+    for seed in range(60):
+        x = sobol_sequence(INPUTS, 144, seed=seed)
+        y, bed = on_beds(12, 12, 0.05, seed)
+        found.append(variance_shares(INPUTS, x, np.random.default_rng(seed).permutation(y), bed, soil=tuple(INPUTS)))
+    soil = np.array([one.soil.value for one in found])
+    assert abs(soil.mean()) < 0.02
+    assert soil.min() < 0.0
+    assert found[0].arrival is None
+    assert np.mean([part.lower > 0.0 for one in found for part in one.soil_by_input.values()]) <= 0.1
+
+
+def test_few_runs_drop_terms_and_then_the_answer() -> None:
+    rng = np.random.default_rng(0)
+    answers = []
+    for count in (40, 24, 12, 8):
+        x = sobol_sequence(INPUTS, count, seed=1)
+        answers.append(variance_shares(INPUTS, x, rng.standard_normal(count), np.arange(count) % 4, soil=SOIL))
+    assert [one is None for one in answers] == [False, False, False, True]
+    x = sobol_sequence(INPUTS, 40, seed=1)
+    assert variance_shares(INPUTS, x, rng.standard_normal(40), np.zeros(40), soil=SOIL) is None
+    assert variance_shares(INPUTS, x, np.ones(40), np.arange(40) % 4, soil=SOIL) is None
+
+
+def test_runs_without_the_output_are_left_out() -> None:
+    x = sobol_sequence(INPUTS, 120, seed=1)
+    y, bed = on_beds(12, 10, 0.1, 1)
+    holed = y.copy()
+    holed[::9] = np.nan
+    kept = np.isfinite(holed)
+    assert variance_shares(INPUTS, x, holed, bed, soil=SOIL) == variance_shares(
+        INPUTS, x[kept], y[kept], bed[kept], soil=SOIL
+    )
+
+
+def test_the_summary_has_its_keys() -> None:
+    table = split(0).summary()
+    assert list(table) == ["soil", "soil_by_input", "arrival", "bed", "place_and_attitude", "chaos"]
+    assert list(table["soil_by_input"]) == list(SOIL)
+    assert list(table["bed"]) == ["share", "lower", "upper"]
+    assert table["chaos"] is None
+
+
+def test_twins_tell_chaos() -> None:
+    found = chaos_variance([1.0, -1.0, 2.0, np.nan])
+    assert found.value == pytest.approx(1.0)
+    assert (found.lower, found.upper) == pytest.approx((3.0 / 7.8147, 3.0 / 0.35185), rel=1e-4)
+    rng = np.random.default_rng(1)
+    intervals = [chaos_variance(math.sqrt(2.0) * rng.standard_normal(12)) for _ in range(400)]
+    assert 0.85 <= np.mean([one.lower <= 1.0 <= one.upper for one in intervals]) <= 0.95
+    with pytest.raises(ValueError, match="no difference is known"):
+        chaos_variance([np.nan])
+
+
+def test_pairs_tell_the_total_effect_of_the_soil() -> None:
+    """The Ishigami function's total index of its third input is .2437 (a = 7, b = .1)."""
+    rng = np.random.default_rng(2)
+
+    def ishigami(x: np.ndarray) -> np.ndarray:
+        return np.sin(x[0]) * (1.0 + 0.1 * x[2] ** 4) + 7.0 * np.sin(x[1]) ** 2
+
+    found: list[IntervalEstimate] = []
+    for _ in range(200):
+        pair = np.pi * rng.uniform(-1.0, 1.0, (3, 40))
+        other = np.vstack([pair[:2], np.pi * rng.uniform(-1.0, 1.0, 40)])
+        y = ishigami(np.pi * rng.uniform(-1.0, 1.0, (3, 240)))
+        found.append(soil_total_effect(ishigami(pair) - ishigami(other), y))
+    assert np.mean([one.value for one in found]) == pytest.approx(0.2437, abs=0.03)
+    assert np.mean([one.lower <= 0.2437 <= one.upper for one in found]) >= 0.78
+    assert soil_total_effect(np.zeros(20), y) == IntervalEstimate(0.0, 0.0, 0.0)
+    with pytest.raises(ValueError, match="two or more"):
+        soil_total_effect([1.0], y)
