@@ -206,6 +206,7 @@ def meet(
             fly_to(bodies, flight, member, now, rules)
     if not list_features(pair, bodies, cores, planes, pairs, scratch, flight, plans, rules):
         return False
+    plans.free_count[1] += 1
     passed = now - plans.last[pair]
     plans.last[pair] = now
     if pairs.overlap[pair] == 0.0:
@@ -217,6 +218,8 @@ def meet(
         if approach.gap > 0.0:
             plan_approach(pair, bodies, pairs, flight, plans, agenda, approach, now, rules)
             return True
+    plans.free_count[2] += 1
+    touched = plans.interval[pair] > 0.0
     interval = touch(pair, bodies, cores, planes, pairs, laws, scratch, reactions, plans, passed, rules)
     if interval > 0.0:
         put_on(agenda, len(bodies.mass) + pair, now + interval)
@@ -225,7 +228,8 @@ def meet(
         speed = closing_speed(bodies, flight, pairs.first[pair], pairs.second[pair])
         plan_approach(pair, bodies, pairs, flight, plans, agenda, Approach(0.0, speed, 0.0), now, rules)
     for member in (pairs.first[pair], pairs.second[pair]):
-        if member >= 0 and has_changed(bodies, flight, member):
+        if member >= 0 and ((touched and interval == 0.0) or has_changed(bodies, flight, member)):
+            plans.free_count[3] += 1
             replan(bodies, pairs, flight, plans, agenda, member, now, rules)
     return True
 
@@ -266,6 +270,7 @@ def advance_locally(
         if not now <= end:
             break
         if item < n:
+            plans.free_count[4] += 1
             reason = search_neighbours(bodies, planes, pairs, laws, flight, plans, agenda, item, now, rules)
             if reason != LISTED:
                 return reason
