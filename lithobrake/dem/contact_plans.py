@@ -131,7 +131,9 @@ def replan(
     put(flight.velocity, body, row(bodies.velocity, body))
     put(flight.momentum, body, row(bodies.angular_momentum, body))
     # What touches nothing is not kicked, and what begins to touch is planned anew.
-    flight.slack[body] = NOTED_CHANGE * surface_speed(bodies, flight, body) if touches(pairs, flight, plans, body) else 0.0
+    flight.slack[body] = (
+        NOTED_CHANGE * surface_speed(bodies, flight, body) if touches(pairs, flight, plans, body) else 0.0
+    )
     plan_search(bodies, flight, agenda, body, now, rules)
     entry = flight.head[body]
     while entry >= 0:

@@ -49,7 +49,7 @@ def plans_of(capacity: int, used: int, time: float) -> Plans:
         last=np.full(capacity, time), interval=np.zeros(capacity), inverse_mass=np.ones(capacity),
         longest=np.zeros(capacity),
         duration=np.zeros(capacity), apart=np.zeros((capacity, 3)), spin=np.zeros((capacity, 2, 3)),
-        link=np.full(2 * capacity, -1), free=free, free_count=np.array([capacity - used, 0, 0, 0, 0, 0]),
+        link=np.full(2 * capacity, -1), free=free, free_count=np.array([capacity - used]),
     )  # fmt: skip
 
 

@@ -34,7 +34,7 @@ from lithobrake.dem.vectors import Vector, add, dot, minus, plus, put, row, scal
 # Why a run stops: besides what neighbour_search.py says.
 NO_ROOM = 3
 # Steps of motion for which what is near and does not touch is listed; narrowest part of the widest margin.
-STEPS_NEAR, NARROWEST = 3.0, 1e-3
+STEPS_NEAR, NARROWEST = 10.0, 1e-3
 # Largest c dt + (w dt)^2 / 4 of one contact, see stability.py; kicks follow each other, so each must be stable alone.
 STABLE_PART = 0.6
 # What is recorded of a watched body, and where: largest force [N], first and last instant of touch [s; -1: none].
@@ -206,7 +206,6 @@ def meet(
             fly_to(bodies, flight, member, now, rules)
     if not list_features(pair, bodies, cores, planes, pairs, scratch, flight, plans, rules):
         return False
-    plans.free_count[1] += 1
     passed = now - plans.last[pair]
     plans.last[pair] = now
     if pairs.overlap[pair] == 0.0:
@@ -218,7 +217,6 @@ def meet(
         if approach.gap > 0.0:
             plan_approach(pair, bodies, pairs, flight, plans, agenda, approach, now, rules)
             return True
-    plans.free_count[2] += 1
     touched = plans.interval[pair] > 0.0
     interval = touch(pair, bodies, cores, planes, pairs, laws, scratch, reactions, plans, passed, rules)
     if interval > 0.0:
@@ -229,7 +227,6 @@ def meet(
         plan_approach(pair, bodies, pairs, flight, plans, agenda, Approach(0.0, speed, 0.0), now, rules)
     for member in (pairs.first[pair], pairs.second[pair]):
         if member >= 0 and ((touched and interval == 0.0) or has_changed(bodies, flight, member)):
-            plans.free_count[3] += 1
             replan(bodies, pairs, flight, plans, agenda, member, now, rules)
     return True
 
@@ -270,7 +267,6 @@ def advance_locally(
         if not now <= end:
             break
         if item < n:
-            plans.free_count[4] += 1
             reason = search_neighbours(bodies, planes, pairs, laws, flight, plans, agenda, item, now, rules)
             if reason != LISTED:
                 return reason
