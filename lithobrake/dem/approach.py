@@ -50,6 +50,8 @@ def closing_acceleration(bodies: Bodies, flight: Flight, first: int, second: int
     acceleration = 2.0 * spin * (bodies.turning_radius[first] * spin + speed)
     if second < 0:
         return acceleration + weight(rules)
+    if flight.held[first] != flight.held[second]:
+        acceleration += weight(rules)
     spin = spin_bound(bodies, flight, second)
     return acceleration + 2.0 * spin * (bodies.turning_radius[second] * spin + speed)
 

@@ -78,7 +78,7 @@ def plan_apart(
     gap = pairs.wake[pair] - bodies.travel[first] - (now - flight.time[first]) * surface_speed(bodies, flight, first)
     acceleration = weight(rules)
     if second >= 0:
-        acceleration = 0.0
+        acceleration = weight(rules) if flight.held[first] != flight.held[second] else 0.0
         gap -= bodies.travel[second] + (now - flight.time[second]) * surface_speed(bodies, flight, second)
     speed = closing_speed(bodies, flight, first, second)
     put_on(agenda, len(bodies.mass) + pair, now + (time_to_close(gap, speed, acceleration) if gap > 0.0 else 0.0))

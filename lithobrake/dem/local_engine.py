@@ -9,6 +9,7 @@ from lithobrake.dem.arrays import Floats, Pairs, Step
 from lithobrake.dem.contact_plans import Plans
 from lithobrake.dem.engine import Engine
 from lithobrake.dem.free_flight import Flight, Rules, fly_all_to
+from lithobrake.dem.holding import hold_what_is_far
 from lithobrake.dem.local_steps import NO_ROOM, advance_locally, sum_forces
 from lithobrake.dem.neighbour_search import LISTED, NO_SLOT, enter_all
 from lithobrake.dem.neighbours import new_pairs, with_more_overflow
@@ -39,7 +40,10 @@ def flight_of(engine: Engine, bodies: list[RigidBody], time: float) -> Flight:
     mass = np.array([smallest_mass_at_contact(body.shape, body.mass, body.inertia) for body in bodies])
     never = np.full((n, 3), np.nan)
     stamp = np.full(n + len(engine.planes.offset), -1)
-    return Flight(np.full(n, time), never, np.zeros((n, 3)), np.zeros(n), turning, mass, np.full(n, -1), stamp)
+    return Flight(
+        np.full(n, time), never, np.zeros((n, 3)), np.zeros(n), turning, mass, np.full(n, -1), stamp,
+        held=np.zeros(n, np.bool_), held_velocity=np.zeros((n, 3)), held_momentum=np.zeros((n, 3)),
+    )  # fmt: skip
 
 
 def plans_of(capacity: int, used: int, time: float) -> Plans:
@@ -124,9 +128,18 @@ class LocalEngine:
         sum_forces(engine.bodies, self.pairs, self.reactions)
         return reason == LISTED and bool(np.isfinite(engine.bodies.travel).all())
 
+    def hold_what_is_far(self, reach: float) -> None:
+        """Hold what is out of reach [m] of the watched body, and let go the rest."""
+        hold_what_is_far(
+            self.engine.bodies, self.pairs, self.flight, self.plans, self.agenda, self.setting.watched, reach,
+            self.time, self.rules,
+        )  # fmt: skip
+
     def give_back(self) -> None:
         """Leave the engine with its pairs in order, ready for steps that all contacts share."""
         pairs = self.pairs
+        if self.flight.held.any():
+            self.hold_what_is_far(np.inf)
         self.engine.book()
         used = np.flatnonzero(pairs.first >= 0)
         used = used[np.lexsort((pairs.second[used], pairs.first[used]))]

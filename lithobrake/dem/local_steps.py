@@ -130,13 +130,14 @@ def force_after(
 
 @kernel
 def kick_members(
-    pair: int, bodies: Bodies, pairs: Pairs, impulse: Vector, moment: Vector, other_moment: Vector
+    pair: int, bodies: Bodies, pairs: Pairs, flight: Flight, impulse: Vector, moment: Vector, other_moment: Vector
 ) -> None:
     """Add an impulse on the second [N s], and its moments [N m s], to the members of a pair. Writes to bodies."""
     first, second = pairs.first[pair], pairs.second[pair]
-    add(bodies.velocity, first, -bodies.inverse_mass[first], impulse)
-    add(bodies.angular_momentum, first, -1.0, moment)
-    if second >= 0:
+    if not flight.held[first]:
+        add(bodies.velocity, first, -bodies.inverse_mass[first], impulse)
+        add(bodies.angular_momentum, first, -1.0, moment)
+    if second >= 0 and not flight.held[second]:
         add(bodies.velocity, second, bodies.inverse_mass[second], impulse)
         add(bodies.angular_momentum, second, 1.0, other_moment)
 
@@ -159,7 +160,7 @@ def next_step(
 @kernel
 def touch(
     pair: int, bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, laws: Laws, scratch: Scratch,
-    reactions: Reactions, plans: Plans, passed: float, rules: Rules,
+    reactions: Reactions, flight: Flight, plans: Plans, passed: float, rules: Rules,
 ) -> float:  # fmt: skip
     """Compute a contact, kick its bodies, and return the interval [s] until it is due again; 0 where it has ended.
 
@@ -171,9 +172,9 @@ def touch(
     if planned > 0.0:
         force, torque = row(reactions.force, pair), row(reactions.first_torque, pair)
         other_torque = row(reactions.second_torque, pair)
-    predict(bodies, first, force, torque, -0.5 * passed)
+    predict(bodies, first, force, torque, 0.0 if flight.held[first] else -0.5 * passed)
     if second >= 0:
-        predict(bodies, second, force, other_torque, 0.5 * passed)
+        predict(bodies, second, force, other_torque, 0.0 if flight.held[second] else 0.5 * passed)
     step = Step(passed, 0.0, rules.gravity, rules.paper_mass)
     rate = force_after(pair, bodies, cores, planes, pairs, laws, step, scratch, reactions, plans)
     # The last kick reached over half of the interval that was planned; it may have been cut short.
@@ -186,7 +187,7 @@ def touch(
         impulse = plus(impulse, scaled(time, row(reactions.force, pair)))
         moment = plus(moment, scaled(time, row(reactions.first_torque, pair)))
         other_moment = plus(other_moment, scaled(time, row(reactions.second_torque, pair)))
-    kick_members(pair, bodies, pairs, impulse, moment, other_moment)
+    kick_members(pair, bodies, pairs, flight, impulse, moment, other_moment)
     plans.interval[pair] = interval
     note_motion(pair, bodies, pairs, plans)
     return interval
@@ -218,7 +219,7 @@ def meet(
             plan_approach(pair, bodies, pairs, flight, plans, agenda, approach, now, rules)
             return True
     touched = plans.interval[pair] > 0.0
-    interval = touch(pair, bodies, cores, planes, pairs, laws, scratch, reactions, plans, passed, rules)
+    interval = touch(pair, bodies, cores, planes, pairs, laws, scratch, reactions, flight, plans, passed, rules)
     if interval > 0.0:
         put_on(agenda, len(bodies.mass) + pair, now + interval)
     else:
@@ -226,7 +227,11 @@ def meet(
         speed = closing_speed(bodies, flight, pairs.first[pair], pairs.second[pair])
         plan_approach(pair, bodies, pairs, flight, plans, agenda, Approach(0.0, speed, 0.0), now, rules)
     for member in (pairs.first[pair], pairs.second[pair]):
-        if member >= 0 and ((touched and interval == 0.0) or has_changed(bodies, flight, member)):
+        if (
+            member >= 0
+            and not flight.held[member]
+            and ((touched and interval == 0.0) or has_changed(bodies, flight, member))
+        ):
             replan(bodies, pairs, flight, plans, agenda, member, now, rules)
     return True
 

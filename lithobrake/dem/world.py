@@ -177,7 +177,7 @@ class World(Observables):
         if reason in (STEP_TOO_LARGE, DIVERGED):
             self._refuse(reason)
 
-    def run_locally(self, duration: float, steps_per_contact: float) -> None:
+    def run_locally(self, duration: float, steps_per_contact: float, *, reach: float = math.inf) -> None:
         """Advance by a duration [s], every contact at steps of its own, so many in the time of its collision.
 
         What is slow or far from anything then costs little; a landing is 4 to 5 times as fast (docs/performance.md).
@@ -195,10 +195,12 @@ class World(Observables):
                 f"{FEWEST_STEPS:g}: raise it"
             )
         setting = Setting(self._step(0.0), float(steps_per_contact), self._state.watched)
-        if not self._state.stepping_locally(setting, self.time).run(duration):
+        local = self._state.stepping_locally(setting, self.time)
+        if reach < math.inf or local.flight.held.any():
+            local.hold_what_is_far(reach)
+        if not local.run(duration):
             self._refuse(DIVERGED)
-        assert self._state.local is not None
-        self.time = self._state.local.time
+        self.time = local.time
 
     def _refuse(self, reason: int) -> None:
         """Say why the time loop could not go on."""

@@ -79,6 +79,9 @@ class ContactSection(Section):
     stepping: Literal["global", "local"] = "global"
     """Steps of a touchdown: "global", the same for all contacts, or "local", each contact at steps of its own, which is
     several times as fast."""
+    window: Annotated[float, Number("", at_least=0)] = 0.0
+    """Grains stand still while they touch something and are farther from the lander than so many times the way that
+    the smallest bed keeps clear around it; 0: none do. Only with stepping = "local"."""
 
 
 class LandingSection(Section):

@@ -1,6 +1,7 @@
 """A settled bed of grains in an open box, and its file."""
 
 import itertools
+import math
 import os
 from dataclasses import dataclass, field
 from typing import Any
@@ -23,6 +24,8 @@ class ContactModel:
 
     steps_per_contact: in the shortest contact that the impact can make, or in each ("local", see World.run_locally).
     stepping: "global", the same steps for all contacts, or "local", steps of its own for each.
+    window: grains stand still while they touch something and are farther from the lander than so many times the way
+    that the rule of smallest_bed.py keeps clear; 0: none do. Only with local steps.
     """
 
     shear_modulus_rule: str = "mindlin"
@@ -30,10 +33,16 @@ class ContactModel:
     pair_rule: str = "smaller"
     steps_per_contact: float = 50.0
     stepping: str = "global"
+    window: float = 0.0
 
     def __post_init__(self) -> None:
         if self.stepping not in ("global", "local"):
             raise ValueError(f'ContactModel.stepping is {self.stepping!r}; allowed are "global" and "local": change it')
+        if not 0.0 <= self.window < math.inf or (self.window > 0.0 and self.stepping != "local"):
+            raise ValueError(
+                f'ContactModel.window is {self.window!r} with stepping "{self.stepping}"; allowed is a finite value of '
+                'at least 0, above 0 with stepping "local" only: change either'
+            )
 
     def world(self, gravity: tuple[float, float, float]) -> World:
         """Return an empty world under these options."""

@@ -13,6 +13,7 @@ from lithobrake.touchdown.lander import Lander
 from lithobrake.touchdown.landing import Landing
 from lithobrake.touchdown.outcome import Outcome
 from lithobrake.touchdown.outcome_judge import OutcomeJudge
+from lithobrake.touchdown.smallest_bed import smallest_bed
 from lithobrake.touchdown.surface import rotation_matrix
 
 RELAX_FADING = 5.0  # periods in which the damping of contacts falls by a factor of e: what has to slide must be free to
@@ -56,9 +57,11 @@ def land(
     world.watch(number)
     judge = OutcomeJudge(bed, lander, landing, world, number, frame_count)
     chunk = max(1, int(landing.contact.steps_per_contact / CHECKS_PER_CONTACT))
+    reach = window_reach(bed, lander, landing)
     while judge.ended is None:
         if locally:
-            world.run_locally(look_interval(world, number, lander, landing), landing.contact.steps_per_contact)
+            interval = look_interval(world, number, lander, landing)
+            world.run_locally(interval, landing.contact.steps_per_contact, reach=reach)
         else:
             world.run(steps=chunk)
         judge.look()
@@ -79,6 +82,14 @@ def look_interval(world: World, number: int, lander: Lander, landing: Landing) -
     longest = LOOK_TIME * landing.time_limit
     way = LOOK_WAY * lander.smallest_edge
     return max(shortest, min(way / speed, longest) if speed > 0.0 else longest)
+
+
+def window_reach(bed: Bed, lander: Lander, landing: Landing) -> float:
+    """Return the distance [m] from the lander's centroid within which grains move; infinite without a window."""
+    if landing.contact.window == 0.0:
+        return math.inf
+    way = smallest_bed(lander, landing.grain, bed.grain_diameter, landing.speed)[1]
+    return lander.shape.bounding_radius + landing.contact.window * way
 
 
 def relax(
