@@ -67,8 +67,10 @@ def draws(study: Study, count: int) -> Iterator[tuple[int, Lander, Landing]]:
 
 def landed(bed: Bed, body: Lander, arrival: Landing, way: str) -> Row:
     """Land once with contacts stepped in a way, as "local:15", or in a window, as "local:15:2"."""
-    stepping, steps, window = (*way.split(":"), "0")[:3]
-    contact = replace(arrival.contact, stepping=stepping, steps_per_contact=float(steps), window=float(window))
+    stepping, steps, window, held = (*way.split(":"), "0", "0.01")[:4] if way.count(":") < 3 else way.split(":")
+    contact = replace(
+        arrival.contact, stepping=stepping, steps_per_contact=float(steps), window=float(window), held_speed=float(held)
+    )
     start = time.process_time()
     outcome = land(bed, body, replace(arrival, contact=contact))
     cpu = time.process_time() - start

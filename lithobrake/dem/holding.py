@@ -1,6 +1,8 @@
-"""Bodies out of reach of the watched one are held: they stand still until it comes near, and act as walls meanwhile.
+"""Bodies out of reach of the watched one, and slow beside it, are held: they stand still, and act as walls meanwhile.
 
-A held body keeps its momentum and goes on with it when it is let go. What touches nothing is never held.
+A held body keeps its momentum, and what its moving neighbours give it adds to that: once this makes it fast beside the
+watched body, or that comes near, it goes on with it. So a blow frees as far as it reaches, and no momentum is lost. What
+touches nothing is never held.
 """
 
 import numpy as np
@@ -9,8 +11,11 @@ from lithobrake.compiled import kernel, large_kernel
 from lithobrake.dem.agenda import Agenda, put_on
 from lithobrake.dem.arrays import Bodies, Pairs
 from lithobrake.dem.contact_plans import Plans, replan, touches
-from lithobrake.dem.free_flight import Flight, Rules, fly_to, spin_of
+from lithobrake.dem.free_flight import Flight, Rules, spin_of, surface_speed
 from lithobrake.dem.vectors import dot, minus, put, row
+
+# A body is held when it is slower than this part of the speed at which it would be let go again.
+CALM = 0.5
 
 
 @kernel
@@ -48,7 +53,7 @@ def hold(
 def let_go(
     bodies: Bodies, pairs: Pairs, flight: Flight, plans: Plans, agenda: Agenda, body: int, now: float, rules: Rules
 ) -> None:
-    """Let a held body go on as it went before. Writes to bodies, flight, plans and agenda."""
+    """Let a held body go on with the momentum it has by now. Writes to bodies, flight, plans and agenda."""
     flight.held[body] = False
     put(bodies.velocity, body, row(flight.held_velocity, body))
     put(bodies.angular_momentum, body, row(flight.held_momentum, body))
@@ -63,23 +68,36 @@ def let_go(
     replan(bodies, pairs, flight, plans, agenda, body, now, rules)
 
 
+@kernel
+def is_stirred(bodies: Bodies, flight: Flight, body: int) -> bool:
+    """Tell whether a held body has too much momentum to be held."""
+    velocity, momentum = row(flight.held_velocity, body), row(flight.held_momentum, body)
+    turning = bodies.turning_radius[body] * flight.turning[body] * dot(momentum, momentum) ** 0.5
+    return dot(velocity, velocity) ** 0.5 + turning > flight.fastest_held[0]
+
+
 @large_kernel
 def hold_what_is_far(
     bodies: Bodies, pairs: Pairs, flight: Flight, plans: Plans, agenda: Agenda, watched: int, reach: float,
-    now: float, rules: Rules,
+    share: float, now: float, rules: Rules,
 ) -> None:  # fmt: skip
-    """Hold what touches something and has its centroid out of reach [m] of the watched body's, and let go what has not.
+    """Hold what touches something, is slow, and has its centroid out of reach [m] of the watched body's; let go the rest.
 
-    All bodies must have been moved to now [s]. Writes to bodies, flight, plans and agenda.
+    Slow: its surface, below a share of the speed of the watched body's. All must have been moved to now [s].
+    Writes to bodies, flight, plans and agenda.
     """
     here = row(bodies.position, watched)
+    flight.fastest_held[0] = share * surface_speed(bodies, flight, watched)
     for body in range(len(bodies.mass)):
         between = minus(row(bodies.position, body), here)
         far = dot(between, between) > reach * reach
         if flight.held[body]:
-            if not far:
+            if not far or is_stirred(bodies, flight, body):
                 flight.time[body] = now
                 let_go(bodies, pairs, flight, plans, agenda, body, now, rules)
-        elif far and touches(pairs, flight, plans, body):
-            fly_to(bodies, flight, body, now, rules)
+        elif (
+            far
+            and surface_speed(bodies, flight, body) < CALM * flight.fastest_held[0]
+            and touches(pairs, flight, plans, body)
+        ):
             hold(bodies, pairs, flight, plans, agenda, body, now, rules)

@@ -43,6 +43,7 @@ def flight_of(engine: Engine, bodies: list[RigidBody], time: float) -> Flight:
     return Flight(
         np.full(n, time), never, np.zeros((n, 3)), np.zeros(n), turning, mass, np.full(n, -1), stamp,
         held=np.zeros(n, np.bool_), held_velocity=np.zeros((n, 3)), held_momentum=np.zeros((n, 3)),
+        fastest_held=np.zeros(1),
     )  # fmt: skip
 
 
@@ -128,10 +129,10 @@ class LocalEngine:
         sum_forces(engine.bodies, self.pairs, self.reactions)
         return reason == LISTED and bool(np.isfinite(engine.bodies.travel).all())
 
-    def hold_what_is_far(self, reach: float) -> None:
-        """Hold what is out of reach [m] of the watched body, and let go the rest."""
+    def hold_what_is_far(self, reach: float, share: float) -> None:
+        """Hold what is out of reach [m] of the watched body and slower than a share of it, and let go the rest."""
         hold_what_is_far(
-            self.engine.bodies, self.pairs, self.flight, self.plans, self.agenda, self.setting.watched, reach,
+            self.engine.bodies, self.pairs, self.flight, self.plans, self.agenda, self.setting.watched, reach, share,
             self.time, self.rules,
         )  # fmt: skip
 
@@ -139,7 +140,7 @@ class LocalEngine:
         """Leave the engine with its pairs in order, ready for steps that all contacts share."""
         pairs = self.pairs
         if self.flight.held.any():
-            self.hold_what_is_far(np.inf)
+            self.hold_what_is_far(np.inf, 0.0)
         self.engine.book()
         used = np.flatnonzero(pairs.first >= 0)
         used = used[np.lexsort((pairs.second[used], pairs.first[used]))]

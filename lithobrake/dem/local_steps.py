@@ -26,6 +26,7 @@ from lithobrake.dem.contact_plans import (
 from lithobrake.dem.feature_list import ROUNDING_OF_RADIUS, STEPS_LISTED, renew_list, travelled
 from lithobrake.dem.force import add_wrench, contact_force
 from lithobrake.dem.free_flight import Flight, Rules, fly_to, spin_of
+from lithobrake.dem.holding import is_stirred, let_go
 from lithobrake.dem.neighbour_search import LISTED, search_neighbours
 from lithobrake.dem.scratch import Scratch
 from lithobrake.dem.stability import pair_step
@@ -129,17 +130,17 @@ def force_after(
 
 
 @kernel
-def kick_members(
-    pair: int, bodies: Bodies, pairs: Pairs, flight: Flight, impulse: Vector, moment: Vector, other_moment: Vector
-) -> None:
-    """Add an impulse on the second [N s], and its moments [N m s], to the members of a pair. Writes to bodies."""
-    first, second = pairs.first[pair], pairs.second[pair]
-    if not flight.held[first]:
-        add(bodies.velocity, first, -bodies.inverse_mass[first], impulse)
-        add(bodies.angular_momentum, first, -1.0, moment)
-    if second >= 0 and not flight.held[second]:
-        add(bodies.velocity, second, bodies.inverse_mass[second], impulse)
-        add(bodies.angular_momentum, second, 1.0, other_moment)
+def kick(bodies: Bodies, flight: Flight, body: int, sign: float, impulse: Vector, moment: Vector) -> None:
+    """Add an impulse [N s] and a moment [N m s] to a body, or to what a held one will go on with.
+
+    Writes to bodies and flight.
+    """
+    if flight.held[body]:
+        add(flight.held_velocity, body, sign * bodies.inverse_mass[body], impulse)
+        add(flight.held_momentum, body, sign, moment)
+    else:
+        add(bodies.velocity, body, sign * bodies.inverse_mass[body], impulse)
+        add(bodies.angular_momentum, body, sign, moment)
 
 
 @kernel
@@ -187,7 +188,9 @@ def touch(
         impulse = plus(impulse, scaled(time, row(reactions.force, pair)))
         moment = plus(moment, scaled(time, row(reactions.first_torque, pair)))
         other_moment = plus(other_moment, scaled(time, row(reactions.second_torque, pair)))
-    kick_members(pair, bodies, pairs, flight, impulse, moment, other_moment)
+    kick(bodies, flight, first, -1.0, impulse, moment)
+    if second >= 0:
+        kick(bodies, flight, second, 1.0, impulse, other_moment)
     plans.interval[pair] = interval
     note_motion(pair, bodies, pairs, plans)
     return interval
@@ -227,11 +230,12 @@ def meet(
         speed = closing_speed(bodies, flight, pairs.first[pair], pairs.second[pair])
         plan_approach(pair, bodies, pairs, flight, plans, agenda, Approach(0.0, speed, 0.0), now, rules)
     for member in (pairs.first[pair], pairs.second[pair]):
-        if (
-            member >= 0
-            and not flight.held[member]
-            and ((touched and interval == 0.0) or has_changed(bodies, flight, member))
-        ):
+        if member < 0:
+            continue
+        if flight.held[member]:
+            if is_stirred(bodies, flight, member):
+                let_go(bodies, pairs, flight, plans, agenda, member, now, rules)
+        elif (touched and interval == 0.0) or has_changed(bodies, flight, member):
             replan(bodies, pairs, flight, plans, agenda, member, now, rules)
     return True
 

@@ -177,7 +177,9 @@ class World(Observables):
         if reason in (STEP_TOO_LARGE, DIVERGED):
             self._refuse(reason)
 
-    def run_locally(self, duration: float, steps_per_contact: float, *, reach: float = math.inf) -> None:
+    def run_locally(
+        self, duration: float, steps_per_contact: float, *, reach: float = math.inf, held_speed: float = math.inf
+    ) -> None:
         """Advance by a duration [s], every contact at steps of its own, so many in the time of its collision.
 
         What is slow or far from anything then costs little; a landing is 4 to 5 times as fast (docs/performance.md).
@@ -197,7 +199,7 @@ class World(Observables):
         setting = Setting(self._step(0.0), float(steps_per_contact), self._state.watched)
         local = self._state.stepping_locally(setting, self.time)
         if reach < math.inf or local.flight.held.any():
-            local.hold_what_is_far(reach)
+            local.hold_what_is_far(reach, held_speed)
         if not local.run(duration):
             self._refuse(DIVERGED)
         self.time = local.time

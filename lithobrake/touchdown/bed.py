@@ -34,6 +34,7 @@ class ContactModel:
     steps_per_contact: float = 50.0
     stepping: str = "global"
     window: float = 0.0
+    held_speed: float = 0.01
 
     def __post_init__(self) -> None:
         if self.stepping not in ("global", "local"):

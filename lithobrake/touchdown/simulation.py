@@ -61,7 +61,8 @@ def land(
     while judge.ended is None:
         if locally:
             interval = look_interval(world, number, lander, landing)
-            world.run_locally(interval, landing.contact.steps_per_contact, reach=reach)
+            contact = landing.contact
+            world.run_locally(interval, contact.steps_per_contact, reach=reach, held_speed=contact.held_speed)
         else:
             world.run(steps=chunk)
         judge.look()
