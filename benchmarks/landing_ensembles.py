@@ -66,10 +66,10 @@ def draws(study: Study, count: int) -> Iterator[tuple[int, Lander, Landing]]:
 
 
 def landed(bed: Bed, body: Lander, arrival: Landing, way: str) -> Row:
-    """Land once with contacts stepped in a way, as "local:15", or in a window, as "local:15:2"."""
-    stepping, steps, window, held = (*way.split(":"), "0", "0.01")[:4] if way.count(":") < 3 else way.split(":")
+    """Land once in a way: "local:15", or with grains held and a window, "local:15:0.1:1"."""
+    stepping, steps, held, window = (*way.split(":"), "0", "1")[:4] if way.count(":") < 3 else way.split(":")
     contact = replace(
-        arrival.contact, stepping=stepping, steps_per_contact=float(steps), window=float(window), held_speed=float(held)
+        arrival.contact, stepping=stepping, steps_per_contact=float(steps), held_speed=float(held), window=float(window)
     )
     start = time.process_time()
     outcome = land(bed, body, replace(arrival, contact=contact))

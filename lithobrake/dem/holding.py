@@ -1,8 +1,8 @@
-"""Bodies out of reach of the watched one, and slow beside it, are held: they stand still, and act as walls meanwhile.
+"""Bodies that are slow beside the watched one, and out of its reach, are held: they stand still, as walls.
 
 A held body keeps its momentum, and what its moving neighbours give it adds to that: once this makes it fast beside the
-watched body, or that comes near, it goes on with it. So a blow frees as far as it reaches, and no momentum is lost. What
-touches nothing is never held.
+watched body, or that comes near, it goes on with it. So a blow frees as far as it reaches, and no momentum is lost.
+What touches nothing is never held.
 """
 
 import numpy as np
@@ -77,27 +77,23 @@ def is_stirred(bodies: Bodies, flight: Flight, body: int) -> bool:
 
 
 @large_kernel
-def hold_what_is_far(
-    bodies: Bodies, pairs: Pairs, flight: Flight, plans: Plans, agenda: Agenda, watched: int, reach: float,
-    share: float, now: float, rules: Rules,
+def hold_what_is_slow(
+    bodies: Bodies, pairs: Pairs, flight: Flight, plans: Plans, agenda: Agenda, watched: int, share: float,
+    reach: float, now: float, rules: Rules,
 ) -> None:  # fmt: skip
-    """Hold what touches something, is slow, and has its centroid out of reach [m] of the watched body's; let go the rest.
+    """Hold what touches something, is slow, and has its centroid beyond a reach [m] of the watched body's.
 
-    Slow: its surface, below a share of the speed of the watched body's. All must have been moved to now [s].
-    Writes to bodies, flight, plans and agenda.
+    Slow: its surface, below a share of the speed of the watched body's. The rest is let go; with a share of 0, all.
+    All must have been moved to now [s]. Writes to bodies, flight, plans and agenda.
     """
-    here = row(bodies.position, watched)
-    flight.fastest_held[0] = share * surface_speed(bodies, flight, watched)
+    limit = share * surface_speed(bodies, flight, watched) if share > 0.0 else 0.0
+    flight.fastest_held[0] = limit
     for body in range(len(bodies.mass)):
-        between = minus(row(bodies.position, body), here)
-        far = dot(between, between) > reach * reach
+        between = minus(row(bodies.position, body), row(bodies.position, watched))
+        far = share > 0.0 and dot(between, between) > reach * reach
         if flight.held[body]:
             if not far or is_stirred(bodies, flight, body):
                 flight.time[body] = now
                 let_go(bodies, pairs, flight, plans, agenda, body, now, rules)
-        elif (
-            far
-            and surface_speed(bodies, flight, body) < CALM * flight.fastest_held[0]
-            and touches(pairs, flight, plans, body)
-        ):
+        elif far and surface_speed(bodies, flight, body) < CALM * limit and touches(pairs, flight, plans, body):
             hold(bodies, pairs, flight, plans, agenda, body, now, rules)

@@ -9,7 +9,7 @@ from lithobrake.dem.arrays import Floats, Pairs, Step
 from lithobrake.dem.contact_plans import Plans
 from lithobrake.dem.engine import Engine
 from lithobrake.dem.free_flight import Flight, Rules, fly_all_to
-from lithobrake.dem.holding import hold_what_is_far
+from lithobrake.dem.holding import hold_what_is_slow
 from lithobrake.dem.local_steps import NO_ROOM, advance_locally, sum_forces
 from lithobrake.dem.neighbour_search import LISTED, NO_SLOT, enter_all
 from lithobrake.dem.neighbours import new_pairs, with_more_overflow
@@ -129,18 +129,18 @@ class LocalEngine:
         sum_forces(engine.bodies, self.pairs, self.reactions)
         return reason == LISTED and bool(np.isfinite(engine.bodies.travel).all())
 
-    def hold_what_is_far(self, reach: float, share: float) -> None:
-        """Hold what is out of reach [m] of the watched body and slower than a share of it, and let go the rest."""
-        hold_what_is_far(
-            self.engine.bodies, self.pairs, self.flight, self.plans, self.agenda, self.setting.watched, reach, share,
-            self.time, self.rules,
-        )  # fmt: skip
+    def hold(self, share: float, reach: float) -> None:
+        """Hold what is slower than a share of the watched body and beyond a reach [m] of it, and let go the rest."""
+        if share > 0.0 or self.flight.held.any():
+            hold_what_is_slow(
+                self.engine.bodies, self.pairs, self.flight, self.plans, self.agenda, self.setting.watched, share,
+                reach, self.time, self.rules,
+            )  # fmt: skip
 
     def give_back(self) -> None:
         """Leave the engine with its pairs in order, ready for steps that all contacts share."""
         pairs = self.pairs
-        if self.flight.held.any():
-            self.hold_what_is_far(np.inf, 0.0)
+        self.hold(0.0, 0.0)
         self.engine.book()
         used = np.flatnonzero(pairs.first >= 0)
         used = used[np.lexsort((pairs.second[used], pairs.first[used]))]

@@ -24,8 +24,9 @@ class ContactModel:
 
     steps_per_contact: in the shortest contact that the impact can make, or in each ("local", see World.run_locally).
     stepping: "global", the same steps for all contacts, or "local", steps of its own for each.
-    window: grains stand still while they touch something and are farther from the lander than so many times the way
-    that the rule of smallest_bed.py keeps clear; 0: none do. Only with local steps.
+    held_speed: grains that touch something stand still while they are slower than this share of the lander and none of
+    its neighbours; 0: none do. Only with local steps.
+    window: those within so many times the way that the rule of smallest_bed.py keeps clear of the lander never do.
     """
 
     shear_modulus_rule: str = "mindlin"
@@ -33,16 +34,22 @@ class ContactModel:
     pair_rule: str = "smaller"
     steps_per_contact: float = 50.0
     stepping: str = "global"
-    window: float = 0.0
-    held_speed: float = 0.01
+    held_speed: float = 0.0
+    window: float = 1.0
 
     def __post_init__(self) -> None:
         if self.stepping not in ("global", "local"):
             raise ValueError(f'ContactModel.stepping is {self.stepping!r}; allowed are "global" and "local": change it')
-        if not 0.0 <= self.window < math.inf or (self.window > 0.0 and self.stepping != "local"):
+        for name in ("held_speed", "window"):
+            if not 0.0 <= getattr(self, name) < math.inf:
+                given = getattr(self, name)
+                raise ValueError(
+                    f"ContactModel.{name} is {given!r}; allowed is a finite value of at least 0: change it"
+                )
+        if self.held_speed > 0.0 and self.stepping != "local":
             raise ValueError(
-                f'ContactModel.window is {self.window!r} with stepping "{self.stepping}"; allowed is a finite value of '
-                'at least 0, above 0 with stepping "local" only: change either'
+                f'ContactModel.held_speed is {self.held_speed!r} with stepping "{self.stepping}"; allowed above 0 is '
+                '"local" only: change either'
             )
 
     def world(self, gravity: tuple[float, float, float]) -> World:

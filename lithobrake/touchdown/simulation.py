@@ -62,7 +62,7 @@ def land(
         if locally:
             interval = look_interval(world, number, lander, landing)
             contact = landing.contact
-            world.run_locally(interval, contact.steps_per_contact, reach=reach, held_speed=contact.held_speed)
+            world.run_locally(interval, contact.steps_per_contact, held_speed=contact.held_speed, reach=reach)
         else:
             world.run(steps=chunk)
         judge.look()
@@ -86,9 +86,7 @@ def look_interval(world: World, number: int, lander: Lander, landing: Landing) -
 
 
 def window_reach(bed: Bed, lander: Lander, landing: Landing) -> float:
-    """Return the distance [m] from the lander's centroid within which grains move; infinite without a window."""
-    if landing.contact.window == 0.0:
-        return math.inf
+    """Return the distance [m] from the lander's centroid within which all grains move."""
     way = smallest_bed(lander, landing.grain, bed.grain_diameter, landing.speed)[1]
     return lander.shape.bounding_radius + landing.contact.window * way
 
