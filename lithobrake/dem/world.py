@@ -190,7 +190,7 @@ class World(Observables):
         """
         if not self.bodies:
             raise ValueError("World.run_locally has no body to move: add one first")
-        for name, value, least, unit in (
+        for name, value, least, si in (
             ("duration", duration, 0.0, " s"),
             ("steps_per_contact", steps_per_contact, FEWEST_STEPS, ""),
             ("held_speed", held_speed, 0.0, ""),
@@ -198,7 +198,7 @@ class World(Observables):
         ):
             if not least <= value < math.inf:
                 allowed = f"a finite value of at least {least:g}"
-                raise ValueError(f"World.run_locally {name} is {value!r}{unit}; allowed is {allowed}: change it")
+                raise ValueError(f"World.run_locally {name} is {value!r}{si}; allowed is {allowed}: change it")
         if held_speed > 0.0 and self._state.watched < 0:
             raise ValueError(
                 f"World.run_locally held_speed is {held_speed!r}, but no body is watched: call watch first"
