@@ -21,9 +21,6 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from landing_ensembles import beds_of, drawn_study, draws
-from origin import origin
-
 Row = dict[str, Any]
 LAW = ("shear_modulus_rule", "damping_mass", "pair_rule", "steps_per_contact")
 TOLD = ("speed_out", "elevation_out", "spin_out", "contact_duration", "penetration")
@@ -86,6 +83,10 @@ class Checkout:
 
 def main() -> None:
     """Land in turn, write, tell the ratio."""
+    # The other checkout has other modules: what lands imports the public face alone.
+    from landing_ensembles import beds_of, drawn_study, draws
+    from origin import origin
+
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("old", type=Path)
     parser.add_argument("new", type=Path)
