@@ -42,7 +42,7 @@ def bed_reads(study: Study) -> dict[str, Any]:
         "seed": study.seed,
         "bed": study.bed.model_dump(exclude={"bed_count"}),
         "values": {name: value for name, value in values.items() if name.startswith(("grain.", "surface."))},
-        "contact": study.contact.model_dump(exclude={"stepping", "held_speed", "window"}),
+        "contact": study.contact.model_dump(exclude={"stepping", "held_speed"}),
         "engine": engine_hash(),
     }
 
@@ -102,7 +102,6 @@ def touchdown_reads(study: Study) -> dict[str, Any]:
         "mesh": None if study.lander.file is None else content_hash(Path(study.lander.file)),
         "stepping": study.contact.stepping,
         "held_speed": study.contact.held_speed,
-        "window": study.contact.window,
         "time_limit": study.landing.time_limit,
         "version": touchdown_version(),
     }

@@ -80,11 +80,9 @@ class ContactSection(Section):
     """Steps of a touchdown: "global", the same for all contacts, or "local", each contact at steps of its own, which is
     several times as fast."""
     held_speed: Annotated[float, Number("", at_least=0, below=1)] = 0.0
-    """Grains that touch something stand still while they are slower than this share of the lander's speed and out of
-    its window; a blow that makes them faster frees them. 0: none do. Only with stepping = "local"."""
-    window: Annotated[float, Number("", at_least=0)] = 1.0
-    """Reach of the lander beyond its bounding sphere, within which all grains move: so many times the way that the
-    smallest bed keeps clear around it."""
+    """Grains that touch something stand still while they are slower than this share of the lander's speed and farther
+    from it than the smallest bed keeps clear; a blow that makes them faster frees them. 0: none do. Only with
+    stepping = "local"."""
 
 
 class LandingSection(Section):

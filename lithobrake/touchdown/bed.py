@@ -1,7 +1,6 @@
 """A settled bed of grains in an open box, and its file."""
 
 import itertools
-import math
 import os
 from dataclasses import dataclass, field
 from typing import Any
@@ -24,9 +23,8 @@ class ContactModel:
 
     steps_per_contact: in the shortest contact that the impact can make, or in each ("local", see World.run_locally).
     stepping: "global", the same steps for all contacts, or "local", steps of its own for each.
-    held_speed: grains that touch something stand still while they are slower than this share of the lander and none of
-    its neighbours; 0: none do. Only with local steps.
-    window: those within so many times the way that the rule of smallest_bed.py keeps clear of the lander never do.
+    held_speed: grains that touch something stand still while they are slower than this share of the lander and farther
+    from it than the rule of smallest_bed.py keeps clear; 0: none do. Only with local steps.
     """
 
     shear_modulus_rule: str = "mindlin"
@@ -35,17 +33,12 @@ class ContactModel:
     steps_per_contact: float = 50.0
     stepping: str = "global"
     held_speed: float = 0.0
-    window: float = 1.0
 
     def __post_init__(self) -> None:
         if self.stepping not in ("global", "local"):
             raise ValueError(f'ContactModel.stepping is {self.stepping!r}; allowed are "global" and "local": change it')
-        for name in ("held_speed", "window"):
-            if not 0.0 <= getattr(self, name) < math.inf:
-                given = getattr(self, name)
-                raise ValueError(
-                    f"ContactModel.{name} is {given!r}; allowed is a finite value of at least 0: change it"
-                )
+        if not 0.0 <= self.held_speed < 1.0:
+            raise ValueError(f"ContactModel.held_speed is {self.held_speed!r}; allowed is 0 <= value < 1: change it")
         if self.held_speed > 0.0 and self.stepping != "local":
             raise ValueError(
                 f'ContactModel.held_speed is {self.held_speed!r} with stepping "{self.stepping}"; allowed above 0 is '

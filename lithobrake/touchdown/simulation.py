@@ -57,7 +57,7 @@ def land(
     world.watch(number)
     judge = OutcomeJudge(bed, lander, landing, world, number, frame_count)
     chunk = max(1, int(landing.contact.steps_per_contact / CHECKS_PER_CONTACT))
-    reach = window_reach(bed, lander, landing)
+    reach = moving_reach(bed, lander, landing)
     while judge.ended is None:
         if locally:
             interval = look_interval(world, number, lander, landing)
@@ -85,10 +85,9 @@ def look_interval(world: World, number: int, lander: Lander, landing: Landing) -
     return max(shortest, min(way / speed, longest) if speed > 0.0 else longest)
 
 
-def window_reach(bed: Bed, lander: Lander, landing: Landing) -> float:
-    """Return the distance [m] from the lander's centroid within which all grains move."""
-    way = smallest_bed(lander, landing.grain, bed.grain_diameter, landing.speed)[1]
-    return lander.shape.bounding_radius + landing.contact.window * way
+def moving_reach(bed: Bed, lander: Lander, landing: Landing) -> float:
+    """Return the distance [m] from the lander's centroid within which no grain is held."""
+    return lander.shape.bounding_radius + smallest_bed(lander, landing.grain, bed.grain_diameter, landing.speed)[1]
 
 
 def relax(
