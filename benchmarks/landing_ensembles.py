@@ -66,9 +66,9 @@ def draws(study: Study, count: int) -> Iterator[tuple[int, Lander, Landing]]:
 
 
 def landed(bed: Bed, body: Lander, arrival: Landing, way: str) -> Row:
-    """Land once with contacts stepped in a way, as "local:15"."""
-    stepping, steps = way.split(":")
-    contact = replace(arrival.contact, stepping=stepping, steps_per_contact=float(steps))
+    """Land once in a way: "local:15", or with slow grains held, "local:15:0.1"."""
+    stepping, steps, held = (*way.split(":"), "0")[:3]
+    contact = replace(arrival.contact, stepping=stepping, steps_per_contact=float(steps), held_speed=float(held))
     start = time.process_time()
     outcome = land(bed, body, replace(arrival, contact=contact))
     cpu = time.process_time() - start

@@ -10,7 +10,6 @@ from lithobrake.dem.contact_patch import measure_feature
 from lithobrake.dem.feature_id import SPHERES, feature_indices, feature_kind, listed_feature
 from lithobrake.dem.feature_list import travelled
 from lithobrake.dem.free_flight import (
-    LARGEST_TURN,
     Flight,
     Rules,
     spin_bound,
@@ -25,7 +24,7 @@ class Approach(NamedTuple):
     """How near a pair is to touching."""
 
     gap: float  # m, of the feature that may touch first; not above 0 where one touches
-    speed: float  # m/s, at which that one closes at most while the plans hold
+    speed: float  # m/s, at which that one meets at most while the plans hold
     time: float  # s, before which none touches
 
 
@@ -42,12 +41,19 @@ def closing_speed(bodies: Bodies, flight: Flight, first: int, second: int) -> fl
 
 
 @kernel
-def longest_turn(bodies: Bodies, flight: Flight, first: int, second: int) -> float:
-    """Return for how long [s] the points of two bodies keep their velocities about, though they turn."""
+def closing_acceleration(bodies: Bodies, flight: Flight, first: int, second: int, speed: float, rules: Rules) -> float:
+    """Return a bound on how the speed at which a feature closes grows [m/s2]; speed: at which any closes at most [m/s].
+
+    In the frame of a face: the fall, the turning of either's points, and what the turning of the face adds.
+    """
     spin = spin_bound(bodies, flight, first)
-    if second >= 0:
-        spin = max(spin, spin_bound(bodies, flight, second))
-    return LARGEST_TURN / spin if spin > 0.0 else np.inf
+    acceleration = 2.0 * spin * (bodies.turning_radius[first] * spin + speed)
+    if second < 0:
+        return acceleration + weight(rules)
+    if flight.held[first] != flight.held[second]:
+        acceleration += weight(rules)
+    spin = spin_bound(bodies, flight, second)
+    return acceleration + 2.0 * spin * (bodies.turning_radius[second] * spin + speed)
 
 
 @kernel
@@ -55,7 +61,9 @@ def sooner(approach: Approach, gap: float, closing: float, slack: float, acceler
     """Return the sooner of an approach and of a feature at a gap [m] that closes at a speed and a slack [m/s]."""
     speed = max(closing, 0.0) + slack
     time = time_to_close(max(gap, 0.0), speed, acceleration)
-    return Approach(gap, speed, time) if gap <= 0.0 or time < approach.time else approach
+    if gap > 0.0 and time >= approach.time:
+        return approach
+    return Approach(gap, speed + acceleration * time if time < np.inf else 0.0, time)
 
 
 @kernel
@@ -66,19 +74,19 @@ def approach_of(
     first, second = pairs.first[pair], pairs.second[pair]
     # What is not listed is farther away than the motion for which the list still serves.
     left, speed = pairs.wake[pair] - travelled(bodies, first, second), closing_speed(bodies, flight, first, second)
-    acceleration = weight(rules) if second < 0 else 0.0
+    acceleration = closing_acceleration(bodies, flight, first, second, speed, rules)
     if pairs.feature_count[pair] < 0 or left <= 0.0:
         return Approach(0.0, speed, 0.0)
-    approach = Approach(left, speed, time_to_close(left, speed, acceleration))
+    approach = sooner(Approach(left, 0.0, np.inf), left, speed, 0.0, acceleration)
     if second < 0:
-        return approach_to_plane(pair, bodies, cores, planes, pairs, flight, rules, approach)
-    return approach_to_body(pair, bodies, cores, pairs, flight, approach)
+        return approach_to_plane(pair, bodies, cores, planes, pairs, flight, acceleration, approach)
+    return approach_to_body(pair, bodies, cores, pairs, flight, acceleration, approach)
 
 
 @kernel
 def approach_to_plane(
-    pair: int, bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, flight: Flight, rules: Rules,
-    approach: Approach,
+    pair: int, bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, flight: Flight,
+    acceleration: float, approach: Approach,
 ) -> Approach:  # fmt: skip
     """Return the soonest of an approach and of the listed corners near a plane."""
     body, plane = pairs.first[pair], -1 - pairs.second[pair]
@@ -88,13 +96,13 @@ def approach_to_plane(
         corner = row(cores.vertex, cores.vertex_start[shape] + feature_indices(listed_feature(pair, pairs, k))[0])
         arm = times(bodies.rotation, body, corner)
         closing = -dot(outward, plus(row(bodies.velocity, body), cross(spin, arm)))
-        approach = sooner(approach, level + dot(outward, arm), closing, flight.slack[body], weight(rules))
+        approach = sooner(approach, level + dot(outward, arm), closing, flight.slack[body], acceleration)
     return approach
 
 
 @kernel
 def approach_to_body(
-    pair: int, bodies: Bodies, cores: Cores, pairs: Pairs, flight: Flight, approach: Approach
+    pair: int, bodies: Bodies, cores: Cores, pairs: Pairs, flight: Flight, acceleration: float, approach: Approach
 ) -> Approach:
     """Return the soonest of an approach and of the listed features of two bodies."""
     first, second = pairs.first[pair], pairs.second[pair]
@@ -104,7 +112,7 @@ def approach_to_body(
     if feature_kind(pairs.feature[pair, 0]) == SPHERES:
         distance = dot(apart, apart) ** 0.5
         gap = distance - bodies.contact_radius[first] - bodies.contact_radius[second]
-        return sooner(approach, gap, -dot(between, apart) / distance if distance > 0.0 else 0.0, slack, 0.0)
+        return sooner(approach, gap, -dot(between, apart) / distance if distance > 0.0 else 0.0, slack, acceleration)
     reach = cores.rounding[bodies.shape[first]] + cores.rounding[bodies.shape[second]]
     spin, other_spin = spin_of(bodies, first), spin_of(bodies, second)
     for k in range(pairs.feature_count[pair]):
@@ -113,7 +121,7 @@ def approach_to_body(
         if distance < reach + left:
             on_second = minus(plus(on_first, scaled(distance, normal)), apart)
             moving = plus(between, minus(cross(other_spin, on_second), cross(spin, on_first)))
-            approach = sooner(approach, distance - reach, -dot(moving, normal), slack, 0.0)
+            approach = sooner(approach, distance - reach, -dot(moving, normal), slack, acceleration)
             if approach.gap <= 0.0:
                 break
     return approach

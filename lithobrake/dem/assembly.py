@@ -51,7 +51,7 @@ def cores_of(shapes: list[Shape]) -> Cores:
             offset.append(core.face_offsets)
             edge.append(core.edges)
             line.append(shape.core[core.edges[:, :2]])
-            adjacent_face += [adjacent_faces(core.edges, face) for face in range(len(core.face_normals))]
+            adjacent_face += core.adjacent_faces
         else:
             normal.append(np.zeros((0, 3)))
             offset.append(np.zeros(0))
@@ -68,11 +68,6 @@ def cores_of(shapes: list[Shape]) -> Cores:
         np.concatenate([no_face, *adjacent_face]), starts(adjacent_face),
         np.array([shape.rounding for shape in shapes]),
     )  # fmt: skip
-
-
-def adjacent_faces(edges: Integers, face: int) -> Integers:
-    """Return the faces across the edges [edge_count, 4] of a face."""
-    return np.concatenate([edges[edges[:, 2] == face, 3], edges[edges[:, 3] == face, 2]])
 
 
 def laws_of(materials: list[Material], shear_modulus_rule: str, pair_rule: str) -> Laws:

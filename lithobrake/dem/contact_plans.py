@@ -6,7 +6,7 @@ import numpy as np
 
 from lithobrake.compiled import kernel
 from lithobrake.dem.agenda import Agenda, put_on
-from lithobrake.dem.approach import Approach, closing_speed, longest_turn
+from lithobrake.dem.approach import Approach, closing_speed
 from lithobrake.dem.arrays import Bodies, Floats, Integers, Pairs
 from lithobrake.dem.free_flight import Flight, Rules, surface_speed, time_to_close, weight
 from lithobrake.dem.vectors import Vector, cross, dot, minus, plus, put, row
@@ -78,7 +78,7 @@ def plan_apart(
     gap = pairs.wake[pair] - bodies.travel[first] - (now - flight.time[first]) * surface_speed(bodies, flight, first)
     acceleration = weight(rules)
     if second >= 0:
-        acceleration = 0.0
+        acceleration = weight(rules) if flight.held[first] != flight.held[second] else 0.0
         gap -= bodies.travel[second] + (now - flight.time[second]) * surface_speed(bodies, flight, second)
     speed = closing_speed(bodies, flight, first, second)
     put_on(agenda, len(bodies.mass) + pair, now + (time_to_close(gap, speed, acceleration) if gap > 0.0 else 0.0))
@@ -91,7 +91,6 @@ def plan_approach(
 ) -> None:  # fmt: skip
     """Make a pair due when its features could touch first, or a step of their contact later. Writes to agenda."""
     wait = max(approach.time, collision_step(pair, pairs, plans, approach.speed, rules))
-    wait = min(wait, longest_turn(bodies, flight, pairs.first[pair], pairs.second[pair]))
     put_on(agenda, len(bodies.mass) + pair, now + wait)
 
 
@@ -114,13 +113,27 @@ def has_changed(bodies: Bodies, flight: Flight, body: int) -> bool:
 
 
 @kernel
+def touches(pairs: Pairs, flight: Flight, plans: Plans, body: int) -> bool:
+    """Tell whether a body touches anything."""
+    entry = flight.head[body]
+    while entry >= 0:
+        if pairs.overlap[entry >> 1] > 0.0:
+            return True
+        entry = plans.link[entry]
+    return False
+
+
+@kernel
 def replan(
     bodies: Bodies, pairs: Pairs, flight: Flight, plans: Plans, agenda: Agenda, body: int, now: float, rules: Rules
 ) -> None:
     """Plan the pairs of a body anew after a kick. Writes to flight and agenda."""
     put(flight.velocity, body, row(bodies.velocity, body))
     put(flight.momentum, body, row(bodies.angular_momentum, body))
-    flight.slack[body] = NOTED_CHANGE * surface_speed(bodies, flight, body)
+    # What touches nothing is not kicked, and what begins to touch is planned anew.
+    flight.slack[body] = (
+        NOTED_CHANGE * surface_speed(bodies, flight, body) if touches(pairs, flight, plans, body) else 0.0
+    )
     plan_search(bodies, flight, agenda, body, now, rules)
     entry = flight.head[body]
     while entry >= 0:

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from lithobrake.compiled import kernel, large_kernel
-from lithobrake.dem.arrays import Bodies, Floats, Integers
+from lithobrake.dem.arrays import Bodies, Flags, Floats, Integers
 from lithobrake.dem.motion import turn_by
 from lithobrake.dem.vectors import Vector, add, cross, dot, minus, plus, put, row, scaled, times
 
@@ -24,6 +24,10 @@ class Flight(NamedTuple):
     mass: Floats  # [body_count], kg, smallest that a contact meets
     head: Integers  # [body_count], first entry of the list of its pairs, -1: none
     stamp: Integers  # [body_count], by which a search tells whom it has listed
+    held: Flags  # [body_count], see holding.py
+    held_velocity: Floats  # [body_count, 3], m/s, with which a held body will go on
+    held_momentum: Floats  # [body_count, 3], kg m2/s, the same
+    fastest_held: Floats  # [1], m/s, speed of its surface with which a held body is let go
 
 
 class Rules(NamedTuple):
@@ -63,6 +67,8 @@ def fly_to(bodies: Bodies, flight: Flight, body: int, now: float, rules: Rules) 
     if time <= 0.0:
         return
     flight.time[body] = now
+    if flight.held[body]:
+        return
     before = row(bodies.velocity, body)
     after = fall(bodies, body, before, time, rules)
     spin = spin_bound(bodies, flight, body)
@@ -115,6 +121,8 @@ def fly_all_to(bodies: Bodies, flight: Flight, now: float, rules: Rules) -> None
 @kernel
 def place_at(bodies: Bodies, flight: Flight, body: int, now: float, rules: Rules) -> Vector:
     """Return where a body will be at an instant [s] unless it is kicked before [m]."""
+    if flight.held[body]:
+        return row(bodies.position, body)
     time = now - flight.time[body]
     way, drop = time, 0.5 * time * time
     if rules.drag > 0.0:

@@ -9,12 +9,12 @@ from lithobrake.dem.arrays import Floats, Pairs, Step
 from lithobrake.dem.contact_plans import Plans
 from lithobrake.dem.engine import Engine
 from lithobrake.dem.free_flight import Flight, Rules, fly_all_to
+from lithobrake.dem.holding import hold_what_is_slow
 from lithobrake.dem.local_steps import NO_ROOM, advance_locally, sum_forces
 from lithobrake.dem.neighbour_search import LISTED, NO_SLOT, enter_all
-from lithobrake.dem.neighbours import new_pairs, with_more_overflow
+from lithobrake.dem.neighbours import new_pairs, with_overflow_for_all, with_overflow_where_used
 from lithobrake.dem.rigid_body import RigidBody
 from lithobrake.dem.threads import new_reactions
-from lithobrake.dem.timestep import smallest_mass_at_contact
 
 # Skin of the neighbour lists over the median bounding radius: costs or saves time.
 SKIN = 0.25
@@ -36,10 +36,14 @@ def flight_of(engine: Engine, bodies: list[RigidBody], time: float) -> Flight:
     """Return bodies that have just arrived at an instant [s] and were never planned."""
     n = len(bodies)
     turning: Floats = np.linalg.eigvalsh(engine.bodies.inverse_inertia_body)[:, -1].astype(np.float64)
-    mass = np.array([smallest_mass_at_contact(body.shape, body.mass, body.inertia) for body in bodies])
+    mass = np.array([body.smallest_mass_at_contact for body in bodies])
     never = np.full((n, 3), np.nan)
     stamp = np.full(n + len(engine.planes.offset), -1)
-    return Flight(np.full(n, time), never, np.zeros((n, 3)), np.zeros(n), turning, mass, np.full(n, -1), stamp)
+    return Flight(
+        np.full(n, time), never, np.zeros((n, 3)), np.zeros(n), turning, mass, np.full(n, -1), stamp,
+        held=np.zeros(n, np.bool_), held_velocity=np.zeros((n, 3)), held_momentum=np.zeros((n, 3)),
+        fastest_held=np.zeros(1),
+    )  # fmt: skip
 
 
 def plans_of(capacity: int, used: int, time: float) -> Plans:
@@ -115,7 +119,7 @@ class LocalEngine:
             if reason == NO_SLOT:
                 self._widen()
             elif reason == NO_ROOM:
-                engine.pairs = with_more_overflow(self.pairs)
+                engine.pairs = with_overflow_for_all(self.pairs)
                 engine.scratch = engine.scratch_of(self.pairs)
             else:
                 break
@@ -124,11 +128,20 @@ class LocalEngine:
         sum_forces(engine.bodies, self.pairs, self.reactions)
         return reason == LISTED and bool(np.isfinite(engine.bodies.travel).all())
 
+    def hold(self, share: float, reach: float) -> None:
+        """Hold what is slower than a share of the watched body and beyond a reach [m] of it, and let go the rest."""
+        if share > 0.0 or self.flight.held.any():
+            hold_what_is_slow(
+                self.engine.bodies, self.pairs, self.flight, self.plans, self.agenda, self.setting.watched, share,
+                reach, self.time, self.rules,
+            )  # fmt: skip
+
     def give_back(self) -> None:
         """Leave the engine with its pairs in order, ready for steps that all contacts share."""
         pairs = self.pairs
+        self.hold(0.0, 0.0)
         self.engine.book()
         used = np.flatnonzero(pairs.first >= 0)
         used = used[np.lexsort((pairs.second[used], pairs.first[used]))]
         arrays = {name: getattr(pairs, name)[used] for name in Pairs._fields[:-1]}
-        self.engine.renew(Pairs(**arrays, overflow=pairs.overflow))
+        self.engine.renew(with_overflow_where_used(Pairs(**arrays, overflow=pairs.overflow)))

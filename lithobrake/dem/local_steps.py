@@ -26,6 +26,7 @@ from lithobrake.dem.contact_plans import (
 from lithobrake.dem.feature_list import ROUNDING_OF_RADIUS, STEPS_LISTED, renew_list, travelled
 from lithobrake.dem.force import add_wrench, contact_force
 from lithobrake.dem.free_flight import Flight, Rules, fly_to, spin_of
+from lithobrake.dem.holding import is_stirred, let_go
 from lithobrake.dem.neighbour_search import LISTED, search_neighbours
 from lithobrake.dem.scratch import Scratch
 from lithobrake.dem.stability import pair_step
@@ -34,7 +35,7 @@ from lithobrake.dem.vectors import Vector, add, dot, minus, plus, put, row, scal
 # Why a run stops: besides what neighbour_search.py says.
 NO_ROOM = 3
 # Steps of motion for which what is near and does not touch is listed; narrowest part of the widest margin.
-STEPS_NEAR, NARROWEST = 3.0, 1e-3
+STEPS_NEAR, NARROWEST = 10.0, 1e-3
 # Largest c dt + (w dt)^2 / 4 of one contact, see stability.py; kicks follow each other, so each must be stable alone.
 STABLE_PART = 0.6
 # What is recorded of a watched body, and where: largest force [N], first and last instant of touch [s; -1: none].
@@ -129,16 +130,17 @@ def force_after(
 
 
 @kernel
-def kick_members(
-    pair: int, bodies: Bodies, pairs: Pairs, impulse: Vector, moment: Vector, other_moment: Vector
-) -> None:
-    """Add an impulse on the second [N s], and its moments [N m s], to the members of a pair. Writes to bodies."""
-    first, second = pairs.first[pair], pairs.second[pair]
-    add(bodies.velocity, first, -bodies.inverse_mass[first], impulse)
-    add(bodies.angular_momentum, first, -1.0, moment)
-    if second >= 0:
-        add(bodies.velocity, second, bodies.inverse_mass[second], impulse)
-        add(bodies.angular_momentum, second, 1.0, other_moment)
+def kick(bodies: Bodies, flight: Flight, body: int, sign: float, impulse: Vector, moment: Vector) -> None:
+    """Add an impulse [N s] and a moment [N m s] to a body, or to what a held one will go on with.
+
+    Writes to bodies and flight.
+    """
+    if flight.held[body]:
+        add(flight.held_velocity, body, sign * bodies.inverse_mass[body], impulse)
+        add(flight.held_momentum, body, sign, moment)
+    else:
+        add(bodies.velocity, body, sign * bodies.inverse_mass[body], impulse)
+        add(bodies.angular_momentum, body, sign, moment)
 
 
 @kernel
@@ -159,7 +161,7 @@ def next_step(
 @kernel
 def touch(
     pair: int, bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, laws: Laws, scratch: Scratch,
-    reactions: Reactions, plans: Plans, passed: float, rules: Rules,
+    reactions: Reactions, flight: Flight, plans: Plans, passed: float, rules: Rules,
 ) -> float:  # fmt: skip
     """Compute a contact, kick its bodies, and return the interval [s] until it is due again; 0 where it has ended.
 
@@ -171,9 +173,9 @@ def touch(
     if planned > 0.0:
         force, torque = row(reactions.force, pair), row(reactions.first_torque, pair)
         other_torque = row(reactions.second_torque, pair)
-    predict(bodies, first, force, torque, -0.5 * passed)
+    predict(bodies, first, force, torque, 0.0 if flight.held[first] else -0.5 * passed)
     if second >= 0:
-        predict(bodies, second, force, other_torque, 0.5 * passed)
+        predict(bodies, second, force, other_torque, 0.0 if flight.held[second] else 0.5 * passed)
     step = Step(passed, 0.0, rules.gravity, rules.paper_mass)
     rate = force_after(pair, bodies, cores, planes, pairs, laws, step, scratch, reactions, plans)
     # The last kick reached over half of the interval that was planned; it may have been cut short.
@@ -186,7 +188,9 @@ def touch(
         impulse = plus(impulse, scaled(time, row(reactions.force, pair)))
         moment = plus(moment, scaled(time, row(reactions.first_torque, pair)))
         other_moment = plus(other_moment, scaled(time, row(reactions.second_torque, pair)))
-    kick_members(pair, bodies, pairs, impulse, moment, other_moment)
+    kick(bodies, flight, first, -1.0, impulse, moment)
+    if second >= 0:
+        kick(bodies, flight, second, 1.0, impulse, other_moment)
     plans.interval[pair] = interval
     note_motion(pair, bodies, pairs, plans)
     return interval
@@ -217,7 +221,8 @@ def meet(
         if approach.gap > 0.0:
             plan_approach(pair, bodies, pairs, flight, plans, agenda, approach, now, rules)
             return True
-    interval = touch(pair, bodies, cores, planes, pairs, laws, scratch, reactions, plans, passed, rules)
+    touched = plans.interval[pair] > 0.0
+    interval = touch(pair, bodies, cores, planes, pairs, laws, scratch, reactions, flight, plans, passed, rules)
     if interval > 0.0:
         put_on(agenda, len(bodies.mass) + pair, now + interval)
     else:
@@ -225,7 +230,12 @@ def meet(
         speed = closing_speed(bodies, flight, pairs.first[pair], pairs.second[pair])
         plan_approach(pair, bodies, pairs, flight, plans, agenda, Approach(0.0, speed, 0.0), now, rules)
     for member in (pairs.first[pair], pairs.second[pair]):
-        if member >= 0 and has_changed(bodies, flight, member):
+        if member < 0:
+            continue
+        if flight.held[member]:
+            if is_stirred(bodies, flight, member):
+                let_go(bodies, pairs, flight, plans, agenda, member, now, rules)
+        elif (touched and interval == 0.0) or has_changed(bodies, flight, member):
             replan(bodies, pairs, flight, plans, agenda, member, now, rules)
     return True
 

@@ -131,3 +131,19 @@ def with_more_overflow(pairs: Pairs) -> Pairs:
     return with_overflow_rows(
         pairs, pairs.overflow, max(pairs.overflow.shape[1], int(pairs.feature_count.max()) - INLINE_FEATURES)
     )
+
+
+def with_overflow_for_all(pairs: Pairs) -> Pairs:
+    """Return the pairs, each with a row for as many features as any asks for: so they seldom ask again."""
+    roomy = with_more_overflow(pairs)
+    rows = np.zeros((len(pairs.first), roomy.overflow.shape[1]), dtype=np.int64)
+    using = np.flatnonzero(roomy.overflow_row >= 0)
+    rows[using] = roomy.overflow[roomy.overflow_row[using]]
+    roomy.overflow_row[:] = np.arange(len(rows))
+    return roomy._replace(overflow=rows)
+
+
+def with_overflow_where_used(pairs: Pairs) -> Pairs:
+    """Return the pairs with rows only for those whose features do not stand in line."""
+    pairs.overflow_row[pairs.feature_count <= INLINE_FEATURES] = -1
+    return with_overflow_rows(pairs, pairs.overflow, pairs.overflow.shape[1])

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +23,13 @@ class Polyhedron:
     triangles: NDArray[np.int64]  # [triangle_count, 3], counter-clockwise from outside
     triangle_face: NDArray[np.int64]  # [triangle_count], the face a triangle is part of
     edges: NDArray[np.int64]  # [edge_count, 4]: from vertex, to vertex, left face, right face
+
+    @cached_property
+    def adjacent_faces(self) -> list[NDArray[np.int64]]:
+        """The faces across the edges of each face."""
+        left, right = self.edges[:, 2], self.edges[:, 3]
+        faces = range(len(self.face_normals))
+        return [np.concatenate([right[left == face], left[right == face]]) for face in faces]
 
 
 def power_of_two_above(value: float) -> float:

@@ -1,13 +1,14 @@
 """Bodies and planes as a person adds them to a world, and the checks of their values."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from lithobrake.dem.arrays import Floats
 from lithobrake.dem.material import Material
-from lithobrake.dem.shape import Shape
+from lithobrake.dem.shape import ConvexHull, Shape
 
 ROUNDING = 1e-9  # of a moment of inertia: what the eigenvalues of a flat plate may be off
 
@@ -20,6 +21,21 @@ class RigidBody:
     material: Material
     mass: float  # kg
     inertia: Floats  # kg m2, [3, 3], about the centroid, in the frame the shape was given in
+
+    @cached_property
+    def smallest_mass_at_contact(self) -> float:
+        """Smallest mass [kg] that a contact force meets: 1/(n . W . n) over the corners of the faces.
+
+        A cube's corner pushed along the normal of one of its faces weighs a quarter of the cube.
+        """
+        if not isinstance(self.shape, ConvexHull):
+            return self.mass
+        surface = self.shape.polyhedron
+        normals = np.repeat(surface.face_normals[surface.triangle_face], 3, axis=0)
+        arms = surface.vertices[surface.triangles.ravel()] - self.shape.centroid
+        turns = np.cross(arms, normals)
+        turning = np.einsum("ij,ij->i", turns, np.linalg.solve(self.inertia, turns.T).T)
+        return float(1.0 / (1.0 / self.mass + turning).max())
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,7 +7,7 @@ import numpy as np
 from lithobrake.dem.arrays import Floats
 from lithobrake.dem.material import Material, pair_law
 from lithobrake.dem.rigid_body import Plane, RigidBody
-from lithobrake.dem.shape import ConvexHull, Shape, equivalent_radius
+from lithobrake.dem.shape import equivalent_radius
 
 # Steps in the shortest contact when a world chooses its own step.
 STEPS_PER_CONTACT = 50.0
@@ -21,20 +21,6 @@ def contact_duration(mass: float, radius: float, young_modulus: float, speed: fl
     Source: [Hertz-1882]; [Johnson-1985], Eq 11.24, for F = 4/3 E* sqrt(R*) overlap^(3/2).
     """
     return HERTZ_DURATION * (mass * mass / (radius * young_modulus**2 * speed)) ** 0.2
-
-
-def smallest_mass_at_contact(shape: Shape, mass: float, inertia: Floats) -> float:
-    """Return the smallest mass [kg] that a contact force meets on a body: 1/(n . W . n) over the corners of its faces.
-
-    A cube's corner pushed along the normal of one of its faces weighs a quarter of the cube.
-    """
-    if not isinstance(shape, ConvexHull):
-        return mass
-    surface = shape.polyhedron
-    normals = np.repeat(surface.face_normals[surface.triangle_face], 3, axis=0)
-    arms = surface.vertices[surface.triangles.ravel()] - shape.centroid
-    turns = np.cross(arms, normals)
-    return float(1.0 / (1.0 / mass + np.einsum("ij,ij->i", turns, np.linalg.solve(inertia, turns.T).T)).max())
 
 
 def shortest_contact_duration(
@@ -73,9 +59,7 @@ def shortest_contact(bodies: list[RigidBody], planes: list[Plane], options: dict
     """
     if not speed > 0.0:
         raise ValueError("World time_step cannot be chosen while nothing moves or falls: give a time_step [s]")
-    parts = [
-        (b.material, smallest_mass_at_contact(b.shape, b.mass, b.inertia), equivalent_radius(b.shape)) for b in bodies
-    ]
+    parts = [(b.material, b.smallest_mass_at_contact, equivalent_radius(b.shape)) for b in bodies]
     made_of = [plane.material for plane in planes]
     rules = options["shear_modulus_rule"], options["pair_rule"]
     duration = shortest_contact_duration(parts, made_of, speed, *rules)

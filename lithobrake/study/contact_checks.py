@@ -27,6 +27,11 @@ def inertia_problems(study: Study) -> Iterator[str]:
 
 def contact_problems(study: Study) -> Iterator[str]:
     """Landers and speeds at which the contact of the lander with a grain means nothing; for this program's own soil."""
+    if study.contact.held_speed > 0.0 and study.contact.stepping != "local":
+        yield (
+            f'contact.held_speed is {study.contact.held_speed:g} with contact.stepping = "{study.contact.stepping}"; '
+            'allowed above 0: "local" only; change either'
+        )
     sizes = study.bed.diameter
     smallest, largest = (sizes.value,) * 2 if isinstance(sizes, Constant) else (sizes.lower, sizes.upper)
     thin, dense = usual_reach(study.grain.density)

@@ -85,6 +85,10 @@ class ContactSection(Section):
     stepping: Literal["global", "local"] = "global"
     """Steps of a touchdown: "global", the same for all contacts, or "local", each contact at steps of its own, which is
     several times as fast."""
+    held_speed: Annotated[float, Number("", at_least=0, below=1)] = 0.0
+    """Grains that touch something stand still while they are slower than this share of the lander's speed and farther
+    from it than the smallest bed keeps clear; a blow that makes them faster frees them. 0: none do. Only with
+    stepping = "local"."""
 
 
 class LandingSection(Section):

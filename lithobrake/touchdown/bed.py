@@ -23,6 +23,8 @@ class ContactModel:
 
     steps_per_contact: in the shortest contact that the impact can make, or in each ("local", see World.run_locally).
     stepping: "global", the same steps for all contacts, or "local", steps of its own for each.
+    held_speed: grains that touch something stand still while they are slower than this share of the lander and farther
+    from it than the rule of smallest_bed.py keeps clear; 0: none do. Only with local steps.
     """
 
     shear_modulus_rule: str = "mindlin"
@@ -30,10 +32,18 @@ class ContactModel:
     pair_rule: str = "smaller"
     steps_per_contact: float = 50.0
     stepping: str = "global"
+    held_speed: float = 0.0
 
     def __post_init__(self) -> None:
         if self.stepping not in ("global", "local"):
             raise ValueError(f'ContactModel.stepping is {self.stepping!r}; allowed are "global" and "local": change it')
+        if not 0.0 <= self.held_speed < 1.0:
+            raise ValueError(f"ContactModel.held_speed is {self.held_speed!r}; allowed is 0 <= value < 1: change it")
+        if self.held_speed > 0.0 and self.stepping != "local":
+            raise ValueError(
+                f'ContactModel.held_speed is {self.held_speed!r} with stepping "{self.stepping}"; allowed above 0 is '
+                '"local" only: change either'
+            )
 
     def world(self, gravity: tuple[float, float, float]) -> World:
         """Return an empty world under these options."""

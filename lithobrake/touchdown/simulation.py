@@ -13,6 +13,7 @@ from lithobrake.touchdown.lander import Lander
 from lithobrake.touchdown.landing import Landing
 from lithobrake.touchdown.outcome import Outcome
 from lithobrake.touchdown.outcome_judge import OutcomeJudge
+from lithobrake.touchdown.smallest_bed import smallest_bed
 from lithobrake.touchdown.surface import rotation_matrix
 
 RELAX_FADING = 5.0  # periods in which the damping of contacts falls by a factor of e: what has to slide must be free to
@@ -56,9 +57,12 @@ def land(
     world.watch(number)
     judge = OutcomeJudge(bed, lander, landing, world, number, frame_count)
     chunk = max(1, int(landing.contact.steps_per_contact / CHECKS_PER_CONTACT))
+    reach = moving_reach(bed, lander, landing)
     while judge.ended is None:
         if locally:
-            world.run_locally(look_interval(world, number, lander, landing), landing.contact.steps_per_contact)
+            interval = look_interval(world, number, lander, landing)
+            contact = landing.contact
+            world.run_locally(interval, contact.steps_per_contact, held_speed=contact.held_speed, reach=reach)
         else:
             world.run(steps=chunk)
         judge.look()
@@ -79,6 +83,11 @@ def look_interval(world: World, number: int, lander: Lander, landing: Landing) -
     longest = LOOK_TIME * landing.time_limit
     way = LOOK_WAY * lander.smallest_edge
     return max(shortest, min(way / speed, longest) if speed > 0.0 else longest)
+
+
+def moving_reach(bed: Bed, lander: Lander, landing: Landing) -> float:
+    """Return the distance [m] from the lander's centroid within which no grain is held."""
+    return lander.shape.bounding_radius + smallest_bed(lander, landing.grain, bed.grain_diameter, landing.speed)[1]
 
 
 def relax(

@@ -324,3 +324,11 @@ def test_what_only_the_flight_reads_may_be_uncertain() -> None:
 def test_the_scenarios_are_studies(path: Path) -> None:
     counts = {"bounces": 3, "one_place": 5, "paper": 5, "quick": 5}
     assert len(uncertain(read_study(path).touchdown_values())) == counts[path.stem]
+
+
+def test_held_grains_ask_for_steps_of_their_own() -> None:
+    assert problems({"contact.held_speed": 0.1, "contact.stepping": "local"}) == []
+    assert problems({"contact.held_speed": 0.1, "contact.stepping": "global"}) == [
+        'study.toml: contact.held_speed is 0.1 with contact.stepping = "global"; allowed above 0: "local" only; change '
+        "either"
+    ]

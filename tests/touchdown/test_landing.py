@@ -256,3 +256,10 @@ def test_a_bed_takes_on_its_soil_at_once_where_that_frees_little(bed):
 def test_another_stepping_is_refused():
     with pytest.raises(ValueError, match=r"stepping is 'own'; allowed are"):
         ContactModel(stepping="own")
+
+
+def test_held_grains_ask_for_local_steps():
+    with pytest.raises(ValueError, match=r'held_speed is 0\.1 with stepping "global"; allowed above 0 is "local" only'):
+        ContactModel(held_speed=0.1)
+    with pytest.raises(ValueError, match=r"held_speed is 1\.0; allowed is 0 <= value < 1"):
+        ContactModel(stepping="local", held_speed=1.0)

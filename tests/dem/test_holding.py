@@ -1,0 +1,90 @@
+"""What is slow beside the watched body and out of its reach stands still, and loses nothing."""
+
+import numpy as np
+import pytest
+
+from lithobrake.dem import Material, Sphere, World
+
+HARD = Material(young_modulus=1e7, poisson_ratio=0.25, density=2500.0, restitution=1.0, friction=0.0)
+ROUGH = Material(young_modulus=1e7, poisson_ratio=0.25, density=2500.0, restitution=0.5, friction=0.5)
+
+
+def row_of_balls(count: int = 6) -> World:
+    """A ball that flies at a row of balls which press each other a little, without gravity; the first is watched."""
+    world = World()
+    world.add_body(Sphere(0.05), HARD, (-0.12, 0.0, 0.0), (0.2, 0.0, 0.0))
+    for k in range(count):
+        world.add_body(Sphere(0.05), HARD, (0.1 * k * (1.0 - 1e-7), 0.0, 0.0))
+    world.watch(0)
+    return world
+
+
+def heap() -> World:
+    """Balls at rest on the ground, beside one another, and one far from them that comes down."""
+    world = World(gravity=(0.0, 0.0, -1e-3))
+    world.add_plane((0.0, 0.0, 0.0), (0.0, 0.0, 1.0), ROUGH)
+    world.add_body(Sphere(0.05), ROUGH, (0.0, 0.0, 0.06), (0.0, 0.0, -0.05))
+    for k in range(4):
+        world.add_body(Sphere(0.05), ROUGH, (1.0 + 0.11 * k, 0.0, 0.05 - 1e-9))
+    world.watch(0)
+    return world
+
+
+def held(world: World) -> np.ndarray:
+    """Which bodies are held."""
+    local = world._state.local
+    assert local is not None
+    return local.flight.held
+
+
+def test_a_blow_frees_what_it_reaches_and_keeps_its_momentum() -> None:
+    free, world = row_of_balls(), row_of_balls()
+    for each, share in ((free, 0.0), (world, 0.05)):
+        each.run_locally(1e-3, 60.0)
+        for _ in range(60):
+            each.run_locally(0.01, 60.0, held_speed=share)
+    # Like Newton's cradle: the last ball leaves with nearly all.
+    assert free.velocity[-1, 0] > 0.15
+    assert world.velocity[-1, 0] == pytest.approx(free.velocity[-1, 0], rel=0.05)
+    kept = world._state.local.flight.held_velocity[held(world)] if world._state.local is not None else 0.0
+    momentum = world.mass[0] * (world.velocity[:, 0].sum() + np.sum(kept, axis=0)[0])
+    assert momentum == pytest.approx(world.mass[0] * 0.2, rel=1e-12)
+
+
+def test_the_ledger_closes_with_bodies_held() -> None:
+    world = heap()
+    before = world.energy()["total"]
+    impact = 0.5 * world.mass[0] * 0.05**2
+    for _ in range(40):
+        world.run_locally(0.25, 60.0, held_speed=0.05)
+    assert world.energy()["total"] == pytest.approx(before, abs=1e-3 * impact)
+
+
+def test_what_is_far_and_at_rest_stands_still_until_the_watched_body_is_near() -> None:
+    world = heap()
+    world.run_locally(0.1, 15.0, held_speed=0.1, reach=0.2)
+    assert held(world)[1:].all()
+    assert not held(world)[0]
+    place = world.position[1:]
+    world.run_locally(0.3, 15.0, held_speed=0.1, reach=0.2)
+    assert (world.position[1:] == place).all()
+    world.run_locally(0.3, 15.0, held_speed=0.1, reach=2.0)
+    assert not held(world).any()
+
+
+def test_with_all_in_reach_no_bit_changes() -> None:
+    plain, other = heap(), heap()
+    for _ in range(5):
+        plain.run_locally(0.2, 15.0)
+        other.run_locally(0.2, 15.0, held_speed=0.1, reach=10.0)
+    assert plain.position.tobytes() == other.position.tobytes()
+
+
+def test_common_steps_let_all_go() -> None:
+    world = heap()
+    world.run_locally(0.1, 15.0, held_speed=0.1)
+    assert held(world).any()
+    world.time_step = world.shortest_contact(0.1) / 50.0
+    world.run(0.01)
+    world.run_locally(0.0, 15.0)
+    assert not held(world).any()
