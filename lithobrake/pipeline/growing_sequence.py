@@ -75,7 +75,7 @@ def width_sentence(job: Job) -> str:
     known = "not known to any width yet" if width is None else f"known to +- {100 * width:.2g} points"
     return (
         f"{ANSWER} is {known} from {design.run_count} runs on {job.study.bed_count} beds, and design.half_width asks "
-        f"for {100 * (design.half_width or 0.0):.2g} points"
+        f"for +- {100 * (design.half_width or 0.0):.2g}"
     )
 
 

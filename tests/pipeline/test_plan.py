@@ -207,8 +207,6 @@ def drawn(*, design: dict[str, Any] | None = None, **changes: dict[str, Any]) ->
     [
         ({}, None),
         ({"bed": {"bed_count": 1}}, "All runs come down on one bed, and another bed gives another answer"),
-        # A bed no wider than its middle has one place.
-        ({"bed": {"width": [0.4, 0.4]}, "impact": {}}, "or a bed wider than 0.48 m"),
         # Student's t of 4, 7 and 11 degrees of freedom at .95: 2.132, 1.895 and 1.796.
         ({"bed": {"bed_count": 5}}, "on 5 beds, and beds are what an interval counts: so few make it 19 % wider"),
         ({"design": {"run_count": 8}}, "on 8 beds, and beds are what an interval counts: so few make it 5 % wider"),
