@@ -2,34 +2,19 @@
 
 What comes next follows from the runs that have ended, which the ledger has. So a study that is stopped and run again
 goes the same way, and whoever only looks at its folder knows how many runs it has by now.
-
-The answer of a run is, for now, whether the lander was captured. Where flights give each run its share of headings that
-stay, `answers_of` reads that in its place, and `ANSWERED_AFTER` names the stage that writes it.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 
-import numpy as np
-
 from lithobrake.campaign import Record
-from lithobrake.outcomes import TouchdownOutcome
+from lithobrake.pipeline.answers import ANSWER, answers_of
 from lithobrake.pipeline.folder import StudyFolder
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.planning.planned_runs import known_runs
 from lithobrake.pipeline.sequence import sequence_rows
 from lithobrake.pipeline.touchdown_runs import touchdown_keys
 from lithobrake.study import Study
-
-# The stage after which every run has its answer, and what the answer is, in words.
-ANSWERED_AFTER, ANSWER = "runs", "the share captured"
-_ANSWERS = {TouchdownOutcome.CAPTURED.value: 1.0, TouchdownOutcome.CLEAR.value: 0.0}
-
-
-def answers_of(records: Sequence[Record]) -> tuple[np.ndarray, np.ndarray]:
-    """Answer of each run, from 0 to 1, NaN where it has none, and its bed, both of shape [run_count]."""
-    values = [_ANSWERS.get(record.outcome or "", np.nan) for record in records]
-    return np.array(values, dtype=float), np.array([record.inputs["bed"] for record in records])
 
 
 def ended_runs(study: Study, known: Mapping[str, Record]) -> list[Record] | None:

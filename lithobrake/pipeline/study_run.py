@@ -8,8 +8,9 @@ from typing import Any
 
 from lithobrake.campaign import DaskExecutor, LocalExecutor
 from lithobrake.chaos.threads import one_thread
+from lithobrake.pipeline.answers import ANSWERED_AFTER
 from lithobrake.pipeline.folder import StudyFolder
-from lithobrake.pipeline.growing_sequence import ANSWERED_AFTER, grow, grown
+from lithobrake.pipeline.growing_sequence import grow, grown
 from lithobrake.pipeline.job import Job, Progress, Silent
 from lithobrake.pipeline.notes import NAME
 from lithobrake.pipeline.owner import refuse_others_folder

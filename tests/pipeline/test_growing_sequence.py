@@ -8,8 +8,9 @@ import pytest
 
 from lithobrake.analysis import half_width_of
 from lithobrake.pipeline import StudyFolder, plan_lines, study_status
+from lithobrake.pipeline.answers import answers_of
 from lithobrake.pipeline.design_runs import DesignRuns
-from lithobrake.pipeline.growing_sequence import answers_of, grown
+from lithobrake.pipeline.growing_sequence import grown
 from lithobrake.pipeline.job import Silent
 from lithobrake.pipeline.planning.planner import plan_of
 from lithobrake.pipeline.solver import function_identity
@@ -84,7 +85,7 @@ def test_what_ends_is_the_study_of_that_many_runs(narrow: tuple[Path, DesignRuns
     assert (plan.stages, len(plan.runs), plan.runs[0].drawn) == ((), 1, runs.run_count)
     answered = sum(outcome in ("clear", "captured") for outcome in runs.outcomes)
     assert f"By the {answered} runs that have ended: +- " in " ".join(plan_lines(plan))
-    assert f"{runs.run_count} runs: {runs.run_count} done" in " ".join(study_status(folder))
+    assert f"{runs.run_count} runs: {runs.run_count} done" in " ".join(study_status(folder).lines())
     assert run(folder, again, run_count=runs.run_count).keys == runs.keys
     assert {path: path.stat().st_mtime_ns for path in folder.glob("designs/*")} == files
 

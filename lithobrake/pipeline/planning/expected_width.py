@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from lithobrake.campaign import Record
-from lithobrake.pipeline.growing_sequence import ANSWER, answers_of
+from lithobrake.pipeline.answers import ANSWER, answers_of
 from lithobrake.pipeline.sequence import sequence_rows
 from lithobrake.pipeline.touchdown_runs import touchdown_keys
 from lithobrake.study import Study
