@@ -17,9 +17,14 @@ from lithobrake.pipeline.touchdown_runs import touchdown_keys
 from lithobrake.study import Study
 
 
+def sequence_keys(study: Study) -> list[str]:
+    """The keys in the ledger of the runs of a study's sequence, in order."""
+    return touchdown_keys(study, sequence_rows(study), 0)
+
+
 def ended_runs(study: Study, known: Mapping[str, Record]) -> list[Record] | None:
     """The runs of a study's sequence in order; None where some have yet to end."""
-    keys = touchdown_keys(study, sequence_rows(study), 0)
+    keys = sequence_keys(study)
     return [known[key] for key in keys] if known.keys() >= set(keys) else None
 
 

@@ -1,7 +1,7 @@
 """Beds that are poured at once, one a worker: each takes a core for seconds to minutes, and none needs another."""
 
 from collections.abc import Callable, Mapping
-from concurrent.futures import Future, as_completed
+from concurrent.futures import FIRST_COMPLETED, wait
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -11,6 +11,9 @@ from lithobrake.touchdown_model import engine_hash, in_words_of_the_study, refus
 
 if TYPE_CHECKING:
     from lithobrake.touchdown import BedRecipe
+
+# Which beds are being poured is looked at so often [s].
+_POLL_INTERVAL = 0.5
 
 
 def pour_at_once(job: Job, beds: "Mapping[int, tuple[BedRecipe, Path]]") -> None:
@@ -57,18 +60,18 @@ def _pour_on_workers(job: Job, beds: "Mapping[int, tuple[BedRecipe, Path]]") -> 
     engine = engine_hash()
     numbers = {job.executor.submit(pour_one, *bed, engine): number for number, bed in beds.items()}
     failures: dict[str, list[int]] = {}
-    job.progress(0, len(numbers), "pouring beds")
-    for done, future in enumerate(as_completed(numbers), start=1):
-        if error := future.exception():
-            failures.setdefault(_reason(error), []).append(numbers[future])
-        job.progress(done, len(numbers), "pouring beds", _detail(done, numbers))
+    pending, total = set(numbers), len(numbers)
+    while pending:
+        running = sorted(numbers[future] + 1 for future in pending if future.running())
+        done = total - len(pending)
+        detail = f"{done} of {total} beds, at work: {', '.join(map(str, running)) or 'none'}"
+        job.progress(done, total, "pouring beds", detail)
+        ended, pending = wait(pending, _POLL_INTERVAL, FIRST_COMPLETED)
+        for future in ended:
+            if error := future.exception():
+                failures.setdefault(_reason(error), []).append(numbers[future])
+    job.progress(total, total, "pouring beds")
     return failures
-
-
-def _detail(done: int, numbers: Mapping[Future[None], int]) -> str:
-    """Which beds are being poured, in a line."""
-    running = sorted(number + 1 for future, number in numbers.items() if future.running())
-    return f"{done} of {len(numbers)} beds, at work: {', '.join(map(str, running)) or 'none'}"
 
 
 def _reason(error: BaseException) -> str:

@@ -10,7 +10,7 @@ from lithobrake.campaign import DaskExecutor, LocalExecutor
 from lithobrake.chaos.threads import one_thread
 from lithobrake.pipeline.answers import ANSWERED_AFTER
 from lithobrake.pipeline.folder import StudyFolder
-from lithobrake.pipeline.growing_sequence import grow, grown
+from lithobrake.pipeline.growing_sequence import grow, grown, sequence_keys
 from lithobrake.pipeline.job import Job, Progress, Silent
 from lithobrake.pipeline.notes import NAME
 from lithobrake.pipeline.owner import refuse_others_folder
@@ -121,6 +121,8 @@ def _make_all(job: Job, source: StudySource, until: str, note: Callable[..., Non
 
     def make_runs(job: Job) -> None:
         job.folder.begin(source.path, source.content, setting(job.study), job.say)
+        # While further beds are poured, whoever looks still finds the runs that there are.
+        job.folder.note_runs("sequence", sequence_keys(job.study))
         make(job, ANSWERED_AFTER, note)
 
     names = [stage.name for stage in stages_until(job.study, until)]

@@ -102,6 +102,21 @@ def test_a_study_that_is_stopped_between_two_looks_ends_with_the_same_runs(
     assert any("sequence: 24 of 50 runs were known" in sentence for sentence in said.sentences)
 
 
+def test_a_study_that_goes_on_still_shows_the_runs_that_there_are(tmp_path: Path) -> None:
+    class Stopped(Said):
+        """Ends the study at its second look at the beds."""
+
+        def begin(self, title: str, number: int, count: int) -> None:
+            if title == "bed" and any("going on to 50 runs" in sentence for sentence in self.sentences):
+                raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        run(tmp_path, Stopped(), half_width=0.06)
+    lines = study_status(tmp_path).lines()
+    assert any(line.startswith("24 runs: 24 done, 0 running") for line in lines)
+    assert any(line.startswith("so far, from ") for line in lines)
+
+
 def test_there_is_an_end_to_runs_that_are_not_enough(tmp_path: Path) -> None:
     said = Said()
     assert run(tmp_path, said, half_width=0.01, largest_run_count=60).run_count == 60

@@ -7,8 +7,7 @@ import numpy as np
 
 from lithobrake.campaign import Record
 from lithobrake.pipeline.answers import ANSWER, answers_of
-from lithobrake.pipeline.sequence import sequence_rows
-from lithobrake.pipeline.touchdown_runs import touchdown_keys
+from lithobrake.pipeline.growing_sequence import sequence_keys
 from lithobrake.study import Study
 
 # Of a run that is all or nothing, as captured or not, at worst: half of them are.
@@ -67,8 +66,7 @@ def expected_width(study: Study, known: Mapping[str, Record]) -> ExpectedHalfWid
     from lithobrake.analysis.half_width import CORRELATION, SPREAD
 
     counts = study.design.run_count, study.bed_count
-    keys = touchdown_keys(study, sequence_rows(study), 0)
-    values, bed = answers_of([known[key] for key in keys if key in known])
+    values, bed = answers_of([known[key] for key in sequence_keys(study) if key in known])
     return ExpectedHalfWidth(
         *counts,
         at_worst=expected_half_width(*counts, spread=YES_OR_NO) or np.inf,
