@@ -143,12 +143,19 @@ def report(folder: StudyDirectory) -> None:
 
 
 @app.command(epilog="Example: lithobrake status runs/study")
-def status(folder: StudyDirectory) -> None:
+def status(
+    folder: StudyDirectory, json: Annotated[bool, typer.Option("--json", help="Print JSON, all numbers in SI.")] = False
+) -> None:
     """Show the progress of a study. Works from any terminal, even while the study runs."""
     with _one_sentence():
         from lithobrake.pipeline import study_status
 
-        lines = study_status(folder)
+        found = study_status(folder)
+        lines = found.lines()
+    if json:
+        from json import dumps
+
+        lines = [dumps(found.to_json(), indent=2, allow_nan=False)]
     _tell(lines)
 
 

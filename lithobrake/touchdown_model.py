@@ -60,11 +60,7 @@ class TouchdownModel:
         """Land once, and record about so many frames. Raises ValueError where the code is another one."""
         from lithobrake.touchdown import land
 
-        if engine_hash() != self.engine:
-            raise ValueError(
-                f"this worker has the code {engine_hash()} and the coordinator {self.engine}; install the same version "
-                "of lithobrake on both"
-            )
+        refuse_other_code(self.engine)
         bed = stored_bed(self.bed_paths[round(values["bed"])])
         with in_words_of_the_study():
             return land(bed, lander(self.study, values), landing(self.study, values), frame_count, progress)
@@ -106,6 +102,15 @@ def in_words_of_the_study() -> Iterator[None]:
 def engine_hash() -> str:
     """Hash of the code that decides what a touchdown gives."""
     return source_hash("dem", "touchdown", "mesh.py", "mesh_files.py", "touchdown_model.py")
+
+
+def refuse_other_code(engine: str) -> None:
+    """Raise ValueError where the code of this process is not that of the coordinator, whose hash `engine` is."""
+    if engine_hash() != engine:
+        raise ValueError(
+            f"this worker has the code {engine_hash()} and the coordinator {engine}; install the same version of "
+            "lithobrake on both"
+        )
 
 
 def touchdown_version() -> str:

@@ -8,6 +8,7 @@ from lithobrake.analysis.outcome_model import OutcomeModel, upper_limit
 from lithobrake.analysis.output_estimates import mean_estimate, quantile_estimates
 from lithobrake.analysis.proportion import wilson_interval
 from lithobrake.analysis.sampling import sample_inputs
+from lithobrake.analysis.sequential_stopping import half_width_of, next_run_count, scatter_of
 from lithobrake.analysis.share_estimate import ShareEstimate, share_estimate
 from lithobrake.analysis.side_runs import chaos_variance, soil_total_effect
 from lithobrake.analysis.variance_shares import VarianceShares, variance_shares
@@ -22,11 +23,14 @@ __all__ = [
     "chaos_variance",
     "dispersion_ellipses",
     "expected_half_width",
+    "half_width_of",
     "mean_estimate",
+    "next_run_count",
     "quantile_estimates",
     "regression_terms",
     "runs_for_half_width",
     "sample_inputs",
+    "scatter_of",
     "share_estimate",
     "soil_total_effect",
     "upper_limit",

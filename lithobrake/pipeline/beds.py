@@ -1,6 +1,5 @@
 """The beds of a study: what they follow from, and how they are poured."""
 
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -8,7 +7,7 @@ import numpy as np
 
 from lithobrake.hashing import content_hash, hashed_seed
 from lithobrake.pipeline.job import Job
-from lithobrake.pipeline.kernels import compile_kernels
+from lithobrake.pipeline.pouring import pour_at_once
 from lithobrake.pipeline.solver import solver_reads
 from lithobrake.study import Study
 from lithobrake.touchdown_model import (
@@ -23,7 +22,7 @@ from lithobrake.touchdown_model import (
 )
 
 if TYPE_CHECKING:
-    from lithobrake.touchdown import Bed, BedRecipe
+    from lithobrake.touchdown import BedRecipe
 
 
 def bed_files(study: Study) -> list[str]:
@@ -46,27 +45,22 @@ def bed_reads(study: Study) -> dict[str, Any]:
 
 
 def pour_beds(job: Job) -> None:
-    """Put every bed into the folder that is not there yet, or no longer good: from the library, or poured."""
-    from lithobrake.touchdown import stored_or_poured
+    """Put every bed into the folder that is not there yet, or no longer good: from the library, or poured.
+
+    Raises ValueError that names the beds which cannot be poured, when all others are there.
+    """
+    from lithobrake.touchdown import take_stored
 
     (job.folder / "beds").mkdir(exist_ok=True)
-    found = 0
-    for index, name in enumerate(bed_files(job.study)):
-        if name in job.wanted:
-            with in_words_of_the_study():
-                recipe = bed_recipe(job.study, index)
-                found += not stored_or_poured(recipe, job.folder / name, partial(_pour, job, recipe, index))
+    names = {index: name for index, name in enumerate(bed_files(job.study)) if name in job.wanted}
+    with in_words_of_the_study():
+        recipes = {index: bed_recipe(job.study, index) for index in names}
+        new = {index: recipe for index, recipe in recipes.items() if not take_stored(recipe, job.folder / names[index])}
+    found = len(names) - len(new)
     if found:
-        job.say(f"bed: {found} of {len(job.wanted)} {'was' if found == 1 else 'were'} in the library of beds")
-
-
-def _pour(job: Job, recipe: "BedRecipe", index: int) -> "Bed":
-    from lithobrake.touchdown import pour_bed
-
-    count = job.study.bed_count
-    numbered = f"bed {index + 1} of {count}: " if count > 1 else ""
-    compile_kernels(job)
-    return pour_bed(recipe, progress=lambda done, what: job.progress(done, 1.0, f"{numbered}{what}"))
+        job.say(f"bed: {found} of {len(names)} {'was' if found == 1 else 'were'} in the library of beds")
+    if new:
+        pour_at_once(job, {index: (recipe, job.folder.path.absolute() / names[index]) for index, recipe in new.items()})
 
 
 def bed_recipe(study: Study, index: int) -> "BedRecipe":

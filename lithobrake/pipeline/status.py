@@ -1,20 +1,111 @@
 """Where a study is, as another process sees it while the study runs, or after."""
 
+import math
 from collections import Counter
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from lithobrake.atomic import lock_holder
-from lithobrake.campaign import Record, campaign_began, ledger_tally
+from lithobrake.campaign import RunStatus, Tally, campaign_began, ledger_tally
 from lithobrake.outputs import OUTPUTS
 from lithobrake.pipeline.folder import LOCK
 from lithobrake.pipeline.notes import NAME, Notes
+from lithobrake.pipeline.running_estimates import RunningEstimates, running_estimates
 from lithobrake.pipeline.state import STUDY_FILE, FolderState, grouped, read_state
 from lithobrake.results import open_study
 
 
-def study_status(path: Path) -> list[str]:
-    """Return lines that say who is at work on a study, which stages are done, and the state of its runs.
+@dataclass(frozen=True)
+class RunsStatus:
+    """The runs that a study asks for as it is now.
+
+    others: how many more its ledger has. outcomes: how often each came. reasons: why runs failed, and how often.
+    estimates: what they say so far, of a sequence; None for another study, and before enough have ended.
+    """
+
+    tally: Tally
+    others: int
+    outcomes: "Counter[str]"
+    reasons: "Counter[str]"
+    estimates: RunningEstimates | None
+
+    def lines(self) -> list[str]:
+        """The runs in words."""
+        lines = [self.tally.sentence()]
+        if self.others:
+            lines.append(f"{self.others} more runs in the ledger are of earlier settings of the study")
+        if self.outcomes:
+            lines.append("outcomes: " + ", ".join(f"{count} {name}" for name, count in sorted(self.outcomes.items())))
+        lines += [f"failed: {count} x {reason}" for reason, count in self.reasons.most_common(3)]
+        found = self.tally.spreads
+        spreads = self.tally.spread_lines([name for name in OUTPUTS if name in found] or sorted(found))
+        lines += ["mean and standard deviation so far [SI]:", *spreads] if spreads else []
+        return lines + (self.estimates.lines() if self.estimates else [])
+
+    def to_json(self) -> dict[str, Any]:
+        """All of it as JSON values; rate [runs/s] and time left [s] are None where nobody knows them."""
+        state = self.tally
+        return {
+            "total": state.total,
+            "done": state.done,
+            "running": state.running,
+            "failed": state.failed,
+            "of_earlier_settings": self.others,
+            "rate": _finite(state.rate),
+            "seconds_left": _finite(state.time_left),
+            "outcomes": dict(sorted(self.outcomes.items())),
+            "reasons": dict(self.reasons),
+            "spreads": {
+                name: {"count": one.count, "mean": one.mean, "std": _finite(one.std)}
+                for name, one in state.spreads.items()
+            },
+            "estimates": self.estimates and self.estimates.to_json(),
+        }
+
+
+@dataclass(frozen=True)
+class StudyStatus:
+    """Where a study stands.
+
+    at_work: who is, and at which stage, as the lock of its folder says; None for nobody. campaign_began: when the
+    campaign did whose ledger this is, where the folder is none of a study. state: of its files; None likewise. runs:
+    None before there is a ledger.
+    """
+
+    folder: Path
+    at_work: dict[str, Any] | None
+    campaign_began: str | None
+    state: FolderState | None
+    runs: RunsStatus | None
+
+    def lines(self) -> list[str]:
+        """All of it in words."""
+        runs = self.runs.lines() if self.runs else []
+        if self.state is None:
+            return [f"{self.folder}: {'a campaign' if self.campaign_began else 'nobody'} is at work", *runs]
+        return [_work(self.folder, self.at_work, self.state), *_files(self.at_work, self.state), *runs]
+
+    def to_json(self) -> dict[str, Any]:
+        """All of it as JSON values."""
+        state = self.state
+        stages = [] if state is None else [stage for stage in state.stages if stage.number]
+        return {
+            "folder": str(self.folder),
+            "at_work": self.at_work,
+            "campaign_began": self.campaign_began,
+            "stages": [
+                {"name": stage.name, "title": stage.title, "is_current": stage.is_current, "files": stage.files}
+                for stage in stages
+            ],
+            "edited": None if state is None or state.edited is None else str(state.edited),
+            "unknown": None if state is None else state.unknown or None,
+            "runs": self.runs and self.runs.to_json(),
+        }
+
+
+def study_status(path: Path) -> StudyStatus:
+    """Say who is at work on a study, which stages are done, and the state of its runs.
 
     A folder with only a ledger is that of a campaign. Raises ValueError when it has neither study nor ledger.
     """
@@ -22,13 +113,11 @@ def study_status(path: Path) -> list[str]:
     if not (is_study or ledger.is_file()):
         raise ValueError(f"{path} has neither study.toml nor runs.sqlite; name the folder of a study that ran, or runs")
     if not is_study:
-        work = "a campaign" if campaign_began(ledger) else "nobody"
-        return [f"{path}: {work} is at work", *_runs(path, Notes())]
+        return StudyStatus(path, None, campaign_began(ledger), None, _runs(path, Notes()))
     # Who is at work is looked at first: a stage that ends in between is then one that is still to come.
     holder = lock_holder(path / LOCK)
     state = read_state(path)
-    lines = [_work(path, holder, state), *_files(holder, state)]
-    return lines + (_runs(path, state.notes) if ledger.is_file() else [])
+    return StudyStatus(path, holder, None, state, _runs(path, state.notes) if ledger.is_file() else None)
 
 
 def _work(path: Path, holder: dict[str, Any] | None, state: FolderState) -> str:
@@ -63,24 +152,22 @@ def _files(holder: dict[str, Any] | None, state: FolderState) -> list[str]:
     return lines
 
 
-def _runs(path: Path, notes: Notes) -> list[str]:
+def _runs(path: Path, notes: Notes) -> RunsStatus:
     """Where the runs stand that the study asks for as it is now, and how many others its ledger has."""
     every = open_study(path).ledger
     asked = {key for keys in notes.designs.values() for key in keys}
     # A ledger of which nothing is noted is that of a campaign, or of an earlier format.
     records = [entry for entry in every if entry.key in asked] if notes.stages else every
-    state = ledger_tally(records, campaign_began(path / "runs.sqlite"))
-    lines = [state.sentence()]
-    if len(records) < len(every):
-        lines.append(f"{len(every) - len(records)} more runs in the ledger are of earlier settings of the study")
-    outcomes = Counter(entry.outcome for entry in records if entry.status == "done")
-    if outcomes:
-        lines.append("outcomes: " + ", ".join(f"{count} {name}" for name, count in sorted(outcomes.items())))
-    for reason, count in _reasons(records).most_common(3):
-        lines.append(f"failed: {count} x {reason}")
-    spreads = state.spread_lines([name for name in OUTPUTS if name in state.spreads] or sorted(state.spreads))
-    return lines + (["mean and standard deviation so far [SI]:", *spreads] if spreads else [])
+    # Those beside the sequence are at places and soils of its runs, and say nothing new.
+    drawn = set(notes.designs.get("sequence", ()))
+    return RunsStatus(
+        tally=ledger_tally(records, campaign_began(path / "runs.sqlite")),
+        others=len(every) - len(records),
+        outcomes=Counter(entry.outcome or "" for entry in records if entry.status == RunStatus.DONE),
+        reasons=Counter(entry.reason or "" for entry in records if entry.status == RunStatus.FAILED),
+        estimates=running_estimates([entry for entry in records if entry.key in drawn]),
+    )
 
 
-def _reasons(records: list[Record]) -> "Counter[str]":
-    return Counter(entry.reason or "" for entry in records if entry.status == "failed")
+def _finite(number: float) -> float | None:
+    return number if math.isfinite(number) else None

@@ -2,13 +2,15 @@
 
 import os
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
 from lithobrake.campaign import DaskExecutor, LocalExecutor
 from lithobrake.chaos.threads import one_thread
+from lithobrake.pipeline.answers import ANSWERED_AFTER
 from lithobrake.pipeline.folder import StudyFolder
+from lithobrake.pipeline.growing_sequence import grow, grown, sequence_keys
 from lithobrake.pipeline.job import Job, Progress, Silent
 from lithobrake.pipeline.notes import NAME
 from lithobrake.pipeline.owner import refuse_others_folder
@@ -98,6 +100,7 @@ def run_study(
         folder.alone() as note,
         DaskExecutor(scheduler) if scheduler else LocalExecutor(worker_count) as executor,
     ):
+        study = grown(study, folder)
         folder.begin(source.path, source.content, setting(study), shown.say)
         if until == "report":
             plan = plan_of(study, source.stem, folder, worker_count, on_cluster=scheduler is not None)
@@ -105,12 +108,27 @@ def run_study(
             for line in brief_lines(plan, command) if plan.stages else ():
                 shown.say(line)
         try:
-            make(Job(study, source.tables, folder, executor, shown, model, keeps_logs), until, note)
+            _make_all(Job(study, source.tables, folder, executor, shown, model, keeps_logs), source, until, note)
         except BaseException:
             # What is under way would be waited for otherwise; every finished run is in the ledger already.
             executor.shutdown(cancel_futures=True)
             raise
     return stages[-1].name
+
+
+def _make_all(job: Job, source: StudySource, until: str, note: Callable[..., None]) -> None:
+    """Make the stages of a study up to one, with as many runs as its half width turns out to ask for."""
+
+    def make_runs(job: Job) -> None:
+        job.folder.begin(source.path, source.content, setting(job.study), job.say)
+        # While further beds are poured, whoever looks still finds the runs that there are.
+        job.folder.note_runs("sequence", sequence_keys(job.study))
+        make(job, ANSWERED_AFTER, note)
+
+    names = [stage.name for stage in stages_until(job.study, until)]
+    if job.study.design.half_width is not None and ANSWERED_AFTER in names:
+        job = grow(job, make_runs)
+    make(job, until, note)
 
 
 def write_report_again(path: Path) -> None:

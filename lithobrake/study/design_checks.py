@@ -19,6 +19,7 @@ def design_problems(study: Study) -> Iterator[str]:
     yield from _method_problems(study)
     if study.design.method == "sequence":
         yield from _bed_count_problems(study)
+        yield from _half_width_problems(study)
         return
     yield from _unbounded_problems(study)
     yield from _replicate_problems(study)
@@ -44,6 +45,28 @@ def _bed_count_problems(study: Study) -> Iterator[str]:
         yield (
             f"bed.bed_count is {beds}, and design.run_count {runs}; allowed: as many beds as runs at most; "
             "raise the runs, or lower the beds"
+        )
+
+
+def _half_width_problems(study: Study) -> Iterator[str]:
+    """Runs that no interval could end."""
+    design = study.design
+    if design.half_width is None:
+        if design.largest_run_count is not None:
+            yield (
+                f"design.largest_run_count is {design.largest_run_count}, and nothing asks for more than "
+                "design.run_count; leave it out, or give design.half_width"
+            )
+        return
+    if design.most_runs < design.run_count:
+        yield (
+            f"design.largest_run_count is {design.most_runs}; allowed: at least design.run_count, "
+            f"{design.run_count}; raise it, or leave it out for ten times as many"
+        )
+    if study.bed_count == 1:
+        yield (
+            f"design.half_width is {design.half_width:g}, and runs on one bed have no interval, however many they are; "
+            "set bed.bed_count to 12 or more, or leave it out"
         )
 
 

@@ -16,7 +16,7 @@ PointCount = Annotated[int, Whole("", at_least=2, at_most=1_000_000)] | None
 # What a study that names no method is made by.
 DEFAULT_METHOD: Literal["sequence", "paper"] = "paper"
 # Keys that only the sequence takes; all others belong to the paper's method.
-SEQUENCE_KEYS = ("run_count", "side_runs", "twin_shift")
+SEQUENCE_KEYS = ("run_count", "half_width", "largest_run_count", "side_runs", "twin_shift")
 
 
 class DesignSection(Section):
@@ -27,6 +27,11 @@ class DesignSection(Section):
     on many beds; "paper", a screening over all inputs, then more runs over those that matter."""
     run_count: Annotated[int, Whole("", at_least=2, at_most=1_000_000)] = 240
     """sequence: number of runs; a larger one keeps the runs of a smaller one, each on its bed."""
+    half_width: Annotated[float, Number("", above=0, below=0.5)] | None = None
+    """sequence: half the interval that the answer is to have, as a share of 1; more runs than run_count are made, on
+    more beds, until it has. Absent: run_count runs, whatever their interval."""
+    largest_run_count: PointCount = None
+    """sequence: most runs that half_width may ask for. Absent: ten times run_count."""
     side_runs: StrictBool = False
     """sequence: whether to make, beside it, up to 20 of its runs again on a second soil, and up to 12 at a place a
     little beside, which tell what soil and chaos do."""
@@ -60,6 +65,13 @@ class DesignSection(Section):
     """Outputs that decide which inputs are kept."""
     test_count: Annotated[int, Whole("", at_least=2, at_most=100_000)] = Field(default=40, examples=["10"])
     """Fresh random runs in each of the two test sets (kept inputs vary; all inputs vary)."""
+
+    @property
+    def most_runs(self) -> int:
+        """Runs of the sequence at most."""
+        if self.half_width is None:
+            return self.run_count
+        return self.largest_run_count or 10 * self.run_count
 
     @property
     def keys_of_the_other_method(self) -> set[str]:

@@ -77,6 +77,13 @@ class Study(Section):
         study._function = identity
         return study
 
+    def with_run_count(self, run_count: int) -> "Study":
+        """The same study with so many runs of the sequence; those of a smaller count stay as they are."""
+        # The most runs follow from the count of the file, and stay.
+        most = None if self.design.half_width is None else self.design.most_runs
+        counts = {"run_count": run_count, "largest_run_count": most}
+        return self.model_copy(update={"design": self.design.model_copy(update=counts)})
+
     @property
     def function(self) -> str | None:
         """Identity of the Python function that makes the touchdowns; no key of the file, but part of the run."""

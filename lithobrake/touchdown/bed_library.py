@@ -35,16 +35,30 @@ def stored_or_poured(recipe: BedRecipe, path: Path, pour: Callable[[], Bed]) -> 
     if library is None:
         pour().save(path)
         return True
-    # Few locks for all beds: two that share one wait for each other in vain, and that is all.
-    with library.turn("Another lithobrake pours this bed; waiting for it.", name[:2]):
-        content = library.read(name)
-        if content is None:
-            pour().save(path)
-            library.write(name, path.read_bytes())
-            return True
+    # Few locks for all beds, and yet so many that of some dozen poured at once hardly two wait for each other in vain.
+    with library.turn("Another lithobrake pours this bed; waiting for it.", name[:3]):
+        if take_stored(recipe, path):
+            return False
+        pour().save(path)
+        library.write(name, path.read_bytes())
+        return True
+
+
+def take_stored(recipe: BedRecipe, path: Path) -> bool:
+    """Write the bed of a recipe to a file if the library has it; returns whether it has."""
+    library = _library(os.environ.get(SIZE_VARIABLE, DEFAULT_GIGABYTES))
+    content = library.read(bed_key(recipe)) if library else None
+    if content is None:
+        return False
     with atomic_path(path) as draft:
         draft.write_bytes(content)
-    return False
+    return True
+
+
+def is_stored(recipe: BedRecipe) -> bool:
+    """Whether the library has a file for the bed of a recipe, whole or not."""
+    library = _library(os.environ.get(SIZE_VARIABLE, DEFAULT_GIGABYTES))
+    return library is not None and library.has(bed_key(recipe))
 
 
 def bed_key(recipe: BedRecipe) -> str:

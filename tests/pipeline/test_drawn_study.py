@@ -74,7 +74,7 @@ def test_what_is_counted_before_is_what_is_made(grown: tuple[Path, DesignRuns, s
     plan = plan_study(folder / "study.toml", folder / "out")
     assert plan.stages == ()
     assert (plan.runs[0].drawn, plan.runs[0].side, plan.runs[0].new) == (5, 10, 0)
-    assert "2 of 2 stages are current: runs, side runs" in " ".join(study_status(folder / "out"))
+    assert "2 of 2 stages are current: runs, side runs" in " ".join(study_status(folder / "out").lines())
 
 
 def test_a_stage_of_the_other_method_and_a_report_that_is_not_there_are_told_so(

@@ -16,12 +16,13 @@ from typer.testing import CliRunner
 from lithobrake.campaign import Record, RunStatus, available_cores
 from lithobrake.cli import app
 from lithobrake.outputs import OUTPUTS
-from lithobrake.pipeline import Plan, StudyFolder, plan_study
+from lithobrake.pipeline import Plan, StudyFolder, plan_lines, plan_study, stage_keys
+from lithobrake.pipeline.beds import pour_seed
 from lithobrake.pipeline.designs import design_inputs
 from lithobrake.pipeline.job import Silent
 from lithobrake.pipeline.planning.expected_disk import expected_bytes
 from lithobrake.pipeline.planning.expected_steps import ExpectedSoil
-from lithobrake.pipeline.planning.expected_time import run_time
+from lithobrake.pipeline.planning.expected_time import landing_time, run_time
 from lithobrake.pipeline.planning.plan_in_words import brief_lines
 from lithobrake.pipeline.planning.planned_runs import PlannedRuns
 from lithobrake.pipeline.planning.planner import plan_of
@@ -186,6 +187,100 @@ def test_what_an_analyst_should_know_is_said(changes: dict[str, Any], said: str 
     study = soft(**kept)
     found = " ".join(study_warnings(study, soil_of(study)))
     assert said in found if said else "The screening fits" not in found
+
+
+SEQUENCE = {"method": "sequence", "run_count": 144}
+
+
+def drawn(*, design: dict[str, Any] | None = None, **changes: dict[str, Any]) -> Study:
+    """The quick study with its runs out of the sequence, at places that are drawn unless the impact is changed."""
+    tables = load_tables(SCENARIOS / "quick.toml")
+    tables["design"] = SEQUENCE | (design or {})
+    tables["impact"] = {key: value for key, value in tables["impact"].items() if key != "place"}
+    for section, keys in ({"impact": {"region": {"x": [-0.1, 0.1], "y": [-0.1, 0.1]}}} | changes).items():
+        tables[section] = tables.get(section, {}) | keys
+    return check_tables(tables, SCENARIOS)
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({}, None),
+        ({"bed": {"bed_count": 1}}, "All runs come down on one bed, and another bed gives another answer"),
+        # Student's t of 4, 7 and 11 degrees of freedom at .95: 2.132, 1.895 and 1.796.
+        ({"bed": {"bed_count": 5}}, "on 5 beds, and beds are what an interval counts: so few make it 19 % wider"),
+        ({"design": {"run_count": 8}}, "on 8 beds, and beds are what an interval counts: so few make it 5 % wider"),
+        (
+            {"impact": {"place": {"x": 0.0, "y": 0.1}}},
+            "All runs come down at the same place of their beds: give impact.region",
+        ),
+    ],
+)
+def test_a_sequence_on_few_beds_or_at_one_place_is_warned_of(changes: dict[str, Any], said: str | None) -> None:
+    study = drawn(**changes)
+    found = " ".join(study_warnings(study, soil_of(study)))
+    assert said in found if said else "All runs" not in found and "beds are what" not in found
+
+
+def test_the_beds_of_the_folder_and_of_the_library_are_not_to_be_poured(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    study, kept = drawn(), set[int]()
+
+    def is_stored(recipe: Any) -> bool:
+        return any(recipe.seed == pour_seed(study, index) for index in kept)
+
+    monkeypatch.setattr("lithobrake.touchdown.is_stored", is_stored)
+    folder = StudyFolder(tmp_path / "out")
+    plans = [plan_of(study, "quick", folder, 2)]
+    kept |= {0, 1, 2, 3, 4}
+    (folder.path / "beds").mkdir()
+    (folder / "beds/bed_7.h5").touch()
+    folder.note("bed", ["beds/bed_7.h5"], stage_keys(study)["bed"], 1.0)
+    plans.append(plan_of(study, "quick", folder, 2))
+    assert [(plan.beds[0].total, plan.beds[0].new) for plan in plans] == [(15, 15), (15, 9)]
+    assert "Beds: 15; 1 in the folder, 5 in the library of beds, 9 to pour." in plan_lines(plans[1])
+    assert plans[1].made["beds"] == (9, 9)
+    assert plans[1].to_json()["beds"] == [{"total": 15, "in_folder": 1, "in_library": 5, "new": 9}]
+    # Two at once: eight rounds, then five.
+    times = [plan.seconds["beds"] for plan in plans]
+    assert times[1][0] / times[0][0] == pytest.approx(5 / 8)
+    # Where nobody knows how fast the workers are.
+    cluster = plan_of(study, "quick", folder, None, on_cluster=True)
+    assert "and the beds and touchdowns, whose time is not known on a cluster" in brief_lines(cluster, "")[1]
+
+
+def test_a_plan_says_the_half_width_to_expect_and_what_that_stands_on(tmp_path: Path) -> None:
+    folder = StudyFolder.only_read(tmp_path / "out")
+    plan = plan_of(drawn(bed={"bed_count": 12}), "quick", folder, 2)
+    found = plan.half_width
+    assert found is not None
+    # t(11) at .95 is 1.796; sd sqrt(.05 / 12 + .95 / 144).
+    assert (found.typical, found.at_worst) == (
+        pytest.approx(1.796 * 0.14 * (0.05 / 12 + 0.95 / 144) ** 0.5, rel=1e-3),
+        pytest.approx(1.796 * 0.5 * (0.05 / 12 + 0.95 / 144) ** 0.5, rel=1e-3),
+    )
+    assert "(90 % interval, 144 runs on 12 beds): +- 2.6 points for the share that stays" in " ".join(plan_lines(plan))
+    assert plan.to_json()["half_width"]["own"] is None
+    assert plan_of(drawn(bed={"bed_count": 1}), "quick", folder, 2).half_width is None
+    assert plan_of(soft(), "quick", folder, 2).half_width is None
+
+
+def test_a_half_width_that_is_asked_for_may_take_runs_and_beds_up_to_the_most(tmp_path: Path) -> None:
+    study = drawn(design={"half_width": 0.02, "largest_run_count": 400})
+    plan = plan_of(study, "quick", StudyFolder.only_read(tmp_path / "out"), 2)
+    assert (plan.made["touchdowns"], plan.made["beds"]) == ((144, 400), (15, 40))
+    assert "Touchdowns: 144 to 400 drawn, until design.half_width is met;" in " ".join(plan_lines(plan))
+
+
+def test_a_landing_of_local_steps_is_expected_to_take_the_measured_share_of_time() -> None:
+    measured = json.loads((HERE / "benchmarks" / "landing_ensembles.json").read_text())["ways"]
+    times = {}
+    for stepping, steps in (("global", 30), ("local", 15), ("local", 25)):
+        soil = soil_of(soft(contact={"stepping": stepping, "steps_per_contact": steps}))
+        times[f"{stepping}:{steps}"] = sum(landing_time(soil, *landing) for landing in soil.landings)
+    for way in ("local:15", "local:25"):
+        assert times["global:30"] / times[way] == pytest.approx(measured[way]["cpu_ratio"], rel=0.01)
 
 
 def test_a_disk_that_is_too_small_is_the_first_warning(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

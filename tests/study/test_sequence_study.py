@@ -53,6 +53,17 @@ REFUSED: list[tuple[dict[str, dict[str, Any]], list[str]]] = [
         ['design.fit, design.refined_level go with design.method = "paper", and it is "sequence"'],
     ),
     ({"design": {"run_count": 20}, "bed": {"bed_count": 21}}, ["bed.bed_count is 21, and design.run_count 20"]),
+    ({"design": {"half_width": 0.5}}, ["design.half_width is 0.5", "above 0 and below 0.5"]),
+    ({"design": {"largest_run_count": 500}}, ["design.largest_run_count is 500, and nothing asks for more"]),
+    (
+        {"design": {"half_width": 0.02, "largest_run_count": 100}},
+        ["design.largest_run_count is 100; allowed: at least design.run_count, 240"],
+    ),
+    ({"design": {"half_width": 0.02}, "bed": {"bed_count": 1}}, ["design.half_width is 0.02, and runs on one bed"]),
+    (
+        {"design": {"method": "paper", "half_width": 0.02}},
+        ['design.half_width goes with design.method = "sequence", and it is "paper"'],
+    ),
     ({"design": {"run_count": "many"}}, ["design.run_count is", "whole number"]),
     ({"design": {"side_runs": "yes"}}, ["design.side_runs is", "true or false"]),
     ({"design": {"side_runs": True, "twin_shift": 0.0}}, ["design.twin_shift is 0", "above 0 [m]"]),

@@ -8,6 +8,7 @@ import math
 import os
 import statistics
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from lithobrake.campaign import Record, available_cores
@@ -26,6 +27,9 @@ Span = tuple[float, float]
 LANDING_STEP, LANDING_GRAIN = 3.5e-5, 5.0e-7
 SETTLING_STEP, SETTLING_GRAIN = 6.0e-5, 7.0e-7
 COMPILING = 60.0  # s
+# What a landing whose contacts have steps of their own takes, over one with COMMON_STEPS common ones: at no steps a
+# contact, and for each (1 / 4.77 with 15, 1 / 4.12 with 25: cpu_ratio in benchmarks/landing_ensembles.json).
+COMMON_STEPS, LOCAL_LANDING, LOCAL_STEP = 30.0, 0.160, 0.0033
 # Flights and journeys over a body of FACETS facets [s]: by the table, once it is built, and by the facets' sum.
 FACETS, TABLE, FLIGHT, EXACT_FLIGHT, JOURNEY, EXACT_JOURNEY = 1920, 10.0, 2.0e-4, 3.5e-3, 1.1e-3, 2.0e-2
 REPORT = 15.0  # s: fits, scores, samples, summary and page
@@ -52,9 +56,10 @@ def expected_seconds(
     found: dict[str, Span | None] = {}
     if soil is not None and _engine_works(made) and not engine_is_compiled():
         found["compiling the engine, once"] = spread(COMPILING)
-    if soil is not None and (made["beds"][1] or made["landings"][1]):
-        pours = made["beds"][1] * pour_time(soil) + made["landings"][1] * landing_time(soil, *soil.landings[0])
-        found["beds, and the landing to look at"] = spread(pace * pours)
+    if soil is not None and made["beds"][1]:
+        found["beds"] = _beds_time(pace * pour_time(soil), made["beds"], None if workers is None else cores)
+    if soil is not None and made["landings"][1]:
+        found["landing to look at"] = spread(pace * landing_time(soil, *soil.landings[0]))
     if made["touchdowns"][1]:
         one, (fewest, most) = run_time(soil, ended, pace), made["touchdowns"]
         found["touchdowns"] = (fewest * one[0] / cores, most * one[1] / cores) if one and workers else None
@@ -105,6 +110,17 @@ def pour_time(soil: ExpectedSoil) -> float:
     return soil.pour_steps() * (SETTLING_STEP + SETTLING_GRAIN * soil.recipe.grain_count)
 
 
+def _beds_time(one: float, beds: tuple[int, int], cores: int | None) -> Span | None:
+    """Time [s] of beds that are poured at once, at least and at most so many, of which one takes so long.
+
+    cores: None for a cluster, on which a single bed alone is poured here.
+    """
+    if cores is None and beds[1] > 1:
+        return None
+    rounds = [math.ceil(count / (cores or 1)) for count in beds]
+    return spread(one * rounds[0])[0], spread(one * rounds[1])[1]
+
+
 def run_time(soil: ExpectedSoil | None, ended: Sequence[Record], pace: float) -> Span | None:
     """Time [s] of one touchdown in the mean, by the clock: as those that have ended took, else as expected of the soil.
 
@@ -123,6 +139,10 @@ def run_time(soil: ExpectedSoil | None, ended: Sequence[Record], pace: float) ->
 
 def landing_time(soil: ExpectedSoil, lander: "Lander", landing: "Landing") -> float:
     """Time [s] of one landing."""
+    contact = landing.contact
+    if contact.stepping == "local":
+        common = replace(landing, contact=replace(contact, stepping="global", steps_per_contact=COMMON_STEPS))
+        return (LOCAL_LANDING + LOCAL_STEP * contact.steps_per_contact) * landing_time(soil, lander, common)
     grains = soil.recipe.grain_count
     relaxing, touching = soil.landing_steps(lander, landing)
     settling = relaxing * (SETTLING_STEP + SETTLING_GRAIN * grains)

@@ -5,6 +5,8 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from lithobrake.pipeline.planning.expected_time import Span
+from lithobrake.pipeline.planning.expected_width import ExpectedHalfWidth
+from lithobrake.pipeline.planning.planned_beds import PlannedBeds
 from lithobrake.pipeline.planning.planned_runs import PlannedRuns
 
 
@@ -16,7 +18,11 @@ class Plan:
     folder          where
     stages          titles of those that are to be made
     made            how many beds, touchdowns, samples, ... are to be made, at least and at most
-    runs            the touchdowns with the fewest and with the most kept inputs; one, where these are known
+    beds            of the study, with those that need not be poured; the most of them that a half width may ask for
+                    behind it, where that is not known yet
+    runs            the touchdowns with the fewest and with the most kept inputs, or that a half width may ask for; one,
+                    where these are known
+    half_width      to expect of the answer; None where that cannot be said
     process_count   here; None for a cluster
     seconds         from and to, by what takes them; None where nobody knows
     basis           where the seconds come from, in a sentence
@@ -29,7 +35,9 @@ class Plan:
     folder: str
     stages: tuple[str, ...]
     made: Mapping[str, tuple[int, int]]
+    beds: tuple[PlannedBeds, ...]
     runs: tuple[PlannedRuns, ...]
+    half_width: ExpectedHalfWidth | None
     process_count: int | None
     seconds: Mapping[str, Span | None]
     basis: str
@@ -46,4 +54,5 @@ class Plan:
     def to_json(self) -> dict[str, Any]:
         """All of it as JSON values."""
         runs = [asdict(one) | {"known": len(one.known), "new": one.new, "total": one.total} for one in self.runs]
-        return asdict(self) | {"runs": runs, "time": self.time}
+        beds = [asdict(one) | {"new": one.new} for one in self.beds]
+        return asdict(self) | {"beds": beds, "runs": runs, "time": self.time}

@@ -19,11 +19,14 @@ def plan_lines(plan: Plan) -> list[str]:
     if not plan.stages:
         lines += ["Nothing is left to make: every file is there and still good."]
     else:
-        lines += [f"To make: {_made(plan)}.", f"Touchdowns: {_designs(plan)}.", f"Time: {_time(plan)}."]
+        lines += [f"To make: {_made(plan)}."]
+        lines += [f"Beds: {_beds(plan)}."] if plan.beds[0].total else []
+        lines += [f"Touchdowns: {_designs(plan)}.", f"Time: {_time(plan)}."]
         lines += [f"  {what}: {_seconds(*part)}" for what, part in plan.seconds.items() if part is not None]
         lines += [f"  {plan.basis}"]
     size, free = bytes_in_words(sum(plan.bytes.values())), bytes_in_words(plan.free_bytes)
     lines += [f"Disk: about {size} when finished; {free} are free."]
+    lines += plan.half_width.lines() if plan.half_width else []
     lines += [f"Warnings: {len(plan.warnings) or 'none'}."]
     return lines + [f"  {number}. {warning}" for number, warning in enumerate(plan.warnings, start=1)]
 
@@ -45,12 +48,21 @@ def _made(plan: Plan) -> str:
     return ", ".join(counts) or "summary and report"
 
 
+def _beds(plan: Plan) -> str:
+    """How many beds there are to be, and how many of them need not be poured."""
+    fewest, most = plan.beds[0], plan.beds[-1]
+    there = f"{most.in_folder} in the folder, {most.in_library} in the library of beds"
+    return f"{_range(fewest.total, most.total)}; {there}, {_range(fewest.new, most.new)} to pour"
+
+
 def _designs(plan: Plan) -> str:
     """How many touchdowns each design asks for, and how many of all are there."""
     fewest, most = plan.runs[0], plan.runs[-1]
     if most.drawn:
         side = f", {most.side} side runs" if most.side else ""
-        return f"{most.drawn} drawn{side}; {most.total} in all, of which {len(most.known)} are known and reused"
+        until = ", until design.half_width is met" if fewest is not most else ""
+        drawn, total = _range(fewest.drawn, most.drawn), _range(fewest.total, most.total)
+        return f"{drawn} drawn{until}{side}; {total} in all, of which {len(most.known)} are known and reused"
     kept = (
         f"{_range(fewest.kept_count, most.kept_count)} kept inputs" if fewest is not most else f"{most.kept_count} kept"
     )
@@ -64,10 +76,11 @@ def _time(plan: Plan) -> str:
     """The expected time in all."""
     workers = plan.process_count
     where = f" on {workers} process{'es' * (workers != 1)}" if workers else ""
-    if None not in plan.seconds.values():
+    unknown = [what for what, span in plan.seconds.items() if span is None]
+    if not unknown:
         return f"about {_seconds(*plan.time)}{where}"
     why = "before some have been made" if workers else "on a cluster"
-    return f"about {_seconds(*plan.time)}{where}, and the touchdowns, whose time is not known {why}"
+    return f"about {_seconds(*plan.time)}{where}, and the {' and '.join(unknown)}, whose time is not known {why}"
 
 
 def _seconds(lower: float, upper: float) -> str:

@@ -63,11 +63,13 @@ def known_runs(study: Study, folder: StudyFolder) -> dict[str, Record]:
 def possible_runs(study: Study, folder: StudyFolder, screened: bool, known: Iterable[str]) -> list[PlannedRuns]:
     """The touchdowns with the inputs that the screening keeps; before it, those with one input and with all of them.
 
+    Of a sequence those of its count; with a half width that is not met yet, also the most that there may be.
+
     screened: the folder has the screening of this study. known: keys of runs that have ended.
     """
     inputs = tuple(design_inputs(study))
     if study.design.method == "sequence":
-        return [_planned_sequence(study, set(known))]
+        return _possible_sequence(study, set(known))
     if screened:
         from lithobrake.chaos import load
 
@@ -96,6 +98,14 @@ def _planned_points(study: Study, kept_count: int, most: int) -> np.ndarray:
     if not parts:
         return sample_inputs(design_inputs(study), most, seed=0)
     return np.random.default_rng(0).permutation(np.concatenate(parts))[:most]
+
+
+def _possible_sequence(study: Study, ended: set[str]) -> list[PlannedRuns]:
+    """The runs of a sequence, and the most that its half width may ask for where that is not known yet."""
+    fewest, most = _planned_sequence(study, ended), study.design.most_runs
+    if not fewest.new or most == study.design.run_count:
+        return [fewest]
+    return [fewest, _planned_sequence(study.with_run_count(most), ended)]
 
 
 def _planned_sequence(study: Study, ended: set[str]) -> PlannedRuns:

@@ -5,14 +5,16 @@ from collections.abc import Set
 from pathlib import Path
 
 from lithobrake.campaign import available_cores
-from lithobrake.pipeline.beds import bed_files
 from lithobrake.pipeline.folder import StudyFolder
+from lithobrake.pipeline.growing_sequence import grown
 from lithobrake.pipeline.owner import refuse_others_folder
 from lithobrake.pipeline.planning.expected_disk import expected_bytes, flight_count, journey_count
 from lithobrake.pipeline.planning.expected_steps import ExpectedSoil
 from lithobrake.pipeline.planning.expected_time import basis, expected_seconds
+from lithobrake.pipeline.planning.expected_width import expected_width
 from lithobrake.pipeline.planning.plan import Plan
 from lithobrake.pipeline.planning.plan_in_words import bytes_in_words
+from lithobrake.pipeline.planning.planned_beds import PlannedBeds, planned_beds
 from lithobrake.pipeline.planning.planned_runs import PlannedRuns, known_runs, possible_runs
 from lithobrake.pipeline.planning.study_warnings import study_warnings
 from lithobrake.pipeline.site import with_site_gravity
@@ -29,9 +31,9 @@ def plan_study(path: Path, out: Path, worker_count: int | None = None) -> Plan:
     that is none.
     """
     source = StudySource.read(path)
-    study = with_site_gravity(source.study, source.name)
+    study, folder = with_site_gravity(source.study, source.name), StudyFolder.only_read(out)
     refuse_others_folder(source, out)
-    return plan_of(study, study.title or path.stem, StudyFolder.only_read(out), worker_count)
+    return plan_of(grown(study, folder), study.title or path.stem, folder, worker_count)
 
 
 def plan_of(
@@ -46,19 +48,22 @@ def plan_of(
     }
     known = known_runs(study, folder)
     runs = tuple(possible_runs(study, folder, "screen" not in stale, known))
-    beds = sum(not folder.is_current([file], keys["bed"]) for file in bed_files(study))
+    largest = study.with_run_count(study.design.most_runs) if runs[-1].drawn > runs[0].drawn else study
+    beds = tuple(planned_beds(one, folder) for one in ((study,) if largest is study else (study, largest)))
     made = _made(study, stale.keys(), runs, beds)
     soil = None if not study.has_soil else ExpectedSoil.of(study, runs[-1].kept_count)
     workers = None if on_cluster else worker_count or available_cores()
     ended = [known[key] for key in runs[-1].known]
-    sizes, free = expected_bytes(study, runs[-1], soil), _free(folder.path)
+    sizes, free = expected_bytes(largest, runs[-1], soil), _free(folder.path)
     room = _no_room(sum(sizes.values()), free) if stale else []
     return Plan(
         study=name,
         folder=str(folder.path),
         stages=tuple(stale.values()),
         made=made,
+        beds=beds,
         runs=runs,
+        half_width=expected_width(study, known),
         process_count=workers,
         seconds=expected_seconds(study, made, soil, ended, workers) if stale else {},
         basis=basis(made, soil, ended),
@@ -68,12 +73,14 @@ def plan_of(
     )
 
 
-def _made(study: Study, stale: Set[str], runs: tuple[PlannedRuns, ...], beds: int) -> dict[str, tuple[int, int]]:
+def _made(
+    study: Study, stale: Set[str], runs: tuple[PlannedRuns, ...], beds: tuple[PlannedBeds, ...]
+) -> dict[str, tuple[int, int]]:
     """How many of each are to be made, at least and at most."""
     new = [one.new for one in runs] if stale & MAKE_RUNS else [0]
     landings = int("landing" in stale and study.has_soil)
     return {
-        "beds": (beds, beds),
+        "beds": (beds[0].new, beds[-1].new),
         "landings": (landings, landings),
         "touchdowns": (min(new), max(new)),
         "samples": (study.monte_carlo.sample_count,) * 2 if "sample" in stale else (0, 0),

@@ -9,6 +9,7 @@ from lithobrake.pipeline.site import gravity_warning, site_warning
 from lithobrake.pipeline.surrogate_bounce import why_no_soil
 from lithobrake.study import Study
 from lithobrake.study.quantity import Scalar, Uncertain, uncertain
+from lithobrake.study.study import FEWEST_BEDS
 from lithobrake.touchdown_model import PLACE
 
 # A share of touchdowns that may be cut off without a word [-].
@@ -27,7 +28,7 @@ def study_warnings(study: Study, soil: ExpectedSoil | None) -> list[str]:
     touchdown = (
         [] if soil is None else [*_bed(soil), *_rim(study, soil), *_time_limit(study, soil), *_never_count(study)]
     )
-    return [*site, *touchdown, *_wide(study), *_terms(study), *_bounces(study), *_one_place(study)]
+    return [*site, *touchdown, *_wide(study), *_terms(study), *_bounces(study), *_few_beds(study), *_one_place(study)]
 
 
 def _bed(soil: ExpectedSoil) -> Iterator[str]:
@@ -114,6 +115,26 @@ def _bounces(study: Study) -> Iterator[str]:
     why = why_no_soil(study)
     if study.rest.count and why:
         yield f"Bounce after bounce on hard ground only: {why}."
+
+
+def _few_beds(study: Study) -> Iterator[str]:
+    """Beds that give no interval, or a wide one."""
+    if study.design.method != "sequence" or study.bed_count >= FEWEST_BEDS:
+        return
+    from lithobrake.analysis.confidence import t_quantile
+
+    if study.bed_count == 1:
+        yield (
+            "All runs come down on one bed, and another bed gives another answer: no number of this study will have an "
+            f"interval; set bed.bed_count to {FEWEST_BEDS} or more, or leave it out."
+        )
+        return
+    wider = 100.0 * (t_quantile(study.bed_count - 1) / t_quantile(FEWEST_BEDS - 1) - 1.0)
+    remedy = "set bed.bed_count" if study.bed.bed_count is not None else "raise design.run_count"
+    yield (
+        f"The runs come down on {study.bed_count} beds, and beds are what an interval counts: so few make it "
+        f"{wider:.0f} % wider than {FEWEST_BEDS} would, by Student's t alone; {remedy} to {FEWEST_BEDS} or more."
+    )
 
 
 def _one_place(study: Study) -> Iterator[str]:

@@ -1,0 +1,92 @@
+"""How wide the interval of a study's answer will be: the half width to expect, and what that stands on."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from lithobrake.campaign import Record
+from lithobrake.pipeline.answers import ANSWER, answers_of
+from lithobrake.pipeline.growing_sequence import sequence_keys
+from lithobrake.study import Study
+
+# Of a run that is all or nothing, as captured or not, at worst: half of them are.
+YES_OR_NO = 0.5
+# Fewer answers say nothing of how they scatter.
+FEWEST_ANSWERS = 20
+
+
+@dataclass(frozen=True)
+class ExpectedHalfWidth:
+    """Half the interval of a share over so many runs on so many beds, as a share of 1.
+
+    at_worst           of a share for which each run is all or nothing
+    typical            of one for which each run has a share of its own, as the share of headings that stay, with the
+                       scatter of landings with drawn places
+    spread             standard deviation of a run in the typical case
+    correlation        of two runs on one bed, in both
+    own                of `answer`, by the scatter of the study's own runs; None before enough have ended
+    own_run_count      how many these are
+    level              probability that the interval stands for
+    """
+
+    run_count: int
+    bed_count: int
+    at_worst: float
+    typical: float
+    spread: float
+    correlation: float
+    own: float | None
+    own_run_count: int
+    answer: str
+    level: float
+
+    def lines(self) -> list[str]:
+        """The half width in words."""
+        counts = f"{self.run_count} runs on {self.bed_count} beds"
+        lines = [
+            f"Half width to expect ({100 * self.level:.0f} % interval, {counts}): {_points(self.typical)} for the "
+            f"share that stays, at most {_points(self.at_worst)} for any share.",
+            f"  Assumed: a run scatters by {self.spread:g} (as landings with drawn places did), at most by "
+            f"{YES_OR_NO:g}; runs on one bed are correlated by {self.correlation:g}.",
+        ]
+        if self.own is not None:
+            lines.append(f"  By the {self.own_run_count} runs that have ended: {_points(self.own)} for {self.answer}.")
+        return lines
+
+
+def expected_width(study: Study, known: Mapping[str, Record]) -> ExpectedHalfWidth | None:
+    """What to expect of a sequence; None for another method, and for one bed, which gives no interval.
+
+    known: runs that have ended, by key.
+    """
+    if study.design.method != "sequence" or study.bed_count == 1:
+        return None
+    from lithobrake.analysis import LEVEL, expected_half_width
+    from lithobrake.analysis.half_width import CORRELATION, SPREAD
+
+    counts = study.design.run_count, study.bed_count
+    values, bed = answers_of([known[key] for key in sequence_keys(study) if key in known])
+    return ExpectedHalfWidth(
+        *counts,
+        at_worst=expected_half_width(*counts, spread=YES_OR_NO) or np.inf,
+        typical=expected_half_width(*counts) or np.inf,
+        spread=SPREAD,
+        correlation=CORRELATION,
+        own=_own(values, bed, counts),
+        own_run_count=int(np.isfinite(values).sum()),
+        answer=ANSWER,
+        level=LEVEL,
+    )
+
+
+def _own(values: np.ndarray, bed: np.ndarray, counts: tuple[int, int]) -> float | None:
+    from lithobrake.analysis import expected_half_width, scatter_of
+
+    if np.isfinite(values).sum() < FEWEST_ANSWERS or (scatter := scatter_of(values, bed)) is None:
+        return None
+    return expected_half_width(*counts, spread=scatter[0], correlation=scatter[1])
+
+
+def _points(share: float) -> str:
+    return f"+- {100 * share:.2g} points"

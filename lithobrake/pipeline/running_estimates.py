@@ -1,0 +1,84 @@
+"""What the runs of a sequence say while more of them come in: the estimates as they are now, with their intervals.
+
+Runs that take long come in last, so what is said early leans to those that end soon.
+"""
+
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING, Any
+
+from lithobrake.campaign import Record, RunStatus
+
+if TYPE_CHECKING:
+    from lithobrake.analysis import IntervalEstimate, ShareEstimate
+
+# Of fewer runs no interval says anything.
+FEWEST_RUNS = 2
+NO_FLIGHTS = "The share that stays is not known yet: it counts those that come down again too, and that takes flights."
+
+
+@dataclass(frozen=True)
+class RunningEstimates:
+    """Estimates from the runs that have ended, beds as the units of all intervals.
+
+    captured   share of the landers that are captured, of those that are captured or clear; None where none is either
+    speed_out  mean speed [m/s] of those that are clear; None where they came down on less than two beds
+    """
+
+    captured: "ShareEstimate | None"
+    speed_out: "IntervalEstimate | None"
+
+    def lines(self) -> list[str]:
+        """The estimates in words."""
+        if self.captured is None:
+            return []
+        lines = [f"so far, from {self.captured.source}:", f"  captured: {_share(self.captured)}"]
+        if self.speed_out is not None:
+            value, lower, upper = self.speed_out.value, self.speed_out.lower, self.speed_out.upper
+            level = f"{100 * self.speed_out.level:.0f} %"
+            lines.append(f"  mean speed_out: {value:.4g} m/s ({level}: {lower:.4g} to {upper:.4g})")
+        return [*lines, f"  {NO_FLIGHTS}"]
+
+    def to_json(self) -> dict[str, Any]:
+        """All of it as JSON values."""
+        return {
+            "captured": None if self.captured is None else self.captured.summary(),
+            "speed_out": None if self.speed_out is None else asdict(self.speed_out),
+            "stays": None,
+            "why_no_stays": NO_FLIGHTS,
+        }
+
+
+def running_estimates(records: Sequence[Record]) -> RunningEstimates | None:
+    """The estimates from runs of a sequence, of which those count that are done; None for too few."""
+    done = [record for record in records if record.status == RunStatus.DONE]
+    if len(done) < FEWEST_RUNS:
+        return None
+    # Whoever looks at a study without such runs does not wait for these.
+    import numpy as np
+
+    from lithobrake.analysis import mean_estimate, share_estimate
+    from lithobrake.pipeline.answers import answers_of
+
+    values, bed = answers_of(done)
+    speed = np.array([record.outputs.get("speed_out", np.nan) for record in done])
+    answered, clear = np.isfinite(values), np.isfinite(speed)
+    return RunningEstimates(
+        captured=share_estimate(values, bed) if answered.any() else None,
+        speed_out=mean_estimate(speed, bed) if len(np.unique(bed[clear])) > 1 else None,
+    )
+
+
+def _share(found: "ShareEstimate") -> str:
+    """A share with its interval, or why it has none, and what runs without an answer could make of it."""
+    if found.lower is None or found.upper is None:
+        return f"{_percent(found.share)}, without an interval: {found.why}"
+    said = f"{_percent(found.share)} ({100 * found.level:.0f} %: {_percent(found.lower)} to {_percent(found.upper)})"
+    least, most = found.if_missing
+    if least == most:
+        return said
+    return f"{said}; {_percent(least)} to {_percent(most)} if none or all without an answer were"
+
+
+def _percent(share: float) -> str:
+    return f"{100 * share:.1f} %"

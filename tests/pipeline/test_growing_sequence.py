@@ -1,0 +1,123 @@
+"""Studies that ask for a half width: how many runs they make, stopped or not, and what plan and folder say of them."""
+
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from lithobrake.analysis import half_width_of
+from lithobrake.pipeline import StudyFolder, plan_lines, study_status
+from lithobrake.pipeline.answers import answers_of
+from lithobrake.pipeline.design_runs import DesignRuns
+from lithobrake.pipeline.growing_sequence import grown
+from lithobrake.pipeline.job import Silent
+from lithobrake.pipeline.planning.planner import plan_of
+from lithobrake.pipeline.solver import function_identity
+from lithobrake.pipeline.study_run import run_study
+from lithobrake.results import open_study
+from lithobrake.study import StudySource
+
+from .ball_studies import BALL
+from .captured_model import land
+
+
+class Said(Silent):
+    """Keeps what is said, and ends the study at a word."""
+
+    def __init__(self, last: str = "") -> None:
+        self.sentences: list[str] = []
+        self.last = last
+
+    def say(self, sentence: str) -> None:
+        self.sentences.append(sentence)
+        if self.last and self.last in sentence:
+            raise KeyboardInterrupt
+
+
+def source(**design: Any) -> StudySource:
+    """The ball on a plate by a function, its runs out of the sequence."""
+    tables = tomllib.loads(BALL.read_text())
+    del tables["solver"]
+    tables["design"] = {"method": "sequence", "run_count": 24} | design
+    return StudySource.of_tables(tables, function_identity(land))
+
+
+def run(folder: Path, shown: Said, **design: Any) -> DesignRuns:
+    run_study(source(**design), folder, until="runs", worker_count=2, model=land, shown=shown)
+    return DesignRuns.load(StudyFolder.only_read(folder), "sequence")
+
+
+@pytest.fixture(scope="module")
+def narrow(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, DesignRuns, list[str]]:
+    """A study that was asked for 6 points: its folder, its runs, what it said."""
+    folder, said = tmp_path_factory.mktemp("narrow"), Said()
+    return folder, run(folder, said, half_width=0.06), said.sentences
+
+
+def test_runs_are_made_until_the_half_width_is_met(narrow: tuple[Path, DesignRuns, list[str]]) -> None:
+    folder, runs, said = narrow
+    values, bed = answers_of(open_study(folder).ledger)
+    assert len(values) == runs.run_count
+    assert (half_width_of(values, bed) or 1.0) <= 0.06
+    # A quarter is captured: 1.7 sqrt(.1875 / N) is .06 at 150 runs; one stage more at the most.
+    assert 110 <= runs.run_count <= 240
+    assert len(set(bed)) == max(12, runs.run_count // 10)
+    steps = [sentence for sentence in said if sentence.startswith("the share captured is known to +- ")]
+    assert "from 24 runs on 12 beds, and design.half_width asks for +- 6: going on to 50 runs on 12" in steps[0]
+    assert f"from {runs.run_count} runs on " in steps[-1]
+    assert steps[-1].endswith("asks for +- 6: that is enough")
+
+
+def test_what_ends_is_the_study_of_that_many_runs(narrow: tuple[Path, DesignRuns, list[str]]) -> None:
+    folder, runs, _ = narrow
+    files = {path: path.stat().st_mtime_ns for path in folder.glob("designs/*")}
+    again = Said()
+    assert run(folder, again, half_width=0.06).keys == runs.keys
+    # Nothing was made, not even the table of the runs.
+    assert {path: path.stat().st_mtime_ns for path in folder.glob("designs/*")} == files
+    assert not any("going on" in sentence for sentence in again.sentences)
+    study = source(half_width=0.06).study
+    only_read = StudyFolder.only_read(folder)
+    assert grown(study, only_read).design.run_count == runs.run_count
+    assert grown(study, only_read).with_run_count(24) == study.with_run_count(24)
+    plan = plan_of(grown(study, only_read), "ball", only_read, 2)
+    assert (plan.stages, len(plan.runs), plan.runs[0].drawn) == ((), 1, runs.run_count)
+    answered = sum(outcome in ("clear", "captured") for outcome in runs.outcomes)
+    assert f"By the {answered} runs that have ended: +- " in " ".join(plan_lines(plan))
+    assert f"{runs.run_count} runs: {runs.run_count} done" in " ".join(study_status(folder).lines())
+    assert run(folder, again, run_count=runs.run_count).keys == runs.keys
+    assert {path: path.stat().st_mtime_ns for path in folder.glob("designs/*")} == files
+
+
+def test_a_study_that_is_stopped_between_two_looks_ends_with_the_same_runs(
+    narrow: tuple[Path, DesignRuns, list[str]], tmp_path: Path
+) -> None:
+    with pytest.raises(KeyboardInterrupt):
+        run(tmp_path, Said("going on to 50"), half_width=0.06)
+    first = DesignRuns.load(StudyFolder.only_read(tmp_path), "sequence")
+    assert first.run_count == 24
+    said = Said()
+    assert run(tmp_path, said, half_width=0.06).keys == narrow[1].keys
+    assert any("sequence: 24 of 50 runs were known" in sentence for sentence in said.sentences)
+
+
+def test_a_study_that_goes_on_still_shows_the_runs_that_there_are(tmp_path: Path) -> None:
+    class Stopped(Said):
+        """Ends the study at its second look at the beds."""
+
+        def begin(self, title: str, number: int, count: int) -> None:
+            if title == "bed" and any("going on to 50 runs" in sentence for sentence in self.sentences):
+                raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        run(tmp_path, Stopped(), half_width=0.06)
+    lines = study_status(tmp_path).lines()
+    assert any(line.startswith("24 runs: 24 done, 0 running") for line in lines)
+    assert any(line.startswith("so far, from ") for line in lines)
+
+
+def test_there_is_an_end_to_runs_that_are_not_enough(tmp_path: Path) -> None:
+    said = Said()
+    assert run(tmp_path, said, half_width=0.01, largest_run_count=60).run_count == 60
+    assert said.sentences[-1].endswith("no more are made, since design.largest_run_count is 60")
