@@ -77,7 +77,7 @@ def _answer(data: SequenceResults) -> PageTable:
     rows = [[f"landers that {action(data)}", percent(stays["share"], digits)]]
     if has_interval(data):
         rows.append([f"{percent(data.level, 0)} interval", bounds((stays["lower"], stays["upper"]), digits)])
-    for key, words in (("next_bed", "on one next bed"), ("if_missing", "if none or all without an answer stay")):
+    for key, words in (("next_bed", "on one next bed"), ("if_missing", "if none or all of those without an answer do")):
         if stays.get(key):
             rows.append([words, bounds(stays[key], 1)])
     if stays.get("emulator") is not None:

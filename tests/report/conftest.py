@@ -256,5 +256,8 @@ def sequence_folder(study_folder: Path, tmp_path_factory: pytest.TempPathFactory
     """A finished study of 120 landings on 12 beds, without its report."""
     folder = tmp_path_factory.mktemp("sequence") / "study"
     shutil.copytree(study_folder, folder, ignore=shutil.ignore_patterns("report", "scores.json"))
+    # Long enough to be folded on the page.
+    study_file = (folder / "study.toml").read_text(encoding="utf-8") + "# A remark.\n" * 20
+    (folder / "study.toml").write_text(study_file, encoding="utf-8")
     write_sequence(folder, made_up_summary(made_up_scores()), Truth(rim="fast_flat"), 120, 12)
     return folder
