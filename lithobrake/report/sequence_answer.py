@@ -60,7 +60,7 @@ def _sentences(data: SequenceResults) -> list[str]:
     said = [_with_interval(data) if has_interval(data) else f"{_where(data)}: {share} of landers {action(data)}"]
     said[0] += f"; from {source}." if source else "."
     if not has_interval(data):
-        said.append(_as_sentence(stays.get("why") or ANOTHER))
+        said.append(as_sentence(stays.get("why") or ANOTHER))
     elif stays.get("next_bed"):
         said.append(
             f"On one next bed the share lies between {bounds(stays['next_bed'], digits).replace(' to ', ' and ')}."
@@ -96,7 +96,8 @@ def drawn_things(data: SequenceResults) -> list[str]:
     return [words for words, is_drawn in found.items() if is_drawn]
 
 
-def _as_sentence(words: str) -> str:
+def as_sentence(words: str) -> str:
+    """Words with a capital and a full stop."""
     return f"{words[:1].upper()}{words[1:].rstrip('.')}."
 
 
@@ -151,6 +152,8 @@ def _few_beds(data: SequenceResults) -> str:
 
 def emulator_outside(data: SequenceResults) -> str:
     """That the emulator contradicts the runs it was made from, if it does."""
+    if data.table("emulator").get("warning"):
+        return as_sentence(data.table("emulator")["warning"])
     stays = data.table("stays")
     by_emulator = stays.get("emulator")
     if by_emulator is None or not has_interval(data) or stays["lower"] <= by_emulator <= stays["upper"]:

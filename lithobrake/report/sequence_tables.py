@@ -10,6 +10,7 @@ from lithobrake.report.page import PageTable, Tile, fixed, flat, number
 from lithobrake.report.results import SequenceResults
 from lithobrake.report.sequence_answer import (
     action,
+    as_sentence,
     bounds,
     drawn_things,
     has_interval,
@@ -85,7 +86,7 @@ def _answer(data: SequenceResults) -> PageTable:
     if stays.get("flight_sampling") is not None:
         rows.append(["+- by the number of flights alone", f"{100 * stays['flight_sampling']:.1f} points"])
     rows += [["from", stays["from"]]] if stays.get("from") else []
-    note = f"No interval: {stays['why']}." if stays.get("why") else ""
+    note = as_sentence(stays["why"]) if stays.get("why") else ""
     return PageTable("The answer", ["quantity", "value"], rows, note)
 
 
@@ -102,7 +103,7 @@ def _outputs(data: SequenceResults) -> PageTable:
             "" if spread is None else table_cell(spread * shown.factor),
         ]
         cells += [_estimate(data.table("outputs", name, "quantiles").get(level), shown.factor) for level in LEVELS]
-        rows.append([shown.row, shown.unit, *cells])
+        rows.append([shown.row.replace("_", " "), shown.unit, *cells])
     note = (
         "Of the landings that left, over soils, beds, places and attitudes that were not in the study. In brackets "
         "90 % intervals."

@@ -14,6 +14,8 @@ CONTENTS = {
     "designs/sequence.csv": "the landings of the sequence: what each drew, and what came out",
     "designs/soil_pairs.csv": "landings of the sequence made again on a second soil",
     "designs/twins.csv": "landings of the sequence made again a little beside",
+    "run_flights.csv": "how the flights of each run ended, from many sites",
+    "estimates.json": "what the runs say, with intervals",
     "landing.h5": "one landing: shapes, poses, and how they moved",
     "emulator.json": "the emulator (lithobrake.emulator.load reads it)",
     "screening.json": "the expansion in all inputs",

@@ -98,6 +98,8 @@ def test_warnings_name_few_beds_and_an_emulator_that_contradicts_the_runs(data: 
     assert "6 beds" in few
     assert "bed.bed_count to 12 or more" in few
     assert "by it 80 % stay or come down again within 12 h, outside the interval of the runs (90 %: 68 to 73 %)" in off
+    said = {"warning": "the emulator gives 80 %, outside of the interval"}
+    assert warnings(told(data, emulator=said)) == ["The emulator gives 80 %, outside of the interval."]
     assert warnings(told(holding(data), runs=RUNS | {"beds": 24})) == []
 
 
