@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
 from lithobrake.report.style import INK, QUIET, TEST, TRAINING, output
 
@@ -67,6 +68,7 @@ def _histogram(axes: Axes, name: str, counts: Sequence[int]) -> None:
     axes.bar(
         edges[:-1], counts, np.diff(edges), align="edge", color=colours, edgecolor="white", linewidth=0.6, alpha=0.75
     )
+    axes.yaxis.set_major_locator(MaxNLocator(integer=True, nbins=6))
     axes.set_title(f"{shown.words} {shown.symbol}".strip())
     axes.set_xlim(0.0, 1.0)
     axes.set_xticks([0.0, 0.5, 1.0], ["0", "0.5", "1"])

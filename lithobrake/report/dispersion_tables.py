@@ -6,7 +6,7 @@ from typing import Any
 from lithobrake.outcomes import FlightStatus, JourneyStatus, SampleOutcome
 from lithobrake.report.captions import hours, percent
 from lithobrake.report.page import PageTable, fixed, flat, number
-from lithobrake.report.results import Results
+from lithobrake.report.results import PaperResults, Results
 
 OUTCOME_WORDS: dict[str, str] = {
     FlightStatus.IMPACT: "down again within {hours}",
@@ -69,7 +69,8 @@ def _outcomes(data: Results) -> PageTable:
     stays, level = data.results.get("stays", {}), percent(data.level, 0)
     note = f"Shares of {shares['sample_count']} samples; {shares['flight_count']} of them were flown."
     note += f" {stays['why']}" if stays.get("why") else ""
-    if stays.get("flight_sampling") is not None:
+    # The runs of a sequence have flights of their own, of which its answer speaks.
+    if isinstance(data, PaperResults) and stays.get("flight_sampling") is not None:
         sampling = f"{100 * stays['flight_sampling']:.1f} points ({percent(stays['level'], 0)})"
         note += f" The number of flights alone leaves +- {sampling} in what remains."
     if any(_is_unmet(shares[key]) for key in outcome_words(data)):

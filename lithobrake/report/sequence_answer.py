@@ -97,8 +97,9 @@ def drawn_things(data: SequenceResults) -> list[str]:
 
 
 def as_sentence(words: str) -> str:
-    """Words with a capital and a full stop."""
-    return f"{words[:1].upper()}{words[1:].rstrip('.')}."
+    """Words with a capital, which a dotted key at their beginning does not take, and a full stop."""
+    first = words[:1] if "." in words.split(" ", 1)[0] else words[:1].upper()
+    return f"{first}{words[1:].rstrip('.')}."
 
 
 def unanswered(data: SequenceResults) -> dict[str, int]:
@@ -165,4 +166,5 @@ def emulator_outside(data: SequenceResults) -> str:
 
 
 def _gravity(data: SequenceResults) -> str:
-    return str(data.table("site").get("gravity_warning") or "")
+    warning = data.table("site").get("gravity_warning")
+    return as_sentence(warning) if warning else ""

@@ -1,12 +1,12 @@
 """The tables and the first numbers of the page of a sequence."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 from lithobrake.outcomes import TouchdownOutcome
 from lithobrake.report.captions import input_words, percent
 from lithobrake.report.dispersion_tables import dispersion_tables
-from lithobrake.report.page import PageTable, Tile, fixed, flat, number
+from lithobrake.report.page import PageTable, Tile, fixed, number
 from lithobrake.report.results import SequenceResults
 from lithobrake.report.sequence_answer import (
     action,
@@ -60,7 +60,7 @@ def tiles(data: SequenceResults) -> list[Tile]:
 def tables(data: SequenceResults) -> list[PageTable]:
     """Those of what the summary has."""
     results = data.results
-    made = {
+    made: dict[Callable[[SequenceResults], PageTable], str] = {
         _answer: STAYS,
         _inputs: "runs",
         _outputs: "outputs",
@@ -70,7 +70,9 @@ def tables(data: SequenceResults) -> list[PageTable]:
         beds_table: "beds",
         touchdowns_table: "outputs_of_runs",
     }
-    return [*(table(data) for table, key in made.items() if results.get(key)), *dispersion_tables(data)]
+    found = [table(data) for table, key in made.items() if results.get(key)]
+    side = [_side_runs(data)] if data.table("runs", "side_runs", "chaos_deviation") else []
+    return [*found, *side, *dispersion_tables(data)]
 
 
 def _answer(data: SequenceResults) -> PageTable:
@@ -79,8 +81,9 @@ def _answer(data: SequenceResults) -> PageTable:
     if has_interval(data):
         rows.append([f"{percent(data.level, 0)} interval", bounds((stays["lower"], stays["upper"]), digits)])
     for key, words in (("next_bed", "on one next bed"), ("if_missing", "if none or all of those without an answer do")):
-        if stays.get(key):
-            rows.append([words, bounds(stays[key], 1)])
+        low, high = stays.get(key) or (0.0, 0.0)
+        if low < high:
+            rows.append([words, bounds((low, high), 1)])
     if stays.get("emulator") is not None:
         rows.append(["the same by the emulator", percent(stays["emulator"])])
     if stays.get("flight_sampling") is not None:
@@ -166,10 +169,25 @@ def _runs(data: SequenceResults) -> PageTable:
         rows.append(
             ["left over the rim of the bed, in flight", str(runs["over_rim"]), percent(runs["over_rim"] / total)]
         )
-    sides = flat({"side runs": runs["side_runs"]}) if runs.get("side_runs") else []
-    rows += [[name.replace("_", " ").replace(".", ": "), value, ""] for name, value in sides]
     note = " ".join(filter(None, [f"On {runs['beds']} beds." if runs.get("beds") else "", missing_sentence(data)]))
     return PageTable("Outcomes of the runs", ["outcome", "runs", "share"], rows, note, frozenset({"runs", "share"}))
+
+
+def _side_runs(data: SequenceResults) -> PageTable:
+    """What pairs of runs tell of soil and chaos."""
+    side, rows = data.table("runs", "side_runs"), []
+    effects, chaos = (data.table("runs", "side_runs", key) for key in ("soil_total_effect", "chaos_deviation"))
+    for name in dict.fromkeys([*effects, *chaos]):
+        shown = output(name)
+        row, unit, factor = (sign(name), "", 1.0) if name == STAYS else (shown.row, shown.unit, shown.factor)
+        rows.append([row, _part(effects, name), _estimate(chaos.get(name), factor), unit])
+    columns = ["output", "total effect of the soil [%]", "standard deviation by chaos", "unit"]
+    note = (
+        f"{side.get('soil_pairs', 'No')} runs were made again on a second soil, {side.get('twins', 'no')} at a place "
+        f"{number(1e3 * side.get('twin_shift', 0.0))} mm beside. Total effect: the share of the variance that goes "
+        "with the soil at one bed, place and attitude, whatever these are. In brackets 90 % intervals."
+    )
+    return PageTable("Side runs", columns, rows, note, frozenset(columns[1:3]))
 
 
 def _emulator(data: SequenceResults) -> PageTable:
@@ -193,7 +211,8 @@ def _inputs(data: SequenceResults) -> PageTable:
     emulator = data.table("emulator")
     found = emulator.get("found_inputs")
     rows = []
-    for name, law in _uncertain(data.study):
+    # Sizes of grains vary within a bed, and the site from flight to flight: neither is an input of a run.
+    for name, law in ((name, law) for name, law in _uncertain(data.study) if name in data.runs):
         rows.append([*input_cells(name, law), "" if found is None else "yes" if name in found else "no"])
     keys = {"place": "impact.region", "azimuth": "impact.azimuth_deg", "attitude": "impact.orientation"}
     named = {row[1] for row in rows}

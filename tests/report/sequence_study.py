@@ -56,7 +56,7 @@ def write_sequence(
             "variance_shares": {name: part and part.summary() for name, part in parts.items()},
             "outputs": {name: estimates(values, bed) for name, values in columns.items()},
             "runs": {"count": run_count, "beds": bed_count, "outcomes": counts, "over_rim": 3,
-                     "side_runs": {"twins": 12}},
+                     "side_runs": side_runs()},
             "emulator": emulator_record(model),
             "shares": shares_with_intervals(results["shares"]),
             "rest": {"why_no_soil": "impact.speed is no input", "soil": None, "hard": results["rest"]["hard"]},
@@ -102,6 +102,12 @@ def write_samples_of(model: emulator.Emulator, inputs: dict[str, Any], path: Pat
         file.attrs["input_names"], file.attrs["output_names"] = list(KEYS), list(OUTPUT_NAMES)
         file.attrs["outcomes"] = list(OUTCOMES)
     return float(np.nanmean(stays(drawn.y[:, 0], words)))
+
+
+def side_runs() -> dict[str, Any]:
+    part, deviation = {"share": 0.09, "lower": 0.05, "upper": 0.15}, {"value": 0.01, "lower": 0.008, "upper": 0.014}
+    counts = {"soil_pairs": 20, "twins": 12, "twin_shift": 1e-4}
+    return counts | {"soil_total_effect": {"speed_out": part}, "chaos_deviation": {"elevation_out": deviation}}
 
 
 def estimates(values: np.ndarray, bed: np.ndarray) -> dict[str, Any]:

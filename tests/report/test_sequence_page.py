@@ -176,12 +176,23 @@ def test_tables_have_every_number_with_its_interval(page: str) -> None:
         "<h3>The answer</h3>", "<h3>Outputs of the landings</h3>", "<h3>Parts of the variance</h3>",
         "<h3>Outcomes of the runs</h3>", "<h3>The emulator on beds left out</h3>", "<h3>After the first bounce</h3>",
         "<td>on one next bed</td>", "<td>of it friction of the grains alone</td>",
+        '<td>outgoing speed V+</td><td class="number">9.0 (5.0 to 15.0)</td><td class="number"></td><td>m/s</td>',
+        '<td>elevation theta+</td><td class="number"></td><td class="number">0.573 (0.458 to 0.802)</td><td>deg</td>',
+        "12 at a place 0.1 mm beside",
         "<td>attitude at impact</td><td>impact.orientation</td>", "50.00 % (47.0 to 53.0)",
     ):  # fmt: skip
         assert words in page
     row = re.search(r"<td>outgoing speed V\+</td><td>m/s</td>(.*?)</tr>", page)
     assert row is not None
     assert len(re.findall(r"\d \([\d.]+ to [\d.]+\)", row[1])) == 4
+
+
+def test_site_and_grain_sizes_are_no_inputs_of_a_run(data: SequenceResults) -> None:
+    law = {"distribution": "uniform", "lower": 0.0, "upper": 360.0}
+    study = data.study | {"site": {"heading_deg": law}, "bed": data.study["bed"] | {"diameter": law}}
+    inputs = next(one for one in sequence_tables.tables(replace(data, study=study)) if one.columns[-1] == "found")
+    assert [row[1] for row in inputs.rows][-3:] == ["impact.region", "impact.azimuth_deg", "impact.orientation"]
+    assert {row[1].partition(".")[0] for row in inputs.rows} == {"grain", "impact"}
 
 
 def test_what_the_emulator_found_stands_beside_the_inputs(data: SequenceResults) -> None:
