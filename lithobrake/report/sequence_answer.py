@@ -33,9 +33,9 @@ def has_interval(data: SequenceResults) -> bool:
 
 
 def share_digits(data: SequenceResults) -> int:
-    """Digits behind the point that a share in per cent deserves: none where its interval is wider than two points."""
+    """Digits behind the point that a share in per cent deserves: none unless it is known to two points."""
     stays = data.table("stays")
-    return 0 if has_interval(data) and stays["upper"] - stays["lower"] > 0.02 else 1
+    return 1 if has_interval(data) and stays["upper"] - stays["lower"] < 0.02 else 0
 
 
 def bounds(ends: Sequence[float], digits: int) -> str:
@@ -100,6 +100,11 @@ def as_sentence(words: str) -> str:
     """Words with a capital, which a dotted key at their beginning does not take, and a full stop."""
     first = words[:1] if "." in words.split(" ", 1)[0] else words[:1].upper()
     return f"{first}{words[1:].rstrip('.')}."
+
+
+def left_out(data: SequenceResults) -> str:
+    """What the emulator was tried on: beds that it had not seen, or, where there is but one, runs."""
+    return "runs left out" if data.table("runs").get("beds") == 1 else "beds left out"
 
 
 def unanswered(data: SequenceResults) -> dict[str, int]:

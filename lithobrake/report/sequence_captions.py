@@ -9,7 +9,7 @@ from lithobrake.report.captions import input_words, listing, percent, thousands
 from lithobrake.report.page import fixed, number
 from lithobrake.report.results import SequenceResults
 from lithobrake.report.scatter_figure import DRAWN_COUNT
-from lithobrake.report.sequence_answer import action, drawn_things, emulator_outside, missing_sentence
+from lithobrake.report.sequence_answer import action, drawn_things, emulator_outside, left_out, missing_sentence
 from lithobrake.report.style import output
 from lithobrake.report.variance_figure import SOIL, known_parts, part_words
 
@@ -35,8 +35,8 @@ def runs(data: SequenceResults) -> str:
     said = [
         f"Every dot is a landing with {own} of its own"
         + ("" if not beds else ", all on one bed" if beds == 1 else f", on one of {beds} beds")
-        + f": of {table.get('count', len(data.runs['key']))} landers {clear} left the surface and {captured} were "
-        "captured."
+        + f": of {table.get('count', len(data.runs['key']))} landers {clear} left the surface and {captured} "
+        f"{'was' if captured == 1 else 'were'} captured."
     ]
     quantiles = _quantiles(data)
     if quantiles:
@@ -146,12 +146,12 @@ def calibration(data: SequenceResults) -> str:
     scores = data.table("emulator", "scores")
     found = histograms(scores)
     if not found:
-        return "The emulator was not tried on beds left out, so there is nothing to draw."
+        return "The emulator was not tried on what it had not seen, so there is nothing to draw."
     held = {name: scores[name]["band_90"] for name in found if scores[name].get("band_90") is not None}
     bins = [is_beyond for counts in found.values() for is_beyond in unlucky(counts)]
     shares = [f"{percent(share, 0)} of {sign(name)}" for name, share in held.items()]
     said = [
-        f"On beds left out the 90 % bands held {listing(shares)}." if shares else "",
+        f"On {left_out(data)} the 90 % bands held {listing(shares)}." if shares else "",
         "Where the emulator is right every bar is as high as the line, but for luck (grey: nine of ten bars of as many "
         "independent runs); high ends mean bands that are too narrow, a hump in the middle too wide, a slope that all "
         "lies to one side.",

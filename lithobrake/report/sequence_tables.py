@@ -15,6 +15,7 @@ from lithobrake.report.sequence_answer import (
     drawn_things,
     has_interval,
     interval,
+    left_out,
     missing_sentence,
     outcome_label,
     share_digits,
@@ -52,7 +53,7 @@ def tiles(data: SequenceResults) -> list[Tile]:
         found.append(Tile(value, "%", f"of the scatter of V+ is the soil's ({ends})"))
     band = data.table("emulator", "scores", "speed_out").get("band_90")
     if band is not None:
-        words = "of V+ on beds left out lay within the 90 % bands of the emulator"
+        words = f"of V+ on {left_out(data)} lay within the 90 % bands of the emulator"
         found.append(Tile(f"{100 * band:.0f}", "%", words))
     return found
 
@@ -110,6 +111,8 @@ def _outputs(data: SequenceResults) -> PageTable:
     note = (
         "Of the landings that left, over soils, beds, places and attitudes that were not in the study. In brackets "
         "90 % intervals."
+        if has_interval(data)
+        else "Of the landings that left, without intervals: they say nothing of other beds, places or attitudes."
     )
     return PageTable("Outputs of the landings", columns, rows, note, frozenset(columns[2:]))
 
@@ -201,9 +204,9 @@ def _emulator(data: SequenceResults) -> PageTable:
         rows.append([shown, *("" if one is None else percent(one) for one in (skill, band))])
     note = (
         f"{emulator.get('statement') or ''} Skill: how much smaller the score (CRPS; of all together the energy score) "
-        "is than that of drawing one of the runs, on beds left out; 0 is no better."
+        f"is than that of drawing one of the runs, on {left_out(data)}; 0 is no better."
     )
-    return PageTable("The emulator on beds left out", columns, rows, note.strip(), frozenset(columns[1:]))
+    return PageTable(f"The emulator on {left_out(data)}", columns, rows, note.strip(), frozenset(columns[1:]))
 
 
 def _inputs(data: SequenceResults) -> PageTable:

@@ -82,7 +82,7 @@ def test_where_the_site_pushes_outward_landers_come_down_again_and_none_stay(dat
 
 def test_one_bed_gives_a_share_and_says_why_it_has_no_interval(data: SequenceResults) -> None:
     words = answer(told(holding(data), stays=STAYS | ONE_BED, runs=RUNS | {"beds": 1}))
-    assert "On this bed: 71.0 % of landers stay or come down again within 12 h; from" in words
+    assert "On this bed: 71 % of landers stay or come down again within 12 h; from" in words
     assert words.endswith("One bed was poured.")
     assert "interval" not in words
 
@@ -242,6 +242,9 @@ def test_one_bed_has_a_page_without_intervals(sequence_folder: Path, tmp_path: P
     text = write_changed(sequence_folder, tmp_path, one_bed)
     assert "The runs cannot tell where the scatter comes from" in text
     assert ", all on one bed" in text
+    assert "beds left out" not in text
+    assert "of V+ on runs left out lay within" in text
+    assert "without intervals: they say nothing of other beds" in text
     assert "without an interval" in text
 
 
