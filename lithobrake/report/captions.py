@@ -6,7 +6,7 @@ from typing import Any
 from lithobrake.outcomes import FlightStatus, JourneyStatus, TouchdownOutcome
 from lithobrake.report.error_figure import Score
 from lithobrake.report.page import fixed, number
-from lithobrake.report.results import Results
+from lithobrake.report.results import PaperResults, Results
 from lithobrake.report.scatter_figure import DRAWN_COUNT
 from lithobrake.report.style import PAPER_OUTPUTS, output
 
@@ -43,11 +43,18 @@ def hours(seconds: float) -> str:
     return f"{seconds / 3600:.3g} h"
 
 
-def answer(data: Results) -> str:
+def answer(data: PaperResults) -> str:
     """The answer to the question of the study: where, and what the summary says of it."""
-    site = data.results["site"]
+    return " ".join([*place_words(data), *data.results["answer"]])
+
+
+def place_words(data: Results) -> list[str]:
+    """Where the study lands, in a sentence; none where the summary has no site."""
+    site = data.results.get("site")
+    if not site:
+        return []
     place = f"latitude {site['latitude_deg']:g} deg, longitude {site['longitude_deg']:g} deg on {body_name(data)}"
-    return f"Landing at {place}. {' '.join(data.results['answer'])}"
+    return [f"Landing at {place}."]
 
 
 def body_name(data: Results) -> str:
@@ -72,22 +79,23 @@ def gravity_words(data: Results) -> str:
         "escape_speed_m_s": "escape speed at the site {} m/s",
         "bulk_density_kg_m3": "bulk density of the body {} kg/m3",
     }
-    site = data.results["site"]
+    site = data.results.get("site", {})
     return ", ".join(text.format(number(site[key])) for key, text in words.items() if site.get(key) is not None)
 
 
 def bed(data: Results) -> str:
     """Figure 1."""
     if data.bed is None:
-        program = data.study["solver"]["command"]
+        program = data.study.get("solver", {}).get("command")
         return "The touchdowns were made by a " + (
             f"program of the study's author: {program}" if program else "function."
         )
-    study, first = data.study["bed"], data.results["beds"][0]
+    study, (first, *others) = data.study["bed"], data.results["beds"]
+    which = f"the first of {len(others) + 1} beds," if others else "a bed"
     width = " x ".join(f"{length:g}" for length in study["width"])
     return (
         f"{study['grain_count']} grains, convex hulls with a mean diameter of {number(first['mean_diameter_m'])} m, "
-        f"fall as a random cloud and settle in an open box of {width} m into a bed "
+        f"fall as a random cloud and settle in an open box of {width} m into {which} "
         f"{number(first['surface_height_m'])} m deep with a solid fraction of {first['solid_fraction']:.2f} and "
         f"{first['coordination_number']:.1f} contacts a grain. "
         f"So that walls and floor do not answer the first blow, {number(first['smallest_width_m'])} m of width and "
@@ -103,7 +111,7 @@ def landing(data: Results) -> str:
     attributes, time = data.landing.moving.attributes, data.landing.moving.time
     ended = TouchdownOutcome(str(attributes["status"])).sentence.rstrip(".")
     return (
-        "With every uncertain input at its median, the lander arrives at "
+        f"{data.shown_landing}, the lander arrives at "
         f"{number(_float(attributes['speed']))} m/s and "
         f"{math.degrees(_float(attributes['incidence'])):.3g} deg from the normal. "
         f"{ended} after {number(float(time[-1] - time[0]))} s of simulated time; "
@@ -111,7 +119,7 @@ def landing(data: Results) -> str:
     )
 
 
-def counts(data: Results) -> str:
+def counts(data: PaperResults) -> str:
     """Figure 3."""
     table, design, designs = data.results["node_counts"], data.study["design"], data.results["designs"]
     level, inputs = design["screening_level"], len(data.results["screening"]["inputs"])
@@ -122,7 +130,7 @@ def counts(data: Results) -> str:
     )
     if grid and inputs in table["input_counts"] and level in table["levels"]:
         full = table["tensor"][table["input_counts"].index(inputs)][table["levels"].index(level)]
-        words += f", against {_thousands(full)} on the full tensor grid"
+        words += f", against {thousands(full)} on the full tensor grid"
     place = f"at level {design['refined_level']}" if grid else f"of degree {design['refined_degree']}"
     kept = len(data.results["kept_inputs"])
     refined = "the kept input" if kept == 1 else f"the {kept} kept inputs"
@@ -135,7 +143,7 @@ def _runs(design: dict[str, int]) -> str:
     return f"{design['run_count']} runs" + (f" ({points} points, {count} times each)" if count > 1 else "")
 
 
-def sobol(data: Results) -> str:
+def sobol(data: PaperResults) -> str:
     """Figure 4."""
     screening = data.results["screening"]
     leaders = [_leader(name, screening) for name in PAPER_OUTPUTS]
@@ -163,7 +171,7 @@ def _leader(name: str, screening: dict[str, Any]) -> str:
     )
 
 
-def errors(data: Results) -> str:
+def errors(data: PaperResults) -> str:
     """Figure 5."""
     kept, every = (_explained(data.scores[stage]) for stage in ("test_kept", "test_all"))
     return (
@@ -183,17 +191,17 @@ def _explained(table: dict[str, Score]) -> str:
     return listing(parts)
 
 
-def scatter(data: Results, colour_name: str) -> str:
+def scatter(data: PaperResults, colour_name: str) -> str:
     """Figure 6."""
     table = data.results["monte_carlo"]
     total, leaving = table["sample_count"], table["leaving_count"]
     if not leaving:
-        return f"None of the {_thousands(total)} samples leaves the surface, so there is nothing to draw."
+        return f"None of the {thousands(total)} samples leaves the surface, so there is nothing to draw."
     speed, angle = table["outputs"]["speed_out"], table["outputs"]["elevation_out"]
     degrees = output("elevation_out").factor
-    first = f" (the first {_thousands(DRAWN_COUNT)} are drawn)" if leaving > DRAWN_COUNT else ""
+    first = f" (the first {thousands(DRAWN_COUNT)} are drawn)" if leaving > DRAWN_COUNT else ""
     return (
-        f"Of {_thousands(total)} samples of the refined expansion {_thousands(leaving)} leave the surface, the middle "
+        f"Of {thousands(total)} samples of the refined expansion {thousands(leaving)} leave the surface, the middle "
         f"nine tenths of them at {number(speed['quantile_0.05'])} to {number(speed['quantile_0.95'])} m/s and "
         f"{degrees * angle['quantile_0.05']:.3g} to {degrees * angle['quantile_0.95']:.3g} deg above the surface; "
         f"the colour is the {input_words(colour_name)}{first}."
@@ -209,7 +217,7 @@ def impact_map(data: Results) -> str:
     known = gravity_words(data)
     down = percent(shares[FlightStatus.IMPACT]["share"])
     return (
-        f"Of {_thousands(shares['sample_count'])} samples, of which {_thousands(shares['flight_count'])} were flown, "
+        f"Of {thousands(shares['sample_count'])} samples, of which {thousands(shares['flight_count'])} were flown, "
         f"{down} come down again within {hours(data.study['flight']['duration'])}, "
         f"where the map shows (body: {number(site['mass_kg'])} kg, {extents} m, one turn in "
         f"{site['spin_period_s'] / 3600:.4g} h; at the site gravity and spin together pull "
@@ -221,9 +229,9 @@ def body(data: Results) -> str:
     """Figure 8."""
     if not len(data.facet):
         return "No flight comes down on the body, so there is nothing to show on it."
-    shared = f"{_thousands(len(data.facet))} impacts on the shape that the flights used"
-    ellipse = data.results["ellipses"]
-    large = [entry["semi_axes_m"] for entry in ellipse["shares"] if entry["share"] > 0.9] if ellipse else []
+    shared = f"{thousands(len(data.facet))} impacts on the shape that the flights used"
+    ellipse = data.results.get("ellipses") or {}
+    large = [entry["semi_axes_m"] for entry in ellipse.get("shares", ()) if entry["share"] > 0.9]
     if not large:
         return f"{shared}; they lie too far around the body, or are too few, for an ellipse that holds 95 % of them."
     long, short = large[0]
@@ -249,12 +257,12 @@ def rest(data: Results) -> str:
         percent(soil[status]["share"]) for status in (JourneyStatus.SETTLED, JourneyStatus.OUTSIDE)
     )
     return (
-        f"{words}, on the soil {settled_on_soil}; there {outside} stop where the expansion has no "
+        f"{words}, on the soil {settled_on_soil}; there {outside} stop where the {data.model} has no "
         "answer: at an impact unlike those of the runs, or drawn in a way that there is not."
     )
 
 
-def _thousands(count: int) -> str:
+def thousands(count: int) -> str:
     return f"{count:,}".replace(",", " ")
 
 

@@ -6,7 +6,7 @@ from typing import Any
 from lithobrake.outcomes import FlightStatus, JourneyStatus, SampleOutcome
 from lithobrake.report.captions import hours, percent
 from lithobrake.report.page import PageTable, fixed, flat, number
-from lithobrake.report.results import Results
+from lithobrake.report.results import PaperResults, Results
 
 OUTCOME_WORDS: dict[str, str] = {
     FlightStatus.IMPACT: "down again within {hours}",
@@ -22,7 +22,7 @@ SUMS = ("remains", "missing")
 JOURNEY_WORDS: dict[str, str] = {
     JourneyStatus.SETTLED: "at rest",
     JourneyStatus.LOFTED: "captured, and lifted off again by the spin",
-    JourneyStatus.OUTSIDE: "stopped where the expansion has no answer",
+    JourneyStatus.OUTSIDE: "stopped where the {model} has no answer",
     "outside_too_slow": "(of these: slower than any run)",
     JourneyStatus.SLIDING: "sliding along the ground",
     JourneyStatus.BOUNCING: "still bouncing after a thousand bounces",
@@ -37,32 +37,46 @@ ACCELERATIONS = ("effective_acceleration_outward", "effective_acceleration_along
 
 def outcome_words(data: Results) -> dict[str, str]:
     """What may become of a sample, in words; the partner is left out where there is none."""
-    holds = data.results["site"]["effective_acceleration_outward"] < 0.0
+    site, known = data.results.get("site", {}), data.results["shares"]
+    holds = site.get("effective_acceleration_outward", 0.0) < 0.0
     remains = "down again within {hours}, or captured" if holds else "down again within {hours}"
     words = OUTCOME_WORDS | {"remains": remains}
-    alone = not data.results["site"].get("partner")
-    return {key: text for key, text in words.items() if not (alone and key == FlightStatus.PARTNER)}
+    absent = set() if site.get("partner") else {FlightStatus.PARTNER}
+    return {key: text for key, text in words.items() if key in known and key not in absent}
 
 
 def dispersion_tables(data: Results) -> list[PageTable]:
-    """All of them, in the order of the journey."""
-    return [_outcomes(data), _flights(data), _statuses(data), _journeys(data), _ellipses(data), _site(data)]
+    """Those of what the summary has, in the order of the journey."""
+    made = {
+        _outcomes: "shares",
+        _flights: "flights",
+        _statuses: "rest",
+        _journeys: "rest",
+        _ellipses: "flights",
+        _site: "site",
+    }
+    return [table(data) for table, key in made.items() if data.results.get(key)]
 
 
 def _outcomes(data: Results) -> PageTable:
     shares, limit = data.results["shares"], hours(data.study["flight"]["duration"])
-    alone = data.results["without_scatter"]
+    alone = data.results.get("without_scatter")
     columns = ["what became of the sample", "samples", "share", *(["without scatter"] if alone else [])]
     rows = []
     for key, words in outcome_words(data).items():
         row = [words.format(hours=limit), str(shares[key]["count"]), _share(shares[key])]
         rows.append(row + ([_share(alone["shares"][key])] if alone else []))
-    stays = data.results["stays"]
-    note = (
-        f"Shares of {shares['sample_count']} samples; {shares['flight_count']} of them were flown. {stays['why']} "
-        f"The number of flights alone leaves +- {100 * stays['flight_sampling']:.1f} points (90 %) in what remains. "
-        '"At most": no run ended so, which such a probability allows (95 %).'
-    )
+    stays, level = data.results.get("stays", {}), percent(data.level, 0)
+    note = f"Shares of {shares['sample_count']} samples; {shares['flight_count']} of them were flown."
+    note += f" {stays['why']}" if stays.get("why") else ""
+    # The runs of a sequence have flights of their own, of which its answer speaks.
+    if isinstance(data, PaperResults) and stays.get("flight_sampling") is not None:
+        sampling = f"{100 * stays['flight_sampling']:.1f} points ({percent(stays['level'], 0)})"
+        note += f" The number of flights alone leaves +- {sampling} in what remains."
+    if any(_is_unmet(shares[key]) for key in outcome_words(data)):
+        note += f' "At most": no run ended so, which such a probability allows ({level}).'
+    if any(shares[key].get("lower") is not None for key in outcome_words(data)):
+        note += f" In brackets {level} intervals over refits of the {data.model} to other draws of beds."
     if alone:
         note += (
             " The first shares have the scatter from run to run; without it stand those of the expansion alone, of "
@@ -72,9 +86,18 @@ def _outcomes(data: Results) -> PageTable:
 
 
 def _share(entry: Mapping[str, Any]) -> str:
-    """A share, or the largest that an outcome may have which no run had."""
-    limit = entry.get("upper_limit")
-    return percent(entry["share"], 2) if limit is None else f"at most {percent(limit, 1)}"
+    """A share, with its interval if it has one, or the largest that an outcome may have which no run had."""
+    if _is_unmet(entry):
+        return f"at most {percent(entry['upper_limit'], 1)}"
+    share = percent(entry["share"], 2)
+    if entry.get("lower") is None:
+        return share
+    return f"{share} ({100 * entry['lower']:.1f} to {100 * entry['upper']:.1f})"
+
+
+def _is_unmet(entry: Mapping[str, Any]) -> bool:
+    """Whether no run had an outcome, so that only a limit of its share is known."""
+    return entry.get("upper_limit") is not None
 
 
 def _flights(data: Results) -> PageTable:
@@ -100,7 +123,8 @@ def _flights(data: Results) -> PageTable:
 
 def followed(data: Results) -> dict[str, Mapping[str, Any]]:
     """The grounds on which samples were followed, with what became of them."""
-    return {ground: data.results["rest"][ground] for ground in GROUND_WORDS if data.results["rest"][ground]}
+    rest = data.results.get("rest") or {}
+    return {ground: rest[ground] for ground in GROUND_WORDS if rest.get(ground)}
 
 
 def _statuses(data: Results) -> PageTable:
@@ -110,12 +134,13 @@ def _statuses(data: Results) -> PageTable:
         columns += [GROUND_WORDS[ground]]
     rows = []
     for key, words in JOURNEY_WORDS.items():
-        if any(table[key]["count"] for table in found.values()):
-            shares = [percent(table[key]["share"], 2) for table in found.values()]
-            rows.append([words.format(hours=limit), *shares])
+        if any(table.get(key, {}).get("count") for table in found.values()):
+            rows.append(
+                [words.format(hours=limit, model=data.model), *(_share(table[key]) for table in found.values())]
+            )
     counts = {table["sample_count"] for table in found.values()}
     note = f"Shares of {counts.pop()} samples, followed from the first impact." if counts else "No sample was followed."
-    why = data.results["rest"]["why_no_soil"]
+    why = data.results["rest"].get("why_no_soil")
     note += f" The soil could not be asked: {why}." if why and found else ""
     return PageTable("From bounce to bounce", columns, rows, note, frozenset(columns[1:]))
 
@@ -140,10 +165,10 @@ def _journeys(data: Results) -> PageTable:
 
 def _ellipses(data: Results) -> PageTable:
     columns = ["places", "share inside", "latitude [deg]", "longitude [deg]", "semi-axes [m]", "heading [deg]"]
-    sets = {"next impact": data.results["ellipses"]}
-    if data.results["without_scatter"]:
+    sets = {"next impact": data.results.get("ellipses")}
+    if data.results.get("without_scatter"):
         sets["next impact, without scatter"] = data.results["without_scatter"]["ellipses"]
-    sets |= {f"at rest, {GROUND_WORDS[ground]}": table["ellipses"] for ground, table in followed(data).items()}
+    sets |= {f"at rest, {GROUND_WORDS[ground]}": table.get("ellipses") for ground, table in followed(data).items()}
     rows = []
     for name, found in sets.items():
         if not found or not found["shares"]:

@@ -22,12 +22,16 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Share:
-    """A share of the samples with its interval, if it has one, all in [0, 1]; upper alone: no run had it."""
+    """A share of the samples with its interval, if it has one, all in [0, 1]; upper alone: no run had it.
+
+    level: probability that the interval stands for.
+    """
 
     name: str
     value: float
     lower: float | None = None
     upper: float | None = None
+    level: float = 0.9
 
 
 def map_figure(
@@ -170,7 +174,7 @@ def draw_shares(axes: Axes, shares: list[Share], whole: str) -> None:
             # At the very ends of the axis a clipped line would look as if there were no interval.
             axes.plot([low, high], [y, y], color=INK, linewidth=1.4, solid_capstyle="butt", clip_on=False)
             text += f"   [{low:.2f}, {high:.2f}]"
-            words = f"share of {whole} [%], with 95 % interval"
+            words = f"share of {whole} [%], with {100 * share.level:.0f} % interval"
         elif share.upper is not None:
             axes.plot([0, 100 * share.upper], [y, y], color=INK, linewidth=1.4, solid_capstyle="butt", clip_on=False)
             text = f"at most {100 * share.upper:.1f} %"

@@ -1,10 +1,14 @@
 """The page: one HTML file that needs nothing but itself."""
 
 import base64
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from html import escape
 from importlib.resources import files
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 # More rows or lines than this do not fit on a screen of a phone.
 LONG = 15
@@ -30,6 +34,16 @@ class Panel:
 
 
 @dataclass(frozen=True)
+class Plot:
+    """A figure that is still to be drawn: name of its file, title, sentence, and what draws it, or None."""
+
+    name: str
+    title: str
+    sentence: str
+    draw: Callable[[], "Figure | None"]
+
+
+@dataclass(frozen=True)
 class Tile:
     """One of the few numbers that a reader takes away."""
 
@@ -50,26 +64,38 @@ class PageTable:
     links: Mapping[str, str] = field(default_factory=dict)
 
 
-def _header(title: str, answer: str, facts: str) -> str:
+@dataclass(frozen=True)
+class Content:
+    """What a page says of its study: the answer, what to beware of in sentences, and what stands below."""
+
+    answer: str
+    warnings: Sequence[str]
+    tiles: Sequence[Tile]
+    plots: Sequence[Plot]
+    tables: Sequence[PageTable]
+
+
+def _header(title: str, content: Content, facts: str) -> str:
+    warnings = "".join(f'<p class="warning">{escape(warning)}</p>\n' for warning in content.warnings)
     return f"""<header>
 <p class="kind">Landing study</p>
 <h1>{escape(title)}</h1>
-<p class="answer">{escape(answer)}</p>
-<p class="facts">{escape(facts)}</p>
+<p class="answer">{escape(content.answer)}</p>
+{warnings}<p class="facts">{escape(facts)}</p>
 </header>"""
 
 
 def page(
     title: str,
-    answer: str,
     facts: str,
-    tiles: Sequence[Tile],
+    content: Content,
     panels: Sequence[Panel],
-    tables: Sequence[PageTable],
     provenance: Sequence[PageTable],
     study_text: str,
 ) -> str:
-    """Put the page together; all words are plain text and are escaped here."""
+    """Put the page together, with the panels that the plots of the content gave; all words are plain text and are
+    escaped here.
+    """
     style = files("lithobrake.report").joinpath("style.css").read_text(encoding="utf-8")
     pictures = "\n".join(_figure(number, panel) for number, panel in enumerate(panels, start=1))
     return f"""<!DOCTYPE html>
@@ -82,14 +108,14 @@ def page(
 {style}</style>
 </head>
 <body><main>
-{_header(title, answer, facts)}
+{_header(title, content, facts)}
 <ul class="tiles">
-{"".join(_tile(tile) for tile in tiles)}</ul>
+{"".join(_tile(tile) for tile in content.tiles)}</ul>
 <h2>Figures</h2>
 <p class="note hint">Click or tap a figure to see it in full size, and again to go back.</p>
 {pictures}
 <h2>Tables</h2>
-{"".join(_table(table) for table in tables)}
+{"".join(_table(table) for table in content.tables)}
 <h2>Provenance</h2>
 {"".join(_table(table) for table in provenance)}
 {_folding("The study file", len(study_text.splitlines()), "lines", f"<pre>{escape(study_text)}</pre>")}

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,18 +15,28 @@ from lithobrake.report.scene import Scene, scene
 from lithobrake.results import StudyResults, Table
 
 Array = NDArray[np.float64]
-FILES = ("summary.json", "scores.json", "samples.h5", "flights.csv", "rest.csv", "body.obj", "study.toml")
+BODY = "body.obj"
+FILES = ("summary.json", "study.toml")
+PAPER_FILES = (*FILES, "scores.json", "samples.h5", "flights.csv", "rest.csv", BODY)
+GROUNDS = ("soil", "hard")
 
 
 @dataclass(frozen=True)
 class Results:
-    """All that the page shows.
+    """What the page shows of any study.
 
-    study, results, provenance: the three tables of summary.json; scores: stage, output, score;
+    study, results, provenance: the three tables of summary.json;
     latitude, longitude: of the impacts [deg], shape [impact], and facet, the one of the body that was hit;
     body_vertices of the body [m] and its body_faces, counted from 0; rest: latitude and longitude [deg] of the landers
     that rest, by ground. bed and landing are None where a solver of the user's own made the touchdowns.
     """
+
+    model: ClassVar[str]
+    """What was fitted to the runs and stands for them in the samples, in a word."""
+    level: ClassVar[float]
+    """Probability that intervals and limits of shares stand for."""
+    shown_landing: ClassVar[str]
+    """Which landing has been kept with its pictures, as a sentence about it begins."""
 
     study: dict[str, Any]
     results: dict[str, Any]
@@ -34,14 +44,41 @@ class Results:
     study_text: str
     bed: Scene | None
     landing: Scene | None
-    scores: dict[str, dict[str, Score]]
-    samples: Table
     latitude: Array
     longitude: Array
     facet: NDArray[np.int64]
     body_vertices: Array
     body_faces: NDArray[np.int64]
     rest: dict[str, tuple[Array, Array]]
+
+
+@dataclass(frozen=True)
+class PaperResults(Results):
+    """Results of the method in two steps; scores: stage, output, score."""
+
+    model, level = "expansion", 0.95
+    shown_landing = "With every uncertain input at its median"
+
+    scores: dict[str, dict[str, Score]]
+    samples: Table
+
+
+@dataclass(frozen=True)
+class SequenceResults(Results):
+    """Results of a sequence; runs: its landings, without side runs; samples: of the emulator, None where none are."""
+
+    model, level = "emulator", 0.9
+    shown_landing = "In the first run"
+
+    runs: Table
+    samples: Table | None
+
+    def table(self, *keys: str) -> Mapping[str, Any]:
+        """A table within the results, by the keys that lead to it; an empty one where the summary has none."""
+        found: Mapping[str, Any] = self.results
+        for key in keys:
+            found = found.get(key) or {}
+        return found
 
 
 class SummaryTable(dict[str, Any]):
@@ -60,33 +97,49 @@ class SummaryTable(dict[str, Any]):
         raise DamagedFileError(self._lacks.format(key=key))
 
 
-def page_results(found: StudyResults) -> Results:
+def page_results(found: StudyResults) -> PaperResults | SequenceResults:
     """What the page shows of a study. Raises ValueError that names the file when one is missing or damaged."""
     _refuse_without(found.folder, FILES)
     summary = SummaryTable(found.summary, found.folder / "summary.json", found.remedy)
+    if summary["study"]["design"].get("method") == "sequence":
+        return _sequence_results(found, summary)
+    _refuse_without(found.folder, PAPER_FILES)
+    return PaperResults(**_of_any_study(found, summary), scores=_scores(found), samples=found.samples)
+
+
+def _sequence_results(found: StudyResults, summary: SummaryTable) -> SequenceResults:
+    """Those of a sequence, whose page has what there is so far of flights and samples."""
+    has_samples = (found.folder / "samples.h5").is_file()
+    return SequenceResults(
+        **_of_any_study(found, summary),
+        runs=found.runs.where(found.runs["design"] == "sequence"),
+        samples=found.samples if has_samples else None,
+    )
+
+
+def _of_any_study(found: StudyResults, summary: SummaryTable) -> dict[str, Any]:
+    """The fields that results of every method have."""
     # A program or function of the user's own has neither beds nor pictures.
-    has_scenes = bool(summary["results"]["beds"])
+    has_scenes = bool(summary["results"].get("beds"))
     if has_scenes:
         _refuse_without(found.folder, ("landing.h5", "beds/bed_0.h5"))
-    impacts = found.flights.where(found.flights["status"] == FlightStatus.IMPACT)
-    latitude, longitude = _places(found.folder / "flights.csv", impacts, found.remedy)
-    vertices, faces = found.body_shape
-    return Results(
-        study=summary["study"],
-        results=summary["results"],
-        provenance=summary["provenance"],
-        study_text=found.study_text,
-        bed=scene(found.bed_bodies(0), has_lander=False) if has_scenes else None,
-        landing=scene(found.median_landing, has_lander=True) if has_scenes else None,
-        scores=_scores(found),
-        samples=found.samples,
-        latitude=latitude,
-        longitude=longitude,
-        facet=impacts["facet"].astype(np.int64),
-        body_vertices=vertices,
-        body_faces=faces,
-        rest={ground: _resting(found, ground) for ground in ("soil", "hard")},
-    )
+    latitude, longitude, facet = _impacts(found)
+    has_body = (found.folder / BODY).is_file()
+    vertices, faces = found.body_shape if has_body else (np.empty((0, 3)), np.empty((0, 3), dtype=np.int64))
+    return {
+        "study": summary["study"],
+        "results": summary["results"],
+        "provenance": summary["provenance"],
+        "study_text": found.study_text,
+        "bed": scene(found.bed_bodies(0), has_lander=False) if has_scenes else None,
+        "landing": scene(found.median_landing, has_lander=True) if has_scenes else None,
+        "latitude": latitude,
+        "longitude": longitude,
+        "facet": facet,
+        "body_vertices": vertices,
+        "body_faces": faces,
+        "rest": {ground: _resting(found, ground) for ground in GROUNDS},
+    }
 
 
 def _refuse_without(folder: Path, needed: tuple[str, ...]) -> None:
@@ -97,10 +150,22 @@ def _refuse_without(folder: Path, needed: tuple[str, ...]) -> None:
         )
 
 
+def _impacts(found: StudyResults) -> tuple[Array, Array, NDArray[np.int64]]:
+    """Latitude, longitude [deg] and facet of each impact; none where nothing was flown."""
+    path = found.folder / "flights.csv"
+    if not path.is_file():
+        return np.empty(0), np.empty(0), np.empty(0, dtype=np.int64)
+    impacts = found.flights.where(found.flights["status"] == FlightStatus.IMPACT)
+    return *_places(path, impacts, found.remedy), impacts["facet"].astype(np.int64)
+
+
 def _resting(found: StudyResults, ground: str) -> tuple[Array, Array]:
     """Where the landers lie that rest on a ground."""
+    path = found.folder / "rest.csv"
+    if not path.is_file():
+        return np.empty(0), np.empty(0)
     chosen = (found.rest["status"] == JourneyStatus.SETTLED) & (found.rest["ground"] == ground)
-    return _places(found.folder / "rest.csv", found.rest.where(chosen), found.remedy)
+    return _places(path, found.rest.where(chosen), found.remedy)
 
 
 def _places(path: Path, table: Table, remedy: str) -> tuple[Array, Array]:

@@ -6,7 +6,7 @@ from typing import Any
 from lithobrake.report.captions import hours, input_words, percent
 from lithobrake.report.dispersion_tables import dispersion_tables, outcome_words
 from lithobrake.report.page import PageTable, Tile, fixed, flat, number, show, unit_scales
-from lithobrake.report.results import Results
+from lithobrake.report.results import PaperResults, Results
 from lithobrake.report.style import PAPER_OUTPUTS, output
 from lithobrake.results.telling_numbers import TellingNumbers
 
@@ -17,6 +17,7 @@ STAGE_WORDS = {
     "test_kept": "refined: test, kept inputs vary",
     "test_all": "refined: test, all inputs vary",
 }
+INPUT_COLUMNS = ("input", "key in the study file", "distribution", "parameters")
 DESIGN_WORDS = {
     "screening": "screening, all inputs",
     "refined": "refined, kept inputs",
@@ -25,7 +26,7 @@ DESIGN_WORDS = {
 }
 
 
-def tiles(data: Results) -> list[Tile]:
+def tiles(data: PaperResults) -> list[Tile]:
     """The share that remains, and the most telling numbers beside it."""
     telling = TellingNumbers.of(data.results)
     main, score, speed = telling.main_input, telling.score, telling.speed
@@ -59,7 +60,7 @@ def tiles(data: Results) -> list[Tile]:
     return found
 
 
-def _scope(data: Results) -> str:
+def _scope(data: PaperResults) -> str:
     """Over what the answer holds, in the words that it begins with."""
     where, _, _ = data.results["answer"][0].partition(":")
     return where[:1].lower() + where[1:]
@@ -78,17 +79,17 @@ def _touchdowns_tile(telling: TellingNumbers) -> Tile:
     return Tile(str(telling.left_count), f"of {telling.ended.total()}", words)
 
 
-def tables(data: Results) -> list[PageTable]:
+def tables(data: PaperResults) -> list[PageTable]:
     """All tables, in the order of the stages."""
     return [
         _inputs(data),
         _runs(data),
-        *([_beds(data)] if data.results["beds"] else []),
+        *([beds_table(data)] if data.results["beds"] else []),
         _fits(data),
         _scores(data),
         _sobol(data),
         _outputs(data),
-        _touchdowns(data),
+        touchdowns_table(data),
         *dispersion_tables(data),
     ]
 
@@ -106,20 +107,24 @@ def provenance(data: Results) -> list[PageTable]:
     ]
 
 
-def _inputs(data: Results) -> PageTable:
+def _inputs(data: PaperResults) -> PageTable:
     kept = data.results["kept_inputs"]
     rows = []
     for name in data.results["screening"]["inputs"]:
         value: Any = data.study
         for key in name.split("."):
             value = value[key]
-        parameters = ", ".join(f"{key} {show(entry)}" for key, entry in value.items() if key != "distribution")
-        law = value["distribution"].replace("_", "-")
-        rows.append([input_words(name), name, law, parameters, "yes" if name in kept else "no"])
-    return PageTable("Uncertain inputs", ["input", "key in the study file", "distribution", "parameters", "kept"], rows)
+        rows.append([*input_cells(name, value), "yes" if name in kept else "no"])
+    return PageTable("Uncertain inputs", [*INPUT_COLUMNS, "kept"], rows)
 
 
-def _runs(data: Results) -> PageTable:
+def input_cells(name: str, law: Mapping[str, Any]) -> list[str]:
+    """An uncertain input by dotted key, in the columns of INPUT_COLUMNS; law: as the summary has it."""
+    parameters = ", ".join(f"{key} {show(entry)}" for key, entry in law.items() if key != "distribution")
+    return [input_words(name), name, law["distribution"].replace("_", "-"), parameters]
+
+
+def _runs(data: PaperResults) -> PageTable:
     rows = []
     for name, design in data.results["designs"].items():
         outcomes = ", ".join(f"{count} {outcome.replace('_', ' ')}" for outcome, count in design["outcomes"].items())
@@ -128,14 +133,14 @@ def _runs(data: Results) -> PageTable:
     return PageTable("Touchdowns", ["design", "runs", "left the surface", "outcomes"], rows, numbers=numbers)
 
 
-def _beds(data: Results) -> PageTable:
+def beds_table(data: Results) -> PageTable:
     columns = ["bed", "solid fraction", "contacts a grain", "surface height [m]", "mean diameter [m]"]
     keys = ("solid_fraction", "coordination_number", "surface_height_m", "mean_diameter_m")
-    rows = [[str(index), *(_cell(bed[key]) for key in keys)] for index, bed in enumerate(data.results["beds"])]
+    rows = [[str(index), *(table_cell(bed[key]) for key in keys)] for index, bed in enumerate(data.results["beds"])]
     return PageTable("Beds", columns, rows, numbers=frozenset(columns[1:]))
 
 
-def _fits(data: Results) -> PageTable:
+def _fits(data: PaperResults) -> PageTable:
     columns = [
         "expansion",
         "output",
@@ -159,10 +164,10 @@ def _fits(data: Results) -> PageTable:
                     fit["method"].replace("_", " "),
                     str(fit["term_count"]),
                     "-" if fit["condition_number"] is None else f"{fit['condition_number']:.3g}",
-                    _cell(fit["rmse_estimate"] * shown.factor, scale[shown.unit]),
+                    table_cell(fit["rmse_estimate"] * shown.factor, scale[shown.unit]),
                     "not known"
                     if fit["noise_std"] is None
-                    else _cell(fit["noise_std"] * shown.factor, scale[shown.unit]),
+                    else table_cell(fit["noise_std"] * shown.factor, scale[shown.unit]),
                 ]
             )
     note = (
@@ -173,7 +178,7 @@ def _fits(data: Results) -> PageTable:
     return PageTable("How the expansions were fitted", columns, rows, note, frozenset(columns[4:]))
 
 
-def _scores(data: Results) -> PageTable:
+def _scores(data: PaperResults) -> PageTable:
     columns = ["expansion and runs", "output", "unit", "MAPE [%]", "Q2", "RMSE", "spread (std)", "RMSE/spread"]
     scale = _output_scales(data.results["scores"].values(), "std")
     rows = []
@@ -187,8 +192,8 @@ def _scores(data: Results) -> PageTable:
                     shown.unit,
                     _with_interval(score, "mape"),
                     _with_interval(score, "q2"),
-                    _cell(score["rmse"] * shown.factor, scale[shown.unit]),
-                    _cell(score["std"] * shown.factor, scale[shown.unit]),
+                    table_cell(score["rmse"] * shown.factor, scale[shown.unit]),
+                    table_cell(score["std"] * shown.factor, scale[shown.unit]),
                     _or_none(score["rrmse"]),
                 ]
             )
@@ -199,7 +204,7 @@ def _scores(data: Results) -> PageTable:
     return PageTable("Errors of the expansions", columns, rows, note, frozenset(columns[3:]))
 
 
-def _sobol(data: Results) -> PageTable:
+def _sobol(data: PaperResults) -> PageTable:
     table = data.results["screening"]
     words = [output(name).sign for name in PAPER_OUTPUTS]
     columns = ["input", *(f"{word} first" for word in words), *(f"{word} total" for word in words)]
@@ -218,7 +223,7 @@ def _sobol(data: Results) -> PageTable:
     return PageTable("Sobol indices", columns, rows, note, frozenset(columns[1:]))
 
 
-def _outputs(data: Results) -> PageTable:
+def _outputs(data: PaperResults) -> PageTable:
     columns = ["output", "unit", "mean", "std", "5 %", "median", "95 %"]
     keys = ("mean", "std", "quantile_0.05", "quantile_0.5", "quantile_0.95")
     outputs = data.results["monte_carlo"]["outputs"]
@@ -226,16 +231,16 @@ def _outputs(data: Results) -> PageTable:
     rows = []
     for name, table in outputs.items():
         shown = output(name)
-        cells = (_cell(table[key] * shown.factor, scale[shown.unit]) for key in keys)
+        cells = (table_cell(table[key] * shown.factor, scale[shown.unit]) for key in keys)
         rows.append([shown.row, shown.unit, *cells])
     return PageTable("Outputs of the samples that leave", columns, rows, numbers=frozenset(columns[2:]))
 
 
-def _touchdowns(data: Results) -> PageTable:
+def touchdowns_table(data: Results) -> PageTable:
     found, keys = data.results["outputs_of_runs"], ("smallest", "median", "largest")
     scale = unit_scales((table["unit"], table[key]) for table in found.values() for key in keys)
     rows = [
-        [name.replace("_", " "), table["unit"], *(_cell(table[key], scale[table["unit"]]) for key in keys)]
+        [name.replace("_", " "), table["unit"], *(table_cell(table[key], scale[table["unit"]]) for key in keys)]
         for name, table in found.items()
     ]
     columns = ["quantity", "unit", "smallest", "median", "largest"]
@@ -262,9 +267,9 @@ def _with_interval(score: Mapping[str, Any], key: str) -> str:
 
 
 def _or_none(value: float | None) -> str:
-    return "undefined" if value is None else _cell(value)
+    return "undefined" if value is None else table_cell(value)
 
 
-def _cell(value: float, scale: float = 0.0) -> str:
+def table_cell(value: float, scale: float = 0.0) -> str:
     """A number in a column: three digits, zeros at the end kept; scale: the largest of its unit in the table."""
     return number(value, zeros=True, scale=scale)

@@ -2,11 +2,15 @@
 
 import csv
 import json
+import shutil
 from pathlib import Path
 
 import h5py
 import numpy as np
 import pytest
+
+from ..synthetic_landings import Truth
+from .sequence_study import write_sequence
 
 INPUTS = ["grain.young_modulus", "grain.restitution", "grain.friction"]
 OUTPUTS = ["speed_out", "elevation_out", "spin_out", "velocity_out_x", "velocity_out_y", "velocity_out_z"]
@@ -226,7 +230,7 @@ def made_up_summary(scores: dict[str, dict[str, dict[str, object]]]) -> dict[str
                 **dict.fromkeys(ends_of_samples, share),
                 "captured": none | {"upper_limit": 0.03},
             },
-            "stays": {"share": 0.5, "why": "Another bed gives another figure.", "flight_sampling": 0.04},
+            "stays": {"share": 0.5, "why": "Another bed gives another figure.", "flight_sampling": 0.04, "level": 0.9},
             "answer": ["On this bed, at this place: 50.0 % come down again.", "Another bed gives another figure."],
             "flights": {"gravity_table_error": None, "jacobi_drift_largest_m2_s2": None, "time_s": quantiles},
             "ellipses": ellipses,
@@ -245,3 +249,15 @@ def made_up_summary(scores: dict[str, dict[str, dict[str, object]]]) -> dict[str
             "wall_s": {"bed": 12.5},
         },
     }
+
+
+@pytest.fixture(scope="session")
+def sequence_folder(study_folder: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A finished study of 120 landings on 12 beds, without its report."""
+    folder = tmp_path_factory.mktemp("sequence") / "study"
+    shutil.copytree(study_folder, folder, ignore=shutil.ignore_patterns("report", "scores.json"))
+    # Long enough to be folded on the page.
+    study_file = (folder / "study.toml").read_text(encoding="utf-8") + "# A remark.\n" * 20
+    (folder / "study.toml").write_text(study_file, encoding="utf-8")
+    write_sequence(folder, made_up_summary(made_up_scores()), Truth(rim="fast_flat"), 120, 12)
+    return folder

@@ -31,10 +31,10 @@ MEASURE = """<script>addEventListener("load", () => {
 })</script>"""
 
 
-@pytest.fixture(scope="module")
-def page(study_folder: Path) -> str:
-    """Text of the page."""
-    return write_report(study_folder).read_text(encoding="utf-8")
+@pytest.fixture(scope="module", params=["study_folder", "sequence_folder"])
+def page(request: pytest.FixtureRequest) -> str:
+    """Text of the page of a study by each method."""
+    return write_report(request.getfixturevalue(request.param)).read_text(encoding="utf-8")
 
 
 def seen(text: str, folder: Path, width: int) -> dict[str, Any]:

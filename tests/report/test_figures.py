@@ -168,7 +168,7 @@ def test_an_outcome_that_no_run_had_shows_its_upper_limit_in_place_of_nothing() 
         figure = map_figure(np.zeros(0), np.zeros(0), (0.0, 0.0), [Share("captured", 0.0, upper=0.0203)])
     words = [text.get_text() for axes in figure.axes for text in axes.texts]
     assert "at most 2.0 %" in words
-    assert not any("95 % interval" in axes.get_xlabel() for axes in figure.axes)
+    assert not any("% interval" in axes.get_xlabel() for axes in figure.axes)
 
 
 @pytest.mark.parametrize("with_relief", [False, True])
@@ -251,7 +251,7 @@ def test_shares_end_at_the_whole_and_have_their_figures_beside_the_axis() -> Non
     assert [text.get_text() for text in axes.texts] == ["75.00 %   [70.00, 80.00]", "25.00 %"]
     assert all(text.get_position()[0] > 1.0 for text in axes.texts)
     assert len(axes.lines) == 1
-    assert axes.get_xlabel() == "share of all 100 000 samples [%], with 95 % interval"
+    assert axes.get_xlabel() == "share of all 100 000 samples [%], with 90 % interval"
 
 
 def test_shares_without_intervals_speak_of_none() -> None:

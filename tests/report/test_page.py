@@ -5,17 +5,16 @@ from html.parser import HTMLParser
 
 import pytest
 
-from lithobrake.report.page import LONG, PageTable, Panel, Tile, flat, number, page, show, unit_scales
+from lithobrake.report.page import LONG, Content, PageTable, Panel, Tile, flat, number, page, show, unit_scales
 
 
 def example() -> str:
+    errors = PageTable("Errors", ["output", "MAPE"], [["V+", "1.2 %"]], numbers=frozenset({"MAPE"}))
     return page(
         "Study <one>",
-        "Half of them come back.",
         "Study of 2026-03-01.",
-        [Tile("48.3", "%", "re-impact")],
+        Content("Half of them come back.", ["Only <two> beds."], [Tile("48.3", "%", "re-impact")], [], [errors]),
         [Panel("Bed", 'A "bed" of 3 grains.', b"\x89PNG"), Panel("Landing", "No landing was kept.", None)],
-        [PageTable("Errors", ["output", "MAPE"], [["V+", "1.2 %"]], numbers=frozenset({"MAPE"}))],
         [PageTable("Versions", ["name", "value"], [["lithobrake", "0.1.0"]])],
         'title = "<one>"',
     )
@@ -23,7 +22,7 @@ def example() -> str:
 
 def folds(tables: list[PageTable]) -> list[str]:
     """The parts of a page that can be folded, opening tag first."""
-    text = page("Study", "", "", [], [], tables, [], "")
+    text = page("Study", "", Content("", [], [], [], tables), [], [], "")
     return re.findall(r"<details.*?</details>", text, flags=re.DOTALL)
 
 
@@ -53,6 +52,7 @@ def test_page_is_well_formed() -> None:
 def test_words_are_escaped_and_figures_numbered() -> None:
     text = example()
     assert "Study &lt;one&gt;" in text
+    assert '<p class="warning">Only &lt;two&gt; beds.</p>' in text
     assert "<one>" not in text
     assert "Figure 1. Bed." in text
     assert "Figure 2. Landing." in text

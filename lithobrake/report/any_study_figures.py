@@ -1,0 +1,103 @@
+"""Figures that the page of any study has: the surface, a landing, where landers come down and where they rest."""
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from lithobrake.outcomes import JourneyStatus
+from lithobrake.report.bed_figure import bed_figure
+from lithobrake.report.body_figure import body_figure
+from lithobrake.report.captions import hours
+from lithobrake.report.dispersion_tables import GROUND_WORDS, SUMS, followed, outcome_words
+from lithobrake.report.landing_figure import landing_figure
+from lithobrake.report.map_figure import Share, map_figure
+from lithobrake.report.rest_figure import RestMap, rest_figure
+from lithobrake.report.results import Results
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+# What may become of a lander after all bounces, as short as it has to be beside a bar.
+SHORT_JOURNEY_WORDS = {
+    JourneyStatus.SETTLED: "at rest",
+    JourneyStatus.LOFTED: "lifted off again",
+    JourneyStatus.OUTSIDE: "outside the runs",
+    JourneyStatus.SLIDING: JourneyStatus.SLIDING.label,
+    JourneyStatus.BOUNCING: "still bouncing",
+    JourneyStatus.FLYING: "not at rest, {hours}",
+    JourneyStatus.ESCAPED: JourneyStatus.ESCAPED.label,
+    JourneyStatus.PARTNER: "on the partner",
+}
+
+
+def draw_bed(data: Results) -> "Figure | None":
+    if data.bed is None:
+        return None
+    moving, first = data.bed.moving, data.results["beds"][0]
+    width = tuple(data.study["bed"]["width"])
+    return bed_figure(
+        *(data.bed.bodies, moving.time, moving.position, moving.orientation),
+        *(width, first["surface_height_m"], moving.history),
+    )
+
+
+def draw_landing(data: Results) -> "Figure | None":
+    if data.landing is None:
+        return None
+    moving, width = data.landing.moving, tuple(data.study["bed"]["width"])
+    return landing_figure(data.landing.bodies, moving.time, moving.position, moving.orientation, width)
+
+
+def draw_map(data: Results) -> "Figure":
+    table, site, limit = data.results["shares"], data.results["site"], hours(data.study["flight"]["duration"])
+    shares = [
+        _share(words.format(hours=limit), table[key], data.level)
+        for key, words in outcome_words(data).items()
+        if key not in SUMS
+    ]
+    where = (site["latitude_deg"], site["longitude_deg"])
+    sampled = data.results.get("monte_carlo", table)["sample_count"]
+    whole, vertices = _samples(table["sample_count"], sampled), data.body_vertices if len(data.body_vertices) else None
+    return map_figure(data.latitude, data.longitude, where, shares, vertices, data.results.get("ellipses"), whole)
+
+
+def _share(words: str, entry: Mapping[str, Any], level: float) -> Share:
+    """A share of the summary, with its interval or its limit where it has one."""
+    lower, upper = entry.get("lower"), entry.get("upper")
+    limit = entry.get("upper_limit")
+    return Share(words, entry["share"], *((lower, upper) if limit is None else (None, limit)), level)
+
+
+def _samples(looked_at: int, count: int) -> str:
+    """What the shares of the flights are shares of."""
+    words = f"{looked_at:,} samples".replace(",", " ")
+    return f"all {words}" if looked_at == count else f"the {words} up to the last that was flown"
+
+
+def draw_body(data: Results) -> "Figure | None":
+    if not len(data.facet):
+        return None
+    return body_figure(data.body_vertices, data.body_faces, data.facet, np.array(data.results["site"]["place_m"]))
+
+
+def draw_rest(data: Results) -> "Figure | None":
+    found, site, limit = followed(data), data.results["site"], hours(data.study["rest"]["duration"])
+    if not found:
+        return None
+    # The same statuses on both sides, so that rows and colours match.
+    met = {
+        key: words
+        for key, words in SHORT_JOURNEY_WORDS.items()
+        if any(one.get(key, {}).get("count") for one in found.values())
+    }
+    maps = []
+    for ground, (latitude, longitude) in data.rest.items():
+        table = found.get(ground)
+        shares = [_share(words.format(hours=limit), table[key], data.level) for key, words in met.items() if table]
+        absent = None if table else f"Not asked: {data.results['rest'].get('why_no_soil')}."
+        ellipses = table.get("ellipses") if table else None
+        whole = f"the {table['sample_count']} followed" if table else ""
+        maps.append(RestMap(f"On {GROUND_WORDS[ground]}", latitude, longitude, ellipses, shares, absent, whole))
+    vertices = data.body_vertices if len(data.body_vertices) else None
+    return rest_figure(maps, (site["latitude_deg"], site["longitude_deg"]), vertices)

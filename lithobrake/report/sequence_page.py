@@ -1,0 +1,93 @@
+"""The page of a sequence: its figures in the order of the work, and what stands beside them."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from lithobrake.outcomes import TouchdownOutcome
+from lithobrake.outputs import OVER_RIM
+from lithobrake.report import any_study_figures as any_study
+from lithobrake.report import captions, sequence_captions
+from lithobrake.report.calibration_figure import calibration_figure, histograms
+from lithobrake.report.page import Content, Plot
+from lithobrake.report.results import SequenceResults
+from lithobrake.report.runs_figure import DrawnLandings, runs_figure
+from lithobrake.report.scatter_figure import scatter_figure
+from lithobrake.report.sequence_answer import answer, warnings
+from lithobrake.report.sequence_tables import colour_input, tables, tiles
+from lithobrake.report.style import input_label
+from lithobrake.report.variance_figure import variance_figure
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+# The titles of the rows of figure 4 that are no outputs.
+STAYS_ROW = {"stays": "share that stays"}
+
+
+def sequence_content(data: SequenceResults) -> Content:
+    """All that the page shows of the study."""
+    return Content(answer(data), warnings(data), tiles(data), _plots(data), tables(data))
+
+
+def _plots(data: SequenceResults) -> list[Plot]:
+    colour, words = colour_input(data), sequence_captions
+    plots = [
+        Plot("bed", "The surface", captions.bed(data), lambda: any_study.draw_bed(data)),
+        Plot("landing", "A landing", captions.landing(data), lambda: any_study.draw_landing(data)),
+        Plot("runs", "What the landings gave", words.runs(data), lambda: _runs(data)),
+        Plot("variance", "What decides", words.variance(data), lambda: _variance(data)),
+        Plot("calibration", "Whether to believe the emulator", words.calibration(data), lambda: _calibration(data)),
+        Plot("outputs", "What may come out", words.samples(data, colour), lambda: _samples(data, colour)),
+    ]
+    if data.results.get("shares") and data.results.get("site"):
+        plots += [
+            Plot("map", "Where the lander comes down", captions.impact_map(data), lambda: any_study.draw_map(data)),
+            Plot("body", "The same on the body", captions.body(data), lambda: any_study.draw_body(data)),
+        ]
+    else:
+        plots.append(Plot("map", "Where the lander comes down", words.impacts_absent(data), lambda: None))
+    if data.results.get("rest") and data.results.get("site"):
+        plots.append(Plot("rest", "Where it rests", captions.rest(data), lambda: any_study.draw_rest(data)))
+    return plots
+
+
+def _runs(data: SequenceResults) -> "Figure | None":
+    runs = data.runs
+    if not len(runs["key"]):
+        return None
+    nan = np.full(len(runs["key"]), np.nan)
+    column = {name: runs.get(name, nan) for name in ("speed_out", "elevation_out", OVER_RIM, "bed")}
+    landings = DrawnLandings(
+        column["speed_out"],
+        column["elevation_out"],
+        runs["outcome"],
+        column[OVER_RIM] == 1.0,
+        np.nan_to_num(column["bed"]).astype(np.int64),
+    )
+    quantiles = {
+        name: {level: entry["value"] for level, entry in data.table("outputs", name, "quantiles").items()}
+        for name in data.table("outputs")
+    }
+    return runs_figure(landings, quantiles)
+
+
+def _variance(data: SequenceResults) -> "Figure | None":
+    shares = data.table("variance_shares")
+    return variance_figure(shares, STAYS_ROW) if any(shares.values()) else None
+
+
+def _calibration(data: SequenceResults) -> "Figure | None":
+    scores = data.table("emulator", "scores")
+    return calibration_figure(scores) if histograms(scores) else None
+
+
+def _samples(data: SequenceResults, colour: str | None) -> "Figure | None":
+    samples = data.samples
+    if samples is None or colour is None:
+        return None
+    leaves = samples["outcome"] == TouchdownOutcome.CLEAR
+    if not leaves.any():
+        return None
+    column = samples.columns[colour]
+    return scatter_figure(samples, (input_label(colour, column.units), column.values), leaves)
