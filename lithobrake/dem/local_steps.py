@@ -130,7 +130,7 @@ def force_after(
 
 
 @kernel
-def kick(bodies: Bodies, flight: Flight, body: int, sign: float, impulse: Vector, moment: Vector) -> None:
+def give_impulse(bodies: Bodies, flight: Flight, body: int, sign: float, impulse: Vector, moment: Vector) -> None:
     """Add an impulse [N s] and a moment [N m s] to a body, or to what a held one will go on with.
 
     Writes to bodies and flight.
@@ -165,7 +165,7 @@ def touch(
 ) -> float:  # fmt: skip
     """Compute a contact, kick its bodies, and return the interval [s] until it is due again; 0 where it has ended.
 
-    passed: since the last look [s]. Writes to bodies, pairs, scratch, reactions and plans.
+    passed: since the last look [s]. Writes to bodies, pairs, scratch, reactions, flight and plans.
     """
     first, second = pairs.first[pair], pairs.second[pair]
     planned = plans.interval[pair]
@@ -188,9 +188,9 @@ def touch(
         impulse = plus(impulse, scaled(time, row(reactions.force, pair)))
         moment = plus(moment, scaled(time, row(reactions.first_torque, pair)))
         other_moment = plus(other_moment, scaled(time, row(reactions.second_torque, pair)))
-    kick(bodies, flight, first, -1.0, impulse, moment)
+    give_impulse(bodies, flight, first, -1.0, impulse, moment)
     if second >= 0:
-        kick(bodies, flight, second, 1.0, impulse, other_moment)
+        give_impulse(bodies, flight, second, 1.0, impulse, other_moment)
     plans.interval[pair] = interval
     note_motion(pair, bodies, pairs, plans)
     return interval
