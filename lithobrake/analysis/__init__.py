@@ -7,6 +7,7 @@ from lithobrake.analysis.half_width import expected_half_width, runs_for_half_wi
 from lithobrake.analysis.outcome_model import OutcomeModel, upper_limit
 from lithobrake.analysis.output_estimates import mean_estimate, quantile_estimates
 from lithobrake.analysis.proportion import wilson_interval
+from lithobrake.analysis.refit_interval import refit_interval
 from lithobrake.analysis.sampling import sample_inputs
 from lithobrake.analysis.share_estimate import ShareEstimate, share_estimate
 from lithobrake.analysis.side_runs import chaos_variance, soil_total_effect
@@ -24,6 +25,7 @@ __all__ = [
     "expected_half_width",
     "mean_estimate",
     "quantile_estimates",
+    "refit_interval",
     "regression_terms",
     "runs_for_half_width",
     "sample_inputs",

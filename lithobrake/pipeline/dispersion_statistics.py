@@ -36,7 +36,7 @@ def dispersion_results(job: Job, samples: Samples, flights: Rows, run_outcomes: 
             "flights": flight_numbers(alone),
             "ellipses": ellipses(study, alone, FlightStatus.IMPACT),
         }
-    results["rest"] = _rest(job)
+    results["rest"] = rest_results(job)
     return results
 
 
@@ -116,7 +116,7 @@ def ellipses(study: Study, rows: Rows, status: str) -> dict[str, Any] | None:
     }
 
 
-def _rest(job: Job) -> dict[str, Any]:
+def rest_results(job: Job) -> dict[str, Any]:
     """What became of the samples that were followed, on each ground."""
     rows, known = read_table(job.folder, "rest.csv"), job.folder.read_json("rest.json")
     table: dict[str, Any] = {"why_no_soil": known["why_no_soil"], "trained_ranges": known["trained_ranges"]}

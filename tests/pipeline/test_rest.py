@@ -18,10 +18,11 @@ from lithobrake.pipeline import Job, StudyFolder
 from lithobrake.pipeline.dispersion_statistics import dispersion_results, proportion
 from lithobrake.pipeline.flights import COLUMNS, read_table, write_table
 from lithobrake.pipeline.job import Silent
+from lithobrake.pipeline.outgoing import rolling_spin
 from lithobrake.pipeline.rest import follow_samples
 from lithobrake.pipeline.run_noise import Scatter
 from lithobrake.pipeline.samples import SAMPLE_OUTCOMES, Samples
-from lithobrake.pipeline.surrogate_bounce import SoilBounce, rolling_spin, trained_ranges, why_no_soil
+from lithobrake.pipeline.surrogate_bounce import SoilBounce, trained_ranges, why_no_soil
 from lithobrake.smallbody import Impacts
 from lithobrake.study import Study, check_tables
 from lithobrake.study.template import template
