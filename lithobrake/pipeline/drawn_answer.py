@@ -54,7 +54,8 @@ def _share(study: Study, stays: Mapping[str, Any], down: str) -> list[str]:
         f"the study file, on {attitudes} that were not in the study; from {stays['from']}."
     ]
     if stays["next_bed"] is not None:
-        sentences.append(f"On one next bed the share lies between {_span(*stays['next_bed'], word='and')} ({level}).")
+        low, high = stays["next_bed"]
+        sentences.append(f"On one next bed the share lies between {_span(low, high, 'and')} ({level}).")
     return sentences
 
 
@@ -76,7 +77,7 @@ def _missing(runs: Mapping[str, Any], stays: Mapping[str, Any]) -> list[str]:
 
 def _others(shares: Mapping[str, Any], *, holds: bool) -> str:
     """What becomes of the others."""
-    ways = {FlightStatus.ESCAPED: "escape", FlightStatus.FLYING: "are still flying"}
+    ways: dict[str, str] = {FlightStatus.ESCAPED: "escape", FlightStatus.FLYING: "are still flying"}
     if shares[FlightStatus.PARTNER]["count"]:
         ways[FlightStatus.PARTNER] = "come down on the partner"
     if shares[SampleOutcome.CAPTURED]["count"] and not holds:
@@ -90,9 +91,8 @@ def _touchdowns(runs: Mapping[str, Any]) -> str:
     left, *others = TouchdownOutcome
     found = [f"{runs['outcomes'].get(left, 0)} of {runs['count']} touchdowns {left.label}"]
     found += [f"{runs['outcomes'][one]} {one.label}" for one in others if one in runs["outcomes"]]
-    return (
-        "; ".join([*found, *([f"{runs['outcomes']['failed']} failed"] if "failed" in runs["outcomes"] else [])]) + "."
-    )
+    found += [f"{runs['outcomes']['failed']} failed"] if "failed" in runs["outcomes"] else []
+    return f"{'; '.join(found)}."
 
 
 def _speed(outputs: Mapping[str, Any]) -> list[str]:
@@ -113,12 +113,11 @@ def _scatter(parts: Mapping[str, Any] | None) -> list[str]:
     if parts is None:
         return []
     listed = [
-        f"{words} accounts for {_percent(max(parts[name]['share'], 0.0))} "
-        f"({_span(parts[name]['lower'], parts[name]['upper'])})"
+        f"{words} {_percent(max(parts[name]['share'], 0.0))} ({_span(parts[name]['lower'], parts[name]['upper'])})"
         for name, words in PARTS.items()
         if parts[name] is not None
     ]
-    return [f"Of the scatter of the outgoing speed {', '.join(listed)} (90 % intervals)."]
+    return [f"The scatter of the outgoing speed comes from: {', '.join(listed)} (90 % intervals)."]
 
 
 def _span(lower: float, upper: float, word: str = "to") -> str:

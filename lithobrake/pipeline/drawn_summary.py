@@ -70,8 +70,6 @@ def _dispersion(job: Job, estimates: dict[str, Any]) -> dict[str, Any]:
     for entry in table.values():
         if isinstance(entry, dict):
             entry.pop("upper_limit", None)
-    # Every draw of an emulator leaves outwards.
-    del table["outside"]
     refits.put_intervals(table, np.arange(table["sample_count"]), fates)
     refits.widen_what_no_run_met(table, ended)
     known = table["sample_count"] - table["missing"]["count"]

@@ -45,14 +45,14 @@ def why_no_interval(study: Study) -> str | None:
     """Why the runs of a sequence say nothing of other beds and places; None where they do."""
     if study.bed_count > 1 and not one_place(study):
         return None
-    where = " and ".join(
-        (["on one bed"] if study.bed_count == 1 else []) + (["at one place"] if one_place(study) else [])
-    )
-    remedies = ["bed.bed_count to 12 or more"] if study.bed_count == 1 else []
-    remedies += ["a region (impact.region)"] if one_place(study) else []
+    where, remedies = [], []
+    if study.bed_count == 1:
+        where, remedies = ["on one bed"], ["bed.bed_count to 12 or more"]
+    if one_place(study):
+        where, remedies = [*where, "at one place"], [*remedies, "impact.region to where it may come down"]
     return (
-        f"All runs came down {where}. Another bed, place or attitude gives another figure; this study cannot say how "
-        f"different: set {' and '.join(remedies)}."
+        f"All runs came down {' and '.join(where)}. Another bed, place or attitude gives another figure; this study "
+        f"cannot say how different: set {' and '.join(remedies)}."
     )
 
 

@@ -49,11 +49,7 @@ def sample_fates(samples: Samples, flights: Rows, *, holds: bool) -> dict[str, n
         total = int(flights[-1]["sample"]) + 1
     for row in flights:
         words[int(row["sample"])] = row["status"]
-    met = {
-        str(name): words[:total] == name
-        for name in (*SampleOutcome, *FlightStatus)
-        if name not in (SampleOutcome.CLEAR, SampleOutcome.OUTSIDE)
-    }
+    met = {str(name): words[:total] == name for name in (*SampleOutcome, *FlightStatus) if name != SampleOutcome.CLEAR}
     remains = met[FlightStatus.IMPACT] | met[SampleOutcome.CAPTURED] if holds else met[FlightStatus.IMPACT]
     return met | {"remains": remains, "missing": np.isin(words[:total], MISSING)}
 

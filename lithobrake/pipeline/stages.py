@@ -185,7 +185,7 @@ def stages_of(study: Study) -> tuple[Stage, ...]:
 
 
 def stages_until(study: Study, until: str) -> tuple[Stage, ...]:
-    """The stages of a study up to and including one; a method that has no report yet ends with its last stage.
+    """The stages of a study up to and including one.
 
     Raises ValueError for a stage that the method of the study does not have.
     """
@@ -193,8 +193,6 @@ def stages_until(study: Study, until: str) -> tuple[Stage, ...]:
     names = [stage.name for stage in stages]
     if until in names:
         return stages[: names.index(until) + 1]
-    if until in ("summary", "report"):
-        return stages
     raise ValueError(
         f'"{until}" is no stage of a study with design.method = "{method}"; allowed: {", ".join(names)}; '
         "run all of it with: lithobrake run"

@@ -102,8 +102,9 @@ def landing(data: Results) -> str:
         return "The pictures of a touchdown are that program's own."
     attributes, time = data.landing.moving.attributes, data.landing.moving.time
     ended = TouchdownOutcome(str(attributes["status"])).sentence.rstrip(".")
+    first = "In the first of the runs" if data.is_drawn else "With every uncertain input at its median"
     return (
-        "With every uncertain input at its median, the lander arrives at "
+        f"{first}, the lander arrives at "
         f"{number(_float(attributes['speed']))} m/s and "
         f"{math.degrees(_float(attributes['incidence'])):.3g} deg from the normal. "
         f"{ended} after {number(float(time[-1] - time[0]))} s of simulated time; "
@@ -191,9 +192,10 @@ def scatter(data: Results, colour_name: str) -> str:
         return f"None of the {_thousands(total)} samples leaves the surface, so there is nothing to draw."
     speed, angle = table["outputs"]["speed_out"], table["outputs"]["elevation_out"]
     degrees = output("elevation_out").factor
+    origin = "emulator" if data.is_drawn else "refined expansion"
     first = f" (the first {_thousands(DRAWN_COUNT)} are drawn)" if leaving > DRAWN_COUNT else ""
     return (
-        f"Of {_thousands(total)} samples of the refined expansion {_thousands(leaving)} leave the surface, the middle "
+        f"Of {_thousands(total)} samples of the {origin} {_thousands(leaving)} leave the surface, the middle "
         f"nine tenths of them at {number(speed['quantile_0.05'])} to {number(speed['quantile_0.95'])} m/s and "
         f"{degrees * angle['quantile_0.05']:.3g} to {degrees * angle['quantile_0.95']:.3g} deg above the surface; "
         f"the colour is the {input_words(colour_name)}{first}."

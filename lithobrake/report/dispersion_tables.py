@@ -59,8 +59,9 @@ def _outcomes(data: Results) -> PageTable:
         rows.append(row + ([_share(alone["shares"][key])] if alone else []))
     stays = data.results["stays"]
     note = (
-        f"Shares of {shares['sample_count']} samples; {shares['flight_count']} of them were flown. {stays['why']} "
-        f"The number of flights alone leaves +- {100 * stays['flight_sampling']:.1f} points (90 %) in what remains. "
+        f"Shares of {shares['sample_count']} samples; {shares['flight_count']} of them were flown. "
+        + (f"{stays['why']} " if stays["why"] else "")
+        + f"The number of flights alone leaves +- {100 * stays['flight_sampling']:.1f} points (90 %) in what remains. "
         '"At most": no run ended so, which such a probability allows (95 %).'
     )
     if alone:

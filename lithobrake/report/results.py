@@ -43,6 +43,11 @@ class Results:
     body_faces: NDArray[np.int64]
     rest: dict[str, tuple[Array, Array]]
 
+    @property
+    def is_drawn(self) -> bool:
+        """Whether all runs were drawn out of one sequence: no designs, no expansions, and intervals in their place."""
+        return not self.scores
+
 
 class SummaryTable(dict[str, Any]):
     """A table of summary.json; a key that it lacks, as where another version wrote it, is named with the file."""
@@ -62,7 +67,8 @@ class SummaryTable(dict[str, Any]):
 
 def page_results(found: StudyResults) -> Results:
     """What the page shows of a study. Raises ValueError that names the file when one is missing or damaged."""
-    _refuse_without(found.folder, FILES)
+    is_drawn = found.study["design"].get("method") == "sequence"
+    _refuse_without(found.folder, tuple(name for name in FILES if not (is_drawn and name == "scores.json")))
     summary = SummaryTable(found.summary, found.folder / "summary.json", found.remedy)
     # A program or function of the user's own has neither beds nor pictures.
     has_scenes = bool(summary["results"]["beds"])
@@ -78,7 +84,7 @@ def page_results(found: StudyResults) -> Results:
         study_text=found.study_text,
         bed=scene(found.bed_bodies(0), has_lander=False) if has_scenes else None,
         landing=scene(found.median_landing, has_lander=True) if has_scenes else None,
-        scores=_scores(found),
+        scores={} if is_drawn else _scores(found),
         samples=found.samples,
         latitude=latitude,
         longitude=longitude,

@@ -77,12 +77,17 @@ def write_report(folder: Path, progress: Callable[[int, int], None]) -> Path:
 def _figures(data: Results) -> list[tuple[str, str, str, Callable[[], "Figure | None"]]]:
     """The figures of the method in its order: name of the file, title, sentence, and what draws it."""
     colour = _colour_input(data)
+    of_expansions: list[tuple[str, str, str, Callable[[], Figure | None]]] = []
+    if not data.is_drawn:
+        of_expansions = [
+            ("counts", "What the designs cost", captions.counts(data), lambda: _counts(data)),
+            ("sobol", "What matters", captions.sobol(data), lambda: _sobol(data)),
+            ("errors", "How good the expansion is", captions.errors(data), lambda: _errors(data)),
+        ]
     return [
         ("bed", "The surface", captions.bed(data), lambda: _bed(data)),
         ("landing", "A landing", captions.landing(data), lambda: _landing(data)),
-        ("counts", "What the designs cost", captions.counts(data), lambda: _counts(data)),
-        ("sobol", "What matters", captions.sobol(data), lambda: _sobol(data)),
-        ("errors", "How good the expansion is", captions.errors(data), lambda: _errors(data)),
+        *of_expansions,
         ("outputs", "What may come out", captions.scatter(data, colour), lambda: _outputs(data, colour)),
         ("map", "Where the lander comes down", captions.impact_map(data), lambda: _map(data)),
         ("body", "The same on the body", captions.body(data), lambda: _body(data)),
@@ -148,6 +153,8 @@ def _colour_input(data: Results) -> str:
     """The restitution of the grains, as in [Landings-PCE], or the input that decides the speed most."""
     if "grain.restitution" in data.samples:
         return "grain.restitution"
+    if data.is_drawn:
+        return next(iter(data.samples.columns))
     return TellingNumbers.of(data.results).main_input.name
 
 

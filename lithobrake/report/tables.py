@@ -27,6 +27,11 @@ DESIGN_WORDS = {
 
 def tiles(data: Results) -> list[Tile]:
     """The share that remains, and the most telling numbers beside it."""
+    if data.is_drawn:
+        stays = data.results["stays"]
+        ends = "" if stays["lower"] is None else f"({percent(stays['lower'])} to {percent(stays['upper'])}, 90 %) "
+        words = outcome_words(data)["remains"].format(hours=hours(data.study["flight"]["duration"]))
+        return [Tile(f"{100 * stays['share']:.1f}", "%", f"{ends}{words}; {stays['from']}")]
     telling = TellingNumbers.of(data.results)
     main, score, speed = telling.main_input, telling.score, telling.speed
     low, high = main.interval
@@ -80,6 +85,8 @@ def _touchdowns_tile(telling: TellingNumbers) -> Tile:
 
 def tables(data: Results) -> list[PageTable]:
     """All tables, in the order of the stages."""
+    if data.is_drawn:
+        return [_estimates(data), *([_beds(data)] if data.results["beds"] else []), *dispersion_tables(data)]
     return [
         _inputs(data),
         _runs(data),
@@ -91,6 +98,13 @@ def tables(data: Results) -> list[PageTable]:
         _touchdowns(data),
         *dispersion_tables(data),
     ]
+
+
+def _estimates(data: Results) -> PageTable:
+    """What the runs and the emulator of a drawn study say, by the keys of the summary."""
+    names = ("runs", "stays", "variance_shares", "outputs", "emulator")
+    rows = [list(row) for name in names for row in flat(data.results[name], name)]
+    return PageTable("Estimates", ["key", "value"], rows, "As in summary.json, under results.")
 
 
 def provenance(data: Results) -> list[PageTable]:
