@@ -31,10 +31,16 @@ MARGIN = 1e-6
 def fit_emulator(job: Job) -> None:
     """Fit the emulator to the runs of the sequence and write it; a run that failed says nothing."""
     from lithobrake import emulator
+    from lithobrake.emulator.training import FEWEST
 
     study, runs = job.study, DesignRuns.load(job.folder, "sequence")
     inputs, outcomes = design_inputs(study), tuple(TouchdownOutcome)
     ended = np.isin(runs.outcomes, outcomes)
+    left = int(runs.has_outputs.sum())
+    if left < FEWEST:
+        raise ValueError(
+            f"{left} of {runs.run_count} runs left the surface, and an emulator needs {FEWEST}; raise design.run_count"
+        )
     x, bed = runs.columns(list(inputs)), runs.inputs["bed"].astype(int)[ended]
     outputs = _outputs(runs)
     upper = np.full((runs.run_count, len(outputs)), np.inf)
