@@ -1,5 +1,6 @@
 """The flights of the runs themselves: each run's own velocity from many sites, and the share of them that stays."""
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
@@ -27,6 +28,9 @@ FATES = (
     *(JourneyStatus.SETTLED, JourneyStatus.LOFTED),
 )
 STAYS = (FlightStatus.IMPACT, JourneyStatus.SETTLED)
+# Numbers of a site in the order of their powers: those that matter most fill their plane best.
+FIRST = ("heading_deg", "partner_longitude_deg")
+LATTICE = (*FIRST, *(key for key in SITE_KEYS if key not in FIRST))
 COLUMNS = ("design", "run", "key", "outcome", "flight_count", *FATES, "stays")
 
 
@@ -66,23 +70,31 @@ def fly_runs(job: Job) -> None:
 def run_sites(study: Study, run_count: int, flight_count: int = FLIGHT_COUNT) -> dict[str, np.ndarray]:
     """Sites of the flights of runs by the keys of SITE_KEYS, each [run_count, flight_count].
 
-    Each uncertain number goes through its law in equal steps from a random first one, in an order of its own, and the
-    heading in order: a share of these flights hardly scatters. More runs change no earlier site.
-    Source: [McKay-1979] (stratified in each number).
+    Each uncertain number goes through its law in equal steps from a random first one of the run, the heading in order,
+    the others so that together they fill all that may be evenly (a lattice of powers of one generator): a share of
+    these flights hardly scatters. More runs change no earlier site.
     """
     site = {key: np.full((run_count, flight_count), value) for key, value in site_medians(study).items()}
     values = {f"site.{key}": value for key, value in site_values(study).items()}
     laws = {name.removeprefix("site."): value.to_chaos() for name, value in uncertain(values).items()}
+    generator = _generator(flight_count)
     for run in range(run_count):
         random = np.random.Generator(np.random.PCG64(hashed_seed(study.seed, "flights of runs", run)))
         # All keys take their random numbers, whether uncertain or not, so that one more leaves the others as they were.
         for key in SITE_KEYS:
-            first, order = 1.0 - random.random(), random.permutation(flight_count)
+            first = random.random()
             if key in laws:
-                steps = np.arange(flight_count) if key == "heading_deg" else order
-                # In (0, 1]; half a unit in the last place off the end, where an unbounded law is infinite.
-                site[key][run] = laws[key].ppf(np.minimum((steps + first) / flight_count, 1.0 - 2.0**-53))
+                steps = np.arange(flight_count) * pow(generator, LATTICE.index(key), flight_count)
+                share = (steps / flight_count + first) % 1.0
+                # Half a unit in the last place off the ends, where an unbounded law is infinite.
+                site[key][run] = laws[key].ppf(np.clip(share, 2.0**-54, 1.0 - 2.0**-53))
     return site
+
+
+def _generator(count: int) -> int:
+    """The number next to the golden section of a count that has no divisor with it."""
+    golden = 0.5 * (math.sqrt(5.0) - 1.0) * count
+    return min((one for one in range(1, count + 1) if math.gcd(one, count) == 1), key=lambda one: abs(one - golden))
 
 
 def _fates(job: Job, runs: DesignRuns, design: str) -> np.ndarray:
