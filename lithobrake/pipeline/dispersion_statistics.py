@@ -137,8 +137,9 @@ def _ends(study: Study, rows: Rows, ranges: dict[str, list[float]]) -> dict[str,
         table[name] = {f"quantile_{level:g}": float(np.quantile(values, level)) for level in QUANTILES}
     table["ellipses"] = ellipses(study, rows, JourneyStatus.SETTLED)
     lowest = ranges.get("impact.speed", [0.0])[0]
-    # Most journeys that leave the range of the runs have become too slow for it.
-    too_slow = sum(row["status"] == JourneyStatus.OUTSIDE and float(row["impact_speed"]) < lowest for row in rows)
+    # Most journeys that leave the range of the runs have become too slow for it; some ended at the first impact.
+    outside = [float(row["impact_speed"] or "inf") for row in rows if row["status"] == JourneyStatus.OUTSIDE]
+    too_slow = sum(speed < lowest for speed in outside)
     table["outside_too_slow"] = proportion(too_slow, len(rows))
     return table
 

@@ -22,10 +22,14 @@ SOIL: dict[str, Any] = {
 
 @dataclass(frozen=True)
 class SyntheticLander:
-    """A model for `lithobrake.run`; beds: whose effects on the landings come from this seed."""
+    """A model for `lithobrake.run`.
+
+    beds: seed of the effects of the beds. follows_speed: whether landers leave in proportion to their speed of arrival.
+    """
 
     truth: Truth = field(default=WEAK)
     beds: int = 1
+    follows_speed: bool = False
 
     def __call__(self, values: dict[str, float], seed: int) -> dict[str, Any]:
         """Land once, with the soil, the bed and the seed of the run."""
@@ -34,7 +38,8 @@ class SyntheticLander:
         landing = self.truth.draw(x, bed, np.random.default_rng(seed))
         if landing.outcome[0] != "clear":
             return {"outcome": str(landing.outcome[0])}
-        return {"outcome": "clear", "outputs": outputs_of(landing.y[0])}
+        part = values["impact.speed"] / SPEED_LIMIT if self.follows_speed else 1.0
+        return {"outcome": "clear", "outputs": outputs_of(landing.y[0] * [part, 1.0, 1.0, 1.0])}
 
 
 def outputs_of(y: np.ndarray) -> dict[str, float]:
@@ -66,4 +71,9 @@ def synthetic_tables(**changes: dict[str, Any]) -> dict[str, Any]:
     tables["site"] = {"heading_deg": {"distribution": "uniform", "lower": 0.0, "upper": 360.0}}
     tables["flight"] = {"flight_count": 1000}
     tables["rest"] = {"count": 0}
-    return tables | {name: tables.get(name, {}) | keys for name, keys in changes.items()}
+    changed = tables | {name: tables.get(name, {}) | keys for name, keys in changes.items()}
+    # A key that is None is left out.
+    return {
+        name: {key: entry for key, entry in table.items() if entry is not None} if isinstance(table, dict) else table
+        for name, table in changed.items()
+    }
