@@ -17,7 +17,8 @@ from lithobrake.study import StudySource
 from ..few_grains import few_grains
 from .ball_studies import FEW_RUNS, write_ball
 
-PAPERS = """screening_level = 2
+PAPERS = """method = "paper"                                           # two steps, each with an expansion of its own
+screening_level = 2
 screening_degree = 2
 refined_level = 3
 refined_degree = 3
