@@ -92,8 +92,8 @@ def _study_command(name: str, what: str, until: str | None = None) -> None:
         logs: Logs = False,
     ) -> None:
         folder = _default_folder(study) if out is None else _given_folder(out)
-        made = _make(study, folder, last, workers, _scheduler(executor, scheduler), logs)
-        _tell(_results(folder) if made == "report" else [f"Done: {folder}"])
+        _make(study, folder, last, workers, _scheduler(executor, scheduler), logs)
+        _tell(_results(folder) if last == "report" else [f"Done: {folder}"])
 
     app.command(name, help=what, epilog=f"Example: lithobrake {name} study.toml --out results --workers 4")(command)
 
@@ -220,8 +220,8 @@ def _scheduler(executor: str, scheduler: str | None) -> str | None:
     return scheduler
 
 
-def _make(study: Path, out: Path, until: str, workers: int | None, scheduler: str | None, logs: bool) -> str:
-    """Make the files of a study up to a stage, with two lines of progress; return the name of the last stage."""
+def _make(study: Path, out: Path, until: str, workers: int | None, scheduler: str | None, logs: bool) -> None:
+    """Make the files of a study up to a stage, with two lines of progress."""
     with _one_sentence():
         from lithobrake.study import StudySource
 
@@ -231,9 +231,7 @@ def _make(study: Path, out: Path, until: str, workers: int | None, scheduler: st
         from lithobrake.progress import study_progress
 
         with study_progress() as shown:
-            return run_study(
-                source, out, until=until, worker_count=workers, scheduler=scheduler, shown=shown, keeps_logs=logs
-            )
+            run_study(source, out, until=until, worker_count=workers, scheduler=scheduler, shown=shown, keeps_logs=logs)
 
 
 def _results(folder: Path) -> list[str]:

@@ -120,7 +120,7 @@ def refused(arguments: list[str]) -> str:
 
 
 SCHEMA = ("mass = 2.6", "mas = 2.6")
-BETWEEN_KEYS = ("screening_level = 2", "screening_level = 1")
+BETWEEN_KEYS = ("# bed_count =", "bed_count = 300")
 
 
 @pytest.mark.parametrize(("old", "new"), [SCHEMA, BETWEEN_KEYS], ids=["schema", "between keys"])

@@ -34,7 +34,7 @@ ALLOWED: dict[str, set[str]] = {
     "analysis": {"chaos", "emulator"},
     # What of a study a touchdown reads, in the words of the engine.
     "touchdown_model": {"dem", "touchdown", "study"},
-    "results": {"campaign", "chaos", "study", "touchdown", "touchdown_model"},
+    "results": {"campaign", "chaos", "emulator", "study", "touchdown", "touchdown_model"},
     "report": {"results"},
     # The reader makes words of a command absolute as the campaign starts them.
     "study": {"chaos", "campaign", "smallbody", "touchdown"},

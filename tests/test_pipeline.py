@@ -2,7 +2,6 @@
 
 import math
 import re
-import tomllib
 from collections import Counter
 from pathlib import Path
 from typing import Any
@@ -29,13 +28,14 @@ from lithobrake.pipeline.site import (
 )
 from lithobrake.pipeline.summary import study_tables
 from lithobrake.study import Study, StudyError, check_tables
-from lithobrake.study.template import template
 from lithobrake.touchdown_model import ORIENTATION, PLACE, acceleration, draw, in_words_of_the_study, medians
+
+from .paper_tables import paper_tables
 
 
 def changed(**sections: dict[str, Any]) -> Study:
     """The template with some keys changed."""
-    tables = tomllib.loads(template())
+    tables = paper_tables()
     for section, keys in sections.items():
         tables.setdefault(section, {}).update(keys)
     return with_site_gravity(check_tables(tables, Path()))

@@ -23,6 +23,7 @@ STUDY = (
     'title = "A few grains"'
     + few_grains(45, width=0.5, lander_diameter=0.14)
     + """[design]
+method = "paper"
 screening_level = 1
 screening_degree = 1
 refined_level = 1

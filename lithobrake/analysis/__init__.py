@@ -7,6 +7,7 @@ from lithobrake.analysis.half_width import expected_half_width, runs_for_half_wi
 from lithobrake.analysis.outcome_model import OutcomeModel, upper_limit
 from lithobrake.analysis.output_estimates import mean_estimate, quantile_estimates
 from lithobrake.analysis.proportion import wilson_interval
+from lithobrake.analysis.refit_interval import refit_interval
 from lithobrake.analysis.sampling import sample_inputs
 from lithobrake.analysis.sequential_stopping import half_width_of, next_run_count, scatter_of
 from lithobrake.analysis.share_estimate import ShareEstimate, share_estimate
@@ -27,6 +28,7 @@ __all__ = [
     "mean_estimate",
     "next_run_count",
     "quantile_estimates",
+    "refit_interval",
     "regression_terms",
     "runs_for_half_width",
     "sample_inputs",

@@ -36,7 +36,7 @@ def dispersion_results(job: Job, samples: Samples, flights: Rows, run_outcomes: 
             "flights": flight_numbers(alone),
             "ellipses": ellipses(study, alone, FlightStatus.IMPACT),
         }
-    results["rest"] = _rest(job)
+    results["rest"] = rest_results(job)
     return results
 
 
@@ -116,7 +116,7 @@ def ellipses(study: Study, rows: Rows, status: str) -> dict[str, Any] | None:
     }
 
 
-def _rest(job: Job) -> dict[str, Any]:
+def rest_results(job: Job) -> dict[str, Any]:
     """What became of the samples that were followed, on each ground."""
     rows, known = read_table(job.folder, "rest.csv"), job.folder.read_json("rest.json")
     table: dict[str, Any] = {"why_no_soil": known["why_no_soil"], "trained_ranges": known["trained_ranges"]}
@@ -137,8 +137,9 @@ def _ends(study: Study, rows: Rows, ranges: dict[str, list[float]]) -> dict[str,
         table[name] = {f"quantile_{level:g}": float(np.quantile(values, level)) for level in QUANTILES}
     table["ellipses"] = ellipses(study, rows, JourneyStatus.SETTLED)
     lowest = ranges.get("impact.speed", [0.0])[0]
-    # Most journeys that leave the range of the runs have become too slow for it.
-    too_slow = sum(row["status"] == JourneyStatus.OUTSIDE and float(row["impact_speed"]) < lowest for row in rows)
+    # Most journeys that leave the range of the runs have become too slow for it; some ended at the first impact.
+    outside = [float(row["impact_speed"] or "inf") for row in rows if row["status"] == JourneyStatus.OUTSIDE]
+    too_slow = sum(speed < lowest for speed in outside)
     table["outside_too_slow"] = proportion(too_slow, len(rows))
     return table
 

@@ -78,12 +78,22 @@ def sample_sites(study: Study, count: int) -> dict[str, np.ndarray]:
     return site
 
 
-def fly_samples(job: Job) -> None:
-    """Fly the samples that leave and write flights.csv in the order of the samples, and what the flights took.
+def fly_expansion_samples(job: Job) -> None:
+    """Fly the samples of an expansion; where these have the scatter from run to run, without it too.
 
-    Where samples have the scatter from run to run, flights_without_scatter.csv has the flights of the expansion alone;
-    else it is empty.
+    flights_without_scatter.csv has the flights of the expansion alone; without scatter it is empty.
     """
+    fly_samples(job)
+    study, body, samples = job.study, site_body(job.study), Samples.load(job.folder)
+    alone: Iterable[list[Any]] = ()
+    if samples.without_scatter is not None:
+        start = starts(study, samples.expansion_alone())
+        alone = _rows(start, fly_starts(body, start, study, job, "flights without scatter"))
+    write_table(job.folder, "flights_without_scatter.csv", COLUMNS, alone)
+
+
+def fly_samples(job: Job) -> None:
+    """Fly the samples that leave and write flights.csv in the order of the samples, and what the flights took."""
     study, body, samples = job.study, site_body(job.study), Samples.load(job.folder)
     start = starts(study, samples)
     if study.flight.gravity == "table":
@@ -99,11 +109,6 @@ def fly_samples(job: Job) -> None:
     job.folder.write_json("flights.json", _checks(body, start, study, job))
     _write_shape(body, job.folder)
     write_table(job.folder, "flights.csv", COLUMNS, _rows(start, fly_starts(body, start, study, job, "flights")))
-    alone: Iterable[list[Any]] = ()
-    if samples.without_scatter is not None:
-        start = starts(study, samples.expansion_alone())
-        alone = _rows(start, fly_starts(body, start, study, job, "flights without scatter"))
-    write_table(job.folder, "flights_without_scatter.csv", COLUMNS, alone)
 
 
 def write_table(folder: StudyFolder, name: str, columns: Sequence[str], rows: Iterable[list[Any]]) -> None:

@@ -6,12 +6,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from lithobrake.outcomes import JourneyStatus
+from lithobrake.outputs import SPIN_OUT
+from lithobrake.pipeline.emulator_bounce import emulator_bounce
 from lithobrake.pipeline.flights import partner_time, sample_sites, write_table
 from lithobrake.pipeline.job import Job
-from lithobrake.pipeline.outgoing import VELOCITY
+from lithobrake.pipeline.outgoing import VELOCITY, rolling_spin
 from lithobrake.pipeline.samples import CAPTURED, Samples, sampling_seed, touchdown_values
 from lithobrake.pipeline.site import frames, site_body
-from lithobrake.pipeline.surrogate_bounce import rolling_spin, soil_bounce, trained_ranges, why_no_soil
+from lithobrake.pipeline.surrogate_bounce import soil_bounce, trained_ranges, why_no_soil
 from lithobrake.study import Study
 
 if TYPE_CHECKING:
@@ -61,11 +63,15 @@ def _on_soil(job: Job, samples: Samples) -> tuple["Rebounds", "Bounce"]:
     """What the samples say of the first impact, and what the soil says of those that follow."""
     from lithobrake.smallbody import Rebounds
 
-    velocity = np.column_stack([samples.output(name) for name in VELOCITY])
-    spin = rolling_spin(velocity, np.maximum(samples.output("spin_out"), 0.0))
-    captured = samples.outcome == CAPTURED
-    inputs = {name: samples.inputs[samples.leaves, index] for index, name in enumerate(samples.input_names)}
-    return Rebounds(velocity, spin, captured, ~captured & ~samples.leaves), soil_bounce(job, inputs)
+    velocity, captured = np.column_stack([samples.output(name) for name in VELOCITY]), samples.outcome == CAPTURED
+    if job.study.design.method == "sequence":
+        spin = np.column_stack([samples.output(name) for name in SPIN_OUT])
+        bounce: Bounce = emulator_bounce(job, samples)
+    else:
+        spin = rolling_spin(velocity, np.maximum(samples.output("spin_out"), 0.0))
+        inputs = {name: samples.inputs[samples.leaves, index] for index, name in enumerate(samples.input_names)}
+        bounce = soil_bounce(job, inputs)
+    return Rebounds(velocity, spin, captured, ~captured & ~samples.leaves), bounce
 
 
 def _on_hard_ground(study: Study, sites: "Sites") -> tuple["Rebounds", "Bounce"]:

@@ -9,8 +9,11 @@ from lithobrake.hashing import json_hash, source_hash
 from lithobrake.pipeline.beds import bed_files, bed_reads, pour_beds
 from lithobrake.pipeline.design_runs import file_of
 from lithobrake.pipeline.designs import design_reads
+from lithobrake.pipeline.drawn_summary import write_drawn_summary
+from lithobrake.pipeline.emulator_samples import draw_emulator_samples
 from lithobrake.pipeline.expansions import fit_refined, fit_screening, score_all
-from lithobrake.pipeline.flights import flight_reads, fly_samples
+from lithobrake.pipeline.fitted_emulator import fit_emulator
+from lithobrake.pipeline.flights import flight_reads, fly_expansion_samples, fly_samples
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.making_runs import (
     make_drawn_runs,
@@ -21,6 +24,8 @@ from lithobrake.pipeline.making_runs import (
 )
 from lithobrake.pipeline.place_region import place_region
 from lithobrake.pipeline.rest import follow_samples, rest_reads
+from lithobrake.pipeline.run_estimates import estimate
+from lithobrake.pipeline.run_flights import fly_runs, run_flight_reads
 from lithobrake.pipeline.samples import draw_samples
 from lithobrake.pipeline.sequence import SIDE_DESIGNS, beds_of_runs
 from lithobrake.pipeline.shown_landing import land_once, landing_files, landing_reads
@@ -86,6 +91,7 @@ def _write_report(job: Job) -> None:
 
 RUNS = ("pipeline", "chaos", "outputs.py", "attitude.py")
 FIT = ("pipeline", "chaos", "analysis", "outputs.py")
+EMULATE = (*FIT, "emulator")
 SUM_UP = (*FIT, "results/telling_numbers.py")
 FLY = ("pipeline", "smallbody", "mesh.py", "mesh_files.py", "outputs.py")
 # The points of one design are best for the degree that is fitted to them.
@@ -93,9 +99,18 @@ _SCREENING_RUNS = ("points", "replicate_count", "screening_level", "screening_co
 _REFINED_RUNS = _design("refined_level", "refined_count", "refined_degree", "kept_share", "kept_outputs")
 _FIT, _TEST = _design("fit"), _design("test_count")
 
-FLIGHT_FILES = ("flights.csv", "flights_without_scatter.csv", "flights.json", "body.obj")
+FLIGHT_FILES = ("flights.csv", "flights.json", "body.obj")
 
 BED = Stage("bed", "bed", bed_files, bed_reads, (), (), pour_beds)
+REPORT = Stage(
+    "report",
+    "report",
+    _files("report/index.html"),
+    _nothing,
+    ("summary",),
+    ("report", "results", "outputs.py"),
+    _write_report,
+)
 PAPER = (
     BED,
     Stage("landing", "median landing", landing_files, landing_reads, ("bed",), (), land_once),
@@ -124,26 +139,43 @@ PAPER = (
     ),
     Stage("test", "scores", _files("scores.json"), _nothing, ("refine", "test_runs"), FIT, score_all),
     Stage("sample", "samples", _files("samples.h5"), _sample, ("refine", "test"), FIT, draw_samples),
-    Stage("fly", "flights", _files(*FLIGHT_FILES), flight_reads, ("sample",), FLY, fly_samples),
+    Stage(
+        "fly",
+        "flights",
+        _files(*FLIGHT_FILES, "flights_without_scatter.csv"),
+        flight_reads,
+        ("sample",),
+        FLY,
+        fly_expansion_samples,
+    ),
     Stage("rest", "bounces until rest", _files("rest.csv", "rest.json"), rest_reads, ("fly",), FLY, follow_samples),
     Stage("summary", "summary", _files("summary.json"), study_tables, ("landing", "rest"), SUM_UP, write_summary),
-    Stage(
-        "report",
-        "report",
-        _files("report/index.html"),
-        _nothing,
-        ("summary",),
-        ("report", "results", "outputs.py"),
-        _write_report,
-    ),
+    REPORT,
 )
 
-# What follows the runs of a sequence, from the emulator to the report, goes behind them here.
 SEQUENCE = (
     BED,
     Stage("landing", "first landing", landing_files, landing_reads, ("bed",), (), land_once),
     Stage("runs", "runs", _files(file_of("sequence")), _drawn_runs, ("bed",), RUNS, make_drawn_runs),
     Stage("side_runs", "side runs", _side_files, _side_runs, ("runs",), RUNS, make_side_runs),
+    Stage(
+        "fly_runs", "flights of the runs", _files("run_flights.csv"), run_flight_reads, ("side_runs",), FLY, fly_runs
+    ),
+    Stage("estimate", "estimates", _files("estimates.json"), _nothing, ("fly_runs",), FIT, estimate),
+    Stage("emulator", "emulator", _files("emulator.json"), _nothing, ("runs",), EMULATE, fit_emulator),
+    Stage("sample", "samples", _files("samples.h5"), _sample, ("emulator",), EMULATE, draw_emulator_samples),
+    Stage("fly", "flights", _files(*FLIGHT_FILES), flight_reads, ("sample",), FLY, fly_samples),
+    Stage("rest", "bounces until rest", _files("rest.csv", "rest.json"), rest_reads, ("fly",), FLY, follow_samples),
+    Stage(
+        "summary",
+        "summary",
+        _files("summary.json"),
+        study_tables,
+        ("landing", "estimate", "rest"),
+        (*SUM_UP, "emulator"),
+        write_drawn_summary,
+    ),
+    REPORT,
 )
 
 
@@ -153,7 +185,7 @@ def stages_of(study: Study) -> tuple[Stage, ...]:
 
 
 def stages_until(study: Study, until: str) -> tuple[Stage, ...]:
-    """The stages of a study up to and including one; a method that has no report yet ends with its last stage.
+    """The stages of a study up to and including one.
 
     Raises ValueError for a stage that the method of the study does not have.
     """
@@ -161,8 +193,6 @@ def stages_until(study: Study, until: str) -> tuple[Stage, ...]:
     names = [stage.name for stage in stages]
     if until in names:
         return stages[: names.index(until) + 1]
-    if until in ("summary", "report"):
-        return stages
     raise ValueError(
         f'"{until}" is no stage of a study with design.method = "{method}"; allowed: {", ".join(names)}; '
         "run all of it with: lithobrake run"

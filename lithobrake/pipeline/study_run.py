@@ -72,10 +72,8 @@ def run_study(
     model: Model | None = None,
     shown: Progress | None = None,
     keeps_logs: bool = False,
-) -> str:
+) -> None:
     """Run the stages of a study up to and including `until`; reuse what the folder already has.
-
-    Returns the name of the last stage, which is an earlier one where the study's method has no report yet.
 
     worker_count: number of processes here; None: one a core.
     scheduler: address of a Dask scheduler, whose workers make the runs instead.
@@ -87,7 +85,7 @@ def run_study(
     """
     shown = shown or Silent()
     study = with_site_gravity(source.study, source.name)
-    stages = stages_until(study, until)
+    stages_until(study, until)
     refuse_others_folder(source, out)
     if study.solver.command:
         shown.say(
@@ -113,7 +111,6 @@ def run_study(
             # What is under way would be waited for otherwise; every finished run is in the ledger already.
             executor.shutdown(cancel_futures=True)
             raise
-    return stages[-1].name
 
 
 def _make_all(job: Job, source: StudySource, until: str, note: Callable[..., None]) -> None:
@@ -139,10 +136,6 @@ def write_report_again(path: Path) -> None:
     folder = StudyFolder(path, f"no report can be written there; copy {path} to where you may write")
     with folder.alone():
         state = read_state(path)
-        if state.notes.stages and "report" not in state.notes.stages:
-            raise ValueError(
-                f"{path} is of a study whose method has no report yet; lithobrake runs {path} lists its runs"
-            )
         wrong = grouped([stage for stage in state.stages if stage.name != "report"])
         if state.unknown or wrong:
             mixed = f"{path} has no files that make one report ({wrong}); make them with: {state.command}"

@@ -57,17 +57,17 @@ def write_summary(job: Job) -> None:
     kept, flights = kept_inputs(job.study, screening), read_table(job.folder, "flights.csv")
     results = {
         "units": {name: TOUCHDOWN[name].units for name in OUTPUTS},
-        "beds": [_bed(job, name) for name in bed_files(job.study)],
+        "beds": [bed_results(job, name) for name in bed_files(job.study)],
         "node_counts": _node_counts(job.study, len(screening.input_names)),
         "designs": {design: _design(runs[design], replicate_count(job.study, design)) for design in DESIGNS},
-        "outputs_of_runs": _outputs_of_runs(distinct),
+        "outputs_of_runs": outputs_of_runs(distinct),
         "screening": _expansion(job, "screening", screening, runs["screening"]),
         "refined": _expansion(job, "refined", refined, runs["refined"]),
         "kept_inputs": list(kept),
         "kept_share": _by_output(screening, np.asarray(screening.sobol_group(kept))),
         "scores": {stage: _without_runs(table) for stage, table in scores.items()},
-        "monte_carlo": _monte_carlo(samples),
-        "site": _site(job.study),
+        "monte_carlo": monte_carlo_results(samples),
+        "site": site_results(job.study),
         **dispersion_results(job, samples, flights, ended),
     }
     results["answer"] = answer(job.study, results)
@@ -78,7 +78,7 @@ def write_summary(job: Job) -> None:
             "format_version": SUMMARY_FORMAT,
             "study": study_tables(job.study, job.tables),
             "results": results,
-            "provenance": _provenance(job, sum(one.run_count for one in runs.values()), distinct),
+            "provenance": provenance(job, sum(one.run_count for one in runs.values()), distinct),
         },
     )
 
@@ -100,7 +100,7 @@ def _plain(value: Any) -> Any:
     return [_plain(entry) for entry in value] if isinstance(value, list | tuple) else value
 
 
-def _bed(job: Job, name: str) -> dict[str, Any]:
+def bed_results(job: Job, name: str) -> dict[str, Any]:
     from lithobrake.touchdown import smallest_bed
     from lithobrake.touchdown_model import grain, lander, medians, stored_bed
 
@@ -140,7 +140,7 @@ def _design(design: DesignRuns, replicate_count: int) -> dict[str, Any]:
     }
 
 
-def _outputs_of_runs(runs: DesignRuns) -> dict[str, Any]:
+def outputs_of_runs(runs: DesignRuns) -> dict[str, Any]:
     """What else the touchdowns gave, over distinct runs: median, smallest and largest."""
     table: dict[str, Any] = {}
     for name in ("contact_duration", "penetration", "peak_acceleration", "energy_lost"):
@@ -199,7 +199,7 @@ def _by_output(surrogate: "Surrogate", values: np.ndarray) -> dict[str, float]:
     return dict(zip(surrogate.output_names, values.tolist(), strict=True))
 
 
-def _monte_carlo(samples: Samples) -> dict[str, Any]:
+def monte_carlo_results(samples: Samples) -> dict[str, Any]:
     """Spread of each output over the samples that leave the surface."""
     leaving = samples.leaves
     table: dict[str, Any] = {"sample_count": len(leaving), "leaving_count": int(leaving.sum()), "outputs": {}}
@@ -210,7 +210,7 @@ def _monte_carlo(samples: Samples) -> dict[str, Any]:
     return table
 
 
-def _site(study: Study) -> dict[str, Any]:
+def site_results(study: Study) -> dict[str, Any]:
     """The body at the medians, and the acceleration of a point at rest on the ground at the site."""
     body, site, effective = site_body(study), site_medians(study), effective_acceleration_at_site(study)
     built_in, heads = study.site.body in BUILT_IN_BODIES, has_heading(study)
@@ -237,7 +237,7 @@ def _site(study: Study) -> dict[str, Any]:
     }
 
 
-def _provenance(job: Job, asked: int, runs: DesignRuns) -> dict[str, Any]:
+def provenance(job: Job, asked: int, runs: DesignRuns) -> dict[str, Any]:
     """Where it all comes from; asked: runs of all designs, of which `runs` are the distinct ones."""
     ledger, keys = job.folder / "runs.sqlite", set(runs.keys)
     records = [one for one in (read_records(ledger) if ledger.is_file() else []) if one.key in keys]

@@ -1,5 +1,6 @@
 """The soil as a bounce of flights that go on: the refined expansion, asked again at every impact."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -7,9 +8,10 @@ import numpy as np
 
 from lithobrake.pipeline.designs import design_inputs, points
 from lithobrake.pipeline.job import Job
-from lithobrake.pipeline.outgoing import VELOCITY, outgoing
+from lithobrake.pipeline.outgoing import VELOCITY, outgoing, rolling_spin
 from lithobrake.pipeline.run_noise import Scatter
 from lithobrake.pipeline.samples import CAPTURED, CLEAR, outcome_model
+from lithobrake.pipeline.sequence import inputs_of, sequence_rows
 from lithobrake.study import Study
 
 if TYPE_CHECKING:
@@ -28,15 +30,17 @@ def why_no_soil(study: Study) -> str | None:
     if not absent:
         return None
     return (
-        f"{' and '.join(absent)} {'is' if len(absent) == 1 else 'are'} no uncertain input, so the expansion does not "
-        "know the impacts after the first; give it a distribution that reaches over the impacts to come"
+        f"{' and '.join(absent)} {'is' if len(absent) == 1 else 'are'} no uncertain input, so the runs do not "
+        "tell of the impacts after the first; give it a distribution that reaches over the impacts to come"
     )
 
 
 def trained_ranges(study: Study) -> dict[str, tuple[float, float]]:
-    """Smallest and largest value of each input in the screening runs, in the file's units, by dotted key."""
-    x = points(study, "screening", ())
-    columns = zip(design_inputs(study), x.min(axis=0).tolist(), x.max(axis=0).tolist(), strict=True)
+    """Smallest and largest value of each input in the runs in which all vary, in the file's units, by dotted key."""
+    inputs = design_inputs(study)
+    paper = study.design.method == "paper"
+    x = points(study, "screening", ()) if paper else inputs_of(sequence_rows(study), tuple(inputs))
+    columns = zip(inputs, x.min(axis=0).tolist(), x.max(axis=0).tolist(), strict=True)
     return {name: (lower, upper) for name, lower, upper in columns}
 
 
@@ -68,7 +72,7 @@ class SoilBounce:
         """
         from lithobrake.smallbody import Rebounds
 
-        x, outside = self._inputs_at(impacts)
+        x, outside = inputs_at(impacts, self.inputs, self.ranges)
         columns = [list(self.inputs).index(name) for name in self.surrogate.input_names]
         outputs = np.asarray(self.surrogate(x[:, columns]))
         if self.scatter is not None:
@@ -82,32 +86,25 @@ class SoilBounce:
         spin = rolling_spin(velocity, np.maximum(outputs[:, names.index("spin_out")], 0.0))
         return Rebounds(velocity, spin, captured, outside)
 
-    def _inputs_at(self, impacts: "Impacts") -> tuple[np.ndarray, np.ndarray]:
-        """All inputs at the impacts, [count, input_count], and which of these are outside the runs, [count].
 
-        Those outside have the inputs of the first impact in place of theirs.
-        """
-        felt = {"impact.speed": impacts.speed, "impact.incidence_deg": np.degrees(impacts.incidence)}
-        felt |= dict(zip(SPIN, impacts.spin.T, strict=True)) | {"surface.gravity": -impacts.effective_acceleration}
-        x = np.column_stack([values[impacts.lander] for values in self.inputs.values()])
-        outside = np.zeros(len(x), dtype=bool)
-        for index, name in enumerate(self.inputs):
-            if name in felt:
-                lower, upper = self.ranges[name]
-                known = (felt[name] >= lower) & (felt[name] <= upper)
-                x[known, index] = felt[name][known]
-                outside |= ~known
-        return x, outside
+def inputs_at(
+    impacts: "Impacts", inputs: Mapping[str, np.ndarray], ranges: Mapping[str, tuple[float, float]]
+) -> tuple[np.ndarray, np.ndarray]:
+    """All inputs at the impacts, [count, input_count], and which of these are outside the ranges, [count].
 
-
-def rolling_spin(velocity: np.ndarray, size: np.ndarray) -> np.ndarray:
-    """Angular velocity [rad/s] of a size, shape [count], about the axis of rolling along velocities [count, 3]."""
-    across = np.column_stack([-velocity[:, 1], velocity[:, 0], np.zeros(len(velocity))])
-    length = np.linalg.norm(across, axis=1, keepdims=True)
-    # Straight up there is no direction to roll in; any level axis will do.
-    axis = np.where(length > 0.0, across / np.where(length > 0.0, length, 1.0), np.array([0.0, 1.0, 0.0]))
-    spin: np.ndarray = axis * size[:, None]
-    return spin
+    inputs: of each lander. Those outside have the inputs of the first impact in place of theirs.
+    """
+    felt = {"impact.speed": impacts.speed, "impact.incidence_deg": np.degrees(impacts.incidence)}
+    felt |= dict(zip(SPIN, impacts.spin.T, strict=True)) | {"surface.gravity": -impacts.effective_acceleration}
+    x = np.column_stack([values[impacts.lander] for values in inputs.values()])
+    outside = np.zeros(len(x), dtype=bool)
+    for index, name in enumerate(inputs):
+        if name in felt:
+            lower, upper = ranges[name]
+            known = (felt[name] >= lower) & (felt[name] <= upper)
+            x[known, index] = felt[name][known]
+            outside |= ~known
+    return x, outside
 
 
 def soil_bounce(job: Job, inputs: dict[str, np.ndarray]) -> SoilBounce:

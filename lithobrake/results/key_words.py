@@ -5,12 +5,13 @@ from fnmatch import fnmatchcase
 from textwrap import wrap
 from typing import Any
 
+from lithobrake.results.drawn_keys import DRAWN_TABLES
 from lithobrake.results.fit_keys import FIT_TABLES, SCORES
 from lithobrake.results.summary_keys import SUMMARY, SUMMARY_TABLES
 
 Path = tuple[str, ...]
 LINE = 100  # characters, as on every page of the documentation
-KEY_TABLES = (*SUMMARY_TABLES, *FIT_TABLES)
+KEY_TABLES = (*SUMMARY_TABLES, *DRAWN_TABLES, *FIT_TABLES)
 
 
 def leaves(value: Any, path: Path = ()) -> Iterator[Path]:
@@ -46,7 +47,7 @@ def page() -> str:
     """docs/summary.md."""
     lines = [
         "# The keys of summary.json, scores.json and the expansions", "",
-        "<!-- Made by docs/make_summary_page.py from lithobrake/results/summary_keys.py and fit_keys.py. -->", "",
+        "<!-- Made by docs/make_summary_page.py from lithobrake/results/*_keys.py. -->", "",
         *wrap(
             "`*` stands for any one name: of an output, an input by its dotted key, a design, an outcome. In a list of "
             "tables every table has these keys. Numbers are in SI where no unit is named; `null`: there is no such "

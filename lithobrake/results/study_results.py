@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from lithobrake.campaign import Record
+    from lithobrake.emulator import Emulator
     from lithobrake.results.moving_bodies import MovingBodies
     from lithobrake.results.named_surrogate import NamedSurrogate
     from lithobrake.results.table import Table
@@ -185,6 +186,19 @@ class StudyResults:
 
         with reading(self.folder / "refined.json", self.remedy):
             return NamedSurrogate.read(self.folder / "refined.json")
+
+    @cached_property
+    def emulator(self) -> "Emulator":
+        """The emulator of a study whose runs were drawn: the law of what comes out, at inputs that nobody has run."""
+        from lithobrake.emulator import load
+
+        with reading(self.folder / "emulator.json", self.remedy):
+            return load(self.folder / "emulator.json")
+
+    @cached_property
+    def run_flights(self) -> "Table":
+        """How the flights of each run of a drawn study ended, from many sites, and which share of them stays."""
+        return self._table("run", self._rows("run_flights.csv", ("run", *_RUN)), ("run", *_RUN), RUN | FLIGHT)
 
     @cached_property
     def _units(self) -> dict[str, str]:

@@ -24,8 +24,8 @@ class KeyTable:
 COUNTED = {
     "*.count": "samples of which this is so",
     "*.share": "the same as a share of sample_count",
-    "*.lower": "null: one bed, place and attitude give no interval",
-    "*.upper": "null likewise",
+    "*.lower": "lower bound, over refits of the emulator to other beds; null where why says that there is none",
+    "*.upper": "upper bound likewise",
 }
 QUANTILES = "quantile of this level"
 SUMMARY_TABLES = (
@@ -49,7 +49,7 @@ SUMMARY_TABLES = (
             "kept_share.*": "share of the variance of the screening expansion that the kept inputs explain together",
             "answer": "what becomes of the landers, over what that holds, and what is missing, in sentences",
             "headline": "the answer, then the numbers that tell most, in sentences",
-            "without_scatter": "null where the samples have no scatter from run to run",
+            "without_scatter": "null where the samples have no scatter from run to run, or are of an emulator",
         },
     ),
     KeyTable(
@@ -126,7 +126,7 @@ SUMMARY_TABLES = (
     KeyTable(
         SUMMARY,
         ("results.monte_carlo",),
-        "The samples of the refined expansion",
+        "The samples of the refined expansion, or of the emulator",
         {
             "sample_count": "samples",
             "leaving_count": "samples that leave the surface",
@@ -163,18 +163,18 @@ SUMMARY_TABLES = (
     KeyTable(
         SUMMARY,
         ("results.stays",),
-        "The answer as numbers: the share of landers that remain",
+        "The answer as numbers: the share that remain, down again in time, or captured where the site holds",
         {
-            "share": "results.shares.remains.share",
-            "lower": "null: other beds and places would move the share, and these runs do not say how far",
-            "upper": "null likewise",
+            "share": "over the laws of the study file: of runs that were drawn, or of samples of the expansion",
+            "lower": "lower bound, over beds and places not in the study; null where why says that there is none",
+            "upper": "upper bound likewise",
             "level": "probability that bounds of this table stand for",
-            "from": "of how many samples, runs and beds",
-            "next_bed": "null: the range in which the share of another bed lies is not known",
-            "if_missing": "the share if none, and if all, of the missing samples remained",
-            "flight_sampling": "half the interval (level) that the number of samples alone would give",
-            "emulator": "the share that the expansion gives: share",
-            "why": "why there is no interval, in a sentence",
+            "from": "of how many runs and beds, or samples",
+            "next_bed": "in which the share on one bed more lies: lower, upper; null where that is not known",
+            "if_missing": "the share if none, and if all, remained of which nobody knows where they went",
+            "flight_sampling": "half the interval (level) that the number of flights, or of samples, alone would give",
+            "emulator": "the share by the emulator or the expansion, of the samples whose end is known",
+            "why": "why there is no interval, in a sentence; null where there is one",
         },
     ),
     KeyTable(
@@ -188,7 +188,8 @@ SUMMARY_TABLES = (
             "flight_count": "of those, samples that flew",
             **COUNTED,
             "*.upper_limit": "95 % limit of the share of an outcome that no run had",
-            "why": "why the shares have no interval, in a sentence",
+            "why": "why the shares have no interval, in a sentence; null where they have one",
+            "level": "probability that the bounds stand for, in a drawn study",
         },
     ),
     KeyTable(
@@ -229,7 +230,7 @@ SUMMARY_TABLES = (
         "From bounce to bounce until the landers rest",
         {
             "why_no_soil": "why the soil could not be asked beyond the first impact, in a sentence, or null",
-            "trained_ranges.*": "smallest and largest value of the input in the screening runs, in the file's units",
+            "trained_ranges.*": "smallest and largest value of the input in runs in which all vary, in its unit",
         },
     ),
     KeyTable(
@@ -239,6 +240,8 @@ SUMMARY_TABLES = (
         {
             "sample_count": "samples followed",
             **COUNTED,
+            "why": "why the shares have no interval, in a sentence; null where they have one; in a drawn study",
+            "level": "probability that the bounds stand for, in a drawn study",
             "time_s.quantile_*": f"time until rest [s] of those that settled, {QUANTILES}",
             "path_length.quantile_*": f"sum of the straight lines between impacts [m] likewise, {QUANTILES}",
             "rebounds.quantile_*": f"impacts after which the lander went on likewise, {QUANTILES}",

@@ -36,6 +36,11 @@ def _method_problems(study: Study) -> Iterator[str]:
             f'design.{", design.".join(stray)} {"goes" if one else "go"} with design.method = "{other}", and it is '
             f'"{method}"; leave {"it" if one else "them"} out, or write design.method = "{other}"'
         )
+    if method == "sequence" and study.monte_carlo.scatter:
+        yield (
+            'monte_carlo.scatter is true and goes with design.method = "paper": samples of a sequence are draws of its '
+            "emulator, which have the scatter always; leave it out"
+        )
 
 
 def _bed_count_problems(study: Study) -> Iterator[str]:

@@ -14,7 +14,7 @@ PointCount = Annotated[int, Whole("", at_least=2, at_most=1_000_000)] | None
 
 
 # What a study that names no method is made by.
-DEFAULT_METHOD: Literal["sequence", "paper"] = "paper"
+DEFAULT_METHOD: Literal["sequence", "paper"] = "sequence"
 # Keys that only the sequence takes; all others belong to the paper's method.
 SEQUENCE_KEYS = ("run_count", "half_width", "largest_run_count", "side_runs", "twin_shift")
 
@@ -41,30 +41,30 @@ class DesignSection(Section):
     """paper: where the runs stand: "smolyak", its sparse grid, takes the levels and inputs with two limits;
     "sobol_sequence" (a larger count keeps the runs of a smaller one), "latin_hypercube" and "fekete" (best conditioned
     for the degree) take the counts and any input."""
-    screening_level: Level = Field(default=3, examples=["2"])
-    """Level of the Smolyak grid over all uncertain inputs."""
+    screening_level: Level = 3
+    """paper: level of the Smolyak grid over all uncertain inputs."""
     screening_count: PointCount = None
-    """Number of points over all uncertain inputs, for the other methods."""
-    screening_degree: Degree = Field(default=3, examples=["2"])
-    """Total degree of the expansion in all uncertain inputs."""
-    refined_level: Level = Field(default=5, examples=["3"])
-    """Level of the Smolyak grid over the kept inputs; the others stay at their median."""
+    """paper: number of points over all uncertain inputs, for the other methods."""
+    screening_degree: Degree = 3
+    """paper: total degree of the expansion in all uncertain inputs."""
+    refined_level: Level = 5
+    """paper: level of the Smolyak grid over the kept inputs; the others stay at their median."""
     refined_count: PointCount = None
-    """Number of points over the kept inputs, for the other methods."""
-    refined_degree: Degree = Field(default=5, examples=["3"])
-    """Total degree of the expansion in the kept inputs."""
+    """paper: number of points over the kept inputs, for the other methods."""
+    refined_degree: Degree = 5
+    """paper: total degree of the expansion in the kept inputs."""
     replicate_count: Annotated[int, Whole("", at_least=1, at_most=1000)] = 1
-    """Runs at every point of these two designs, each with draws of its own (bed, place, azimuth, attitude): two or
-    more tell the scatter that no expansion removes."""
+    """paper: runs at every point of these two designs, each with draws of its own (bed, place, azimuth, attitude): two
+    or more tell the scatter that no expansion removes."""
     fit: Literal["ols", "lars", "omp", "gaussian_process", "best"] = "ols"
-    """How expansions are fitted: "ols", least squares of the degrees above (the paper's); the others choose their terms
-    themselves, "best" for each output by the smallest expected error."""
+    """paper: how expansions are fitted: "ols", least squares of the degrees above (the paper's); the others choose
+    their terms themselves, "best" for each output by the smallest expected error."""
     kept_share: Annotated[float, Number("", above=0, at_most=1)] = 0.9
-    """Share of the explained variance of every output of kept_outputs that the kept inputs must reach together."""
+    """paper: share of the explained variance that the kept inputs must reach in every output of kept_outputs."""
     kept_outputs: Annotated[tuple[OutputName, ...], Field(min_length=1)] = OUTPUTS
-    """Outputs that decide which inputs are kept."""
-    test_count: Annotated[int, Whole("", at_least=2, at_most=100_000)] = Field(default=40, examples=["10"])
-    """Fresh random runs in each of the two test sets (kept inputs vary; all inputs vary)."""
+    """paper: outputs that decide which inputs are kept."""
+    test_count: Annotated[int, Whole("", at_least=2, at_most=100_000)] = 40
+    """paper: fresh random runs in each of the two test sets (kept inputs vary; all inputs vary)."""
 
     @property
     def most_runs(self) -> int:
@@ -81,10 +81,10 @@ class DesignSection(Section):
 
 
 class MonteCarloSection(Section):
-    """Samples of the refined expansion."""
+    """Samples of the emulator, or of the refined expansion."""
 
     sample_count: Annotated[int, Whole("", at_least=100, at_most=100_000_000)] = 100_000
     """How many samples."""
     scatter: StrictBool = False
-    """Whether samples get the scatter from run to run on top of the expansion: what the expansion leaves of the refined
-    runs, drawn jointly for all outputs; samples.h5 then has them without it too."""
+    """paper: whether samples get the scatter from run to run on top of the expansion: what the expansion leaves of the
+    refined runs, drawn jointly for all outputs; samples.h5 then has them without it too. (An emulator's always do.)"""

@@ -2,7 +2,6 @@
 
 import subprocess
 import sys
-import tomllib
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +14,8 @@ from lithobrake.pipeline import stage_keys
 from lithobrake.pipeline.designs import points
 from lithobrake.results import open_study
 from lithobrake.study import Study, check_tables
-from lithobrake.study.template import template
+
+from ..paper_tables import paper_tables
 
 # Two of the outputs scatter together, by a tenth of a millimetre a second along x and twice that upward.
 SCATTER = 1e-4
@@ -54,6 +54,7 @@ poisson_ratio = 0.25
 restitution = 0.5
 friction = 0.5
 [design]
+method = "paper"
 points = "sobol_sequence"
 screening_count = 20
 screening_degree = 2
@@ -73,7 +74,7 @@ duration = 3600.0
 
 def changed(**design: Any) -> Study:
     """The template with another design."""
-    tables = tomllib.loads(template())
+    tables = paper_tables()
     tables["design"].update(design)
     return check_tables(tables, Path())
 
@@ -95,7 +96,7 @@ def test_a_larger_sobol_sequence_keeps_the_points_of_a_smaller_one() -> None:
 
 
 def test_a_grid_of_few_inputs_reuses_the_nodes_of_the_grid_of_all() -> None:
-    tables = tomllib.loads(template())
+    tables = paper_tables()
     tables["grain"]["friction"] = {"distribution": "uniform", "lower": 0.1, "upper": 0.7}
     study = check_tables(tables, Path())
     screening, refined = (
@@ -107,7 +108,7 @@ def test_a_grid_of_few_inputs_reuses_the_nodes_of_the_grid_of_all() -> None:
 
 
 def test_another_number_of_runs_a_point_makes_again_from_the_screening_on() -> None:
-    tables = tomllib.loads(template())
+    tables = paper_tables()
     tables["impact"]["orientation"] = "random"
     before = stage_keys(check_tables(tables, Path()))
     tables["design"]["replicate_count"] = 3

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from lithobrake.outputs import ORIENTATION_OUT, SPIN_OUT
-from lithobrake.pipeline import StudyFolder, plan_study, run_study, study_status, write_report_again
+from lithobrake.pipeline import StudyFolder, plan_study, run_study, study_status
 from lithobrake.pipeline.design_runs import DesignRuns
 from lithobrake.results import open_study
 from lithobrake.study import StudySource
@@ -17,7 +17,8 @@ from lithobrake.study import StudySource
 from ..few_grains import few_grains
 from .ball_studies import FEW_RUNS, write_ball
 
-PAPERS = """screening_level = 2
+PAPERS = """method = "paper"                                           # two steps, each with an expansion of its own
+screening_level = 2
 screening_degree = 2
 refined_level = 3
 refined_degree = 3
@@ -44,50 +45,46 @@ def ball(folder: Path, run_count: int, more: str = "") -> Path:
 
 @pytest.fixture(scope="module")
 def grown(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, DesignRuns, str]:
-    """A study of three runs that then had five, and side runs: its folder, its first runs, what was said at last."""
+    """A study of twelve runs that then had 14, and side runs: its folder, its first runs, what was said at last."""
     folder = tmp_path_factory.mktemp("grown")
-    said = lithobrake("run", ball(folder, 3), "--out", folder / "out", "--workers", 2)
-    assert "stage 3 of 4: runs" in said
-    assert f"Done: {folder / 'out'}" in said
+    said = lithobrake("run", ball(folder, 12), "--out", folder / "out", "--workers", 2)
+    assert "stage 3 of 12: runs" in said
+    assert f"Report: {folder / 'out' / 'report' / 'index.html'}" in said
     first = DesignRuns.load(StudyFolder.only_read(folder / "out"), "sequence")
-    return folder, first, lithobrake("run", ball(folder, 5, "side_runs = true"), "--out", folder / "out")
+    return folder, first, lithobrake("run", ball(folder, 14, "side_runs = true"), "--out", folder / "out")
 
 
 def test_a_study_of_more_runs_makes_only_those_that_are_new(grown: tuple[Path, DesignRuns, str]) -> None:
     folder, first, said = grown
-    assert "sequence: 3 of 5 runs were known and are reused" in said
-    assert (first.run_count, set(first.outcomes)) == (3, {"clear"})
+    assert "sequence: 12 of 14 runs were known and are reused" in said
+    assert (first.run_count, set(first.outcomes)) == (12, {"clear"})
     designs = ("sequence", "soil_pairs", "twins")
     runs = {name: DesignRuns.load(StudyFolder.only_read(folder / "out"), name) for name in designs}
-    assert [one.run_count for one in runs.values()] == [5, 5, 5]
-    assert runs["sequence"].keys[:3] == first.keys
+    assert [one.run_count for one in runs.values()] == [14, 14, 12]
+    assert runs["sequence"].keys[:12] == first.keys
     assert not set(runs["sequence"].keys) & {*runs["soil_pairs"].keys, *runs["twins"].keys}
     table = open_study(folder / "out").runs
-    assert len(table["key"]) == 15
+    assert len(table["key"]) == 40
     assert sorted(set(table["design"])) == sorted(designs)
 
 
 def test_what_is_counted_before_is_what_is_made(grown: tuple[Path, DesignRuns, str]) -> None:
     folder, _, said = grown
-    # Two of five, and the side runs of all.
-    assert "To make: 12 touchdowns." in said
+    # Two of 14, and the side runs.
+    assert "To make: 28 touchdowns" in said
     plan = plan_study(folder / "study.toml", folder / "out")
     assert plan.stages == ()
-    assert (plan.runs[0].drawn, plan.runs[0].side, plan.runs[0].new) == (5, 10, 0)
-    assert "2 of 2 stages are current: runs, side runs" in " ".join(study_status(folder / "out").lines())
+    assert (plan.runs[0].drawn, plan.runs[0].side, plan.runs[0].new) == (14, 26, 0)
+    assert "10 of 10 stages are current: runs, side runs, flights of the runs" in " ".join(study_status(folder / "out").lines())
 
 
-def test_a_stage_of_the_other_method_and_a_report_that_is_not_there_are_told_so(
-    grown: tuple[Path, DesignRuns, str], tmp_path: Path
-) -> None:
+def test_a_stage_of_the_other_method_is_told_so(grown: tuple[Path, DesignRuns, str], tmp_path: Path) -> None:
     source = StudySource.read(grown[0] / "study.toml")
     with pytest.raises(
-        ValueError, match=r'"fly" is no stage of a study with design.method = "sequence"; allowed: bed,'
+        ValueError, match=r'"screen" is no stage of a study with design.method = "sequence"; allowed: bed,'
     ):
-        run_study(source, tmp_path / "out", until="fly")
+        run_study(source, tmp_path / "out", until="screen")
     assert not (tmp_path / "out").exists()
-    with pytest.raises(ValueError, match="whose method has no report yet"):
-        write_report_again(grown[0] / "out")
 
 
 def test_a_folder_that_changes_its_method_has_the_runs_of_the_present_one(
@@ -111,7 +108,7 @@ def soil(tmp_path_factory: pytest.TempPathFactory) -> Path:
     text = few_grains(10, 0.3, 0.05) + "region = { x = [-0.03, 0.03], y = [-0.02, 0.02] }\nspin_z = 1.0\n"
     text = text.replace("[grain]", "bed_count = 2\n[grain]")
     (folder / "study.toml").write_text(f"{text}[design]\n{drawn(4, 'side_runs = true')}\n[landing]\ntime_limit = 5.0\n")
-    lithobrake("run", folder / "study.toml", "--out", folder / "out")
+    run_study(StudySource.read(folder / "study.toml"), folder / "out", until="side_runs")
     return folder
 
 

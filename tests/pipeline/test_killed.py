@@ -26,6 +26,7 @@ STUDY = (
     + """[campaign]
 retry_count = 20
 [design]
+method = "paper"
 screening_level = 2
 screening_degree = 1
 refined_level = 2

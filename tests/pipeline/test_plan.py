@@ -44,8 +44,8 @@ FEW = FEW_RUNS | {
 
 
 def soft(**changes: dict[str, Any]) -> Study:
-    """The quick study with these keys of its sections changed."""
-    tables = load_tables(SCENARIOS / "quick.toml")
+    """The study of one place with these keys of its sections changed."""
+    tables = load_tables(SCENARIOS / "one_place.toml")
     for section, keys in changes.items():
         tables[section] = tables.get(section, {}) | keys
     return check_tables(tables, SCENARIOS)

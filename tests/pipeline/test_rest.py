@@ -1,7 +1,6 @@
 """Bounce after bounce of a study: what the soil answers to later impacts, and where samples end."""
 
 import math
-import tomllib
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
@@ -18,13 +17,15 @@ from lithobrake.pipeline import Job, StudyFolder
 from lithobrake.pipeline.dispersion_statistics import dispersion_results, proportion
 from lithobrake.pipeline.flights import COLUMNS, read_table, write_table
 from lithobrake.pipeline.job import Silent
+from lithobrake.pipeline.outgoing import rolling_spin
 from lithobrake.pipeline.rest import follow_samples
 from lithobrake.pipeline.run_noise import Scatter
 from lithobrake.pipeline.samples import SAMPLE_OUTCOMES, Samples
-from lithobrake.pipeline.surrogate_bounce import SoilBounce, rolling_spin, trained_ranges, why_no_soil
+from lithobrake.pipeline.surrogate_bounce import SoilBounce, trained_ranges, why_no_soil
 from lithobrake.smallbody import Impacts
 from lithobrake.study import Study, check_tables
-from lithobrake.study.template import template
+
+from ..paper_tables import paper_tables
 
 INPUTS = {
     "grain.friction": Uniform(0.2, 0.8),
@@ -123,7 +124,7 @@ def test_a_spin_straight_up_has_a_level_axis() -> None:
 
 
 def changed(**sections: dict[str, Any]) -> Study:
-    tables = tomllib.loads(template())
+    tables = paper_tables()
     for section, keys in sections.items():
         tables.setdefault(section, {}).update(keys)
     return check_tables(tables, Path())

@@ -18,6 +18,7 @@ STUDY = (
     + """azimuth_deg = "random"
 orientation = "random"
 [design]
+method = "paper"
 screening_level = 1
 screening_degree = 1
 kept_outputs = ["speed_out"]

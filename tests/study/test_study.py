@@ -2,7 +2,6 @@
 
 import subprocess
 import sys
-import tomllib
 from copy import deepcopy
 from pathlib import Path
 from typing import Any
@@ -13,7 +12,9 @@ from lithobrake.study import Study, StudyError, check_tables, known_keys, read_s
 from lithobrake.study.quantity import uncertain
 from lithobrake.study.template import template
 
-TABLES: dict[str, Any] = tomllib.loads(template())
+from ..paper_tables import paper_tables
+
+TABLES: dict[str, Any] = paper_tables()
 
 
 def problems(changes: dict[str, Any], folder: Path = Path()) -> list[str]:

@@ -1,0 +1,129 @@
+"""The answer of a sequence in sentences, with its interval, and the numbers that tell most beside it."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from lithobrake.outcomes import FlightStatus, SampleOutcome, TouchdownOutcome
+from lithobrake.pipeline.scope import scope
+from lithobrake.study import Study
+
+CENTIMETRES = 100.0
+# Parts of the variance, as they stand in a sentence.
+PARTS = {
+    "soil": "soil",
+    "arrival": "arrival",
+    "bed": "the bed",
+    "place_and_attitude": "place and attitude",
+    "chaos": "chaos",
+}
+
+
+def drawn_answer(study: Study, results: Mapping[str, Any]) -> list[str]:
+    """What becomes of the landers, over what that holds, what is missing, and what the site does to those that lie."""
+    stays, site, hours = results["stays"], results["site"], f"{study.flight.duration / 3600:.3g} h"
+    holds = site["effective_acceleration_outward"] < 0.0
+    down = f"stay or come down again within {hours}" if holds else f"come down again within {hours}"
+    return [
+        *_share(study, stays, down),
+        *_missing(results["runs"], stays),
+        _others(results["shares"], holds=holds),
+        *([site["warning"]] if site["warning"] else []),
+    ]
+
+
+def drawn_headline(study: Study, results: Mapping[str, Any]) -> list[str]:
+    """The answer, and the most telling numbers behind it, each in a sentence."""
+    emulator = results["emulator"]
+    return [
+        *results["answer"],
+        _touchdowns(results["runs"]),
+        *_speed(results["outputs"]),
+        *_scatter(results["variance_shares"].get("speed_out")),
+        emulator["statement"],
+        *([f"{emulator['warning']}."] if emulator["warning"] else []),
+    ]
+
+
+def _share(study: Study, stays: Mapping[str, Any], down: str) -> list[str]:
+    share, level = _percent(stays["share"]), f"{100 * stays['level']:.0f} %"
+    if stays["lower"] is None:
+        return [f"{scope(study).where}: {share} of the landers {down}; from {stays['from']}.", stays["why"]]
+    attitudes = "beds, places and attitudes" if study.impact.orientation == "random" else "beds and places"
+    sentences = [
+        f"{share} of the landers {down} ({level} interval {_span(stays['lower'], stays['upper'])}), over the laws of "
+        f"the study file, on {attitudes} that were not in the study; from {stays['from']}."
+    ]
+    if stays["next_bed"] is not None:
+        low, high = stays["next_bed"]
+        sentences.append(f"On one next bed the share lies between {_span(low, high, 'and')} ({level}).")
+    return sentences
+
+
+def _missing(runs: Mapping[str, Any], stays: Mapping[str, Any]) -> list[str]:
+    """What it would change if landers stayed or flew of which nobody knows."""
+    known = (TouchdownOutcome.CLEAR, TouchdownOutcome.CAPTURED)
+    lost = {name: count for name, count in runs["outcomes"].items() if name not in known}
+    if not lost:
+        return []
+    labels = {str(one): one.label for one in TouchdownOutcome} | {"failed": "failed"}
+    count = sum(lost.values())
+    words = ", ".join(f"{number} {labels[name]}" for name, number in lost.items())
+    low, high = (f"{100 * bound:.1f} %" for bound in stays["if_missing"])
+    return [
+        f"Of {count} of {runs['count']} landings nobody knows where the lander went ({words}): {low} if none, {high} "
+        "if all of them came down again."
+    ]
+
+
+def _others(shares: Mapping[str, Any], *, holds: bool) -> str:
+    """What becomes of the others."""
+    ways: dict[str, str] = {FlightStatus.ESCAPED: "escape", FlightStatus.FLYING: "are still flying"}
+    if shares[FlightStatus.PARTNER]["count"]:
+        ways[FlightStatus.PARTNER] = "come down on the partner"
+    if shares[SampleOutcome.CAPTURED]["count"] and not holds:
+        ways[SampleOutcome.CAPTURED] = "are captured and lifted again"
+    listed = [f"{_percent(shares[name]['share'])} {words}" for name, words in ways.items()]
+    return f"By the emulator {', '.join(listed)}."
+
+
+def _touchdowns(runs: Mapping[str, Any]) -> str:
+    """How the touchdowns ended."""
+    left, *others = TouchdownOutcome
+    found = [f"{runs['outcomes'].get(left, 0)} of {runs['count']} touchdowns {left.label}"]
+    found += [f"{runs['outcomes'][one]} {one.label}" for one in others if one in runs["outcomes"]]
+    found += [f"{runs['outcomes']['failed']} failed"] if "failed" in runs["outcomes"] else []
+    return f"{'; '.join(found)}."
+
+
+def _speed(outputs: Mapping[str, Any]) -> list[str]:
+    """The outgoing speed of the runs that leave."""
+    if "speed_out" not in outputs:
+        return []
+    low, middle, high = outputs["speed_out"]["quantiles"].values()
+    ends = [middle["lower"], middle["upper"]]
+    interval = "" if None in ends else ", {:.3g} to {:.3g} at 90 %".format(*(CENTIMETRES * end for end in ends))
+    return [
+        f"Outgoing speed of those that leave: {CENTIMETRES * middle['value']:.3g} cm/s (median{interval}; 5 to 95 % of "
+        f"the landers: {CENTIMETRES * low['value']:.3g} to {CENTIMETRES * high['value']:.3g} cm/s)."
+    ]
+
+
+def _scatter(parts: Mapping[str, Any] | None) -> list[str]:
+    """Where the scatter of the outgoing speed comes from."""
+    if parts is None:
+        return []
+    listed = [
+        f"{words} {_percent(max(parts[name]['share'], 0.0))} ({_span(parts[name]['lower'], parts[name]['upper'])})"
+        for name, words in PARTS.items()
+        if parts[name] is not None
+    ]
+    return [f"The scatter of the outgoing speed comes from: {', '.join(listed)} (90 % intervals)."]
+
+
+def _span(lower: float, upper: float, word: str = "to") -> str:
+    return f"{_percent(lower).removesuffix(' %')} {word} {_percent(upper)}"
+
+
+def _percent(share: float) -> str:
+    """A share in words, to a tenth only near its ends."""
+    return f"{100 * share:.0f} %" if 0.01 <= share <= 0.99 or share in (0.0, 1.0) else f"{100 * share:.1f} %"

@@ -1,0 +1,60 @@
+"""Landings that are drawn from the emulator of a study."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from lithobrake.outputs import OUTPUTS, SPIN_OUT
+from lithobrake.pipeline.fitted_emulator import AZIMUTH, ELEVATION, SPEED, SPIN
+from lithobrake.pipeline.outgoing import VELOCITY, outgoing_velocity, rolling_spin
+
+if TYPE_CHECKING:
+    from lithobrake.emulator import Emulator
+
+
+@dataclass(frozen=True)
+class DrawnLandings:
+    """Landings drawn from an emulator.
+
+    outcome [count], places among the touchdown outcomes; outputs by name [count], SI, NaN where the lander did not
+    leave; velocity and spin [count, 3].
+    """
+
+    outcome: np.ndarray
+    outputs: Mapping[str, np.ndarray]
+
+    @classmethod
+    def of(cls, model: "Emulator", x: np.ndarray, bound: np.ndarray, seed: int) -> "DrawnLandings":
+        """Draw one at each x [count, input_count]; bound: the fastest it can be [m/s], [count]."""
+        upper, speed = np.tile(model.runs.upper[0], (len(x), 1)), model.output_names.index(SPEED)
+        if np.isfinite(model.runs.upper[0, speed]):
+            upper[:, speed] = bound
+        drawn = model.draw(x, 1, seed, lower=model.runs.lower[0], upper=upper)
+        return cls(drawn.outcome[:, 0], dict(zip(model.output_names, drawn.y[:, 0].T, strict=True)))
+
+    @cached_property
+    def velocity(self) -> np.ndarray:
+        """Velocity [m/s] in the frame of the touchdown, of the drawn speed, elevation and azimuth, [count, 3]."""
+        return outgoing_velocity(*(self.outputs[name] for name in (SPEED, ELEVATION, AZIMUTH)))
+
+    @cached_property
+    def spin(self) -> np.ndarray:
+        """Angular velocity [rad/s], of the drawn size about the axis of the run that was drawn, [count, 3].
+
+        Where runs do not tell the axis it is that of rolling along the velocity.
+        """
+        if SPIN_OUT[0] not in self.outputs:
+            return rolling_spin(self.velocity, self.outputs[SPIN])
+        axis = np.column_stack([self.outputs[name] for name in SPIN_OUT])
+        length = np.linalg.norm(axis, axis=1, keepdims=True)
+        spin: np.ndarray = axis / np.where(length > 0.0, length, 1.0) * self.outputs[SPIN][:, None]
+        return spin
+
+    def table(self) -> dict[str, np.ndarray]:
+        """All outputs by name [count], those that are fitted to in a study of the other method first."""
+        of_vectors = dict(zip((*VELOCITY, *SPIN_OUT), np.hstack([self.velocity, self.spin]).T, strict=True))
+        found = {**self.outputs, **of_vectors}
+        return {name: found[name] for name in dict.fromkeys((*OUTPUTS, *found))}

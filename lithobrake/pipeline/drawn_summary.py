@@ -1,0 +1,122 @@
+"""summary.json of a sequence: what its runs and its emulator say, with intervals that hold for beds not yet poured."""
+
+from typing import Any
+
+import numpy as np
+
+from lithobrake.outcomes import FlightStatus, TouchdownOutcome
+from lithobrake.outputs import OUTPUTS, SEQUENCE_DESIGNS, TOUCHDOWN
+from lithobrake.pipeline.beds import bed_files
+from lithobrake.pipeline.design_runs import DesignRuns
+from lithobrake.pipeline.dispersion_statistics import ellipses, rest_results, shares
+from lithobrake.pipeline.drawn_answer import drawn_answer, drawn_headline
+from lithobrake.pipeline.fitted_emulator import FILE as EMULATOR
+from lithobrake.pipeline.flights import flight_numbers, read_table
+from lithobrake.pipeline.job import Job
+from lithobrake.pipeline.run_estimates import FILE as ESTIMATES
+from lithobrake.pipeline.samples import Samples
+from lithobrake.pipeline.shares_over_refits import Refits, journey_ends, sample_fates
+from lithobrake.pipeline.site import effective_acceleration_at_site
+from lithobrake.pipeline.summary import (
+    bed_results,
+    monte_carlo_results,
+    outputs_of_runs,
+    provenance,
+    site_results,
+    study_tables,
+)
+from lithobrake.results.study_results import SUMMARY_FORMAT
+
+PIT_BINS = 10
+
+
+def write_drawn_summary(job: Job) -> None:
+    """Write summary.json: study, results, provenance. Times, host, folders and versions stand in provenance only."""
+    side = job.study.design.side_runs
+    runs = [DesignRuns.load(job.folder, design) for design in (SEQUENCE_DESIGNS if side else SEQUENCE_DESIGNS[:1])]
+    distinct, estimates = DesignRuns.distinct(runs), job.folder.read_json(ESTIMATES)
+    results: dict[str, Any] = {
+        "units": {name: TOUCHDOWN[name].units for name in OUTPUTS},
+        "beds": [bed_results(job, name) for name in bed_files(job.study)],
+        **estimates,
+        "outputs_of_runs": outputs_of_runs(distinct),
+        "site": site_results(job.study),
+        **_dispersion(job, estimates),
+    }
+    results["emulator"] = _emulator(job, results)
+    results["answer"] = drawn_answer(job.study, results)
+    results["headline"] = drawn_headline(job.study, results)
+    if results["emulator"]["warning"]:
+        job.say(results["emulator"]["warning"])
+    job.folder.write_json(
+        "summary.json",
+        {
+            "format_version": SUMMARY_FORMAT,
+            "study": study_tables(job.study, job.tables),
+            "results": results,
+            "provenance": provenance(job, sum(one.run_count for one in runs), distinct),
+        },
+    )
+
+
+def _dispersion(job: Job, estimates: dict[str, Any]) -> dict[str, Any]:
+    """What became of the samples, with intervals from refits; the share of the runs gets that of the emulator."""
+    study, samples, flights = job.study, Samples.load(job.folder), read_table(job.folder, "flights.csv")
+    holds, met = bool(effective_acceleration_at_site(study)[2] < 0.0), estimates["runs"]["outcomes"]
+    ended = {name: count for name, count in met.items() if name in list(TouchdownOutcome)}
+    refits = Refits(estimates["runs"]["beds"], sum(ended.values()), estimates["stays"]["why"])
+    fates = sample_fates(samples, flights, holds=holds)
+    table = shares(samples, flights, ended, holds=holds)
+    for entry in table.values():
+        if isinstance(entry, dict):
+            entry.pop("upper_limit", None)
+    refits.put_intervals(table, np.arange(table["sample_count"]), fates)
+    refits.widen_what_no_run_met(table, ended)
+    known = table["sample_count"] - table["missing"]["count"]
+    stays = estimates["stays"] | {"emulator": table["remains"]["count"] / known if known else None}
+    rest = rest_results(job)
+    if rest["soil"] is not None:
+        rows = [row for row in read_table(job.folder, "rest.csv") if row["ground"] == "soil"]
+        refits.put_intervals(rest["soil"], np.array([int(row["sample"]) for row in rows]), journey_ends(rows))
+    return {
+        "stays": stays,
+        "shares": table,
+        "monte_carlo": monte_carlo_results(samples),
+        "flights": flight_numbers(flights) | job.folder.read_json("flights.json"),
+        "ellipses": ellipses(study, flights, FlightStatus.IMPACT),
+        "without_scatter": None,
+        "rest": rest,
+    }
+
+
+def _emulator(job: Job, results: dict[str, Any]) -> dict[str, Any]:
+    """What the emulator is worth on beds left out, and whether it agrees with the runs."""
+    from lithobrake.emulator import load
+
+    model = load(job.folder / EMULATOR)
+    scores, modelled = model.scores, [model.output_names[column] for column in model.runs.modelled]
+    table: dict[str, Any] = {"joint": {"energy_skill": scores.gain / scores.energy_of_rows}}
+    for column, name in enumerate(modelled):
+        table[name] = {
+            "crps_skill": float(scores.crps_skill[column]),
+            "band_90": float(scores.band_90[column]),
+            "pit": np.histogram(scores.pit[:, column], PIT_BINS, (0.0, 1.0))[0].tolist(),
+        }
+    return {
+        "statement": model.statement,
+        "follows_inputs": model.follows_inputs,
+        "found_inputs": [name for name, found in model.found_inputs().items() if found],
+        "scores": table,
+        "warning": _disagreement(results["stays"]),
+    }
+
+
+def _disagreement(stays: dict[str, Any]) -> str | None:
+    """That runs and emulator disagree, in a sentence; None where they agree, or no interval says how far they may."""
+    if stays["lower"] is None or stays["emulator"] is None or stays["lower"] <= stays["emulator"] <= stays["upper"]:
+        return None
+    return (
+        f"The emulator gives a share of {100 * stays['emulator']:.1f} %, outside the interval of the runs "
+        f"({100 * stays['lower']:.1f} to {100 * stays['upper']:.1f} %): do not trust what rests on it (flights, "
+        "ellipses, rest), and make more runs"
+    )

@@ -1,0 +1,34 @@
+"""Samples of a sequence: draws of the input law through the emulator, outcome, velocity and spin together."""
+
+import numpy as np
+
+from lithobrake.analysis import sample_inputs
+from lithobrake.hashing import hashed_seed
+from lithobrake.pipeline.designs import design_inputs
+from lithobrake.pipeline.drawn_landings import DrawnLandings
+from lithobrake.pipeline.energy_bound import fastest
+from lithobrake.pipeline.fitted_emulator import REFIT_COUNT, refits
+from lithobrake.pipeline.job import Job
+from lithobrake.pipeline.samples import Samples
+
+
+def draw_emulator_samples(job: Job) -> None:
+    """Sample all inputs and draw a landing for each; sample i comes from refit i modulo REFIT_COUNT.
+
+    So every share of the samples has its scatter over refits in itself, and no flight is made for an interval alone.
+    """
+    study, inputs = job.study, design_inputs(job.study)
+    x = sample_inputs(inputs, study.monte_carlo.sample_count, hashed_seed(study.seed, "samples"))
+    bound = fastest(study, job.folder, dict(zip(inputs, x.T, strict=True)), len(x))
+    models = refits(job)
+    names: list[str] = []
+    outputs, outcome = np.empty((len(x), 0)), np.empty(len(x), dtype=np.uint8)
+    for number, model in enumerate(models):
+        job.progress(number, len(models), "samples")
+        part = slice(number, None, REFIT_COUNT)
+        drawn = DrawnLandings.of(model, x[part], bound[part], hashed_seed(study.seed, "draws", number))
+        table = drawn.table()
+        if not names:
+            names, outputs = list(table), np.empty((len(x), len(table)))
+        outputs[part], outcome[part] = np.column_stack(list(table.values())), drawn.outcome
+    Samples(list(inputs), names, x, outputs, outcome).save(job.folder)

@@ -1,0 +1,74 @@
+"""What every key means that only the summary of a drawn study has; docs/summary.md is made of it."""
+
+from lithobrake.results.summary_keys import QUANTILES, SUMMARY, KeyTable
+
+PART = {
+    "share": "of the variance; free of bias, so it may be a little below 0",
+    "lower": "lower bound (90 %)",
+    "upper": "upper bound (90 %)",
+}
+DRAWN_TABLES = (
+    KeyTable(
+        SUMMARY,
+        ("results.runs",),
+        "The runs of a drawn study",
+        {
+            "count": "runs of the sequence",
+            "beds": "beds that they came down on",
+            "outcomes.*": "runs that ended so; failed: runs without an outcome",
+            "over_rim": "of those that left: runs that crossed the rim of the bed, touching nothing and going up",
+            "side_runs": "null without design.side_runs",
+            "side_runs.soil_pairs": "runs again on a second soil",
+            "side_runs.twins": "runs again a little beside",
+            "side_runs.twin_shift": "how far beside [m]",
+            "side_runs.soil_total_effect.*.share": "share of the variance of the output that goes with the soil, "
+            "interactions with bed, place and attitude included",
+            "side_runs.chaos_deviation.*.value": "standard deviation that chaos alone gives, in the output's unit",
+            **{f"side_runs.*.*.{end}": "its 90 % interval" for end in ("lower", "upper")},
+        },
+    ),
+    KeyTable(
+        SUMMARY,
+        ("results.variance_shares.*",),
+        "Where the scatter of an output of a drawn study comes from (docs/estimates.md); null where the runs cannot "
+        "tell. stays: of the share of its flights for which a run remains",
+        {
+            "soil": "inputs of grains and surface, and of the lander's contacts: part",
+            "soil_by_input.*": "one of them alone: part",
+            "arrival": "all other inputs, as speed, incidence and mass: part; null where none is uncertain",
+            "bed": "what landings on one bed have in common: part",
+            "place_and_attitude": "the rest: part",
+            "chaos": "what twins differ in: part; null without side runs",
+            **{f"{part}.{key}": words for part in ("*", "soil_by_input.*") for key, words in PART.items()},
+        },
+    ),
+    KeyTable(
+        SUMMARY,
+        ("results.outputs.*",),
+        "Each output over the runs of a drawn study that have it, in its unit",
+        {
+            **{f"{name}.value": words for name, words in (("mean", "mean"), ("quantiles.*", QUANTILES))},
+            **{
+                f"{name}.{end}": "its 90 % interval; null where there is none"
+                for name in ("mean", "quantiles.*")
+                for end in ("lower", "upper")
+            },
+            "standard_deviation": "of the runs",
+        },
+    ),
+    KeyTable(
+        SUMMARY,
+        ("results.emulator",),
+        "The emulator of a drawn study, on beds that were left out (docs/emulator.md)",
+        {
+            "statement": "what it makes of the inputs, in a sentence",
+            "follows_inputs": "whether draws depend on the inputs; else each is one of the runs",
+            "found_inputs": "inputs that change the mean of an output, at one level of 90 % for all",
+            "scores.joint.energy_skill": "1 - energy score over that of drawing runs, all outputs together",
+            "scores.*.crps_skill": "1 - CRPS over that of drawing runs, whatever the inputs",
+            "scores.*.band_90": "share of runs inside the middle 90 % of what was foretold",
+            "scores.*.pit": "runs by where in its foretold distribution each lay, in ten steps",
+            "warning": "that its share lies outside the interval of the runs, in a sentence; null where it does not",
+        },
+    ),
+)

@@ -1,0 +1,113 @@
+"""Drawn studies whose landers go on from bounce to bounce, lie on one bed, or go over its rim."""
+
+import dataclasses
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import lithobrake
+from lithobrake.outcomes import JourneyStatus
+from lithobrake.results import StudyResults
+
+from ..synthetic_landings import WEAK
+from .synthetic_lander import SyntheticLander, synthetic_tables
+
+ARRIVAL = {
+    "speed": {"distribution": "uniform", "lower": 0.005, "upper": 0.4},
+    "incidence_deg": {"distribution": "uniform", "lower": 0.0, "upper": 88.0},
+}
+FEW = {"design": {"run_count": 48}, "monte_carlo": {"sample_count": 400}, "flight": {"flight_count": 200}}
+
+
+def made(folder: Path, model: SyntheticLander, **changes: dict[str, Any]) -> StudyResults:
+    return lithobrake.run(synthetic_tables(**FEW, **changes), folder, workers=1, model=model, report=False)
+
+
+@pytest.fixture(scope="module")
+def journeys(tmp_path_factory: pytest.TempPathFactory) -> StudyResults:
+    """Landers at 50 degrees north of Didymos, where the ground holds them, that arrive at any speed and angle."""
+    model = SyntheticLander(dataclasses.replace(WEAK, capture=0.2), follows_speed=True)
+    site, rest = {"latitude_deg": 50.0}, {"count": 300}
+    return made(tmp_path_factory.mktemp("journeys") / "out", model, impact=ARRIVAL, site=site, rest=rest)
+
+
+def test_landers_rest_on_the_soil_and_their_shares_have_intervals(journeys: StudyResults) -> None:
+    found = journeys.summary["results"]["rest"]
+    assert found["why_no_soil"] is None
+    soil = found["soil"]
+    settled = soil[JourneyStatus.SETTLED]
+    assert 0.0 < settled["lower"] < settled["share"] < settled["upper"] < 1.0
+    assert soil["level"] == 0.9
+    # Most of the others have become slower than any run.
+    assert soil[JourneyStatus.OUTSIDE]["count"] + soil[JourneyStatus.SETTLED]["count"] > 0.5 * soil["sample_count"]
+    assert found["hard"]["settled"]["lower"] is None
+    several = journeys.rest.where(journeys.rest["ground"] == "soil")["rebounds"]
+    assert several.max() > 2
+
+
+def test_the_speed_of_samples_follows_that_of_the_arrival_and_never_passes_it(journeys: StudyResults) -> None:
+    samples = journeys.samples.where(journeys.samples["outcome"] == "clear")
+    assert np.all(samples["speed_out"] < samples["impact.speed"])
+    assert np.corrcoef(samples["speed_out"], samples["impact.speed"])[0, 1] > 0.5
+    parts = journeys.summary["results"]["variance_shares"]["speed_out"]
+    assert parts is None or parts["arrival"]["share"] > 0.2
+
+
+def test_a_captured_lander_stays_where_the_ground_holds_it(journeys: StudyResults) -> None:
+    table = journeys.run_flights.where(journeys.run_flights["outcome"] == "captured")
+    assert len(table["stays"]) > 2
+    assert set(table["stays"]) == {1.0}
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"bed": {"bed_count": 1}}, "All runs came down on one bed."),
+        ({"impact": {"region": None, "place": {"x": 0.0, "y": 0.0}}}, "All runs came down at one place."),
+    ],
+    ids=["one bed", "one place"],
+)
+def test_one_bed_or_one_place_gives_no_interval_anywhere(
+    changes: dict[str, dict[str, Any]], words: str, tmp_path: Path
+) -> None:
+    results = made(tmp_path / "out", SyntheticLander(), **changes)
+    found = results.summary["results"]
+    stays = found["stays"]
+    assert (stays["lower"], stays["upper"], stays["next_bed"]) == (None, None, None)
+    assert words in stays["why"]
+    assert "gives another figure; this study cannot say how different" in results.headline[1]
+    assert "interval" not in results.headline[0]
+    assert {entry["lower"] for entry in found["shares"].values() if isinstance(entry, dict)} == {None}
+    assert found["outputs"]["speed_out"]["mean"]["lower"] is None
+
+
+def test_landers_over_the_rim_never_count_as_staying(tmp_path: Path) -> None:
+    results = made(tmp_path / "out", SyntheticLander(dataclasses.replace(WEAK, rim="fast_flat")))
+    found = results.summary["results"]
+    lost = found["runs"]["outcomes"]["left_sideways"]
+    assert lost > 0
+    low, high = found["stays"]["if_missing"]
+    assert low < found["stays"]["share"] < high
+    assert high - low == pytest.approx(lost / 48)
+    assert any("nobody knows where the lander went" in sentence for sentence in results.headline)
+    assert found["shares"]["missing"]["count"] >= found["shares"]["left_sideways"]["count"] > 0
+
+
+def test_runs_with_more_energy_than_they_brought_leave_the_speed_without_a_bound(tmp_path: Path) -> None:
+    said: list[str] = []
+
+    class Shown:
+        def begin(self, title: str, number: int, count: int) -> None: ...
+        def progress(self, done: float, total: float, what: str, detail: str = "", /) -> None: ...
+        def say(self, sentence: str) -> None:
+            said.append(sentence)
+
+    tables = synthetic_tables(**FEW, impact={"speed": 0.05})
+    results = lithobrake.run(
+        tables, tmp_path / "out", workers=1, model=SyntheticLander(), report=False, progress=Shown()
+    )
+    assert any("left faster than the energy of their arrival allows" in sentence for sentence in said)
+    samples = results.samples.where(results.samples["outcome"] == "clear")
+    assert samples["speed_out"].max() > 0.05

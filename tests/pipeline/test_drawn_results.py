@@ -1,0 +1,114 @@
+"""A drawn study of synthetic landings from its file to its report: its shares against what is known of them."""
+
+import csv
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import lithobrake
+from lithobrake.pipeline import StudyFolder, write_report_again
+from lithobrake.pipeline.flights import Starts, fly_starts
+from lithobrake.pipeline.job import Job, Silent
+from lithobrake.pipeline.outgoing import VELOCITY
+from lithobrake.pipeline.run_flights import run_sites
+from lithobrake.pipeline.site import site_body
+from lithobrake.results import StudyResults
+from lithobrake.results.key_words import leaves, words_of
+from lithobrake.study import check_tables
+
+from ..synthetic_landings import SPEED_LIMIT, WEAK, random_soils
+from .synthetic_lander import SyntheticLander, outputs_of, synthetic_tables
+
+SIDE = {"design": {"run_count": 150, "side_runs": True}}
+
+
+@pytest.fixture(scope="module")
+def results(tmp_path_factory: pytest.TempPathFactory) -> StudyResults:
+    """A study of 150 landings with side runs, to its page."""
+    folder = tmp_path_factory.mktemp("drawn") / "out"
+    return lithobrake.run(synthetic_tables(**SIDE), folder, workers=1, model=SyntheticLander())
+
+
+def flown_share(count: int) -> float:
+    """Share of landings of the truth that come down again within the time of the study; none that is captured."""
+    study, random = check_tables(synthetic_tables(), Path()), np.random.default_rng(5)
+    landings = WEAK.draw(random_soils(count, random), random.standard_normal(count), random)
+    left = np.flatnonzero(landings.outcome == "clear")
+    velocity = np.array([[outputs_of(landings.y[run])[name] for name in VELOCITY] for run in left])
+    site = {key: values[:, 0] for key, values in run_sites(study, len(left), 1).items()}
+    job = Job(study, {}, StudyFolder.only_read(Path()), None, Silent())  # type: ignore[arg-type]
+    flown = fly_starts(site_body(study), Starts(left, velocity, site), study, job, "")
+    return float((flown.status == "impact").sum()) / count
+
+
+def test_the_share_of_the_runs_and_that_of_the_emulator_hold_the_truth(results: StudyResults) -> None:
+    stays, truth = results.summary["results"]["stays"], flown_share(8000)
+    assert stays["lower"] < truth < stays["upper"]
+    assert 0.02 < stays["upper"] - stays["lower"] < 0.15
+    assert (stays["from"], stays["level"], stays["why"]) == ("150 landings on 15 beds", 0.9, None)
+    assert abs(stays["emulator"] - truth) < 0.05
+    remains = results.summary["results"]["shares"]["remains"]
+    assert remains["lower"] < truth < remains["upper"]
+    assert results.summary["results"]["emulator"]["warning"] is None
+    assert "90 % interval" in results.headline[0]
+
+
+def test_parts_of_the_variance_add_up_and_side_runs_tell_theirs(results: StudyResults) -> None:
+    found = results.summary["results"]
+    assert set(found["variance_shares"]) == {"speed_out", "elevation_out", "spin_out", "stays"}
+    parts = found["variance_shares"]["speed_out"]
+    whole = ("soil", "bed", "place_and_attitude", "chaos")
+    assert sum(parts[name]["share"] for name in whole) == pytest.approx(1.0)
+    assert set(parts["soil_by_input"]) == {name for name in results.runs.columns if name.startswith("grain.")} - {
+        "grain.poisson_ratio", "grain.cohesion_force", "grain.surface_energy", "grain.spinning_friction",
+    }  # fmt: skip
+    # Another seed is another place to these landings, so a twin is as unlike its run as any other.
+    assert parts["chaos"]["upper"] > 0.5
+    side = found["runs"]["side_runs"]
+    assert (side["soil_pairs"], side["twins"]) == (20, 12)
+    assert set(side["chaos_deviation"]) == set(found["variance_shares"])
+
+
+def test_samples_leave_outwards_with_the_speed_that_was_drawn_and_energy_allows(results: StudyResults) -> None:
+    samples = results.samples.where(results.samples["outcome"] == "clear")
+    velocity = np.column_stack([samples[name] for name in VELOCITY])
+    assert len(velocity) > 3500
+    assert np.linalg.norm(velocity, axis=1) == pytest.approx(samples["speed_out"], rel=1e-12)
+    assert velocity[:, 2].min() > 0.0
+    assert samples["speed_out"].max() < SPEED_LIMIT * 1.001
+    spin = np.column_stack([samples[f"spin_out_{axis}"] for axis in "xyz"])
+    assert np.linalg.norm(spin, axis=1) == pytest.approx(samples["spin_out"], rel=1e-12)
+    # The scatter of the runs is in the samples, and not their mean law alone.
+    runs = results.runs["speed_out"][results.runs["outcome"] == "clear"]
+    assert np.std(samples["speed_out"]) == pytest.approx(np.std(runs), rel=0.25)
+
+
+def test_the_emulator_opens_and_every_key_of_the_summary_is_described(results: StudyResults) -> None:
+    model = results.emulator
+    soil = [[law.median for law in model.runs.inputs.values()]]
+    drawn = model.sample(soil, 50, upper=np.tile(model.runs.upper[0], (1, 1)))
+    assert drawn.shape == (1, 50, len(model.output_names))
+    for path in leaves(json.loads((results.folder / "summary.json").read_text())):
+        assert words_of("summary.json", path)
+    scores = results.summary["results"]["emulator"]["scores"]
+    assert scores["speed_out"]["band_90"] == pytest.approx(0.9, abs=0.07)
+    assert sum(scores["speed_out"]["pit"]) == model.runs.has_outputs.sum()
+
+
+def test_the_page_opens_with_the_answer_and_is_written_again(results: StudyResults) -> None:
+    page = results.folder / "report" / "index.html"
+    first = page.read_text()
+    assert results.headline[0] in first
+    page.unlink()
+    write_report_again(results.folder)
+    assert page.read_text() == first
+
+
+def test_a_captured_run_stays_where_the_ground_holds_it(results: StudyResults) -> None:
+    with (results.folder / "run_flights.csv").open() as file:
+        captured = [row for row in csv.DictReader(file) if row["outcome"] == "captured"]
+    # At the equator of Didymos nothing lies on the ground.
+    assert captured
+    assert {(row["settled"], row["lofted"], float(row["stays"])) for row in captured} == {("0", "64", 0.0)}

@@ -1,0 +1,39 @@
+"""The fastest that a lander can leave, against energies worked out by hand."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from lithobrake.pipeline import StudyFolder
+from lithobrake.pipeline.energy_bound import fastest
+from lithobrake.study import Study, check_tables
+
+from .synthetic_lander import synthetic_tables
+
+NO_FOLDER = StudyFolder.only_read(Path())
+
+
+def study(**changes: dict[str, Any]) -> Study:
+    """A study whose touchdowns a function makes, so that no bed has a height."""
+    return check_tables(synthetic_tables(**changes), Path()).with_function("of a test")
+
+
+def test_a_lander_keeps_at_most_speed_and_spin() -> None:
+    # A homogeneous ball of .1 m: I / m = .4 r^2 = 1e-3 m2.
+    assert fastest(study(), NO_FOLDER, {}, 2) == pytest.approx([0.4, 0.4])
+    spinning = {"impact.spin_x": np.array([3.0, 0.0]), "impact.spin_z": np.array([4.0, 0.0])}
+    assert fastest(study(), NO_FOLDER, spinning, 2) == pytest.approx([np.sqrt(0.16 + 25e-3), 0.4])
+    known = study(lander={"inertia": [1e-3, 2e-3, 2e-3], "mass": 2.0})
+    assert fastest(known, NO_FOLDER, spinning, 2) == pytest.approx([np.sqrt(0.16 + 25e-3), 0.4])
+    box = study(lander={"shape": "box", "edges": [0.1, 0.1, 0.2], "diameter": None})
+    assert fastest(box, NO_FOLDER, spinning, 2)[0] == pytest.approx(np.sqrt(0.16 + 25 * (0.1**2 + 0.2**2) / 12))
+
+
+def test_the_bound_follows_an_uncertain_speed_and_the_fall_down_a_slope() -> None:
+    speed = {"impact.speed": np.array([0.1, 0.2])}
+    assert fastest(study(), NO_FOLDER, speed, 2) == pytest.approx([0.1, 0.2])
+    tilted = study(surface={"slope_deg": 30.0, "gravity": 1e-2}, bed={"width": [0.6, 0.8]})
+    # One metre of diagonal falls by half a metre.
+    assert fastest(tilted, NO_FOLDER, speed, 2) == pytest.approx(np.sqrt([0.01 + 0.01, 0.04 + 0.01]))
