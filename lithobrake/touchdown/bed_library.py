@@ -65,7 +65,7 @@ def bed_key(recipe: BedRecipe) -> str:
     """The name of a bed in the library: a hash of its recipe, of the code that pours it, and of what that stands on."""
     table = asdict(recipe)
     # How a landing is stepped; a bed is poured and settled with all contacts at the same steps.
-    del table["contact"]["stepping"]
+    del table["contact"]["stepping"], table["contact"]["held_speed"]
     return json_hash([table, _code()])
 
 

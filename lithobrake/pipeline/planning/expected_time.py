@@ -141,7 +141,9 @@ def landing_time(soil: ExpectedSoil, lander: "Lander", landing: "Landing") -> fl
     """Time [s] of one landing."""
     contact = landing.contact
     if contact.stepping == "local":
-        common = replace(landing, contact=replace(contact, stepping="global", steps_per_contact=COMMON_STEPS))
+        common = replace(
+            landing, contact=replace(contact, stepping="global", held_speed=0.0, steps_per_contact=COMMON_STEPS)
+        )
         return (LOCAL_LANDING + LOCAL_STEP * contact.steps_per_contact) * landing_time(soil, lander, common)
     grains = soil.recipe.grain_count
     relaxing, touching = soil.landing_steps(lander, landing)
