@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from lithobrake.dem import energy, timestep
 from lithobrake.dem.arrays import Floats, Step
@@ -23,9 +23,18 @@ class Observables:
     """
 
     def __init__(self, state: WorldState, gravity: Sequence[float]) -> None:
-        self.gravity = vector(gravity, "World gravity")
+        self.gravity = gravity
         self.drag = 0.0  # 1/s, viscous damping of all motion, for settling only
         self._state = state
+
+    @property
+    def gravity(self) -> Floats:
+        """Acceleration of all that falls [m/s2], shape [3]."""
+        return self._gravity
+
+    @gravity.setter
+    def gravity(self, value: ArrayLike) -> None:
+        self._gravity = vector(value, "World gravity")
 
     def _step(self, time_step: float) -> Step:
         reduced = self._state.options["damping_mass"] == "paper"

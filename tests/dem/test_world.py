@@ -58,6 +58,17 @@ def test_state_reads_as_it_was_given():
     assert np.allclose(world.inertia[0], 15.0 / 12.0 * np.array([0.05, 0.10, 0.13]))
 
 
+def test_gravity_may_be_given_anew_and_is_refused_where_it_is_no_vector():
+    world = World()
+    world.gravity = (0.0, 0.0, -2.0)
+    world.add_body(Sphere(0.05), ROCK, (0.0, 0.0, 1.0))
+    world.time_step = 1e-3
+    world.run(steps=100)
+    assert world.velocity[0, 2] == pytest.approx(-0.2)
+    with pytest.raises(ValueError, match="World gravity is 1.0; allowed are three finite numbers"):
+        world.gravity = 1.0
+
+
 def test_body_added_later_meets_those_before():
     world = World((0, 0, -9.81), 1e-4)
     world.add_body(Sphere(0.05), ROCK, (0, 0, 0.05))
