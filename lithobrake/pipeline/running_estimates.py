@@ -8,6 +8,7 @@ from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
 from lithobrake.campaign import Record, RunStatus
+from lithobrake.outcomes import TouchdownOutcome
 
 if TYPE_CHECKING:
     from lithobrake.analysis import IntervalEstimate, ShareEstimate
@@ -42,7 +43,7 @@ class RunningEstimates:
     def to_json(self) -> dict[str, Any]:
         """All of it as JSON values."""
         return {
-            "captured": None if self.captured is None else self.captured.summary(),
+            TouchdownOutcome.CAPTURED.value: None if self.captured is None else self.captured.summary(),
             "speed_out": None if self.speed_out is None else asdict(self.speed_out),
             "stays": None,
             "why_no_stays": NO_FLIGHTS,

@@ -1,4 +1,4 @@
-"""The page of a study by the paper's method, with the figures in the order of [Landings-PCE]."""
+"""The page of a study by the method of [Landings-PCE], with the figures in its order."""
 
 from typing import TYPE_CHECKING
 

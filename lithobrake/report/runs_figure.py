@@ -23,7 +23,7 @@ WORDS_OF_QUANTILES = {"0.05": "5 %", "0.5": "median", "0.95": "95 %"}
 
 
 @dataclass(frozen=True)
-class DrawnLandings:
+class LandingsOfRuns:
     """Landings as they ended, all of shape [run_count].
 
     speed [m/s] and elevation [rad] after the touchdown, NaN where the lander did not leave; outcome: words; over_rim:
@@ -52,7 +52,7 @@ class DrawnLandings:
         return ~(self.has_speed | self.is_captured)
 
 
-def runs_figure(landings: DrawnLandings, quantiles: Mapping[str, Mapping[str, float]]) -> Figure:
+def runs_figure(landings: LandingsOfRuns, quantiles: Mapping[str, Mapping[str, float]]) -> Figure:
     """Draw speed against elevation of the landers that left, and their speeds bed by bed, over one axis of speed.
 
     quantiles: of speed_out and elevation_out [SI] by level, as "0.5"; an output that lacks them has no lines.
@@ -80,7 +80,7 @@ def runs_figure(landings: DrawnLandings, quantiles: Mapping[str, Mapping[str, fl
     return figure
 
 
-def _speeds_and_elevations(axes: Axes, landings: DrawnLandings, quantiles: Mapping[str, Mapping[str, float]]) -> None:
+def _speeds_and_elevations(axes: Axes, landings: LandingsOfRuns, quantiles: Mapping[str, Mapping[str, float]]) -> None:
     """Every lander that left, by speed and elevation, with the quantiles of the elevation."""
     shown, left = output("elevation_out"), landings.has_speed
     elevation = shown.factor * landings.elevation
@@ -98,7 +98,7 @@ def _speeds_and_elevations(axes: Axes, landings: DrawnLandings, quantiles: Mappi
     axes.set_yticks(range(0, 91, 15))
 
 
-def _bed_by_bed(axes: Axes, landings: DrawnLandings, bed_count: int) -> None:
+def _bed_by_bed(axes: Axes, landings: LandingsOfRuns, bed_count: int) -> None:
     """The speeds on each bed, and to the left how many of its landers have none."""
     left = landings.has_speed
     for bed in range(0, bed_count, 2):
@@ -108,7 +108,7 @@ def _bed_by_bed(axes: Axes, landings: DrawnLandings, bed_count: int) -> None:
     axes.scatter(landings.speed[rim], landings.bed[rim], **RING)
     # In parts of the panel's width.
     for words, chosen, place in (
-        ("captured", landings.is_captured, 0.07),
+        (TouchdownOutcome.CAPTURED.value, landings.is_captured, 0.07),
         ("no answer", landings.has_no_answer, 0.2),
     ):
         if not chosen.any():
@@ -133,7 +133,7 @@ def _at(place: Any) -> dict[str, Any]:
     return {"xycoords": place, "textcoords": "offset points", "color": QUIET}
 
 
-def _legend(figure: Figure, landings: DrawnLandings) -> None:
+def _legend(figure: Figure, landings: LandingsOfRuns) -> None:
     """Say what the marks are, as far as there are any."""
     handles = [Line2D([], [], marker="o", markersize=4, linestyle="none", color=TRAINING, label="left the surface")]
     if (landings.has_speed & landings.over_rim).any():

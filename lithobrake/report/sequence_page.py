@@ -11,7 +11,7 @@ from lithobrake.report import captions, sequence_captions
 from lithobrake.report.calibration_figure import calibration_figure, histograms
 from lithobrake.report.page import Content, Plot
 from lithobrake.report.results import SequenceResults
-from lithobrake.report.runs_figure import DrawnLandings, runs_figure
+from lithobrake.report.runs_figure import LandingsOfRuns, runs_figure
 from lithobrake.report.scatter_figure import scatter_figure
 from lithobrake.report.sequence_answer import answer, warnings
 from lithobrake.report.sequence_tables import colour_input, tables, tiles
@@ -58,7 +58,7 @@ def _runs(data: SequenceResults) -> "Figure | None":
         return None
     nan = np.full(len(runs["key"]), np.nan)
     column = {name: runs.get(name, nan) for name in ("speed_out", "elevation_out", OVER_RIM, "bed")}
-    landings = DrawnLandings(
+    landings = LandingsOfRuns(
         column["speed_out"],
         column["elevation_out"],
         runs["outcome"],

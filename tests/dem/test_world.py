@@ -65,7 +65,7 @@ def test_gravity_may_be_given_anew_and_is_refused_where_it_is_no_vector():
     world.time_step = 1e-3
     world.run(steps=100)
     assert world.velocity[0, 2] == pytest.approx(-0.2)
-    with pytest.raises(ValueError, match="World gravity is 1.0; allowed are three finite numbers"):
+    with pytest.raises(ValueError, match=r"World gravity is 1\.0; allowed are three finite numbers"):
         world.gravity = 1.0
 
 

@@ -82,7 +82,8 @@ def test_what_ends_is_the_study_of_that_many_runs(narrow: tuple[Path, DesignRuns
     assert grown(study, only_read).design.run_count == runs.run_count
     assert grown(study, only_read).with_run_count(24) == study.with_run_count(24)
     plan = plan_of(grown(study, only_read), "ball", only_read, 2)
-    assert (plan.stages, len(plan.runs), plan.runs[0].drawn) == ((), 1, runs.run_count)
+    # What follows the runs was not asked for.
+    assert (plan.stages[0], len(plan.runs), plan.runs[0].drawn) == ("flights of the runs", 1, runs.run_count)
     answered = sum(outcome in ("clear", "captured") for outcome in runs.outcomes)
     assert f"By the {answered} runs that have ended: +- " in " ".join(plan_lines(plan))
     assert f"{runs.run_count} runs: {runs.run_count} done" in " ".join(study_status(folder).lines())

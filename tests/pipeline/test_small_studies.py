@@ -189,7 +189,7 @@ for open_folder in (lambda: StudyFolder(out), lambda: Ledger(out / "runs.sqlite"
     except ValueError as error:
         print(error)
 print(len(open_study(out).ledger))
-print(*study_status(out), sep="\\n")
+print(*study_status(out).lines(), sep="\\n")
 """
 
 

@@ -9,7 +9,7 @@ import pytest
 from matplotlib.figure import Figure
 
 from lithobrake.report.calibration_figure import band_luck, calibration_figure, luck
-from lithobrake.report.runs_figure import DrawnLandings, runs_figure
+from lithobrake.report.runs_figure import LandingsOfRuns, runs_figure
 from lithobrake.report.style import TEST, TRAINING, figure_style
 from lithobrake.report.variance_figure import pieces, variance_figure
 
@@ -96,9 +96,9 @@ def test_a_band_that_luck_explains_is_as_it_should_be() -> None:
     assert band_luck(100) == pytest.approx((0.9 - 1.645 * 0.03, 0.9 + 1.645 * 0.03))
 
 
-def landings() -> DrawnLandings:
+def landings() -> LandingsOfRuns:
     """Six landers on two beds, of which one was captured and two have no answer; one left over the rim in flight."""
-    return DrawnLandings(
+    return LandingsOfRuns(
         speed=np.array([0.05, 0.08, 0.2, np.nan, np.nan, np.nan]),
         elevation=np.radians([30.0, 40.0, 10.0, np.nan, np.nan, np.nan]),
         outcome=np.array(["clear", "clear", "clear", "captured", "time_limit", "failed"]),
@@ -125,7 +125,7 @@ def test_every_landing_is_a_dot_or_is_counted() -> None:
 
 def test_landings_of_which_none_leaves_are_counted_without_a_column_that_is_empty() -> None:
     none = landings()
-    captured = DrawnLandings(none.speed * np.nan, none.elevation, np.full(6, "captured"), none.over_rim, none.bed)
+    captured = LandingsOfRuns(none.speed * np.nan, none.elevation, np.full(6, "captured"), none.over_rim, none.bed)
     with figure_style():
         figure = runs_figure(captured, {})
     assert [text.get_text() for text in figure.axes[1].texts] == ["captured", "2", "4"]
