@@ -58,3 +58,11 @@ def numbered_beds(bed: ArrayLike, run_count: int) -> Labels:
     if labels.shape != (run_count,):
         raise ValueError(f"bed has shape {labels.shape}; it must name the bed of each of the {run_count} runs")
     return np.unique(labels, return_inverse=True)[1].astype(np.int64)
+
+
+def answered_runs(values: ArrayLike, bed: ArrayLike) -> tuple[Array, Labels]:
+    """Values of the runs that have one, of values [run_count] with NaN, and their beds numbered from 0, [count]."""
+    of_all = np.asarray(values, dtype=float)
+    known = np.isfinite(of_all)
+    beds = numbered_beds(bed, len(of_all))[known]
+    return of_all[known], numbered_beds(beds, len(beds))

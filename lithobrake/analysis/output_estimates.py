@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lithobrake.analysis.confidence import Array, IntervalEstimate, Labels, numbered_beds, t_quantile
+from lithobrake.analysis.confidence import Array, IntervalEstimate, Labels, answered_runs, t_quantile
 from lithobrake.analysis.share_estimate import standard_error
 
 
@@ -44,12 +44,10 @@ def quantile_estimates(
 
 
 def _known(y: ArrayLike, bed: ArrayLike) -> tuple[Array, Labels]:
-    values = np.asarray(y, dtype=float)
-    known = np.isfinite(values)
-    beds = numbered_beds(numbered_beds(bed, len(values))[known], int(known.sum()))
+    values, beds = answered_runs(y, bed)
     if len(np.unique(beds)) < 2:
         raise ValueError(
             f"{len(beds)} runs with the output came down on {len(np.unique(beds))} bed; other beds give other values, "
             "and these runs cannot say how different: set bed.bed_count to 12 or more"
         )
-    return values[known], beds
+    return values, beds

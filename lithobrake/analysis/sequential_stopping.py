@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from lithobrake.analysis.bed_components import bed_components
-from lithobrake.analysis.confidence import Array, Labels, numbered_beds
+from lithobrake.analysis.confidence import answered_runs
 from lithobrake.analysis.half_width import expected_half_width
 from lithobrake.analysis.share_estimate import share_estimate
 
@@ -37,7 +37,7 @@ def scatter_of(values: ArrayLike, bed: ArrayLike) -> tuple[float, float] | None:
     None where this cannot be told: less than two answers, or none that differ. The correlation is 0 where no bed has
     two runs.
     """
-    y, beds = _answered(values, bed)
+    y, beds = answered_runs(values, bed)
     if len(y) < 2 or np.ptp(y) == 0.0:
         return None
     bed_count = int(beds.max()) + 1
@@ -73,10 +73,3 @@ def next_run_count(
 
     before = expected(count)
     return min(next((one for one in counts if expected(one) <= ratio * before), counts[-1]), largest)
-
-
-def _answered(values: ArrayLike, bed: ArrayLike) -> tuple[Array, Labels]:
-    """Answers of the runs that have one, [count], and their beds, numbered from 0."""
-    y = np.asarray(values, dtype=float)
-    known = np.isfinite(y)
-    return y[known], numbered_beds(numbered_beds(bed, len(y))[known], int(known.sum()))
