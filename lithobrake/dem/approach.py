@@ -12,10 +12,10 @@ from lithobrake.dem.feature_list import travelled
 from lithobrake.dem.free_flight import (
     Flight,
     Rules,
+    relative_weight,
     spin_bound,
     spin_of,
     time_to_close,
-    weight,
 )
 from lithobrake.dem.vectors import cross, dot, minus, plus, row, scaled, times
 
@@ -47,11 +47,10 @@ def closing_acceleration(bodies: Bodies, flight: Flight, first: int, second: int
     In the frame of a face: the fall, the turning of either's points, and what the turning of the face adds.
     """
     spin = spin_bound(bodies, flight, first)
-    acceleration = 2.0 * spin * (bodies.turning_radius[first] * spin + speed)
+    acceleration = relative_weight(flight, first, second, rules)
+    acceleration += 2.0 * spin * (bodies.turning_radius[first] * spin + speed)
     if second < 0:
-        return acceleration + weight(rules)
-    if flight.held[first] != flight.held[second]:
-        acceleration += weight(rules)
+        return acceleration
     spin = spin_bound(bodies, flight, second)
     return acceleration + 2.0 * spin * (bodies.turning_radius[second] * spin + speed)
 

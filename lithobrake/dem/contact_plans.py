@@ -8,7 +8,7 @@ from lithobrake.compiled import kernel
 from lithobrake.dem.agenda import Agenda, put_on
 from lithobrake.dem.approach import Approach, closing_speed
 from lithobrake.dem.arrays import Bodies, Floats, Integers, Pairs
-from lithobrake.dem.free_flight import Flight, Rules, surface_speed, time_to_close, weight
+from lithobrake.dem.free_flight import Flight, Rules, relative_weight, surface_speed, time_to_close, weight
 from lithobrake.dem.vectors import Vector, cross, dot, minus, plus, put, row
 
 # A body's pairs are planned anew when the speed of its surface has changed by this part of what it was.
@@ -76,10 +76,9 @@ def plan_apart(
     """Make a pair due when it could touch first, as nothing near has been found. Writes to agenda."""
     first, second = pairs.first[pair], pairs.second[pair]
     gap = pairs.wake[pair] - bodies.travel[first] - (now - flight.time[first]) * surface_speed(bodies, flight, first)
-    acceleration = weight(rules)
     if second >= 0:
-        acceleration = weight(rules) if flight.held[first] != flight.held[second] else 0.0
         gap -= bodies.travel[second] + (now - flight.time[second]) * surface_speed(bodies, flight, second)
+    acceleration = relative_weight(flight, first, second, rules)
     speed = closing_speed(bodies, flight, first, second)
     put_on(agenda, len(bodies.mass) + pair, now + (time_to_close(gap, speed, acceleration) if gap > 0.0 else 0.0))
 

@@ -139,6 +139,13 @@ def weight(rules: Rules) -> float:
 
 
 @kernel
+def relative_weight(flight: Flight, first: int, second: int, rules: Rules) -> float:
+    """Return the acceleration [m/s2] with which two fall against each other: none where both fall freely."""
+    falls_alone = second < 0 or flight.held[first] != flight.held[second]
+    return weight(rules) if falls_alone else 0.0
+
+
+@kernel
 def time_to_close(gap: float, speed: float, acceleration: float) -> float:
     """Return the shortest time [s] in which a gap [m] closes at a speed [m/s] under an acceleration [m/s2]."""
     fastest = speed + (speed * speed + 2.0 * acceleration * gap) ** 0.5

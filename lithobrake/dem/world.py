@@ -17,7 +17,7 @@ from lithobrake.dem.observables import Observables
 from lithobrake.dem.rigid_body import Plane, new_body, unit, vector
 from lithobrake.dem.shape import Shape
 from lithobrake.dem.time_loop import DIVERGED, STEP_TOO_LARGE
-from lithobrake.dem.world_state import WorldState
+from lithobrake.dem.world_state import NOTHING_WATCHED, WorldState
 
 
 class World(Observables):
@@ -199,7 +199,7 @@ class World(Observables):
             if not least <= value < math.inf:
                 allowed = f"a finite value of at least {least:g}"
                 raise ValueError(f"World.run_locally {name} is {value!r}{si}; allowed is {allowed}: change it")
-        if held_speed > 0.0 and self._state.watched < 0:
+        if held_speed > 0.0 and self._state.watched == NOTHING_WATCHED:
             raise ValueError(
                 f"World.run_locally held_speed is {held_speed!r}, but no body is watched: call watch first"
             )
