@@ -15,7 +15,7 @@ from lithobrake.touchdown.surface import height_map
 Progress = Callable[[float, str], None]
 RAIN_ROOM = 1.05  # room of a grain in the rain, in its bounding radii
 RAIN_PLACES = 20  # tried for each grain
-FALL_STEPS = 15.0  # at most, in the shortest contact: the bed does not remember how its grains bounced
+FALL_STEPS = 15.0  # at most, in each contact: the bed does not remember how its grains bounced
 FALL_CHECKS = 40  # looks at the grains in the time that the highest falls
 FALLS_PATIENCE = 25  # after so many times of that the pour is given up
 FALLEN = 1e-3  # kinetic ratio below which the grains lie, and only have to settle
@@ -119,14 +119,12 @@ def fall(world: World, recorder: Recorder, recipe: BedRecipe, tell: Progress) ->
     """Let the grains fall and come to a first rest under the pour gravity."""
     height = float(world.position[:, 2].max())
     fall_time = math.sqrt(2.0 * height / recipe.pour_gravity)
-    speed = math.sqrt(2.0 * height * recipe.pour_gravity)
     chunk = fall_time / FALL_CHECKS
     steps = min(FALL_STEPS, recipe.contact.steps_per_contact)
-    world.time_step = chunk / math.ceil(chunk * steps / world.shortest_contact(speed))
     recorder.frame(world)
     calm = 0
     for check in range(FALLS_PATIENCE * FALL_CHECKS):
-        world.run(chunk)
+        world.run_locally(chunk, steps)
         recorder.note(world)
         if check < FALL_CHECKS and check % 8 == 7:
             recorder.frame(world)
