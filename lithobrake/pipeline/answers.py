@@ -1,22 +1,50 @@
 """What each run answers, and which bed it answers for: the two arrays that every estimate of a sequence stands on.
 
-The answer of a run is, for now, whether the lander was captured. Where flights give each run its share of headings that
-stay, `answers_of` reads that in its place, and `ANSWERED_AFTER` names the stage that writes it.
+The answer of a run is the share of its flights, over headings and all else that is uncertain of the site, in which it
+stays; one that is captured answers without flying, and one of which nobody knows where it went, not at all.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from lithobrake.campaign import Record
-from lithobrake.outcomes import TouchdownOutcome
+from lithobrake.pipeline.folder import AGAIN, StudyFolder
+from lithobrake.pipeline.run_flights import FILE
+from lithobrake.reading import read_rows
+from lithobrake.study import Study
 
 # The stage after which every run has its answer, and what the answers are a share of, in words.
-ANSWERED_AFTER, ANSWER = "runs", "the share captured"
-_ANSWERS = {TouchdownOutcome.CAPTURED.value: 1.0, TouchdownOutcome.CLEAR.value: 0.0}
+ANSWERED_AFTER, ANSWER = "fly_runs", "the share that stays"
 
 
-def answers_of(records: Sequence[Record]) -> tuple[np.ndarray, np.ndarray]:
-    """Answer of each run, from 0 to 1, NaN where it has none, and its bed, both of shape [run_count]."""
-    values = [_ANSWERS.get(record.outcome or "", np.nan) for record in records]
-    return np.array(values, dtype=float), np.array([record.inputs["bed"] for record in records])
+def flown_shares(study: Study, folder: StudyFolder) -> dict[str, float]:
+    """Share of its flights in which each run of a study's sequence stays, by key, NaN where it has no answer.
+
+    Of a study with more or fewer runs too: a run flies from the same sites in all of them. None at all where the file
+    is not there, or was made otherwise than the study says.
+    """
+    from lithobrake.pipeline.stages import stage_keys
+
+    if not (folder / FILE).is_file():
+        return {}
+    shares = read_shares(folder)
+    made_for = study.with_run_count(max(len(shares), 2))
+    return shares if folder.is_current([FILE], stage_keys(made_for)[ANSWERED_AFTER]) else {}
+
+
+def read_shares(folder: StudyFolder) -> dict[str, float]:
+    """What a folder's table of the flights of runs says of them, by key."""
+    rows = read_rows(folder / FILE, ("design", "key", "stays"), AGAIN)
+    return {row["key"]: float(row["stays"] or "nan") for row in rows if row["design"] == "sequence"}
+
+
+def answers_of(
+    keys: Sequence[str], known: Mapping[str, Record], flown: Mapping[str, float]
+) -> tuple[np.ndarray, np.ndarray]:
+    """Answer of each run that has ended and flown, from 0 to 1, NaN where it has none, and its bed, both [run_count].
+
+    keys: of the runs that are asked for; known: runs that have ended, by key; flown: as flown_shares gives it.
+    """
+    answered = [key for key in keys if key in known and key in flown]
+    return np.array([flown[key] for key in answered]), np.array([known[key].inputs["bed"] for key in answered])

@@ -1,14 +1,14 @@
 """A sequence that goes on until its answer is as well known as asked: design.half_width.
 
-What comes next follows from the runs that have ended, which the ledger has. So a study that is stopped and run again
-goes the same way, and whoever only looks at its folder knows how many runs it has by now.
+What comes next follows from the runs that have ended, which the ledger has, and from their flights, which the folder
+has. So a study that is stopped and run again goes the same way, and whoever only looks at its folder knows how many
+runs it has by now.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import replace
 
-from lithobrake.campaign import Record
-from lithobrake.pipeline.answers import ANSWER, answers_of
+from lithobrake.pipeline.answers import ANSWER, answers_of, flown_shares
 from lithobrake.pipeline.folder import StudyFolder
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.planning.planned_runs import known_runs
@@ -22,12 +22,6 @@ def sequence_keys(study: Study) -> list[str]:
     return touchdown_keys(study, sequence_rows(study), 0)
 
 
-def ended_runs(study: Study, known: Mapping[str, Record]) -> list[Record] | None:
-    """The runs of a study's sequence in order; None where some have yet to end."""
-    keys = sequence_keys(study)
-    return [known[key] for key in keys] if known.keys() >= set(keys) else None
-
-
 def grown(study: Study, folder: StudyFolder) -> Study:
     """The study with as many runs as its half width asks for, as far as the runs that have ended can tell."""
     from lithobrake.analysis import next_run_count
@@ -35,9 +29,9 @@ def grown(study: Study, folder: StudyFolder) -> Study:
     design = study.design
     if design.half_width is None:
         return study
-    known = known_runs(study, folder)
-    while (records := ended_runs(study, known)) is not None:
-        values, bed = answers_of(records)
+    known, flown = known_runs(study, folder), flown_shares(study, folder)
+    while known.keys() & flown.keys() >= set(keys := sequence_keys(study)):
+        values, bed = answers_of(keys, known, flown)
         count = next_run_count(values, bed, design.half_width, design.most_runs, _bed_count_of(study))
         if count is None:
             break
@@ -79,8 +73,8 @@ def _end(job: Job) -> str:
 def _width(job: Job) -> float | None:
     from lithobrake.analysis import half_width_of
 
-    records = ended_runs(job.study, known_runs(job.study, job.folder))
-    return None if records is None else half_width_of(*answers_of(records))
+    known, flown = known_runs(job.study, job.folder), flown_shares(job.study, job.folder)
+    return half_width_of(*answers_of(sequence_keys(job.study), known, flown))
 
 
 def _bed_count_of(study: Study) -> Callable[[int], int]:

@@ -3,7 +3,7 @@
 Runs that take long come in last, so what is said early leans to those that end soon.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -13,6 +13,7 @@ from lithobrake.outcomes import TouchdownOutcome
 if TYPE_CHECKING:
     from lithobrake.analysis import IntervalEstimate, ShareEstimate
 
+_CAPTURED = {TouchdownOutcome.CAPTURED.value: 1.0, TouchdownOutcome.CLEAR.value: 0.0}
 # Of fewer runs no interval says anything.
 FEWEST_RUNS = 2
 NO_FLIGHTS = "The share that stays is not known yet: it counts those that come down again too, and that takes flights."
@@ -24,10 +25,12 @@ class RunningEstimates:
 
     captured   share of the landers that are captured, of those that are captured or clear; None where none is either
     speed_out  mean speed [m/s] of those that are clear; None where they came down on less than two beds
+    stays      share of the landers that stay; None before the runs have flown
     """
 
     captured: "ShareEstimate | None"
     speed_out: "IntervalEstimate | None"
+    stays: "ShareEstimate | None" = None
 
     def lines(self) -> list[str]:
         """The estimates in words."""
@@ -38,20 +41,23 @@ class RunningEstimates:
             value, lower, upper = self.speed_out.value, self.speed_out.lower, self.speed_out.upper
             level = f"{100 * self.speed_out.level:.0f} %"
             lines.append(f"  mean speed_out: {value:.4g} m/s ({level}: {lower:.4g} to {upper:.4g})")
-        return [*lines, f"  {NO_FLIGHTS}"]
+        return [*lines, f"  {NO_FLIGHTS}" if self.stays is None else f"  stay: {_share(self.stays)}"]
 
     def to_json(self) -> dict[str, Any]:
         """All of it as JSON values."""
         return {
             TouchdownOutcome.CAPTURED.value: None if self.captured is None else self.captured.summary(),
             "speed_out": None if self.speed_out is None else asdict(self.speed_out),
-            "stays": None,
-            "why_no_stays": NO_FLIGHTS,
+            "stays": None if self.stays is None else self.stays.summary(),
+            "why_no_stays": NO_FLIGHTS if self.stays is None else None,
         }
 
 
-def running_estimates(records: Sequence[Record]) -> RunningEstimates | None:
-    """The estimates from runs of a sequence, of which those count that are done; None for too few."""
+def running_estimates(records: Sequence[Record], flown: Mapping[str, float]) -> RunningEstimates | None:
+    """The estimates from runs of a sequence, of which those count that are done; None for too few.
+
+    flown: share of its flights in which a run stays, by key, of those that have flown.
+    """
     done = [record for record in records if record.status == RunStatus.DONE]
     if len(done) < FEWEST_RUNS:
         return None
@@ -59,14 +65,15 @@ def running_estimates(records: Sequence[Record]) -> RunningEstimates | None:
     import numpy as np
 
     from lithobrake.analysis import mean_estimate, share_estimate
-    from lithobrake.pipeline.answers import answers_of
 
-    values, bed = answers_of(done)
+    bed = np.array([record.inputs["bed"] for record in done])
+    captured = np.array([_CAPTURED.get(record.outcome or "", np.nan) for record in done])
     speed = np.array([record.outputs.get("speed_out", np.nan) for record in done])
-    answered, clear = np.isfinite(values), np.isfinite(speed)
+    stays = np.array([flown.get(record.key, np.nan) for record in done])
     return RunningEstimates(
-        captured=share_estimate(values, bed) if answered.any() else None,
-        speed_out=mean_estimate(speed, bed) if len(np.unique(bed[clear])) > 1 else None,
+        captured=share_estimate(captured, bed) if np.isfinite(captured).any() else None,
+        speed_out=mean_estimate(speed, bed) if len(np.unique(bed[np.isfinite(speed)])) > 1 else None,
+        stays=share_estimate(stays, bed) if np.isfinite(stays).any() else None,
     )
 
 

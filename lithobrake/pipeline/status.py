@@ -9,7 +9,7 @@ from typing import Any
 from lithobrake.atomic import lock_holder
 from lithobrake.campaign import RunStatus, Tally, campaign_began, ledger_tally
 from lithobrake.outputs import OUTPUTS
-from lithobrake.pipeline.folder import LOCK
+from lithobrake.pipeline.folder import LOCK, StudyFolder
 from lithobrake.pipeline.notes import NAME, Notes
 from lithobrake.pipeline.running_estimates import RunningEstimates, running_estimates
 from lithobrake.pipeline.state import STUDY_FILE, FolderState, grouped, read_state
@@ -113,11 +113,13 @@ def study_status(path: Path) -> StudyStatus:
     if not (is_study or ledger.is_file()):
         raise ValueError(f"{path} has neither study.toml nor runs.sqlite; name the folder of a study that ran, or runs")
     if not is_study:
-        return StudyStatus(path, None, campaign_began(ledger), None, _runs(path, Notes()))
+        return StudyStatus(path, None, campaign_began(ledger), None, _runs(path, Notes(), {}))
     # Who is at work is looked at first: a stage that ends in between is then one that is still to come.
     holder = lock_holder(path / LOCK)
     state = read_state(path)
-    return StudyStatus(path, holder, None, state, _runs(path, state.notes) if ledger.is_file() else None)
+    return StudyStatus(
+        path, holder, None, state, _runs(path, state.notes, _flown(path, state)) if ledger.is_file() else None
+    )
 
 
 def _work(path: Path, holder: dict[str, Any] | None, state: FolderState) -> str:
@@ -152,7 +154,7 @@ def _files(holder: dict[str, Any] | None, state: FolderState) -> list[str]:
     return lines
 
 
-def _runs(path: Path, notes: Notes) -> RunsStatus:
+def _runs(path: Path, notes: Notes, flown: dict[str, float]) -> RunsStatus:
     """Where the runs stand that the study asks for as it is now, and how many others its ledger has."""
     every = open_study(path).ledger
     asked = {key for keys in notes.designs.values() for key in keys}
@@ -165,8 +167,17 @@ def _runs(path: Path, notes: Notes) -> RunsStatus:
         others=len(every) - len(records),
         outcomes=Counter(entry.outcome or "" for entry in records if entry.status == RunStatus.DONE),
         reasons=Counter(entry.reason or "" for entry in records if entry.status == RunStatus.FAILED),
-        estimates=running_estimates([entry for entry in records if entry.key in drawn]),
+        estimates=running_estimates([entry for entry in records if entry.key in drawn], flown),
     )
+
+
+def _flown(path: Path, state: FolderState) -> dict[str, float]:
+    """Which share of its flights each run of a sequence stays in, by key; none before they have flown."""
+    if not any(stage.name == "fly_runs" and stage.is_current for stage in state.stages):
+        return {}
+    from lithobrake.pipeline.answers import read_shares
+
+    return read_shares(StudyFolder.only_read(path))
 
 
 def _finite(number: float) -> float | None:

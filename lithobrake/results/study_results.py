@@ -95,7 +95,11 @@ class StudyResults:
 
     @cached_property
     def scores(self) -> dict[str, dict[str, dict[str, Any]]]:
-        """Errors of the expansions by set of runs and output (docs/summary.md), with those of single runs in "ape"."""
+        """Errors of the expansions by set of runs and output (docs/summary.md), with those of single runs in "ape".
+
+        A drawn study has those of its emulator in `emulator.scores`.
+        """
+        self._refuse_drawn("scores", "errors of expansions")
         content: dict[str, Any] = read_json(self.folder / "scores.json", {str: {str: _SCORE}}, self.remedy)
         return content
 
@@ -181,9 +185,10 @@ class StudyResults:
 
     @cached_property
     def surrogate(self) -> "NamedSurrogate":
-        """The refined expansion, called by the names of its inputs."""
+        """The refined expansion, called by the names of its inputs; a drawn study has an `emulator` in its place."""
         from lithobrake.results.named_surrogate import NamedSurrogate
 
+        self._refuse_drawn("surrogate", "an expansion")
         with reading(self.folder / "refined.json", self.remedy):
             return NamedSurrogate.read(self.folder / "refined.json")
 
@@ -199,6 +204,11 @@ class StudyResults:
     def run_flights(self) -> "Table":
         """How the flights of each run of a drawn study ended, from many sites, and which share of them stays."""
         return self._table("run", self._rows("run_flights.csv", ("run", *_RUN)), ("run", *_RUN), RUN | FLIGHT)
+
+    def _refuse_drawn(self, name: str, what: str) -> None:
+        """Say that a study whose runs were drawn has no such thing, where this is one."""
+        if (self.folder / "emulator.json").is_file() and not (self.folder / "refined.json").is_file():
+            raise ValueError(f"{self.folder} is of a drawn study, which has no {what}: ask for emulator, not {name}")
 
     @cached_property
     def _units(self) -> dict[str, str]:

@@ -28,7 +28,7 @@ def record(run: int, bed_count: int = 6, outcome: str | None = None) -> Record:
 
 
 def test_estimates_are_those_of_the_runs_with_beds_as_units() -> None:
-    found = running_estimates([record(run) for run in range(60)])
+    found = running_estimates([record(run) for run in range(60)], {})
     assert found is not None
     bed, captured = np.arange(60) % 6, np.array([how == "captured" for how in OUTCOMES])
     assert found.captured == share_estimate(captured.astype(float), bed)
@@ -41,24 +41,29 @@ def test_estimates_are_those_of_the_runs_with_beds_as_units() -> None:
     content = json.loads(json.dumps(found.to_json(), allow_nan=False))
     assert content["captured"]["from"] == "60 landings on 6 beds"
     assert (content["stays"], content["speed_out"]["level"]) == (None, 0.9)
+    shares = np.where(captured, 1.0, 0.25)
+    flown = running_estimates([record(run) for run in range(60)], {f"run {run}": shares[run] for run in range(60)})
+    assert flown is not None
+    assert flown.stays == share_estimate(shares, bed)
+    assert flown.lines()[-1].startswith("  stay: 40.0 % (90 %: ")
 
 
 def test_runs_without_an_answer_widen_it_and_one_bed_has_no_interval() -> None:
     runs = [record(run) for run in range(59)] + [record(59, outcome="left_sideways")]
-    found = running_estimates(runs)
+    found = running_estimates(runs, {})
     assert found is not None
     assert found.captured is not None
     assert found.captured.if_missing == pytest.approx((12 / 60, 13 / 60))
     assert "; 20.0 % to 21.7 % if none or all without an answer were" in found.lines()[1]
-    one_bed = running_estimates([record(run, bed_count=1) for run in range(60)])
+    one_bed = running_estimates([record(run, bed_count=1) for run in range(60)], {})
     assert one_bed is not None
     assert one_bed.speed_out is None
     assert "20.0 %, without an interval: all runs came down on one bed" in one_bed.lines()[1]
 
 
 def test_too_few_runs_say_nothing() -> None:
-    assert running_estimates([record(0)]) is None
-    lost = running_estimates([record(run, outcome="time_limit") for run in range(3)])
+    assert running_estimates([record(0)], {}) is None
+    lost = running_estimates([record(run, outcome="time_limit") for run in range(3)], {})
     assert lost is not None
     assert (lost.captured, lost.lines()) == (None, [])
 
@@ -86,7 +91,7 @@ def under_way(tmp_path: Path) -> Path:
 def test_status_says_them_while_runs_come_in(under_way: Path) -> None:
     said = CliRunner().invoke(app, ["status", str(under_way)])
     assert said.exit_code == 0, said.output
-    expected = running_estimates([record(run) for run in range(40)])
+    expected = running_estimates([record(run) for run in range(40)], {})
     assert expected is not None
     assert "\n".join(expected.lines()) in said.stdout
     assert "61 runs: 41 done, 0 running, 0 failed" in said.stdout
@@ -104,7 +109,7 @@ def test_status_gives_all_of_it_as_json(under_way: Path) -> None:
     assert (runs["rate"], runs["seconds_left"]) == (None, None)
     assert runs["outcomes"] == {"captured": 9, "clear": 32}
     assert runs["spreads"]["speed_out"]["count"] == 32
-    expected = running_estimates([record(run) for run in range(40)])
+    expected = running_estimates([record(run) for run in range(40)], {})
     assert expected is not None
     assert runs["estimates"] == json.loads(json.dumps(expected.to_json()))
 

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from lithobrake.campaign import Record
-from lithobrake.pipeline.answers import ANSWER, answers_of
+from lithobrake.pipeline.answers import ANSWER, answers_of, flown_shares
+from lithobrake.pipeline.folder import StudyFolder
 from lithobrake.pipeline.growing_sequence import sequence_keys
 from lithobrake.study import Study
 
@@ -51,14 +52,16 @@ class ExpectedHalfWidth:
             f"{YES_OR_NO:g}; runs on one bed are correlated by {self.correlation:g}.",
         ]
         if self.own is not None:
-            lines.append(f"  By the {self.own_run_count} runs that have ended: {_points(self.own)} for {self.answer}.")
+            lines.append(
+                f"  By the {self.own_run_count} runs that have ended and flown: {_points(self.own)} for {self.answer}."
+            )
         return lines
 
 
-def expected_width(study: Study, known: Mapping[str, Record]) -> ExpectedHalfWidth | None:
+def expected_width(study: Study, known: Mapping[str, Record], folder: StudyFolder) -> ExpectedHalfWidth | None:
     """What to expect of a sequence; None for another method, and for one bed, which gives no interval.
 
-    known: runs that have ended, by key.
+    known: runs that have ended, by key; folder: where they may have flown.
     """
     if study.design.method != "sequence" or study.bed_count == 1:
         return None
@@ -66,7 +69,7 @@ def expected_width(study: Study, known: Mapping[str, Record]) -> ExpectedHalfWid
     from lithobrake.analysis.half_width import CORRELATION, SPREAD
 
     counts = study.design.run_count, study.bed_count
-    values, bed = answers_of([known[key] for key in sequence_keys(study) if key in known])
+    values, bed = answers_of(sequence_keys(study), known, flown_shares(study, folder))
     return ExpectedHalfWidth(
         *counts,
         at_worst=expected_half_width(*counts, spread=YES_OR_NO) or np.inf,

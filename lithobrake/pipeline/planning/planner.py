@@ -63,7 +63,7 @@ def plan_of(
         made=made,
         beds=beds,
         runs=runs,
-        half_width=expected_width(study, known),
+        half_width=expected_width(study, known, folder),
         process_count=workers,
         seconds=expected_seconds(study, made, soil, ended, workers) if stale else {},
         basis=basis(made, soil, ended),
