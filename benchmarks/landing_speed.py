@@ -2,12 +2,14 @@
 
     git worktree add OLD b9326c2
     python benchmarks/landing_speed.py OLD . --study scenarios/paper.toml --beds BED_FOLDER --region .2 --landings 20
-        --contact '{"stepping": "local", "steps_per_contact": 15, "held_speed": 0.1}' --out FILE
+        --contact '{"stepping": "local", "steps_per_contact": 15, "held_speed": 0.1}'
+        --old-contact '{"steps_per_contact": 50}' --out FILE
 
 Every landing is drawn by this checkout (soil, place, heading, attitude) and handed to either as plain numbers, so that
-both make the same one; the first checkout lands with the study's contact section as it stands, the second with what
---contact changes in it. Each has a process of its own, whose kernels were compiled before; landings are made in turn.
-FILE.csv gets a row a landing and checkout as it comes, FILE.json the sums; the last line printed says the ratio.
+both make the same one; the first checkout lands with what --old-contact changes in the study's contact section (its own
+defaults, where they were others), the second with what --contact changes. Each has a process of its own, whose kernels
+were compiled before; landings are made in turn. FILE.csv gets a row a landing and checkout as it comes, FILE.json the
+sums; the last line printed says the ratio.
 """
 
 import argparse
@@ -96,6 +98,7 @@ def main() -> None:
     parser.add_argument("--region", type=float, default=0.1)
     parser.add_argument("--landings", type=int, default=20)
     parser.add_argument("--contact", type=json.loads, default={}, help="what the second changes of the contact section")
+    parser.add_argument("--old-contact", type=json.loads, default={}, help="what the first changes of it")
     parser.add_argument("--out", type=Path, required=True)
     given = parser.parse_args()
     study = drawn_study(given.study, given.bed_count, given.region)
@@ -104,16 +107,17 @@ def main() -> None:
     sums, finished = dict.fromkeys(checkouts, 0.0), 0
     command = (
         f"benchmarks/landing_speed.py OLD . --study {given.study} --beds BED_FOLDER --bed-count {given.bed_count} "
-        f"--region {given.region} --landings {given.landings} --contact '{json.dumps(given.contact)}'"
+        f"--region {given.region} --landings {given.landings} --contact '{json.dumps(given.contact)}' "
+        f"--old-contact '{json.dumps(given.old_contact)}'"
     )
     with given.out.with_suffix(".csv").open("w", newline="") as file:
         writer = csv.DictWriter(file, ["landing", "checkout", "outcome", "simulated_s", "cpu_s", *TOLD])
         writer.writeheader()
         for number, (bed, body, arrival) in enumerate(draws(study, given.landings)):
             one = case(given.beds.resolve() / f"bed_{bed}.h5", body, arrival)
+            contact = one["landing"]["contact"]
             for name, checkout in checkouts.items():
-                if name == "new":
-                    one["landing"]["contact"] |= given.contact
+                one["landing"]["contact"] = contact | (given.contact if name == "new" else given.old_contact)
                 if number == 0:
                     # Compiles.
                     checkout.land(one | {"landing": one["landing"] | {"time_limit": 1e-3}})

@@ -80,11 +80,11 @@ class ContactSection(Section):
     """Mass in the damping terms: that which the contact point feels, or that of the two whole bodies."""
     pair_rule: Literal["smaller", "mean", "geometric"] = "smaller"
     """Restitution and friction of a pair of materials."""
-    steps_per_contact: Annotated[float, Number("", at_least=10, at_most=1000)] = 50.0
-    """Time steps in the shortest contact that the impact can make, or in each contact."""
-    stepping: Literal["global", "local"] = "global"
-    """Steps of a touchdown: "global", the same for all contacts, or "local", each contact at steps of its own, which is
-    several times as fast."""
+    steps_per_contact: Annotated[float, Number("", at_least=10, at_most=1000)] = 25.0
+    """Time steps in each contact, or in the shortest that the impact can make."""
+    stepping: Literal["global", "local"] = "local"
+    """Steps of a touchdown: "local", each contact at steps of its own, or "global", the same for all contacts, which
+    takes several times as long."""
     held_speed: Annotated[float, Number("", at_least=0, below=1)] = 0.0
     """Grains that touch something stand still while they are slower than this share of the lander's speed and farther
     from it than the smallest bed keeps clear; a blow that makes them faster frees them. 0: none do. Only with

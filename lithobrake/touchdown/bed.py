@@ -21,8 +21,8 @@ FORMAT_VERSION = 1
 class ContactModel:
     """Options of the contact law, see `dem.World`, and how contacts are stepped in a landing.
 
-    steps_per_contact: in the shortest contact that the impact can make, or in each ("local", see World.run_locally).
-    stepping: "global", the same steps for all contacts, or "local", steps of its own for each.
+    steps_per_contact: in each ("local", see World.run_locally), or in the shortest that the impact can make.
+    stepping: "local", steps of its own for each contact, or "global", the same for all.
     held_speed: grains that touch something stand still while they are slower than this share of the lander and farther
     from it than the rule of smallest_bed.py keeps clear; 0: none do. Only with local steps.
     """
@@ -30,8 +30,8 @@ class ContactModel:
     shear_modulus_rule: str = "mindlin"
     damping_mass: str = "contact"
     pair_rule: str = "smaller"
-    steps_per_contact: float = 50.0
-    stepping: str = "global"
+    steps_per_contact: float = 25.0
+    stepping: str = "local"
     held_speed: float = 0.0
 
     def __post_init__(self) -> None:

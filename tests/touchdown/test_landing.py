@@ -74,7 +74,9 @@ def test_time_limit_is_an_outcome(bed):
 
 def test_a_landing_tells_how_far_it_is(bed):
     told = {}
-    land(bed, ball(), landing(), progress=lambda share, what: told.setdefault(what, []).append(share))
+    # With steps of their own contacts take on the soil at once.
+    together = ContactModel(steps_per_contact=25.0, stepping="global")
+    land(bed, ball(), landing(contact=together), progress=lambda share, what: told.setdefault(what, []).append(share))
     assert list(told) == ["bed taking on the soil of the landing", "landing, up to its time limit"]
     for shares in told.values():
         assert shares == sorted(shares)
@@ -236,7 +238,7 @@ def test_contacts_at_steps_of_their_own_tell_the_same_story(bed):
     found = [land(bed, ball(), landing(contact=local), frame_count=6) for _ in range(2)]
     one, again = (outcome.outputs for outcome in found)
     assert one == again
-    together = land(bed, ball(), landing(contact=ContactModel(steps_per_contact=60.0))).outputs
+    together = land(bed, ball(), landing(contact=ContactModel(steps_per_contact=60.0, stepping="global"))).outputs
     assert found[0].status == "clear"
     # What the first blow decides agrees; what follows it is chance.
     assert one["peak_acceleration"] == pytest.approx(together["peak_acceleration"], rel=0.05)
@@ -260,6 +262,6 @@ def test_another_stepping_is_refused():
 
 def test_held_grains_ask_for_local_steps():
     with pytest.raises(ValueError, match=r'held_speed is 0\.1 with stepping "global"; allowed above 0 is "local" only'):
-        ContactModel(held_speed=0.1)
+        ContactModel(stepping="global", held_speed=0.1)
     with pytest.raises(ValueError, match=r"held_speed is 1\.0; allowed is 0 <= value < 1"):
         ContactModel(stepping="local", held_speed=1.0)
