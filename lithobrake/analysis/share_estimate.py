@@ -15,10 +15,11 @@ from lithobrake.analysis.confidence import (
     normal_quantile,
     numbered_beds,
     share_interval,
+    share_spread,
     t_quantile,
 )
 from lithobrake.analysis.control_variate import control_variate
-from lithobrake.analysis.next_bed import next_bed_half_width
+from lithobrake.analysis.next_bed import next_bed_deviation
 from lithobrake.analysis.outcome_model import upper_limit
 from lithobrake.chaos.threads import one_thread
 
@@ -103,6 +104,10 @@ def share_estimate(
     Source: [Saerndal-1992], section 6.3 (difference estimator); [Cameron-2008] (errors from few clusters).
     """
     h, w = _checked(stays, weights)
+    if terms is not None and len(terms[0]) != len(h):
+        raise ValueError(f"terms are of {len(terms[0])} runs and stays of {len(h)}; give those of the same runs")
+    if flight_count is not None and flight_count < 1:
+        raise ValueError(f"flight_count is {flight_count}; allowed: at least 1, or None where nothing flew")
     beds, answered = numbered_beds(bed, len(h)), np.isfinite(h)
     told = np.zeros(len(h)) if terms is None else control_variate(terms[0], terms[1].sum(axis=1), h, beds)
     share = _mean((h - told)[answered], w[answered])
@@ -121,7 +126,7 @@ def share_estimate(
     ends, ends_interval = _if_missing(h, told, w, beds, share, bounds)
     lower, upper = bounds or (None, None)
     sampling = None if flight_count is None else _flight_sampling(h[answered], w[answered], flight_count)
-    source = f"{len(own)} landings on {bed_count} bed{'s' if bed_count > 1 else ''}"
+    source = f"{len(own)} landing{'s' if len(own) > 1 else ''} on {bed_count} bed{'s' if bed_count > 1 else ''}"
     return ShareEstimate(share, lower, upper, LEVEL, source, next_bed, ends, ends_interval, sampling, emulator, why)
 
 
@@ -173,7 +178,8 @@ def _intervals(values: Array, bed: Labels) -> tuple[Bounds, Bounds | None]:
     if len(values) == bed_count:
         return bounds, None
     # One bed more is never better known than the mean over all, however alike a few beds are.
-    return bounds, share_interval(share, max(next_bed_half_width(bed_components(values, bed), error), half))
+    lower, upper = share_spread(share, next_bed_deviation(bed_components(values, bed), error))
+    return bounds, (min(lower, bounds[0]), max(upper, bounds[1]))
 
 
 def _if_missing(

@@ -83,8 +83,10 @@ def variance_shares(
     leaving out one bed after another, of the bed by F, of chaos by chi-square, of the rest from those of the others.
     Source: [Searle-1992], section 3.6 (analysis of variance); [Sudret-2008], Eq 36 (squares of coefficients).
     """
-    known = np.isfinite(np.asarray(y, dtype=float))
-    points, values = np.asarray(x, dtype=float)[known], np.asarray(y, dtype=float)[known]
+    of_all = np.asarray(y, dtype=float)
+    points = _checked_points(inputs, x, of_all, soil)
+    known = np.isfinite(of_all)
+    points, values = points[known], of_all[known]
     beds = numbered_beds(np.asarray(bed)[known], len(values))
     if len(values) < 2 or beds.max() == 0 or np.ptp(values) == 0.0:
         return None
@@ -106,6 +108,21 @@ def variance_shares(
     chaos = None if twins is None else _over(chaos_variance(twins), total)
     place = _remainder([one for one in (soil_part, arrival, on_bed, chaos) if one is not None])
     return VarianceShares(total, soil_part, parts, arrival, on_bed, place, chaos)
+
+
+def _checked_points(inputs: Mapping[str, "Distribution"], x: ArrayLike, y: Array, soil: Collection[str]) -> Array:
+    """Points [run_count, input_count] inside the law of the inputs. Raises ValueError for others, and for no inputs."""
+    from lithobrake.chaos.basis import outside_count, points_of
+
+    points = points_of(inputs, x)
+    if y.shape != (len(points),):
+        raise ValueError(f"y has shape {y.shape}; allowed: one number for each of the {len(points)} runs of x")
+    count, sentence = outside_count(inputs, points)
+    if count:
+        raise ValueError(f"x has {count} of {len(points)} points outside the inputs: {sentence}")
+    if isinstance(soil, str) or not set(soil) <= set(inputs):
+        raise ValueError(f"soil is {soil!r}; allowed: some of the inputs {', '.join(inputs)}")
+    return points
 
 
 def _affordable(indices: Labels, run_count: int) -> np.ndarray | None:

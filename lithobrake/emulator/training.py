@@ -117,7 +117,7 @@ def checked_runs(
             f"{names[k]} is {table[there][run, k]:g}, but must lie between its bounds {low[run, k]:g} and "
             f"{high[run, k]:g}, and on neither: widen the bounds"
         )
-    group, values = _checked_groups(groups, len(points)), table[there]
+    group, values = _checked_groups(groups, len(points), there), table[there]
     return TrainingRuns(
         distributions, points, labels, outcome_names, output_outcome, group, values, low, high, names, carried
     )
@@ -160,14 +160,18 @@ def _checked_riders(riders: Sequence[int | str], names: tuple[str, ...]) -> tupl
     return tuple(sorted(set(carried)))
 
 
-def _checked_groups(groups: ArrayLike | None, count: int) -> NDArray[np.int64]:
+def _checked_groups(groups: ArrayLike | None, count: int, there: NDArray[np.bool_]) -> NDArray[np.int64]:
     """Groups as numbers from 0 [count]; each run is its own where none are given."""
     if groups is None:
         return np.arange(count)
     given = np.asarray(groups)
     if given.shape != (count,):
         raise ValueError(f"groups has shape {given.shape}, but must be [{count}]: one label for each run")
+    if given.dtype.kind == "f" and not np.isfinite(given).all():
+        raise ValueError("groups hold NaN or infinity, but must be one label for each run: number them")
     numbers = np.unique(given, return_inverse=True)[1].astype(np.int64)
-    if numbers.max() == 0:
-        raise ValueError("groups hold one group, but leaving one out needs two: leave groups out to score run by run")
+    if np.ptp(numbers[there]) == 0:
+        raise ValueError(
+            "groups hold one group with outputs, but leaving one out needs two: leave groups out to score run by run"
+        )
     return numbers

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lithobrake.outputs import OUTPUTS, SPIN_OUT
+from lithobrake.pipeline.energy_bound import EnergyBound
 from lithobrake.pipeline.fitted_emulator import AZIMUTH, ELEVATION, SPEED, SPIN
 from lithobrake.pipeline.outgoing import VELOCITY, outgoing_velocity, rolling_spin
 
@@ -27,13 +28,19 @@ class DrawnLandings:
     outputs: Mapping[str, np.ndarray]
 
     @classmethod
-    def of(cls, model: "Emulator", x: np.ndarray, bound: np.ndarray, seed: int) -> "DrawnLandings":
-        """Draw one at each x [count, input_count]; bound: the fastest it can be [m/s], [count]."""
-        upper, speed = np.tile(model.runs.upper[0], (len(x), 1)), model.output_names.index(SPEED)
-        if np.isfinite(model.runs.upper[0, speed]):
-            upper[:, speed] = bound
+    def of(cls, model: "Emulator", x: np.ndarray, bound: EnergyBound, seed: int) -> "DrawnLandings":
+        """Draw one at each x [count, input_count]; bound: what energy allows each."""
+        upper = np.tile(model.runs.upper[0], (len(x), 1))
+        speed, spin = (model.output_names.index(name) for name in (SPEED, SPIN))
+        bounded = bool(np.isfinite(model.runs.upper[0, speed]))
+        if bounded:
+            upper[:, speed], upper[:, spin] = bound.speed, bound.spin()
         drawn = model.draw(x, 1, seed, lower=model.runs.lower[0], upper=upper)
-        return cls(drawn.outcome[:, 0], dict(zip(model.output_names, drawn.y[:, 0].T, strict=True)))
+        y = drawn.y[:, 0]
+        if bounded:
+            # Each is within its own bound; what the speed has taken is not there for the spin.
+            y[:, spin] = np.minimum(y[:, spin], bound.spin(y[:, speed]))
+        return cls(drawn.outcome[:, 0], dict(zip(model.output_names, y.T, strict=True)))
 
     @cached_property
     def velocity(self) -> np.ndarray:

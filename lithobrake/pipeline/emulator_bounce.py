@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lithobrake.pipeline.drawn_landings import DrawnLandings
-from lithobrake.pipeline.energy_bound import fastest
+from lithobrake.pipeline.energy_bound import EnergyBound, energy_bound
 from lithobrake.pipeline.fitted_emulator import REFIT_COUNT, refits
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.samples import CAPTURED, CLEAR, Samples
@@ -27,14 +27,14 @@ class EmulatorBounce:
     inputs    of each lander, by dotted key in the file's units, each of shape [lander_count]: the soil that a lander
               has met at first is the soil that it meets again, on another bed and place and in another attitude
     ranges    of the runs; an impact outside them is not answered
-    bound     the fastest that landers can leave [m/s] after impacts with inputs [count, input_count]
+    bound     what energy allows landers after impacts with inputs [count, input_count]
     """
 
     refits: "list[Emulator]"
     refit: np.ndarray
     inputs: dict[str, np.ndarray]
     ranges: dict[str, tuple[float, float]]
-    bound: Callable[[np.ndarray], np.ndarray]
+    bound: Callable[[np.ndarray], EnergyBound]
 
     def __call__(self, impacts: "Impacts", random: np.random.Generator) -> "Rebounds":
         """Answer each impact with a draw; a lander that goes over the rim or stays in contact has no answer."""
@@ -47,7 +47,7 @@ class EmulatorBounce:
         for number, seed in enumerate(random.integers(2**31, size=len(self.refits)).tolist()):
             of_refit = np.flatnonzero(self.refit[impacts.lander] == number)
             if len(of_refit):
-                drawn = DrawnLandings.of(self.refits[number], x[of_refit], bound[of_refit], seed)
+                drawn = DrawnLandings.of(self.refits[number], x[of_refit], bound.at(of_refit), seed)
                 velocity[of_refit], spin[of_refit], outcome[of_refit] = drawn.velocity, drawn.spin, drawn.outcome
         captured = outcome == CAPTURED
         return Rebounds(velocity, spin, captured, outside | ~(captured | (outcome == CLEAR)))
@@ -58,7 +58,7 @@ def emulator_bounce(job: Job, samples: Samples) -> EmulatorBounce:
     leaving, names = np.flatnonzero(samples.leaves), list(samples.input_names)
     inputs = dict(zip(names, samples.inputs[leaving].T, strict=True))
 
-    def bound(x: np.ndarray) -> np.ndarray:
-        return fastest(job.study, job.folder, dict(zip(names, x.T, strict=True)), len(x))
+    def bound(x: np.ndarray) -> EnergyBound:
+        return energy_bound(job.study, job.folder, dict(zip(names, x.T, strict=True)), len(x))
 
     return EmulatorBounce(refits(job), leaving % REFIT_COUNT, inputs, trained_ranges(job.study), bound)

@@ -6,7 +6,7 @@ from lithobrake.analysis import sample_inputs
 from lithobrake.hashing import hashed_seed
 from lithobrake.pipeline.designs import design_inputs
 from lithobrake.pipeline.drawn_landings import DrawnLandings
-from lithobrake.pipeline.energy_bound import fastest
+from lithobrake.pipeline.energy_bound import energy_bound
 from lithobrake.pipeline.fitted_emulator import REFIT_COUNT, refits
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.samples import Samples
@@ -19,14 +19,14 @@ def draw_emulator_samples(job: Job) -> None:
     """
     study, inputs = job.study, design_inputs(job.study)
     x = sample_inputs(inputs, study.monte_carlo.sample_count, hashed_seed(study.seed, "samples"))
-    bound = fastest(study, job.folder, dict(zip(inputs, x.T, strict=True)), len(x))
+    bound = energy_bound(study, job.folder, dict(zip(inputs, x.T, strict=True)), len(x))
     models = refits(job)
     names: list[str] = []
     outputs, outcome = np.empty((len(x), 0)), np.empty(len(x), dtype=np.uint8)
     for number, model in enumerate(models):
         job.progress(number, len(models), "samples")
         part = slice(number, None, REFIT_COUNT)
-        drawn = DrawnLandings.of(model, x[part], bound[part], hashed_seed(study.seed, "draws", number))
+        drawn = DrawnLandings.of(model, x[part], bound.at(part), hashed_seed(study.seed, "draws", number))
         table = drawn.table()
         if not names:
             names, outputs = list(table), np.empty((len(x), len(table)))

@@ -1,7 +1,7 @@
-"""The speed that no lander leaves with: what energy allows."""
+"""The speed and spin that no lander leaves with: what energy allows."""
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -16,10 +16,30 @@ if TYPE_CHECKING:
 SPIN = ("impact.spin_x", "impact.spin_y", "impact.spin_z")
 
 
-def fastest(
+class EnergyBound(NamedTuple):
+    """The most that landers can leave with, [count].
+
+    speed     m/s, of one that does not spin
+    gyration  smallest radius of gyration [m]: a lander spins fastest about its easiest axis
+    """
+
+    speed: "NDArray[np.float64]"
+    gyration: "NDArray[np.float64]"
+
+    def at(self, rows: "slice | NDArray[np.int64]") -> "EnergyBound":
+        """The bound of some of the landers."""
+        return EnergyBound(self.speed[rows], self.gyration[rows])
+
+    def spin(self, speed: "NDArray[np.float64] | float" = 0.0) -> "NDArray[np.float64]":
+        """Largest angular velocity [rad/s] of landers that leave at a speed [m/s], [count]."""
+        left: NDArray[np.float64] = np.sqrt(np.maximum(self.speed**2 - speed**2, 0.0)) / self.gyration
+        return left
+
+
+def energy_bound(
     study: Study, folder: StudyFolder, values: "Mapping[str, NDArray[np.float64]]", count: int
-) -> "NDArray[np.float64]":
-    """Speed [m/s] of a lander that keeps all its energy and gains what gravity may give it over the bed, [count].
+) -> EnergyBound:
+    """Bound of a lander that keeps all its energy and gains what gravity may give it over the bed, [count].
 
     values: of uncertain inputs, [count] each, by dotted key; all others are as the study has them. The bed is at rest
     and contacts only take energy away: v^2 + I w^2 / m + 2 g h, with h the height of the bed, and its fall across.
@@ -29,8 +49,8 @@ def fastest(
     slope = np.radians(known["surface.slope_deg"])
     # Gravity that points outwards lifts a lander as far as the other makes it fall.
     gained = np.abs(known["surface.gravity"]) * (_height(study, folder) + np.hypot(*study.bed.width) * np.sin(slope))
-    bound: NDArray[np.float64] = np.sqrt(known["impact.speed"] ** 2 + _gyration(study, known) * spin + 2.0 * gained)
-    return bound
+    smallest, largest = _gyrations(study, known)
+    return EnergyBound(np.sqrt(known["impact.speed"] ** 2 + largest * spin + 2.0 * gained), np.sqrt(smallest))
 
 
 def _height(study: Study, folder: StudyFolder) -> float:
@@ -38,12 +58,17 @@ def _height(study: Study, folder: StudyFolder) -> float:
     return max((float(stored_bed(folder / name).surface_height) for name in bed_files(study)), default=0.0)
 
 
-def _gyration(study: Study, values: "Mapping[str, NDArray[np.float64]]") -> "NDArray[np.float64]":
-    """Largest principal moment of inertia over the mass [m2], [count]."""
+def _gyrations(
+    study: Study, values: "Mapping[str, NDArray[np.float64]]"
+) -> "tuple[NDArray[np.float64], NDArray[np.float64]]":
+    """Smallest and largest principal moment of inertia over the mass [m2], [count] each."""
     if study.lander.inertia is not None:
-        return max(study.lander.inertia) / values["lander.mass"]
-    body = lander(study, medians(study))
-    own = float(np.linalg.eigvalsh(body.shape.inertia_per_density)[-1]) / body.shape.volume
+        return min(study.lander.inertia) / values["lander.mass"], max(study.lander.inertia) / values["lander.mass"]
     # A ball is the one shape whose size may be uncertain.
     of_ball = values.get("lander.diameter")
-    return np.full(len(values["lander.mass"]), own) if of_ball is None else 0.1 * of_ball**2
+    if of_ball is not None:
+        return 0.1 * of_ball**2, 0.1 * of_ball**2
+    body = lander(study, medians(study))
+    own = np.linalg.eigvalsh(body.shape.inertia_per_density) / body.shape.volume
+    count = len(values["lander.mass"])
+    return np.full(count, own[0]), np.full(count, own[-1])

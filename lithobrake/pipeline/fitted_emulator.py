@@ -10,7 +10,7 @@ from lithobrake.outcomes import TouchdownOutcome
 from lithobrake.outputs import SPIN_OUT
 from lithobrake.pipeline.design_runs import DesignRuns
 from lithobrake.pipeline.designs import design_inputs
-from lithobrake.pipeline.energy_bound import fastest
+from lithobrake.pipeline.energy_bound import energy_bound
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.outgoing import VELOCITY
 
@@ -45,21 +45,24 @@ def fit_emulator(job: Job) -> None:
     outputs = _outputs(runs)
     upper = np.full((runs.run_count, len(outputs)), np.inf)
     upper[:, list(outputs).index(ELEVATION)] = STEEPEST
-    bound = fastest(study, job.folder, {name: runs.inputs[name] for name in inputs}, runs.run_count)
-    beyond = int((runs.output(SPEED) >= bound).sum())
+    bound = energy_bound(study, job.folder, {name: runs.inputs[name] for name in inputs}, runs.run_count)
+    # At the bound of the speed nothing is left for a spin.
+    beyond = int((runs.output(SPIN) >= bound.spin(runs.output(SPEED))).sum())
     if beyond:
         job.say(
-            f"{beyond} of {runs.run_count} runs left faster than the energy of their arrival allows, so the emulator "
-            "sets the speed no limit; look for what gives the lander energy in the program that makes the touchdowns"
+            f"{beyond} of {runs.run_count} runs left with more speed and spin than the energy of their arrival allows, "
+            "so the emulator sets both no limit; look for what gives the lander energy in the program that makes the "
+            "touchdowns, or give lander.inertia"
         )
     else:
-        upper[:, list(outputs).index(SPEED)] = bound
+        upper[:, list(outputs).index(SPEED)] = bound.speed
+        upper[:, list(outputs).index(SPIN)] = bound.spin()
     modelled = [name for name in outputs if name not in RIDERS]
     model = emulator.fit(
         inputs,
         x[ended],
         np.column_stack(list(outputs.values()))[ended],
-        groups=bed if len(np.unique(bed)) > 1 else None,
+        groups=bed if len(np.unique(bed[runs.has_outputs[ended]])) > 1 else None,
         outcome=np.array(runs.outcomes)[ended],
         outcomes=outcomes,
         lower=[0.0 if name in modelled else -np.inf for name in outputs],

@@ -21,6 +21,7 @@ from lithobrake.pipeline.dispersion_statistics import dispersion_results
 from lithobrake.pipeline.flights import read_table
 from lithobrake.pipeline.headline import answer, headline
 from lithobrake.pipeline.job import Job
+from lithobrake.pipeline.run_estimates import SPLIT
 from lithobrake.pipeline.samples import Samples
 from lithobrake.pipeline.site import (
     effective_acceleration_at_site,
@@ -68,6 +69,8 @@ def write_summary(job: Job) -> None:
         "scores": {stage: _without_runs(table) for stage, table in scores.items()},
         "monte_carlo": monte_carlo_results(samples),
         "site": site_results(job.study),
+        # One bed, one place and one attitude have no parts.
+        "variance_shares": dict.fromkeys(SPLIT),
         **dispersion_results(job, samples, flights, ended),
     }
     results["answer"] = answer(job.study, results)

@@ -97,7 +97,8 @@ def bed(data: Results) -> str:
         f"{study['grain_count']} grains, convex hulls with a mean diameter of {number(first['mean_diameter_m'])} m, "
         f"fall as a random cloud and settle in an open box of {width} m into {which} "
         f"{number(first['surface_height_m'])} m deep with a solid fraction of {first['solid_fraction']:.2f} and "
-        f"{first['coordination_number']:.1f} contacts a grain. "
+        f"{first['coordination_number']:.1f} contacts a grain. Grains are poured with the medians of their ranges, and "
+        "take on the soil of a landing at its touchdown. "
         f"So that walls and floor do not answer the first blow, {number(first['smallest_width_m'])} m of width and "
         f"{number(first['smallest_depth_m'])} m of depth are needed: "
         + ("it has them." if first["large_enough"] else "it is smaller, and they answer too.")

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Iterator
 
-from lithobrake.study.quantity import reach, uncertain
+from lithobrake.study.quantity import Uncertain, reach, uncertain
 from lithobrake.study.study import Study
 
 
@@ -72,6 +72,12 @@ def _half_width_problems(study: Study) -> Iterator[str]:
         yield (
             f"design.half_width is {design.half_width:g}, and runs on one bed have no interval, however many they are; "
             "set bed.bed_count to 12 or more, or leave it out"
+        )
+    place = study.impact.place
+    if place is not None and not isinstance(place.x, Uncertain) and not isinstance(place.y, Uncertain):
+        yield (
+            f"design.half_width is {design.half_width:g}, and runs at one place have no interval, however many they "
+            "are; leave impact.place out, or design.half_width"
         )
 
 

@@ -1,6 +1,7 @@
 """The share of landers that stay: closed forms, what gives no interval, runs without an answer."""
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -171,3 +172,30 @@ def test_half_widths_are_foreseen() -> None:
         expected_half_width(5, 6)
     with pytest.raises(ValueError, match="half_width is 0"):
         runs_for_half_width(0.0)
+
+
+def test_the_next_bed_of_a_share_near_one_is_a_share_and_is_held() -> None:
+    random, held, lowest = np.random.default_rng(5), 0, 1.0
+    for _ in range(200):
+        # Beds of a beta law with mean .95 and deviation .05, ten landings on each of fifteen, all or nothing.
+        of_beds = random.beta(17.1, 0.9, 16)
+        stays = random.random(150) < np.repeat(of_beds[:15], 10)
+        found = share_estimate(stays.astype(float), np.repeat(np.arange(15), 10))
+        if found.next_bed is None:
+            continue
+        lowest = min(lowest, found.next_bed[0])
+        held += found.next_bed[0] <= of_beds[15] <= found.next_bed[1]
+    assert held >= 170
+    assert lowest > 0.3
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ({"terms": (np.zeros((3, 1)), np.zeros((1, 1), dtype=np.int64))}, "terms are of 3 runs and stays of 4"),
+        ({"flight_count": 0}, "flight_count is 0; allowed: at least 1"),
+    ],
+)
+def test_what_is_not_of_the_runs_is_refused(given: dict[str, Any], words: str) -> None:
+    with pytest.raises(ValueError, match=words):
+        share_estimate([0.0, 1.0, 0.5, 0.2], [0, 0, 1, 1], **given)

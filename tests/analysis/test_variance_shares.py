@@ -1,6 +1,7 @@
 """Where the scatter of an output comes from: components of beds, shares that add up, side runs."""
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -175,3 +176,18 @@ def test_pairs_tell_the_total_effect_of_the_soil() -> None:
     assert soil_total_effect(np.zeros(20), y) == IntervalEstimate(0.0, 0.0, 0.0)
     with pytest.raises(ValueError, match="two or more"):
         soil_total_effect([1.0], y)
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ({"x": np.full((12, 1), 3.0)}, "x has 12 of 12 points outside the inputs"),
+        ({"y": np.zeros(11)}, r"y has shape \(11,\); allowed: one number for each of the 12 runs"),
+        ({"soil": "a"}, "soil is 'a'; allowed: some of the inputs a"),
+        ({"soil": ["b"]}, r"soil is \['b'\]; allowed: some of the inputs a"),
+    ],
+)
+def test_runs_that_do_not_fit_together_are_refused(given: dict[str, Any], words: str) -> None:
+    runs: dict[str, Any] = {"x": np.zeros((12, 1)), "y": np.arange(12.0), "soil": ["a"]} | given
+    with pytest.raises(ValueError, match=words):
+        variance_shares({"a": Uniform(-1.0, 1.0)}, runs["x"], runs["y"], np.arange(12) % 3, soil=runs["soil"])

@@ -117,6 +117,7 @@ def test_an_output_that_is_always_the_same_stays_so() -> None:
     ("change", "words"),
     [
         ({"groups": np.zeros(COUNT)}, "groups hold one group"),
+        ({"groups": np.full(COUNT, np.nan)}, "groups hold NaN or infinity"),
         ({"groups": np.zeros(3)}, "groups has shape"),
         ({"y": np.zeros((3, 3))}, "y has shape"),
         ({"outcome": np.full(COUNT, "left")}, "one outcome must have outputs in all its runs"),

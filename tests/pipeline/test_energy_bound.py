@@ -7,12 +7,17 @@ import numpy as np
 import pytest
 
 from lithobrake.pipeline import StudyFolder
-from lithobrake.pipeline.energy_bound import fastest
+from lithobrake.pipeline.energy_bound import energy_bound
 from lithobrake.study import Study, check_tables
 
 from .synthetic_lander import synthetic_tables
 
 NO_FOLDER = StudyFolder.only_read(Path())
+
+
+def fastest(*given: Any) -> np.ndarray:
+    """The bound of the speed."""
+    return energy_bound(*given).speed
 
 
 def study(**changes: dict[str, Any]) -> Study:
@@ -37,3 +42,14 @@ def test_the_bound_follows_an_uncertain_speed_and_the_fall_down_a_slope() -> Non
     tilted = study(surface={"slope_deg": 30.0, "gravity": 1e-2}, bed={"width": [0.6, 0.8]})
     # One metre of diagonal falls by half a metre.
     assert fastest(tilted, NO_FOLDER, speed, 2) == pytest.approx(np.sqrt([0.01 + 0.01, 0.04 + 0.01]))
+
+
+def test_what_the_speed_takes_is_not_left_for_the_spin() -> None:
+    # A ball of .1 m has a radius of gyration of .1 sqrt(.1) m, and a box spins fastest about its long axis.
+    ball = energy_bound(study(), NO_FOLDER, {}, 3)
+    assert ball.spin() == pytest.approx(np.full(3, 0.4 / np.sqrt(1e-3)))
+    assert ball.spin(np.array([0.0, 0.24, 0.4])) == pytest.approx(np.array([0.4, 0.32, 0.0]) / np.sqrt(1e-3))
+    box = energy_bound(study(lander={"shape": "box", "edges": [0.1, 0.1, 0.2], "diameter": None}), NO_FOLDER, {}, 1)
+    assert box.spin()[0] == pytest.approx(0.4 / np.sqrt((0.1**2 + 0.1**2) / 12))
+    known = energy_bound(study(lander={"inertia": [1e-3, 2e-3, 2e-3], "mass": 2.0}), NO_FOLDER, {}, 1)
+    assert known.spin()[0] == pytest.approx(0.4 / np.sqrt(0.5e-3))
