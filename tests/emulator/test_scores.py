@@ -32,3 +32,15 @@ def test_pit_is_the_weight_below() -> None:
     values = np.array([[3.0, 1.0, 2.0]])
     for seen, expected in ((0.0, 0.0), (1.5, 0.2), (2.0, 0.55), (9.0, 1.0)):
         assert pit(values, weights, np.array([seen]))[0] == pytest.approx(expected)
+
+
+def test_scores_of_equal_members_are_those_of_scoringrules() -> None:
+    sr = pytest.importorskip("scoringrules", reason="scoringrules is not installed")
+    alike = np.full((5, 40), 1.0 / 40.0)
+    values = np.broadcast_to(MEMBERS[:, 0], (5, 40))
+    # "nrg" is the plain double sum; its other estimators are made fair to few members.
+    theirs = sr.crps_ensemble(OBSERVED[:, 0], values, estimator="nrg")
+    np.testing.assert_allclose(crps(values, alike, OBSERVED[:, 0]), theirs, rtol=1e-10)
+    joint = sr.es_ensemble(OBSERVED, np.broadcast_to(MEMBERS, (5, 40, 3)), estimator="nrg")
+    ours = energy_scores(MEMBERS, alike[None], np.ones((5, 3)), OBSERVED)[0]
+    np.testing.assert_allclose(ours, joint, rtol=1e-10)
