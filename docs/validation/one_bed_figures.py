@@ -1,8 +1,8 @@
-"""Draw what one_bed.py found, and write the tables of docs/one_bed_is_not_enough.md.
+"""Draw what one_bed.py found, and write its tables, one_bed.md; docs/one_bed_is_not_enough.md tells of both.
 
     python docs/validation/one_bed_figures.py
 
-Reads one_bed.json beside it; writes one_bed_seeds.png, one_bed_grains.png and one_bed_tables.md.
+Reads one_bed.json beside it; writes one_bed_seeds.png, one_bed_grains.png and one_bed.md.
 """
 
 import json
@@ -24,6 +24,30 @@ Entry = dict[str, Any]
 PARTS = {"soil": "soil", "bed": "bed", "place_and_attitude": "place and attitude", "chaos": "chaos"}
 OUTPUTS = {"speed_out": "V+", "elevation_out": "theta+", "spin_out": "omega+", "stays": "share that stays"}
 LANDER_EDGE = 0.1  # m, the short edges
+HEAD = """# One bed and many: the tables
+
+Written by `python docs/validation/one_bed_figures.py`; [One bed is not
+enough](../one_bed_is_not_enough.md) says what they mean.
+
+## Ten pairs of seeds
+"""
+SEEDS = """
+Two studies agree where the interval of their difference holds 0. Of the paper's way, which has no
+interval, the error of sampling alone stands in its place.
+
+## The paper's way on ten beds
+"""
+PLACES = """
+Mean and standard deviation of the samples. Share: first Sobol index, in the variance that the
+expansion explains. Q2: on twelve fresh runs over all inputs.
+
+## Parts of the variance by size of grains
+"""
+GRAINS = """
+Shares of the variance with their 90 % intervals; a share may be a little below 0 where there is
+nothing. Soil by pairs: its total effect, interactions with place and attitude included, from
+landings at one place on two soils. Beds hold the same volume of grains, 0.7 m wide.
+"""
 
 
 def of_kind(studies: list[Entry], kind: str) -> list[Entry]:
@@ -68,6 +92,8 @@ def draw_seeds(studies: list[Entry]) -> None:
             axis.set_xlabel(f"seed of the study (in {sum(held)} of {len(held)} pairs the intervals agree)")
             axis.set_xticks([one["seed"] for one in found][::2])
         axes[0].set_ylabel("landers that come down again [%]")
+        # Room for the words below.
+        axes[0].set_ylim(bottom=axes[0].get_ylim()[0] - 4.0)
         axes[0].text(0.02, 0.02, "bars: 90 %, sampling of flights alone", transform=axes[0].transAxes, color=INK)
         axes[1].text(0.02, 0.02, "bars: 90 %, over beds not yet poured", transform=axes[1].transAxes, color=INK)
         figure.savefig(HERE / "one_bed_seeds.png", dpi=150)
@@ -169,8 +195,8 @@ def main() -> None:
     draw_seeds(studies)
     draw_grains(studies)
     made = f"`python {content['command'].removeprefix('python ')}`, {content['date']}, {content['machine']}."
-    parts = [seed_table(studies), place_table(studies), grain_table(studies)]
-    (HERE / "one_bed_tables.md").write_text("\n\n".join("\n".join(part) for part in parts) + f"\n\n{made}\n")
+    parts = [HEAD, *seed_table(studies), SEEDS, *place_table(studies), PLACES, *grain_table(studies), GRAINS, made]
+    (HERE / "one_bed.md").write_text("\n".join(parts) + "\n")
 
 
 if __name__ == "__main__":
