@@ -1,6 +1,6 @@
 """Does a lander stop, go along the ground or bounce off? Shares over speed and angle for a sphere and a box.
 
-    python docs/validation/experiments/oblique_map.py --work FOLDER [--placements 5] [--one-cell] [--out FOLDER]
+    python docs/validation/experiments/oblique_map.py --work FOLDER [--placements 3] [--speeds 0.1 0.2] [--out FOLDER]
 
 Beds are poured once into the work folder. Each landing draws its place, attitude, heading and soil, the same in all
 cells; the soil out of the ranges of scenarios/quick.toml. Writes oblique_map.csv, a line for each landing as it ends;
@@ -182,14 +182,14 @@ def main() -> None:
     """Run the landings that are not noted yet, and write what came of all."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--work", type=Path, required=True)
-    parser.add_argument("--placements", type=int, default=5)
-    parser.add_argument("--one-cell", action="store_true")
+    parser.add_argument("--placements", type=int, default=3)
+    parser.add_argument("--speeds", type=float, nargs="+", default=SPEEDS)
     parser.add_argument("--out", type=Path, default=Path(__file__).parent)
     chosen = parser.parse_args()
     chosen.work.mkdir(parents=True, exist_ok=True)
     table = chosen.out / "oblique_map.csv"
     done = {tuple(row[key] for key in list(KEYS)[:5]) for row in noted(table)}
-    ways = [("box", 0.1, 80.0)] if chosen.one_cell else list(itertools.product(SHAPES, SPEEDS, INCIDENCES))
+    ways = list(itertools.product(SHAPES, chosen.speeds, INCIDENCES))
     # Cells fill evenly, so that a map that is stopped early is a coarser map and not a part of one.
     for placement, number, (shape, speed, angle) in itertools.product(range(chosen.placements), range(BEDS), ways):
         if (shape, speed, angle, number, placement) not in done:
