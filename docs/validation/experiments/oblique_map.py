@@ -152,8 +152,7 @@ def cell(rows: list[dict[str, object]]) -> dict[str, object]:
     """Return the shares of a cell with their 95 % intervals, and how fast what left the ground was."""
     counts = Counter(kind(row) for row in rows)
     leaving = [row for row in rows if row["status"] == "clear"]
-    quartiles = np.percentile([row["speed_ratio"] for row in leaving], [25, 50, 75]) if leaving else [math.nan] * 3
-    elevations = [row["elevation_deg"] for row in leaving]
+    ratios, elevations = ([row[name] for row in leaving] for name in ("speed_ratio", "elevation_deg"))
     return {
         "landings": len(rows),
         "outcomes": dict(Counter(row["status"] for row in rows)),
@@ -163,8 +162,8 @@ def cell(rows: list[dict[str, object]]) -> dict[str, object]:
                    "interval": wilson_interval(counts[name], len(rows))}
             for name in CLASSES
         },
-        "speed_ratio_quartiles": [float(value) for value in quartiles],
-        "elevation_deg_median": float(np.median(elevations)) if elevations else math.nan,
+        "speed_ratio_quartiles": np.percentile(ratios, [25, 50, 75]).tolist() if leaving else None,
+        "elevation_deg_median": float(np.median(elevations)) if leaving else None,
     }  # fmt: skip
 
 
@@ -197,6 +196,7 @@ def main() -> None:
     rows = noted(table)
     document = {
         **origin(f"docs/validation/experiments/oblique_map.py --work FOLDER --placements {chosen.placements}"),
+        "landings": len(rows),
         "cpu_s_of_landings": round(sum(row["cpu_s"] for row in rows)), "lengths_m": LENGTHS, "mass_kg": MASS,
         "gravity": GRAVITY, "cells": cells(rows),
     }  # fmt: skip

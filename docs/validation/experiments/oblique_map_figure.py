@@ -19,12 +19,14 @@ PANELS = {
 
 def value_and_text(entry: dict[str, Any], panel: str) -> tuple[float, str]:
     """Return what colours a cell, and what is written in it."""
+    if panel == "speed" and entry["speed_ratio_quartiles"] is None:
+        return float("nan"), "none\nleft"
     if panel == "speed":
         low, middle, high = entry["speed_ratio_quartiles"]
         return middle, f"{middle:.2f}\n{low:.2f}-{high:.2f}"
     share = entry["shares"][panel]
     low, high = share["interval"]
-    return share["share"], f"{share['share']:.2f}\n{low:.2f}-{high:.2f}"
+    return share["share"], f"{share['count']} of {entry['landings']}\n{low:.2f}-{high:.2f}"
 
 
 def draw(cells: list[dict[str, Any]], path: Path) -> None:
