@@ -1,33 +1,33 @@
 """The slope at which a heap of beads stays when one end of its box is opened."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 from sphere_bed import Beads, Row, come_to_rest
 
-from lithobrake.dem import Material, Sphere, World
+from lithobrake.dem import Sphere, World
 
-LONG, HIGH, ACROSS = 18.0, 14.0, 6.0  # beads that the box holds along, upwards and between its smooth walls
+LONG, HIGH, ACROSS = 16.0, 11.0, 6.0  # beads that the box holds along, upwards and between its smooth walls
 
 
-def angle_of_repose(sizes: tuple[float, ...], material: Material, gravity: float, seed: int) -> Row:
+def angle_of_repose(beads: Beads, seed: int) -> Row:
     """Fill a narrow box, open one end above its lowest two layers, and measure the slope of what stays on them.
 
     The lowest two layers stay behind the gate: a floor as rough as the heap. What leaves is caught below.
     """
     generator = np.random.default_rng(seed)
-    size = float(np.mean(sizes))
+    size, material, gravity = beads.mean_diameter, beads.material, beads.gravity
     count = round(0.58 * LONG * HIGH * ACROSS / (math.pi / 6.0))
-    beads = Beads(diameters=sizes, material=material, gravity=gravity, width=LONG * size, depth=HIGH * size, seed=seed)
-    smooth = Material(**{**material.__dict__, "friction": 0.0})
+    smooth = replace(material, friction=0.0)
     world = World((0.0, 0.0, -gravity), None)
-    pitch = 1.03 * max(sizes)
+    pitch = 1.03 * max(beads.diameters)
     row = (int(LONG * size / pitch), int(ACROSS * size / pitch))
     for k in range(count):
         cell = np.array([k % row[0], k // row[0] % row[1], k // (row[0] * row[1])]) + 0.5
         place = cell * [LONG * size / row[0], ACROSS * size / row[1], pitch]
         world.add_body(
-            Sphere(0.5 * generator.choice(sizes)), material, place + 0.015 * pitch * generator.uniform(-1.0, 1.0, 3)
+            Sphere(0.5 * generator.choice(beads.diameters)), material, place + 0.015 * pitch * generator.uniform(-1.0, 1.0, 3)
         )
     world.add_plane((0, 0, 0), (0, 0, 1), material)
     world.add_plane((0, 0, 0), (1, 0, 0), material)

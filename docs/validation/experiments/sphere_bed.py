@@ -5,6 +5,7 @@ starts from the same rest.
 """
 
 import csv
+import json
 import math
 import sys
 from dataclasses import dataclass
@@ -19,7 +20,7 @@ from lithobrake.dem import Material, Sphere, World
 from lithobrake.touchdown import settling
 
 sys.path.insert(0, str(Path(__file__).parents[3] / "benchmarks"))
-from origin import origin as origin  # noqa: E402  a script of this folder takes it from here
+from origin import origin  # noqa: E402
 
 Floats = NDArray[np.float64]
 Row = dict[str, Any]
@@ -234,3 +235,12 @@ def add_row(path: Path, row: Row) -> None:
         if new:
             writer.writeheader()
         writer.writerow({key: f"{value:.7g}" if isinstance(value, float) else value for key, value in row.items()})
+
+
+def note_origin(table: Path, command: str) -> None:
+    """Write beside a table when, where and by which command it was last added to, and what all its rows cost."""
+    rows = read_rows(table)
+    cost = round(sum(float(row.get("cpu_s", 0.0)) for row in rows), 1)
+    script = f"docs/validation/experiments/{command}"
+    document = {"table": table.name, **origin(script), "rows": len(rows), "cpu_s_of_rows": cost}
+    table.with_suffix(".json").write_text(json.dumps(document, indent=1) + "\n")
