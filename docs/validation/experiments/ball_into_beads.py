@@ -6,8 +6,7 @@ SERIES is any of drops, repose, similarity, places, diameters, box, grains, step
 the beads in mm; the experiment's are 3 mm, larger ones are fewer. Rows that stand in ball_into_beads.csv are not run
 again.
 
-Source: Uehara et al. (2003), Phys. Rev. Lett. 90, 194301; Ambroso et al. (2005), Phys. Rev. E 71, 051305 and 72, 041305;
-DEM-Engine, DEMdemo_BallDrop.cpp, for the set-up.
+Source: [Uehara-2003]; [Ambroso-2005]; [Ambroso-2005b]; for the set-up DEM-Engine's DEMdemo_BallDrop.cpp.
 """
 
 import argparse
@@ -46,7 +45,8 @@ def drop_row(
     result, path = dropped(world, Sphere(0.5 * diameter), beads.material, mass, place, fall, PACE, local)
     np.save(work / f"path_{name}.npy", path)
     return {
-        "name": name, "density": density, "fall": fall, "diameter": diameter, "bead_size": beads.mean_diameter,
+        "name": name, "density": density, "fall": fall, "diameter": diameter,
+        "bead_size": beads.mean_diameter,
         "beads": beads.count, "width": beads.width, "bed_depth": beads.depth, "bulk_density": bulk, "young_modulus": beads.material.young_modulus,
         "restitution": beads.material.restitution, "friction": beads.material.friction, **result,
         "cpu_s": time.process_time() - start,
@@ -85,6 +85,7 @@ def series(size: float) -> dict[str, list[tuple[str, Row]]]:
         "grains": [
             *((f"friction_{mu:g}", {"beads": bed_of(size, friction=mu), **light}) for mu in (0.1, 0.6)),
             ("restitution_0.5", {"beads": bed_of(size, restitution=0.5), **light}),
+            ("poured_slowly", {"beads": replace(bed, fall_speed=0.6), **light}),
             ("modulus_2.5e6", {"beads": bed_of(size, young_modulus=2.5e6), **light}),
             ("modulus_7e7", {"beads": bed_of(size, young_modulus=7e7), **light}),
         ],
@@ -102,7 +103,7 @@ def missing(chosen: list[str], work: Path, size: float) -> Iterator[tuple[Path, 
                 yield TABLE, drop_row(work, name, **keywords)
     heaps = HERE / "repose.csv"
     if "repose" in chosen:
-        for seed in range(1 + len(read_rows(heaps)), 4):
+        for seed in range(1 + len(read_rows(heaps)), 3):
             yield heaps, angle_of_repose(bed_of(size), seed)
     pairs = HERE / "similarity.csv"
     if "similarity" in chosen and not read_rows(pairs):

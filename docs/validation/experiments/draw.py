@@ -5,10 +5,10 @@ from pathlib import Path
 import matplotlib
 
 matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402
-import numpy as np  # noqa: E402
-from fits import Estimate, column, scale  # noqa: E402
-from sphere_bed import Row  # noqa: E402
+import matplotlib.pyplot as plt
+import numpy as np
+from fits import Estimate, column, scale
+from sphere_bed import Row
 
 INK = ("#1b6ca8", "#d1495b", "#3a7d44", "#8d5fa8")
 MEASURED = "0.45"

@@ -65,6 +65,11 @@ def scale(rows: list[Row]) -> Floats:
     return np.sqrt(ratio) * column(rows, "diameter") ** (2 / 3) * total ** (1 / 3)
 
 
+def below_first_touch(rows: list[Row]) -> Floats:
+    """Depth [m] below where the ball first touched, which lies above the mean surface by most of a bead."""
+    return column(rows, "deepest") + column(rows, "touch_height")
+
+
 def stopping(rows: list[Row]) -> list[float]:
     """Stopping time in units of depth over impact speed."""
     return list(column(rows, "stopping_time") * column(rows, "impact_speed") / column(rows, "deepest"))

@@ -4,7 +4,7 @@
 
 Basalt spheres of 150 um, at random points of the bed. Rows that stand in grain_on_its_own_kind.csv are not run again.
 
-Source: Bogdan et al. (2020), Icarus 341, 113646.
+Source: [Bogdan-2020].
 """
 
 import argparse
@@ -21,7 +21,7 @@ from lithobrake.dem import Material, Sphere, World
 TABLE = Path(__file__).parent / "grain_on_its_own_kind.csv"
 GRAIN, SPEED, GRAVITY = 150e-6, 0.8, 9.81
 # A little apart in size, so that the bed does not order. Restitution and friction of basalt grains are not in the
-# source's abstract: .8 is near what rock spheres have (Durda et al. 2011: .83).
+# source's abstract: .8 is near what rock spheres have ([Durda-2011]: .83).
 BASALT = Material(young_modulus=1e7, poisson_ratio=0.25, restitution=0.8, friction=0.5, density=2900.0)
 BED = Beads(
     diameters=(0.95 * GRAIN, GRAIN, 1.05 * GRAIN), material=BASALT, gravity=GRAVITY, width=10 * GRAIN,

@@ -8,7 +8,7 @@ from sphere_bed import Beads, Row, come_to_rest
 
 from lithobrake.dem import Sphere, World
 
-LONG, HIGH, ACROSS = 16.0, 11.0, 6.0  # beads that the box holds along, upwards and between its smooth walls
+LONG, HIGH, ACROSS = 15.0, 9.0, 5.0  # beads that the box holds along, upwards and between its smooth walls
 
 
 def angle_of_repose(beads: Beads, seed: int) -> Row:
@@ -27,7 +27,9 @@ def angle_of_repose(beads: Beads, seed: int) -> Row:
         cell = np.array([k % row[0], k // row[0] % row[1], k // (row[0] * row[1])]) + 0.5
         place = cell * [LONG * size / row[0], ACROSS * size / row[1], pitch]
         world.add_body(
-            Sphere(0.5 * generator.choice(beads.diameters)), material, place + 0.015 * pitch * generator.uniform(-1.0, 1.0, 3)
+            Sphere(0.5 * generator.choice(beads.diameters)),
+            material,
+            place + 0.015 * pitch * generator.uniform(-1.0, 1.0, 3),
         )
     world.add_plane((0, 0, 0), (0, 0, 1), material)
     world.add_plane((0, 0, 0), (1, 0, 0), material)

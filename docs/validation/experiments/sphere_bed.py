@@ -20,7 +20,7 @@ from lithobrake.dem import Material, Sphere, World
 from lithobrake.touchdown import settling
 
 sys.path.insert(0, str(Path(__file__).parents[3] / "benchmarks"))
-from origin import origin  # noqa: E402
+from origin import origin
 
 Floats = NDArray[np.float64]
 Row = dict[str, Any]
@@ -42,6 +42,7 @@ class Beads:
     width: float  # m, of the square box
     depth: float  # m, that the bed has if it fills .58 of it
     seed: int
+    fall_speed: float = 3.0  # sqrt(g d), the most at which beads fall while the bed is poured: slow makes it loose
 
     @property
     def mean_diameter(self) -> float:
@@ -70,9 +71,9 @@ def walled_world(beads: Beads) -> World:
 def poured(beads: Beads) -> World:
     """Return beads that fell from a loose lattice under their gravity and came to rest.
 
-    They fall under a drag that lets them reach three times sqrt(g d): a bed poured softly is loose. At rest: the mean
-    resultant force on a bead is below a hundredth of the mean contact force, and the kinetic energy below 1e-5 of that
-    which lifts all beads by a diameter, with the drag and then without it, the criteria of touchdown/settling.py.
+    At rest: the mean resultant force on a bead is below a hundredth of the mean contact force, and the kinetic energy
+    below 1e-5 of that which lifts all beads by a diameter, with the drag of their fall and then without it. These are
+    the criteria of touchdown/settling.py.
     """
     generator = np.random.default_rng(beads.seed)
     world = walled_world(beads)
@@ -85,7 +86,7 @@ def poured(beads: Beads) -> World:
         cell = np.array([k % row, k // row % row, k // row**2]) + 0.5
         place = cell * pitch - [0.5 * beads.width, 0.5 * beads.width, 0.0]
         world.add_body(shapes[size], beads.material, place + play * generator.uniform(-1.0, 1.0, 3))
-    world.drag = math.sqrt(beads.gravity / beads.mean_diameter) / 3.0
+    world.drag = math.sqrt(beads.gravity / beads.mean_diameter) / beads.fall_speed
     come_to_rest(world, beads)
     return world
 
@@ -116,9 +117,11 @@ def kept(beads: Beads, work: Path) -> World:
     stuff = beads.material
     name = (
         f"bed_{sizes}_{beads.width:g}_{beads.depth:g}_E{stuff.young_modulus:g}_e{stuff.restitution:g}"
-        f"_mu{stuff.friction:g}_rho{stuff.density:g}_g{beads.gravity:g}_{beads.seed}.h5"
+        f"_mu{stuff.friction:g}_rho{stuff.density:g}_g{beads.gravity:g}_{beads.seed}"
     )
-    path = work / name
+    if beads.fall_speed != Beads.fall_speed:
+        name += f"_fall{beads.fall_speed:g}"
+    path = work / f"{name}.h5"
     if not path.exists():
         work.mkdir(parents=True, exist_ok=True)
         poured(beads).save(path)
@@ -206,7 +209,8 @@ def dropped(
             stopped = world.time - begun
     steps = np.array(path)
     return {
-        "impact_speed": math.sqrt(2.0 * gravity * fall), "level": level, "deepest": float(steps[:, 1].max()),
+        "impact_speed": math.sqrt(2.0 * gravity * fall), "level": level, "touch_height": start - level,
+        "deepest": float(steps[:, 1].max()),
         "depth": float(steps[-1, 1]), "stopping_time": stopped, "peak_deceleration": float(steps[:, 3].max()),
     }, steps  # fmt: skip
 

@@ -1,6 +1,6 @@
 """Write docs/validation/experiments.md and its figures from the tables of the three experiments.
 
-    python docs/validation/experiments/write_page.py --work FOLDER
+python docs/validation/experiments/write_page.py --work FOLDER
 """
 
 import argparse
@@ -12,14 +12,24 @@ from pathlib import Path
 import numpy as np
 from draw import of_drops, of_grains, of_gravities
 from fits import (
-    FALL, LIGHT, Estimate, column, diameter_exponent, drop_exponents, gravity_exponents, mean_of, scale, stopping,
+    FALL,
+    LIGHT,
+    Estimate,
+    below_first_touch,
+    column,
+    diameter_exponent,
+    drop_exponents,
+    gravity_exponents,
+    mean_of,
+    scale,
+    stopping,
 )  # fmt: skip
-from sphere_bed import Row, read_rows
+from page_text import TEXT, WHY_BEADS, WHY_GRAINS, WHY_GRAVITY
+from sphere_bed import read_rows
 
 HERE = Path(__file__).parent
 PAGE = HERE.parent / "experiments.md"
 HEAD = "| quantity | measured | ours, 95 % | rows | ours over measured | agrees |\n|---|---|---|---|---|---|\n"
-REST = Path("rest_of_page.md")
 
 
 def said(estimate: Estimate) -> str:
@@ -67,10 +77,14 @@ def beads_part(work: Path) -> tuple[list[tuple[str, bool]], str, dict[str, Estim
     rows.append(line("depth: prefactor", law, prefactor, 0.25 * law, told))
     rows.append(line("stopping time over depth / impact speed", 3.0, times, 0.75, "3"))
     of_drops(drops, slope, work, HERE / "ball_into_beads.png")
-    others = [f"| {row['name'].partition('_')[2]} | {int(row['beads'])} | {row['deepest'] * 100:.2f} | "
+    touch = below_first_touch(every)
+    others = [f"| {row['name']} | {int(row['beads'])} | {row['deepest'] * 100:.2f} | {below * 100:.2f} | "
               f"{row['bulk_density']:.0f} | {row['stopping_time'] * row['impact_speed'] / row['deepest']:.2f} |"
-              for row in every]  # fmt: skip
-    table = "| drop | beads | depth [cm] | bulk density [kg/m3] | stopping time v/d |\n|---|---|---|---|---|\n"
+              for row, below in zip(every, touch, strict=True)]  # fmt: skip
+    table = (
+        "| drop | beads | depth [cm] | below first touch [cm] | bulk density [kg/m3] | stopping time v/d |\n"
+        "|---|---|---|---|---|---|\n"
+    )
     return rows, table + "\n".join(others), {"slope": slope, "density": density, "total": total, "prefactor": prefactor}
 
 
@@ -84,7 +98,10 @@ def gravity_part() -> tuple[list[tuple[str, bool]], str]:
         line("settling: exponent of the time to .9 of the depth", -0.5, found["time_to_90"], 0.03, "-1/2"),
     ]
     of_gravities(rows, 0.0135, HERE / "settling_in_other_gravities.png")
-    table = "| gravity over Earth's | rows | depth [mm] | time until it stops, sqrt(D/g) | solid fraction |\n|---|---|---|---|---|"
+    table = (
+        "| gravity over Earth's | rows | depth [mm] | time until it stops, sqrt(D/g) | solid fraction |\n"
+        "|---|---|---|---|---|"
+    )
     for share in sorted({row["share"] for row in rows}, reverse=True):
         own = [row for row in rows if row["share"] == share]
         times = column(own, "stopping_time") / math.sqrt(0.0135 / (9.81 * share))
@@ -129,8 +146,8 @@ def similar() -> str:
     rows = read_rows(HERE / "similarity.csv")
     same = all(row["same_bits"] == "True" for row in rows)
     return (
-        f"The same drop under {rows[-1]['gravity']:.2g} m/s2, with the modulus times L^2 and the speed times L = 1/128, "
-        f"ends {'bit for bit' if same else 'within rounding'} where it ends on Earth ({int(rows[-1]['beads'])} beads, "
+        f"A drop under {rows[-1]['gravity']:.2g} m/s2, with the modulus times L^2 and the speed times L = 1/128, "
+        f"ends {'bit for bit' if same else 'within rounding'} where the same drop ends on Earth ({int(rows[-1]['beads'])} beads, "
         f"{int(rows[-1]['steps'])} steps; largest difference {rows[-1]['largest_difference']:g} ball diameters)."
     )
 
@@ -148,8 +165,8 @@ def main() -> None:
         f"{yes} of {len(lines)} quantities agree. Exponents of depth: {said(found['density'])} of the density (1/2), "
         f"{said(found['total'])} of the drop distance (1/3)."
     )
-    prose = (HERE / REST).read_text()
-    page = prose.format(
+    page = TEXT.format(
+        why_beads=WHY_BEADS, why_gravity=WHY_GRAVITY, why_grains=WHY_GRAINS,
         first="\n".join(textwrap.wrap(first, 98)), table=HEAD + "\n".join(text for text, _ in lines),
         drops=drops, settled=settled, impacts=impacts, similar="\n".join(textwrap.wrap(similar(), 98)),
         **{f"from_{key}": "\n".join(textwrap.wrap(came_from(name), 98)) for key, name in (

@@ -1,0 +1,79 @@
+"""What the page of the experiments says around its tables."""
+
+TEXT = """# Held against experiment: balls and grains on beds of beads
+
+{first}
+
+Three experiments, with nothing tuned but what their sources leave open. Written by
+`python docs/validation/experiments/write_page.py`; the rows stand in the CSV files beside it.
+
+{table}
+
+The interval is that of the rows' scatter alone. "Agrees" holds our value against the bar: .05 for
+exponents of depth, 25 % for the prefactor and the stopping time, .03 for exponents of gravity, .15
+to .25 for the speed ratio. The sources were read as abstracts
+([references](../references.md)); the prefactor .14/mu is quoted from memory by those who set the
+bar and could not be read.
+
+## A ball dropped into beads
+
+[Uehara-2003], [Ambroso-2005]: a ball dropped from rest into loose dry beads comes to a depth
+d ~ density^(1/2) D^(2/3) H^(1/3), H being fall and depth together, after 3 d/v, at a deceleration
+that falls all the time. Twelve drops of a ball of 25.4 mm, as DEM-Engine's demonstration
+`DEMdemo_BallDrop.cpp` has them: Poisson's ratio .24, restitution .9, friction .3, no rolling
+resistance, beads of eleven sizes from 5/6 to 7/6 of the mean, 2500 kg/m3.
+
+What is ours: beads of 5 mm on average (theirs 3 mm), 4233 of them; a modulus of 1e7 Pa (theirs
+7e7); a box of three ball diameters, 85 mm deep (theirs 7.9 diameters); 15 steps in the shortest
+contact. The bed falls from a lattice under a drag that holds the beads below 3 sqrt(g d), until the
+mean resultant force is below a hundredth of the mean contact force and the kinetic energy below
+1e-5 of that which lifts all beads by a diameter, then without drag until both hold again. Depth is
+that of the ball's lowest point below the mean height of the topmost points of the beads.
+
+![drops](experiments/ball_into_beads.png)
+
+{drops}
+
+{why_beads}
+
+{similar}
+
+{from_beads}
+
+## A sphere that settles under other gravities
+
+[Altshuler-2014]: a sphere released at the surface of a light granular bed sinks to a depth that no
+gravity changes, in a time that goes as g^(-1/2); measured from .4 to 1.2 of Earth's gravity, by
+simulation far beyond. Their grains and sphere could not be read. Ours: a sphere of 13.5 mm and 3000
+kg/m3, beads of 3 mm and 1000 kg/m3, modulus 2e5 Pa at every gravity, friction .3, restitution .9;
+each bed falls and settles under its own gravity.
+
+![settling](experiments/settling_in_other_gravities.png)
+
+{settled}
+
+{why_gravity}
+
+{from_gravity}
+
+## A grain on a bed of its own kind
+
+[Bogdan-2020]: basalt spheres of 150 um hit a bed of their own kind at .8 m/s. The grain keeps about
+.20 of its speed on average, fewer than ten others are ejected, and they rise by less than a grain
+typically. Ours: three sizes from .95 to 1.05 of 150 um, 2900 kg/m3, modulus 1e7 Pa, restitution .8,
+friction .5, random points at least two and a half grains from the walls. A grain counts as ejected
+where, touching nothing, its flight takes it so far above where it lay; a grain that still touches
+the bed after 1.5 ms counts with a speed of zero.
+
+![grains](experiments/grain_on_its_own_kind.png)
+
+{impacts}
+
+{why_grains}
+
+{from_grains}
+"""
+
+WHY_BEADS = ""
+WHY_GRAVITY = ""
+WHY_GRAINS = ""
