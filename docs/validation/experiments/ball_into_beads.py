@@ -47,7 +47,8 @@ def drop_row(
     return {
         "name": name, "density": density, "fall": fall, "diameter": diameter,
         "bead_size": beads.mean_diameter,
-        "beads": beads.count, "width": beads.width, "bed_depth": beads.depth, "bulk_density": bulk, "young_modulus": beads.material.young_modulus,
+        "beads": beads.count, "width": beads.width, "bed_depth": beads.depth, "bulk_density": bulk,
+        "young_modulus": beads.material.young_modulus,
         "restitution": beads.material.restitution, "friction": beads.material.friction, **result,
         "cpu_s": time.process_time() - start,
     }  # fmt: skip

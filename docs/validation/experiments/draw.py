@@ -7,7 +7,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
-from fits import Estimate, column, scale
+from fits import Estimate, below_first_touch, below_mean_surface, column, scale
 from sphere_bed import Row
 
 INK = ("#1b6ca8", "#d1495b", "#3a7d44", "#8d5fa8")
@@ -23,8 +23,9 @@ def of_drops(rows: list[Row], slope: Estimate, work: Path, to: Path) -> None:
     left.fill_between(reach, 0.75 * reach, 1.25 * reach, color=MEASURED, alpha=0.2, lw=0, label="+-25 %")
     for density, ink in zip(sorted({row["density"] for row in rows}), INK, strict=False):
         own = [row for row in rows if row["density"] == density]
-        left.plot(0.14 / slope.value * scale(own) * 100, column(own, "deepest") * 100, "o", color=ink,
+        left.plot(0.14 / slope.value * scale(own) * 100, below_mean_surface(own) * 100, "o", color=ink,
                   label=f"ours, {density:g} kg/m$^3$")  # fmt: skip
+        left.plot(0.14 / slope.value * scale(own) * 100, below_first_touch(own) * 100, "o", color=ink, mfc="none")
         speed, depth = column(own, "impact_speed"), column(own, "deepest")
         middle.plot(depth / speed * 1e3, column(own, "stopping_time") * 1e3, "o", color=ink)
         path = work / f"path_{next((row['name'] for row in own if row['fall'] == 0.1), own[0]['name'])}.npy"
@@ -35,6 +36,7 @@ def of_drops(rows: list[Row], slope: Estimate, work: Path, to: Path) -> None:
             right.plot(time[2:-2] * 1e3, smooth, color=ink, lw=1.2)
     left.set(xlabel=r"$(0.14/\mu)\,(\rho/\rho_b)^{1/2} D^{2/3} H^{1/3}$ [cm]", ylabel="depth [cm]",
              xscale="log", yscale="log")  # fmt: skip
+    left.plot([], [], "o", color="0.3", mfc="none", label="below the first touch")
     left.legend(fontsize=8)
     far = np.array([0.0, middle.get_xlim()[1]])
     middle.plot(far, 3.0 * far, color=MEASURED, label="3 d/v, measured")

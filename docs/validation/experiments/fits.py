@@ -46,28 +46,35 @@ def column(rows: list[Row], name: str) -> Floats:
     return np.array([row[name] for row in rows], dtype=np.float64)
 
 
-def drop_exponents(rows: list[Row]) -> list[Estimate]:
-    """Exponents of the density and of the total drop distance, fall and depth together."""
-    depth = column(rows, "deepest")
-    return powers(depth, column(rows, "density"), column(rows, "fall") + depth)
+def below_mean_surface(rows: list[Row]) -> Floats:
+    """Depth [m] of the ball's lowest point below the mean surface."""
+    return column(rows, "deepest")
 
 
-def diameter_exponent(rows: list[Row]) -> Estimate:
+def below_first_touch(rows: list[Row]) -> Floats:
+    """Depth [m] below where the ball first touched a bead, above the mean surface by a part of a bead."""
+    return column(rows, "deepest") + column(rows, "touch_height")
+
+
+def total_drop(rows: list[Row]) -> Floats:
+    """Way [m] from where the ball was let go to where it came deepest, the same from either surface."""
+    return column(rows, "fall") + column(rows, "deepest")
+
+
+def drop_exponents(rows: list[Row], depth: Floats) -> list[Estimate]:
+    """Exponents of the density and of the total drop distance for depths [m] of these drops."""
+    return powers(depth, column(rows, "density"), total_drop(rows))
+
+
+def diameter_exponent(rows: list[Row], depth: Floats) -> Estimate:
     """Exponent of the diameter at one density and fall, that of the total drop distance held at 1/3."""
-    depth = column(rows, "deepest")
-    return powers(depth / (column(rows, "fall") + depth) ** (1 / 3), column(rows, "diameter"))[0]
+    return powers(depth / total_drop(rows) ** (1 / 3), column(rows, "diameter"))[0]
 
 
 def scale(rows: list[Row]) -> Floats:
     """(density of ball over bulk)^(1/2) D^(2/3) H^(1/3) [m] of each drop; depth over it is the prefactor."""
-    total = column(rows, "fall") + column(rows, "deepest")
     ratio = column(rows, "density") / column(rows, "bulk_density")
-    return np.sqrt(ratio) * column(rows, "diameter") ** (2 / 3) * total ** (1 / 3)
-
-
-def below_first_touch(rows: list[Row]) -> Floats:
-    """Depth [m] below where the ball first touched, which lies above the mean surface by most of a bead."""
-    return column(rows, "deepest") + column(rows, "touch_height")
+    return np.sqrt(ratio) * column(rows, "diameter") ** (2 / 3) * total_drop(rows) ** (1 / 3)
 
 
 def stopping(rows: list[Row]) -> list[float]:

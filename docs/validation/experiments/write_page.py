@@ -16,6 +16,7 @@ from fits import (
     LIGHT,
     Estimate,
     below_first_touch,
+    below_mean_surface,
     column,
     diameter_exponent,
     drop_exponents,
@@ -61,31 +62,34 @@ def beads_part(work: Path) -> tuple[list[tuple[str, bool]], str, dict[str, Estim
     heaps = read_rows(HERE / "repose.csv")
     slope = mean_of([math.tan(math.radians(row["angle_deg"])) for row in heaps])
     law = 0.14 / slope.value
-    density, total = drop_exponents(drops)
-    prefactor = mean_of(list(column(drops, "deepest") / scale(drops)))
-    times = mean_of(stopping(drops))
-    rows = [
-        line("depth: exponent of the ball's density", 0.5, density, 0.05, "1/2"),
-        line("depth: exponent of the total drop distance H", 1 / 3, total, 0.05, "1/3"),
-    ]
     plain = [row for row in drops if row["density"] == LIGHT and row["fall"] == FALL]
-    sized = [row for row in every if "_diameter_" in row["name"]]
-    if sized:
-        exponent = diameter_exponent(sized + plain)
-        rows.append(line("depth: exponent of the ball's diameter", 2 / 3, exponent, 0.05, "2/3"))
+    sized = plain + [row for row in every if "_diameter_" in row["name"]]
     told = f"0.14 / {slope.value:.3f} = {law:.3f} (unverified)"
-    rows.append(line("depth: prefactor", law, prefactor, 0.25 * law, told))
-    rows.append(line("stopping time over depth / impact speed", 3.0, times, 0.75, "3"))
+    rows = []
+    for where, depth_of in (("the mean surface", below_mean_surface), ("the first touch", below_first_touch)):
+        density, total = drop_exponents(drops, depth_of(drops))
+        prefactor = mean_of(list(depth_of(drops) / scale(drops)))
+        rows += [
+            line(f"depth below {where}: exponent of the ball's density", 0.5, density, 0.05, "1/2"),
+            line(f"depth below {where}: exponent of the total drop distance", 1 / 3, total, 0.05, "1/3"),
+            line(f"depth below {where}: prefactor", law, prefactor, 0.25 * law, told),
+        ]
+        if len(sized) > 2:
+            exponent = diameter_exponent(sized, depth_of(sized))
+            rows.append(line(f"depth below {where}: exponent of the ball's diameter", 2 / 3, exponent, 0.05, "2/3"))
+    rows.append(line("stopping time over depth / impact speed", 3.0, mean_of(stopping(drops)), 0.75, "3"))
     of_drops(drops, slope, work, HERE / "ball_into_beads.png")
-    touch = below_first_touch(every)
-    others = [f"| {row['name']} | {int(row['beads'])} | {row['deepest'] * 100:.2f} | {below * 100:.2f} | "
-              f"{row['bulk_density']:.0f} | {row['stopping_time'] * row['impact_speed'] / row['deepest']:.2f} |"
-              for row, below in zip(every, touch, strict=True)]  # fmt: skip
+    others = [
+        f"| {row['name']} | {int(row['beads'])} | {row['deepest'] * 100:.2f} | {touch * 100:.2f} | "
+        f"{row['bulk_density']:.0f} | {row['stopping_time'] * row['impact_speed'] / row['deepest']:.2f} |"
+        for row, touch in zip(every, below_first_touch(every), strict=True)
+    ]
     table = (
         "| drop | beads | depth [cm] | below first touch [cm] | bulk density [kg/m3] | stopping time v/d |\n"
         "|---|---|---|---|---|---|\n"
     )
-    return rows, table + "\n".join(others), {"slope": slope, "density": density, "total": total, "prefactor": prefactor}
+    density, total = drop_exponents(drops, below_mean_surface(drops))
+    return rows, table + "\n".join(others), {"slope": slope, "density": density, "total": total}
 
 
 def gravity_part() -> tuple[list[tuple[str, bool]], str]:
@@ -145,10 +149,11 @@ def similar() -> str:
     """Return the sentence on the drop at another gravity."""
     rows = read_rows(HERE / "similarity.csv")
     same = all(row["same_bits"] == "True" for row in rows)
+    last = rows[-1]
     return (
-        f"A drop under {rows[-1]['gravity']:.2g} m/s2, with the modulus times L^2 and the speed times L = 1/128, "
-        f"ends {'bit for bit' if same else 'within rounding'} where the same drop ends on Earth ({int(rows[-1]['beads'])} beads, "
-        f"{int(rows[-1]['steps'])} steps; largest difference {rows[-1]['largest_difference']:g} ball diameters)."
+        f"A drop under {last['gravity']:.2g} m/s2, with the modulus times L^2 and the speed times L = 1/128, ends "
+        f"{'bit for bit' if same else 'within rounding'} where the same drop ends on Earth ({int(last['beads'])} "
+        f"beads, {int(last['steps'])} steps; largest difference {last['largest_difference']:g} ball diameters)."
     )
 
 
