@@ -34,8 +34,7 @@ def of_drops(rows: list[Row], slope: Estimate, work: Path, to: Path) -> None:
             wide = np.ones(5) / 5
             smooth = np.convolve(deceleration, wide, mode="valid") / 9.81
             right.plot(time[2:-2] * 1e3, smooth, color=ink, lw=1.2)
-    left.set(xlabel=r"$(0.14/\mu)\,(\rho/\rho_b)^{1/2} D^{2/3} H^{1/3}$ [cm]", ylabel="depth [cm]",
-             xscale="log", yscale="log")  # fmt: skip
+    left.set(xlabel=r"$(0.14/\mu)\,(\rho/\rho_b)^{1/2} D^{2/3} H^{1/3}$ [cm]", ylabel="depth [cm]")
     left.plot([], [], "o", color="0.3", mfc="none", label="below the first touch")
     left.legend(fontsize=8)
     far = np.array([0.0, middle.get_xlim()[1]])

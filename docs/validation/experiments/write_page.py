@@ -26,6 +26,7 @@ from fits import (
     stopping,
 )  # fmt: skip
 from page_text import TEXT, WHY_BEADS, WHY_GRAINS, WHY_GRAVITY
+from settling_in_other_gravities import DIAMETER
 from sphere_bed import read_rows
 
 HERE = Path(__file__).parent
@@ -108,7 +109,7 @@ def gravity_part() -> tuple[list[tuple[str, bool]], str]:
         line("settling: exponent of the time until it stops", -0.5, found["stopping_time"], 0.03, "-1/2"),
         line("settling: exponent of the time to .9 of the depth", -0.5, found["time_to_90"], 0.03, "-1/2"),
     ]
-    of_gravities(rows, 0.0135, HERE / "settling_in_other_gravities.png")
+    of_gravities(rows, DIAMETER, HERE / "settling_in_other_gravities.png")
     table = (
         "![settling](experiments/settling_in_other_gravities.png)\n\n"
         "| gravity over Earth's | rows | depth [mm] | time until it stops, sqrt(D/g) | solid fraction |\n"
@@ -116,7 +117,7 @@ def gravity_part() -> tuple[list[tuple[str, bool]], str]:
     )
     for share in sorted({row["share"] for row in rows}, reverse=True):
         own = [row for row in rows if row["share"] == share]
-        times = column(own, "stopping_time") / math.sqrt(0.0135 / (9.81 * share))
+        times = column(own, "stopping_time") / math.sqrt(DIAMETER / (9.81 * share))
         table += (
             f"\n| {share:g} | {len(own)} | {column(own, 'depth').mean() * 1e3:.2f} +- "
             f"{column(own, 'depth').std() * 1e3:.2f} | {times.mean():.2f} | "
