@@ -88,3 +88,13 @@ def gravity_exponents(rows: list[Row]) -> dict[str, Estimate]:
         name: powers(column(rows, name), column(rows, "share"))[0]
         for name in ("depth", "stopping_time", "time_to_90")
     }  # fmt: skip
+
+
+def leaving(rows: list[Row]) -> list[float]:
+    """Speeds out over in of the grains that leave the bed upwards."""
+    return [row["speed_ratio"] for row in rows if row["vertical_ratio"] > 0.0]
+
+
+def speeds(rows: list[Row]) -> list[float]:
+    """Speeds out over in of all grains, 0 where one stays or falls back at its last look."""
+    return [row["speed_ratio"] if row["vertical_ratio"] > 0.0 else 0.0 for row in rows]

@@ -58,10 +58,12 @@ each bed falls and settles under its own gravity.
 
 [Bogdan-2020]: basalt spheres of 150 um hit a bed of their own kind at .8 m/s. The grain keeps about
 .20 of its speed on average, fewer than ten others are ejected, and they rise by less than a grain
-typically. Ours: three sizes from .95 to 1.05 of 150 um, 2900 kg/m3, modulus 1e7 Pa, restitution .8,
-friction .5, random points at least two and a half grains from the walls. A grain counts as ejected
-where, touching nothing, its flight takes it so far above where it lay; a grain that still touches
-the bed after 1.5 ms counts with a speed of zero.
+typically. Ours: 882 spheres of three sizes from .95 to 1.05 of 150 um, 2900 kg/m3, modulus 1e7 Pa,
+restitution .8, friction .5 (neither is in what could be read), random points at least two and a half
+grains from the walls. A grain counts as ejected
+where, touching nothing, its flight takes it so far above where it lay. A grain that still touches the bed
+after 1.5 ms, or falls back, stays: whether the source's mean counts it is not in its abstract, so
+both means stand here.
 
 {impacts}
 

@@ -21,8 +21,10 @@ from fits import (
     diameter_exponent,
     drop_exponents,
     gravity_exponents,
+    leaving,
     mean_of,
     scale,
+    speeds,
     stopping,
 )  # fmt: skip
 from page_text import TEXT, WHY_BEADS, WHY_GRAINS, WHY_GRAVITY
@@ -133,24 +135,27 @@ def grains_part() -> tuple[list[tuple[str, bool]], str]:
         return [], NOT_YET
     kinds = {name: [row for row in every if row["kind"] == name] for name in dict.fromkeys(r["kind"] for r in every)}
     base = kinds["basalt"]
-    speed = mean_of(list(column(base, "speed_ratio")))
+    speed = mean_of(speeds(base))
     few = Estimate(float(np.mean(column(base, "risen_0.1") < 10)), math.nan, len(base))
     low = Estimate(float(np.mean(column(base, "median_rise") < 1.0)), math.nan, len(base))
     lines = [
-        line("own kind: mean speed out over speed in", 0.2, speed, 0.05, "about .20"),
+        line("own kind: mean speed out over speed in, 0 where the grain stays", 0.2, speed, 0.05, "about .20"),
+        line("own kind: the same of those that leave upwards", 0.2, mean_of(leaving(base)), 0.05, "about .20"),
         line("own kind: share of impacts with fewer than 10 grains ejected", 1.0, few, 0.5, "typical"),
         line("own kind: share of impacts whose median grain rises less than its diameter", 1.0, low, 0.5, "typical"),
     ]
     of_grains(kinds, HERE / "grain_on_its_own_kind.png")
     table = (
         "![grains](experiments/grain_on_its_own_kind.png)\n\n"
-        "| bed | impacts | mean speed ratio | grain trapped | rise > .1 | > .5 | > 1 grain | median rise [grains] |\n"
-        "|---|---|---|---|---|---|---|---|"
+        "| bed | impacts | mean speed ratio | of those that leave | share that stays "
+        "| rise > .1 | > .5 | > 1 grain | median rise [grains] |\n"
+        "|---|---|---|---|---|---|---|---|---|"
     )
     for name, rows in kinds.items():
-        trapped = float(np.mean(column(rows, "speed_ratio") == 0.0))
+        stayed = 1.0 - len(leaving(rows)) / len(rows)
         table += (
-            f"\n| {name} | {len(rows)} | {said(mean_of(list(column(rows, 'speed_ratio'))))} | {trapped:.2f} | "
+            f"\n| {name} | {len(rows)} | {said(mean_of(speeds(rows)))} | {said(mean_of(leaving(rows)))} "
+            f"| {stayed:.2f} | "
             + " | ".join(f"{column(rows, f'risen_{rise}').mean():.2f}" for rise in ("0.1", "0.5", "1"))
             + f" | {np.median(column(rows, 'median_rise')):.2f} |"
         )
