@@ -87,13 +87,14 @@ Not run yet, each a series of the script with its own name: beads of 3 mm (`--be
 diameters, a narrower, wider, lower and higher box, a slowly poured bed, other moduli, frictions and
 a lower restitution, steps of every contact's own, our own slope of repose. Until then the prefactor
 is held against the middle of .39 to .45, the slopes of glass beads."""
-WHY_GRAVITY = """By similarity, a bed of one modulus under less gravity is a bed as much stiffer under the same one:
-only E / (density g D) tells the rows apart, 1900 under Earth's gravity. So the rows are a series of
-stiffness, and what they show is that 2e5 Pa is too soft there: the bed settles denser (.63 filled,
-.58 under a tenth of the gravity), and depth and scaled time change with it. Beds of stiff grains,
-such as the experiment's, are at the end of the series. Under 1e-4 of Earth's gravity a bed and a
-drop cost forty times as much, and have not run yet; nor have other beds than the first, so the
-interval knows nothing of their scatter."""
+WHY_GRAVITY = """The sphere sinks by a third of its diameter, one bead, and where it lies on that one bead decides:
+from 1.1 to 4.4 mm from place to place and bed to bed. The rows of one bed share it, so the intervals
+are too narrow, and whether .03 is met these rows cannot tell. A trend there may be: by similarity a
+bed of one modulus under less gravity is a bed as much stiffer under the same one, and only
+E / (density g D) tells the rows apart, 1900 under Earth's gravity. 2e5 Pa is soft there: beds settle
+denser (.63 and .62 filled; .57 under a hundredth of it). What is needed is a bed into which the
+sphere sinks by its diameter: denser spheres, finer beads. Under 1e-4 of Earth's gravity a drop costs
+forty times as much, and none has run yet."""
 WHY_GRAINS = """Half of the grains stay, in a pocket between others; those that leave keep a little more than the
 measured fifth, all together a little less. Restitution matters much: in the small bed of
 tests/physics/test_beads.py (200 beads, restitution .6) a grain keeps .04 on average. Nearly all that
