@@ -85,12 +85,11 @@ for 4 ms, while the ball enters by about a bead, and falls from then on but for 
 also denser than "loose": .61 of it is filled. Which of these makes the exponent, no row tells
 yet.
 
-Not run yet, each a series of the script with its own name: beads of 3 mm (`--beads 3`), other
+Not run yet, each a series of the script by name: beads of 3 mm (`--beads 3`), other
 diameters, a narrower, wider, lower and higher box, a slowly poured bed, other moduli, frictions
 and a lower restitution, steps of every contact's own, our own slope of repose. Until then the
 prefactor is held against the middle of .39 to .45, the slopes of glass beads."""
-WHY_GRAVITY =
-"""The sphere sinks by a third of its diameter, one bead, and where it lies on that one bead
+WHY_GRAVITY = """The sphere sinks by a third of its diameter, one bead, and where it lies on that one bead
 decides: from 1.1 to 4.4 mm from place to place and bed to bed. The rows of one bed share it, so
 the intervals are too narrow, and whether .03 is met these rows cannot tell. A trend there may
 be: by similarity a bed of one modulus under less gravity is a bed as much stiffer under the same
