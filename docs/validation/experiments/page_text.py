@@ -89,7 +89,7 @@ Not run yet, each a series of the script by name: beads of 3 mm (`--beads 3`), o
 diameters, a narrower, wider, lower and higher box, a slowly poured bed, other moduli, frictions
 and a lower restitution, steps of every contact's own, our own slope of repose. Until then the
 prefactor is held against the middle of .39 to .45, the slopes of glass beads."""
-WHY_GRAVITY = """The sphere sinks by a third of its diameter, one bead, and where it lies on that one bead
+WHY_GRAVITY = """The sphere sinks by a quarter of its diameter, less than a bead, and where it lies on the beads
 decides: from 1.1 to 4.4 mm from place to place and bed to bed. The rows of one bed share it, so
 the intervals are too narrow, and whether .03 is met these rows cannot tell. A trend there may
 be: by similarity a bed of one modulus under less gravity is a bed as much stiffer under the same
@@ -97,9 +97,8 @@ one, and only E / (density g D) tells the rows apart, 1900 under Earth's gravity
 there: beds settle denser (.63 and .62 filled; .57 under a hundredth of it). What is needed is a
 bed into which the sphere sinks by its diameter: denser spheres, finer beads. Under 1e-4 of
 Earth's gravity a drop costs forty times as much, and none has run yet."""
-WHY_GRAINS = """Nearly
-half of the grains stay, in a pocket between others; those that leave keep a little more than the
-measured fifth, all together clearly less. Restitution matters much: in the small bed of
-tests/physics/test_beads.py (200 beads, restitution .6) a grain keeps .04 on average. Nearly all
-that is ejected rises by less than half a grain, so how many there are depends on how little a
-rise is seen. Other materials, a stiffer one, and a wider, deeper bed have not run yet."""
+WHY_GRAINS = """\
+Nearly half of the grains stay, in a pocket between others; those that leave keep a little more
+than the measured fifth, all together clearly less. Nearly all that is ejected rises by less than
+half a grain, so how many there are depends on how little a rise is seen. Another restitution
+(.5) and friction (.2), a stiffer material and a wider, deeper bed have not run yet."""
