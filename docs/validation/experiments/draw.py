@@ -1,0 +1,92 @@
+"""Figures of the three experiments: what was measured as a line or band, and our points."""
+
+from pathlib import Path
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+import numpy as np
+from fits import Estimate, below_first_touch, below_mean_surface, column, leaving, scale, speeds
+from sphere_bed import Row
+
+INK = ("#1b6ca8", "#d1495b", "#3a7d44", "#8d5fa8")
+MEASURED = "0.45"
+
+
+def of_drops(rows: list[Row], slope: Estimate, work: Path, to: Path) -> None:
+    """Depth against the experiment's law, stopping time, and deceleration in time of the drops from .1 m."""
+    figure, (left, middle, right) = plt.subplots(1, 3, figsize=(12, 3.9), layout="constrained")
+    law = 0.14 / slope.value * scale(rows)
+    reach = np.array([0.8 * law.min(), 1.2 * law.max()]) * 100
+    left.plot(reach, reach, color=MEASURED, label="law of the experiment")
+    left.fill_between(reach, 0.75 * reach, 1.25 * reach, color=MEASURED, alpha=0.2, lw=0, label="+-25 %")
+    for density, ink in zip(sorted({row["density"] for row in rows}), INK, strict=False):
+        own = [row for row in rows if row["density"] == density]
+        left.plot(0.14 / slope.value * scale(own) * 100, below_mean_surface(own) * 100, "o", color=ink,
+                  label=f"ours, {density:g} kg/m$^3$")  # fmt: skip
+        left.plot(0.14 / slope.value * scale(own) * 100, below_first_touch(own) * 100, "o", color=ink, mfc="none")
+        speed, depth = column(own, "impact_speed"), column(own, "deepest")
+        middle.plot(depth / speed * 1e3, column(own, "stopping_time") * 1e3, "o", color=ink)
+        path = work / f"path_{next((row['name'] for row in own if row['fall'] == 0.1), own[0]['name'])}.npy"
+        if path.exists():
+            time, _, _, deceleration = np.load(path).T
+            wide = np.ones(5) / 5
+            smooth = np.convolve(deceleration, wide, mode="valid") / 9.81
+            right.plot(time[2:-2] * 1e3, smooth, color=ink, lw=1.2)
+    left.set(xlabel=r"$(0.14/\mu)\,(\rho/\rho_b)^{1/2} D^{2/3} H^{1/3}$ [cm]", ylabel="depth [cm]")
+    left.plot([], [], "o", color="0.3", mfc="none", label="below the first touch")
+    left.legend(fontsize=8)
+    far = np.array([0.0, middle.get_xlim()[1]])
+    middle.plot(far, 3.0 * far, color=MEASURED, label="3 d/v, measured")
+    middle.set(xlabel="depth over impact speed [ms]", ylabel="stopping time [ms]")
+    middle.legend(fontsize=8)
+    right.set(xlabel="time since contact [ms]", ylabel="deceleration over g", title="fall .1 m; mean of 2.5 ms")
+    right.axhline(0.0, color="0.8", lw=0.8)
+    figure.savefig(to, dpi=110)
+    plt.close(figure)
+
+
+def of_gravities(rows: list[Row], diameter: float, to: Path) -> None:
+    """Depth and settling time against gravity."""
+    figure, (left, right) = plt.subplots(1, 2, figsize=(9, 3.8), layout="constrained")
+    share = column(rows, "share")
+    reach = np.array([0.5 * share.min(), 2.0 * share.max()])
+    depth = column(rows, "depth") / diameter
+    left.plot(reach, np.full(2, np.exp(np.log(depth).mean())), color=MEASURED, label="independent of g, measured")
+    left.plot(share, depth, "o", color=INK[0], alpha=0.7, label="ours")
+    left.set(xscale="log", ylim=(0.0, 1.4 * depth.max()), xlabel="gravity over Earth's", ylabel="depth over diameter")
+    left.axvspan(0.4, 1.2, color="0.9", zorder=0, label="gravities of the experiment")
+    left.legend(fontsize=8)
+    for name, ink, text in (("stopping_time", INK[1], "until it stops"), ("time_to_90", INK[2], "to .9 of the depth")):
+        times = column(rows, name)
+        right.plot(share, times, "o", color=ink, alpha=0.7, label=f"ours, {text}")
+        middle = np.exp((np.log(times) + 0.5 * np.log(share)).mean())
+        right.plot(reach, middle * reach**-0.5, color=MEASURED)
+    right.plot([], [], color=MEASURED, label="$g^{-1/2}$, measured")
+    right.set(xscale="log", yscale="log", xlabel="gravity over Earth's", ylabel="time [s]")
+    right.legend(fontsize=8)
+    figure.savefig(to, dpi=110)
+    plt.close(figure)
+
+
+def of_grains(kinds: dict[str, list[Row]], to: Path) -> None:
+    """Speeds at which the grain leaves, and how many others rise."""
+    figure, (left, right) = plt.subplots(1, 2, figsize=(9, 3.8), layout="constrained")
+    base = kinds["basalt"]
+    left.hist(speeds(base), bins=np.arange(0.0, 0.75, 0.04), color=INK[0], alpha=0.8, label="ours")
+    left.axvspan(0.15, 0.25, color=MEASURED, alpha=0.25, lw=0, label="mean measured: about .20 (bar .15 to .25)")
+    left.axvline(np.mean(speeds(base)), color=INK[1], label="our mean of all")
+    left.axvline(np.mean(leaving(base)), color=INK[1], ls="--", label="of those that leave")
+    left.set(xlabel="speed out over speed in", ylabel="impacts")
+    left.legend(fontsize=8)
+    counts = np.arange(0, 1 + int(column(base, "risen_0.1").max()))
+    for rise, ink in (("0.1", INK[0]), ("0.5", INK[1]), ("1", INK[2])):
+        risen = column(base, f"risen_{rise}")
+        right.plot(counts, [(risen >= least).mean() for least in counts], color=ink, drawstyle="steps-post",
+                   label=f"rise > {rise} grain")  # fmt: skip
+    right.axvline(10, color=MEASURED, label="fewer than 10 typically, measured")
+    right.set(xlabel="grains ejected, at least", ylabel="share of impacts")
+    right.legend(fontsize=8)
+    figure.savefig(to, dpi=110)
+    plt.close(figure)

@@ -1,0 +1,100 @@
+"""What the rows of the three experiments say: exponents, prefactor, times and shares, each with its 95 % interval."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.stats import t as student
+from sphere_bed import Floats, Row
+
+FALL = 0.1  # m, of the drops that everything but the drop series repeats
+LIGHT = 2200.0  # kg/m3, likewise
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """A value with the half width of its 95 % interval, from so many rows."""
+
+    value: float
+    half: float
+    rows: int
+
+
+def mean_of(values: list[float]) -> Estimate:
+    """Return the mean of independent values."""
+    count = len(values)
+    half = student.ppf(0.975, count - 1) * np.std(values, ddof=1) / math.sqrt(count) if count > 1 else math.nan
+    return Estimate(float(np.mean(values)), float(half), count)
+
+
+def powers(target: Floats, *factors: Floats) -> list[Estimate]:
+    """Return the exponents of a product of powers fitted to positive values, by least squares of the logarithms."""
+    columns = np.stack([np.ones(len(target)), *(np.log(factor) for factor in factors)], axis=1)
+    solution, *_ = np.linalg.lstsq(columns, np.log(target), rcond=None)
+    left = np.log(target) - columns @ solution
+    free = len(target) - columns.shape[1]
+    spread = np.linalg.inv(columns.T @ columns) * float(left @ left) / max(free, 1)
+    width = student.ppf(0.975, free) if free > 0 else math.nan
+    return [
+        Estimate(float(value), float(width * math.sqrt(variance)), len(target))
+        for value, variance in zip(solution[1:], np.diag(spread)[1:], strict=True)
+    ]
+
+
+def column(rows: list[Row], name: str) -> Floats:
+    """Return a column of numbers."""
+    return np.array([row[name] for row in rows], dtype=np.float64)
+
+
+def below_mean_surface(rows: list[Row]) -> Floats:
+    """Depth [m] of the ball's lowest point below the mean surface."""
+    return column(rows, "deepest")
+
+
+def below_first_touch(rows: list[Row]) -> Floats:
+    """Depth [m] below where the ball first touched a bead, above the mean surface by a part of a bead."""
+    return column(rows, "deepest") + column(rows, "touch_height")
+
+
+def total_drop(rows: list[Row]) -> Floats:
+    """Way [m] from where the ball was let go to where it came deepest, the same from either surface."""
+    return column(rows, "fall") + column(rows, "deepest")
+
+
+def drop_exponents(rows: list[Row], depth: Floats) -> list[Estimate]:
+    """Exponents of the density and of the total drop distance for depths [m] of these drops."""
+    return powers(depth, column(rows, "density"), total_drop(rows))
+
+
+def diameter_exponent(rows: list[Row], depth: Floats) -> Estimate:
+    """Exponent of the diameter at one density and fall, that of the total drop distance held at 1/3."""
+    return powers(depth / total_drop(rows) ** (1 / 3), column(rows, "diameter"))[0]
+
+
+def scale(rows: list[Row]) -> Floats:
+    """(density of ball over bulk)^(1/2) D^(2/3) H^(1/3) [m] of each drop; depth over it is the prefactor."""
+    ratio = column(rows, "density") / column(rows, "bulk_density")
+    return np.sqrt(ratio) * column(rows, "diameter") ** (2 / 3) * total_drop(rows) ** (1 / 3)
+
+
+def stopping(rows: list[Row]) -> list[float]:
+    """Stopping time in units of depth over impact speed."""
+    return list(column(rows, "stopping_time") * column(rows, "impact_speed") / column(rows, "deepest"))
+
+
+def gravity_exponents(rows: list[Row]) -> dict[str, Estimate]:
+    """Exponents of depth and times over gravity."""
+    return {
+        name: powers(column(rows, name), column(rows, "share"))[0]
+        for name in ("depth", "stopping_time", "time_to_90")
+    }  # fmt: skip
+
+
+def leaving(rows: list[Row]) -> list[float]:
+    """Speeds out over in of the grains that leave the bed upwards."""
+    return [row["speed_ratio"] for row in rows if row["vertical_ratio"] > 0.0]
+
+
+def speeds(rows: list[Row]) -> list[float]:
+    """Speeds out over in of all grains, 0 where one stays or falls back at its last look."""
+    return [row["speed_ratio"] if row["vertical_ratio"] > 0.0 else 0.0 for row in rows]

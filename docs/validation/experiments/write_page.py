@@ -1,0 +1,203 @@
+"""Write docs/validation/experiments.md and its figures from the tables of the three experiments.
+
+python docs/validation/experiments/write_page.py --work FOLDER
+"""
+
+import argparse
+import json
+import math
+import textwrap
+from pathlib import Path
+
+import numpy as np
+from draw import of_drops, of_grains, of_gravities
+from fits import (
+    FALL,
+    LIGHT,
+    Estimate,
+    below_first_touch,
+    below_mean_surface,
+    column,
+    diameter_exponent,
+    drop_exponents,
+    gravity_exponents,
+    leaving,
+    mean_of,
+    scale,
+    speeds,
+    stopping,
+)  # fmt: skip
+from page_text import TEXT, WHY_BEADS, WHY_GRAINS, WHY_GRAVITY
+from settling_in_other_gravities import DIAMETER
+from sphere_bed import read_rows
+
+HERE = Path(__file__).parent
+PAGE = HERE.parent / "experiments.md"
+UNMEASURED = Estimate(0.42, 0.03, 0)  # of the slope of a heap, where none was measured: what glass beads have
+NOT_YET = "Too few rows yet: run the script."
+HEAD = "| quantity | measured | ours, 95 % | rows | ours over measured | agrees |\n|---|---|---|---|---|---|\n"
+
+
+def said(estimate: Estimate) -> str:
+    """Return a value with its interval."""
+    return f"{estimate.value:.3f} +- {estimate.half:.3f}" if math.isfinite(estimate.half) else f"{estimate.value:.3f}"
+
+
+def line(quantity: str, measured: float, ours: Estimate, bar: float, text: str = "") -> tuple[str, bool]:
+    """Return a row of the table: it agrees where our value is within a bar of the measured one."""
+    agrees = abs(ours.value - measured) <= bar
+    ratio = f"{ours.value / measured:.2f}" if measured else "-"
+    return (
+        f"| {quantity} | {text or f'{measured:.3g}'} | {said(ours)} | {ours.rows} | {ratio} | "
+        f"{'yes' if agrees else 'no'} |",
+        agrees,
+    )
+
+
+def came_from(name: str) -> str:
+    """Return command, date, machine and cost of a table."""
+    path = HERE / f"{name}.json"
+    if not path.exists():
+        return ""
+    told = json.loads(path.read_text())
+    return f"`{told['command']}`, {told['date']}, {told['machine']}, {told['cpu_s_of_rows']:g} s of CPU time in drops."
+
+
+def beads_part(work: Path) -> tuple[list[tuple[str, bool]], str, dict[str, Estimate]]:
+    """Return rows, a table of influences and estimates of the ball dropped into beads."""
+    every = read_rows(HERE / "ball_into_beads.csv")
+    drops = [row for row in every if "_drop_" in row["name"]]
+    heaps = read_rows(HERE / "repose.csv")
+    slope = mean_of([math.tan(math.radians(row["angle_deg"])) for row in heaps]) if heaps else UNMEASURED
+    law = 0.14 / slope.value
+    plain = [row for row in drops if row["density"] == LIGHT and row["fall"] == FALL]
+    sized = plain + [row for row in every if "_diameter_" in row["name"]]
+    told = f"0.14 / {slope.value:.2f} = {law:.3f}, unverified"
+    rows = []
+    for where, depth_of in (("the mean surface", below_mean_surface), ("the first touch", below_first_touch)):
+        density, total = drop_exponents(drops, depth_of(drops))
+        prefactor = mean_of(list(depth_of(drops) / scale(drops)))
+        rows += [
+            line(f"depth below {where}: exponent of the ball's density", 0.5, density, 0.05, "1/2"),
+            line(f"depth below {where}: exponent of the total drop distance", 1 / 3, total, 0.05, "1/3"),
+            line(f"depth below {where}: prefactor", law, prefactor, 0.25 * law, told),
+        ]
+        if len(sized) > 2:
+            exponent = diameter_exponent(sized, depth_of(sized))
+            rows.append(line(f"depth below {where}: exponent of the ball's diameter", 2 / 3, exponent, 0.05, "2/3"))
+    rows.append(line("stopping time over depth / impact speed", 3.0, mean_of(stopping(drops)), 0.75, "3"))
+    of_drops(drops, slope, work, HERE / "ball_into_beads.png")
+    others = [
+        f"| {row['name']} | {int(row['beads'])} | {row['deepest'] * 100:.2f} | {touch * 100:.2f} | "
+        f"{row['bulk_density']:.0f} | {row['stopping_time'] * row['impact_speed'] / row['deepest']:.2f} |"
+        for row, touch in zip(every, below_first_touch(every), strict=True)
+    ]
+    table = (
+        "| drop | beads | depth [cm] | below first touch [cm] | bulk density [kg/m3] | stopping time v/d |\n"
+        "|---|---|---|---|---|---|\n"
+    )
+    density, total = drop_exponents(drops, below_mean_surface(drops))
+    return rows, table + "\n".join(others), {"slope": slope, "density": density, "total": total}
+
+
+def gravity_part() -> tuple[list[tuple[str, bool]], str]:
+    """Return rows and a table of the sphere that settles under other gravities."""
+    rows = read_rows(HERE / "settling_in_other_gravities.csv")
+    if len({row["share"] for row in rows}) < 3:
+        return [], NOT_YET
+    found = gravity_exponents(rows)
+    lines = [
+        line("settling: exponent of depth over gravity", 0.0, found["depth"], 0.03, "0"),
+        line("settling: exponent of the time until it stops", -0.5, found["stopping_time"], 0.03, "-1/2"),
+        line("settling: exponent of the time to .9 of the depth", -0.5, found["time_to_90"], 0.03, "-1/2"),
+    ]
+    of_gravities(rows, DIAMETER, HERE / "settling_in_other_gravities.png")
+    table = (
+        "![settling](experiments/settling_in_other_gravities.png)\n\n"
+        "| gravity over Earth's | rows | depth [mm] | time until it stops, sqrt(D/g) | solid fraction |\n"
+        "|---|---|---|---|---|"
+    )
+    for share in sorted({row["share"] for row in rows}, reverse=True):
+        own = [row for row in rows if row["share"] == share]
+        times = column(own, "stopping_time") / math.sqrt(DIAMETER / (9.81 * share))
+        table += (
+            f"\n| {share:g} | {len(own)} | {column(own, 'depth').mean() * 1e3:.2f} +- "
+            f"{column(own, 'depth').std() * 1e3:.2f} | {times.mean():.2f} | "
+            f"{column(own, 'bulk_density').mean() / 1000.0:.3f} |"
+        )
+    return lines, table
+
+
+def grains_part() -> tuple[list[tuple[str, bool]], str]:
+    """Return rows and a table of the grain shot at its own kind."""
+    every = read_rows(HERE / "grain_on_its_own_kind.csv")
+    if not every:
+        return [], NOT_YET
+    kinds = {name: [row for row in every if row["kind"] == name] for name in dict.fromkeys(r["kind"] for r in every)}
+    base = kinds["basalt"]
+    speed = mean_of(speeds(base))
+    few = Estimate(float(np.mean(column(base, "risen_0.1") < 10)), math.nan, len(base))
+    low = Estimate(float(np.mean(column(base, "median_rise") < 1.0)), math.nan, len(base))
+    lines = [
+        line("own kind: mean speed out over speed in, 0 where the grain stays", 0.2, speed, 0.05, "about .20"),
+        line("own kind: the same of those that leave upwards", 0.2, mean_of(leaving(base)), 0.05, "about .20"),
+        line("own kind: share of impacts with fewer than 10 grains ejected", 1.0, few, 0.5, "typical"),
+        line("own kind: share of impacts whose median grain rises less than its diameter", 1.0, low, 0.5, "typical"),
+    ]
+    of_grains(kinds, HERE / "grain_on_its_own_kind.png")
+    table = (
+        "![grains](experiments/grain_on_its_own_kind.png)\n\n"
+        "| bed | impacts | mean speed ratio | of those that leave | share that stays "
+        "| rise > .1 | > .5 | > 1 grain | median rise [grains] |\n"
+        "|---|---|---|---|---|---|---|---|---|"
+    )
+    for name, rows in kinds.items():
+        stayed = 1.0 - len(leaving(rows)) / len(rows)
+        table += (
+            f"\n| {name} | {len(rows)} | {said(mean_of(speeds(rows)))} | {said(mean_of(leaving(rows)))} "
+            f"| {stayed:.2f} | "
+            + " | ".join(f"{column(rows, f'risen_{rise}').mean():.2f}" for rise in ("0.1", "0.5", "1"))
+            + f" | {np.median(column(rows, 'median_rise')):.2f} |"
+        )
+    return lines, table
+
+
+def similar() -> str:
+    """Return the sentence on the drop at another gravity."""
+    rows = read_rows(HERE / "similarity.csv")
+    same = all(row["same_bits"] == "True" for row in rows)
+    last = rows[-1]
+    return (
+        f"A drop under {last['gravity']:.2g} m/s2, with the modulus times L^2 and the speed times L = 1/128, ends "
+        f"{'bit for bit' if same else 'within rounding'} where the same drop ends on Earth ({int(last['beads'])} "
+        f"beads, {int(last['steps'])} steps; largest difference {last['largest_difference']:g} ball diameters)."
+    )
+
+
+def main() -> None:
+    """Write the page."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--work", type=Path, required=True, help="folder with the paths of the drops")
+    beads, drops, found = beads_part(parser.parse_args().work)
+    gravities, settled = gravity_part()
+    grains, impacts = grains_part()
+    lines = beads + gravities + grains
+    yes = sum(agrees for _, agrees in lines)
+    first = (
+        f"{yes} of {len(lines)} quantities agree. Exponents of depth: {said(found['density'])} of the density (1/2), "
+        f"{said(found['total'])} of the drop distance (1/3)."
+    )
+    page = TEXT.format(
+        why_beads=WHY_BEADS, why_gravity=WHY_GRAVITY, why_grains=WHY_GRAINS,
+        first="\n".join(textwrap.wrap(first, 98)), table=HEAD + "\n".join(text for text, _ in lines),
+        drops=drops, settled=settled, impacts=impacts, similar="\n".join(textwrap.wrap(similar(), 98)),
+        **{f"from_{key}": "\n".join(textwrap.wrap(came_from(name), 98)) for key, name in (
+            ("beads", "ball_into_beads"), ("gravity", "settling_in_other_gravities"),
+            ("grains", "grain_on_its_own_kind"))},
+    )  # fmt: skip
+    PAGE.write_text(page)
+    print("\n".join(text for text, _ in lines))
+
+
+if __name__ == "__main__":
+    main()
