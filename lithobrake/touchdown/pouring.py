@@ -21,6 +21,8 @@ FALLS_PATIENCE = 25  # after so many times of that the pour is given up
 FALLEN = 1e-3  # kinetic ratio below which the grains lie, and only have to settle
 PERIODS_LOOSENED = 10.0  # of a grain's small oscillation at its rest overlap under the local gravity
 TOPPLING_TIMES = 3.0  # sqrt(diameter / gravity), for which a bed must rest before its gravity is lowered
+# A bed in which a grain creeps on, at a hundredth of its weight against the drag, is poured anew, so often in all.
+POURS = 3
 RUNG = 100.0  # gravity under which loosened grains fall, over the local one: they fall ten times as fast
 
 
@@ -76,12 +78,23 @@ class Recorder:
 
 
 def pour_bed(recipe: BedRecipe, progress: Progress | None = None) -> Bed:
-    """Pour grains into a box and let them settle under the local gravity.
+    """Pour grains into a box and let them settle under the local gravity; pour others where one of them creeps on.
 
     Raises ValueError where the bed does not come to rest.
     """
     tell = progress or (lambda fraction, what: None)
-    generator = np.random.default_rng(recipe.seed)
+    pour = 0
+    while True:
+        try:
+            return _poured(recipe, np.random.default_rng([recipe.seed, pour] if pour else recipe.seed), tell)
+        except settling.CreepingBedError:
+            pour += 1
+            if pour == POURS:
+                raise
+            tell(0.0, "pouring grains anew")
+
+
+def _poured(recipe: BedRecipe, generator: np.random.Generator, tell: Progress) -> Bed:
     diameter = recipe.sizes.draw(generator.random(recipe.grain_count))
     grains = [make_grain(generator, recipe.cloud_point_count, d) for d in diameter]
     position, orientation = rain(generator, grains, recipe.width)
@@ -213,7 +226,7 @@ def settle(
 
     world.drag = drag
     if not settling.rests(world, period, damped + undamped, at_rest, check):
-        raise ValueError(settling.restless(world))
+        raise (settling.CreepingBedError if last else ValueError)(settling.restless(world))
     recorder.frame(world)
     tell(1.0)
 

@@ -25,6 +25,10 @@ QUIET_STEPS = 8  # between looks at what the largest safe step has become
 CHECKS_PER_PERIOD = 20
 
 
+class CreepingBedError(ValueError):
+    """A bed that rested under more than the local gravity does not rest under that."""
+
+
 def rest_period(material: Material, diameter: float, gravity: float) -> float:
     """Return the period [s] of a grain's small oscillation about its rest on another, under gravity [m/s2].
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from lithobrake.touchdown import Bed, GrainSizes, pour_bed, settling
+from lithobrake.touchdown import Bed, GrainSizes, pour_bed, pouring, settling
 from lithobrake.touchdown.grains import make_grain
 from lithobrake.touchdown.surface import height_map
 
@@ -114,6 +114,39 @@ def test_same_seed_same_bits_other_seed_other_bed(bed, recipe):
     again, other = (pour_bed(recipe(seed=seed)) for seed in (3, 4))
     assert np.array_equal(bed.position, again.position)
     assert not np.array_equal(bed.position, other.position)
+
+
+def test_a_bed_in_which_a_grain_creeps_on_is_poured_anew(recipe, monkeypatch):
+    few, poured = recipe(grain_count=6, width=(0.24, 0.24)), []
+
+    def creeping_at_first(of, generator, tell):
+        poured.append(generator.random())
+        if len(poured) < 3:
+            raise settling.CreepingBedError("a grain creeps on")
+        return of
+
+    monkeypatch.setattr(pouring, "_poured", creeping_at_first)
+    assert pour_bed(few) is few
+    # Every pour has random numbers of its own, the first those of the seed alone.
+    assert len(set(poured)) == pouring.POURS == 3
+    assert poured[0] == np.random.default_rng(few.seed).random()
+    poured.clear()
+    monkeypatch.setattr(pouring, "POURS", 2)
+    with pytest.raises(ValueError, match="a grain creeps on"):
+        pour_bed(few)
+
+
+def test_a_bed_that_rests_only_under_more_gravity_is_said_to_creep(recipe, monkeypatch):
+    rests = settling.rests
+
+    def never_at_last(world, period, periods_held, at_rest, each_check=lambda held: None):
+        local = np.linalg.norm(world.gravity) < 1e-3
+        return False if local else rests(world, period, periods_held, at_rest, each_check)
+
+    monkeypatch.setattr(settling, "rests", never_at_last)
+    monkeypatch.setattr(pouring, "POURS", 1)
+    with pytest.raises(settling.CreepingBedError, match="did not come to rest within 1200 periods"):
+        pour_bed(recipe(grain_count=6, width=(0.24, 0.24)))
 
 
 def test_height_map_sees_the_top_of_every_grain(bed):
