@@ -1,7 +1,7 @@
 """Coefficients of most likelihood of a stochastic expansion, from a large noise down to a small one.
 
 The likelihood of a run is an integral over the latent variable, which nobody saw. With little noise it has many peaks,
-with much noise one; the best coefficients are therefore followed from much to little. Source: [Zhu-2023].
+with much noise few; the best coefficients are therefore followed from much to little. Source: [Zhu-2023].
 """
 
 from collections.abc import Iterator, Sequence
@@ -64,13 +64,15 @@ class LatentProblem:
     def path(self, noise_shares: Sequence[float]) -> Iterator[tuple[float, Array]]:
         """Noise and coefficients for each share of the scatter about the mean, from the largest share on."""
         mean, scatter = self._mean_fit()
-        # The expansion begins with all scatter that the noise leaves; at exactly none the gradient would be zero.
-        spread = scatter * np.sqrt(max(1.0 - noise_shares[0] ** 2, 0.01))
         alone = (self.terms.indices[:, :-1] == 0).all(axis=1) & (self.terms.indices[:, -1] == 1)
-        coefficients = mean + spread * alone
+        found: list[Array] = []
         for share in noise_shares:
-            coefficients = self.climbed(coefficients, share * scatter)
-            yield share * scatter, coefficients
+            noise = share * scatter
+            # A line in the latent variable has all scatter that the noise leaves; without it the gradient is zero.
+            starts = [mean + scatter * np.sqrt(1.0 - share**2) * alone, *found]
+            # What was followed may have gone up the lesser of two peaks, which the likelihood shows at less noise.
+            found = [min((self.climbed(start, noise) for start in starts), key=lambda one: self.loss(one, noise)[0])]
+            yield noise, found[0]
 
     def _mean_fit(self) -> tuple[Array, float]:
         """Least-squares coefficients of the terms without the latent variable [term_count], and the scatter left."""

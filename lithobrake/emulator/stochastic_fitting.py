@@ -5,19 +5,19 @@ Source: [Zhu-2023].
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lithobrake.chaos.abstract_distribution import Distribution
 from lithobrake.chaos.counts import whole_number
-from lithobrake.chaos.polynomials import Array
 from lithobrake.chaos.threads import one_thread
 from lithobrake.emulator.latent_likelihood import LatentProblem
 from lithobrake.emulator.latent_terms import LATENTS, LatentTerms, latent_terms
 from lithobrake.emulator.stochastic_expansion import StochasticExpansion, problem_of
 from lithobrake.emulator.training import TrainingRuns, checked_runs
-from lithobrake.emulator.validation import folds_of, mean_by_groups
+from lithobrake.emulator.validation import folds_of
 
 HIGHEST_DEGREE = 3
 # With fewer runs to a term, likelihood would follow single runs: such degrees are not looked at.
@@ -55,43 +55,35 @@ def fit_stochastic_expansion(
         raise ValueError(f"latent is {latent!r}, but must be one of {', '.join(LATENTS)}, or None to choose")
     runs = checked_runs(inputs, x, y, groups, None, None, lower, upper, (), (output_name,))
     weights, group = np.ones(len(runs.x)), runs.group[runs.has_outputs]
-    degrees = [
-        [_held_out(problem_of(runs, terms, weights), group) for terms in of_degree]
-        for of_degree in _candidates(runs, degree, latent)
-    ]
-    chosen, *others = (max(of_degree, key=lambda one: one.logarithms.mean()) for of_degree in degrees)
-    for other in others:
-        gain, error = mean_by_groups(other.logarithms - chosen.logarithms, group)
-        # Of several degrees one is the best by luck, and a lower one is safer between the runs.
-        chosen = other if gain > error else chosen
+    tried = [_held_out(problem_of(runs, terms, weights), group) for terms in _candidates(runs, degree, latent)]
+    chosen = max(tried, key=lambda one: one.logarithm)
     shares = NOISE_SHARES[: chosen.share_count]
     noise, coefficients = list(problem_of(runs, chosen.terms, weights).path(shares))[-1]
-    held_out = float(chosen.logarithms.mean())
-    return StochasticExpansion(runs, chosen.terms, coefficients, noise, held_out, weights)
+    return StochasticExpansion(runs, chosen.terms, coefficients, noise, chosen.logarithm, weights)
 
 
 @dataclass(frozen=True)
 class _HeldOut:
-    """Terms, how many shares of the noise are gone down for the best, and logarithms of the densities of runs in
-    groups left out [output_run_count].
+    """Terms, how many shares of the noise are gone down for the best, and mean logarithm of the density of a run of
+    groups left out.
     """
 
     terms: LatentTerms
     share_count: int
-    logarithms: Array
+    logarithm: float
 
 
-def _candidates(runs: TrainingRuns, degree: int | None, latent: str | None) -> list[list[LatentTerms]]:
-    """Terms that may be chosen, a list for each degree; raises ValueError for a degree of too many."""
+def _candidates(runs: TrainingRuns, degree: int | None, latent: str | None) -> list[LatentTerms]:
+    """Terms of all degrees and latent variables that may be chosen; raises ValueError for a degree of too many."""
     degrees = range(HIGHEST_DEGREE + 1) if degree is None else [whole_number("degree", degree, 0, HIGHEST_DEGREE)]
     latents = LATENTS if latent is None else (latent,)
-    found = [[latent_terms(runs.inputs, one, law) for law in latents] for one in degrees]
+    found = [latent_terms(runs.inputs, one, law) for one, law in product(degrees, latents)]
     # No inputs are always a candidate: that is the law to fall back on.
-    kept = [one for one in found if one[0].degree == 0 or RUNS_PER_TERM * len(one[0].indices) <= len(runs.y)]
+    kept = [one for one in found if one.degree == 0 or RUNS_PER_TERM * len(one.indices) <= len(runs.y)]
     if not kept:
         raise ValueError(
-            f"degree is {degree}, which has {len(found[0][0].indices)} terms and needs {RUNS_PER_TERM} runs for each, "
-            f"but {len(runs.y)} runs have an output: lower it, or make more runs"
+            f"degree is {degree}, which has {len(found[0].indices)} terms and needs {RUNS_PER_TERM} runs for each, but "
+            f"{len(runs.y)} runs have an output: lower it, or make more runs"
         )
     return kept
 
@@ -100,13 +92,14 @@ def _held_out(problem: LatentProblem, group: NDArray[np.int64]) -> _HeldOut:
     """Follow the noise down until runs in groups left out are foretold worse than before."""
     fold = folds_of(group, FOLDS)
     tests = [fold == number for number in range(int(fold.max()) + 1)]
-    best = _HeldOut(problem.terms, 0, np.full(len(group), -np.inf))
+    best = _HeldOut(problem.terms, 0, -np.inf)
     # All folds go down together, so that what single runs make of a little noise need not be found.
     for count, steps in enumerate(zip(*(problem.of(~test).path(NOISE_SHARES) for test in tests), strict=True), 1):
-        logarithms = np.empty(len(group))
-        for test, (noise, coefficients) in zip(tests, steps, strict=True):
-            logarithms[test] = problem.of(test).log_densities(coefficients, noise)[0]
-        if logarithms.mean() <= best.logarithms.mean():
+        total = sum(
+            problem.of(test).log_densities(coefficients, noise)[0].sum()
+            for test, (noise, coefficients) in zip(tests, steps, strict=True)
+        )
+        if total <= best.logarithm * len(group):
             break
-        best = _HeldOut(problem.terms, count, logarithms)
+        best = _HeldOut(problem.terms, count, float(total) / len(group))
     return best

@@ -67,7 +67,7 @@ def choices_by_groups(runs: TrainingRuns, indices: Indices, matrix: Array) -> tu
         energy[:, fold.test] = _energies(runs, matrix, fold, fold.law, BANDWIDTHS)
         energy_of_rows[fold.test] = _energies(runs, matrix, fold, fold.rows, BANDWIDTHS[:1])[0]
     best = int(np.argmin(energy.mean(axis=1)))
-    gain, error = mean_by_groups(energy_of_rows - energy[best], group)
+    gain, error = _mean_by_groups(energy_of_rows - energy[best], group)
     choices = best_choices(indices, matrix, runs.coordinates, BANDWIDTHS[best])
     if gain <= 0.0:
         choices, energy[best], gain, error = rows_alone(outputs), energy_of_rows, 0.0, 0.0
@@ -128,7 +128,7 @@ def _members(runs: TrainingRuns, matrix: Array, test: NDArray[np.bool_], law: La
     return from_coordinate(location[:, None] + scale[:, None] * law.rows, low, high)
 
 
-def mean_by_groups(values: Array, group: NDArray[np.int64]) -> tuple[float, float]:
+def _mean_by_groups(values: Array, group: NDArray[np.int64]) -> tuple[float, float]:
     """Mean of values [run_count] and its standard error, as groups and not runs are independent."""
     numbers = np.unique(group, return_inverse=True)[1]
     sums = np.bincount(numbers, weights=values - values.mean())

@@ -149,12 +149,23 @@ def test_the_gradient_is_that_of_the_loss(latent: str) -> None:
     np.testing.assert_allclose(problem.loss(at, 0.4)[1], differences, atol=1e-8)
 
 
-def test_inputs_are_used_where_they_count_alone() -> None:
-    x, y = runs_of(ONE_INPUT, line)
+def test_degree_and_latent_variable_are_chosen_by_groups_left_out() -> None:
+    x, _ = runs_of(ONE_INPUT, line)
     assert LINE.degree >= 1
-    without = emulator.fit_stochastic_expansion(ONE_INPUT, x, np.random.default_rng(3).gamma(2.0, size=RUNS))
-    assert without.degree == 0
-    assert np.ptp(without.mean([[-1.0], [1.0]])) == 0.0
+    flat = np.random.default_rng(3).random(RUNS)
+    tried = {
+        (degree, latent): emulator.fit_stochastic_expansion(ONE_INPUT, x, flat, degree=degree, latent=latent).held_out
+        for degree in (0, 1, 2, 3)
+        for latent in ("normal", "uniform")
+    }
+    chosen = emulator.fit_stochastic_expansion(ONE_INPUT, x, flat)
+    assert chosen.held_out == tried[chosen.degree, chosen.latent] == max(tried.values())
+
+
+def test_of_degree_zero_are_no_inputs() -> None:
+    model = emulator.fit_stochastic_expansion(ONE_INPUT, *runs_of(ONE_INPUT, line), degree=0, latent="normal")
+    quantiles = model.quantile([[-1.0], [1.0]], [0.1, 0.9])
+    np.testing.assert_array_equal(quantiles[0], quantiles[1])
 
 
 def test_runs_without_an_output_are_left_out() -> None:
