@@ -1,6 +1,6 @@
 """What a stochastic expansion is worth beside the default emulator, on synthetic landings with known laws.
 
-    python benchmarks/stochastic_expansion.py [--studies 2]
+    python benchmarks/stochastic_expansion.py [--studies 5]
 
 fits both to that many studies of 300 runs a truth and keeps mean W2**2 / variance of the speed's conditional law, at 30
 soils that were not run, in benchmarks/results/stochastic_expansion.csv, and beside it in .json how they were made.
@@ -61,7 +61,7 @@ def row(name: str, truth: Truth, seed: int) -> dict[str, Any]:
 def main() -> None:
     """Make all rows and write them."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--studies", type=int, default=2)
+    parser.add_argument("--studies", type=int, default=5)
     studies = parser.parse_args().studies
     begin = origin(f"benchmarks/stochastic_expansion.py --studies {studies}")
     rows = []

@@ -13,6 +13,7 @@ from scipy import optimize
 
 from lithobrake.chaos.polynomials import Array
 from lithobrake.emulator.latent_terms import LatentTerms
+from lithobrake.emulator.training import TrainingRuns
 
 # Relative change of the mean logarithm of the density at which a climb ends.
 TOLERANCE = 1e-7
@@ -88,6 +89,12 @@ class LatentProblem:
                 "y does not scatter about a polynomial of the inputs, so it has no density: use lithobrake.chaos.fit"
             )
         return coefficients, scatter
+
+
+def problem_of(runs: TrainingRuns, terms: LatentTerms, weights: Array) -> LatentProblem:
+    """The runs with outputs as a problem of likelihood; weights: how often each run counts [run_count]."""
+    there = runs.has_outputs
+    return LatentProblem(terms, terms.factors(runs.x[there]), runs.coordinates[:, 0], weights[there])
 
 
 def branches(terms: LatentTerms, factors: Array, coefficients: Array) -> Array:

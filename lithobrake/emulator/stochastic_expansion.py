@@ -19,7 +19,7 @@ from lithobrake.chaos.polynomials import Array, hermite
 from lithobrake.chaos.storage import indices_from_json, read, write
 from lithobrake.chaos.threads import one_thread
 from lithobrake.emulator.coordinates import from_coordinate, with_slope
-from lithobrake.emulator.latent_likelihood import LatentProblem, branches
+from lithobrake.emulator.latent_likelihood import LatentProblem, branches, problem_of
 from lithobrake.emulator.latent_terms import LATENT_DEGREE, LATENTS, LatentTerms
 from lithobrake.emulator.storage import column_from_json, runs_from_json, runs_to_json
 from lithobrake.emulator.training import TrainingRuns, checked_points
@@ -70,7 +70,8 @@ class StochasticExpansion:
         self, x: ArrayLike, count: int, seed: int = 0, *, lower: ArrayLike | None = None, upper: ArrayLike | None = None
     ) -> Array:
         """Draw `count` outputs at each x [point_count, input_count], shape [point_count, count]."""
-        shape = len(by_power := self._branches(x)), whole_number("count", count, 1)
+        by_power = self._branches(x)
+        shape = len(by_power), whole_number("count", count, 1)
         random = np.random.default_rng(seed)
         polynomials = self.terms.drawn(shape[0] * shape[1], random).reshape(-1, *shape)
         coordinates = np.einsum("pk,kpc->pc", by_power, polynomials) + self.noise * random.standard_normal(shape)
@@ -175,12 +176,6 @@ class StochasticExpansion:
         for weight, mean in zip(self.terms.rule[1], means.T, strict=True):
             average += weight * function((coordinates - mean[:, None]) / self.noise)
         return average
-
-
-def problem_of(runs: TrainingRuns, terms: LatentTerms, weights: Array) -> LatentProblem:
-    """The runs with outputs as a problem of likelihood; weights: how often each run counts [run_count]."""
-    there = runs.has_outputs
-    return LatentProblem(terms, terms.factors(runs.x[there]), runs.coordinates[:, 0], weights[there])
 
 
 def load_stochastic_expansion(path: str | os.PathLike[str]) -> StochasticExpansion:

@@ -13,9 +13,9 @@ from numpy.typing import ArrayLike, NDArray
 from lithobrake.chaos.abstract_distribution import Distribution
 from lithobrake.chaos.counts import whole_number
 from lithobrake.chaos.threads import one_thread
-from lithobrake.emulator.latent_likelihood import LatentProblem
+from lithobrake.emulator.latent_likelihood import LatentProblem, problem_of
 from lithobrake.emulator.latent_terms import LATENTS, LatentTerms, latent_terms
-from lithobrake.emulator.stochastic_expansion import StochasticExpansion, problem_of
+from lithobrake.emulator.stochastic_expansion import StochasticExpansion
 from lithobrake.emulator.training import TrainingRuns, checked_runs
 from lithobrake.emulator.validation import folds_of
 

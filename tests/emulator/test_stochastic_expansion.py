@@ -10,8 +10,8 @@ from scipy import integrate, stats
 
 from lithobrake import emulator
 from lithobrake.chaos import Uniform
+from lithobrake.emulator.latent_likelihood import problem_of
 from lithobrake.emulator.latent_terms import latent_terms
-from lithobrake.emulator.stochastic_fitting import problem_of
 
 RUNS = 300
 ONE_INPUT = {"x": Uniform(-1.0, 1.0)}
