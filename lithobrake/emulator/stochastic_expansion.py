@@ -127,8 +127,8 @@ class StochasticExpansion:
     def reweighted(self, weights: ArrayLike) -> "StochasticExpansion":
         """Fit the coefficients anew with each run counted as often as weights say [run_count]; choices are kept."""
         counted = np.asarray(weights, dtype=float)
-        problem = replace(self._problem, weights=counted[self.runs.has_outputs])
-        return replace(self, coefficients=problem.climbed(self.coefficients, self.noise), weights=counted)
+        coefficients = problem_of(self.runs, self.terms, counted).climbed(self.coefficients, self.noise)
+        return replace(self, coefficients=coefficients, weights=counted)
 
     def refits(self, count: int = 200, seed: int = 0) -> list["StochasticExpansion"]:
         """Fit anew to groups drawn with replacement, `count` times: how far the law itself is uncertain."""

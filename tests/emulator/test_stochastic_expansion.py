@@ -238,5 +238,8 @@ def test_questions_that_have_no_answer_are_refused() -> None:
         LINE.density([[0.0], [0.1]], [[1.0], [2.0], [3.0]])
     with pytest.raises(ValueError, match="1 of 1 points outside"):
         LINE.mean([[2.0]])
+    for weights in (np.ones(3), np.zeros(RUNS), np.full(RUNS, -1.0), np.full(RUNS, np.nan)):
+        with pytest.raises(ValueError, match="weights have shape"):
+            LINE.reweighted(weights)
     with pytest.raises(ValueError, match="count is 0"):
         LINE.sample([[0.0]], 0)
