@@ -10,11 +10,15 @@ if TYPE_CHECKING:
     from lithobrake.emulator.model import Draws as Draws
     from lithobrake.emulator.model import Emulator as Emulator
     from lithobrake.emulator.model import load as load
+    from lithobrake.emulator.stochastic_expansion import StochasticExpansion as StochasticExpansion
+    from lithobrake.emulator.stochastic_expansion import load_stochastic_expansion as load_stochastic_expansion
+    from lithobrake.emulator.stochastic_fitting import fit_stochastic_expansion as fit_stochastic_expansion
     from lithobrake.emulator.validation import Scores as Scores
 
 _PLACES = {
-    "Draws": "model", "Emulator": "model", "MeanLaw": "mean_law", "Scores": "validation", "fit": "fitting",
-    "load": "model",
+    "Draws": "model", "Emulator": "model", "MeanLaw": "mean_law", "Scores": "validation",
+    "StochasticExpansion": "stochastic_expansion", "fit": "fitting", "fit_stochastic_expansion": "stochastic_fitting",
+    "load": "model", "load_stochastic_expansion": "stochastic_expansion",
 }  # fmt: skip
 
 

@@ -17,6 +17,21 @@ def to_coordinate(y: Array, lower: Array, upper: Array) -> Array:
     return np.where(has_lower | has_upper, np.log(above) - np.log(below), y)
 
 
+def with_slope(y: Array, lower: Array, upper: Array) -> tuple[Array, Array]:
+    """Coordinates of any outputs, and derivatives of them by the output; beyond a bound infinite, with derivative 0.
+
+    Bounds broadcast to the shape of y.
+    """
+    low, high = np.broadcast_to(lower, y.shape), np.broadcast_to(upper, y.shape)
+    within = np.clip(y, np.nextafter(low, np.inf), np.nextafter(high, -np.inf))
+    coordinate = np.where(y <= low, -np.inf, np.where(y >= high, np.inf, to_coordinate(within, low, high)))
+    # Of an infinite bound nothing is left; at the smallest numbers a derivative would overflow.
+    with np.errstate(over="ignore"):
+        slope = np.minimum(1.0 / (within - low) + 1.0 / (high - within), np.finfo(float).max)
+    slope = np.where(np.isfinite(low) | np.isfinite(high), slope, 1.0)
+    return coordinate, np.where(np.isinf(coordinate), 0.0, slope)
+
+
 def from_coordinate(coordinate: Array, lower: Array, upper: Array) -> Array:
     """Outputs of coordinates, strictly between bounds that broadcast to their shape."""
     has_lower, has_upper = np.isfinite(lower), np.isfinite(upper)

@@ -18,7 +18,7 @@ from lithobrake.emulator.outcome_classes import fit_classes
 from lithobrake.emulator.residual_rows import drawn_rows, row_weights, smoothed, smoothing
 from lithobrake.emulator.significance import found_inputs
 from lithobrake.emulator.storage import FORMAT, Parts, content_of, parts_of
-from lithobrake.emulator.training import checked_bounds, checked_points
+from lithobrake.emulator.training import checked_points
 
 # Draws that are made at once: bounds the memory, and belongs to what a seed gives.
 _BLOCK = 1 << 18
@@ -103,7 +103,7 @@ class Emulator(Parts):
         """Draw as `sample` does, and say with which outcome and from which run."""
         whole_number("count", count, 1)
         matrix = self._matrix(x)
-        low, high = self._bounds(lower, upper, len(matrix))
+        low, high = self.runs.bounds_at(lower, upper, len(matrix))
         random = np.random.default_rng(seed)
         parts = []
         step = max(1, _BLOCK // max(count, len(self.runs.y)))
@@ -121,16 +121,7 @@ class Emulator(Parts):
         TrainingRuns within a group stay as they are, and what was chosen by leaving groups out is kept.
         Source: [Field-2007]; [Huang-2018] (few groups).
         """
-        random = np.random.default_rng(seed)
-        group_count = int(self.runs.group.max()) + 1
-        refits: list[Emulator] = []
-        while len(refits) < whole_number("count", count, 1):
-            drawn = np.bincount(random.integers(group_count, size=group_count), minlength=group_count)
-            weights = drawn[self.runs.group].astype(float)
-            # Groups without any outputs, drawn alone, have no law.
-            if (weights[self.runs.has_outputs] > 0.0).sum() > 1:
-                refits.append(self.reweighted(weights))
-        return refits
+        return [self.reweighted(weights) for weights in self.runs.weights_of_refits(count, seed)]
 
     @one_thread()
     def reweighted(self, weights: ArrayLike) -> "Emulator":
@@ -179,19 +170,6 @@ class Emulator(Parts):
 
     def _linear(self, matrix: Array) -> Array:
         return matrix[:, : len(self.runs.inputs)]
-
-    def _bounds(self, lower: ArrayLike | None, upper: ArrayLike | None, count: int) -> tuple[Array, Array]:
-        """Bounds [count, output_count] at points: those given, or those of the runs where they never differed."""
-        known = []
-        for name, given, of_runs in (("lower", lower, self.runs.lower), ("upper", upper, self.runs.upper)):
-            if given is None and (of_runs != of_runs[0]).any():
-                raise ValueError(f"{name} is missing, but it differed between the runs: give it at each point")
-            known.append(of_runs[0] if given is None else given)
-        tables = checked_bounds(known[0], known[1], (count, len(self.output_names)))
-        for name, table, of_runs in zip(("lower", "upper"), tables, (self.runs.lower, self.runs.upper), strict=True):
-            if (np.isfinite(table) != np.isfinite(of_runs[0])).any():
-                raise ValueError(f"{name} must be finite for the same outputs as in the runs: give it as fit was given")
-        return tables
 
     def _block(
         self, matrix: Array, count: int, lower: Array, upper: Array, random: np.random.Generator

@@ -47,11 +47,6 @@ def content_of(model: Parts, statement: str) -> dict[str, Any]:
     """The parts of an emulator as JSON values."""
     runs = model.runs
     return {
-        "inputs": inputs_to_json(runs.inputs),
-        "output_names": list(runs.output_names),
-        "riders": [runs.output_names[k] for k in runs.riders],
-        "outcome_names": list(runs.outcome_names),
-        "output_outcome": runs.outcome_names[runs.output_outcome],
         "statement": statement,
         "scores": {key: getattr(model.scores, key) for key in SCORES},
         "crps_skill": model.scores.crps_skill.tolist(),
@@ -66,21 +61,16 @@ def content_of(model: Parts, statement: str) -> dict[str, Any]:
         "class_intercepts": model.classes.intercepts.tolist(),
         "class_slopes": model.classes.slopes.tolist(),
         "class_never": model.classes.never.tolist(),
-        "group": runs.group.tolist(),
-        "outcome": runs.outcome.tolist(),
         "weights": model.weights.tolist(),
-        "x": runs.x.tolist(),
-        "y": runs.y.tolist(),
-        "lower": _table_to_json(runs.lower),
-        "upper": _table_to_json(runs.upper),
         "rows": model.law.rows.tolist(),
         "pit": model.scores.pit.tolist(),
+        **runs_to_json(runs),
     }
 
 
 def parts_of(content: dict[str, Any]) -> Parts:
     """The parts that `content_of` wrote; raises ValueError where they do not fit together."""
-    runs = _runs(content)
+    runs = runs_from_json(content)
     modelled, inputs = len(runs.modelled), len(runs.inputs)
     indices = indices_from_json(content["multi_indices"], inputs)
     linear = multi_index_set(inputs, 1)[1:]
@@ -92,7 +82,7 @@ def parts_of(content: dict[str, Any]) -> Parts:
         tuple(_ladder_from_json(rows, inputs) for rows in content["scale_ladders"]),
         float("inf") if bandwidth is None else float(bandwidth),
     )
-    weights = _column("weights", content["weights"], len(runs.x))
+    weights = column_from_json("weights", content["weights"], len(runs.x))
     law = Law(
         _table("location", content["location"], (1 + len(indices), modelled)),
         _table("log_scale", content["log_scale"], (1 + inputs, modelled)),
@@ -101,14 +91,14 @@ def parts_of(content: dict[str, Any]) -> Parts:
     )
     count = len(runs.outcome_names)
     classes = OutcomeClasses(
-        _column("class_intercepts", content["class_intercepts"], count),
+        column_from_json("class_intercepts", content["class_intercepts"], count),
         _table("class_slopes", content["class_slopes"], (count, inputs)),
-        _column("class_never", content["class_never"], count),
+        column_from_json("class_never", content["class_never"], count),
     )
     scores = Scores(
         **{key: float(content["scores"][key]) for key in SCORES},
-        crps_skill=_column("crps_skill", content["crps_skill"], modelled),
-        band_90=_column("band_90", content["band_90"], modelled),
+        crps_skill=column_from_json("crps_skill", content["crps_skill"], modelled),
+        band_90=column_from_json("band_90", content["band_90"], modelled),
         pit=_table("pit", content["pit"], (len(runs.y), modelled)),
     )
     if len(choices.location) != modelled or len(choices.scale) != modelled:
@@ -117,12 +107,29 @@ def parts_of(content: dict[str, Any]) -> Parts:
     return Parts(runs, Terms(runs.inputs, indices), choices, penalty, weights, law, classes, scores)
 
 
-def _runs(content: dict[str, Any]) -> TrainingRuns:
+def runs_to_json(runs: TrainingRuns) -> dict[str, Any]:
+    """Runs as JSON values."""
+    return {
+        "inputs": inputs_to_json(runs.inputs),
+        "output_names": list(runs.output_names),
+        "riders": [runs.output_names[k] for k in runs.riders],
+        "outcome_names": list(runs.outcome_names),
+        "output_outcome": runs.outcome_names[runs.output_outcome],
+        "group": runs.group.tolist(),
+        "outcome": runs.outcome.tolist(),
+        "x": runs.x.tolist(),
+        "y": runs.y.tolist(),
+        "lower": _table_to_json(runs.lower),
+        "upper": _table_to_json(runs.upper),
+    }
+
+
+def runs_from_json(content: dict[str, Any]) -> TrainingRuns:
     """The runs of a file; raises ValueError where its tables do not fit together."""
     inputs, names = inputs_from_json(content["inputs"]), tuple(names_from_json(content["output_names"]))
     outcome_names = tuple(names_from_json(content["outcome_names"]))
     x = numbers_from_json("x", content["x"], len(inputs))
-    outcome, group = (_column(key, content[key], len(x)).astype(np.int64) for key in ("outcome", "group"))
+    outcome, group = (column_from_json(key, content[key], len(x)).astype(np.int64) for key in ("outcome", "group"))
     if outcome.min() < 0 or outcome.max() >= len(outcome_names) or group.min() < 0:
         raise ValueError("outcome and group must be places from 0 on, one for each run")
     output_outcome = outcome_names.index(content["output_outcome"])
@@ -174,6 +181,6 @@ def _table(name: str, rows: Any, shape: tuple[int, int]) -> Array:
     return table
 
 
-def _column(name: str, values: Any, count: int) -> Array:
+def column_from_json(name: str, values: Any, count: int) -> Array:
     """A list of finite numbers [count]."""
     return _table(name, [[value] for value in values], (count, 1))[:, 0]

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from lithobrake.chaos.abstract_distribution import Distribution, checked_inputs
 from lithobrake.chaos.basis import outside_count, points_of
+from lithobrake.chaos.counts import whole_number
 from lithobrake.chaos.polynomials import Array
 from lithobrake.emulator.coordinates import to_coordinate
 
@@ -52,6 +53,32 @@ class TrainingRuns:
         """Coordinates of the modelled outputs [output_run_count, modelled_count]."""
         columns = list(self.modelled)
         return to_coordinate(self.y[:, columns], self.lower[:, columns], self.upper[:, columns])
+
+    def bounds_at(self, lower: ArrayLike | None, upper: ArrayLike | None, count: int) -> tuple[Array, Array]:
+        """Bounds [count, output_count] at points: those given, or those of the runs where they never differed."""
+        known = []
+        for name, given, of_runs in (("lower", lower, self.lower), ("upper", upper, self.upper)):
+            if given is None and (of_runs != of_runs[0]).any():
+                raise ValueError(f"{name} is missing, but it differed between the runs: give it at each point")
+            known.append(of_runs[0] if given is None else given)
+        tables = checked_bounds(known[0], known[1], (count, len(self.output_names)))
+        for name, table, of_runs in zip(("lower", "upper"), tables, (self.lower, self.upper), strict=True):
+            if (np.isfinite(table) != np.isfinite(of_runs[0])).any():
+                raise ValueError(f"{name} must be finite for the same outputs as in the runs: give it as fit was given")
+        return tables
+
+    def weights_of_refits(self, count: int, seed: int) -> list[Array]:
+        """How often each run counts [run_count] where groups are drawn with replacement, `count` times."""
+        random = np.random.default_rng(seed)
+        group_count = int(self.group.max()) + 1
+        draws: list[Array] = []
+        while len(draws) < whole_number("count", count, 1):
+            drawn = np.bincount(random.integers(group_count, size=group_count), minlength=group_count)
+            weights = drawn[self.group].astype(float)
+            # Groups without any outputs, drawn alone, have no law.
+            if (weights[self.has_outputs] > 0.0).sum() > 1:
+                draws.append(weights)
+        return draws
 
 
 def checked_points(inputs: Mapping[str, Distribution], x: ArrayLike) -> Array:

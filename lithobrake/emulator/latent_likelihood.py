@@ -1,0 +1,110 @@
+"""Coefficients of most likelihood of a stochastic expansion, from a large noise down to a small one.
+
+The likelihood of a run is an integral over the latent variable, which nobody saw. With little noise it has many peaks,
+with much noise few; the best coefficients are therefore followed from much to little. Source: [Zhu-2023].
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import optimize
+
+from lithobrake.chaos.polynomials import Array
+from lithobrake.emulator.latent_terms import LatentTerms
+from lithobrake.emulator.training import TrainingRuns
+
+# Relative change of the mean logarithm of the density at which a climb ends.
+TOLERANCE = 1e-7
+MOST_STEPS = 300
+
+
+@dataclass(frozen=True)
+class LatentProblem:
+    """Runs to fit: factors [run_count, term_count] of the terms, target [run_count], and how often each run counts,
+    weights [run_count].
+    """
+
+    terms: LatentTerms
+    factors: Array
+    target: Array
+    weights: Array
+
+    def of(self, chosen: NDArray[np.bool_]) -> "LatentProblem":
+        """The problem of some of the runs alone, chosen [run_count]."""
+        return LatentProblem(self.terms, self.factors[chosen], self.target[chosen], self.weights[chosen])
+
+    def log_densities(self, coefficients: Array, noise: float) -> tuple[Array, Array]:
+        """Logarithm of the density of each target [run_count], and its derivative by what the expansion is at each
+        node [run_count, node_count]. noise: standard deviation beside the expansion.
+        """
+        polynomials, node_weights = self.terms.rule
+        away = (self.target[:, None] - branches(self.terms, self.factors, coefficients) @ polynomials) / noise
+        exponents = np.log(node_weights) - 0.5 * away**2
+        most = exponents.max(axis=1, keepdims=True)
+        shares = np.exp(exponents - most)
+        sums = shares.sum(axis=1, keepdims=True)
+        logarithms = (most + np.log(sums))[:, 0] - np.log(noise) - 0.5 * np.log(2.0 * np.pi)
+        return logarithms, shares / sums * away / noise
+
+    def loss(self, coefficients: Array, noise: float) -> tuple[float, Array]:
+        """Negative mean logarithm of the density, and its gradient [term_count]."""
+        logarithms, slopes = self.log_densities(coefficients, noise)
+        share = self.weights / self.weights.sum()
+        by_power = (share[:, None] * slopes) @ self.terms.rule[0].T
+        gradient = (self.factors * (by_power @ self.terms.of_power.T)).sum(axis=0)
+        return -float(share @ logarithms), -gradient
+
+    def climbed(self, start: Array, noise: float) -> Array:
+        """Coefficients [term_count] of most likelihood that are reached from a start."""
+        options = {"maxiter": MOST_STEPS, "maxcor": 20, "ftol": TOLERANCE}
+        found = optimize.minimize(self.loss, start, (noise,), method="L-BFGS-B", jac=True, options=options)
+        return np.asarray(found.x)
+
+    def path(self, noise_shares: Sequence[float]) -> Iterator[tuple[float, Array]]:
+        """Noise and coefficients for each share of the scatter about the mean, from the largest share on."""
+        mean, scatter = self._mean_fit()
+        alone = (self.terms.indices[:, :-1] == 0).all(axis=1) & (self.terms.indices[:, -1] == 1)
+        found: list[Array] = []
+        for share in noise_shares:
+            noise = share * scatter
+            # A line in the latent variable has all scatter that the noise leaves; without it the gradient is zero.
+            starts = [mean + scatter * np.sqrt(1.0 - share**2) * alone, *found]
+            # What was followed may have gone up the lesser of two peaks, which the likelihood shows at less noise.
+            found = [min((self.climbed(start, noise) for start in starts), key=lambda one: self.loss(one, noise)[0])]
+            yield noise, found[0]
+
+    def _mean_fit(self) -> tuple[Array, float]:
+        """Least-squares coefficients of the terms without the latent variable [term_count], and the scatter left."""
+        without = self.terms.indices[:, -1] == 0
+        root = np.sqrt(self.weights)
+        coefficients = np.zeros(len(without))
+        matrix = root[:, None] * self.factors[:, without]
+        coefficients[without] = np.linalg.lstsq(matrix, root * self.target, rcond=None)[0]
+        residual = self.target - self.factors @ coefficients
+        scatter = float(np.sqrt(self.weights @ residual**2 / self.weights.sum()))
+        if scatter <= 1e-9 * float(np.abs(self.target).max()):
+            raise ValueError(
+                "y does not scatter about a polynomial of the inputs, so it has no density: use lithobrake.chaos.fit"
+            )
+        return coefficients, scatter
+
+
+def problem_of(runs: TrainingRuns, terms: LatentTerms, weights: Array) -> LatentProblem:
+    """The runs with outputs as a problem of likelihood; weights: how often each run counts [run_count].
+
+    Raises ValueError for weights of another shape, below zero, or all zero.
+    """
+    there = runs.has_outputs
+    if weights.shape != there.shape or not (weights >= 0.0).all() or not 0.0 < weights[there].sum() < np.inf:
+        raise ValueError(
+            f"weights have shape {weights.shape}, but must be [{len(there)}], how often each run counts: none below "
+            "zero, and one with an output above"
+        )
+    return LatentProblem(terms, terms.factors(runs.x[there]), runs.coordinates[:, 0], weights[there])
+
+
+def branches(terms: LatentTerms, factors: Array, coefficients: Array) -> Array:
+    """Coefficients of the powers of the latent variable at points, [point_count, power_count]."""
+    return (factors * coefficients) @ terms.of_power
