@@ -10,7 +10,7 @@ from lithobrake.outcomes import TouchdownOutcome
 from lithobrake.outputs import SPIN_OUT
 from lithobrake.pipeline.design_runs import DesignRuns
 from lithobrake.pipeline.designs import design_inputs
-from lithobrake.pipeline.energy_bound import energy_bound
+from lithobrake.pipeline.energy_bound import EnergyBound, energy_bound
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.outgoing import VELOCITY
 
@@ -45,18 +45,8 @@ def fit_emulator(job: Job) -> None:
     outputs = _outputs(runs)
     upper = np.full((runs.run_count, len(outputs)), np.inf)
     upper[:, list(outputs).index(ELEVATION)] = STEEPEST
-    bound = energy_bound(study, job.folder, {name: runs.inputs[name] for name in inputs}, runs.run_count)
-    # At the bound of the speed nothing is left for a spin.
-    beyond = int((runs.output(SPIN) >= bound.spin(runs.output(SPEED))).sum())
-    if beyond:
-        job.say(
-            f"{beyond} of {runs.run_count} runs left with more speed and spin than the energy of their arrival allows, "
-            "so the emulator sets both no limit; look for what gives the lander energy in the program that makes the "
-            "touchdowns, or give lander.inertia"
-        )
-    else:
-        upper[:, list(outputs).index(SPEED)] = bound.speed
-        upper[:, list(outputs).index(SPIN)] = bound.spin()
+    if (bound := _kept_bound(job, runs)) is not None:
+        upper[:, list(outputs).index(SPEED)], upper[:, list(outputs).index(SPIN)] = bound.speed, bound.spin()
     modelled = [name for name in outputs if name not in RIDERS]
     model = emulator.fit(
         inputs,
@@ -71,6 +61,22 @@ def fit_emulator(job: Job) -> None:
         output_names=list(outputs),
     )
     model.save(job.folder / FILE)
+
+
+def _kept_bound(job: Job, runs: DesignRuns) -> EnergyBound | None:
+    """What energy allows each run; None, said aloud, where some left with more."""
+    values = {name: runs.inputs[name] for name in design_inputs(job.study)}
+    bound = energy_bound(job.study, job.folder, values, runs.run_count)
+    # At the bound of the speed nothing is left for a spin.
+    beyond = int((runs.output(SPIN) >= bound.spin(runs.output(SPEED))).sum())
+    if not beyond:
+        return bound
+    job.say(
+        f"{beyond} of {runs.run_count} runs left with more speed and spin than the energy of their arrival allows, so "
+        "the emulator sets both no limit; look for what gives the lander energy in the program that makes the "
+        "touchdowns, or give lander.inertia"
+    )
+    return None
 
 
 def _outputs(runs: DesignRuns) -> dict[str, np.ndarray]:

@@ -31,7 +31,7 @@ DRAWN_TABLES = (
         SUMMARY,
         ("results.variance_shares.*",),
         "Where the scatter of an output of a drawn study comes from (docs/estimates.md); null where the runs cannot "
-        "tell, and in the paper's way. stays: of the share of its flights for which a run remains",
+        "tell, and with design.method = paper. stays: of the share of its flights for which a run remains",
         {
             "soil": "inputs of grains and surface, and of the lander's contacts: part",
             "soil_by_input.*": "one of them alone: part",
