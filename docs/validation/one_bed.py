@@ -27,7 +27,7 @@ FIRST_SEED = 101
 # Enough to see how far apart they are.
 ONE_PLACE_SEEDS = 10
 SCENARIOS = {"one place": "one_place", "draws": "quick"}
-DIAMETERS = (0.09, 0.06, 0.045)  # m; the lander measures .1 x .1 x .227 m
+DIAMETERS = (0.09, 0.065, 0.05)  # m; the lander measures .1 x .1 x .227 m
 SPEED, ELEVATION = "speed_out", "elevation_out"
 
 
