@@ -107,19 +107,20 @@ def draw_grains(studies: list[Entry]) -> None:
     with plt.rc_context(STYLE):
         figure, axes = plt.subplots(1, len(OUTPUTS), figsize=(10.0, 3.6), constrained_layout=True, sharey=True)
         for axis, (output, symbol) in zip(axes, OUTPUTS.items(), strict=True):
-            for place, one in enumerate(found):
-                bottom = 0.0
-                for colour, part in zip(INPUT_COLOURS, PARTS, strict=False):
-                    shares = (one["variance_shares"] or {}).get(output)
-                    entry = shares[part] if shares else None
-                    height = 100.0 * max(entry["share"], 0.0) if entry else 0.0
-                    axis.bar(place, height, 0.7, bottom, color=colour, label=PARTS[part] if place == 0 else None)
-                    bottom += height
-            axis.set_xticks(range(len(found)), [f"{LANDER_EDGE / one['diameter_m']:.1f}" for one in found])
+            for number, (one, colour) in enumerate(zip(found, INPUT_COLOURS, strict=False)):
+                parts = [(one["variance_shares"][output] or {}).get(part) for part in PARTS]
+                for place, part in enumerate(parts):
+                    if part:
+                        ends = [max(part["share"] - part["lower"], 0.0), max(part["upper"] - part["share"], 0.0)]
+                        x, bars = place + 0.2 * number - 0.1, [[100.0 * end] for end in ends]
+                        axis.errorbar(x, 100.0 * part["share"], bars, fmt="o", color=colour, capsize=2, ms=4)
+            axis.axhline(0.0, color=QUIET, lw=0.6, zorder=0)
+            axis.set_xticks(range(len(PARTS)), [name.replace(" and ", "\nand ") for name in PARTS.values()])
             axis.set_title(f"variance of {symbol}")
-        axes[0].set_ylabel("share [%]")
-        figure.supxlabel("short edge of the lander over the diameter of a grain", fontsize=9)
-        axes[-1].legend(loc="lower right", frameon=True)
+        axes[0].set_ylabel("share [%], 90 % interval")
+        for one, colour in zip(found, INPUT_COLOURS, strict=False):
+            axes[0].plot([], [], "o", color=colour, ms=4, label=f"grains of {100 * one['diameter_m']:g} cm")
+        axes[0].legend(loc="center left")
         figure.savefig(HERE / "one_bed_grains.png", dpi=150)
 
 
