@@ -27,7 +27,7 @@ FIRST_SEED = 101
 # Enough to see how far apart they are.
 ONE_PLACE_SEEDS = 10
 SCENARIOS = {"one place": "one_place", "draws": "quick"}
-DIAMETERS = (0.09, 0.065, 0.05)  # m; the lander measures .1 x .1 x .227 m
+DIAMETERS = (0.12, 0.09, 0.065)  # m; the lander measures .1 x .1 x .227 m
 SPEED, ELEVATION = "speed_out", "elevation_out"
 
 
@@ -46,9 +46,9 @@ def with_grains(tables: dict[str, Any], diameter: float) -> dict[str, Any]:
 
 def studies(seeds: int) -> list[tuple[str, float, dict[str, Any]]]:
     """Kind, grain diameter [m] and tables of every study."""
-    coarse = DIAMETERS[0]
+    own = scenario("quick", FIRST_SEED)["bed"]["diameter"]["value"]
     pairs = [
-        (kind, coarse, scenario(name, FIRST_SEED + k))
+        (kind, own, scenario(name, FIRST_SEED + k))
         for k in range(seeds)
         for kind, name in SCENARIOS.items()
         if kind == "draws" or k < ONE_PLACE_SEEDS
