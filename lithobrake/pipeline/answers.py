@@ -22,15 +22,16 @@ def flown_shares(study: Study, folder: StudyFolder) -> dict[str, float]:
     """Share of its flights in which each run of a study's sequence stays, by key, NaN where it has no answer.
 
     Of a study with more or fewer runs too: a run flies from the same sites in all of them. None at all where the file
-    is not there, or was made otherwise than the study says.
+    is not there or not whole, or was made otherwise than the study says.
     """
     from lithobrake.pipeline.stages import stage_keys
 
-    if not (folder / FILE).is_file():
+    key = folder.key_of(FILE)
+    if key is None:
         return {}
     shares = read_shares(folder)
     made_for = study.with_run_count(max(len(shares), 2))
-    return shares if folder.is_current([FILE], stage_keys(made_for)[ANSWERED_AFTER]) else {}
+    return shares if stage_keys(made_for)[ANSWERED_AFTER] == key else {}
 
 
 def read_shares(folder: StudyFolder) -> dict[str, float]:

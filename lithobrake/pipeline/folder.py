@@ -100,6 +100,13 @@ class StudyFolder:
         notes = Notes.read(self.path)
         return all(file_state(self.path, notes, name, key) is FileState.CURRENT for name in files)
 
+    def key_of(self, name: str) -> str | None:
+        """The key of what a file was made from; None where it is not there, not whole, or nobody made it."""
+        notes = Notes.read(self.path)
+        key: str | None = notes.files[name]["key"] if name in notes.files else None
+        whole = key is not None and file_state(self.path, notes, name, key) is FileState.CURRENT
+        return key if whole else None
+
     def note(self, stage: str, files: Iterable[str], key: str, wall_s: float) -> None:
         """Remember that a stage has made these files from what the key names, and how long it took [s]."""
         notes = Notes.read(self.path)

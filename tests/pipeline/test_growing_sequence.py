@@ -133,3 +133,14 @@ def test_there_is_an_end_to_runs_that_are_not_enough(tmp_path: Path) -> None:
     said = Said()
     assert run(tmp_path, said, half_width=0.01, largest_run_count=60).run_count == 60
     assert said.sentences[-1].endswith("no more are made, since design.largest_run_count is 60")
+
+
+@pytest.mark.parametrize("asked", [{}, {"half_width": 0.3}], ids=["a count", "a half width"])
+def test_a_damaged_table_of_flights_is_made_again(asked: dict[str, float], tmp_path: Path) -> None:
+    run(tmp_path, Said(), **asked)
+    table, study, only_read = tmp_path / "run_flights.csv", source(**asked).study, StudyFolder.only_read(tmp_path)
+    whole = table.read_bytes()
+    table.write_text("nothing that could be read")
+    assert plan_of(grown(study, only_read), "ball", only_read, 2).stages[0] == "flights of the runs"
+    run(tmp_path, Said(), **asked)
+    assert table.read_bytes() == whole
