@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lithobrake.pipeline.drawn_landings import DrawnLandings
-from lithobrake.pipeline.energy_bound import EnergyBound, energy_bound
+from lithobrake.pipeline.energy_bound import EnergyBound, energy_bound, height_of_beds
 from lithobrake.pipeline.fitted_emulator import REFIT_COUNT, refits
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.samples import CAPTURED, CLEAR, Samples
@@ -57,8 +57,10 @@ def emulator_bounce(job: Job, samples: Samples) -> EmulatorBounce:
     """The bounce of a study for the samples that leave, in their order; each goes on with the refit it was drawn of."""
     leaving, names = np.flatnonzero(samples.leaves), list(samples.input_names)
     inputs = dict(zip(names, samples.inputs[leaving].T, strict=True))
+    # Every bed is read for it, which no impact should wait for.
+    height = height_of_beds(job.study, job.folder)
 
     def bound(x: np.ndarray) -> EnergyBound:
-        return energy_bound(job.study, job.folder, dict(zip(names, x.T, strict=True)), len(x))
+        return energy_bound(job.study, height, dict(zip(names, x.T, strict=True)), len(x))
 
     return EmulatorBounce(refits(job), leaving % REFIT_COUNT, inputs, trained_ranges(job.study), bound)

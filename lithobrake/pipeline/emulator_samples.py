@@ -6,7 +6,7 @@ from lithobrake.analysis import sample_inputs
 from lithobrake.hashing import hashed_seed
 from lithobrake.pipeline.designs import design_inputs
 from lithobrake.pipeline.drawn_landings import DrawnLandings
-from lithobrake.pipeline.energy_bound import energy_bound
+from lithobrake.pipeline.energy_bound import energy_bound, height_of_beds
 from lithobrake.pipeline.fitted_emulator import REFIT_COUNT, refits
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.samples import Samples
@@ -19,7 +19,7 @@ def draw_emulator_samples(job: Job) -> None:
     """
     study, inputs = job.study, design_inputs(job.study)
     x = sample_inputs(inputs, study.monte_carlo.sample_count, hashed_seed(study.seed, "samples"))
-    bound = energy_bound(study, job.folder, dict(zip(inputs, x.T, strict=True)), len(x))
+    bound = energy_bound(study, height_of_beds(study, job.folder), dict(zip(inputs, x.T, strict=True)), len(x))
     models = refits(job)
     names: list[str] = []
     outputs, outcome = np.empty((len(x), 0)), np.empty(len(x), dtype=np.uint8)

@@ -37,23 +37,24 @@ class EnergyBound(NamedTuple):
 
 
 def energy_bound(
-    study: Study, folder: StudyFolder, values: "Mapping[str, NDArray[np.float64]]", count: int
+    study: Study, bed_height: float, values: "Mapping[str, NDArray[np.float64]]", count: int
 ) -> EnergyBound:
     """Bound of a lander that keeps all its energy and gains what gravity may give it over the bed, [count].
 
-    values: of uncertain inputs, [count] each, by dotted key; all others are as the study has them. The bed is at rest
-    and contacts only take energy away: v^2 + I w^2 / m + 2 g h, with h the height of the bed, and its fall across.
+    bed_height: of the highest bed [m]. values: of uncertain inputs, [count] each, by dotted key; all others are as the
+    study has them. The bed is at rest and contacts only take energy away: v^2 + I w^2 / m + 2 g h, with h the height of
+    the bed, and its fall across.
     """
     known = {name: np.full(count, value) for name, value in medians(study).items()} | dict(values)
     spin = sum(known[name] ** 2 for name in SPIN)
     slope = np.radians(known["surface.slope_deg"])
     # Gravity that points outwards lifts a lander as far as the other makes it fall.
-    gained = np.abs(known["surface.gravity"]) * (_height(study, folder) + np.hypot(*study.bed.width) * np.sin(slope))
+    gained = np.abs(known["surface.gravity"]) * (bed_height + np.hypot(*study.bed.width) * np.sin(slope))
     smallest, largest = _gyrations(study, known)
     return EnergyBound(np.sqrt(known["impact.speed"] ** 2 + largest * spin + 2.0 * gained), np.sqrt(smallest))
 
 
-def _height(study: Study, folder: StudyFolder) -> float:
+def height_of_beds(study: Study, folder: StudyFolder) -> float:
     """Height [m] of the highest bed; a program of the user's own tells of none."""
     return max((float(stored_bed(folder / name).surface_height) for name in bed_files(study)), default=0.0)
 

@@ -10,7 +10,7 @@ from lithobrake.outcomes import TouchdownOutcome
 from lithobrake.outputs import SPIN_OUT
 from lithobrake.pipeline.design_runs import DesignRuns
 from lithobrake.pipeline.designs import design_inputs
-from lithobrake.pipeline.energy_bound import EnergyBound, energy_bound
+from lithobrake.pipeline.energy_bound import EnergyBound, energy_bound, height_of_beds
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.outgoing import VELOCITY
 
@@ -66,7 +66,7 @@ def fit_emulator(job: Job) -> None:
 def _kept_bound(job: Job, runs: DesignRuns) -> EnergyBound | None:
     """What energy allows each run; None, said aloud, where some left with more."""
     values = {name: runs.inputs[name] for name in design_inputs(job.study)}
-    bound = energy_bound(job.study, job.folder, values, runs.run_count)
+    bound = energy_bound(job.study, height_of_beds(job.study, job.folder), values, runs.run_count)
     # At the bound of the speed nothing is left for a spin.
     beyond = int((runs.output(SPIN) >= bound.spin(runs.output(SPEED))).sum())
     if not beyond:
