@@ -124,7 +124,8 @@ def stored_bed(path: Path) -> "Bed":
     return _read_bed(path, status.st_mtime_ns, status.st_size)
 
 
-@lru_cache(maxsize=4)
+# The beds of a study of the default size: each run takes another. A bed of 1000 grains takes 13 MB.
+@lru_cache(maxsize=24)
 def _read_bed(path: Path, _changed: int, _size: int) -> "Bed":
     from lithobrake.touchdown import Bed
 
