@@ -31,10 +31,7 @@ TOLD = ("speed_out", "elevation_out", "spin_out", "contact_duration", "penetrati
 def case(bed: Path, body: Any, arrival: Any) -> Row:
     """One landing as plain numbers; the lander must be a box."""
     given = asdict(arrival)
-    given["contact"] = {
-        name: given["contact"][name]
-        for name in ("shear_modulus_rule", "damping_mass", "pair_rule", "steps_per_contact")
-    }
+    given["contact"] = {name: given["contact"][name] for name in LAW}
     return {
         "bed": str(bed), "landing": given,
         "lander": {"edges": list(body.shape.lengths), "mass": body.mass, "material": asdict(body.material)},

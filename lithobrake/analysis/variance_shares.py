@@ -112,14 +112,11 @@ def variance_shares(
 
 def _checked_points(inputs: Mapping[str, "Distribution"], x: ArrayLike, y: Array, soil: Collection[str]) -> Array:
     """Points [run_count, input_count] inside the law of the inputs. Raises ValueError for others, and for no inputs."""
-    from lithobrake.chaos.basis import outside_count, points_of
+    from lithobrake.chaos.basis import checked_points
 
-    points = points_of(inputs, x)
+    points = checked_points(inputs, x)
     if y.shape != (len(points),):
         raise ValueError(f"y has shape {y.shape}; allowed: one number for each of the {len(points)} runs of x")
-    count, sentence = outside_count(inputs, points)
-    if count:
-        raise ValueError(f"x has {count} of {len(points)} points outside the inputs: {sentence}")
     if isinstance(soil, str) or not set(soil) <= set(inputs):
         raise ValueError(f"soil is {soil!r}; allowed: some of the inputs {', '.join(inputs)}")
     return points

@@ -44,6 +44,15 @@ def outside_count(inputs: Mapping[str, Distribution], points: Array) -> tuple[in
     return int(outside.sum()), sentence
 
 
+def checked_points(inputs: Mapping[str, Distribution], x: ArrayLike) -> Array:
+    """Points [count, input_count] inside the support of all inputs; raises ValueError for others."""
+    points = points_of(inputs, x)
+    count, sentence = outside_count(inputs, points)
+    if count:
+        raise ValueError(f"x has {count} of {len(points)} points outside the inputs: {sentence}")
+    return points
+
+
 def germs_of(inputs: Mapping[str, Distribution], points: Array) -> Array:
     """Germs of points in physical units [count, input_count]; result [input_count, count]."""
     return np.stack([entry.germ(points[:, k]) for k, entry in enumerate(inputs.values())])

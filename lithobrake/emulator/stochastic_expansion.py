@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy import special
 
+from lithobrake.chaos.basis import checked_points
 from lithobrake.chaos.counts import whole_number
 from lithobrake.chaos.polynomials import Array, hermite
 from lithobrake.chaos.storage import indices_from_json, read, write
@@ -22,7 +23,7 @@ from lithobrake.emulator.coordinates import from_coordinate, with_slope
 from lithobrake.emulator.latent_likelihood import LatentProblem, branches, problem_of
 from lithobrake.emulator.latent_terms import LATENT_DEGREE, LATENTS, LatentTerms
 from lithobrake.emulator.storage import column_from_json, runs_from_json, runs_to_json
-from lithobrake.emulator.training import TrainingRuns, checked_points
+from lithobrake.emulator.training import TrainingRuns
 
 FORMAT = "lithobrake stochastic expansion"
 # Halvings after which an interval of quantiles is no wider than rounding.

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lithobrake.chaos.abstract_distribution import Distribution, checked_inputs
-from lithobrake.chaos.basis import outside_count, points_of
+from lithobrake.chaos.basis import checked_points
 from lithobrake.chaos.counts import whole_number
 from lithobrake.chaos.polynomials import Array
 from lithobrake.emulator.coordinates import to_coordinate
@@ -79,15 +79,6 @@ class TrainingRuns:
             if (weights[self.has_outputs] > 0.0).sum() > 1:
                 draws.append(weights)
         return draws
-
-
-def checked_points(inputs: Mapping[str, Distribution], x: ArrayLike) -> Array:
-    """Points [count, input_count] inside the support of all inputs; raises ValueError for others."""
-    points = points_of(inputs, x)
-    count, sentence = outside_count(inputs, points)
-    if count:
-        raise ValueError(f"x has {count} of {len(points)} points outside the inputs: {sentence}")
-    return points
 
 
 def checked_bounds(lower: ArrayLike | None, upper: ArrayLike | None, shape: tuple[int, int]) -> tuple[Array, Array]:
