@@ -57,17 +57,21 @@ class Emulator(Parts):
     @property
     def statement(self) -> str:
         """What the emulator makes of the inputs, in a sentence."""
-        count, groups = len(self.runs.y), len(np.unique(self.runs.group))
+        return self.statement_on("groups")
+
+    def statement_on(self, groups: str) -> str:
+        """The same, with the caller's word for the groups that were left out."""
+        count, number = len(self.runs.y), len(np.unique(self.runs.group))
         if not self.follows_inputs:
             return (
-                f"The inputs do not change the outputs noticeably: no law of them did better on groups left out than "
-                f"drawing one of the {count} runs with outputs ({groups} groups), so draws are runs alone."
+                f"The inputs do not change the outputs noticeably: no law of them did better on {groups} left out than "
+                f"drawing one of the {count} runs with outputs ({number} {groups}), so draws are runs alone."
             )
         share = self.scores.gain / self.scores.energy_of_rows
         return (
-            f"On groups left out the inputs make the energy score {100 * share:.1f} % better "
+            f"On {groups} left out the inputs make the energy score {100 * share:.1f} % better "
             f"(standard error {100 * self.scores.gain_error / self.scores.energy_of_rows:.1f}) than drawing one of the "
-            f"{count} runs with outputs ({groups} groups)."
+            f"{count} runs with outputs ({number} {groups})."
         )
 
     def outcome_probability(self, x: ArrayLike) -> Array:

@@ -103,8 +103,7 @@ def _emulator(job: Job, results: dict[str, Any]) -> dict[str, Any]:
             "pit": np.histogram(scores.pit[:, column], PIT_BINS, (0.0, 1.0))[0].tolist(),
         }
     return {
-        # The groups that were left out are beds.
-        "statement": model.statement.replace("groups", "beds"),
+        "statement": model.statement_on("beds"),
         "follows_inputs": model.follows_inputs,
         "found_inputs": [name for name, found in model.found_inputs().items() if found],
         "scores": table,
