@@ -6,6 +6,7 @@ import numpy as np
 
 from lithobrake.dem.agenda import Agenda, new_agenda
 from lithobrake.dem.arrays import Floats, Pairs, Step
+from lithobrake.dem.cells import cells_of
 from lithobrake.dem.contact_plans import Plans
 from lithobrake.dem.engine import Engine
 from lithobrake.dem.free_flight import Flight, Rules, fly_all_to
@@ -66,6 +67,7 @@ class LocalEngine:
         step = setting.step
         skin = SKIN * float(np.median(engine.bodies.bounding_radius))
         self.rules = Rules(step.gravity, step.drag, step.paper_mass, setting.steps_per_contact, skin)
+        self.cells = cells_of(engine.bodies, skin)
         self.record: Floats = np.array([0.0, -1.0, -1.0])
         self.plans: Plans
         self.agenda: Agenda
@@ -114,7 +116,7 @@ class LocalEngine:
         while True:
             reason = advance_locally(
                 engine.bodies, engine.cores, engine.planes, self.pairs, engine.laws, engine.scratch, self.reactions,
-                self.flight, self.plans, self.agenda, end, self.rules, self.setting.watched, self.record,
+                self.flight, self.plans, self.agenda, self.cells, end, self.rules, self.setting.watched, self.record,
             )  # fmt: skip
             if reason == NO_SLOT:
                 self._widen()

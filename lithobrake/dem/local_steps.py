@@ -12,6 +12,7 @@ from lithobrake.compiled import kernel, large_kernel
 from lithobrake.dem.agenda import Agenda, put_on
 from lithobrake.dem.approach import Approach, approach_of, closing_speed
 from lithobrake.dem.arrays import Bodies, Cores, Floats, Laws, Pairs, Planes, Reactions, Step
+from lithobrake.dem.cells import Cells
 from lithobrake.dem.contact_plans import (
     LONGER,
     SHORTER,
@@ -262,11 +263,11 @@ def record_touch(
 @large_kernel
 def advance_locally(
     bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, laws: Laws, scratch: Scratch, reactions: Reactions,
-    flight: Flight, plans: Plans, agenda: Agenda, end: float, rules: Rules, watched: int, record: Floats,
+    flight: Flight, plans: Plans, agenda: Agenda, cells: Cells, end: float, rules: Rules, watched: int, record: Floats,
 ) -> int:  # fmt: skip
     """Do all that is due up to an instant [s]; return LISTED, or what is lacking.
 
-    Writes to bodies, pairs, scratch, reactions, flight, plans, agenda and record.
+    Writes to bodies, pairs, scratch, reactions, flight, plans, agenda, cells and record.
     """
     n = len(bodies.mass)
     while agenda.size[0] > 0:
@@ -276,7 +277,7 @@ def advance_locally(
         if not now <= end:
             break
         if item < n:
-            reason = search_neighbours(bodies, planes, pairs, laws, flight, plans, agenda, item, now, rules)
+            reason = search_neighbours(bodies, planes, pairs, laws, flight, plans, agenda, cells, item, now, rules)
             if reason != LISTED:
                 return reason
             continue

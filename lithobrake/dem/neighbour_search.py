@@ -8,6 +8,7 @@ import numpy as np
 from lithobrake.compiled import kernel, large_kernel
 from lithobrake.dem.agenda import Agenda, put_on, take_off
 from lithobrake.dem.arrays import Bodies, Floats, Laws, Pairs, Planes
+from lithobrake.dem.cells import Cells, gather_near, move_to_cell
 from lithobrake.dem.contact_plans import Plans, plan_search
 from lithobrake.dem.free_flight import Flight, Rules, fly_to, place_at
 from lithobrake.dem.timestep import HERTZ_DURATION
@@ -121,33 +122,61 @@ def gap_to(
     return dot(between, between) ** 0.5 - bodies.bounding_radius[other]
 
 
+@kernel
+def list_if_near(
+    bodies: Bodies, planes: Planes, pairs: Pairs, laws: Laws, flight: Flight, plans: Plans, agenda: Agenda, body: int,
+    other: int, now: float, rules: Rules,
+) -> bool:  # fmt: skip
+    """List another as a neighbour of a body if it is near and not listed yet; tell whether there was a slot.
+
+    Writes to pairs, flight, plans and agenda.
+    """
+    n = len(bodies.mass)
+    if other == body or flight.stamp[other if other >= 0 else n - 1 - other] == body:
+        return True
+    reach = bodies.bounding_radius[body] + rules.skin
+    if not gap_to(bodies, planes, flight, row(bodies.position, body), other, now, rules) < reach:
+        return True
+    return add_pair(bodies, planes, pairs, laws, flight, plans, agenda, body, other, now)
+
+
 @large_kernel
 def search_neighbours(
-    bodies: Bodies, planes: Planes, pairs: Pairs, laws: Laws, flight: Flight, plans: Plans, agenda: Agenda, body: int,
-    now: float, rules: Rules,
+    bodies: Bodies, planes: Planes, pairs: Pairs, laws: Laws, flight: Flight, plans: Plans, agenda: Agenda,
+    cells: Cells, body: int, now: float, rules: Rules,
 ) -> int:  # fmt: skip
     """List the neighbours of a body anew; return LISTED, NO_SLOT where one more is needed, or LOST.
 
-    Writes to bodies, pairs, flight, plans and agenda.
+    Writes to bodies, pairs, flight, plans, agenda and cells.
     """
     fly_to(bodies, flight, body, now, rules)
     if not np.isfinite(bodies.travel[body]):
         return LOST
-    here, reach, n = row(bodies.position, body), bodies.bounding_radius[body] + rules.skin, len(bodies.mass)
+    move_to_cell(cells, bodies, body)
+    here, reach = row(bodies.position, body), bodies.bounding_radius[body] + rules.skin
     drop_distant(bodies, planes, pairs, flight, plans, agenda, body, here, reach, now, rules)
-    for other in range(-len(planes.offset), n):
-        if other == body or (other < 0 and not planes.meets[-1 - other, body]):
-            continue
-        stamp = other if other >= 0 else n - 1 - other
-        if flight.stamp[stamp] == body:
-            flight.stamp[stamp] = -1
-            continue
-        near = gap_to(bodies, planes, flight, here, other, now, rules) < reach
-        if near and not add_pair(bodies, planes, pairs, laws, flight, plans, agenda, body, other, now):
-            return NO_SLOT
+    has_room = True
+    for at in range(-len(planes.offset), gather_near(cells, here, reach)):
+        other = at if at < 0 else cells.found[at]
+        if other >= 0 or planes.meets[-1 - other, body]:
+            has_room &= list_if_near(bodies, planes, pairs, laws, flight, plans, agenda, body, other, now, rules)
+    if not has_room:
+        return NO_SLOT
+    unstamp(pairs, flight, plans, body, len(bodies.mass))
     bodies.travel_listed[body] = bodies.travel[body]
     plan_search(bodies, flight, agenda, body, now, rules)
     return LISTED
+
+
+@kernel
+def unstamp(pairs: Pairs, flight: Flight, plans: Plans, body: int, body_count: int) -> None:
+    """Take a body's stamp off all that it has listed. Writes to flight."""
+    entry = flight.head[body]
+    while entry >= 0:
+        pair = entry >> 1
+        other = pairs.second[pair] if pairs.first[pair] == body else pairs.first[pair]
+        flight.stamp[other if other >= 0 else body_count - 1 - other] = -1
+        entry = plans.link[entry]
 
 
 @kernel
