@@ -25,7 +25,7 @@ class Cells(NamedTuple):
 
     corner: Floats  # [3], m
     size: Floats  # [1], m, of a cell
-    count: Integers  # [3], cells along each axis
+    numbers: Integers  # [3], cells along each axis
     first: Integers  # [cells], first body in each, -1: none
     following: Integers  # [body_count], next body in the same cell, -1: none
     before: Integers  # [body_count], the one before, -1: none
@@ -67,9 +67,9 @@ def fill(cells: Cells, bodies: Bodies) -> None:
 def cell_along(cells: Cells, place: Vector) -> Place:
     """Return the numbers along the axes of the cell in which a place [m] lies, or of the nearest to it."""
     return (
-        int(min(max((place[0] - cells.corner[0]) / cells.size[0], 0.0), cells.count[0] - 1.0)),
-        int(min(max((place[1] - cells.corner[1]) / cells.size[0], 0.0), cells.count[1] - 1.0)),
-        int(min(max((place[2] - cells.corner[2]) / cells.size[0], 0.0), cells.count[2] - 1.0)),
+        int(min(max((place[0] - cells.corner[0]) / cells.size[0], 0.0), cells.numbers[0] - 1.0)),
+        int(min(max((place[1] - cells.corner[1]) / cells.size[0], 0.0), cells.numbers[1] - 1.0)),
+        int(min(max((place[2] - cells.corner[2]) / cells.size[0], 0.0), cells.numbers[2] - 1.0)),
     )
 
 
@@ -95,7 +95,7 @@ def gather_near(cells: Cells, here: Vector, reach: float) -> int:
 @kernel
 def number_of(cells: Cells, place: Place) -> int:
     """Return the number of a cell by its numbers along the axes."""
-    return (place[0] * cells.count[1] + place[1]) * cells.count[2] + place[2]
+    return (place[0] * cells.numbers[1] + place[1]) * cells.numbers[2] + place[2]
 
 
 @kernel
