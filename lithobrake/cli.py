@@ -111,6 +111,40 @@ _study_command("fly", f"Fly the samples that leave the surface to their next imp
 _study_command("rest", f"Follow samples from bounce to bounce until they come to rest. {BEFORE}")
 
 
+@app.command(epilog="Example: lithobrake land study.toml --set grain.friction=0.4 --out landing.h5")
+def land(
+    study: StudyPath,
+    change: Annotated[
+        list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Another value for a number that it reads.")
+    ] = None,
+    number: Annotated[int, typer.Option("--number", metavar="N", help="Which run of the study, from 1.")] = 1,
+    out: Annotated[Path | None, typer.Option("--out", metavar="FILE.h5", help="Keep the motion of all bodies.")] = None,
+    json: Annotated[bool, typer.Option("--json", help="Print JSON, all numbers in SI.")] = False,
+) -> None:
+    """Make one landing of a study and tell what came out. Nothing of the study's folder is read or written."""
+    with _one_sentence():
+        from lithobrake.study import read_study
+
+        checked = read_study(study)
+        from lithobrake.pipeline import land_one, landing_inputs
+        from lithobrake.progress import study_progress
+
+        values = landing_inputs(checked, change or (), number)
+        with study_progress() as shown:
+            shown.begin("landing", 1, 1)
+            found = land_one(checked, values, lambda done, what: shown.progress(done, 1.0, what))
+        if out is not None:
+            found.save(out)
+        lines = found.lines()
+    if json:
+        from json import dumps
+
+        lines = [dumps(found.to_json(), indent=2)]
+    _tell(lines)
+    if out is not None and not json:
+        _tell([f"Motion: {out.resolve()}"])
+
+
 @app.command(epilog="Example: lithobrake plan study.toml")
 def plan(
     study: StudyPath,

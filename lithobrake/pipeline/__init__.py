@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from lithobrake.pipeline.folder import StudyFolder
     from lithobrake.pipeline.job import Job
+    from lithobrake.pipeline.one_landing import OneLanding, land_one, landing_inputs
     from lithobrake.pipeline.planning.plan import Plan
     from lithobrake.pipeline.planning.plan_in_words import plan_lines
     from lithobrake.pipeline.planning.planner import plan_study
@@ -16,9 +17,12 @@ if TYPE_CHECKING:
 
 _HOME = {
     "Job": "job",
+    "OneLanding": "one_landing",
     "Plan": "planning.plan",
     "Stage": "stages",
     "StudyFolder": "folder",
+    "land_one": "one_landing",
+    "landing_inputs": "one_landing",
     "make": "stages",
     "plan_lines": "planning.plan_in_words",
     "plan_study": "planning.planner",
@@ -31,9 +35,12 @@ _HOME = {
 }
 __all__ = [
     "Job",
+    "OneLanding",
     "Plan",
     "Stage",
     "StudyFolder",
+    "land_one",
+    "landing_inputs",
     "make",
     "plan_lines",
     "plan_study",
