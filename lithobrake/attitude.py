@@ -1,4 +1,4 @@
-"""Attitudes by chance, as unit quaternions w, x, y, z that turn a body into place."""
+"""Attitudes, as unit quaternions w, x, y, z that turn a body into place: by chance, and as matrices."""
 
 import math
 
@@ -29,3 +29,16 @@ def pointed(orientation: np.ndarray, half_angle: float, distance: float, directi
     # Of the body, so it is taken first: the product of the attitude and the error.
     a, b, c = math.sqrt(0.5 * (1.0 + cosine)), half * math.cos(turn), half * math.sin(turn)
     return np.array([w * a - x * b - y * c, w * b + x * a - z * c, w * c + y * a + z * b, x * c - y * b + z * a])
+
+
+def rotation_matrices(quaternions: np.ndarray) -> np.ndarray:
+    """Rotation matrices, shape [count, 3, 3], of unit quaternions (w, x, y, z), shape [count, 4]."""
+    w, x, y, z = quaternions.T / np.linalg.norm(quaternions, axis=1)
+    return np.stack(
+        [
+            np.stack([1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)], axis=-1),
+            np.stack([2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)], axis=-1),
+            np.stack([2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)], axis=-1),
+        ],
+        axis=1,
+    )

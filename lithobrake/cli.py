@@ -5,15 +5,19 @@ import os
 import shlex
 import shutil
 import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Annotated, NoReturn
+from typing import TYPE_CHECKING, Annotated, NoReturn
 
 import typer
 
 from lithobrake import __version__
 from lithobrake.plain import plain
+
+if TYPE_CHECKING:
+    from lithobrake.results.moving_bodies import MovingBodies
+    from lithobrake.results.study_results import StudyResults
 
 app = typer.Typer(
     no_args_is_help=True,
@@ -118,7 +122,11 @@ def land(
         list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Another value for a number that it reads.")
     ] = None,
     number: Annotated[int, typer.Option("--number", metavar="N", help="Which run of the study, from 1.")] = 1,
-    out: Annotated[Path | None, typer.Option("--out", metavar="FILE.h5", help="Keep the motion of all bodies.")] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", metavar="FILE", help="Keep the motion: .h5, .vtkhdf (ParaView), .mp4 or .webp (a film)."),
+    ] = None,
+    show: Annotated[bool, typer.Option("--show", help="Open a window on the motion.")] = False,
     json: Annotated[bool, typer.Option("--json", help="Print JSON, all numbers in SI.")] = False,
 ) -> None:
     """Make one landing of a study and tell what came out. Nothing of the study's folder is read or written."""
@@ -130,11 +138,14 @@ def land(
         from lithobrake.progress import study_progress
 
         values = landing_inputs(checked, change or (), number)
+        if out is not None and out.suffix != ".h5":
+            from lithobrake.view import refuse_other_kinds
+
+            refuse_other_kinds(out)
         with study_progress() as shown:
             shown.begin("landing", 1, 1)
             found = land_one(checked, values, lambda done, what: shown.progress(done, 1.0, what))
-        if out is not None:
-            found.save(out)
+        _keep_motion(found.save, found.bodies, out, show)
         lines = found.lines()
     if json:
         from json import dumps
@@ -217,9 +228,45 @@ def runs(
     _tell(run_lines(records, units, width))
 
 
+@app.command(epilog="Example: lithobrake film runs/study --run 3 --out landing.mp4")
+def film(
+    folder: StudyDirectory,
+    run: Annotated[str | None, typer.Option("--run", metavar="ID", help="A run; absent: the landing shown.")] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", metavar="FILE", help="A film, .mp4 or .webp, or .vtkhdf for ParaView; DIR/landing.mp4."),
+    ] = None,
+    seconds: Annotated[float, typer.Option("--seconds", metavar="S", help="How long the film lasts.")] = 8.0,
+) -> None:
+    """Make a landing of a study again, and show it as a film."""
+    path = out or folder / "landing.mp4"
+    with _one_sentence():
+        from lithobrake.progress import study_progress
+        from lithobrake.results import open_study
+        from lithobrake.view import refuse_other_kinds, write_motion
+
+        refuse_other_kinds(path)
+        with study_progress() as shown:
+            shown.begin("film", 1, 1)
+            bodies = _landing(open_study(folder), run, lambda done, what: shown.progress(done, 1.0, what))
+            write_motion(bodies, path, seconds, lambda done: shown.progress(done, 1.0, "drawing"))
+    _tell([f"Film: {path.resolve()}"])
+
+
 @app.command(epilog="Example: lithobrake view runs/study")
-def view(folder: StudyDirectory) -> None:
+def view(
+    folder: StudyDirectory,
+    solid: Annotated[bool, typer.Option("--3d", help="Open a window on a landing instead, by PyVista.")] = False,
+    run: Annotated[str | None, typer.Option("--run", metavar="ID", help="Which run --3d shows.")] = None,
+) -> None:
     """Open the report of a study in the browser."""
+    if solid:
+        with _one_sentence():
+            from lithobrake.results import open_study
+            from lithobrake.view import show
+
+            show(_landing(open_study(folder), run))
+        return
     with _one_sentence():
         from lithobrake.pipeline import report_page
 
@@ -229,6 +276,31 @@ def view(folder: StudyDirectory) -> None:
 
     if not webbrowser.open(page.as_uri()):
         _tell([f"No browser found; open this file: {page}"])
+
+
+def _landing(
+    results: "StudyResults", run: str | None, progress: Callable[[float, str], None] = lambda done, what: None
+) -> "MovingBodies":
+    """The landing of a run, made again, or the one that the study keeps."""
+    if run is None:
+        return results.median_landing
+    return results.landing_bodies(int(run) if run.isdigit() and len(run) < 6 else run, progress=progress)
+
+
+def _keep_motion(
+    save: Callable[[Path], None], bodies: Callable[[], "MovingBodies"], out: Path | None, shown: bool
+) -> None:
+    """Write a motion to a file of the kind that its name says, and open a window on it."""
+    if out is not None and out.suffix == ".h5":
+        save(out)
+    elif out is not None:
+        from lithobrake.view import write_motion
+
+        write_motion(bodies(), out)
+    if shown:
+        from lithobrake.view import show
+
+        show(bodies())
 
 
 def _default_folder(study: Path) -> Path:
@@ -300,7 +372,7 @@ def _one_sentence() -> Iterator[None]:
     """Turn an error that a user can fix into its sentence and exit code 2, and Ctrl-C into exit code 130."""
     try:
         yield
-    except (ValueError, FloatingPointError, OSError) as error:
+    except (ValueError, FloatingPointError, ImportError, OSError) as error:
         full = isinstance(error, OSError) and error.errno in (errno.ENOSPC, errno.EDQUOT)
         remedy = "; all finished work is kept: make room on the disk and run the same command again"
         _leave(f"{error}{remedy if full else ''}", BAD_INPUT)

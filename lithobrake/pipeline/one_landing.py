@@ -15,6 +15,7 @@ from lithobrake.study import Study
 from lithobrake.touchdown_model import draw, in_words_of_the_study, lander, landing, medians
 
 if TYPE_CHECKING:
+    from lithobrake.results.moving_bodies import MovingBodies
     from lithobrake.touchdown import Bed, Lander, Landing, Outcome
 
 FRAMES = 120
@@ -50,6 +51,15 @@ class OneLanding:
             "outcome": str(self.outcome.status), "simulated_time": self.outcome.simulated_time, "outputs": outputs,
             "inputs": self.values,
         }  # fmt: skip
+
+    def bodies(self) -> "MovingBodies":
+        """The hulls and how they moved, the lander last."""
+        from lithobrake.results.moving_bodies import MovingBodies
+
+        with TemporaryDirectory(prefix="lithobrake-") as folder:
+            path = Path(folder) / "landing.h5"
+            self.save(path)
+            return MovingBodies.read(path, "land again")
 
     def save(self, path: Path) -> None:
         """Write hulls and frames to an HDF5 file, as a study keeps its landing."""

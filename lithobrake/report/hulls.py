@@ -13,6 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 from numpy.typing import NDArray
 
+from lithobrake.attitude import rotation_matrices
 from lithobrake.report.shading import light_on_faces
 from lithobrake.report.style import shade
 
@@ -55,19 +56,6 @@ class Camera:
         return seen[..., :2] * scale[..., None], seen[..., 2]
 
 
-def rotation(quaternions: Array) -> Array:
-    """Rotation matrices, shape [count, 3, 3], of unit quaternions (w, x, y, z), shape [count, 4]."""
-    w, x, y, z = quaternions.T / np.linalg.norm(quaternions, axis=1)
-    return np.stack(
-        [
-            np.stack([1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)], axis=-1),
-            np.stack([2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)], axis=-1),
-            np.stack([2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)], axis=-1),
-        ],
-        axis=1,
-    )
-
-
 def subdivide(triangles: Array, longest: float) -> Array:
     """Cut triangles, shape [count, 3, 3], in four until no edge is longer than `longest` [m]."""
     edges = np.linalg.norm(triangles - np.roll(triangles, 1, axis=1), axis=2).max(axis=1)
@@ -82,7 +70,7 @@ def subdivide(triangles: Array, longest: float) -> Array:
 
 def world_triangles(bodies: Sequence[Hull], position: Array, orientation: Array) -> tuple[Array, NDArray[np.int64]]:
     """Faces of all bodies in the world, shape [face, 3, 3] [m], wound outwards, and the body each belongs to."""
-    turns = rotation(orientation)
+    turns = rotation_matrices(orientation)
     large = _is_large(bodies)
     longest = 1.3 * float(np.median([np.linalg.norm(body.vertices, axis=1).max() for body in bodies]))
     pieces, owners = [], []

@@ -3,11 +3,20 @@
 import shlex
 from collections.abc import Callable
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
 from lithobrake.reading import read_json
+from lithobrake.results.moving_bodies import MovingBodies
 from lithobrake.study import Study, check_tables, load_tables
-from lithobrake.touchdown_model import TouchdownModel, engine_hash, touchdown_version
+from lithobrake.touchdown_model import (
+    TouchdownModel,
+    engine_hash,
+    lander,
+    landing,
+    stored_bed,
+    touchdown_version,
+)
 
 if TYPE_CHECKING:
     from lithobrake.campaign import Record
@@ -41,6 +50,18 @@ def land_again(
     outcome = TouchdownModel(_study(folder), beds, engine_hash()).land(record.inputs, frame_count, progress)
     _refuse_another_landing(name, record, outcome, again)
     return outcome
+
+
+def bodies_again(
+    folder: Path, record: "Record", frame_count: int, progress: Callable[[float, str], None]
+) -> MovingBodies:  # fmt: skip
+    """Land as land_again does, and return the hulls with their frames; the lander is the last of them."""
+    outcome, study = land_again(folder, record, frame_count, progress), _study(folder)
+    bed = stored_bed(folder / f"beds/bed_{round(record.inputs['bed'])}.h5")
+    with TemporaryDirectory(prefix="lithobrake-") as place:
+        path = Path(place) / "landing.h5"
+        outcome.save_frames(path, bed, lander(study, record.inputs), landing(study, record.inputs))
+        return MovingBodies.read(path, "land again")
 
 
 def _study(folder: Path) -> Study:

@@ -164,11 +164,27 @@ class StudyResults:
         """
         from lithobrake.results.landing_again import land_again
 
+        return land_again(self.folder, self._record(run), frame_count, progress)
+
+    def landing_bodies(
+        self,
+        run: str | int,
+        *,
+        frame_count: int = 120,
+        progress: Callable[[float, str], None] = lambda fraction, what: None,
+    ) -> "MovingBodies":
+        """The hulls of a touchdown made once more, and how they moved, the lander last; see landing()."""
+        from lithobrake.results.landing_again import bodies_again
+
+        return bodies_again(self.folder, self._record(run), frame_count, progress)
+
+    def _record(self, run: str | int) -> "Record":
+        """The row of the ledger of a run. Raises ValueError where there is none."""
         key = self._key(run)
         record = next((one for one in self.ledger if one.key == key), None)
         if record is None:
             raise ValueError(f"{self.folder / 'runs.sqlite'} lacks run {key}; {self.remedy}")
-        return land_again(self.folder, record, frame_count, progress)
+        return record
 
     @cached_property
     def body_shape(self) -> "tuple[NDArray[np.float64], NDArray[np.int64]]":

@@ -6,7 +6,8 @@ from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from scipy.spatial import ConvexHull
 
-from lithobrake.report.hulls import Camera, Hull, frame_axes, paint, rotation, subdivide
+from lithobrake.attitude import rotation_matrices
+from lithobrake.report.hulls import Camera, Hull, frame_axes, paint, subdivide
 from lithobrake.report.shading import SUN, direction
 
 CUBE = np.array([(x, y, z) for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
@@ -33,7 +34,7 @@ def test_camera_shows_near_things_larger() -> None:
 
 def test_rotation_turns_x_to_y_for_a_quarter_turn_about_z() -> None:
     quarter = np.array([[np.sqrt(0.5), 0.0, 0.0, np.sqrt(0.5)]])
-    np.testing.assert_allclose(rotation(quarter)[0] @ [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], atol=1e-12)
+    np.testing.assert_allclose(rotation_matrices(quarter)[0] @ [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], atol=1e-12)
 
 
 def test_subdivision_keeps_the_area_and_shortens_the_edges() -> None:

@@ -1,0 +1,8 @@
+"""Moving bodies to look at outside the report: a file for ParaView, a window, a film."""
+
+from lithobrake.view.files import refuse_other_kinds, write_motion
+from lithobrake.view.film import film
+from lithobrake.view.vtkhdf import write_vtkhdf
+from lithobrake.view.window import show
+
+__all__ = ["film", "refuse_other_kinds", "show", "write_motion", "write_vtkhdf"]

@@ -1,0 +1,33 @@
+"""A motion as a file of the kind that its name ends with."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from lithobrake.view.film import KINDS, film
+from lithobrake.view.vtkhdf import write_vtkhdf
+
+if TYPE_CHECKING:
+    from lithobrake.results.moving_bodies import MovingBodies
+
+ALL_KINDS = (".vtkhdf", *KINDS)
+
+
+def refuse_other_kinds(path: Path, kinds: tuple[str, ...] = ALL_KINDS) -> None:
+    """Raise ValueError for a name that ends otherwise."""
+    if path.suffix not in kinds:
+        raise ValueError(f"--out is {str(path)!r}; allowed: a name that ends in {', '.join(kinds)}")
+
+
+def write_motion(
+    bodies: "MovingBodies",
+    path: Path,
+    seconds: float = 8.0,
+    progress: Callable[[float], None] = lambda fraction: None,
+) -> None:
+    """Write a motion for ParaView (.vtkhdf), or as a film (.mp4, .webp) that lasts so many seconds."""
+    refuse_other_kinds(path)
+    if path.suffix == ".vtkhdf":
+        write_vtkhdf(bodies, path)
+    else:
+        film(bodies, path, seconds, progress)

@@ -1,0 +1,33 @@
+"""Where the hulls of a motion are at an instant, and how fast."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from lithobrake.attitude import rotation_matrices
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from lithobrake.results.moving_bodies import MovingBodies
+
+    Floats = NDArray[np.float64]
+
+
+def placed(bodies: "MovingBodies", frame: int) -> "Floats":
+    """Return all vertices at a frame [m], one hull after the other, shape [vertex_count, 3]."""
+    turn, place = rotation_matrices(bodies.orientation[frame]), bodies.position[frame]
+    return np.concatenate([hull @ turn[body].T + place[body] for body, hull in enumerate(bodies.vertices)])
+
+
+def body_speeds(bodies: "MovingBodies") -> "Floats":
+    """Return the mean speed [m/s] of each body since the frame before, of the first frame that of the second.
+
+    Shape [frame_count, body_count]; 0 where there is one frame.
+    """
+    if len(bodies.time) < 2:
+        return np.zeros(bodies.position.shape[:2])
+    way = np.linalg.norm(np.diff(bodies.position, axis=0), axis=2)
+    passed = np.diff(bodies.time)[:, None]
+    speed = np.divide(way, passed, out=np.zeros_like(way), where=passed > 0.0)
+    return np.concatenate([speed[:1], speed])

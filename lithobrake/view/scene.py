@@ -1,0 +1,80 @@
+"""The hulls of a motion as one mesh of PyVista, coloured by speed, with a camera on the lander."""
+
+import os
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from lithobrake.view.motion import body_speeds, placed
+
+if TYPE_CHECKING:
+    from lithobrake.results.moving_bodies import MovingBodies
+
+INSTALL = 'pip install "lithobrake[view]"'
+# Colours of slow to fast: one that colour-blind people read, and that turns to grey in print.
+COLOURS = "YlGnBu"
+# What is slower than this part of the fastest is drawn as at rest: below it one colour serves.
+SLOWEST = 1e-3
+
+
+def pyvista() -> Any:
+    """Return the module. Raises ImportError with how to install it."""
+    try:
+        import pyvista
+    except ImportError as error:
+        raise ImportError(f"PyVista is not installed; install it with: {INSTALL}") from error
+    return pyvista
+
+
+class Scene:
+    """A window, shown or not, with the bodies of a motion; the lander is the last of them."""
+
+    def __init__(self, bodies: "MovingBodies", *, size: tuple[int, int], off_screen: bool) -> None:
+        """Set all up at the first frame; size of the picture in pixels."""
+        if off_screen and not os.environ.get("DISPLAY"):
+            # Without this VTK asks for a display first, and says so.
+            os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
+        pv = pyvista()
+        self.bodies, self.speeds = bodies, body_speeds(bodies)
+        counts = [len(hull) for hull in bodies.vertices]
+        start = np.concatenate([[0], np.cumsum(counts)[:-1]])
+        faces = np.concatenate([hull + first for hull, first in zip(bodies.faces, start, strict=True)])
+        self.owner = np.repeat(np.arange(len(counts)), [len(hull) for hull in bodies.faces])
+        self.mesh = pv.PolyData.from_regular_faces(placed(bodies, 0), faces)
+        self.plotter = pv.Plotter(off_screen=off_screen, window_size=list(size))
+        fastest = float(self.speeds.max()) or 1.0
+        self.mesh.cell_data["speed"] = self._speeds_at(0, fastest)
+        self.plotter.add_mesh(
+            self.mesh, scalars="speed", cmap=COLOURS, clim=(SLOWEST * fastest, fastest), log_scale=True,
+            scalar_bar_args={
+                "title": "speed [m/s]", "fmt": "%.2g", "vertical": True, "position_x": 0.88, "position_y": 0.25,
+                "height": 0.5, "color": "black",
+            },
+        )  # fmt: skip
+        self.fastest = fastest
+        self._look()
+        self.clock = self.plotter.add_text(self._time(0), font_size=10, color="black")
+
+    def _speeds_at(self, frame: int, fastest: float) -> np.ndarray:
+        return np.maximum(self.speeds[frame, self.owner], SLOWEST * fastest)
+
+    def _time(self, frame: int) -> str:
+        return f"t = {self.bodies.time[frame] - self.bodies.time[0]:.3g} s"
+
+    def _look(self) -> None:
+        """Look at the middle of the lander's way from aslant and above, far enough for all of the bed."""
+        place = self.bodies.position
+        width = float(np.ptp(place[0, :, :2], axis=0).max())
+        middle = np.append(place[0, :, :2].mean(axis=0), np.quantile(place[0, :, 2], 0.9))
+        self.plotter.camera_position = [tuple(middle + width * np.array([0.8, -2.6, 1.5])), tuple(middle), (0, 0, 1)]
+
+    def go_to(self, frame: int) -> None:
+        """Move all bodies to where they were at a frame."""
+        self.mesh.points = placed(self.bodies, frame)
+        self.mesh.cell_data["speed"] = self._speeds_at(frame, self.fastest)
+        self.clock.set_text("upper_left", self._time(frame))
+
+    def picture(self) -> np.ndarray:
+        """Return what is seen now, shape [height, width, 3], 0 to 255."""
+        self.plotter.render()
+        return np.asarray(self.plotter.screenshot(return_img=True))
