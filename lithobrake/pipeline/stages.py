@@ -12,6 +12,8 @@ from lithobrake.pipeline.designs import design_reads
 from lithobrake.pipeline.drawn_summary import write_drawn_summary
 from lithobrake.pipeline.emulator_samples import draw_emulator_samples
 from lithobrake.pipeline.expansions import fit_refined, fit_screening, score_all
+from lithobrake.pipeline.explorer_tables import FILE as EXPLORER
+from lithobrake.pipeline.explorer_tables import write_explorer
 from lithobrake.pipeline.fitted_emulator import fit_emulator
 from lithobrake.pipeline.flights import flight_reads, fly_expansion_samples, fly_samples
 from lithobrake.pipeline.job import Job
@@ -81,6 +83,11 @@ def _sample(study: Study) -> Any:
 
 def _nothing(study: Study) -> Any:
     return None
+
+
+def _emulate(job: Job) -> None:
+    fit_emulator(job)
+    write_explorer(job)
 
 
 def _write_report(job: Job) -> None:
@@ -162,7 +169,7 @@ SEQUENCE = (
         "fly_runs", "flights of the runs", _files("run_flights.csv"), run_flight_reads, ("side_runs",), FLY, fly_runs
     ),
     Stage("estimate", "estimates", _files("estimates.json"), _nothing, ("fly_runs",), FIT, estimate),
-    Stage("emulator", "emulator", _files("emulator.json"), _nothing, ("runs",), EMULATE, fit_emulator),
+    Stage("emulator", "emulator", _files("emulator.json", EXPLORER), _nothing, ("runs",), EMULATE, _emulate),
     Stage("sample", "samples", _files("samples.h5"), _sample, ("emulator",), EMULATE, draw_emulator_samples),
     Stage("fly", "flights", _files(*FLIGHT_FILES), flight_reads, ("sample",), FLY, fly_samples),
     Stage("rest", "bounces until rest", _files("rest.csv", "rest.json"), rest_reads, ("fly",), FLY, follow_samples),

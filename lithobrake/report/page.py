@@ -14,14 +14,9 @@ if TYPE_CHECKING:
 LONG = 15
 # Of the largest number beside it: what the rounding of doubles may add up to over some million steps of time.
 ROUNDING = 1e-9
-# Paper cannot be unfolded. What was folded is folded again afterwards.
-UNFOLD = """addEventListener("beforeprint", () => {
-  for (const part of document.querySelectorAll("details:not([open])")) { part.open = true; part.dataset.folded = ""; }
-});
-addEventListener("afterprint", () => {
-  for (const part of document.querySelectorAll("[data-folded]")) { part.open = false; delete part.dataset.folded; }
-});
-"""
+# Scripts of every page, and those that an explorer brings; each is a file beside this one.
+SCRIPTS = ("page.js",)
+EXPLORER_SCRIPTS = ("law.js", "flown.js", "explore.js", "charts.js", "explorer.js")
 
 
 @dataclass(frozen=True)
@@ -66,13 +61,17 @@ class PageTable:
 
 @dataclass(frozen=True)
 class Content:
-    """What a page says of its study: the answer, what to beware of in sentences, and what stands below."""
+    """What a page says of its study: the answer, what to beware of in sentences, and what stands below.
+
+    explorer: the section in which a reader changes inputs, as HTML; empty where there is none.
+    """
 
     answer: str
     warnings: Sequence[str]
     tiles: Sequence[Tile]
     plots: Sequence[Plot]
     tables: Sequence[PageTable]
+    explorer: str = ""
 
 
 def _header(title: str, content: Content, facts: str) -> str:
@@ -96,7 +95,8 @@ def page(
     """Put the page together, with the panels that the plots of the content gave; all words are plain text and are
     escaped here.
     """
-    style = files("lithobrake.report").joinpath("style.css").read_text(encoding="utf-8")
+    style = _own_file("style.css")
+    scripts = (*SCRIPTS, *(EXPLORER_SCRIPTS if content.explorer else ()))
     pictures = "\n".join(_figure(number, panel) for number, panel in enumerate(panels, start=1))
     return f"""<!DOCTYPE html>
 <html lang="en">
@@ -114,7 +114,7 @@ def page(
 <h2>Figures</h2>
 <p class="note hint">Click or tap a figure to see it in full size, and again to go back.</p>
 {pictures}
-<h2>Tables</h2>
+{content.explorer}<h2>Tables</h2>
 {"".join(_table(table) for table in content.tables)}
 <h2>Provenance</h2>
 {"".join(_table(table) for table in provenance)}
@@ -122,10 +122,16 @@ def page(
 <footer>Written by lithobrake from the files of the study's folder. SI units; degrees where a label says so.</footer>
 </main>
 <script>
-{UNFOLD}</script>
+{"".join(_own_file(name) for name in scripts)}{"startExplorer();" if content.explorer else ""}
+</script>
 </body>
 </html>
 """
+
+
+def _own_file(name: str) -> str:
+    """The text of a file of this package that every page has inside."""
+    return files("lithobrake.report").joinpath(name).read_text(encoding="utf-8")
 
 
 def _tile(tile: Tile) -> str:

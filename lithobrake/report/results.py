@@ -12,7 +12,7 @@ from lithobrake.outcomes import FlightStatus, JourneyStatus
 from lithobrake.reading import DamagedFileError, reading
 from lithobrake.report.error_figure import Score
 from lithobrake.report.scene import Scene, scene
-from lithobrake.results import StudyResults, Table
+from lithobrake.results import ExplorerTables, StudyResults, Table
 
 Array = NDArray[np.float64]
 BODY = "body.obj"
@@ -65,13 +65,17 @@ class PaperResults(Results):
 
 @dataclass(frozen=True)
 class SequenceResults(Results):
-    """Results of a sequence; runs: its landings, without side runs; samples: of the emulator, None where none are."""
+    """Results of a sequence; runs: its landings, without side runs; samples: of the emulator; flights: of the samples;
+    explorer: what the page evaluates of the emulator. None where there are none.
+    """
 
     model, level = "emulator", 0.9
     shown_landing = "In the first run"
 
     runs: Table
     samples: Table | None
+    flights: Table | None
+    explorer: ExplorerTables | None
 
     def table(self, *keys: str) -> Mapping[str, Any]:
         """A table within the results, by the keys that lead to it; an empty one where the summary has none."""
@@ -109,11 +113,15 @@ def page_results(found: StudyResults) -> PaperResults | SequenceResults:
 
 def _sequence_results(found: StudyResults, summary: SummaryTable) -> SequenceResults:
     """Those of a sequence, whose page has what there is so far of flights and samples."""
-    has_samples = (found.folder / "samples.h5").is_file()
+    has_samples, has_flights, has_explorer = (
+        (found.folder / name).is_file() for name in ("samples.h5", "flights.csv", "explorer.h5")
+    )
     return SequenceResults(
         **_of_any_study(found, summary),
         runs=found.runs.where(found.runs["design"] == "sequence"),
         samples=found.samples if has_samples else None,
+        flights=found.flights if has_flights else None,
+        explorer=found.explorer if has_explorer else None,
     )
 
 

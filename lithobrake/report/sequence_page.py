@@ -9,6 +9,7 @@ from lithobrake.outputs import OVER_RIM
 from lithobrake.report import any_study_figures as any_study
 from lithobrake.report import captions, sequence_captions
 from lithobrake.report.calibration_figure import calibration_figure, histograms
+from lithobrake.report.explorer import explorer_section
 from lithobrake.report.page import Content, Plot
 from lithobrake.report.results import SequenceResults
 from lithobrake.report.runs_figure import LandingsOfRuns, runs_figure
@@ -27,7 +28,7 @@ STAYS_ROW = {"stays": "share that stays"}
 
 def sequence_content(data: SequenceResults) -> Content:
     """All that the page shows of the study."""
-    return Content(answer(data), warnings(data), tiles(data), _plots(data), tables(data))
+    return Content(answer(data), warnings(data), tiles(data), _plots(data), tables(data), explorer_section(data))
 
 
 def _plots(data: SequenceResults) -> list[Plot]:

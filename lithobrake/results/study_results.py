@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
     from lithobrake.campaign import Record
     from lithobrake.emulator import Emulator
+    from lithobrake.results.explorer_tables import ExplorerTables
     from lithobrake.results.moving_bodies import MovingBodies
     from lithobrake.results.named_surrogate import NamedSurrogate
     from lithobrake.results.table import Table
@@ -199,6 +200,13 @@ class StudyResults:
 
         with reading(self.folder / "emulator.json", self.remedy):
             return load(self.folder / "emulator.json")
+
+    @cached_property
+    def explorer(self) -> "ExplorerTables":
+        """The emulator's refits to other beds as plain tables, for programs in other languages."""
+        from lithobrake.results.explorer_tables import ExplorerTables
+
+        return ExplorerTables.read(self.folder / "explorer.h5", self.remedy)
 
     @cached_property
     def run_flights(self) -> "Table":

@@ -1,0 +1,144 @@
+"use strict";
+// What the explorer shows of chosen inputs: distributions of the outputs, the share that stays, and where landers come
+// down, each over all refits and refit by refit.
+
+const BINS = 120;
+const MAP_COLUMNS = 72, MAP_ROWS = 36;
+// Draws of each refit at each choice of the inputs: with fifty refits enough for smooth curves, and quick.
+const POINTS = 500;
+
+// The generalised golden ratio: its powers fill a cube of so many sides evenly. (Roberts, 2018.)
+function evenSteps(sides) {
+  let ratio = 2;
+  for (let turn = 0; turn < 60; turn++) ratio = (1 + ratio) ** (1 / (sides + 1));
+  return Array.from({ length: sides }, (_, side) => ratio ** -(side + 1));
+}
+
+function fraction(value) {
+  return value - Math.floor(value);
+}
+
+class Explorer {
+  constructor(law, flown, facts) {
+    Object.assign(this, { law, flown, facts });
+    // Sides of the cube: the inputs, then outcome, row, flight, and a normal number for each output.
+    const { inputs, outputs } = law;
+    this.own = 3 + outputs;
+    this.steps = evenSteps(inputs + this.own);
+    this.numbers = this.ownNumbers();
+    this.y = new Float64Array(outputs);
+    this.axes = null;
+    // The axes show nearly all draws over the whole law of the inputs.
+    this.axes = this.widestAxes();
+    this.whole = this.at(Array.from({ length: inputs }, () => [0, 1]));
+  }
+
+  widestAxes() {
+    const found = Array.from({ length: this.law.outputs }, () => []);
+    this.eachDraw(Array.from({ length: this.law.inputs }, () => [0, 1]), (refit, row) => {
+      if (row >= 0) for (let k = 0; k < found.length; k++) found[k].push(this.y[k]);
+    });
+    return found.map((values, k) => {
+      values.sort((a, b) => a - b);
+      const most = values[Math.floor(0.995 * values.length)] ?? 1;
+      return this.facts.outputs[k].most ?? 1.05 * most;
+    });
+  }
+
+  // What each draw has of its own, [refit_count, POINTS, 3 + output_count]: uniform numbers for outcome, row and flight,
+  // normal ones for the outputs. Each refit has the next points of one even sequence, so that all together fill it.
+  ownNumbers() {
+    const { law, own } = this, found = new Float64Array(law.refits * POINTS * own);
+    for (let place = 0; place < law.refits * POINTS; place++)
+      for (let side = 0; side < own; side++) {
+        const share = fraction((place + 0.5) * this.steps[law.inputs + side]);
+        found[place * own + side] = side < 3 ? share : normalQuantile(share);
+      }
+    return found;
+  }
+
+  // Go through draws at inputs between two probabilities of their laws [input_count][2]; this.y has the outputs.
+  eachDraw(ranges, visit) {
+    const { law, steps, own, numbers, y } = this, germs = new Float64Array(law.inputs);
+    for (let number = 0; number < POINTS; number++) {
+      for (let input = 0; input < law.inputs; input++) {
+        const [low, high] = ranges[input];
+        germs[input] = law.germAt(input, low + (high - low) * fraction((number + 0.5) * steps[input]));
+      }
+      const point = law.pointAt(germs);
+      for (let refit = 0; refit < law.refits; refit++) {
+        const first = (refit * POINTS + number) * own;
+        const row = law.draw(refit, point, numbers[first], numbers[first + 1], numbers, first + 3, y);
+        visit(refit, row, numbers[first + 2]);
+      }
+    }
+  }
+
+  // Everything that is shown, at inputs between two probabilities of their laws.
+  at(ranges) {
+    const { law, flown, facts } = this, cells = MAP_COLUMNS * MAP_ROWS;
+    const counts = new Float64Array(law.refits * law.outputs * BINS), map = new Float64Array(cells);
+    const left = new Float64Array(law.refits), stays = new Float64Array(law.refits), known = new Float64Array(law.refits);
+    const fates = new Float64Array(facts.fates.length);
+    let draws = 0;
+    this.eachDraw(ranges, (refit, row, uniform) => {
+      draws++;
+      if (row < 0) {
+        const outcome = law.facts.outcomeNames[-1 - row];
+        if (outcome !== facts.captured) return;
+        known[refit]++;
+        if (facts.holds) stays[refit]++;
+        return;
+      }
+      left[refit]++;
+      for (let k = 0; k < law.outputs; k++) {
+        const bin = Math.floor(BINS * this.y[k] / this.axes[k]);
+        if (bin < BINS) counts[(refit * law.outputs + k) * BINS + bin]++;
+      }
+      if (!flown) return;
+      const flight = flown.near(this.y[facts.speed], this.y[facts.elevation], law.azimuth[row], uniform);
+      known[refit]++;
+      fates[flown.status[flight]]++;
+      if (flown.status[flight] !== facts.impact) return;
+      stays[refit]++;
+      map[flown.cells[flight]]++;
+    });
+    return { counts, left, stays, known, map, fates, draws };
+  }
+}
+
+// Bounds of a share from those of each refit, over beds that were not in the study. Source: lithobrake.analysis.
+function refitInterval(stays, known, bedCount, reach) {
+  const shares = Array.from(stays, (one, refit) => one / known[refit]), count = shares.length;
+  const mean = shares.reduce((sum, one) => sum + one, 0) / count;
+  const variance = shares.reduce((sum, one) => sum + (one - mean) ** 2, 0) / (count - 1);
+  const share = stays.reduce((sum, one) => sum + one, 0) / known.reduce((sum, one) => sum + one, 0);
+  // Drawing B of B beds scatters by (B - 1) / B of what B beds scatter by. Draws are even, so that next to nothing of
+  // the scatter is theirs, and none is taken off.
+  const half = reach * Math.sqrt(variance * bedCount / (bedCount - 1));
+  if (share >= 0.1 && share <= 0.9 || share === 0 || share === 1)
+    return [share, Math.max(share - half, 0), Math.min(share + half, 1)];
+  const odds = share / (1 - share), factor = Math.exp(Math.min(half / (share * (1 - share)), 600));
+  return [share, odds / factor / (1 + odds / factor), odds * factor / (1 + odds * factor)];
+}
+
+// Value that a share of counts does not exceed, straight within a bin; axis: where the last bin ends.
+function quantileOf(counts, total, share, axis) {
+  let sum = 0;
+  for (let bin = 0; bin < counts.length; bin++) {
+    if (sum + counts[bin] >= share * total && counts[bin] > 0)
+      return axis * (bin + (share * total - sum) / counts[bin]) / counts.length;
+    sum += counts[bin];
+  }
+  return axis;
+}
+
+// The middle nine tenths of numbers, one of each refit.
+function middle(values) {
+  const sorted = Float64Array.from(values).sort(), last = sorted.length - 1;
+  const at = (share) => {
+    const place = share * last, low = Math.floor(place), high = Math.min(low + 1, last);
+    return sorted[low] + (place - low) * (sorted[high] - sorted[low]);
+  };
+  return [at(0.05), at(0.95)];
+}
