@@ -56,7 +56,7 @@ function drawDistribution(canvas, { low, high, mean, whole, largest }) {
   context.moveTo(left, bottom + 0.5);
   context.lineTo(right, bottom + 0.5);
   context.textAlign = "center";
-  for (const value of roundSteps(largest, width / 70)) {
+  for (const value of roundSteps(largest, width / 45)) {
     const place = left + (right - left) * value / largest;
     context.moveTo(place, bottom);
     context.lineTo(place, bottom + 4);
@@ -76,8 +76,10 @@ function drawMap(canvas, map, columns, rows, site) {
     if (!map[cell]) continue;
     // The root keeps thin parts of a map visible beside its peak.
     context.globalAlpha = 0.12 + 0.88 * Math.sqrt(map[cell] / most);
-    const row = Math.floor(cell / columns);
-    context.fillRect(cell % columns * cellWidth, bottom - (row + 1) * cellHeight, cellWidth + 0.5, cellHeight + 0.5);
+    // Whole pixels, so that cells neither overlap nor leave gaps.
+    const column = cell % columns, row = Math.floor(cell / columns);
+    const x = Math.round(column * cellWidth), y = Math.round(bottom - (row + 1) * cellHeight);
+    context.fillRect(x, y, Math.round((column + 1) * cellWidth) - x, Math.round(bottom - row * cellHeight) - y);
   }
   context.globalAlpha = 1;
   context.fillStyle = colour("quiet");

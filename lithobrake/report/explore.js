@@ -3,7 +3,7 @@
 // down, each over all refits and refit by refit.
 
 const BINS = 120;
-const MAP_COLUMNS = 72, MAP_ROWS = 36;
+const MAP_COLUMNS = 120, MAP_ROWS = 60;
 // Draws of each refit at each choice of the inputs: with fifty refits enough for smooth curves, and quick.
 const POINTS = 500;
 

@@ -115,7 +115,7 @@ def page(
 <p class="note hint">Click or tap a figure to see it in full size, and again to go back.</p>
 {pictures}
 {content.explorer}<h2>Tables</h2>
-{"".join(_table(table) for table in content.tables)}
+{"".join(_table(table) for table in sorted(content.tables, key=_is_long))}
 <h2>Provenance</h2>
 {"".join(_table(table) for table in provenance)}
 {_folding("The study file", len(study_text.splitlines()), "lines", f"<pre>{escape(study_text)}</pre>")}
@@ -167,6 +167,11 @@ def _table(table: PageTable) -> str:
     # With a tab stop, so that a box that scrolls sideways can be moved from the keyboard.
     box = f'<div class="scroll" tabindex="0"><table><thead><tr>{head}</tr></thead><tbody>\n{body}</tbody></table></div>'
     return _folding(table.title, len(table.rows), "rows", note + box)
+
+
+def _is_long(table: PageTable) -> bool:
+    """Whether a table is folded away, and stands behind those that are not."""
+    return len(table.rows) > LONG
 
 
 def _cell(cell: str, links: Mapping[str, str]) -> str:

@@ -17,7 +17,7 @@ def answer_of(scripts: tuple[str, ...], program: str, given: dict[str, Any]) -> 
     """What a program returns that has these scripts before it and `given` as an object."""
     text = "\n".join(files("lithobrake.report").joinpath(name).read_text("utf-8") for name in scripts)
     whole = (
-        'const given = JSON.parse(require("fs").readFileSync(0, "utf8"));\n'
+        'globalThis.addEventListener ??= () => {}; const given = JSON.parse(require("fs").readFileSync(0, "utf8"));\n'
         f"process.stdout.write(JSON.stringify((() => {{ {text}\n{program} }})()));"
     )
     assert NODE is not None
