@@ -4,12 +4,6 @@
 // Bins that are drawn as one: finer ones are for quantiles alone.
 const SHOWN_TOGETHER = 3;
 
-function element(name, settings = {}, ...inside) {
-  const made = Object.assign(document.createElement(name), settings);
-  made.append(...inside);
-  return made;
-}
-
 // Two sliders in one place: the probabilities between which an input is drawn.
 function inputControl(explorer, input, changed) {
   const { words, unit } = explorer.facts.inputs[input], value = element("output");
@@ -121,3 +115,5 @@ function mapCell(places, flight) {
   const column = Math.min(Math.floor((places[2 * flight + 1] + 180) / 360 * MAP_COLUMNS), MAP_COLUMNS - 1);
   return row * MAP_COLUMNS + column;
 }
+
+const explorer = startExplorer();

@@ -8,6 +8,7 @@ import numpy as np
 from lithobrake.outcomes import FlightStatus, TouchdownOutcome
 from lithobrake.report.captions import hours, input_words, thousands
 from lithobrake.report.packed import packed, script_data
+from lithobrake.report.page import LiveSection
 from lithobrake.report.results import SequenceResults
 from lithobrake.report.sequence_answer import action, has_interval
 from lithobrake.report.style import output
@@ -15,15 +16,16 @@ from lithobrake.results import ExplorerTables, Table
 
 # More flown starts would make the page heavier, and no cell of them noticeably smaller.
 MOST_STARTS = 20_000
+SCRIPTS = ("law.js", "flown.js", "explore.js", "charts.js", "explorer.js")
 # The explorer's outputs, in the order in which it draws them.
 SHOWN = ("speed_out", "elevation_out", "spin_out")
 START = ("start_speed", "start_elevation_deg", "velocity_x", "velocity_y")
 
 
-def explorer_section(data: SequenceResults) -> str:
+def explorer_sections(data: SequenceResults) -> list[LiveSection]:
     """The explorer with all its numbers, or nothing where the folder has none for it."""
     if data.explorer is None or data.flights is None:
-        return ""
+        return []
     flown = _flown(data.flights)
     count = thousands(len(flown["status"]))
     reference = (
@@ -39,15 +41,14 @@ def explorer_section(data: SequenceResults) -> str:
         "Move the two ends of an input: the emulator is evaluated in this page, at every soil between them as often as "
         "the study's law has it there. "
     )
-    return f"""<section id="explorer">
-<h2>Explorer</h2>
+    numbers = {"facts": _facts(data, data.explorer), "law": packed(_law(data.explorer)), "flown": packed(flown)}
+    html = f"""<section id="explorer">
 <p class="note">{escape(words + bands)} {escape(reference)}Grey lines: the whole law of all inputs.</p>
 <div class="explored"><div class="controls"></div><div class="views"><p class="share" aria-live="polite"></p>
 <div class="charts"></div></div></div>
-<noscript><p class="warning">The explorer needs JavaScript, which this browser does not run.</p></noscript>
 </section>
-{script_data("explorer-data", {"facts": _facts(data, data.explorer), "law": packed(_law(data.explorer)),
-                               "flown": packed(flown)})}"""  # fmt: skip
+{script_data("explorer-data", numbers)}"""
+    return [LiveSection("Explorer", html, SCRIPTS)]
 
 
 def _law(explorer: ExplorerTables) -> dict[str, np.ndarray]:

@@ -3,7 +3,7 @@
 
 // Arrays of the page by name: each was packed as base64 of little-endian numbers with a shape.
 function unpack(packed) {
-  const kinds = { float64: Float64Array, float32: Float32Array, int16: Int16Array, uint8: Uint8Array, uint16: Uint16Array };
+  const kinds = { float64: Float64Array, float32: Float32Array, uint8: Uint8Array };
   const found = {};
   for (const [name, { type, shape, base64 }] of Object.entries(packed)) {
     const bytes = Uint8Array.from(atob(base64), (one) => one.charCodeAt(0));

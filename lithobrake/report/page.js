@@ -1,4 +1,11 @@
 "use strict";
+// An element with these properties and what is inside it.
+function element(name, settings = {}, ...inside) {
+  const made = Object.assign(document.createElement(name), settings);
+  made.append(...inside);
+  return made;
+}
+
 // Paper cannot be unfolded. What was folded is folded again afterwards.
 addEventListener("beforeprint", () => {
   for (const part of document.querySelectorAll("details:not([open])")) { part.open = true; part.dataset.folded = ""; }

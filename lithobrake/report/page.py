@@ -14,9 +14,9 @@ if TYPE_CHECKING:
 LONG = 15
 # Of the largest number beside it: what the rounding of doubles may add up to over some million steps of time.
 ROUNDING = 1e-9
-# Scripts of every page, and those that an explorer brings; each is a file beside this one.
-SCRIPTS = ("page.js",)
-EXPLORER_SCRIPTS = ("law.js", "flown.js", "explore.js", "charts.js", "explorer.js")
+# What every page can do; sections bring scripts of their own. Each is a file beside this one.
+SCRIPT = "page.js"
+NO_SCRIPT = '<noscript><p class="warning">What follows needs JavaScript, which this browser does not run.</p></noscript>\n'
 
 
 @dataclass(frozen=True)
@@ -60,18 +60,24 @@ class PageTable:
 
 
 @dataclass(frozen=True)
-class Content:
-    """What a page says of its study: the answer, what to beware of in sentences, and what stands below.
+class LiveSection:
+    """A part of the page that a reader moves, as HTML, under a heading that others may share, and its scripts."""
 
-    explorer: the section in which a reader changes inputs, as HTML; empty where there is none.
-    """
+    heading: str
+    html: str
+    scripts: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Content:
+    """What a page says of its study: the answer, what to beware of in sentences, and what stands below."""
 
     answer: str
     warnings: Sequence[str]
     tiles: Sequence[Tile]
     plots: Sequence[Plot]
     tables: Sequence[PageTable]
-    explorer: str = ""
+    live: Sequence[LiveSection] = ()
 
 
 def _header(title: str, content: Content, facts: str) -> str:
@@ -96,7 +102,7 @@ def page(
     escaped here.
     """
     style = _own_file("style.css")
-    scripts = (*SCRIPTS, *(EXPLORER_SCRIPTS if content.explorer else ()))
+    scripts = dict.fromkeys([SCRIPT, *(name for section in content.live for name in section.scripts)])
     pictures = "\n".join(_figure(number, panel) for number, panel in enumerate(panels, start=1))
     return f"""<!DOCTYPE html>
 <html lang="en">
@@ -114,7 +120,7 @@ def page(
 <h2>Figures</h2>
 <p class="note hint">Click or tap a figure to see it in full size, and again to go back.</p>
 {pictures}
-{content.explorer}<h2>Tables</h2>
+{_live(content.live)}<h2>Tables</h2>
 {"".join(_table(table) for table in sorted(content.tables, key=_is_long))}
 <h2>Provenance</h2>
 {"".join(_table(table) for table in provenance)}
@@ -122,11 +128,19 @@ def page(
 <footer>Written by lithobrake from the files of the study's folder. SI units; degrees where a label says so.</footer>
 </main>
 <script>
-{"".join(_own_file(name) for name in scripts)}{"startExplorer();" if content.explorer else ""}
-</script>
+{"".join(_own_file(name) for name in scripts)}</script>
 </body>
 </html>
 """
+
+
+def _live(sections: Sequence[LiveSection]) -> str:
+    """The sections that a reader moves, each heading once; without scripts none of them can be seen."""
+    text, heading = "", ""
+    for section in sections:
+        text += f"<h2>{escape(section.heading)}</h2>\n" if section.heading != heading else ""
+        text, heading = text + section.html, section.heading
+    return f'<div class="live">\n{NO_SCRIPT}{text}</div>\n' if text else ""
 
 
 def _own_file(name: str) -> str:
