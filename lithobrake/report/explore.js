@@ -35,7 +35,7 @@ class Explorer {
 
   widestAxes() {
     const found = Array.from({ length: this.law.outputs }, () => []);
-    this.eachDraw(Array.from({ length: this.law.inputs }, () => [0, 1]), (refit, row) => {
+    this.eachDraw(Array.from({ length: this.law.inputs }, () => [0, 1]), POINTS, (refit, row) => {
       if (row >= 0) for (let k = 0; k < found.length; k++) found[k].push(this.y[k]);
     });
     return found.map((values, k) => {
@@ -57,10 +57,11 @@ class Explorer {
     return found;
   }
 
-  // Go through draws at inputs between two probabilities of their laws [input_count][2]; this.y has the outputs.
-  eachDraw(ranges, visit) {
+  // Go through draws at inputs between two probabilities of their laws [input_count][2]; this.y has the outputs. points:
+  // so many of the draws of each refit.
+  eachDraw(ranges, points, visit) {
     const { law, steps, own, numbers, y } = this, germs = new Float64Array(law.inputs);
-    for (let number = 0; number < POINTS; number++) {
+    for (let number = 0; number < points; number++) {
       for (let input = 0; input < law.inputs; input++) {
         const [low, high] = ranges[input];
         germs[input] = law.germAt(input, low + (high - low) * fraction((number + 0.5) * steps[input]));
@@ -75,13 +76,13 @@ class Explorer {
   }
 
   // Everything that is shown, at inputs between two probabilities of their laws.
-  at(ranges) {
+  at(ranges, points = POINTS) {
     const { law, flown, facts } = this, cells = MAP_COLUMNS * MAP_ROWS;
     const counts = new Float64Array(law.refits * law.outputs * BINS), map = new Float64Array(cells);
     const left = new Float64Array(law.refits), stays = new Float64Array(law.refits), known = new Float64Array(law.refits);
     const fates = new Float64Array(facts.fates.length);
     let draws = 0;
-    this.eachDraw(ranges, (refit, row, uniform) => {
+    this.eachDraw(ranges, points, (refit, row, uniform) => {
       draws++;
       if (row < 0) {
         const outcome = law.facts.outcomeNames[-1 - row];

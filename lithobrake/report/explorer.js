@@ -3,6 +3,8 @@
 
 // Bins that are drawn as one: finer ones are for quantiles alone.
 const SHOWN_TOGETHER = 3;
+// Milliseconds that the draws of a moving picture may take, and the fewest draws of each refit that say anything.
+const FRAME = 20, FEWEST_POINTS = 60;
 
 // Two sliders in one place: the probabilities between which an input is drawn.
 function inputControl(explorer, input, changed) {
@@ -13,7 +15,7 @@ function inputControl(explorer, input, changed) {
   const range = () => ends.map((one) => Number(one.value)).sort((a, b) => a - b);
   const show = () => {
     const [low, high] = range().map((share) => explorer.law.valueOf(input, explorer.law.germAt(input, share)));
-    value.textContent = `${low === high ? shortNumber(low) : `${shortNumber(low)} to ${shortNumber(high)}`} ${unit}`;
+    value.textContent = `${low === high ? shortNumber(low) : `${shortNumber(low)} to ${shortNumber(high)}`} ${unit}`.trim();
   };
   for (const one of ends) one.addEventListener("input", () => { show(); changed(); });
   const box = element("div", { className: "control" },
@@ -81,10 +83,13 @@ function startExplorer() {
   if (flown) charts.append(element("figure", { className: "map" }, element("h3", { textContent: "Where they come down" }), map,
     element("figcaption", { textContent: "Longitude and latitude; the ring is the site." })));
   const whole = facts.outputs.map((_, k) => densities(explorer.whole, law, k).mean);
-  let waiting = false;
-  const draw = () => {
+  let waiting = false, points = POINTS, settled = 0;
+  const draw = (all) => {
     waiting = false;
-    const found = explorer.at(controls.map((one) => one.range()));
+    const began = performance.now(), found = explorer.at(controls.map((one) => one.range()), all ? POINTS : points);
+    // A slow machine has fewer draws while an end moves, and all of them when it has stopped.
+    const took = performance.now() - began;
+    if (!all) points = Math.min(Math.max(Math.round(points * FRAME / took), FEWEST_POINTS), POINTS);
     views.forEach(({ canvas, caption }, k) => {
       drawDistribution(canvas, { ...densities(found, law, k), whole: whole[k], largest: facts.outputs[k].factor * explorer.axes[k] });
       const [value, low, high] = quantileWords(explorer, found, k, 0.5);
@@ -94,7 +99,11 @@ function startExplorer() {
     if (flown) drawMap(map, found.map, MAP_COLUMNS, MAP_ROWS, facts.site);
   };
   // As often as the screen shows, and no more.
-  const changed = () => { if (!waiting) { waiting = true; requestAnimationFrame(draw); } };
+  const changed = () => {
+    if (!waiting) { waiting = true; requestAnimationFrame(() => draw(false)); }
+    clearTimeout(settled);
+    settled = setTimeout(() => draw(true), 200);
+  };
   const controls = facts.inputs.map((_, input) => inputControl(explorer, input, changed));
   const set = (words, low, high) => {
     const button = element("button", { type: "button", textContent: words });
@@ -105,7 +114,7 @@ function startExplorer() {
     element("p", { className: "buttons" }, set("The whole law", 0, 1), set("All at their medians", 0.5, 0.5)));
   addEventListener("resize", changed);
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", changed);
-  draw();
+  draw(true);
   return explorer;
 }
 

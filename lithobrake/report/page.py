@@ -16,7 +16,7 @@ LONG = 15
 ROUNDING = 1e-9
 # What every page can do; sections bring scripts of their own. Each is a file beside this one.
 SCRIPT = "page.js"
-NO_SCRIPT = '<noscript><p class="warning">What follows needs JavaScript, which this browser does not run.</p></noscript>\n'
+NO_SCRIPT = '<noscript><p class="warning">What follows needs JavaScript, which does not run here.</p></noscript>\n'
 
 
 @dataclass(frozen=True)

@@ -44,8 +44,8 @@ def _landing(scene: Scene, which: str) -> LiveSection:
     facts["orbit"] = _orbit(middle, radius, -1.1, 0.35)
     quantum = 1e3 * float(arrays["quanta"].max())
     words = (
-        f"{which}: {len(moving.vertices) - 1} grains and the lander in {len(moving.time)} pictures, with straight lines "
-        f"between them. Places are rounded to {number(quantum, 2)} mm, and grains that hardly move to less. Colour by "
+        f"{which}: {len(moving.vertices) - 1} grains and the lander in {len(moving.time)} pictures, straight between "
+        f"them. Places are rounded to {number(quantum, 2)} mm, and grains that hardly move to less. Colour by "
         f"speed: from {number(facts['fastest'] * 10**-DECADES, 2)} (dark) over equal factors to "
         f"{number(facts['fastest'], 2)} m/s (yellow)."
     )
@@ -77,7 +77,10 @@ def landing_arrays(scene: Scene) -> tuple[dict[str, np.ndarray], dict[str, Any]]
         **_geometry([(body.vertices, body.faces) for body in scene.bodies]),
         "paint": _painted([to_rgb(body.colour) for body in scene.bodies], [len(body.faces) for body in scene.bodies]),
         "times": moving.time.astype(np.float32),
-        **{"steps": steps, "speed": shade, "middles": middles, "quanta": quanta},
+        "steps": steps,
+        "speed": shade,
+        "middles": middles,
+        "quanta": quanta,
     }
     facts = {"bodyCount": len(scene.bodies), "frameCount": len(moving.time), "fastest": fastest}
     return arrays, facts
@@ -104,7 +107,9 @@ def _body(data: Results) -> LiveSection:
     facts: dict[str, Any] = {"bodyCount": 1, "frameCount": 1, "fastest": 1.0}
     radius = float(np.linalg.norm(vertices, axis=1).max())
     facts["orbit"] = _orbit(np.zeros(3), radius, float(longitude) - 0.4, float(latitude) + 0.3)
-    words = f"Impacts per hectare as in the figure of the body, from {number(low, 2)} (dark) to {number(high, 2)} (yellow)."
+    words = (
+        f"Impacts per hectare as in the figure of the body, from {number(low, 2)} (dark) to {number(high, 2)} (yellow)."
+    )
     return _section("body-3d", "Where the lander comes down, to turn", words, arrays, facts)
 
 
@@ -112,11 +117,12 @@ def _geometry(hulls: Sequence[tuple[Array, NDArray[np.int64]]]) -> dict[str, np.
     """Vertices of all hulls one after the other, their faces as places among all, and the hull of each vertex."""
     counts = np.array([len(vertices) for vertices, _ in hulls])
     first = np.concatenate([[0], np.cumsum(counts)[:-1]])
+    faces = np.concatenate([own + start for (_, own), start in zip(hulls, first, strict=True)])
     return {
         "vertices": np.concatenate([vertices for vertices, _ in hulls]).astype(np.float32),
-        "faces": np.concatenate([faces + start for (_, faces), start in zip(hulls, first, strict=True)]).astype(np.int32),
+        "faces": faces.astype(np.int32),
         "vertexBody": np.repeat(np.arange(len(hulls)), counts).astype(np.float32),
-    }  # fmt: skip
+    }
 
 
 def _painted(colours: Sequence[tuple[float, float, float]], face_counts: Sequence[int]) -> np.ndarray:
