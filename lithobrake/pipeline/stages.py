@@ -15,6 +15,7 @@ from lithobrake.pipeline.expansions import fit_refined, fit_screening, score_all
 from lithobrake.pipeline.explorer_tables import FILE as EXPLORER
 from lithobrake.pipeline.explorer_tables import write_explorer
 from lithobrake.pipeline.fitted_emulator import fit_emulator
+from lithobrake.pipeline.flight_paths import FILE as PATHS_FILE
 from lithobrake.pipeline.flights import flight_reads, fly_expansion_samples, fly_samples
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.making_runs import (
@@ -106,7 +107,7 @@ _SCREENING_RUNS = ("points", "replicate_count", "screening_level", "screening_co
 _REFINED_RUNS = _design("refined_level", "refined_count", "refined_degree", "kept_share", "kept_outputs")
 _FIT, _TEST = _design("fit"), _design("test_count")
 
-FLIGHT_FILES = ("flights.csv", "flights.json", "body.obj")
+FLIGHT_FILES = ("flights.csv", "flights.json", "body.obj", PATHS_FILE)
 
 BED = Stage("bed", "bed", bed_files, bed_reads, (), (), pour_beds)
 REPORT = Stage(

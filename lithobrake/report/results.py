@@ -15,7 +15,7 @@ from lithobrake.report.scene import Scene, scene
 from lithobrake.results import ExplorerTables, StudyResults, Table
 
 Array = NDArray[np.float64]
-BODY = "body.obj"
+BODY, PATHS = "body.obj", "flight_paths.h5"
 FILES = ("summary.json", "study.toml")
 PAPER_FILES = (*FILES, "scores.json", "samples.h5", "flights.csv", "rest.csv", BODY)
 GROUNDS = ("soil", "hard")
@@ -28,7 +28,8 @@ class Results:
     study, results, provenance: the three tables of summary.json;
     latitude, longitude: of the impacts [deg], shape [impact], and facet, the one of the body that was hit;
     body_vertices of the body [m] and its body_faces, counted from 0; rest: latitude and longitude [deg] of the landers
-    that rest, by ground. bed and landing are None where a solver of the user's own made the touchdowns.
+    that rest, by ground; paths: places on the ways of some flights [m] and how each ended. bed and landing are None
+    where a solver of the user's own made the touchdowns.
     """
 
     model: ClassVar[str]
@@ -50,6 +51,7 @@ class Results:
     body_vertices: Array
     body_faces: NDArray[np.int64]
     rest: dict[str, tuple[Array, Array]]
+    paths: tuple[Array, tuple[str, ...]] | None
 
 
 @dataclass(frozen=True)
@@ -146,6 +148,7 @@ def _of_any_study(found: StudyResults, summary: SummaryTable) -> dict[str, Any]:
         "facet": facet,
         "body_vertices": vertices,
         "body_faces": faces,
+        "paths": found.flight_paths if (found.folder / PATHS).is_file() else None,
         "rest": {ground: _resting(found, ground) for ground in GROUNDS},
     }
 

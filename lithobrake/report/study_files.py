@@ -26,6 +26,7 @@ CONTENTS = {
     "flights.csv": "the flight of each sample that leaves the surface",
     "flights_without_scatter.csv": "the same flights without the scatter from run to run, where the study has it",
     "flights.json": "how exact the flights are",
+    "flight_paths.h5": "the ways of the first flights, as the page shows them about the body",
     "rest.csv": "the journey of each lander that was followed from bounce to bounce",
     "rest.json": "which ground could be asked, and the range of the runs",
     "body.obj": "the shape of the body that the flights used",

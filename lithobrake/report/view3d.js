@@ -44,13 +44,14 @@ const FACES = `#version 300 es
 precision highp float;
 in vec3 place, colour;
 uniform vec3 light;
+uniform float isLine;
 out vec4 shown;
 
 void main() {
   // Flat faces: their normal is that of the triangle on the screen.
-  vec3 normal = normalize(cross(dFdx(place), dFdy(place)));
+  vec3 normal = isLine > .5 ? vec3(0., 0., 1.) : normalize(cross(dFdx(place), dFdy(place)));
   float sun = max(dot(normal, light), 0.);
-  shown = vec4(colour * (.5 + .1 * normal.z + .45 * sun), 1.);
+  shown = vec4(colour * (.62 + .08 * normal.z + .34 * sun), 1.);
 }`;
 
 function program(gl) {
@@ -148,10 +149,12 @@ class View3d {
     // A sun at the upper left of whoever looks.
     const turn = orbit.azimuth - 1, light = [0.66 * Math.cos(turn), 0.66 * Math.sin(turn), 0.75];
     set("light", "3f", ...light);
+    set("isLine", "1f", 0);
     gl.bindVertexArray(this.bodies);
     gl.drawArrays(gl.TRIANGLES, 0, scene.corner.length / 3);
     this.drawCalls = 1;
     if (!this.paths) return;
+    set("isLine", "1f", 1);
     gl.bindVertexArray(this.paths);
     gl.drawArrays(gl.LINES, 0, scene.lines.corner.length / 3);
     this.drawCalls = 2;

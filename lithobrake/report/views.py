@@ -9,6 +9,7 @@ import numpy as np
 from matplotlib.colors import LogNorm, to_rgb
 from numpy.typing import NDArray
 
+from lithobrake.outcomes import FlightStatus
 from lithobrake.report.body_figure import BARE, colour_ends, facet_density
 from lithobrake.report.packed import deflated, script_data
 from lithobrake.report.page import LiveSection, number
@@ -21,6 +22,13 @@ SCRIPTS = ("view3d.js", "moving.js")
 LARGEST = 32767
 # Speeds are told apart over so many decades below the fastest.
 DECADES = 4.0
+# How a flight ended: its colour in a word, what it did, and the colour.
+FATE_COLOURS = {
+    FlightStatus.IMPACT: ("blue", "came down", "#2f6fb0"),
+    FlightStatus.FLYING: ("grey", "still flew", "#8b8f96"),
+    FlightStatus.ESCAPED: ("orange", "escaped", "#e69f00"),
+    FlightStatus.PARTNER: ("violet", "came down on the partner", "#a8659a"),
+}
 # A view takes in a sphere when its middle is so many radii away.
 AWAY = 4.2
 
@@ -110,7 +118,23 @@ def _body(data: Results) -> LiveSection:
     words = (
         f"Impacts per hectare as in the figure of the body, from {number(low, 2)} (dark) to {number(high, 2)} (yellow)."
     )
+    if data.paths is not None and len(data.paths[0]):
+        # The ways reach farther out than the body.
+        facts["orbit"]["distance"] *= 1.5
+        arrays |= _paths(*data.paths)
+        met = [FATE_COLOURS[FlightStatus(word)] for word in dict.fromkeys(data.paths[1])]
+        words += f" Lines: the ways of the first {len(data.paths[1])} flights, seen from the turning body; "
+        words += ", ".join(f"{colour}: {what}" for colour, what, _ in met) + "."
     return _section("body-3d", "Where the lander comes down, to turn", words, arrays, facts)
+
+
+def _paths(position: Array, status: Sequence[str]) -> dict[str, np.ndarray]:
+    """Ends of the pieces of all ways [2 piece_count, 3], and the colour of each."""
+    ends = np.stack([position[:, :-1], position[:, 1:]], axis=2).reshape(-1, 3)
+    paint = np.array([to_rgb(FATE_COLOURS[FlightStatus(word)][2]) for word in status])
+    # Two ends of each piece.
+    of_ends = np.repeat(np.rint(255.0 * paint), 2 * (position.shape[1] - 1), axis=0)
+    return {"path_corner": ends.astype(np.float32), "path_paint": of_ends.astype(np.uint8)}
 
 
 def _geometry(hulls: Sequence[tuple[Array, NDArray[np.int64]]]) -> dict[str, np.ndarray]:

@@ -127,6 +127,15 @@ class StudyResults:
         return self._table("flight", self._rows("flights.csv", columns), columns, FLIGHT)
 
     @cached_property
+    def flight_paths(self) -> "tuple[NDArray[np.float64], tuple[str, ...]]":
+        """Places on the first flights' ways [m], shape [path_count, place_count, 3], body-fixed; how each ended."""
+        import h5py
+
+        path = self.folder / "flight_paths.h5"
+        with reading(path, self.remedy), h5py.File(path, "r") as file:
+            return file["position"][:], tuple(map(str, file.attrs["status"]))
+
+    @cached_property
     def rest(self) -> "Table":
         """Where samples end after all bounces, on each ground (docs/flights.md)."""
         columns = ("ground", *_PLACES)

@@ -71,6 +71,20 @@ def test_the_share_of_the_explorer_over_the_whole_law_is_that_of_the_emulator(re
     assert abs(found - share) < 3.0 * np.sqrt(share * (1.0 - share) / flown)
 
 
+def test_the_ways_of_flights_lead_from_the_site_to_their_ends(results: StudyResults) -> None:
+    (places, status), flights = results.flight_paths, results.flights
+    assert places.shape == (16, 193, 3)
+    assert list(status) == list(flights["status"][:16])
+    down = np.array(status) == "impact"
+    ends = places[down, -1]
+    latitude = np.degrees(np.arctan2(ends[:, 2], np.hypot(ends[:, 0], ends[:, 1])))
+    longitude = np.degrees(np.arctan2(ends[:, 1], ends[:, 0]))
+    # A thousandth of a degree is less than a centimetre.
+    assert latitude == pytest.approx(flights["latitude_deg"][:16][down], abs=1e-3)
+    assert longitude == pytest.approx(flights["longitude_deg"][:16][down], abs=1e-3)
+    assert np.ptp(places[:, 0], axis=0) == pytest.approx(np.zeros(3), abs=1e-6)
+
+
 def test_parts_of_the_variance_add_up_and_side_runs_tell_theirs(results: StudyResults) -> None:
     found = results.summary["results"]
     assert set(found["variance_shares"]) == {"speed_out", "elevation_out", "spin_out", "stays"}

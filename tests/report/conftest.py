@@ -29,6 +29,7 @@ def study_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     write_bodies(folder / "landing.h5", 13, landing)
     write_samples(folder / "samples.h5")
     write_flights(folder / "flights.csv")
+    write_paths(folder / "flight_paths.h5")
     write_rest(folder / "rest.csv")
     write_octahedron(folder / "body.obj")
     scores = made_up_scores()
@@ -80,6 +81,14 @@ def write_flights(path: Path) -> None:
             else:
                 end = ["escaped" if index % 8 else "flying", 43200.0, "", "", "", ""]
             table.writerow(start + end)
+
+
+def write_paths(path: Path) -> None:
+    """Two straight ways out from the body."""
+    way = np.linspace(500.0, 2000.0, 5)[:, None] * [1.0, 0.0, 0.2]
+    with h5py.File(path, "w") as file:
+        file["position"] = np.stack([way, way[::-1]])
+        file.attrs["status"] = ["escaped", "impact"]
 
 
 def write_rest(path: Path) -> None:
