@@ -33,7 +33,7 @@ def save_explorer(path: Path, models: "Sequence[Emulator]", bound: Mapping[str, 
     import h5py
 
     from lithobrake.analysis.confidence import t_quantile
-    from lithobrake.emulator.law_tables import law_tables
+    from lithobrake.emulator import law_tables
 
     runs = models[0].runs
     groups = len(np.unique(runs.group))

@@ -38,7 +38,7 @@ def view_sections(data: Results) -> list[LiveSection]:
     found = []
     if data.landing is not None and len(data.landing.moving.time) > 1:
         found.append(_landing(data.landing, data.shown_landing))
-    if len(data.facet):
+    if len(data.facet) and data.results.get("site"):
         found.append(_body(data))
     return found
 

@@ -20,8 +20,7 @@ from lithobrake.chaos import (
     TruncatedNormal,
     Uniform,
 )  # fmt: skip
-from lithobrake.emulator import Emulator
-from lithobrake.emulator.law_tables import law_tables
+from lithobrake.emulator import Emulator, law_tables
 from lithobrake.pipeline.energy_bound import bound_numbers, energy_bound
 from lithobrake.report import write_report
 from lithobrake.report.packed import packed, script_data
