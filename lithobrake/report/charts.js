@@ -20,13 +20,14 @@ function pen(canvas, height) {
 function roundSteps(largest, count) {
   const rough = largest / count, power = 10 ** Math.floor(Math.log10(rough));
   const step = [1, 2, 5, 10].find((one) => one * power >= rough) * power;
-  return Array.from({ length: Math.floor(largest / step + 1e-9) + 1 }, (_, place) => Number((place * step).toPrecision(12)));
+  const length = Math.floor(largest / step + 1e-9) + 1;
+  return Array.from({ length }, (_, place) => Number((place * step).toPrecision(12)));
 }
 
 // A number to three digits, without a power of ten where a person would not write one.
 function shortNumber(value) {
-  if (value !== 0 && (Math.abs(value) >= 1e5 || Math.abs(value) < 1e-3)) return value.toExponential(1).replace("e+", "e");
-  return String(Number(value.toPrecision(3)));
+  const isFar = value !== 0 && (Math.abs(value) >= 1e5 || Math.abs(value) < 1e-3);
+  return isFar ? value.toExponential(1).replace("e+", "e") : String(Number(value.toPrecision(3)));
 }
 
 // A distribution: band and line of densities [bin_count] between 0 and an axis' end, the whole law as a grey line.
@@ -36,12 +37,12 @@ function drawDistribution(canvas, { low, high, mean, whole, largest }) {
   const most = Math.max(...high, ...whole) || 1;
   const x = (bin) => left + (right - left) * bin / bins, y = (value) => bottom - (bottom - top) * value / most;
   const steps = (values) => {
-    for (let bin = 0; bin < bins; bin++) { context.lineTo(x(bin), y(values[bin])); context.lineTo(x(bin + 1), y(values[bin])); }
+    for (let bin = 0; bin < bins; bin++) for (const end of [bin, bin + 1]) context.lineTo(x(end), y(values[bin]));
   };
   context.fillStyle = colour("band");
   context.beginPath();
   steps(high);
-  for (let bin = bins - 1; bin >= 0; bin--) { context.lineTo(x(bin + 1), y(low[bin])); context.lineTo(x(bin), y(low[bin])); }
+  for (let bin = bins - 1; bin >= 0; bin--) for (const end of [bin + 1, bin]) context.lineTo(x(end), y(low[bin]));
   context.fill();
   for (const [values, name, thick] of [[whole, "quiet", 1], [mean, "accent", 2]]) {
     context.strokeStyle = colour(name);

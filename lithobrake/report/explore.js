@@ -79,7 +79,7 @@ class Explorer {
   at(ranges, points = POINTS) {
     const { law, flown, facts } = this, cells = MAP_COLUMNS * MAP_ROWS;
     const counts = new Float64Array(law.refits * law.outputs * BINS), map = new Float64Array(cells);
-    const left = new Float64Array(law.refits), stays = new Float64Array(law.refits), known = new Float64Array(law.refits);
+    const [left, stays, known] = [0, 1, 2].map(() => new Float64Array(law.refits));
     const fates = new Float64Array(facts.fates.length);
     let draws = 0;
     this.eachDraw(ranges, points, (refit, row, uniform) => {

@@ -8,18 +8,19 @@ const FRAME = 20, FEWEST_POINTS = 60;
 
 // Two sliders in one place: the probabilities between which an input is drawn.
 function inputControl(explorer, input, changed) {
-  const { words, unit } = explorer.facts.inputs[input], value = element("output");
+  const { words: name, unit } = explorer.facts.inputs[input], value = element("output");
   const ends = [0, 1].map((end) => element("input", {
-    type: "range", min: 0, max: 1, step: 0.005, value: end, ariaLabel: `${words}, ${end ? "upper" : "lower"} end`,
+    type: "range", min: 0, max: 1, step: 0.005, value: end, ariaLabel: `${name}, ${end ? "upper" : "lower"} end`,
   }));
   const range = () => ends.map((one) => Number(one.value)).sort((a, b) => a - b);
   const show = () => {
     const [low, high] = range().map((share) => explorer.law.valueOf(input, explorer.law.germAt(input, share)));
-    value.textContent = `${low === high ? shortNumber(low) : `${shortNumber(low)} to ${shortNumber(high)}`} ${unit}`.trim();
+    const words = low === high ? shortNumber(low) : `${shortNumber(low)} to ${shortNumber(high)}`;
+    value.textContent = `${words} ${unit}`.trim();
   };
   for (const one of ends) one.addEventListener("input", () => { show(); changed(); });
   const box = element("div", { className: "control" },
-    element("div", { className: "name" }, element("span", { textContent: words }), value),
+    element("div", { className: "name" }, element("span", { textContent: name }), value),
     element("div", { className: "ends" }, ...ends));
   const reset = (low, high) => { [ends[0].value, ends[1].value] = [low, high]; show(); };
   reset(0, 1);
@@ -28,7 +29,8 @@ function inputControl(explorer, input, changed) {
 
 // Densities of an output by shown bin: of all draws, and the middle nine tenths of the refits.
 function densities(found, law, k) {
-  const bins = BINS / SHOWN_TOGETHER, mean = new Float64Array(bins), low = new Float64Array(bins), high = new Float64Array(bins);
+  const bins = BINS / SHOWN_TOGETHER;
+  const [mean, low, high] = [0, 1, 2].map(() => new Float64Array(bins));
   const total = found.left.reduce((sum, one) => sum + one, 0) || 1;
   for (let bin = 0; bin < bins; bin++) {
     let sum = 0;
@@ -59,44 +61,70 @@ function quantileWords(explorer, found, k, share) {
 }
 
 function shareWords(explorer, found) {
-  const { facts } = explorer, sum = (list) => list.reduce((all, one) => all + one, 0), per = (one) => (100 * one).toFixed(1);
+  const { facts } = explorer, per = (one) => (100 * one).toFixed(1);
+  const sum = (list) => list.reduce((all, one) => all + one, 0);
   if (!sum(found.known)) return "No draw has an answer.";
   const [share, low, high] = refitInterval(found.stays, found.known, facts.bedCount, facts.reach ?? 0);
   const interval = facts.reach ? ` (90 % interval of the emulator: ${per(low)} to ${per(high)} %)` : "";
   return `${per(share)} % ${facts.action}${interval}`;
 }
 
-function startExplorer() {
-  const holder = document.getElementById("explorer"), data = document.getElementById("explorer-data");
-  if (!holder || !data) return null;
+// The cell of the map that a flight ended in.
+function mapCell(places, flight) {
+  const row = Math.min(Math.floor((places[2 * flight] + 90) / 180 * MAP_ROWS), MAP_ROWS - 1);
+  const column = Math.min(Math.floor((places[2 * flight + 1] + 180) / 360 * MAP_COLUMNS), MAP_COLUMNS - 1);
+  return row * MAP_COLUMNS + column;
+}
+
+// The explorer of what the page holds, or null where it holds none.
+function readExplorer() {
+  const data = document.getElementById("explorer-data");
+  if (!data) return null;
   const { facts, law: packedLaw, flown: packedFlown } = JSON.parse(data.textContent);
-  const starts = unpack(packedFlown), law = new Law(unpack(packedLaw), facts);
-  const flown = starts.status.length ? new Flown(starts.starts, starts.status) : null;
-  if (flown) flown.cells = Uint16Array.from(starts.status, (_, flight) => mapCell(starts.places, flight));
-  const explorer = new Explorer(law, flown, facts), charts = holder.querySelector(".charts");
-  const views = facts.outputs.map(({ words, unit }) => {
-    const canvas = element("canvas"), caption = element("figcaption");
-    charts.append(element("figure", {}, element("h3", { textContent: `${words} [${unit}]` }), canvas, caption));
-    return { canvas, caption };
-  });
-  const map = element("canvas");
-  if (flown) charts.append(element("figure", { className: "map" }, element("h3", { textContent: "Where they come down" }), map,
-    element("figcaption", { textContent: "Longitude and latitude; the ring is the site." })));
+  const found = unpack(packedFlown), law = new Law(unpack(packedLaw), facts);
+  if (!found.status.length) return new Explorer(law, null, facts);
+  const flown = new Flown(found.starts, found.status);
+  flown.cells = Uint16Array.from(found.status, (_, flight) => mapCell(found.places, flight));
+  return new Explorer(law, flown, facts);
+}
+
+// A titled canvas with a line of words below.
+function view(title, words, className = "") {
+  const canvas = element("canvas"), caption = element("figcaption", { textContent: words });
+  return { canvas, caption, box: element("figure", { className }, element("h3", { textContent: title }), canvas, caption) };
+}
+
+// The pictures of the explorer; returns what shows findings in them.
+function pictures(explorer, holder) {
+  const { facts, law, flown, axes } = explorer;
   const whole = facts.outputs.map((_, k) => densities(explorer.whole, law, k).mean);
+  const views = facts.outputs.map(({ words, unit }) => view(`${words} [${unit}]`, ""));
+  const map = view("Where they come down", "Longitude and latitude; the ring is the site.", "map");
+  holder.querySelector(".charts").append(...[...views, ...(flown ? [map] : [])].map((one) => one.box));
+  return (found) => {
+    views.forEach(({ canvas, caption }, k) => {
+      const { factor, unit } = facts.outputs[k], [value, low, high] = quantileWords(explorer, found, k, 0.5);
+      drawDistribution(canvas, { ...densities(found, law, k), whole: whole[k], largest: factor * axes[k] });
+      caption.textContent = `Median ${value} ${unit} (refits: ${low} to ${high})`;
+    });
+    if (!flown) return;
+    holder.querySelector(".share").textContent = shareWords(explorer, found);
+    drawMap(map.canvas, found.map, MAP_COLUMNS, MAP_ROWS, facts.site);
+  };
+}
+
+function startExplorer() {
+  const explorer = readExplorer(), holder = document.getElementById("explorer");
+  if (!explorer) return null;
+  const show = pictures(explorer, holder);
   let waiting = false, points = POINTS, settled = 0;
   const draw = (all) => {
     waiting = false;
-    const began = performance.now(), found = explorer.at(controls.map((one) => one.range()), all ? POINTS : points);
+    const began = performance.now(), ranges = controls.map((one) => one.range());
+    const found = explorer.at(ranges, all ? POINTS : points), took = performance.now() - began;
     // A slow machine has fewer draws while an end moves, and all of them when it has stopped.
-    const took = performance.now() - began;
     if (!all) points = Math.min(Math.max(Math.round(points * FRAME / took), FEWEST_POINTS), POINTS);
-    views.forEach(({ canvas, caption }, k) => {
-      drawDistribution(canvas, { ...densities(found, law, k), whole: whole[k], largest: facts.outputs[k].factor * explorer.axes[k] });
-      const [value, low, high] = quantileWords(explorer, found, k, 0.5);
-      caption.textContent = `Median ${value} ${facts.outputs[k].unit} (refits: ${low} to ${high})`;
-    });
-    holder.querySelector(".share").textContent = flown ? shareWords(explorer, found) : "";
-    if (flown) drawMap(map, found.map, MAP_COLUMNS, MAP_ROWS, facts.site);
+    show(found);
   };
   // As often as the screen shows, and no more.
   const changed = () => {
@@ -104,7 +132,7 @@ function startExplorer() {
     clearTimeout(settled);
     settled = setTimeout(() => draw(true), 200);
   };
-  const controls = facts.inputs.map((_, input) => inputControl(explorer, input, changed));
+  const controls = explorer.facts.inputs.map((_, input) => inputControl(explorer, input, changed));
   const set = (words, low, high) => {
     const button = element("button", { type: "button", textContent: words });
     button.addEventListener("click", () => { controls.forEach((one) => one.reset(low, high)); changed(); });
@@ -116,13 +144,6 @@ function startExplorer() {
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", changed);
   draw(true);
   return explorer;
-}
-
-// The cell of the map that a flight ended in.
-function mapCell(places, flight) {
-  const row = Math.min(Math.floor((places[2 * flight] + 90) / 180 * MAP_ROWS), MAP_ROWS - 1);
-  const column = Math.min(Math.floor((places[2 * flight + 1] + 180) / 360 * MAP_COLUMNS), MAP_COLUMNS - 1);
-  return row * MAP_COLUMNS + column;
 }
 
 const explorer = startExplorer();

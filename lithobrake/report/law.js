@@ -46,7 +46,8 @@ class Law {
     this.chances = new Float64Array(this.classes);
     this.where = new Float64Array(this.outputs);
     this.scale = new Float64Array(this.outputs);
-    this.fixedEnds = Array.from({ length: this.refits }, (_, refit) => this.accumulated(refit, null, new Float64Array(this.rowCount)));
+    const alike = (_, refit) => this.accumulated(refit, null, new Float64Array(this.rowCount));
+    this.fixedEnds = Array.from({ length: this.refits }, alike);
     // Terms that no refit uses cost time alone: all of degree two and more, where the law is linear.
     this.used = Array.from({ length: this.terms }, (_, term) => term).filter((term) => this.isUsed(term));
   }
@@ -211,7 +212,8 @@ class Law {
     const spin = ["x", "y", "z"].reduce((sum, axis) => sum + at(`impact.spin_${axis}`) ** 2, 0);
     const fall = bound.height + bound.across * Math.sin(at("surface.slope_deg") * Math.PI / 180);
     const gained = Math.abs(at("surface.gravity")) * fall;
-    return [Math.sqrt(at("impact.speed") ** 2 + bound.largest * power * spin + 2 * gained), Math.sqrt(bound.smallest * power)];
+    const square = at("impact.speed") ** 2 + bound.largest * power * spin + 2 * gained;
+    return [Math.sqrt(square), Math.sqrt(bound.smallest * power)];
   }
 }
 

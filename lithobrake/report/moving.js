@@ -15,7 +15,8 @@ async function inflate(packed) {
 
 // Triangles with corners of their own: corner, body and paint of each, from hulls that share vertices.
 function triangles({ vertices, faces, paint, vertexBody }) {
-  const count = faces.length, corner = new Float32Array(3 * count), body = new Float32Array(count), colour = new Uint8Array(3 * count);
+  const count = faces.length, corner = new Float32Array(3 * count), body = new Float32Array(count);
+  const colour = new Uint8Array(3 * count);
   for (let k = 0; k < count; k++) {
     corner.set(vertices.subarray(3 * faces[k], 3 * faces[k] + 3), 3 * k);
     body[k] = vertexBody ? vertexBody[faces[k]] : 0;
@@ -51,7 +52,8 @@ function control(label, ...inside) {
 // The view with a moment that moves.
 function showLanding(holder, scene, times) {
   const canvas = holder.querySelector("canvas"), view = new View3d(canvas, scene), last = times.length - 1;
-  const slider = element("input", { type: "range", min: 0, max: last, step: "any", value: 0, ariaLabel: "Time of the landing" });
+  const ends = { min: 0, max: last, step: "any", value: 0 };
+  const slider = element("input", { type: "range", ...ends, ariaLabel: "Time of the landing" });
   const shown = element("output"), button = element("button", { type: "button", textContent: "Play" });
   const follows = element("input", { type: "checkbox" }), bySpeed = element("input", { type: "checkbox" });
   const draw = () => {
@@ -79,7 +81,8 @@ function showLanding(holder, scene, times) {
   slider.addEventListener("input", () => { stop(); draw(); });
   follows.addEventListener("change", () => { view.follows = follows.checked; draw(); });
   bySpeed.addEventListener("change", () => { view.bySpeed = bySpeed.checked; draw(); });
-  holder.querySelector(".tools").append(button, slider, shown, control("follow the lander", follows), control("colour by speed", bySpeed));
+  const choices = [control("follow the lander", follows), control("colour by speed", bySpeed)];
+  holder.querySelector(".tools").append(button, slider, shown, ...choices);
   draw();
   return view;
 }
@@ -101,7 +104,8 @@ const landing3d = start3d("landing-3d", (holder, scene, found) =>
   showLanding(holder, { ...scene, poses: poses(found, scene) }, found.times));
 const body3d = start3d("body-3d", (holder, scene, found) => {
   const lines = found.path_corner ? { corner: found.path_corner, paint: found.path_paint } : null;
-  const view = new View3d(holder.querySelector("canvas"), { ...scene, lines, poses: Float32Array.of(0, 0, 0, 0, 0, 0, 0, 1) });
+  const still = Float32Array.of(0, 0, 0, 0, 0, 0, 0, 1);
+  const view = new View3d(holder.querySelector("canvas"), { ...scene, lines, poses: still });
   view.draw();
   return view;
 });

@@ -94,9 +94,13 @@ class View3d {
     const { gl } = this;
     this.program = program(gl);
     this.bodies = this.held(scene.corner, scene.body, scene.paint);
-    if (scene.lines) this.paths = this.held(scene.lines.corner, new Float32Array(scene.lines.corner.length / 3), scene.lines.paint);
+    if (scene.lines) {
+      const { corner, paint } = scene.lines;
+      this.paths = this.held(corner, new Float32Array(corner.length / 3), paint);
+    }
     gl.bindTexture(gl.TEXTURE_2D, gl.createTexture());
-    for (const name of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) gl.texParameteri(gl.TEXTURE_2D, name, gl.NEAREST);
+    for (const name of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER])
+      gl.texParameteri(gl.TEXTURE_2D, name, gl.NEAREST);
     const rows = Math.ceil(scene.poses.length / 4 / ROW), texels = new Float32Array(4 * ROW * rows);
     texels.set(scene.poses);
     gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA32F, ROW, rows, 0, gl.RGBA, gl.FLOAT, texels);
@@ -141,7 +145,8 @@ class View3d {
     gl.viewport(0, 0, width, height);
     gl.clearColor(0, 0, 0, 0);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
-    set("camera", "Matrix4fv", false, cameraMatrix(eye, target, width / height, orbit.distance / 50, 50 * orbit.distance));
+    const seen = cameraMatrix(eye, target, width / height, orbit.distance / 50, 50 * orbit.distance);
+    set("camera", "Matrix4fv", false, seen);
     set("moment", "1f", this.moment);
     set("bodies", "1f", scene.bodyCount);
     set("bySpeed", "1f", this.bySpeed ? 1 : 0);
@@ -167,7 +172,9 @@ class View3d {
       orbit.azimuth -= 0.008 * x;
       orbit.elevation = Math.min(Math.max(orbit.elevation + 0.008 * y, -1.5), 1.5);
     };
-    const nearer = (factor) => { orbit.distance = Math.min(Math.max(orbit.distance * factor, 0.1 * this.scene.orbit.distance), 10 * this.scene.orbit.distance); };
+    const first = orbit.distance, nearer = (factor) => {
+      orbit.distance = Math.min(Math.max(orbit.distance * factor, 0.1 * first), 10 * first);
+    };
     const apart = () => { const [a, b] = [...fingers.values()]; return Math.hypot(a[0] - b[0], a[1] - b[1]); };
     canvas.addEventListener("pointerdown", (event) => {
       canvas.setPointerCapture(event.pointerId);
@@ -181,7 +188,8 @@ class View3d {
       if (fingers.size === 2) nearer(was / apart()); else turn(event.clientX - before[0], event.clientY - before[1]);
       this.draw();
     });
-    for (const end of ["pointerup", "pointercancel"]) canvas.addEventListener(end, (event) => fingers.delete(event.pointerId));
+    for (const end of ["pointerup", "pointercancel"])
+      canvas.addEventListener(end, (event) => fingers.delete(event.pointerId));
     canvas.addEventListener("wheel", (event) => {
       // Whoever scrolls the page must get past a picture.
       if (!event.ctrlKey && document.activeElement !== canvas) return;
