@@ -108,15 +108,26 @@ class Explorer {
   }
 }
 
-// Bounds of a share from those of each refit, over beds that were not in the study. Source: lithobrake.analysis.
+function meanOf(values) {
+  return values.reduce((sum, one) => sum + one, 0) / values.length;
+}
+
+// Variance of numbers, one of each refit, and what of it is the refits': that less what finite draws add. What so few
+// draws cannot tell from chance counts as its own standard error.
+function freedVariance(values, chance) {
+  const mean = meanOf(values), count = values.length;
+  const total = values.reduce((sum, one) => sum + (one - mean) ** 2, 0) / (count - 1);
+  return [total, Math.max(total - chance, total * Math.sqrt(2 / count))];
+}
+
+// Share and its bounds over beds that were not in the study, as lithobrake.analysis.refit_interval has them; a share of
+// 0 or 1 has no other bounds here.
 function refitInterval(stays, known, bedCount, reach) {
-  const shares = Array.from(stays, (one, refit) => one / known[refit]), count = shares.length;
-  const mean = shares.reduce((sum, one) => sum + one, 0) / count;
-  const variance = shares.reduce((sum, one) => sum + (one - mean) ** 2, 0) / (count - 1);
-  const share = stays.reduce((sum, one) => sum + one, 0) / known.reduce((sum, one) => sum + one, 0);
-  // Drawing B of B beds scatters by (B - 1) / B of what B beds scatter by. Draws are even, so that next to nothing of
-  // the scatter is theirs, and none is taken off.
-  const half = reach * Math.sqrt(variance * bedCount / (bedCount - 1));
+  const shares = Array.from(stays, (one, refit) => one / known[refit]), total = meanOf(known) * known.length;
+  const chance = meanOf(shares.map((one, refit) => one * (1 - one) / (known[refit] - 1)));
+  const share = meanOf(stays) * stays.length / total, between = freedVariance(shares, chance)[1];
+  // Drawing B of B beds scatters by (B - 1) / B of what B beds scatter by.
+  const half = reach * Math.sqrt(between * bedCount / (bedCount - 1) + share * (1 - share) / total);
   if (share >= 0.1 && share <= 0.9 || share === 0 || share === 1)
     return [share, Math.max(share - half, 0), Math.min(share + half, 1)];
   const odds = share / (1 - share), factor = Math.exp(Math.min(half / (share * (1 - share)), 600));
@@ -134,12 +145,13 @@ function quantileOf(counts, total, share, axis) {
   return axis;
 }
 
-// The middle nine tenths of numbers, one of each refit.
-function middle(values) {
-  const sorted = Float64Array.from(values).sort(), last = sorted.length - 1;
+// The middle nine tenths of numbers, one of each refit, drawn together by what chance of this variance has added.
+function middle(values, chance) {
+  const sorted = Float64Array.from(values).sort(), last = sorted.length - 1, mean = meanOf(values);
+  const [total, freed] = freedVariance(values, chance), part = total > 0 ? Math.sqrt(freed / total) : 1;
   const at = (share) => {
     const place = share * last, low = Math.floor(place), high = Math.min(low + 1, last);
-    return sorted[low] + (place - low) * (sorted[high] - sorted[low]);
+    return mean + part * (sorted[low] + (place - low) * (sorted[high] - sorted[low]) - mean);
   };
   return [at(0.05), at(0.95)];
 }

@@ -42,7 +42,8 @@ function densities(found, law, k) {
       return count / (found.left[refit] || 1);
     });
     mean[bin] = sum / total;
-    [low[bin], high[bin]] = middle(ofRefits);
+    const chance = meanOf(ofRefits.map((one, refit) => one * (1 - one) / Math.max(found.left[refit] - 1, 1)));
+    [low[bin], high[bin]] = middle(ofRefits, chance);
   }
   return { mean, low, high };
 }
@@ -56,8 +57,12 @@ function quantileWords(explorer, found, k, share) {
     counts.forEach((count, bin) => { all[bin] += count; });
     if (found.left[refit]) of.push(quantileOf(counts, found.left[refit], share, axes[k]));
   }
-  const value = quantileOf(all, found.left.reduce((sum, one) => sum + one, 0), share, axes[k]);
-  return [value, ...middle(of)].map((one) => shortNumber(factor * one));
+  const total = all.reduce((sum, one) => sum + one, 0), value = quantileOf(all, total, share, axes[k]);
+  // Variance of a quantile of finite draws: by the density there, of a tenth of the axis as one bin has too few.
+  const bin = Math.floor(BINS * value / axes[k]), near = all.slice(Math.max(bin - 6, 0), bin + 6);
+  const density = near.reduce((sum, one) => sum + one, 0) / total / (near.length * axes[k] / BINS);
+  const chance = share * (1 - share) * law.refits / total / density ** 2;
+  return [value, ...middle(of, chance)].map((one) => shortNumber(factor * one));
 }
 
 function shareWords(explorer, found) {

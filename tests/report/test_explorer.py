@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from lithobrake import emulator
-from lithobrake.analysis.confidence import share_interval, t_quantile
+from lithobrake.analysis import refit_interval
+from lithobrake.analysis.confidence import t_quantile
 from lithobrake.chaos import (
     Beta,
     Empirical,
@@ -148,15 +149,32 @@ def test_the_energy_bound_is_that_of_python(model: Emulator, changes: dict[str, 
 
 
 @needs_node
-def test_an_interval_is_laid_as_python_lays_it() -> None:
-    shares = np.array([[0.5, 0.6, 0.58], [0.95, 0.97, 0.91], [0.0, 0.0, 0.0]])
-    found = answer_of(ALL, """return given.shares.map((one) => refitInterval(
-        Float64Array.from(one, (share) => 100 * share), new Float64Array(3).fill(100), 12, given.reach));""",
-        {"shares": shares.tolist(), "reach": t_quantile(11)})  # fmt: skip
-    for one, (share, *bounds) in zip(shares, found, strict=True):
-        half = t_quantile(11) * one.std(ddof=1) * np.sqrt(12 / 11)
-        assert share == pytest.approx(one.mean())
-        assert bounds == pytest.approx(share_interval(float(one.mean()), half))
+@pytest.mark.parametrize("share", [0.5, 0.96, 0.03])
+def test_an_interval_is_that_of_python(share: float) -> None:
+    random = np.random.default_rng(6)
+    known = random.integers(400, 500, 50)
+    for spread in (0.0, 0.02):
+        stays = random.binomial(known, np.clip(share + spread * random.standard_normal(50), 0.0, 1.0))
+        found = answer_of(
+            ALL,
+            "return refitInterval(Float64Array.from(given.stays), Float64Array.from(given.known), 12, given.reach);",
+            {"stays": stays.tolist(), "known": known.tolist(), "reach": t_quantile(11)},
+        )
+        known_to_python = refit_interval(stays, known, 12, 240)
+        bounds = [known_to_python.value, known_to_python.lower, known_to_python.upper]
+        assert found == pytest.approx(bounds, rel=EXACT)
+
+
+@needs_node
+def test_bands_are_freed_of_what_few_draws_add() -> None:
+    random = np.random.default_rng(7)
+    truth = 0.3 + 0.03 * random.standard_normal(2000)
+    few = random.binomial(300, truth) / 300
+    chance = float(np.mean(few * (1.0 - few) / 299))
+    low, high = answer_of(ALL, "return middle(given.few, given.chance);", {"few": few.tolist(), "chance": chance})
+    # The standard error of the end of nine tenths, of 2000 draws of a normal law of this spread.
+    error = 0.03 * np.sqrt(0.05 * 0.95 / 2000) / 0.1031
+    assert [low, high] == pytest.approx([0.3 - 1.645 * 0.03, 0.3 + 1.645 * 0.03], abs=3.0 * error)
 
 
 @needs_node
