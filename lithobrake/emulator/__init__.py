@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from lithobrake.emulator.model import Draws as Draws
     from lithobrake.emulator.model import Emulator as Emulator
     from lithobrake.emulator.model import load as load
+    from lithobrake.emulator.plain_tables import law_tables as law_tables
     from lithobrake.emulator.stochastic_expansion import StochasticExpansion as StochasticExpansion
     from lithobrake.emulator.stochastic_expansion import load_stochastic_expansion as load_stochastic_expansion
     from lithobrake.emulator.stochastic_fitting import fit_stochastic_expansion as fit_stochastic_expansion
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
 _PLACES = {
     "Draws": "model", "Emulator": "model", "MeanLaw": "mean_law", "Scores": "validation",
     "StochasticExpansion": "stochastic_expansion", "fit": "fitting", "fit_stochastic_expansion": "stochastic_fitting",
-    "load": "model", "load_stochastic_expansion": "stochastic_expansion",
+    "law_tables": "plain_tables", "load": "model", "load_stochastic_expansion": "stochastic_expansion",
 }  # fmt: skip
 
 

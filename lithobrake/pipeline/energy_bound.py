@@ -54,6 +54,27 @@ def energy_bound(
     return EnergyBound(np.sqrt(known["impact.speed"] ** 2 + largest * spin + 2.0 * gained), np.sqrt(smallest))
 
 
+def bound_numbers(study: Study, bed_height: float) -> dict[str, float]:
+    """The numbers of `energy_bound`, for whoever follows the uncertain inputs alone.
+
+    height, across: of the bed [m]; smallest, largest: squared radii of gyration [m2] at the medians, which go with
+    these powers of mass and diameter; and the medians of whatever the bound depends on, by dotted key.
+    """
+    known = medians(study)
+    smallest, largest = (float(one[0]) for one in _gyrations(study, {key: np.array([known[key]]) for key in known}))
+    has_inertia, is_ball = study.lander.inertia is not None, "lander.diameter" in known
+    names = ("impact.speed", *SPIN, "surface.slope_deg", "surface.gravity", "lander.mass", "lander.diameter")
+    return {
+        "height": bed_height,
+        "across": float(np.hypot(*study.bed.width)),
+        "smallest": smallest,
+        "largest": largest,
+        "mass_power": -1.0 if has_inertia else 0.0,
+        "diameter_power": 2.0 if is_ball and not has_inertia else 0.0,
+        **{name: float(known[name]) for name in names if name in known},
+    }
+
+
 def height_of_beds(study: Study, folder: StudyFolder) -> float:
     """Height [m] of the highest bed; a program of the user's own tells of none."""
     return max((float(stored_bed(folder / name).surface_height) for name in bed_files(study)), default=0.0)

@@ -12,6 +12,7 @@ from lithobrake.atomic import atomic_path
 from lithobrake.hashing import content_hash
 from lithobrake.outcomes import FlightStatus
 from lithobrake.outputs import FLIGHT, quantity
+from lithobrake.pipeline.flight_paths import write_flight_paths
 from lithobrake.pipeline.folder import AGAIN, StudyFolder
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.samples import Samples, sampling_seed
@@ -108,7 +109,9 @@ def fly_samples(job: Job) -> None:
         job.say(warning)
     job.folder.write_json("flights.json", _checks(body, start, study, job))
     _write_shape(body, job.folder)
-    write_table(job.folder, "flights.csv", COLUMNS, _rows(start, fly_starts(body, start, study, job, "flights")))
+    flown = fly_starts(body, start, study, job, "flights")
+    write_flight_paths(job, body, flown, start.sample)
+    write_table(job.folder, "flights.csv", COLUMNS, _rows(start, flown))
 
 
 def write_table(folder: StudyFolder, name: str, columns: Sequence[str], rows: Iterable[list[Any]]) -> None:

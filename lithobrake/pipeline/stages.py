@@ -12,7 +12,10 @@ from lithobrake.pipeline.designs import design_reads
 from lithobrake.pipeline.drawn_summary import write_drawn_summary
 from lithobrake.pipeline.emulator_samples import draw_emulator_samples
 from lithobrake.pipeline.expansions import fit_refined, fit_screening, score_all
+from lithobrake.pipeline.explorer_tables import FILE as EXPLORER
+from lithobrake.pipeline.explorer_tables import write_explorer
 from lithobrake.pipeline.fitted_emulator import fit_emulator
+from lithobrake.pipeline.flight_paths import FILE as PATHS_FILE
 from lithobrake.pipeline.flights import flight_reads, fly_expansion_samples, fly_samples
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.making_runs import (
@@ -83,6 +86,11 @@ def _nothing(study: Study) -> Any:
     return None
 
 
+def _emulate(job: Job) -> None:
+    fit_emulator(job)
+    write_explorer(job)
+
+
 def _write_report(job: Job) -> None:
     from lithobrake.report import write_report
 
@@ -99,7 +107,7 @@ _SCREENING_RUNS = ("points", "replicate_count", "screening_level", "screening_co
 _REFINED_RUNS = _design("refined_level", "refined_count", "refined_degree", "kept_share", "kept_outputs")
 _FIT, _TEST = _design("fit"), _design("test_count")
 
-FLIGHT_FILES = ("flights.csv", "flights.json", "body.obj")
+FLIGHT_FILES = ("flights.csv", "flights.json", "body.obj", PATHS_FILE)
 
 BED = Stage("bed", "bed", bed_files, bed_reads, (), (), pour_beds)
 REPORT = Stage(
@@ -162,7 +170,7 @@ SEQUENCE = (
         "fly_runs", "flights of the runs", _files("run_flights.csv"), run_flight_reads, ("side_runs",), FLY, fly_runs
     ),
     Stage("estimate", "estimates", _files("estimates.json"), _nothing, ("fly_runs",), FIT, estimate),
-    Stage("emulator", "emulator", _files("emulator.json"), _nothing, ("runs",), EMULATE, fit_emulator),
+    Stage("emulator", "emulator", _files("emulator.json", EXPLORER), _nothing, ("runs",), EMULATE, _emulate),
     Stage("sample", "samples", _files("samples.h5"), _sample, ("emulator",), EMULATE, draw_emulator_samples),
     Stage("fly", "flights", _files(*FLIGHT_FILES), flight_reads, ("sample",), FLY, fly_samples),
     Stage("rest", "bounces until rest", _files("rest.csv", "rest.json"), rest_reads, ("fly",), FLY, follow_samples),

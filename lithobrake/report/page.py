@@ -14,14 +14,9 @@ if TYPE_CHECKING:
 LONG = 15
 # Of the largest number beside it: what the rounding of doubles may add up to over some million steps of time.
 ROUNDING = 1e-9
-# Paper cannot be unfolded. What was folded is folded again afterwards.
-UNFOLD = """addEventListener("beforeprint", () => {
-  for (const part of document.querySelectorAll("details:not([open])")) { part.open = true; part.dataset.folded = ""; }
-});
-addEventListener("afterprint", () => {
-  for (const part of document.querySelectorAll("[data-folded]")) { part.open = false; delete part.dataset.folded; }
-});
-"""
+# What every page can do; sections bring scripts of their own. Each is a file beside this one.
+SCRIPT = "page.js"
+NO_SCRIPT = '<noscript><p class="warning">What follows needs JavaScript, which does not run here.</p></noscript>\n'
 
 
 @dataclass(frozen=True)
@@ -65,6 +60,15 @@ class PageTable:
 
 
 @dataclass(frozen=True)
+class LiveSection:
+    """A part of the page that a reader moves, as HTML, under a heading that others may share, and its scripts."""
+
+    heading: str
+    html: str
+    scripts: tuple[str, ...]
+
+
+@dataclass(frozen=True)
 class Content:
     """What a page says of its study: the answer, what to beware of in sentences, and what stands below."""
 
@@ -73,6 +77,7 @@ class Content:
     tiles: Sequence[Tile]
     plots: Sequence[Plot]
     tables: Sequence[PageTable]
+    live: Sequence[LiveSection] = ()
 
 
 def _header(title: str, content: Content, facts: str) -> str:
@@ -96,7 +101,8 @@ def page(
     """Put the page together, with the panels that the plots of the content gave; all words are plain text and are
     escaped here.
     """
-    style = files("lithobrake.report").joinpath("style.css").read_text(encoding="utf-8")
+    style = _own_file("style.css")
+    scripts = dict.fromkeys([SCRIPT, *(name for section in content.live for name in section.scripts)])
     pictures = "\n".join(_figure(number, panel) for number, panel in enumerate(panels, start=1))
     return f"""<!DOCTYPE html>
 <html lang="en">
@@ -114,18 +120,32 @@ def page(
 <h2>Figures</h2>
 <p class="note hint">Click or tap a figure to see it in full size, and again to go back.</p>
 {pictures}
-<h2>Tables</h2>
-{"".join(_table(table) for table in content.tables)}
+{_live(content.live)}<h2>Tables</h2>
+{"".join(_table(table) for table in sorted(content.tables, key=_is_long))}
 <h2>Provenance</h2>
 {"".join(_table(table) for table in provenance)}
 {_folding("The study file", len(study_text.splitlines()), "lines", f"<pre>{escape(study_text)}</pre>")}
 <footer>Written by lithobrake from the files of the study's folder. SI units; degrees where a label says so.</footer>
 </main>
 <script>
-{UNFOLD}</script>
+{"".join(_own_file(name) for name in scripts)}</script>
 </body>
 </html>
 """
+
+
+def _live(sections: Sequence[LiveSection]) -> str:
+    """The sections that a reader moves, each heading once; without scripts none of them can be seen."""
+    text, heading = "", ""
+    for section in sections:
+        text += f"<h2>{escape(section.heading)}</h2>\n" if section.heading != heading else ""
+        text, heading = text + section.html, section.heading
+    return f'<div class="live">\n{NO_SCRIPT}{text}</div>\n' if text else ""
+
+
+def _own_file(name: str) -> str:
+    """The text of a file of this package that every page has inside."""
+    return files("lithobrake.report").joinpath(name).read_text(encoding="utf-8")
 
 
 def _tile(tile: Tile) -> str:
@@ -161,6 +181,11 @@ def _table(table: PageTable) -> str:
     # With a tab stop, so that a box that scrolls sideways can be moved from the keyboard.
     box = f'<div class="scroll" tabindex="0"><table><thead><tr>{head}</tr></thead><tbody>\n{body}</tbody></table></div>'
     return _folding(table.title, len(table.rows), "rows", note + box)
+
+
+def _is_long(table: PageTable) -> bool:
+    """Whether a table is folded away, and stands behind those that are not."""
+    return len(table.rows) > LONG
 
 
 def _cell(cell: str, links: Mapping[str, str]) -> str:

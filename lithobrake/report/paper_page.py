@@ -15,6 +15,7 @@ from lithobrake.report.scatter_figure import scatter_figure
 from lithobrake.report.sobol_figure import sobol_figure
 from lithobrake.report.style import PAPER_OUTPUTS, input_label
 from lithobrake.report.tables import tables, tiles
+from lithobrake.report.views import view_sections
 from lithobrake.results.telling_numbers import TellingNumbers
 
 if TYPE_CHECKING:
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
 
 def paper_content(data: PaperResults) -> Content:
     """All that the page shows of the study."""
-    return Content(captions.answer(data), [], tiles(data), _plots(data), tables(data))
+    return Content(captions.answer(data), [], tiles(data), _plots(data), tables(data), view_sections(data))
 
 
 def _plots(data: PaperResults) -> list[Plot]:

@@ -12,10 +12,10 @@ from lithobrake.outcomes import FlightStatus, JourneyStatus
 from lithobrake.reading import DamagedFileError, reading
 from lithobrake.report.error_figure import Score
 from lithobrake.report.scene import Scene, scene
-from lithobrake.results import StudyResults, Table
+from lithobrake.results import ExplorerTables, StudyResults, Table
 
 Array = NDArray[np.float64]
-BODY = "body.obj"
+BODY, PATHS = "body.obj", "flight_paths.h5"
 FILES = ("summary.json", "study.toml")
 PAPER_FILES = (*FILES, "scores.json", "samples.h5", "flights.csv", "rest.csv", BODY)
 GROUNDS = ("soil", "hard")
@@ -28,7 +28,8 @@ class Results:
     study, results, provenance: the three tables of summary.json;
     latitude, longitude: of the impacts [deg], shape [impact], and facet, the one of the body that was hit;
     body_vertices of the body [m] and its body_faces, counted from 0; rest: latitude and longitude [deg] of the landers
-    that rest, by ground. bed and landing are None where a solver of the user's own made the touchdowns.
+    that rest, by ground; paths: places on the ways of some flights [m] and how each ended. bed and landing are None
+    where a solver of the user's own made the touchdowns.
     """
 
     model: ClassVar[str]
@@ -50,6 +51,7 @@ class Results:
     body_vertices: Array
     body_faces: NDArray[np.int64]
     rest: dict[str, tuple[Array, Array]]
+    paths: tuple[Array, tuple[str, ...]] | None
 
 
 @dataclass(frozen=True)
@@ -65,13 +67,17 @@ class PaperResults(Results):
 
 @dataclass(frozen=True)
 class SequenceResults(Results):
-    """Results of a sequence; runs: its landings, without side runs; samples: of the emulator, None where none are."""
+    """Results of a sequence; runs: its landings, without side runs; samples: of the emulator; flights: of the samples;
+    explorer: what the page evaluates of the emulator. None where there are none.
+    """
 
     model, level = "emulator", 0.9
     shown_landing = "In the first run"
 
     runs: Table
     samples: Table | None
+    flights: Table | None
+    explorer: ExplorerTables | None
 
     def table(self, *keys: str) -> Mapping[str, Any]:
         """A table within the results, by the keys that lead to it; an empty one where the summary has none."""
@@ -109,11 +115,15 @@ def page_results(found: StudyResults) -> PaperResults | SequenceResults:
 
 def _sequence_results(found: StudyResults, summary: SummaryTable) -> SequenceResults:
     """Those of a sequence, whose page has what there is so far of flights and samples."""
-    has_samples = (found.folder / "samples.h5").is_file()
+    has_samples, has_flights, has_explorer = (
+        (found.folder / name).is_file() for name in ("samples.h5", "flights.csv", "explorer.h5")
+    )
     return SequenceResults(
         **_of_any_study(found, summary),
         runs=found.runs.where(found.runs["design"] == "sequence"),
         samples=found.samples if has_samples else None,
+        flights=found.flights if has_flights else None,
+        explorer=found.explorer if has_explorer else None,
     )
 
 
@@ -138,6 +148,7 @@ def _of_any_study(found: StudyResults, summary: SummaryTable) -> dict[str, Any]:
         "facet": facet,
         "body_vertices": vertices,
         "body_faces": faces,
+        "paths": found.flight_paths if (found.folder / PATHS).is_file() else None,
         "rest": {ground: _resting(found, ground) for ground in GROUNDS},
     }
 

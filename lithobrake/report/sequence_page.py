@@ -9,6 +9,7 @@ from lithobrake.outputs import OVER_RIM
 from lithobrake.report import any_study_figures as any_study
 from lithobrake.report import captions, sequence_captions
 from lithobrake.report.calibration_figure import calibration_figure, histograms
+from lithobrake.report.explorer import explorer_sections
 from lithobrake.report.page import Content, Plot
 from lithobrake.report.results import SequenceResults
 from lithobrake.report.runs_figure import LandingsOfRuns, runs_figure
@@ -17,6 +18,7 @@ from lithobrake.report.sequence_answer import answer, warnings
 from lithobrake.report.sequence_tables import colour_input, tables, tiles
 from lithobrake.report.style import input_label
 from lithobrake.report.variance_figure import variance_figure
+from lithobrake.report.views import view_sections
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -27,7 +29,8 @@ STAYS_ROW = {"stays": "share that stays"}
 
 def sequence_content(data: SequenceResults) -> Content:
     """All that the page shows of the study."""
-    return Content(answer(data), warnings(data), tiles(data), _plots(data), tables(data))
+    live = [*explorer_sections(data), *view_sections(data)]
+    return Content(answer(data), warnings(data), tiles(data), _plots(data), tables(data), live)
 
 
 def _plots(data: SequenceResults) -> list[Plot]:

@@ -1,4 +1,4 @@
-"""The report of a study: figures, tables and provenance on one page, and the figures beside it as PNG files."""
+"""The report of a study: figures, tables and provenance on one page, and the figures beside it as PNG and SVG files."""
 
 import io
 from collections.abc import Callable, Sequence
@@ -19,9 +19,12 @@ from lithobrake.results import open_study
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+# The kinds of files of a figure, and what each must not have of the moment and the program that made it.
+PICTURES: dict[str, dict[str, None]] = {"png": {"Software": None}, "svg": {"Date": None, "Creator": None}}
+
 
 def write_report(folder: Path, progress: Callable[[int, int], None]) -> Path:
-    """Write report/index.html of a study's folder, and its figures as PNG files; returns the path of the page.
+    """Write report/index.html of a study's folder, and its figures as PNG and SVG files; returns the path of the page.
 
     Raises ValueError when a file that the report reads is missing.
     """
@@ -29,9 +32,9 @@ def write_report(folder: Path, progress: Callable[[int, int], None]) -> Path:
     content = sequence_content(data) if isinstance(data, SequenceResults) else paper_content(data)
     panels = _panels(folder, content.plots, progress)
     pictures = [
-        (_file(number, plot), f"Figure {number}. {plot.title}")
+        (_file(number, plot, kind), f"Figure {number}. {plot.title}")
         for number, (plot, panel) in enumerate(zip(content.plots, panels, strict=True), start=1)
-        if panel.picture is not None
+        for kind in (PICTURES if panel.picture is not None else ())
     ]
     title = data.study.get("title") or folder.name
     origin = [data_files(folder), picture_files(folder, pictures), *provenance(data)]
@@ -43,27 +46,28 @@ def write_report(folder: Path, progress: Callable[[int, int], None]) -> Path:
 
 
 def _panels(folder: Path, plots: Sequence[Plot], progress: Callable[[int, int], None]) -> list[Panel]:
-    """Draw all figures, and write each as a PNG file."""
+    """Draw all figures, and write each as a PNG and an SVG file."""
     (folder / "report").mkdir(exist_ok=True)
     panels = []
     for number, plot in enumerate(plots, start=1):
         progress(number - 1, len(plots))
         with figure_style():
             figure = plot.draw()
-            picture = None if figure is None else _png(figure)
-        if picture is not None:
-            with atomic_path(folder / "report" / _file(number, plot)) as draft:
-                draft.write_bytes(picture)
-        panels.append(Panel(plot.title, plot.sentence, picture))
+            made = {} if figure is None else {kind: _saved(figure, kind) for kind in PICTURES}
+        for kind, content in made.items():
+            with atomic_path(folder / "report" / _file(number, plot, kind)) as draft:
+                draft.write_bytes(content)
+        panels.append(Panel(plot.title, plot.sentence, made.get("png")))
     return panels
 
 
-def _file(number: int, plot: Plot) -> str:
-    return f"figure_{number}_{plot.name}.png"
+def _file(number: int, plot: Plot, kind: str) -> str:
+    return f"figure_{number}_{plot.name}.{kind}"
 
 
-def _png(figure: "Figure") -> bytes:
+def _saved(figure: "Figure", kind: str) -> bytes:
+    """A figure as a picture of this kind, the same bytes every time."""
     memory = io.BytesIO()
     # The picture's own metadata would differ between versions of matplotlib; the page has the provenance.
-    figure.savefig(memory, format="png", metadata={"Software": None})
+    figure.savefig(memory, format=kind, metadata=PICTURES[kind])
     return memory.getvalue()

@@ -68,6 +68,8 @@ STYLE: Any = {
     "figure.dpi": 100,
     "savefig.dpi": 170,
     "mathtext.fontset": "dejavusans",
+    # Names inside an SVG file are made of this and the content, not of chance.
+    "svg.hashsalt": "lithobrake",
 }
 
 

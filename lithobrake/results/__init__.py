@@ -6,11 +6,14 @@ from typing import TYPE_CHECKING, Any
 from lithobrake.results.study_results import StudyResults, open_study
 
 if TYPE_CHECKING:
+    from lithobrake.results.explorer_tables import ExplorerTables
     from lithobrake.results.moving_bodies import MovingBodies
     from lithobrake.results.table import Column, Table
 
-_HOME = {"Column": "table", "MovingBodies": "moving_bodies", "Table": "table"}
-__all__ = ["Column", "MovingBodies", "StudyResults", "Table", "open_study"]
+_HOME = {
+    "Column": "table", "ExplorerTables": "explorer_tables", "MovingBodies": "moving_bodies", "Table": "table"
+}  # fmt: skip
+__all__ = ["Column", "ExplorerTables", "MovingBodies", "StudyResults", "Table", "open_study"]
 
 
 def __getattr__(name: str) -> Any:

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
     from lithobrake.campaign import Record
     from lithobrake.emulator import Emulator
+    from lithobrake.results.explorer_tables import ExplorerTables
     from lithobrake.results.moving_bodies import MovingBodies
     from lithobrake.results.named_surrogate import NamedSurrogate
     from lithobrake.results.table import Table
@@ -126,6 +127,15 @@ class StudyResults:
         return self._table("flight", self._rows("flights.csv", columns), columns, FLIGHT)
 
     @cached_property
+    def flight_paths(self) -> "tuple[NDArray[np.float64], tuple[str, ...]]":
+        """Places on the first flights' ways [m], shape [path_count, place_count, 3], body-fixed; how each ended."""
+        import h5py
+
+        path = self.folder / "flight_paths.h5"
+        with reading(path, self.remedy), h5py.File(path, "r") as file:
+            return file["position"][:], tuple(map(str, file.attrs["status"]))
+
+    @cached_property
     def rest(self) -> "Table":
         """Where samples end after all bounces, on each ground (docs/flights.md)."""
         columns = ("ground", *_PLACES)
@@ -215,6 +225,13 @@ class StudyResults:
 
         with reading(self.folder / "emulator.json", self.remedy):
             return load(self.folder / "emulator.json")
+
+    @cached_property
+    def explorer(self) -> "ExplorerTables":
+        """The emulator's refits to other beds as plain tables, for programs in other languages."""
+        from lithobrake.results.explorer_tables import ExplorerTables
+
+        return ExplorerTables.read(self.folder / "explorer.h5", self.remedy)
 
     @cached_property
     def run_flights(self) -> "Table":

@@ -18,6 +18,7 @@ from lithobrake.results import StudyResults
 from lithobrake.results.key_words import leaves, words_of
 from lithobrake.study import check_tables
 
+from ..report.page_scripts import answer_of, explorer_data, needs_node
 from ..synthetic_landings import SPEED_LIMIT, WEAK, random_soils
 from .synthetic_lander import SyntheticLander, outputs_of, synthetic_tables
 
@@ -53,6 +54,35 @@ def test_the_share_of_the_runs_and_that_of_the_emulator_hold_the_truth(results: 
     assert remains["lower"] < truth < remains["upper"]
     assert results.summary["results"]["emulator"]["warning"] is None
     assert "90 % interval" in results.headline[0]
+
+
+@needs_node
+def test_the_share_of_the_explorer_over_the_whole_law_is_that_of_the_emulator(results: StudyResults) -> None:
+    program = """const { facts, law: packedLaw, flown: packedFlown } = given, starts = unpack(packedFlown);
+      const flown = new Flown(starts.starts, starts.status), law = new Law(unpack(packedLaw), facts);
+      flown.cells = new Uint16Array(starts.status.length);
+      const { stays, known } = new Explorer(law, flown, facts).whole;
+      const sum = (list) => list.reduce((all, one) => all + one, 0);
+      return sum(stays) / sum(known);"""
+    page = (results.folder / "report" / "index.html").read_text(encoding="utf-8")
+    found = answer_of(("law.js", "flown.js", "explore.js"), program, explorer_data(page))
+    share, flown = results.summary["results"]["stays"]["emulator"], results.flights.row_count
+    # Both stand on the same flights; the study's share has the chance of so many drawn velocities beside.
+    assert abs(found - share) < 3.0 * np.sqrt(share * (1.0 - share) / flown)
+
+
+def test_the_ways_of_flights_lead_from_the_site_to_their_ends(results: StudyResults) -> None:
+    (places, status), flights = results.flight_paths, results.flights
+    assert places.shape == (16, 193, 3)
+    assert list(status) == list(flights["status"][:16])
+    down = np.array(status) == "impact"
+    ends = places[down, -1]
+    latitude = np.degrees(np.arctan2(ends[:, 2], np.hypot(ends[:, 0], ends[:, 1])))
+    longitude = np.degrees(np.arctan2(ends[:, 1], ends[:, 0]))
+    # A thousandth of a degree is less than a centimetre.
+    assert latitude == pytest.approx(flights["latitude_deg"][:16][down], abs=1e-3)
+    assert longitude == pytest.approx(flights["longitude_deg"][:16][down], abs=1e-3)
+    assert np.ptp(places[:, 0], axis=0) == pytest.approx(np.zeros(3), abs=1e-6)
 
 
 def test_parts_of_the_variance_add_up_and_side_runs_tell_theirs(results: StudyResults) -> None:

@@ -29,6 +29,7 @@ def study_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     write_bodies(folder / "landing.h5", 13, landing)
     write_samples(folder / "samples.h5")
     write_flights(folder / "flights.csv")
+    write_paths(folder / "flight_paths.h5")
     write_rest(folder / "rest.csv")
     write_octahedron(folder / "body.obj")
     scores = made_up_scores()
@@ -70,12 +71,24 @@ def write_samples(path: Path) -> None:
 def write_flights(path: Path) -> None:
     with path.open("w", newline="", encoding="utf-8") as file:
         table = csv.writer(file)
-        table.writerow(["sample", "status", "time_s", "latitude_deg", "longitude_deg", "facet", "impact_speed"])
+        starts = ["start_speed [m/s]", "start_elevation_deg", "velocity_x [m/s]", "velocity_y [m/s]"]
+        ends = ["status", "time_s", "latitude_deg", "longitude_deg", "facet", "impact_speed"]
+        table.writerow(["sample", *starts, *ends])
         for index in range(100):
+            start = [index, 0.002 * (index + 1), 20.0 + index % 50, 0.001, 0.001 * (index % 7 - 3)]
             if index % 4:
-                table.writerow([index, "impact", 100.0 + index, 0.3 * index - 15, 2.0 * index - 100, index % 3, 0.05])
+                end = ["impact", 100.0 + index, 0.3 * index - 15, 2.0 * index - 100, index % 3, 0.05]
             else:
-                table.writerow([index, "escaped" if index % 8 else "flying", 43200.0, "", "", "", ""])
+                end = ["escaped" if index % 8 else "flying", 43200.0, "", "", "", ""]
+            table.writerow(start + end)
+
+
+def write_paths(path: Path) -> None:
+    """Two straight ways out from the body."""
+    way = np.linspace(500.0, 2000.0, 5)[:, None] * [1.0, 0.0, 0.2]
+    with h5py.File(path, "w") as file:
+        file["position"] = np.stack([way, way[::-1]])
+        file.attrs["status"] = ["escaped", "impact"]
 
 
 def write_rest(path: Path) -> None:

@@ -11,11 +11,15 @@ import numpy as np
 
 from lithobrake import emulator
 from lithobrake.analysis import mean_estimate, quantile_estimates, regression_terms, share_estimate, variance_shares
+from lithobrake.pipeline.explorer_tables import save_explorer
 
 from ..synthetic_landings import ELEVATION_LIMIT, INPUTS, OUTPUT_NAMES, SPEED_LIMIT, Truth, stays
 
 KEYS = ("grain.friction", "grain.restitution", "grain.young_modulus", "grain.rolling_friction", "grain.density")
 SHOWN = ("speed_out", "elevation_out", "spin_out")
+# Of a ball of a kilogram that arrives at the limit of the speed.
+BOUND = {"height": 0.0, "across": 1.0, "smallest": 1e-3, "largest": 1e-3, "mass_power": 0.0, "diameter_power": 0.0,
+         "impact.speed": SPEED_LIMIT}  # fmt: skip
 OUTCOMES = ("clear", "captured", "left_sideways", "time_limit", "outside")
 SAMPLE_COUNT = 1000
 
@@ -36,6 +40,7 @@ def write_sequence(
     )  # fmt: skip
     write_runs(folder / "designs" / "sequence.csv", x, y, outcome, bed)
     by_emulator = write_samples_of(model, inputs, folder / "samples.h5")
+    save_explorer(folder / "explorer.h5", model.refits(5, seed=1), BOUND)
     columns = {name: y[:, OUTPUT_NAMES.index(name)] for name in SHOWN} | {"stays": staying}
     twins = 0.1 * np.random.default_rng(seed).standard_normal(12)
     terms = regression_terms(inputs, x)

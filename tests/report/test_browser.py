@@ -1,65 +1,162 @@
-"""The page in a browser: it never scrolls sideways, figures grow, and paper shows what was folded."""
+"""The page in a real browser, from disk: what a reader moves moves, and nothing leaves the machine."""
 
 import json
-import re
 import shutil
-import subprocess
-from html import unescape
+from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
+import numpy as np
 import pytest
 
 from lithobrake.report import write_report
+from lithobrake.results import open_study
 
-BROWSER = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
-pytestmark = pytest.mark.skipif(
-    BROWSER is None, reason="no chromium on this machine, so the page is seen by no browser"
-)
+from .browser import Page, browser_page, needs_browser
 
-# What the page says of itself, told to the one around it, which gives it the width of a screen.
-MEASURE = """<script>addEventListener("load", () => {
-  const found = {width: innerWidth, content: document.documentElement.scrollWidth};
-  const picture = document.querySelector(".picture img"), small = picture.width;
-  picture.click();
-  found.grown = picture.width / small;
-  found.full = picture.naturalWidth / small;
-  const folded = () => document.querySelectorAll("details:not([open])").length;
-  found.folded = [folded()];
-  for (const event of ["beforeprint", "afterprint"]) { dispatchEvent(new Event(event)); found.folded.push(folded()); }
-  parent.postMessage(found, "*");
-})</script>"""
+pytestmark = needs_browser
+
+PHONE, TABLET, LAPTOP, PAPER = 390, 768, 1366, 720
+LARGEST_PAGE = 10e6
+# The views begin when their arrays are inflated.
+STARTED = "Promise.all([landing3d, body3d]).then((views) => views.every(Boolean))"
+
+
+@pytest.fixture(scope="module")
+def page(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Page]:
+    with browser_page(tmp_path_factory.mktemp("browser")) as opened:
+        yield opened
 
 
 @pytest.fixture(scope="module", params=["study_folder", "sequence_folder"])
-def page(request: pytest.FixtureRequest) -> str:
-    """Text of the page of a study by each method."""
-    return write_report(request.getfixturevalue(request.param)).read_text(encoding="utf-8")
+def report(request: pytest.FixtureRequest) -> Path:
+    """The page of a study by each method."""
+    return write_report(request.getfixturevalue(request.param))
 
 
-def seen(text: str, folder: Path, width: int) -> dict[str, Any]:
-    """Open a page in a frame of a width [px], as no window of a desktop is as narrow as a phone; what it measured."""
-    (folder / "page.html").write_text(text.replace("</body>", f"{MEASURE}</body>"), encoding="utf-8")
-    (folder / "frame.html").write_text(
-        '<script>addEventListener("message", (event) => { document.title = JSON.stringify(event.data); })</script>'
-        f'<iframe src="page.html" style="border: 0; width: {width}px; height: 800px"></iframe>',
-        encoding="utf-8",
+@pytest.fixture(scope="module")
+def sequence(sequence_folder: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The page of a drawn study away from its folder: it needs nothing but itself."""
+    alone = tmp_path_factory.mktemp("alone") / "index.html"
+    shutil.copy(write_report(sequence_folder), alone)
+    return alone
+
+
+@pytest.mark.parametrize(("width", "dark"), [(PHONE, False), (TABLET, True), (LAPTOP, False)])
+def test_no_width_scrolls_sideways_and_the_console_is_clean(
+    page: Page, report: Path, width: int, dark: bool, tmp_path: Path
+) -> None:
+    page.events.clear()
+    page.open(report, width, dark=dark)
+    assert page.value(STARTED) is True
+    assert page.value("document.documentElement.scrollWidth") == width
+    ground = page.value("getComputedStyle(document.body).backgroundColor")
+    assert ground == ("rgb(20, 25, 31)" if dark else "rgb(255, 255, 255)")
+    page.picture(tmp_path / "page.png")
+    assert (tmp_path / "page.png").read_bytes().startswith(b"\x89PNG")
+    assert page.complaints == []
+    assert page.requests == [report.as_uri()]
+
+
+def test_paper_has_everything_unfolded_and_no_controls(page: Page, report: Path) -> None:
+    page.open(report, PAPER, print_=True)
+    folded = "document.querySelectorAll('details:not([open])').length"
+    before = page.value(folded)
+    page.value("dispatchEvent(new Event('beforeprint'))")
+    assert before > 0
+    assert page.value(folded) == 0
+    assert page.value("document.documentElement.scrollWidth") <= PAPER
+    assert page.value("document.querySelector('.live').offsetHeight") == 0
+    page.value("dispatchEvent(new Event('afterprint'))")
+    assert page.value(folded) == before
+
+
+def test_a_figure_grows_to_its_own_size(page: Page, report: Path) -> None:
+    page.open(report, PHONE)
+    small, grown, full = page.value(
+        "(() => { const picture = document.querySelector('.picture img'), small = picture.width; picture.click();"
+        "return [small, picture.width, picture.naturalWidth]; })()"
     )
-    options = ["--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars", "--window-size=1600,900"]
-    options += ["--virtual-time-budget=5000", f"--user-data-dir={folder / 'profile'}"]
-    command = [str(BROWSER), *options, "--dump-dom", (folder / "frame.html").as_uri()]
-    ended = subprocess.run(command, capture_output=True, text=True, check=True, timeout=60)
-    title = re.search(r"<title>(.*?)</title>", ended.stdout)
-    assert title is not None, ended.stderr
-    found: dict[str, Any] = json.loads(unescape(title[1]))
-    return found
+    assert grown == full > small
 
 
-@pytest.mark.parametrize("width", [390, 768])
-def test_page_on_a_narrow_screen_and_on_paper(page: str, tmp_path: Path, width: int) -> None:
-    found = seen(page, tmp_path, width)
-    assert found["width"] == found["content"] == width
-    assert found["grown"] == pytest.approx(found["full"])
-    before, printed, after = found["folded"]
-    assert before == after > 0
-    assert printed == 0
+def test_a_page_is_light_enough_to_be_sent(report: Path) -> None:
+    assert report.stat().st_size < LARGEST_PAGE
+
+
+def test_tables_are_sorted_by_a_click_and_come_back(page: Page, report: Path) -> None:
+    page.open(report, LAPTOP)
+    title = "Data files"
+    click = "table.querySelectorAll('th button')[2].click();"
+    read = "[...table.tBodies[0].rows].map((row) => row.cells[2].textContent)"
+    begin = (
+        "const table = [...document.querySelectorAll('details')].find((one) => "
+        f"one.querySelector('h3').textContent.startsWith('{title}')).querySelector('table');"
+    )
+    came, up, down, back = page.value(
+        f"(() => {{ {begin} const read = () => {read}; const found = [read()];"
+        f"for (let turn = 0; turn < 3; turn++) {{ {click} found.push(read()); }} return found; }})()"
+    )
+    numbers = [float(cell.split()[0]) for cell in up]
+    assert numbers == sorted(numbers)
+    assert sorted(came) == sorted(down)
+    assert [float(cell.split()[0]) for cell in down] == numbers[::-1]
+    assert back == came
+
+
+def test_short_tables_stand_before_long_ones(page: Page, report: Path) -> None:
+    page.open(report, LAPTOP)
+    found = page.value("[...document.querySelectorAll('details')].map((one) => one.open)")
+    tables = found[: found.index(False) + 1] if False in found else found
+    assert tables[0] is True
+    assert len(tables) > 2
+
+
+def test_an_end_of_an_input_moves_every_number(page: Page, sequence: Path) -> None:
+    page.open(sequence, LAPTOP)
+    read = "[...document.querySelectorAll('#explorer figcaption, #explorer .share')].map((one) => one.textContent)"
+    before = page.value(read)
+    assert page.value("document.querySelectorAll('#explorer input[type=range]').length") == 10
+    # The friction of the grains, between its median and its end.
+    page.value(
+        "(() => { const end = document.querySelector('#explorer input'); end.value = .9;"
+        "end.dispatchEvent(new Event('input')); })()"
+    )
+    # What is read is what the law gives there, as soon as all draws are made.
+    share = page.value(
+        "(() => { const found = explorer.at([[.9, 1], ...Array.from({ length: 4 }, () => [0, 1])]);"
+        "return shareWords(explorer, found); })()"
+    )
+    page.value(
+        "new Promise((done) => { const look = () => document.querySelector('#explorer .share').textContent === "
+        f"{json.dumps(share)} ? done() : setTimeout(look, 50); look(); }})"
+    )
+    after = page.value(read)
+    assert len(before) == len(after) == 5
+    assert all(old != new for old, new in zip(before[:4], after[:4], strict=True))
+    assert page.value("document.querySelector('#explorer output').textContent") == "0.84 to 0.9"
+
+
+def test_the_landing_moves_as_it_was_stored(page: Page, sequence: Path, sequence_folder: Path) -> None:
+    page.open(sequence, LAPTOP)
+    assert page.value(STARTED) is True
+    moving = open_study(sequence_folder).median_landing
+    quantum = 0.5 * float(np.ptp(moving.position, axis=0).max()) / 32767
+    for frame in (0, 3, len(moving.time) - 1):
+        place = page.value(f"landing3d.then((view) => {{ view.moment = {frame}; view.draw(); return view.lander(); }})")
+        assert place == pytest.approx(moving.position[frame, -1], abs=0.51 * quantum + 1e-6)
+    assert page.value("landing3d.then((view) => view.drawCalls)") == 1
+    # Something is seen, and it is another picture when the lander is followed.
+    look = "landing3d.then((view) => { view.follows = %s; view.draw(); return view.canvas.toDataURL(); })"
+    assert page.value(look % "false") != page.value(look % "true")
+    speeds = "landing3d.then((view) => { view.bySpeed = %s; view.draw(); return view.canvas.toDataURL(); })"
+    assert page.value(speeds % "false") != page.value(speeds % "true")
+
+
+def test_the_slider_of_the_landing_tells_the_time(page: Page, sequence: Path) -> None:
+    page.open(sequence, LAPTOP)
+    assert page.value(STARTED) is True
+    page.value(
+        "(() => { const slider = document.querySelector('#landing-3d input[type=range]'); slider.value = slider.max;"
+        "slider.dispatchEvent(new Event('input')); })()"
+    )
+    assert page.value("document.querySelector('#landing-3d output').textContent") == "t = 0.700 s"

@@ -35,6 +35,14 @@ def test_page_has_the_nine_figures_inside_and_nothing_outside(report: str) -> No
     assert not re.search(r"https?://", report)
 
 
+def test_figures_are_files_for_papers_with_the_same_bytes_every_time(study_folder: Path, report: str) -> None:
+    drawn = {path.name: path.read_bytes() for path in (study_folder / "report").glob("figure_*.svg")}
+    assert len(drawn) == 9
+    assert all(content.lstrip().startswith(b"<?xml") for content in drawn.values())
+    write_report(study_folder)
+    assert {name: (study_folder / "report" / name).read_bytes() for name in drawn} == drawn
+
+
 def test_figures_stand_beside_the_page_as_files(study_folder: Path, report: str) -> None:
     pictures = sorted(path.name for path in (study_folder / "report").glob("*.png"))
     assert [name.split("_")[1] for name in pictures] == ["1", "2", "3", "4", "5", "6", "7", "8", "9"]

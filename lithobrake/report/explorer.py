@@ -1,0 +1,103 @@
+"""The explorer of the page: the emulator's coefficients and the flown starts, for a browser to evaluate."""
+
+from html import escape
+from typing import Any
+
+import numpy as np
+
+from lithobrake.outcomes import FlightStatus, TouchdownOutcome
+from lithobrake.report.captions import hours, input_words, thousands
+from lithobrake.report.packed import packed, script_data
+from lithobrake.report.page import LiveSection
+from lithobrake.report.results import SequenceResults
+from lithobrake.report.sequence_answer import action, has_interval
+from lithobrake.report.style import output
+from lithobrake.results import ExplorerTables, Table
+
+# More flown starts would make the page heavier, and no cell of them noticeably smaller.
+MOST_STARTS = 20_000
+SCRIPTS = ("law.js", "flown.js", "explore.js", "charts.js", "explorer.js")
+# The explorer's outputs, in the order in which it draws them.
+SHOWN = ("speed_out", "elevation_out", "spin_out")
+START = ("start_speed", "start_elevation_deg", "velocity_x", "velocity_y")
+
+
+def explorer_sections(data: SequenceResults) -> list[LiveSection]:
+    """The explorer with all its numbers, or nothing where the folder has none for it."""
+    if data.explorer is None or data.flights is None:
+        return []
+    flown = _flown(data.flights)
+    count = thousands(len(flown["status"]))
+    reference = (
+        f"Each lander that is drawn here takes the end of one of {count} flown starts, one of the eight nearest to its "
+        "speed, elevation and azimuth: nothing is flown anew. "
+        if count != "0"
+        else "Nothing was flown, so neither shares nor places are shown. "
+    )
+    bands = f"Bands: the middle nine tenths of {data.explorer.tables['location'].shape[0]} fits of the emulator to " + (
+        "beds drawn with replacement." if has_interval(data) else "runs drawn with replacement; no other bed."
+    )
+    words = (
+        "Move the two ends of an input: the emulator is evaluated in this page, at every soil between them as often as "
+        "the study's law has it there. "
+    )
+    numbers = {"facts": _facts(data, data.explorer), "law": packed(_law(data.explorer)), "flown": packed(flown)}
+    html = f"""<section id="explorer">
+<p class="note">{escape(words + bands)} {escape(reference)}Grey lines: the whole law of all inputs.</p>
+<div class="explored"><div class="controls"></div><div class="views"><p class="share" aria-live="polite"></p>
+<div class="charts"></div></div></div>
+</section>
+{script_data("explorer-data", numbers)}"""
+    return [LiveSection("Explorer", html, SCRIPTS)]
+
+
+def _law(explorer: ExplorerTables) -> dict[str, np.ndarray]:
+    """The tables of the law; JSON-free arrays may hold infinite bounds."""
+    return {name: np.asarray(table, dtype=np.float64) for name, table in explorer.tables.items()}
+
+
+def _facts(data: SequenceResults, explorer: ExplorerTables) -> dict[str, Any]:
+    """Names, units and words beside the numbers."""
+    names, site = list(explorer.output_names), data.table("site")
+    units = {} if data.samples is None else {name: one.units for name, one in data.samples.columns.items()}
+    shown = {name: output(name) for name in names}
+    return {
+        "inputNames": list(explorer.input_names),
+        "inputs": [{"words": input_words(name), "unit": units.get(name, "")} for name in explorer.input_names],
+        "outputs": [
+            {
+                "words": one.row,
+                "unit": one.unit,
+                "factor": one.factor,
+                # All elevations are shown: landers that leave straight up are few, and count.
+                "most": 0.5 * np.pi if name == "elevation_out" else None,
+            }
+            for name, one in shown.items()
+        ],
+        "outcomeNames": list(explorer.outcome_names),
+        "outputOutcome": explorer.output_outcome,
+        "captured": str(TouchdownOutcome.CAPTURED),
+        "bound": explorer.bound,
+        **{name.removesuffix("_out"): names.index(name) for name in SHOWN},
+        "fates": [str(fate) for fate in FlightStatus],
+        "impact": list(FlightStatus).index(FlightStatus.IMPACT),
+        "holds": site.get("effective_acceleration_outward", -1.0) < 0.0,
+        "action": action(data),
+        "hours": hours(data.study["flight"]["duration"]),
+        "site": [site.get("latitude_deg"), site.get("longitude_deg")],
+        "bedCount": explorer.group_count,
+        "reach": explorer.interval_reach if has_interval(data) else None,
+    }
+
+
+def _flown(flights: Table) -> dict[str, np.ndarray]:
+    """Speed [m/s], elevation and azimuth [rad] of the first starts, how each ended, and where [deg], 0 for no place."""
+    first = flights.where(np.arange(min(flights.row_count, MOST_STARTS)))
+    speed, elevation, x, y = (np.asarray(first[name], dtype=float) for name in START)
+    statuses = [str(fate) for fate in FlightStatus]
+    places = [np.nan_to_num(np.asarray(first[f"{name}_deg"], dtype=float)) for name in ("latitude", "longitude")]
+    return {
+        "starts": np.column_stack([speed, np.radians(elevation), np.arctan2(y, x)]).astype(np.float32),
+        "status": np.array([statuses.index(str(word)) for word in first["status"]], dtype=np.uint8),
+        "places": np.column_stack(places).astype(np.float32),
+    }

@@ -1,0 +1,53 @@
+"use strict";
+// An element with these properties and what is inside it.
+function element(name, settings = {}, ...inside) {
+  const made = Object.assign(document.createElement(name), settings);
+  made.append(...inside);
+  return made;
+}
+
+// Paper cannot be unfolded. What was folded is folded again afterwards.
+addEventListener("beforeprint", () => {
+  for (const part of document.querySelectorAll("details:not([open])")) { part.open = true; part.dataset.folded = ""; }
+});
+addEventListener("afterprint", () => {
+  for (const part of document.querySelectorAll("[data-folded]")) { part.open = false; delete part.dataset.folded; }
+});
+
+// The number that a cell begins with, powers of ten and gaps between thousands included; NaN where it begins with none.
+function cellNumber(text) {
+  const raised = "⁰¹²³⁴⁵⁶⁷⁸⁹", found = text.replace(/[\u2212\u2011]/g, "-").replace(/(\d) (?=\d{3}\b)/g, "$1")
+    .match(/^\s*([-+]?\d[\d.]*)(?: × 10(⁻?)([⁰¹²³⁴⁵⁶⁷⁸⁹]+))?/);
+  if (!found) return NaN;
+  const power = found[3] ? Number([...found[3]].map((one) => raised.indexOf(one)).join("")) : 0;
+  return Number(found[1]) * 10 ** (found[2] ? -power : power);
+}
+
+// Rows by a column: numbers before words, a second time the other way round, a third time as they came.
+function sortRows(heading) {
+  const table = heading.closest("table"), body = table.tBodies[0], column = heading.cellIndex;
+  const order = { ascending: "descending", descending: undefined }, was = heading.getAttribute("aria-sort");
+  const now = was ? order[was] : "ascending", sign = now === "descending" ? -1 : 1;
+  for (const one of table.tHead.rows[0].cells) one.removeAttribute("aria-sort");
+  if (now) heading.setAttribute("aria-sort", now);
+  const keyed = [...body.rows].map((row, place) => {
+    row.dataset.place ??= place;
+    const text = row.cells[column].textContent, number = cellNumber(text);
+    return { row, text, number, place: Number(row.dataset.place) };
+  });
+  keyed.sort((a, b) => {
+    if (!now) return a.place - b.place;
+    if (Number.isNaN(a.number) !== Number.isNaN(b.number)) return Number.isNaN(a.number) ? 1 : -1;
+    const before = Number.isNaN(a.number) ? a.text.localeCompare(b.text) : a.number - b.number;
+    return sign * before || a.place - b.place;
+  });
+  body.append(...keyed.map((one) => one.row));
+}
+
+for (const heading of typeof document === "undefined" ? [] : document.querySelectorAll("thead th")) {
+  const button = document.createElement("button");
+  button.append(...heading.childNodes);
+  heading.append(button);
+  button.title = "Sort";
+  button.addEventListener("click", () => sortRows(heading));
+}

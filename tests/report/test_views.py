@@ -1,0 +1,64 @@
+"""What a view in three dimensions is given: poses that come back to within half a quantum, and paints of faces."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from lithobrake.report.results import page_results
+from lithobrake.report.scene import Scene
+from lithobrake.report.views import LARGEST, landing_arrays, view_sections
+from lithobrake.results import MovingBodies, open_study
+
+from .conftest import OCTAHEDRON, OCTAHEDRON_FACES
+
+
+def moving(position: np.ndarray, orientation: np.ndarray) -> Scene:
+    """Octahedra that move so, at steps of a tenth of a second."""
+    from lithobrake.report.scene import scene
+
+    count = position.shape[1]
+    time = 0.1 * np.arange(len(position))
+    shapes = (OCTAHEDRON,) * count, (OCTAHEDRON_FACES,) * count
+    return scene(MovingBodies(*shapes, time, position, orientation, {}, {}), has_lander=True)
+
+
+def test_poses_come_back_from_their_steps() -> None:
+    random = np.random.default_rng(4)
+    position = np.cumsum(random.normal(0.0, 0.1, (40, 3, 3)), axis=0)
+    # The second body never moves, and the third one jumps from end to end of its way.
+    position[:, 1] = [0.3, -0.2, 0.1]
+    position[:, 2, 0] = np.where(np.arange(40) % 2, 5.0, -5.0)
+    orientation = random.normal(size=(40, 3, 4))
+    orientation /= np.linalg.norm(orientation, axis=2, keepdims=True)
+    arrays, facts = landing_arrays(moving(position, orientation))
+    whole = np.cumsum(arrays["steps"], axis=0, dtype=np.int16).astype(float)
+    place = arrays["middles"] + arrays["quanta"][:, None].astype(float) * whole[:, :, :3]
+    assert np.abs(place - position).max() < 0.51 * arrays["quanta"].max()
+    assert not arrays["steps"][1:, 1, :3].any()
+    turn = whole[:, :, [6, 3, 4, 5]] / LARGEST
+    # Both signs are one turn.
+    assert np.abs((turn * orientation).sum(axis=2)) == pytest.approx(np.ones((40, 3)), abs=1e-4)
+    assert ((turn[1:] * turn[:-1]).sum(axis=2) > -1e-4).all()
+    assert facts["fastest"] == pytest.approx(100.0, rel=0.2)
+    assert arrays["speed"].max() == 255
+    assert not arrays["speed"][:, 1].any()
+
+
+def test_faces_count_from_the_first_vertex_of_all_and_have_the_colour_of_their_body() -> None:
+    still = np.zeros((2, 2, 3))
+    arrays, _ = landing_arrays(moving(still, np.tile([1.0, 0.0, 0.0, 0.0], (2, 2, 1))))
+    assert arrays["faces"].shape == arrays["paint"].shape == (16, 3)
+    assert (arrays["faces"][8:] - arrays["faces"][:8] == 6).all()
+    assert arrays["vertexBody"].tolist() == [0.0] * 6 + [1.0] * 6
+    # The lander, the last, is blue.
+    assert (arrays["paint"][8:, 2] > arrays["paint"][8:, 0]).all()
+    assert (arrays["paint"][:8, 2] < arrays["paint"][:8, 0]).all()
+
+
+def test_the_page_says_how_far_places_are_rounded(study_folder: Path) -> None:
+    landing, body = view_sections(page_results(open_study(study_folder)))
+    assert "12 grains and the lander in 8 pictures" in landing.html
+    assert "Places are rounded to" in landing.html
+    assert 'id="body-3d-data"' in body.html
+    assert "the first 2 flights, seen from the turning body; orange: escaped, blue: came down." in body.html
