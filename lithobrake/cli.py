@@ -183,6 +183,43 @@ def runs(
     _tell(run_lines(records, units, width))
 
 
+@app.command(epilog="Example: lithobrake export runs/study --to oem --flight 12 --epoch 2026-11-22T12:00:00")
+def export(
+    folder: StudyDirectory,
+    to: Annotated[
+        list[str],
+        typer.Option("--to", metavar="KIND", help="oem, plates, facets, geotiff or geojson; may be repeated."),
+    ],
+    flight: Annotated[
+        list[int] | None, typer.Option("--flight", metavar="SAMPLE", help="oem: a sample to follow; may be repeated.")
+    ] = None,
+    frame: Annotated[
+        str, typer.Option("--frame", metavar="inertial|fixed", help="oem: axes of the states.")
+    ] = "inertial",
+    epoch: Annotated[str | None, typer.Option("--epoch", metavar="UTC", help="oem: when all flights start.")] = None,
+    step: Annotated[
+        float | None,
+        typer.Option("--step", metavar="SECONDS", help="oem: between states; default: 1 % of the longest."),
+    ] = None,
+    resolution: Annotated[
+        float, typer.Option("--resolution", metavar="DEGREES", help="geotiff: edge of a cell.")
+    ] = 1.0,
+    out: Annotated[str | None, typer.Option("--out", metavar="FOLDER", help="The default is DIR/export.")] = None,
+) -> None:
+    """Write results of a study as files of other programs: flights, shape, numbers per facet, map of the impacts."""
+    place = folder / "export" if out is None else _given_folder(out)
+    with _one_sentence():
+        from lithobrake.results import open_study
+
+        # A folder that is no study is refused before numbers are loaded.
+        results = open_study(folder)
+        from lithobrake.export import ExportOptions, export_study
+
+        choices = ExportOptions(flight or (), frame, epoch, step, resolution)
+        written = export_study(results, place, to, choices)
+    _tell(f"Wrote {path}" for path in written)
+
+
 @app.command(epilog="Example: lithobrake view runs/study")
 def view(folder: StudyDirectory) -> None:
     """Open the report of a study in the browser."""

@@ -163,12 +163,7 @@ def _checks(body: "Body", start: Starts, study: Study, job: Job) -> dict[str, An
 
 def partner_time(body: "Body", site: dict[str, np.ndarray]) -> np.ndarray:
     """Times [s] at which the partner stands over the longitudes of the samples; 0 where it does not move or is none."""
-    longitude = np.radians(site["partner_longitude_deg"])
-    if body.partner is None:
-        return np.zeros_like(longitude)
-    rate = 2.0 * np.pi * (1.0 / body.partner.period - 1.0 / site["spin_period"])
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return np.where(rate == 0.0, 0.0, (longitude - body.orbit.angle) / rate)
+    return body.partner_time(site["partner_longitude_deg"], site["spin_period"])
 
 
 def _write_shape(body: "Body", folder: StudyFolder) -> None:
