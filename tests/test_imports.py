@@ -15,6 +15,8 @@ LEAVES = {
         "atomic",
         "mesh",
         "mesh_files",
+        "mesh_units",
+        "shape_kernel",
         "outputs",
         "outcomes",
         "plain",

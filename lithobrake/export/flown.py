@@ -124,7 +124,9 @@ def study_body(results: StudyResults, mass: float, spin_period: float) -> Body:
     partner = None
     if site["body"] in BUILT_IN_BODIES:
         partner = getattr(smallbody, site["body"])(partner=site["partner"]).partner
-    return Body(Shape(*results.body_shape, name=name), mass, spin_period, name, partner)
+    # A study of before this key has none.
+    shape = Shape(*results.body_shape, name=name, gravity_facets=site.get("gravity_facets"))
+    return Body(shape, mass, spin_period, name, partner)
 
 
 def body_name(results: StudyResults) -> str:

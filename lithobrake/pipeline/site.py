@@ -71,7 +71,8 @@ def _body(study: Study) -> "Body":
 
     if study.site.body in BUILT_IN_BODIES:
         return _built_in(study.site.body, study.site.partner)
-    return Body(_read_shape(Path(study.site.body), study.site.unit), mass=1.0, spin_period=1.0)
+    shape = _read_shape(Path(study.site.body), study.site.unit, study.site.gravity_facets)
+    return Body(shape, mass=1.0, spin_period=1.0)
 
 
 @lru_cache(maxsize=4)
@@ -83,10 +84,10 @@ def _built_in(name: str, partner: bool) -> "Body":
 
 
 @lru_cache(maxsize=1)
-def _read_shape(path: Path, unit: str) -> "Shape":
+def _read_shape(path: Path, unit: str | None, gravity_facets: int | None) -> "Shape":
     from lithobrake.smallbody import Shape
 
-    return Shape.read(path, unit)
+    return Shape.read(path, unit, gravity_facets=gravity_facets)
 
 
 def frames(body: "Body", site: Mapping[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:

@@ -104,7 +104,7 @@ class Body:
         Symmetric; its trace is the Laplacian. On an edge of the shape, where it has no limit, it is large and finite.
         """
         p = self._checked(points)
-        sums = gradient(p.reshape(-1, 3), self.shape.polyhedron, self.shape.multipole)
+        sums = gradient(p.reshape(-1, 3), *self.shape.gravity[:2])
         return (sums * (GRAVITATIONAL_CONSTANT * self.density)).reshape(*p.shape, 3)
 
     def effective_acceleration(
