@@ -6,7 +6,7 @@ import shlex
 import shutil
 import sys
 from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Annotated, NoReturn
 
@@ -218,6 +218,32 @@ def export(
         choices = ExportOptions(flight or (), frame, epoch, step, resolution)
         written = export_study(results, place, to, choices)
     _tell(f"Wrote {path}" for path in written)
+
+
+@app.command(epilog="Example: lithobrake serve study.toml --out results --port 4242")
+def serve(
+    study: StudyPath,
+    out: OutPath = None,
+    host: Annotated[
+        str, typer.Option("--host", metavar="ADDRESS", help="Address to listen on; others than this machine need one.")
+    ] = "127.0.0.1",
+    port: Annotated[int, typer.Option("--port", min=0, max=65535, help="Port; 0 takes a free one.")] = 4242,
+) -> None:
+    """Serve landing, emulator and flight of a study to clients of UM-Bridge, until Ctrl-C. Writes nothing."""
+    folder = _default_folder(study) if out is None else _given_folder(out)
+    with _one_sentence():
+        from lithobrake.pipeline import served_models
+
+        models = served_models(study, folder)
+        from lithobrake.serve import model_server
+
+        server = model_server(models, host, port)
+    with server:
+        names = ", ".join(model.name for model in models)
+        _tell([f"Serving {names} at http://{host}:{server.server_port}; Ctrl-C ends it."])
+        # That it was ended is no news to whoever ended it.
+        with suppress(KeyboardInterrupt):
+            server.serve_forever()
 
 
 @app.command(epilog="Example: lithobrake view runs/study")

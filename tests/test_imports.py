@@ -31,6 +31,7 @@ ALLOWED: dict[str, set[str]] = {
     "touchdown": {"dem"},
     "chaos": set(),
     "campaign": set(),
+    "serve": set(),
     "smallbody": set(),
     "emulator": {"chaos"},
     "analysis": {"chaos", "emulator"},
@@ -43,14 +44,14 @@ ALLOWED: dict[str, set[str]] = {
     "study": {"chaos", "campaign", "smallbody", "touchdown"},
     "pipeline": {
         *("dem", "touchdown", "chaos", "emulator", "campaign", "smallbody", "analysis", "report", "results"),
-        "study",
+        *("study", "serve"),
         "touchdown_model",
     },
     "progress": {"progress_log"},
     "progress_log": {"campaign"},
     "__main__": {"cli"},
     "__init__": {"pipeline", "results"},
-    "cli": {"study", "pipeline", "campaign", "progress", "results", "export"},
+    "cli": {"study", "pipeline", "campaign", "progress", "results", "export", "serve"},
 }
 # Parts in which no file imports one that imports it, directly or through others.
 WITHOUT_CIRCLES = tuple(part for part in ALLOWED if (PACKAGE / part).is_dir())

@@ -26,6 +26,7 @@ class SolverSection(Section):
 
     command: str | None = None
     """Its command line, started in a folder for each run, where it reads inputs.json and writes outputs.json; words
-    that name files count from the study file. Absent: this program's own soil."""
+    that name files count from the study file. Or "umbridge:http://HOST:PORT/MODEL", the model of a server in its place.
+    Absent: this program's own soil."""
     inputs: dict[str, Annotated[Scalar, MaybeUncertain("")]] = Field(default={})
     """Numbers that only your program knows, by names of your own."""

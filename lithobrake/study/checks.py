@@ -146,6 +146,8 @@ def _solver_problems(study: Study) -> Iterator[str]:
         if solver.inputs and study.has_soil:
             yield "solver.inputs has numbers, and solver.command is missing; give the command that reads them"
         return
+    from lithobrake.campaign.model_server import PREFIX, ModelServer
+
     try:
         words = shlex.split(solver.command)
     except ValueError as error:
@@ -153,6 +155,12 @@ def _solver_problems(study: Study) -> Iterator[str]:
         return
     if not solver.command.isprintable():
         yield f"solver.command is {solver.command!r}; allowed: what can be shown on one line; write plain words"
+        return
+    if solver.command.startswith(PREFIX):
+        try:
+            ModelServer.of(solver.command)
+        except ValueError as error:
+            yield f"solver.command is {error}"
         return
     if not words or shutil.which(words[0]) is None:
         yield f'solver.command begins with "{" ".join(words[:1])}", which is no program here; give its path'
