@@ -34,7 +34,7 @@ class SolverModel:
 
     def __call__(self, values: dict[str, float], seed: int) -> dict[str, Any]:
         """Make one touchdown. Raises ValueError for an outcome or outputs that a study cannot use."""
-        return checked("outputs.json", self.command.ask({"inputs": values, "seed": seed, "setting": self.setting}))
+        return checked(self.command.answer, self.command.ask({"inputs": values, "seed": seed, "setting": self.setting}))
 
 
 @dataclass(frozen=True)
@@ -158,7 +158,9 @@ def _refuse_parts(what: str, outputs: Mapping[str, float]) -> None:
 
 def solver_command(study: Study, folder: Path) -> Command:
     """The program of a study, with its runs in a folder of the study."""
-    return Command(str(study.solver.command), folder / "solver")
+    solver = study.solver
+    templates = tuple(Path(name) for name in solver.templates)
+    return Command(str(solver.command), folder / "solver", templates=templates, answer=solver.answer)
 
 
 def solver_setting(study: Study) -> dict[str, Any]:
