@@ -6,7 +6,7 @@ import shlex
 import shutil
 import sys
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, NoReturn
 
@@ -251,6 +251,69 @@ def film(
             bodies = _landing(open_study(folder), run, lambda done, what: shown.progress(done, 1.0, what))
             write_motion(bodies, path, seconds, lambda done: shown.progress(done, 1.0, "drawing"))
     _tell([f"Film: {path.resolve()}"])
+
+
+@app.command(epilog="Example: lithobrake export runs/study --to oem --flight 12 --epoch 2026-11-22T12:00:00")
+def export(
+    folder: StudyDirectory,
+    to: Annotated[
+        list[str],
+        typer.Option("--to", metavar="KIND", help="oem, plates, facets, geotiff or geojson; may be repeated."),
+    ],
+    flight: Annotated[
+        list[int] | None, typer.Option("--flight", metavar="SAMPLE", help="oem: a sample to follow; may be repeated.")
+    ] = None,
+    frame: Annotated[
+        str, typer.Option("--frame", metavar="inertial|fixed", help="oem: axes of the states.")
+    ] = "inertial",
+    epoch: Annotated[str | None, typer.Option("--epoch", metavar="UTC", help="oem: when all flights start.")] = None,
+    step: Annotated[
+        float | None,
+        typer.Option("--step", metavar="SECONDS", help="oem: between states; default: 1 % of the longest."),
+    ] = None,
+    resolution: Annotated[
+        float, typer.Option("--resolution", metavar="DEGREES", help="geotiff: edge of a cell.")
+    ] = 1.0,
+    out: Annotated[str | None, typer.Option("--out", metavar="FOLDER", help="The default is DIR/export.")] = None,
+) -> None:
+    """Write results of a study as files of other programs: flights, shape, numbers per facet, map of the impacts."""
+    place = folder / "export" if out is None else _given_folder(out)
+    with _one_sentence():
+        from lithobrake.results import open_study
+
+        # A folder that is no study is refused before numbers are loaded.
+        results = open_study(folder)
+        from lithobrake.export import ExportOptions, export_study
+
+        choices = ExportOptions(flight or (), frame, epoch, step, resolution)
+        written = export_study(results, place, to, choices)
+    _tell(f"Wrote {path}" for path in written)
+
+
+@app.command(epilog="Example: lithobrake serve study.toml --out results --port 4242")
+def serve(
+    study: StudyPath,
+    out: OutPath = None,
+    host: Annotated[
+        str, typer.Option("--host", metavar="ADDRESS", help="Address to listen on; others than this machine need one.")
+    ] = "127.0.0.1",
+    port: Annotated[int, typer.Option("--port", min=0, max=65535, help="Port; 0 takes a free one.")] = 4242,
+) -> None:
+    """Serve landing, emulator and flight of a study to clients of UM-Bridge, until Ctrl-C. Writes nothing."""
+    folder = _default_folder(study) if out is None else _given_folder(out)
+    with _one_sentence():
+        from lithobrake.pipeline import served_models
+
+        models = served_models(study, folder)
+        from lithobrake.serve import model_server
+
+        server = model_server(models, host, port)
+    with server:
+        names = ", ".join(model.name for model in models)
+        _tell([f"Serving {names} at http://{host}:{server.server_port}; Ctrl-C ends it."])
+        # That it was ended is no news to whoever ended it.
+        with suppress(KeyboardInterrupt):
+            server.serve_forever()
 
 
 @app.command(epilog="Example: lithobrake view runs/study")

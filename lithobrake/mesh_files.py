@@ -1,4 +1,4 @@
-"""Reading triangles from OBJ and STL files and from plate models of the Planetary Data System."""
+"""Reading triangles from OBJ and STL files, plate models of the Planetary Data System, and Gaskell's quadrilaterals."""
 
 import os
 import struct
@@ -7,25 +7,25 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-UNITS = {"m": 1.0, "km": 1e3, "cm": 1e-2, "mm": 1e-3}
+from lithobrake.mesh_units import UNITS, mesh_unit
 
 Mesh = tuple[NDArray[np.float64], NDArray[np.int64]]
 
 
-def read_mesh(path: str | os.PathLike[str], unit: str = "m") -> Mesh:
-    """Vertices [m], shape [vertex_count, 3], and faces, shape [facet_count, 3], of an .obj, .stl or .tab file.
+def read_mesh(path: str | os.PathLike[str], unit: str | None = None) -> Mesh:
+    """Vertices [m], shape [vertex_count, 3], and faces, shape [facet_count, 3], of a file whose ending READERS has.
 
-    Raises ValueError for an unknown unit or ending and for a line or length that is not of the format.
+    unit: of its lengths; absent: what its header or label says, else m. Raises ValueError as mesh_unit does, and for an
+    unknown ending and a line or length that is not of the format.
     """
     path = Path(path)
-    if unit not in UNITS:
-        raise ValueError(f"unit is {unit!r}; allowed are {', '.join(UNITS)}.")
     if path.suffix.lower() not in READERS:
         raise ValueError(f"{path}: the ending {path.suffix!r} is not read; convert to one of {', '.join(READERS)}.")
     if not path.is_file():
         raise ValueError(f"{path}: no such file.")
+    length = UNITS[mesh_unit(path, unit)]
     vertices, faces = READERS[path.suffix.lower()](path)
-    return vertices * UNITS[unit], faces
+    return vertices * length, faces
 
 
 def _read_obj(path: Path) -> Mesh:
@@ -92,7 +92,7 @@ def _stl_text(path: Path, data: bytes) -> NDArray[np.float64]:
 
 
 def _read_plates(path: Path) -> Mesh:
-    """Plate model (.tab) of the Planetary Data System, in either of its two layouts.
+    """Plate model of the Planetary Data System, in either of its two layouts, or quadrilaterals (_quadrilaterals).
 
     One has lines `v x y z` and `f i j k` as OBJ has. The other has the number of vertices (perhaps also of plates) on
     its first line, then a line a vertex, the number of plates if it was not given, and a line a plate with vertices
@@ -100,8 +100,11 @@ def _read_plates(path: Path) -> Mesh:
     """
     rows = [line.replace(",", " ").split() for line in path.read_text(encoding="ascii", errors="replace").splitlines()]
     rows = [row for row in rows if row]
+    rows = [row for row in rows if not row[0].startswith("#")]
     if rows and rows[0][0].lower() == "v":
         return _read_obj(path)
+    if rows and len(rows[0]) == 1 and rows[0][0].isdecimal() and len(rows) == 6 * (int(rows[0][0]) + 1) ** 2 + 1:
+        return _quadrilaterals(path, int(rows[0][0]), rows[1:])
     layout = "give the number of vertices, a line a vertex, the number of plates, a line a plate"
     try:
         counts = [int(word) for word in rows[0]]
@@ -120,4 +123,35 @@ def _read_plates(path: Path) -> Mesh:
     return vertices.reshape(-1, 3), plates.reshape(-1, 3)
 
 
-READERS = {".obj": _read_obj, ".stl": _read_stl, ".tab": _read_plates}
+def _quadrilaterals(path: Path, size: int, rows: list[list[str]]) -> Mesh:
+    """Implicitly connected quadrilaterals: six faces of a cube, each a grid of (size + 1)**2 vertices.
+
+    Vertex I of row J of a face comes after I - 1 of the same row; a facet has the corners (I, J), (I, J + 1),
+    (I + 1, J + 1), (I + 1, J), counter-clockwise from outside. Faces share the vertices of their edges.
+    Source: [Gaskell-2008]
+    """
+    try:
+        grid = np.array(rows, dtype=np.float64).reshape(6, size + 1, size + 1, 3)
+    except ValueError as error:
+        raise ValueError(f"{path}: not {6 * (size + 1) ** 2} vertices of three numbers each ({error}).") from error
+    vertices, index = np.unique(grid.reshape(-1, 3) + 0.0, axis=0, return_inverse=True)
+    corner = index.reshape(6, size + 1, size + 1).astype(np.int64)
+    a, b, c, d = corner[:, :-1, :-1], corner[:, 1:, :-1], corner[:, 1:, 1:], corner[:, :-1, 1:]
+    faces = np.stack([a, b, c, a, c, d], axis=-1).reshape(-1, 3)
+    # The last plates of some models have shrunk to a line, where two of their corners are one vertex.
+    return vertices, faces[(faces != np.roll(faces, 1, axis=1)).all(axis=1)]
+
+
+def _read_kernel(path: Path) -> Mesh:
+    """Plates of a shape kernel (.bds) of SPICE."""
+    from lithobrake.shape_kernel import read_shape_kernel
+
+    return read_shape_kernel(path)
+
+
+READERS = {
+    ".obj": _read_obj,
+    ".stl": _read_stl,
+    **dict.fromkeys((".tab", ".txt", ".icq"), _read_plates),
+    **dict.fromkeys((".bds", ".dsk"), _read_kernel),
+}

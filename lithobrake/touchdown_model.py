@@ -101,7 +101,7 @@ def in_words_of_the_study() -> Iterator[None]:
 @cache
 def engine_hash() -> str:
     """Hash of the code that decides what a touchdown gives."""
-    return source_hash("dem", "touchdown", "mesh.py", "mesh_files.py", "touchdown_model.py")
+    return source_hash("dem", "touchdown", "mesh.py", "mesh_files.py", "mesh_units.py", "touchdown_model.py")
 
 
 def refuse_other_code(engine: str) -> None:

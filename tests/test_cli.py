@@ -31,6 +31,8 @@ def test_help_names_the_commands() -> None:
         "sample",
         "fly",
         "report",
+        "export",
+        "serve",
         "view",
     ):
         assert f" {name} " in shown.stdout
@@ -41,7 +43,9 @@ def test_help_has_a_short_name_too(arguments: list[str]) -> None:
     assert RUNNER.invoke(app, arguments).output == RUNNER.invoke(app, [*arguments[:-1], "--help"]).output
 
 
-@pytest.mark.parametrize("command", ["new", "run", "status", "runs", "bed", "fly", "rest", "report", "view"])
+@pytest.mark.parametrize(
+    "command", ["new", "run", "status", "runs", "bed", "fly", "rest", "report", "export", "serve", "view"]
+)
 def test_the_help_of_each_command_ends_in_an_example(command: str) -> None:
     shown = RUNNER.invoke(app, [command, "--help"])
     assert f"Example: lithobrake {command} " in shown.output

@@ -15,6 +15,8 @@ LEAVES = {
         "atomic",
         "mesh",
         "mesh_files",
+        "mesh_units",
+        "shape_kernel",
         "outputs",
         "outcomes",
         "plain",
@@ -29,6 +31,7 @@ ALLOWED: dict[str, set[str]] = {
     "touchdown": {"dem"},
     "chaos": set(),
     "campaign": set(),
+    "serve": set(),
     "smallbody": set(),
     "emulator": {"chaos"},
     "analysis": {"chaos", "emulator"},
@@ -37,18 +40,19 @@ ALLOWED: dict[str, set[str]] = {
     "results": {"campaign", "chaos", "emulator", "study", "touchdown", "touchdown_model"},
     "report": {"results"},
     "view": {"results"},
+    "export": {"results", "smallbody", "study"},
     # The reader makes words of a command absolute as the campaign starts them.
     "study": {"chaos", "campaign", "smallbody", "touchdown"},
     "pipeline": {
         *("dem", "touchdown", "chaos", "emulator", "campaign", "smallbody", "analysis", "report", "results"),
-        "study",
+        *("study", "serve"),
         "touchdown_model",
     },
     "progress": {"progress_log"},
     "progress_log": {"campaign"},
     "__main__": {"cli"},
     "__init__": {"pipeline", "results"},
-    "cli": {"study", "pipeline", "campaign", "progress", "results", "view"},
+    "cli": {"study", "pipeline", "campaign", "progress", "results", "export", "serve", "view"},
 }
 # Parts in which no file imports one that imports it, directly or through others.
 WITHOUT_CIRCLES = tuple(part for part in ALLOWED if (PACKAGE / part).is_dir())

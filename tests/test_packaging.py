@@ -61,17 +61,19 @@ def test_every_part_named_in_the_readme_is_a_package() -> None:
 def test_imports_of_third_parties_are_declared() -> None:
     """Each package that `lithobrake` imports is among the core dependencies, or an extra."""
     project = _project()
-    # Dask is imported only by who asks for a cluster, pandas and xarray by who asks for their tables.
+    # Dask is imported only by who asks for a cluster, others by who asks for their tables or files.
     extras = project["optional-dependencies"]
-    entries = [*project["dependencies"], *extras["dask"], *extras["data"]]
+    entries = [*project["dependencies"], *extras["dask"], *extras["data"], *extras["yaml"]]
     declared = {re.split(r"[>=<\[]", entry)[0] for entry in entries}
-    # The last two come with the package that they belong to, which asks for the exact one it needs.
+    # Some come with the package that they belong to, which asks for the one it needs.
     names_on_index = {
+        "PIL": "matplotlib",
         "sklearn": "scikit-learn",
         "mpl_toolkits": "matplotlib",
         "pydantic_core": "pydantic",
         "llvmlite": "numba",
         "tomli_w": "tomli-w",
+        "yaml": "pyyaml",
     }
     used: set[str] = set()
     for source in (ROOT / "lithobrake").rglob("*.py"):

@@ -7,6 +7,7 @@ from lithobrake.campaign.ledger import Ledger
 from lithobrake.campaign.limits import Limits
 from lithobrake.campaign.local_executor import LocalExecutor, WorkerDiedError, available_cores
 from lithobrake.campaign.missing_runs import missing
+from lithobrake.campaign.model_server import ModelServer
 from lithobrake.campaign.record import Record, RunStatus, campaign_began, read_records
 from lithobrake.campaign.run_counts import Tally, duration, ledger_tally, per_time
 from lithobrake.campaign.run_table import run_lines, write_csv
@@ -18,6 +19,7 @@ __all__ = [
     "Ledger",
     "Limits",
     "LocalExecutor",
+    "ModelServer",
     "Record",
     "RunOptions",
     "RunStatus",

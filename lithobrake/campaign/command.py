@@ -1,4 +1,4 @@
-"""A model that is a program: a folder for each run, `inputs.json` in it, the program, and `outputs.json` back."""
+"""A model that is a program: a folder for each run, `inputs.json` in it, the program, and its answer back."""
 
 import contextlib
 import json
@@ -6,7 +6,6 @@ import os
 import shlex
 import shutil
 import subprocess
-import sys
 import tempfile
 import threading
 from collections.abc import Iterator, Mapping
@@ -16,8 +15,11 @@ from pathlib import Path
 from typing import Any
 
 from lithobrake.campaign.capped_log import CappedLog, last_words
+from lithobrake.campaign.decoders import read_answer
 from lithobrake.campaign.identity import run_key
+from lithobrake.campaign.template_files import fill_template
 
+ANSWER = "outputs.json"
 # How long to wait for the last of what a program printed, where something that it left running may print on [s].
 _LINGER = 1.0
 
@@ -28,7 +30,8 @@ class Command:
 
     command: the words of a command line; no shell reads it, and a word that names a file becomes its absolute path.
     folder: takes a folder for each run, in which the program is started. required: outputs without which a run has
-    failed.
+    failed. templates: files whose places are filled with the numbers of a run and that are put into its folder beside
+    inputs.json. answer: name of the file that the program writes; its ending tells the format (DECODERS).
 
     The program reads `inputs.json`: {"inputs": numbers by name, "seed": whole number}, and writes `outputs.json`: its
     outputs by name, or {"outcome": how the run ended, "outputs": numbers by name, "draws": what it drew by chance}.
@@ -38,6 +41,8 @@ class Command:
     command: str
     folder: Path
     required: tuple[str, ...] = ()
+    templates: tuple[Path, ...] = ()
+    answer: str = ANSWER
 
     def __call__(self, inputs: dict[str, float], seed: int) -> dict[str, Any]:
         """Make one run.
@@ -47,7 +52,7 @@ class Command:
         answer = self.ask({"inputs": inputs, "seed": seed})
         lacking = [name for name in self.required if name not in answer["outputs"]]
         if lacking:
-            raise ValueError(f"outputs.json lacks {', '.join(lacking)}; the program has to write all that is required")
+            raise ValueError(f"{self.answer} lacks {', '.join(lacking)}; the program has to write all that is required")
         return answer
 
     def ask(self, question: Mapping[str, Any]) -> dict[str, Any]:
@@ -55,11 +60,13 @@ class Command:
         with self._run_folder(run_key(question["inputs"], question["seed"], 0, {})[:16]) as folder:
             text = json.dumps(question, indent=2, allow_nan=False)
             (folder / "inputs.json").write_text(text + "\n", encoding="utf-8")
+            for template in self.templates:
+                fill_template(template, folder, question)
             code = _made(self.words(), folder)
             if code:
                 said = last_words(folder / "log.txt")
                 raise RuntimeError(f"the program ended with {_how(code)}; its last words: {said}")
-            return _answer(folder / "outputs.json")
+            return read_answer(folder / self.answer)
 
     def words(self) -> list[str]:
         """The words of the command, files by their absolute paths."""
@@ -68,9 +75,12 @@ class Command:
     def identity(self) -> list[str]:
         """The words of the command, a hash of its content for each that names a file: what decides the results.
 
-        Put it into the context of a campaign, so that runs of a changed program count as other runs.
+        So are templates, and the name of another answer than outputs.json. Put it into the context of a campaign, so
+        that runs of a changed program count as other runs.
         """
-        return [_content_hash(Path(word)) if os.path.isfile(word) else word for word in self.words()]
+        words = [_content_hash(Path(word)) if os.path.isfile(word) else word for word in self.words()]
+        words += [f"template {template.name} {_content_hash(template)}" for template in self.templates]
+        return words + ([f"answer {self.answer}"] if self.answer != ANSWER else [])
 
     @contextlib.contextmanager
     def _run_folder(self, name: str) -> Iterator[Path]:
@@ -145,40 +155,3 @@ def _content_hash(path: Path) -> str:
 
 def _how(code: int) -> str:
     return f"exit code {code}" if code > 0 else f"signal {-code}"
-
-
-def _answer(path: Path) -> dict[str, Any]:
-    """What a program wrote. Raises ValueError when there is nothing, no JSON object, or a value that is not finite."""
-    if not path.is_file():
-        raise ValueError("the program wrote no outputs.json; it has to write one into the folder that it is started in")
-    try:
-        # Some editors and languages begin a text with a mark of its encoding.
-        content = json.loads(path.read_text(encoding="utf-8-sig"))
-    except (ValueError, RecursionError) as error:
-        raise ValueError(f"outputs.json is not JSON ({error}); the program has to write one JSON object") from error
-    if not isinstance(content, dict) or not isinstance(content.get("outputs", {}), dict):
-        raise ValueError("outputs.json is no JSON object of numbers by name; mend what the program writes")
-    answer = content if "outputs" in content or "outcome" in content else {"outputs": content}
-    beside = [name for name in answer if name not in ("outcome", "outputs", "draws")]
-    if beside and "outputs" not in answer:
-        raise ValueError(
-            f"outputs.json has {', '.join(beside)} beside the outcome; allowed: "
-            '{"outcome": a word, "outputs": numbers by name}; put the numbers into outputs'
-        )
-    outputs = answer.setdefault("outputs", {})
-    for name, value in outputs.items():
-        if not _is_number(value):
-            raise ValueError(
-                f"outputs.json has {value!r} for {name}; allowed: a finite number; leave out what has none"
-            )
-    for name, kind, words in (("outcome", str, "a word"), ("draws", dict, "a JSON object")):
-        if not isinstance(answer.get(name, kind()), kind):
-            raise ValueError(f"outputs.json has {answer[name]!r} for {name}; allowed: {words}; mend it or leave it out")
-    return answer
-
-
-def _is_number(value: Any) -> bool:
-    """Tell whether a value is a number that a float can hold."""
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        return False
-    return abs(value) <= sys.float_info.max

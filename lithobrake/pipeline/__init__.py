@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from lithobrake.pipeline.planning.plan import Plan
     from lithobrake.pipeline.planning.plan_in_words import plan_lines
     from lithobrake.pipeline.planning.planner import plan_study
+    from lithobrake.pipeline.serving import served_models
     from lithobrake.pipeline.stages import Stage, make, stage_keys, stages_of
     from lithobrake.pipeline.state import report_page
     from lithobrake.pipeline.status import study_status
@@ -28,6 +29,7 @@ _HOME = {
     "plan_study": "planning.planner",
     "report_page": "state",
     "run_study": "study_run",
+    "served_models": "serving",
     "stage_keys": "stages",
     "stages_of": "stages",
     "study_status": "status",
@@ -46,6 +48,7 @@ __all__ = [
     "plan_study",
     "report_page",
     "run_study",
+    "served_models",
     "stage_keys",
     "stages_of",
     "study_status",

@@ -10,6 +10,7 @@ import numpy as np
 
 from lithobrake.atomic import atomic_path
 from lithobrake.hashing import content_hash
+from lithobrake.mesh_units import mesh_unit
 from lithobrake.outcomes import FlightStatus
 from lithobrake.outputs import FLIGHT, quantity
 from lithobrake.pipeline.flight_paths import write_flight_paths
@@ -49,13 +50,19 @@ def flight_reads(study: Study) -> dict[str, Any]:
     """What the flights depend on beside the samples."""
     built_in = study.site.body in BUILT_IN_BODIES
     body = study.site.body if built_in else content_hash(Path(study.site.body))
-    return study.flight.model_dump() | {
-        "seed": study.seed,
-        "body": body,
-        "unit": study.site.unit,
-        "partner": study.site.partner,
-        "site": {name: str(value) for name, value in study.site_values().items()},
-    }
+    # A key that came later is left out where it says nothing, so that folders of before stay whole.
+    thinned = {} if study.site.gravity_facets is None else {"gravity_facets": study.site.gravity_facets}
+    return (
+        study.flight.model_dump()
+        | thinned
+        | {
+            "seed": study.seed,
+            "body": body,
+            "unit": "m" if built_in else mesh_unit(Path(study.site.body), study.site.unit),
+            "partner": study.site.partner,
+            "site": {name: str(value) for name, value in study.site_values().items()},
+        }
+    )
 
 
 def starts(study: Study, samples: Samples) -> Starts:
@@ -166,12 +173,7 @@ def _checks(body: "Body", start: Starts, study: Study, job: Job) -> dict[str, An
 
 def partner_time(body: "Body", site: dict[str, np.ndarray]) -> np.ndarray:
     """Times [s] at which the partner stands over the longitudes of the samples; 0 where it does not move or is none."""
-    longitude = np.radians(site["partner_longitude_deg"])
-    if body.partner is None:
-        return np.zeros_like(longitude)
-    rate = 2.0 * np.pi * (1.0 / body.partner.period - 1.0 / site["spin_period"])
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return np.where(rate == 0.0, 0.0, (longitude - body.orbit.angle) / rate)
+    return body.partner_time(site["partner_longitude_deg"], site["spin_period"])
 
 
 def _write_shape(body: "Body", folder: StudyFolder) -> None:

@@ -71,7 +71,8 @@ def _body(study: Study) -> "Body":
 
     if study.site.body in BUILT_IN_BODIES:
         return _built_in(study.site.body, study.site.partner)
-    return Body(_read_shape(Path(study.site.body), study.site.unit), mass=1.0, spin_period=1.0)
+    shape = _read_shape(Path(study.site.body), study.site.unit, study.site.gravity_facets)
+    return Body(shape, mass=1.0, spin_period=1.0)
 
 
 @lru_cache(maxsize=4)
@@ -83,10 +84,10 @@ def _built_in(name: str, partner: bool) -> "Body":
 
 
 @lru_cache(maxsize=1)
-def _read_shape(path: Path, unit: str) -> "Shape":
+def _read_shape(path: Path, unit: str | None, gravity_facets: int | None) -> "Shape":
     from lithobrake.smallbody import Shape
 
-    return Shape.read(path, unit)
+    return Shape.read(path, unit, gravity_facets=gravity_facets)
 
 
 def frames(body: "Body", site: Mapping[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
@@ -95,36 +96,7 @@ def frames(body: "Body", site: Mapping[str, np.ndarray]) -> tuple[np.ndarray, np
     The delivery error moves the place north and east; the frame is that of where it ends.
     """
     names = ("latitude_deg", "longitude_deg", "heading_deg", "north_error", "east_error")
-    columns = np.column_stack([site[name] for name in names])
-    # Most studies have one site, or few: each is looked for once.
-    unique, index = np.unique(columns, axis=0, return_inverse=True)
-    latitude, longitude, heading, north, east = unique.T
-    moved = (north != 0.0) | (east != 0.0)
-    if moved.any():
-        there = _delivered(body.shape, latitude[moved], longitude[moved], north[moved], east[moved])
-        latitude[moved], longitude[moved] = body.shape.latitude_longitude(there)
-    origin, axes = body.local_frame(latitude, longitude, heading)
-    return origin[index.reshape(-1)], axes[index.reshape(-1)]
-
-
-def _delivered(
-    shape: "Shape", latitude_deg: np.ndarray, longitude_deg: np.ndarray, north: np.ndarray, east: np.ndarray
-) -> np.ndarray:
-    """Directions from the centre, shape [count, 3], in which places lie that an error [m] moved north and east.
-
-    The way is that of a great circle as long as the error on a ball of the radius at the site: whatever its length, it
-    ends on the body, and on a ball it is the way over the ground.
-    """
-    latitude, longitude = np.radians(latitude_deg), np.radians(longitude_deg)
-    sine, cosine, along, across = np.sin(latitude), np.cos(latitude), np.cos(longitude), np.sin(longitude)
-    up = np.stack([cosine * along, cosine * across, sine], axis=1)
-    northward = np.stack([-sine * along, -sine * across, cosine], axis=1)
-    eastward = np.stack([-across, along, np.zeros_like(along)], axis=1)
-    way = np.hypot(north, east)
-    turn = way / np.linalg.norm(shape.surface_point(latitude_deg, longitude_deg), axis=1)
-    ahead = (north / way)[:, None] * northward + (east / way)[:, None] * eastward
-    there: np.ndarray = np.cos(turn)[:, None] * up + np.sin(turn)[:, None] * ahead
-    return there
+    return body.delivered_frame(*(site[name] for name in names))
 
 
 def effective_acceleration_at_site(study: Study) -> np.ndarray:

@@ -10,12 +10,14 @@ from pathlib import Path
 from typing import Any
 
 from lithobrake import __version__
-from lithobrake.campaign import Command
+from lithobrake.campaign import Command, ModelServer
 from lithobrake.hashing import content_hash
 from lithobrake.outcomes import TouchdownOutcome
 from lithobrake.outputs import ORIENTATION_OUT, OUTPUTS, SPIN_OUT
 from lithobrake.study import Study
 
+# A landing as a vector: the outcome as its place among TouchdownOutcome, and the outputs.
+LANDING = ("outcome", *OUTPUTS)
 # What speed and elevation may be off their components: numbers printed with six digits, as C and C++ do, agree so far.
 PRINTED = 2e-5
 
@@ -32,7 +34,34 @@ class SolverModel:
 
     def __call__(self, values: dict[str, float], seed: int) -> dict[str, Any]:
         """Make one touchdown. Raises ValueError for an outcome or outputs that a study cannot use."""
-        return checked("outputs.json", self.command.ask({"inputs": values, "seed": seed, "setting": self.setting}))
+        return checked(self.command.answer, self.command.ask({"inputs": values, "seed": seed, "setting": self.setting}))
+
+
+@dataclass(frozen=True)
+class ServerModel:
+    """Touchdowns by a model of a server: its one vector has the uncertain inputs, by names in their order.
+
+    setting: what it is told beside the values of a run.
+    """
+
+    server: ModelServer
+    names: tuple[str, ...]
+    setting: Mapping[str, Any]
+
+    def __call__(self, values: dict[str, float], seed: int) -> dict[str, Any]:
+        """Make one touchdown. Raises ValueError for an answer that a study cannot use."""
+        config = {"seed": seed, "inputs": values, "setting": self.setting}
+        vectors = self.server.evaluate([[values[name] for name in self.names]], config)
+        numbers = [number for vector in vectors for number in vector]
+        outcomes = tuple(TouchdownOutcome)
+        if len(numbers) != len(LANDING) or numbers[0] not in range(len(outcomes)):
+            raise ValueError(
+                f"{self.server.address} answered {reprlib.repr(numbers)}; allowed: {len(LANDING)} numbers, "
+                f"{', '.join(LANDING)}, the outcome from 0: {', '.join(outcomes)}"
+            )
+        outcome = outcomes[int(numbers[0])]
+        outputs = dict(zip(OUTPUTS, numbers[1:], strict=True)) if outcome == TouchdownOutcome.CLEAR else {}
+        return checked(f"{self.server.address}'s answer", {"outcome": outcome, "outputs": outputs})
 
 
 @dataclass(frozen=True)
@@ -129,7 +158,9 @@ def _refuse_parts(what: str, outputs: Mapping[str, float]) -> None:
 
 def solver_command(study: Study, folder: Path) -> Command:
     """The program of a study, with its runs in a folder of the study."""
-    return Command(str(study.solver.command), folder / "solver")
+    solver = study.solver
+    templates = tuple(Path(name) for name in solver.templates)
+    return Command(str(solver.command), folder / "solver", templates=templates, answer=solver.answer)
 
 
 def solver_setting(study: Study) -> dict[str, Any]:

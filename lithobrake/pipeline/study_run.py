@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from lithobrake.campaign import DaskExecutor, LocalExecutor
+from lithobrake.campaign.model_server import PREFIX
 from lithobrake.chaos.threads import one_thread
 from lithobrake.pipeline.answers import ANSWERED_AFTER
 from lithobrake.pipeline.folder import StudyFolder
@@ -88,9 +89,10 @@ def run_study(
     stages_until(study, until)
     refuse_others_folder(source, out)
     if study.solver.command:
-        shown.say(
-            f"This study names a program, which every run that is still to be made starts: {study.solver.command}"
-        )
+        what = "model of a server, which every run that is still to be made asks"
+        if not study.solver.command.startswith(PREFIX):
+            what = "program, which every run that is still to be made starts"
+        shown.say(f"This study names a {what}: {study.solver.command}")
     folder = StudyFolder(out)
     # The bits of a least-squares fit depend on the threads of the linear algebra.
     with (

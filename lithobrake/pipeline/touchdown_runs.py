@@ -2,17 +2,20 @@
 
 import math
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from lithobrake.campaign import Ledger, Limits, RunOptions, Runs, Tally, run_key, run_seed
+from lithobrake.campaign import Ledger, Limits, ModelServer, RunOptions, Runs, Tally, run_key, run_seed
 from lithobrake.campaign import run as run_campaign
+from lithobrake.campaign.model_server import PREFIX
 from lithobrake.outputs import OUTPUTS
 from lithobrake.pipeline.beds import bed_files, touchdown_reads
 from lithobrake.pipeline.job import Job
-from lithobrake.pipeline.solver import FunctionModel, SolverModel, solver_command, solver_setting
+from lithobrake.pipeline.solver import FunctionModel, Model, ServerModel, SolverModel, solver_command, solver_setting
 from lithobrake.study import Study
+from lithobrake.study.quantity import uncertain
 from lithobrake.touchdown_model import TouchdownModel, draw, engine_hash, medians
 
 
@@ -42,7 +45,7 @@ def touchdowns(job: Job, rows: Sequence[Mapping[str, float]], title: str, replic
 
     with Ledger(job.folder / "runs.sqlite") as ledger:
         return run_campaign(
-            _model(job),
+            model_of(study, job.folder.path.absolute(), job.model),
             np.array([list(row.values()) for row in rows]),
             names=list(rows[0]),
             context=touchdown_reads(study),
@@ -74,11 +77,16 @@ def _drawn(study: Study, names: Sequence[str], row: Sequence[float], replicate: 
     return {name: float(value) for name, value in drawn.items()}
 
 
-def _model(job: Job) -> TouchdownModel | SolverModel | FunctionModel:
-    if job.model is not None:
-        return FunctionModel(job.model)
-    # Workers may have another working directory.
-    folder = job.folder.path.absolute()
-    if job.study.solver.command:
-        return SolverModel(solver_command(job.study, folder), solver_setting(job.study))
-    return TouchdownModel(job.study, tuple(folder / name for name in bed_files(job.study)), engine_hash())
+def model_of(
+    study: Study, folder: Path, function: Model | None
+) -> TouchdownModel | SolverModel | ServerModel | FunctionModel:
+    """What makes the touchdowns of a study with this folder, an absolute path: workers may have another one."""
+    if function is not None:
+        return FunctionModel(function)
+    if study.solver.command and study.solver.command.startswith(PREFIX):
+        return ServerModel(
+            ModelServer.of(study.solver.command), tuple(uncertain(study.touchdown_values())), solver_setting(study)
+        )
+    if study.solver.command:
+        return SolverModel(solver_command(study, folder), solver_setting(study))
+    return TouchdownModel(study, tuple(folder / name for name in bed_files(study)), engine_hash())

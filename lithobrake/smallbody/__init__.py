@@ -8,6 +8,7 @@ from lithobrake.smallbody.flight import fly
 from lithobrake.smallbody.flight_results import Flights
 from lithobrake.smallbody.hopping import Journeys, Launch, hop
 from lithobrake.smallbody.shape import Shape
+from lithobrake.smallbody.spice_kernels import PartnerPlace, SpinState, read_partner, read_spin
 
 __all__ = [
     "Body",
@@ -20,10 +21,14 @@ __all__ = [
     "Journeys",
     "Launch",
     "Partner",
+    "PartnerPlace",
     "Rebounds",
     "Shape",
+    "SpinState",
     "didymos",
     "dimorphos",
     "fly",
     "hop",
+    "read_partner",
+    "read_spin",
 ]

@@ -104,7 +104,7 @@ class Body:
         Symmetric; its trace is the Laplacian. On an edge of the shape, where it has no limit, it is large and finite.
         """
         p = self._checked(points)
-        sums = gradient(p.reshape(-1, 3), self.shape.polyhedron, self.shape.multipole)
+        sums = gradient(p.reshape(-1, 3), *self.shape.gravity[:2])
         return (sums * (GRAVITATIONAL_CONSTANT * self.density)).reshape(*p.shape, 3)
 
     def effective_acceleration(
@@ -169,6 +169,42 @@ class Body:
         ahead = np.cos(turn) * north + np.sin(turn) * np.cross(north, up)
         return points, np.stack([ahead, np.cross(up, ahead), up], axis=-2)
 
+    def delivered_frame(
+        self,
+        latitude_deg: ArrayLike,
+        longitude_deg: ArrayLike,
+        heading_deg: ArrayLike,
+        north_error: ArrayLike,
+        east_error: ArrayLike,
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """As local_frame, of places that errors of delivery [m] moved north and east; every argument of shape [count].
+
+        The way is that of a great circle as long as the error on a ball of the radius at the site: whatever its length,
+        it ends on the body, and on a ball it is the way over the ground.
+        """
+        columns = np.column_stack([latitude_deg, longitude_deg, heading_deg, north_error, east_error])
+        # Most studies have one site, or few: each is looked for once.
+        unique, index = np.unique(columns, axis=0, return_inverse=True)
+        latitude, longitude, heading, north, east = unique.T
+        moved = (north != 0.0) | (east != 0.0)
+        if moved.any():
+            there = _delivered(self.shape, latitude[moved], longitude[moved], north[moved], east[moved])
+            latitude[moved], longitude[moved] = self.shape.latitude_longitude(there)
+        origin, axes = self.local_frame(latitude, longitude, heading)
+        return origin[index.reshape(-1)], axes[index.reshape(-1)]
+
+    def partner_time(self, longitude_deg: ArrayLike, spin_period: ArrayLike) -> NDArray[np.float64]:
+        """Times [s] at which the partner stands over these longitudes, for spin periods [s], all of shape [count].
+
+        0 where it does not move or is none.
+        """
+        longitude = np.radians(longitude_deg)
+        if self.partner is None:
+            return np.zeros_like(longitude)
+        rate = 2.0 * np.pi * (1.0 / self.partner.period - 1.0 / np.asarray(spin_period))
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.where(rate == 0.0, 0.0, (longitude - self.orbit.angle) / rate)
+
 
 @dataclass(frozen=True)
 class Partner:
@@ -213,3 +249,23 @@ class Partner:
             drift=mass_fraction * mean_motion * distance,
             mass_fraction=mass_fraction,
         )
+
+
+def _delivered(
+    shape: Shape,
+    latitude_deg: NDArray[np.float64],
+    longitude_deg: NDArray[np.float64],
+    north: NDArray[np.float64],
+    east: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    """Directions from the centre, shape [count, 3], in which places lie that an error [m] moved north and east."""
+    latitude, longitude = np.radians(latitude_deg), np.radians(longitude_deg)
+    sine, cosine, along, across = np.sin(latitude), np.cos(latitude), np.cos(longitude), np.sin(longitude)
+    up = np.stack([cosine * along, cosine * across, sine], axis=1)
+    northward = np.stack([-sine * along, -sine * across, cosine], axis=1)
+    eastward = np.stack([-across, along, np.zeros_like(along)], axis=1)
+    way = np.hypot(north, east)
+    turn = way / np.linalg.norm(shape.surface_point(latitude_deg, longitude_deg), axis=1)
+    ahead = (north / way)[:, None] * northward + (east / way)[:, None] * eastward
+    there: NDArray[np.float64] = np.cos(turn)[:, None] * up + np.sin(turn)[:, None] * ahead
+    return there

@@ -17,7 +17,9 @@ from lithobrake.smallbody.multipole import Multipole
 from lithobrake.smallbody.polyhedron_gravity import PolyhedronTerms
 from lithobrake.smallbody.ray_facet import outermost_hit
 from lithobrake.smallbody.signed_distance import heights, pseudonormals
+from lithobrake.smallbody.thinning import thinned
 
+FEWEST_FACETS = 100
 OFF_CENTRE = 1e-3  # of the radius: how far the centre of mass may lie from the origin without a word
 
 
@@ -29,13 +31,19 @@ class Shape:
     volume       [m3]
     centroid     of the volume [m], shape [3]
     inertia_per_density   about the centroid [m5], shape [3, 3]
+    gravity_facets   how many facets gravity is summed over; a shape that has more is thinned for that, keeping volume
+                     and centroid, and stays as it is for the ground; None: all
 
     Raises ValueError for a mesh that is open, non-manifold, degenerate or in pieces; warns where it turns facets
     outward. It does not look for facets that intersect.
     """
 
-    def __init__(self, vertices: ArrayLike, faces: ArrayLike, *, name: str = "shape") -> None:
-        self.name = name
+    def __init__(
+        self, vertices: ArrayLike, faces: ArrayLike, *, name: str = "shape", gravity_facets: int | None = None
+    ) -> None:
+        if gravity_facets is not None and gravity_facets < FEWEST_FACETS:
+            raise ValueError(f"{name}: gravity_facets is {gravity_facets}; it must be {FEWEST_FACETS} or more.")
+        self.name, self.gravity_facets = name, gravity_facets
         self.vertices = np.ascontiguousarray(vertices, dtype=np.float64)
         given = np.asarray(faces)
         if not np.issubdtype(given.dtype, np.integer):
@@ -48,13 +56,17 @@ class Shape:
         self.vertices.flags.writeable = self.faces.flags.writeable = False
 
     @classmethod
-    def read(cls, path: str | os.PathLike[str], unit: str = "m") -> "Shape":
-        """Read an .obj, .stl or .tab (plate model) file whose lengths are in `unit` (m, km, cm, mm).
+    def read(
+        cls, path: str | os.PathLike[str], unit: str | None = None, *, gravity_facets: int | None = None
+    ) -> "Shape":
+        """Read a mesh: .obj, .stl, plates or Gaskell's quadrilaterals (.tab, .txt, .icq), or a shape kernel (.bds).
 
+        unit: of its lengths (m, km, cm, mm); absent: what its header or the label beside it says, else m. An archive's
+        file that does not say it is refused, as is a unit that the file contradicts.
         Warns where the centre of mass is off the origin by more than a thousandth of the radius; nothing is moved.
         """
         vertices, faces = read_mesh(path, unit)
-        shape = cls(vertices, faces, name=os.fspath(path))
+        shape = cls(vertices, faces, name=os.fspath(path), gravity_facets=gravity_facets)
         offset = float(np.linalg.norm(shape.centroid))
         if offset > OFF_CENTRE * shape.radius:
             place = ", ".join(f"{length:.4g}" for length in shape.centroid)
@@ -71,6 +83,13 @@ class Shape:
         return PolyhedronTerms.of(self.vertices, self.faces)
 
     @cached_property
+    def attracting(self) -> "Shape":
+        """What gravity is summed over: this shape, or one with gravity_facets in its place."""
+        if self.gravity_facets is None or len(self.faces) <= self.gravity_facets:
+            return self
+        return Shape(*thinned(self.vertices, self.faces, self.gravity_facets), name=f"{self.name}, thinned")
+
+    @cached_property
     def multipole(self) -> Multipole:
         """Moments of the shape, and the distance beyond which they give its gravity."""
         return Multipole.of(self.polyhedron, self.centroid)
@@ -78,17 +97,17 @@ class Shape:
     @property
     def gravity(self) -> Gravity:
         """What the gravity kernels read."""
-        return Gravity(self.polyhedron, self.multipole, GravityTable.empty())
+        return Gravity(self.attracting.polyhedron, self.attracting.multipole, GravityTable.empty())
 
     @property
     def tabled_gravity(self) -> Gravity:
         """The same with the table, which covers all but the farthest points."""
-        return Gravity(self.polyhedron, self.multipole, self._table[0])
+        return Gravity(self.attracting.polyhedron, self.attracting.multipole, self._table[0])
 
     @property
     def distant_gravity(self) -> Gravity:
         """The same for a body that flights rarely approach: from a coarser table, built in a tenth of the time."""
-        return Gravity(self.polyhedron, self.multipole, self._coarse_table[0])
+        return Gravity(self.attracting.polyhedron, self.attracting.multipole, self._coarse_table[0])
 
     @property
     def table_error(self) -> TableError:
@@ -97,11 +116,11 @@ class Shape:
 
     @cached_property
     def _table(self) -> tuple[GravityTable, TableError]:
-        return gravity_table_of(self.polyhedron, self.multipole, self.volume, LEVELS)
+        return gravity_table_of(self.attracting.polyhedron, self.attracting.multipole, self.volume, LEVELS)
 
     @cached_property
     def _coarse_table(self) -> tuple[GravityTable, TableError]:
-        return gravity_table_of(self.polyhedron, self.multipole, self.volume, LEVELS[2:])
+        return gravity_table_of(self.attracting.polyhedron, self.attracting.multipole, self.volume, LEVELS[2:])
 
     @cached_property
     def corners(self) -> NDArray[np.float64]:

@@ -41,8 +41,13 @@ def body_problems(study: Study) -> Iterator[str]:
 
 
 def _unit_problems(study: Study) -> Iterator[str]:
-    if study.site.unit != "m":
+    if study.site.unit not in (None, "m"):
         yield f'site.unit is "{study.site.unit}", and site.body is built in; a unit goes with a mesh: leave it out'
+    if study.site.gravity_facets is not None:
+        yield (
+            f"site.gravity_facets is {study.site.gravity_facets}, and site.body is built in, with few facets; a mesh "
+            "may be thinned: leave it out"
+        )
 
 
 def _spin_problems(study: Study) -> Iterator[str]:
@@ -94,14 +99,16 @@ def _bulk_problems(study: Study, volume: float) -> Iterator[str]:
     """A body that is too light, too heavy, too small or too large, with the unit that was likely meant."""
     if study.site.mass is None:
         return
-    from lithobrake.mesh_files import UNITS
+    from lithobrake.mesh_units import UNITS, mesh_unit
 
     low, high = (mass / volume for mass in usual_reach(study.site.mass))
-    diameter, here = 2.0 * _ball_radius(volume), UNITS[study.site.unit]
+    built_in = study.site.body in BUILT_IN_BODIES
+    given = "m" if built_in else mesh_unit(Path(study.site.body), study.site.unit)
+    diameter, here = 2.0 * _ball_radius(volume), UNITS[given]
     fitting = [unit for unit, length in UNITS.items() if _is_a_body(low, high, diameter, length / here)]
-    if study.site.unit in fitting:
+    if given in fitting:
         return
-    likely = fitting[0] if fitting and study.site.body not in BUILT_IN_BODIES else None
+    likely = fitting[0] if fitting and not built_in else None
     remedy = f'is the mesh in {likely}? then set site.unit = "{likely}"' if likely else "mend site.mass or the mesh"
     density = f"{low:.4g} kg/m3" if low == high else f"{low:.4g} to {high:.4g} kg/m3"
     yield (

@@ -26,6 +26,12 @@ class SolverSection(Section):
 
     command: str | None = None
     """Its command line, started in a folder for each run, where it reads inputs.json and writes outputs.json; words
-    that name files count from the study file. Absent: this program's own soil."""
+    that name files count from the study file. Or "umbridge:http://HOST:PORT/MODEL", the model of a server in its place.
+    Absent: this program's own soil."""
+    templates: list[str] = Field(default=[])
+    """Files, counted from the study file, in which {{ grain.friction }} becomes that number of a run and {{ seed }} its
+    seed; each is put into the run's folder under its own name."""
+    answer: str = "outputs.json"
+    """Name of the file that the program writes, with the ending .json, .csv, .yaml, .yml, .h5 or .hdf5."""
     inputs: dict[str, Annotated[Scalar, MaybeUncertain("")]] = Field(default={})
     """Numbers that only your program knows, by names of your own."""

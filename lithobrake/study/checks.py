@@ -142,10 +142,13 @@ def _solver_problems(study: Study) -> Iterator[str]:
         # Names stand in figures and tables, where other characters have a meaning of their own.
         if not re.fullmatch(r"[\w-]+", name):
             yield f"solver.inputs.{name} is no name; allowed: letters, digits, _ and -; rename it"
+    yield from _solver_file_problems(study)
     if solver.command is None:
         if solver.inputs and study.has_soil:
             yield "solver.inputs has numbers, and solver.command is missing; give the command that reads them"
         return
+    from lithobrake.campaign.model_server import PREFIX, ModelServer
+
     try:
         words = shlex.split(solver.command)
     except ValueError as error:
@@ -154,5 +157,34 @@ def _solver_problems(study: Study) -> Iterator[str]:
     if not solver.command.isprintable():
         yield f"solver.command is {solver.command!r}; allowed: what can be shown on one line; write plain words"
         return
+    if solver.command.startswith(PREFIX):
+        try:
+            ModelServer.of(solver.command)
+        except ValueError as error:
+            yield f"solver.command is {error}"
+        return
     if not words or shutil.which(words[0]) is None:
         yield f'solver.command begins with "{" ".join(words[:1])}", which is no program here; give its path'
+
+
+def _solver_file_problems(study: Study) -> Iterator[str]:
+    """What is wrong with the files that go to a program and come back."""
+    solver = study.solver
+    if not solver.templates and solver.answer == "outputs.json":
+        return
+    is_program = solver.command is not None and not solver.command.startswith("umbridge:")
+    if not is_program:
+        yield "solver.templates and solver.answer are files of a program, and solver.command names none; leave them out"
+        return
+    from lithobrake.campaign.decoders import DECODERS
+
+    for name in solver.templates:
+        if not os.path.isfile(name):
+            yield f"solver.templates has {name!r}; no such file; give its path from the study file"
+    stems = [os.path.basename(name) for name in (*solver.templates, "inputs.json", "log.txt", solver.answer)]
+    for name in sorted({stem for stem in stems if stems.count(stem) > 1}):
+        yield f"solver.templates and solver.answer: {name} would stand twice in the folder of a run; rename one"
+    plain = os.path.basename(solver.answer) == solver.answer and solver.answer.isprintable()
+    if not plain or os.path.splitext(solver.answer)[1].lower() not in DECODERS:
+        endings = ", ".join(DECODERS)
+        yield f"solver.answer is {solver.answer!r}; allowed: a file name without folders, ending in {endings}"

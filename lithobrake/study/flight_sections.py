@@ -14,10 +14,13 @@ class SiteSection(Section):
     """Where on which body the lander touches down. Uncertain values here vary in the Monte Carlo only."""
 
     body: str = "didymos"
-    """"didymos" or "dimorphos" (built in), or a closed mesh (OBJ, STL or PDS plates) around the body's centre; the path
-    counts from the study file."""
-    unit: LengthUnit = "m"
-    """Unit of the lengths in the mesh: "m", "km", "cm" or "mm"."""
+    """"didymos" or "dimorphos" (built in), or a closed mesh (OBJ, STL, PDS plates, ICQ or a shape kernel of SPICE)
+    around the body's centre; the path counts from the study file."""
+    unit: LengthUnit | None = None
+    """Unit of the lengths in the mesh: "m", "km", "cm" or "mm"; absent: what its header or label says, else metres."""
+    gravity_facets: Annotated[int, Whole("", at_least=100)] | None = None
+    """Facets that gravity is summed over; a mesh that has more is thinned for that, keeping volume and centroid, and
+    stays as it is for the ground. Absent: all."""
     partner: Annotated[bool, Strict()] = True
     """Whether the partner of a built-in body attracts and may be hit; false: the body is alone, as in the paper."""
     partner_longitude_deg: Angle | None = None

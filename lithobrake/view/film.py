@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lithobrake.atomic import atomic_path
-from lithobrake.view.scene import INSTALL, Scene
+from lithobrake.view.drawn_motion import INSTALL, DrawnMotion
 
 if TYPE_CHECKING:
     from lithobrake.results.moving_bodies import MovingBodies
@@ -38,11 +38,11 @@ def film(
 
 def _pictures(bodies: "MovingBodies", progress: Callable[[float], None]) -> Iterator[np.ndarray]:
     """The frames at even instants, one after the other."""
-    scene, count = Scene(bodies, size=SIZE, off_screen=True), len(bodies.time)
+    drawn, count = DrawnMotion(bodies, size=SIZE, off_screen=True), len(bodies.time)
     instants = np.linspace(bodies.time[0], bodies.time[-1], count)
     for number, instant in enumerate(instants):
-        scene.go_to(int(np.argmin(np.abs(bodies.time - instant))))
-        yield scene.picture()
+        drawn.go_to(int(np.argmin(np.abs(bodies.time - instant))))
+        yield drawn.picture()
         progress((number + 1) / count)
 
 

@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING
 
-from lithobrake.view.scene import Scene
+from lithobrake.view.drawn_motion import DrawnMotion
 
 if TYPE_CHECKING:
     from lithobrake.results.moving_bodies import MovingBodies
@@ -12,10 +12,10 @@ SIZE = (1280, 800)
 
 def show(bodies: "MovingBodies") -> None:
     """Open a window on the motion, and return when it is closed. Raises ImportError without PyVista."""
-    scene = Scene(bodies, size=SIZE, off_screen=False)
+    drawn = DrawnMotion(bodies, size=SIZE, off_screen=False)
     last = len(bodies.time) - 1
     if last > 0:
-        scene.plotter.add_slider_widget(
-            lambda value: scene.go_to(round(value)), [0, last], value=0, title="frame", fmt="%.0f", style="modern"
+        drawn.plotter.add_slider_widget(
+            lambda value: drawn.go_to(round(value)), [0, last], value=0, title="frame", fmt="%.0f", style="modern"
         )
-    scene.plotter.show(title="lithobrake")
+    drawn.plotter.show(title="lithobrake")

@@ -26,7 +26,7 @@ def pyvista() -> Any:
     return pyvista
 
 
-class Scene:
+class DrawnMotion:
     """A window, shown or not, with the bodies of a motion; the lander is the last of them."""
 
     def __init__(self, bodies: "MovingBodies", *, size: tuple[int, int], off_screen: bool) -> None:

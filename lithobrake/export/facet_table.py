@@ -1,0 +1,74 @@
+"""Numbers of each facet of the body, in the order of its facets: programs that colour a shape by them read that."""
+
+import csv
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from lithobrake.atomic import atomic_path
+from lithobrake.export.fits import write_fits_table
+from lithobrake.export.flown import Flown
+from lithobrake.results import Column, StudyResults, Table
+
+if TYPE_CHECKING:
+    from lithobrake.smallbody import Body
+
+
+def write_facet_csv(results: StudyResults, path: Path) -> None:
+    """Write a row a facet; a number that a facet does not have is left empty."""
+    table = facet_table(results)
+    titles = [f"{name} [{column.units}]" if column.units else name for name, column in table.columns.items()]
+    columns = [column.values.tolist() for column in table.columns.values()]
+    with atomic_path(path) as draft, draft.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(titles)
+        for row in zip(*columns, strict=True):
+            writer.writerow(["" if value != value else value for value in row])
+
+
+def write_facet_fits(results: StudyResults, path: Path) -> None:
+    """Write a FITS binary table, a row a facet; a number that a facet does not have is NaN."""
+    write_fits_table(path, "FACETS", facet_table(results).columns)
+
+
+def facet_table(results: StudyResults) -> Table:
+    """Place, area and slope of each facet of body.obj, and the impacts on it."""
+    flown, flights = Flown.of(results), results.flights
+    hit = np.isfinite(flights["facet"])
+    facet, count = flights["facet"][hit].astype(np.int64), len(flown.body.shape.faces)
+    impacts = np.bincount(facet, minlength=count)
+
+    def mean(name: str) -> np.ndarray:
+        with np.errstate(invalid="ignore"):
+            means: np.ndarray = np.bincount(facet, flights[name][hit], count) / np.where(impacts, impacts, np.nan)
+        return means
+
+    corner = flown.body.shape.corners
+    centre = corner.mean(axis=1)
+    latitude, longitude = flown.body.shape.latitude_longitude(centre)
+    area = 0.5 * np.linalg.norm(np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]), axis=1)
+    columns = {
+        "facet": Column(np.arange(count), "", "number of the facet, from 0"),
+        "latitude_deg": Column(latitude, "deg", "planetocentric latitude of its centroid"),
+        "longitude_deg": Column(longitude, "deg", "east longitude of its centroid"),
+        "area": Column(area, "m2", "area"),
+        "slope_deg": Column(
+            np.degrees(_slope(flown.body, centre)), "deg", "angle of the normal from the upward plumb line"
+        ),
+        "impact_count": Column(impacts, "", "flights that end on it"),
+        "impact_density": Column(impacts / len(hit) / area, "1/m2", "share of all flights that end on it, over area"),
+        "impact_speed": Column(mean("impact_speed"), "m/s", "mean speed of those impacts"),
+        "impact_incidence_deg": Column(
+            mean("impact_incidence_deg"), "deg", "mean angle of their velocities from the inward normal"
+        ),
+    }
+    return Table("facet", columns)
+
+
+def _slope(body: "Body", centre: np.ndarray) -> np.ndarray:
+    """Angle between outward normal and upward plumb line [rad] at the middle of each facet, shape [facet_count]."""
+    felt = body.effective_acceleration(centre)
+    along = -np.einsum("fi,fi->f", felt, body.shape.normals) / np.linalg.norm(felt, axis=1)
+    slope: np.ndarray = np.arccos(np.clip(along, -1.0, 1.0))
+    return slope

@@ -1,0 +1,134 @@
+"""The flights of a finished study, made again from its files to see where each was in between."""
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lithobrake import smallbody
+from lithobrake.results import StudyResults
+from lithobrake.smallbody import Body, Shape, fly
+from lithobrake.study import BUILT_IN_BODIES
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Flown:
+    """Flights of a study, all at the same time since their starts; one row or entry a flight.
+
+    time           since the start [s]
+    sample         row in samples.h5
+    start_time     of the flight in the clock of the partner's motion [s]: start_time of smallbody.fly
+    position       at the time [m], velocity [m/s], body-fixed, [count, 3]
+    mass           of the body [kg]; spin_period [s]
+    end_time       from the start to the end of the flight [s]
+    gravity        as the study has it: table or exact; duration: of its longest flight [s]
+    """
+
+    body: Body
+    time: float
+    sample: NDArray[np.int64]
+    start_time: Floats
+    position: Floats
+    velocity: Floats
+    mass: Floats
+    spin_period: Floats
+    end_time: Floats
+    gravity: str
+    duration: float
+
+    @classmethod
+    def of(cls, results: StudyResults) -> "Flown":
+        """All flights of a study to the next impact. Raises ValueError where it has none."""
+        table = results.flights
+        if not table.row_count:
+            raise ValueError(f"{results.folder / 'flights.csv'} has no flights: no sample left the surface")
+        mass, spin_period = table["site_mass"], table["site_spin_period"]
+        body = study_body(results, float(np.median(mass)), float(np.median(spin_period)))
+        where = ("latitude_deg", "longitude_deg", "heading_deg", "north_error", "east_error")
+        origin, axes = body.delivered_frame(*(table[f"site_{name}"] for name in where))
+        local = np.column_stack([table[f"velocity_{axis}"] for axis in "xyz"])
+        return cls(
+            body=body,
+            time=0.0,
+            sample=table["sample"].astype(np.int64),
+            start_time=body.partner_time(table["site_partner_longitude_deg"], spin_period),
+            position=origin,
+            velocity=np.einsum("nij,ni->nj", axes, local),
+            mass=mass,
+            spin_period=spin_period,
+            end_time=table["time_s"],
+            gravity=results.study["flight"]["gravity"],
+            duration=results.study["flight"]["duration"],
+        )
+
+    def of_samples(self, samples: Sequence[int]) -> "Flown":
+        """The flights of these samples, in their order. Raises ValueError for a sample that did not fly."""
+        rows = {sample: row for row, sample in enumerate(self.sample.tolist())}
+        lacking = [sample for sample in samples if sample not in rows]
+        if lacking:
+            first, last = self.sample[0], self.sample[-1]
+            raise ValueError(
+                f"sample {lacking[0]} has no flight; the {len(rows)} samples with one lie from {first} to {last}: take "
+                "numbers of the column sample of flights.csv"
+            )
+        return self._rows(np.array([rows[sample] for sample in samples], dtype=np.int64))
+
+    def at(self, time: float) -> "Flown":
+        """Those that still fly at a later time after the start [s], flown on to it."""
+        aloft = self._rows(np.flatnonzero(self.end_time > time))
+        return replace(aloft._flown(time - self.time), time=time) if len(aloft.sample) else aloft
+
+    def ends(self) -> tuple[Floats, Floats]:
+        """Position [m] and velocity [m/s], body-fixed, [count, 3], at the end of flights that begin here.
+
+        They go as the study flew them, in one piece, and so end where it says to the last bit.
+        """
+        flown = self._flown(self.duration - self.time)
+        return flown.position, flown.velocity
+
+    def inertial(self, time: Floats | float, position: Floats, velocity: Floats) -> tuple[Floats, Floats]:
+        """Body-fixed states at times since the start [s] in axes that do not turn and are the body's at the start."""
+        rate = 2.0 * np.pi / self.spin_period
+        spin = np.outer(rate, [0.0, 0.0, 1.0])
+        c, s = np.cos(rate * time), np.sin(rate * time)
+        turned = []
+        for vector in (position, velocity + np.cross(spin, position)):
+            x, y, z = vector.T
+            turned.append(np.column_stack([c * x - s * y, s * x + c * y, z]))
+        return turned[0], turned[1]
+
+    def _flown(self, duration: float) -> "Flown":
+        """Flights that go on for so long [s], or to their end."""
+        flights = fly(
+            *(self.body, self.position, self.velocity, duration),
+            gravity=self.gravity,
+            start_time=self.start_time + self.time,
+            mass=self.mass,
+            spin_period=self.spin_period,
+        )
+        return replace(self, position=flights.position, velocity=flights.velocity)
+
+    def _rows(self, rows: NDArray[np.int64]) -> "Flown":
+        names = ("sample", "start_time", "position", "velocity", "mass", "spin_period", "end_time")
+        return replace(self, **{name: getattr(self, name)[rows] for name in names})
+
+
+def study_body(results: StudyResults, mass: float, spin_period: float) -> Body:
+    """The body of a study from body.obj, with the partner that the study gave it."""
+    site, name = results.study["site"], body_name(results)
+    partner = None
+    if site["body"] in BUILT_IN_BODIES:
+        partner = getattr(smallbody, site["body"])(partner=site["partner"]).partner
+    # A study of before this key has none.
+    shape = Shape(*results.body_shape, name=name, gravity_facets=site.get("gravity_facets"))
+    return Body(shape, mass, spin_period, name, partner)
+
+
+def body_name(results: StudyResults) -> str:
+    """The name of the body as other programs take it: capitals, digits and underscores."""
+    return re.sub(r"\W+", "_", Path(results.study["site"]["body"]).stem, flags=re.ASCII).upper()

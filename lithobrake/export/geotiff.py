@@ -1,0 +1,82 @@
+"""The density of the impacts as a GeoTIFF over latitude and longitude of the body.
+
+Source: [GeoTIFF-2019], keys of user-defined geographic frames.
+"""
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from lithobrake.atomic import atomic_path
+from lithobrake.export.map_frame import WORDS, MapFrame
+from lithobrake.outcomes import FlightStatus
+from lithobrake.results import StudyResults
+
+if TYPE_CHECKING:
+    from PIL.TiffImagePlugin import ImageFileDirectory_v2
+
+# Tags of the file.
+PIXEL_SCALE, TIE_POINT, KEYS, DOUBLES, TEXTS, GDAL_METADATA = 33550, 33922, 34735, 34736, 34737, 42112
+USER_DEFINED, GEOGRAPHIC, PIXEL_IS_AREA, DEGREE = 32767, 2, 1, 9102
+RESOLUTION_DEG = 1.0
+
+
+def write_geotiff(results: StudyResults, path: Path, *, resolution_deg: float = RESOLUTION_DEG) -> None:
+    """Write which share of all flights ends in each cell of latitude and longitude, over the cell's area [1/m2].
+
+    resolution_deg   edge of a cell; it has to divide 180
+    The sum of values times areas of the cells, on the sphere of the file, is the share of flights that end on the body.
+    """
+    from PIL import Image
+
+    cells = round(180.0 / resolution_deg) if resolution_deg > 0.0 else 0
+    if not (1 <= cells <= 18_000 and abs(cells * resolution_deg - 180.0) < 1e-9):
+        raise ValueError(f"resolution_deg is {resolution_deg}; allowed: 0.01 to 180, a whole part of 180")
+    frame = MapFrame.of(results)
+    image = Image.fromarray(impact_density(results, frame.radius, cells).astype(np.float32))
+    with atomic_path(path) as draft:
+        image.save(draft, format="TIFF", tiffinfo=_tags(frame, 180.0 / cells))
+
+
+def impact_density(results: StudyResults, radius: float, cells: int) -> np.ndarray:
+    """Share of the flights by area [1/m2], shape [cells, 2 cells], first row at the north, first column at -180 deg."""
+    flights = results.flights
+    down = flights["status"] == FlightStatus.IMPACT
+    edges = np.linspace(90.0, -90.0, cells + 1)
+    counts, _, _ = np.histogram2d(
+        flights["latitude_deg"][down],
+        flights["longitude_deg"][down],
+        bins=[edges[::-1], np.linspace(-180.0, 180.0, 2 * cells + 1)],
+    )
+    area = radius**2 * np.pi / cells * -np.diff(np.sin(np.radians(edges)))
+    density: np.ndarray = counts[::-1] / max(flights.row_count, 1) / area[:, None]
+    return density
+
+
+def _tags(frame: MapFrame, resolution_deg: float) -> "ImageFileDirectory_v2":
+    """What the file says of its cells and of their frame."""
+    from PIL.TiffImagePlugin import ImageFileDirectory_v2
+
+    citation = f"GCS Name = {frame.name}|Datum = {frame.body}|Ellipsoid = {frame.body} sphere|Primem = {frame.body}|"
+    doubles = (frame.radius, frame.radius, 0.0)
+    entries = [
+        (1024, 0, 1, GEOGRAPHIC), (1025, 0, 1, PIXEL_IS_AREA), (2048, 0, 1, USER_DEFINED),
+        (2049, TEXTS, len(citation), 0), (2050, 0, 1, USER_DEFINED), (2051, 0, 1, USER_DEFINED), (2054, 0, 1, DEGREE),
+        (2056, 0, 1, USER_DEFINED), (2057, DOUBLES, 1, 0), (2058, DOUBLES, 1, 1), (2061, DOUBLES, 1, 2),
+    ]  # fmt: skip
+    items = {"QUANTITY": "share of all flights that end in the cell, over its area", "UNIT": "1/m2", "FRAME": WORDS}
+    metadata = "".join(f'<Item name="{name}">{words}</Item>' for name, words in items.items())
+    tags = ImageFileDirectory_v2()
+    values = {
+        PIXEL_SCALE: (12, (resolution_deg, resolution_deg, 0.0)),
+        TIE_POINT: (12, (0.0, 0.0, 0.0, -180.0, 90.0, 0.0)),
+        KEYS: (3, (1, 1, 0, len(entries), *(number for entry in entries for number in entry))),
+        DOUBLES: (12, doubles),
+        TEXTS: (2, citation),
+        GDAL_METADATA: (2, f"<GDALMetadata>{metadata}</GDALMetadata>"),
+    }
+    for tag, (kind, value) in values.items():
+        tags.tagtype[tag] = kind
+        tags[tag] = value
+    return tags

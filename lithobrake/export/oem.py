@@ -1,0 +1,97 @@
+"""Orbit Ephemeris Messages of the Consultative Committee for Space Data Systems, as keyword = value text.
+
+Source: [CCSDS-2009]
+"""
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+from textwrap import wrap
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lithobrake.atomic import atomic_path
+
+VERSION = "2.0"
+# Of a line; the standard allows 254 characters.
+LINE = 100
+
+
+@dataclass(frozen=True)
+class Segment:
+    """A part of an ephemeris: one object, one frame, without a jump.
+
+    time         since the epoch of the message [s], ascending, [count]
+    state        position [m] and velocity [m/s], [count, 6]
+    covariance   of the state [SI], [count, 6, 6], or None
+    comments     sentences
+    interpolation_degree   of Hermite's polynomials between states, or None where states are no one path
+    """
+
+    object_name: str
+    center_name: str
+    frame: str
+    time: NDArray[np.float64]
+    state: NDArray[np.float64]
+    covariance: NDArray[np.float64] | None = None
+    comments: Sequence[str] = ()
+    interpolation_degree: int | None = None
+
+
+def parsed_epoch(text: str) -> datetime:
+    """The epoch [UTC] of a text like 2026-11-22T12:00:00. Raises ValueError for another."""
+    try:
+        found = datetime.fromisoformat(text)
+    except ValueError as error:
+        raise ValueError(f"epoch is {text!r}; allowed: a UTC date and time such as 2026-11-22T12:00:00") from error
+    return found.replace(tzinfo=None) if found.tzinfo is None else found.astimezone(UTC).replace(tzinfo=None)
+
+
+def write_oem(path: Path, segments: Iterable[Segment], epoch: datetime, comments: Sequence[str] = ()) -> None:
+    """Write segments whose times count from an epoch [UTC]; lengths in km, as the standard has them."""
+    made = datetime.now(UTC).replace(tzinfo=None, microsecond=0)
+    lines = [f"CCSDS_OEM_VERS = {VERSION}", *_comments(comments)]
+    lines += [f"CREATION_DATE = {made.isoformat()}", "ORIGINATOR = LITHOBRAKE", ""]
+    for segment in segments:
+        lines += _segment_lines(segment, epoch)
+    with atomic_path(path) as draft:
+        draft.write_text("\n".join(lines), encoding="ascii")
+
+
+def _segment_lines(segment: Segment, epoch: datetime) -> Iterator[str]:
+    times = [(epoch + timedelta(seconds=time)).isoformat(timespec="microseconds") for time in segment.time.tolist()]
+    yield "META_START"
+    yield from _comments(segment.comments)
+    yield f"OBJECT_NAME = {segment.object_name}"
+    yield f"OBJECT_ID = {segment.object_name}"
+    yield f"CENTER_NAME = {segment.center_name}"
+    yield f"REF_FRAME = {segment.frame}"
+    yield f"REF_FRAME_EPOCH = {epoch.isoformat(timespec='microseconds')}"
+    yield "TIME_SYSTEM = UTC"
+    yield f"START_TIME = {times[0]}"
+    yield f"STOP_TIME = {times[-1]}"
+    if segment.interpolation_degree is not None:
+        yield "INTERPOLATION = HERMITE"
+        yield f"INTERPOLATION_DEGREE = {segment.interpolation_degree}"
+    yield from ("META_STOP", "")
+    for time, state in zip(times, segment.state * 1e-3, strict=True):
+        yield f"{time} {_numbers(state)}"
+    yield ""
+    if segment.covariance is not None:
+        yield "COVARIANCE_START"
+        for time, covariance in zip(times, segment.covariance * 1e-6, strict=True):
+            yield f"EPOCH = {time}"
+            yield from (_numbers(covariance[row, : row + 1]) for row in range(6))
+        yield from ("COVARIANCE_STOP", "")
+
+
+def _comments(sentences: Sequence[str]) -> Iterator[str]:
+    for sentence in sentences:
+        yield from (f"COMMENT {line}" for line in wrap(sentence, LINE - len("COMMENT ")))
+
+
+def _numbers(values: NDArray[np.float64]) -> str:
+    """Numbers with all their digits."""
+    return " ".join(f"{value:.16e}" for value in values.tolist())

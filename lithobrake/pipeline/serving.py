@@ -1,0 +1,124 @@
+"""The models of a study as a server gives them: a landing, the emulator, a flight."""
+
+from collections.abc import Mapping
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from lithobrake.outcomes import FlightStatus, TouchdownOutcome
+from lithobrake.outputs import OUTPUTS
+from lithobrake.pipeline.beds import bed_files
+from lithobrake.pipeline.designs import design_inputs
+from lithobrake.pipeline.drawn_landings import DrawnLandings
+from lithobrake.pipeline.energy_bound import energy_bound, height_of_beds
+from lithobrake.pipeline.flights import partner_time
+from lithobrake.pipeline.folder import StudyFolder
+from lithobrake.pipeline.outgoing import VELOCITY
+from lithobrake.pipeline.site import SITE_KEYS, frames, site_body, site_medians, with_site_gravity
+from lithobrake.pipeline.solver import LANDING
+from lithobrake.pipeline.touchdown_runs import model_of
+from lithobrake.serve import ServedModel
+from lithobrake.study import StudySource
+from lithobrake.touchdown_model import draw, medians
+
+FLIGHT = ("status", "time_s", "latitude_deg", "longitude_deg", "impact_speed", "impact_incidence_deg")
+
+
+def served_models(study: Path, out: Path) -> list[ServedModel]:
+    """The models of a study that its folder has files for.
+
+    Raises ValueError for a study that is refused.
+    """
+    return ServedStudy(study, out).models()
+
+
+class ServedStudy:
+    """A study whose models are served; nothing is written but what a program of the study's own writes."""
+
+    def __init__(self, study: Path, out: Path) -> None:
+        """Read the study. Raises ValueError where it is refused."""
+        source = StudySource.read(study)
+        self.study, self.folder = with_site_gravity(source.study, source.name), StudyFolder.only_read(out)
+        self.inputs = tuple(design_inputs(self.study))
+
+    def models(self) -> list[ServedModel]:
+        """Those that there are files for."""
+        found = [ServedModel("flight", VELOCITY, FLIGHT, self.flight)]
+        beds = [self.folder / name for name in bed_files(self.study)] if self.study.has_soil else []
+        if self.inputs and all(bed.is_file() for bed in beds):
+            found.append(ServedModel("landing", self.inputs, LANDING, self.landing))
+        if (self.folder / "emulator.json").is_file():
+            found.append(ServedModel("emulator", self.inputs, LANDING, self.emulated))
+        return found
+
+    @cached_property
+    def _touchdown(self) -> Any:
+        return model_of(self.study, self.folder.path.absolute(), None)
+
+    def landing(self, point: list[float], config: Mapping[str, Any]) -> list[float]:
+        """Land once. config: seed, of what the landing draws; or inputs, all numbers of a run by dotted key."""
+        seed = _seed(config)
+        values = medians(self.study) | dict(zip(self.inputs, point, strict=True))
+        if "inputs" in config:
+            values |= {str(name): float(value) for name, value in config["inputs"].items()}
+        else:
+            values = draw(self.study, values, seed)
+        answer = self._touchdown(values, seed)
+        return landing_vector(answer["outcome"], answer["outputs"])
+
+    @cached_property
+    def _emulator(self) -> Any:
+        from lithobrake.emulator import load
+
+        return load(self.folder / "emulator.json")
+
+    def emulated(self, point: list[float], config: Mapping[str, Any]) -> list[float]:
+        """Draw a landing from the emulator. config: seed of the draw."""
+        x = np.array([point])
+        bound = energy_bound(self.study, self._bed_height, dict(zip(self.inputs, x.T, strict=True)), 1)
+        drawn = DrawnLandings.of(self._emulator, x, bound, _seed(config))
+        outcome = tuple(TouchdownOutcome)[int(drawn.outcome[0])]
+        return landing_vector(outcome, {name: float(values[0]) for name, values in drawn.table().items()})
+
+    @cached_property
+    def _bed_height(self) -> float:
+        return height_of_beds(self.study, self.folder)
+
+    def flight(self, point: list[float], config: Mapping[str, Any]) -> list[float]:
+        """Fly from the site to the next impact. config: numbers of the site by their keys, in place of the medians."""
+        unknown = [key for key in config if key not in SITE_KEYS]
+        if unknown:
+            raise ValueError(f"config has {', '.join(unknown)}; allowed: {', '.join(SITE_KEYS)}")
+        from lithobrake.smallbody import fly
+
+        body, numbers = site_body(self.study), site_medians(self.study) | {k: float(v) for k, v in config.items()}
+        site = {key: np.array([value]) for key, value in numbers.items()}
+        origin, axes = frames(body, site)
+        flown = fly(
+            *(body, origin, np.einsum("nij,ni->nj", axes, [point]), self.study.flight.duration),
+            gravity=self.study.flight.gravity,
+            start_time=partner_time(body, site),
+            mass=site["mass"],
+            spin_period=site["spin_period"],
+            threads=1,
+        )
+        ends = (flown.time, flown.latitude, flown.longitude, flown.impact_speed, np.degrees(flown.incidence))
+        # A number that there is not, as the speed of an impact where none was, is 0: JSON has no other.
+        numbers_of_end = np.nan_to_num(np.concatenate(ends)).tolist()
+        return [float(tuple(FlightStatus).index(FlightStatus(str(flown.status[0])))), *numbers_of_end]
+
+
+def landing_vector(outcome: str, outputs: Mapping[str, float]) -> list[float]:
+    """A landing as the numbers of LANDING; those of a lander that did not leave are 0."""
+    left = outcome == TouchdownOutcome.CLEAR
+    place = tuple(TouchdownOutcome).index(TouchdownOutcome(outcome))
+    return [float(place), *(float(outputs[name]) if left else 0.0 for name in OUTPUTS)]
+
+
+def _seed(config: Mapping[str, Any]) -> int:
+    seed = config.get("seed", 0)
+    if isinstance(seed, bool) or not isinstance(seed, int) or not 0 <= seed < 2**53:
+        raise ValueError(f"config.seed is {seed!r}; allowed: a whole number from 0 to 2^53")
+    return seed

@@ -1,0 +1,6 @@
+"""Models over HTTP in the protocol of UM-Bridge, which clients in many languages speak. Stands alone."""
+
+from lithobrake.serve.served_model import ServedModel
+from lithobrake.serve.server import PORT, model_server
+
+__all__ = ["PORT", "ServedModel", "model_server"]

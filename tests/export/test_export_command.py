@@ -1,0 +1,39 @@
+"""The command that writes the files."""
+
+from pathlib import Path
+
+from typer.testing import CliRunner
+
+from lithobrake.cli import app
+from lithobrake.export import KINDS
+from lithobrake.results import StudyResults
+
+RUNNER = CliRunner()
+
+
+def test_each_kind_is_written_once(results: StudyResults, tmp_path: Path) -> None:
+    kinds = [word for kind in [*KINDS, "plates"] for word in ("--to", kind)]
+    sample = int(results.flights["sample"][0])
+    found = RUNNER.invoke(app, ["export", str(results.folder), *kinds, "--flight", str(sample), "--out", str(tmp_path)])
+    assert found.exit_code == 0, found.output
+    written = ["flight_mean.oem", f"flight_{sample}.oem", "body.plates.txt", "facets.csv", "facets.fits"]
+    written += ["impacts.tif", "impacts.geojson"]
+    assert sorted(path.name for path in tmp_path.iterdir()) == sorted(written)
+    assert found.output.splitlines() == [f"Wrote {tmp_path / name}" for name in written]
+
+
+def test_the_files_stand_in_the_folder_of_the_study_unless_told_otherwise(results: StudyResults) -> None:
+    found = RUNNER.invoke(app, ["export", str(results.folder), "--to", "plates"])
+    assert found.exit_code == 0
+    assert (results.folder / "export/body.plates.txt").is_file()
+
+
+def test_what_is_wrong_is_said_in_one_sentence(results: StudyResults, tmp_path: Path) -> None:
+    for words, said in (
+        (["export", str(results.folder), "--to", "kml"], "allowed: oem, plates, facets, geotiff, geojson"),
+        (["export", str(tmp_path), "--to", "oem"], "holds no results of a study"),
+    ):
+        found = RUNNER.invoke(app, words)
+        assert found.exit_code == 2
+        assert said in found.stderr
+        assert len(found.stderr.splitlines()) == 1

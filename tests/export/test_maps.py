@@ -1,0 +1,60 @@
+"""The map of the impacts, as a geographic information system reads it."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from lithobrake.export import write_geojson, write_geotiff
+from lithobrake.export.map_frame import MapFrame
+from lithobrake.results import StudyResults
+
+
+def test_cells_hold_the_share_of_the_flights_that_end_in_them(results: StudyResults, tmp_path: Path) -> None:
+    rasterio = pytest.importorskip("rasterio")
+    write_geotiff(results, tmp_path / "map.tif", resolution_deg=2.0)
+    with rasterio.open(tmp_path / "map.tif") as file:
+        density, crs, tags = file.read(1), file.crs, file.tags()
+        assert tuple(file.bounds) == (-180.0, -90.0, 180.0, 90.0)
+        assert file.tags()["AREA_OR_POINT"] == "Area"
+        latitude, longitude = results.flights["latitude_deg"], results.flights["longitude_deg"]
+        cells = {file.index(east, north) for north, east in zip(latitude, longitude, strict=True)}
+    assert {tuple(cell) for cell in np.argwhere(density > 0.0).tolist()} == cells
+    radius = MapFrame.of(results).radius
+    edges = np.radians(np.linspace(90.0, -90.0, 91))
+    area = radius**2 * np.radians(2.0) * -np.diff(np.sin(edges))
+    assert (density * area[:, None]).sum() == pytest.approx(1.0, rel=1e-6)
+    # The frame is a sphere of this body, in degrees, and no place of the Earth.
+    assert crs.is_geographic
+    found = crs.to_dict()
+    assert found["proj"] == "longlat"
+    assert found["R"] == pytest.approx(radius)
+    assert "planetocentric, east positive" in crs.to_wkt()
+    assert tags["UNIT"] == "1/m2"
+
+
+def test_points_carry_what_the_flights_have_and_the_frame_of_the_body(results: StudyResults, tmp_path: Path) -> None:
+    geojson = pytest.importorskip("geojson")
+    rasterio = pytest.importorskip("rasterio")
+    write_geojson(results, tmp_path / "map.geojson")
+    found = geojson.loads((tmp_path / "map.geojson").read_text())
+    assert found.is_valid
+    assert len(found["features"]) == 16
+    for row, point in enumerate(found["features"]):
+        assert point["geometry"]["coordinates"] == pytest.approx(
+            # The library keeps six digits of a degree.
+            [results.flights["longitude_deg"][row], results.flights["latitude_deg"][row]],
+            abs=1e-6,
+        )
+        assert point["properties"]["impact_speed"] == results.flights["impact_speed"][row]
+    crs = rasterio.crs.CRS.from_user_input(
+        json.loads((tmp_path / "map.geojson").read_text())["crs"]["properties"]["name"]
+    )
+    assert crs.to_dict()["R"] == pytest.approx(MapFrame.of(results).radius)
+
+
+@pytest.mark.parametrize("resolution", [0.0, -1.0, 0.7, float("nan")])
+def test_cells_that_do_not_fit_the_globe_are_refused(results: StudyResults, tmp_path: Path, resolution: float) -> None:
+    with pytest.raises(ValueError, match="a whole part of 180"):
+        write_geotiff(results, tmp_path / "map.tif", resolution_deg=resolution)

@@ -1,0 +1,194 @@
+"""The protocol, as the public client speaks it, and the same client's server as a solver of a study."""
+
+import json
+import math
+import threading
+import urllib.request
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import lithobrake
+from lithobrake.campaign import ModelServer
+from lithobrake.outputs import OUTPUTS
+from lithobrake.pipeline.serving import FLIGHT, served_models
+from lithobrake.pipeline.solver import LANDING
+from lithobrake.serve import ServedModel, model_server
+
+umbridge = pytest.importorskip("umbridge")
+
+BALL = Path(__file__).parents[2] / "examples" / "ball_on_plate.toml"
+
+
+def double(point: list[float], config: Mapping[str, Any]) -> list[float]:
+    if point[0] < 0.0:
+        raise ValueError("x is below 0; give one above")
+    if point[0] == 1.0:
+        raise RuntimeError("it broke")
+    return [math.inf] if point[0] == 2.0 else [point[0] * config.get("factor", 2.0) + point[1]]
+
+
+@pytest.fixture
+def address() -> Iterator[str]:
+    with model_server([ServedModel("double", ("x", "y"), ("z",), double)], "127.0.0.1", 0) as server:
+        threading.Thread(target=server.serve_forever, daemon=True).start()
+        yield f"http://127.0.0.1:{server.server_port}"
+        server.shutdown()
+
+
+def test_the_public_client_finds_and_evaluates_a_model(address: str) -> None:
+    assert umbridge.supported_models(address) == ["double"]
+    model = umbridge.HTTPModel(address, "double")
+    assert model.supports_evaluate()
+    assert not model.supports_gradient()
+    assert (model.get_input_sizes(), model.get_output_sizes()) == ([2], [1])
+    assert model([[3.0, 0.5]]) == [[6.5]]
+    assert model([[3.0, 0.5]], {"factor": 10.0}) == [[30.5]]
+
+
+@pytest.mark.parametrize(
+    ("point", "said"),
+    [
+        ([[-1.0, 0.0]], "InvalidInput: x is below 0"),
+        ([[1.0, 0.0]], "InvalidOutput: RuntimeError: it broke"),
+        ([[2.0, 0.0]], "InvalidOutput: model double gave"),
+        ([[1.0]], "list of 2 numbers: x, y"),
+        ([[1.0, 2.0], [3.0]], "list of 2 numbers"),
+    ],
+)
+def test_errors_come_back_as_the_protocol_has_them(address: str, point: list[list[float]], said: str) -> None:
+    with pytest.raises(Exception, match=said):
+        umbridge.HTTPModel(address, "double")(point)
+    with pytest.raises(RuntimeError, match=said):
+        ModelServer(address, "double").evaluate(point, {})
+
+
+def test_what_is_no_request_is_refused_and_the_server_goes_on(address: str) -> None:
+    for path, body, kind in (
+        ("/Evaluate", b"no json", "InvalidInput"),
+        ("/Evaluate", b'{"name": "other"}', "ModelNotFound"),
+        ("/Gradient", b'{"name": "double"}', "UnsupportedFeature"),
+        ("/Evaluate", b'{"name": "double", "config": 3}', "InvalidInput"),
+    ):
+        request = urllib.request.Request(address + path, data=body)
+        with pytest.raises(urllib.error.HTTPError) as caught:
+            urllib.request.urlopen(request)
+        assert json.loads(caught.value.read())["error"]["type"] == kind
+    assert ModelServer(address, "double").evaluate([[1.5, 0.0]], {}) == [[3.0]]
+
+
+def test_an_address_is_taken_apart_or_refused() -> None:
+    assert ModelServer.of("umbridge:http://127.0.0.1:4242/landing") == ModelServer("http://127.0.0.1:4242", "landing")
+    for words in ("umbridge:http://127.0.0.1/landing", "umbridge:http://h:1/", "umbridge:h:1/a", "http://h:1/a"):
+        with pytest.raises(ValueError, match="umbridge:http://HOST:PORT/MODEL"):
+            ModelServer.of(words)
+    with pytest.raises(ConnectionError, match="start its server"):
+        ModelServer("http://127.0.0.1:9", "landing").evaluate([[1.0]], {})
+
+
+@pytest.fixture
+def study_address(tmp_path: Path) -> Iterator[str]:
+    """A server of the ball on a plate."""
+    with model_server(served_models(BALL, tmp_path / "out"), "127.0.0.1", 0) as server:
+        threading.Thread(target=server.serve_forever, daemon=True).start()
+        yield f"http://127.0.0.1:{server.server_port}"
+        server.shutdown()
+
+
+def test_a_study_serves_its_landing_and_its_flight(study_address: str) -> None:
+    assert umbridge.supported_models(study_address) == ["flight", "landing"]
+    landing = umbridge.HTTPModel(study_address, "landing")
+    point = [[0.6, 0.2, 35.0, 0.0]]
+    assert landing.get_input_sizes() == [len(point[0])]
+    ((outcome, *outputs),) = landing(point, {"seed": 3})
+    found = dict(zip(OUTPUTS, outputs, strict=True))
+    assert outcome == 0.0
+    assert math.hypot(*(found[f"velocity_out_{axis}"] for axis in "xyz")) == pytest.approx(found["speed_out"])
+    assert landing(point, {"seed": 3}) == [[outcome, *outputs]]
+    flight = umbridge.HTTPModel(study_address, "flight")
+    # On the equator gravity and rotation nearly cancel.
+    ((status, time, *_),) = flight([[0.0, 0.0, 0.02]])
+    assert (status, time) == (0.0, 7200.0)
+    east, west = (
+        flight([[0.02, 0.0, 0.02]], {"latitude_deg": 60.0, "heading_deg": heading})[0] for heading in (90.0, -90.0)
+    )
+    assert (east[0], west[0], len(east)) == (1.0, 1.0, len(FLIGHT))
+    assert east[3] > west[3]
+    with pytest.raises(Exception, match="allowed: latitude_deg"):
+        flight([[0.0, 0.0, 0.02]], {"lattitude_deg": 3.0})
+
+
+def test_a_study_solved_by_a_server_is_that_of_its_program(study_address: str, tmp_path: Path) -> None:
+    from lithobrake.pipeline.touchdown_runs import drawn_rows, model_of
+    from lithobrake.study import StudySource
+
+    own = StudySource.read(BALL).study
+    text = BALL.read_text().replace("python3 ball_on_plate.py", f"umbridge:{study_address}/landing")
+    (tmp_path / "served.toml").write_text(text)
+    served = StudySource.read(tmp_path / "served.toml").study
+    names = list(umbridge_names(study_address))
+    (values,) = drawn_rows(own, names, np.array([[0.5, 0.3, 40.0, 1.0]]), 0)
+    here, there = model_of(own, tmp_path, None)(values, 5), model_of(served, tmp_path, None)(values, 5)
+    assert there["outcome"] == here["outcome"] == "clear"
+    assert there["outputs"] == {name: here["outputs"][name] for name in OUTPUTS}
+
+
+def umbridge_names(address: str) -> list[str]:
+    """The names of the inputs of a landing, which the protocol leaves out."""
+    request = urllib.request.Request(f"{address}/ModelInfo", data=b'{"name": "landing"}')
+    with urllib.request.urlopen(request) as response:
+        names: list[str] = json.load(response)["inputs"]
+    return names
+
+
+def test_an_answer_that_is_no_landing_fails_the_run(address: str, tmp_path: Path) -> None:
+    from lithobrake.pipeline.solver import ServerModel
+
+    model = ServerModel(ModelServer(address, "double"), ("a", "b"), {})
+    with pytest.raises(ValueError, match=f"allowed: {len(LANDING)} numbers"):
+        model({"a": 3.0, "b": 0.0}, 1)
+
+
+def test_an_address_that_is_none_is_refused_before_anything_runs(tmp_path: Path) -> None:
+    from lithobrake.study import StudyError, StudySource
+
+    path = tmp_path / "served.toml"
+    path.write_text(BALL.read_text().replace("python3 ball_on_plate.py", "umbridge:localhost"))
+    with pytest.raises(StudyError, match=r"solver\.command is 'umbridge:localhost' is no model of a server"):
+        StudySource.read(path)
+
+
+def synthetic(point: list[float], config: Mapping[str, Any]) -> list[float]:
+    """A landing of which restitution decides the speed, and the seed of the run the rest."""
+    random = np.random.default_rng(config["seed"])
+    speed = 0.1 * point[0] * (1.0 + 0.1 * random.standard_normal())
+    elevation = random.uniform(0.3, 1.2)
+    velocity = speed * np.array([math.cos(elevation), 0.0, math.sin(elevation)])
+    return [0.0, speed, elevation, random.uniform(0.1, 0.2), *velocity.tolist()]
+
+
+def test_a_whole_study_takes_its_landings_from_a_server_and_serves_its_emulator(tmp_path: Path) -> None:
+    names = ("lander.restitution", "lander.friction", "impact.incidence_deg", "solver.inputs.plate_tilt_deg")
+    with model_server([ServedModel("fast", names, LANDING, synthetic)], "127.0.0.1", 0) as server:
+        threading.Thread(target=server.serve_forever, daemon=True).start()
+        path = tmp_path / "served.toml"
+        text = BALL.read_text().replace(
+            "python3 ball_on_plate.py", f"umbridge:http://127.0.0.1:{server.server_port}/fast"
+        )
+        head, _, tail = text.partition("[design]")
+        tail = tail[tail.index("[monte_carlo]") :].replace("10_000", "200").replace("count = 50", "count = 5")
+        path.write_text(f"{head}[design]\nrun_count = 60\n\n{tail.replace('count = 200 ', 'count = 0 ')}")
+        results = lithobrake.run(path, tmp_path / "out", workers=1, report=False)
+        server.shutdown()
+    assert results.runs.row_count == 60
+    assert set(results.runs["outcome"].tolist()) == {"clear"}
+    (emulator,) = (model for model in served_models(path, tmp_path / "out") if model.name == "emulator")
+    assert emulator.inputs == names
+    draws = np.array([emulator.evaluate([0.6, 0.2, 35.0, 0.0], {"seed": seed}) for seed in range(50)])
+    assert (draws[:, 0] == 0.0).all()
+    # The law has a mean of 0.06 m/s and scatters by 10 %; the emulator has it of 60 runs.
+    assert draws[:, LANDING.index("speed_out")].mean() == pytest.approx(0.06, abs=0.01)
+    assert len(np.unique(draws, axis=0)) > 25

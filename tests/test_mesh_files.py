@@ -1,0 +1,131 @@
+"""Meshes of archives: units that they state or do not, Gaskell's quadrilaterals, kernels of SPICE."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from lithobrake.mesh import closed_faces, volume_of
+from lithobrake.mesh_files import read_mesh
+
+OCTAHEDRON = "\n".join(
+    [
+        *("v 1 0 0", "v -1 0 0", "v 0 1 0", "v 0 -1 0", "v 0 0 1", "v 0 0 -1"),
+        *("f 1 3 5", "f 3 2 5", "f 2 4 5", "f 4 1 5", "f 3 1 6", "f 2 3 6", "f 4 2 6", "f 1 4 6"),
+    ]
+)
+PDS4_LABEL = "<Field_Character><name>x</name><unit>km</unit></Field_Character>"
+PDS3_LABEL = 'OBJECT = COLUMN\n  NAME = "VERTEX LOCATION ONE"\n  UNIT = "KILOMETER"\nEND_OBJECT = COLUMN\n'
+
+
+def mesh(folder: Path, header: str = "", label: str = "", ending: str = ".xml") -> Path:
+    """An octahedron with corners at a distance of 1, with a header and a label beside it."""
+    path = folder / "rock.obj"
+    path.write_text(f"{header}{OCTAHEDRON}\n")
+    if label:
+        path.with_suffix(ending).write_text(label)
+    return path
+
+
+@pytest.mark.parametrize(
+    ("header", "label", "ending", "length"),
+    [
+        ("", "", "", 1.0),
+        ("# Blender v2.9 OBJ File: ''\n", "", "", 1.0),
+        ("# Units: km\n", "", "", 1e3),
+        ("# PRODUCT_VERSION = 3\n#\n# The units are kilometers.\n", "", "", 1e3),
+        ("# vertices in meters\n", "", "", 1.0),
+        ("# File units = millimetres\n", "", "", 1e-3),
+        ("# GSD = 0.25\n", PDS4_LABEL, ".xml", 1e3),
+        ("", PDS3_LABEL, ".lbl", 1e3),
+    ],
+)
+def test_the_unit_is_what_header_or_label_state(
+    tmp_path: Path, header: str, label: str, ending: str, length: float
+) -> None:
+    vertices, _ = read_mesh(mesh(tmp_path, header, label, ending))
+    assert vertices.max() == length
+
+
+@pytest.mark.parametrize(
+    ("header", "label", "unit", "words"),
+    [
+        ("# GSD = TBD\n", "", None, "do not state the unit"),
+        ("", "<Product_Observational/>", None, "do not state the unit"),
+        ("# Units: km\n", "", "m", "says km, and unit is 'm'"),
+        ("# Units: km\n", "<unit>m</unit>", None, "name km, m"),
+        ("", "", "inch", "allowed are m, km, cm, mm"),
+    ],
+)
+def test_a_unit_is_never_guessed(tmp_path: Path, header: str, label: str, unit: str | None, words: str) -> None:
+    with pytest.raises(ValueError, match=words):
+        read_mesh(mesh(tmp_path, header, label), unit)
+
+
+def test_a_unit_that_is_given_answers_a_silent_header(tmp_path: Path) -> None:
+    assert read_mesh(mesh(tmp_path, "# GSD = TBD\n"), "km")[0].max() == 1e3
+
+
+def gaskell_cube(size: int) -> np.ndarray:
+    """Vertices of a cube as the format has them, [6, J, I, 3], from the corners that its faces share."""
+    corners = {
+        "a": (-1, -1, 1), "b": (1, -1, 1), "c": (1, 1, 1), "d": (-1, 1, 1),
+        "e": (-1, -1, -1), "f": (1, -1, -1), "g": (1, 1, -1), "h": (-1, 1, -1),
+    }  # fmt: skip
+    # Corners (0, 0), (Q, 0), (0, Q), (Q, Q) of each face.
+    faces = ("adbc", "bcfg", "abef", "dahe", "cdgh", "fgeh")
+    step = np.linspace(0.0, 1.0, size + 1)
+    i, j = step[None, :, None], step[:, None, None]
+    grids = []
+    for face in faces:
+        zero, right, down, both = (np.array(corners[name], dtype=float) for name in face)
+        grids.append((1 - i) * (1 - j) * zero + i * (1 - j) * right + (1 - i) * j * down + i * j * both)
+    return np.array(grids)
+
+
+@pytest.mark.parametrize("ending", ["icq", "tab", "txt"])
+def test_quadrilaterals_close_to_a_body_that_faces_outward(tmp_path: Path, ending: str) -> None:
+    grid = gaskell_cube(4)
+    lines = ["4", *(f"{x:.9f} {y:.9f} {z:.9f}" for x, y, z in grid.reshape(-1, 3))]
+    (tmp_path / f"cube.{ending}").write_text("\n".join(lines) + "\n")
+    vertices, faces = read_mesh(tmp_path / f"cube.{ending}", "km")
+    # Of 6 (Q + 1)^2 labelled vertices 6 Q^2 + 2 are independent.
+    assert (len(vertices), len(faces)) == (6 * 4**2 + 2, 12 * 4**2)
+    assert np.array_equal(closed_faces(vertices, faces, "cube"), faces)
+    assert volume_of(vertices, faces) == pytest.approx(8e9)
+
+
+def test_a_shape_kernel_is_read_in_kilometres(tmp_path: Path) -> None:
+    spice = pytest.importorskip("spiceypy")
+    write_kernel(spice, tmp_path / "rock.bds", 1)
+    vertices, faces = read_mesh(tmp_path / "rock.bds")
+    assert vertices.max() == 1e3
+    assert volume_of(vertices, faces) == pytest.approx(4.0 / 3.0 * 1e9)
+    with pytest.raises(ValueError, match="says km"):
+        read_mesh(tmp_path / "rock.bds", "m")
+
+
+def test_kernels_that_are_no_single_shape_are_refused(tmp_path: Path) -> None:
+    spice = pytest.importorskip("spiceypy")
+    write_kernel(spice, tmp_path / "two.bds", 2)
+    with pytest.raises(ValueError, match="2 segments"):
+        read_mesh(tmp_path / "two.bds")
+    (tmp_path / "text.bds").write_text("no kernel\n" * 200)
+    with pytest.raises(ValueError, match="not a kernel that SPICE opens"):
+        read_mesh(tmp_path / "text.bds")
+
+
+def write_kernel(spice: object, path: Path, segments: int) -> None:
+    """An octahedron with corners at 1 km, in so many segments."""
+    vertices = np.array([[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]], dtype=float)
+    plates = np.array(
+        [[int(word) for word in line.split()[1:]] for line in OCTAHEDRON.splitlines() if line[0] == "f"], dtype=np.int32
+    )
+    handle = spice.dskopn(str(path), "test", 0)  # type: ignore[attr-defined]
+    index = spice.dskmi2(vertices, plates, 0.5, 1, 10000, 10000, 10000, True, 1000000)  # type: ignore[attr-defined]
+    bounds = (-np.pi, np.pi, -np.pi / 2, np.pi / 2, 0.0, 2.0)
+    for _ in range(segments):
+        spice.dskw02(  # type: ignore[attr-defined]
+            handle, 120065803, 1, 1, "J2000", 1, np.zeros(10), *bounds, -1e9, 1e9, vertices, plates, *index
+        )
+    spice.dskcls(handle, True)  # type: ignore[attr-defined]
