@@ -3,6 +3,13 @@
 from lithobrake.analysis.confidence import LEVEL, IntervalEstimate
 from lithobrake.analysis.control_variate import regression_terms
 from lithobrake.analysis.ellipse import Ellipses, dispersion_ellipses
+from lithobrake.analysis.failure_inputs import FailureInput, failure_inputs
+from lithobrake.analysis.failure_probability import (
+    FailureProbability,
+    drawn_counts,
+    drawn_failures,
+    failure_probability,
+)
 from lithobrake.analysis.half_width import expected_half_width, runs_for_half_width
 from lithobrake.analysis.outcome_model import OutcomeModel, upper_limit
 from lithobrake.analysis.output_estimates import mean_estimate, quantile_estimates
@@ -17,13 +24,19 @@ from lithobrake.analysis.variance_shares import VarianceShares, variance_shares
 __all__ = [
     "LEVEL",
     "Ellipses",
+    "FailureInput",
+    "FailureProbability",
     "IntervalEstimate",
     "OutcomeModel",
     "ShareEstimate",
     "VarianceShares",
     "chaos_variance",
     "dispersion_ellipses",
+    "drawn_counts",
+    "drawn_failures",
     "expected_half_width",
+    "failure_inputs",
+    "failure_probability",
     "half_width_of",
     "mean_estimate",
     "next_run_count",
