@@ -19,6 +19,7 @@ from lithobrake.analysis.sampling import sample_inputs
 from lithobrake.analysis.sequential_stopping import half_width_of, next_run_count, scatter_of
 from lithobrake.analysis.share_estimate import ShareEstimate, share_estimate
 from lithobrake.analysis.side_runs import chaos_variance, soil_total_effect
+from lithobrake.analysis.subset_simulation import SubsetResult, subset_simulation
 from lithobrake.analysis.variance_shares import VarianceShares, variance_shares
 
 __all__ = [
@@ -29,6 +30,7 @@ __all__ = [
     "IntervalEstimate",
     "OutcomeModel",
     "ShareEstimate",
+    "SubsetResult",
     "VarianceShares",
     "chaos_variance",
     "dispersion_ellipses",
@@ -48,6 +50,7 @@ __all__ = [
     "scatter_of",
     "share_estimate",
     "soil_total_effect",
+    "subset_simulation",
     "upper_limit",
     "variance_shares",
     "wilson_interval",
