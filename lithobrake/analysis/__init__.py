@@ -11,6 +11,8 @@ from lithobrake.analysis.failure_probability import (
     failure_probability,
 )
 from lithobrake.analysis.half_width import expected_half_width, runs_for_half_width
+from lithobrake.analysis.inference import LearntInput, Observation, Posterior, infer
+from lithobrake.analysis.observed_bounces import Identifiability, identifiability, predictive_p_value
 from lithobrake.analysis.outcome_model import OutcomeModel, upper_limit
 from lithobrake.analysis.output_estimates import mean_estimate, quantile_estimates
 from lithobrake.analysis.proportion import wilson_interval
@@ -27,8 +29,12 @@ __all__ = [
     "Ellipses",
     "FailureInput",
     "FailureProbability",
+    "Identifiability",
     "IntervalEstimate",
+    "LearntInput",
+    "Observation",
     "OutcomeModel",
+    "Posterior",
     "ShareEstimate",
     "SubsetResult",
     "VarianceShares",
@@ -40,8 +46,11 @@ __all__ = [
     "failure_inputs",
     "failure_probability",
     "half_width_of",
+    "identifiability",
+    "infer",
     "mean_estimate",
     "next_run_count",
+    "predictive_p_value",
     "quantile_estimates",
     "refit_interval",
     "regression_terms",

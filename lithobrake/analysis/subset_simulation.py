@@ -67,7 +67,8 @@ def subset_simulation(
     values = _margins(margin, points)
     moved = np.setdiff1d(np.arange(dimension), np.asarray(kept, dtype=int))
     # At the first level points are independent; later ones stand in chains.
-    probability, thresholds, step, count = 1.0, [], FIRST_STEP, points_per_level
+    probability, step, count = 1.0, FIRST_STEP, points_per_level
+    thresholds: list[float] = []
     variations: list[float] = []
     for number in range(MOST_LEVELS):
         order = np.argsort(values, kind="stable")
@@ -76,7 +77,8 @@ def subset_simulation(
         share = float(below.mean())
         chains = below.reshape(-1, chain_count) if number else below[None]
         variations.append(_variation(chains, share))
-        probability, thresholds = probability * share, [*thresholds, threshold]
+        probability *= share
+        thresholds.append(threshold)
         # Where many points have one margin a level may hold all of them and lead nowhere.
         if threshold == 0.0 or share == 1.0:
             break
