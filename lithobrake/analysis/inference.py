@@ -154,6 +154,7 @@ def infer(
     shared = _checked(model, observations, own)
     models = model.refits(refit_count, seed) if refit_count else [model]
     laws, proposal = {name: model.runs.inputs[name] for name in shared}, Proposal(None)
+    found: list[Posterior] = []
     for number in range(1 + MOST_ROUNDS):
         scores, excess = proposal.draw(len(laws), point_count, seed + number)
         points = np.column_stack([law.ppf(ndtr(column)) for law, column in zip(laws.values(), scores.T, strict=True)])
@@ -163,11 +164,11 @@ def infer(
                 "the observations have no likelihood at any point of the prior: they lie beyond bounds of the outputs; "
                 "look at their units"
             )
-        found = posterior_of(laws, points, logarithms)
-        if found.is_reliable:
+        found.append(posterior_of(laws, points, logarithms))
+        if found[-1].is_reliable:
             break
-        proposal = Proposal.near(scores, found.weights)
-    return found
+        proposal = Proposal.near(scores, found[-1].weights)
+    return max(found, key=lambda one: one.effective_count)
 
 
 def posterior_of(laws: "Mapping[str, Distribution]", points: Array, logarithms: Array) -> Posterior:
