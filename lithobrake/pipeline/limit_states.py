@@ -5,25 +5,19 @@ from typing import Any
 import numpy as np
 
 from lithobrake.analysis import drawn_counts, failure_inputs, failure_probability, regression_terms
-from lithobrake.outcomes import FlightStatus, SampleOutcome, TouchdownOutcome
-from lithobrake.outputs import TOUCHDOWN
+from lithobrake.outcomes import FlightStatus, SampleOutcome
 from lithobrake.pipeline.design_runs import DesignRuns
 from lithobrake.pipeline.designs import design_inputs
 from lithobrake.pipeline.dispersion_statistics import Rows
+from lithobrake.pipeline.failing_runs import CAPTURED, OF_TOUCHDOWN, failing_runs
 from lithobrake.pipeline.fitted_emulator import REFIT_COUNT
 from lithobrake.pipeline.folder import StudyFolder
-from lithobrake.pipeline.run_flights import FATES as RUN_FATES
 from lithobrake.pipeline.run_flights import FLIGHT_COUNT, RunFlights
-from lithobrake.pipeline.run_flights import STAYS as STAYING
 from lithobrake.pipeline.samples import Samples
 from lithobrake.pipeline.scope import why_no_interval
 from lithobrake.pipeline.shares_over_refits import sample_fates
 from lithobrake.study import Study
-from lithobrake.study.limit_state import FATES, STAYS, LimitState
-
-CAPTURED = TouchdownOutcome.CAPTURED.value
-# Words of a run that its touchdown alone decides; all others take flights.
-OF_TOUCHDOWN = (CAPTURED,)
+from lithobrake.study.limit_state import STAYS, LimitState
 
 
 def limit_state_results(study: Study, folder: StudyFolder, flights: Rows, *, holds: bool) -> dict[str, Any]:
@@ -78,32 +72,6 @@ def _one(
         "failing_runs": float(np.nansum(failing)),
         "inputs": {key: one.summary() for key, one in of_inputs.items()},
     }
-
-
-def failing_runs(state: LimitState, runs: DesignRuns, fates: np.ndarray) -> np.ndarray:
-    """Share of the flights of each run that meet a limit state, NaN where nobody knows, [run_count].
-
-    fates [run_count, len(RUN_FATES)]: how many of its flights ended so.
-    """
-    outcomes = np.array(runs.outcomes)
-    values = {name: runs.output(name) for name in TOUCHDOWN}
-    # A run without a known end was neither captured nor not.
-    ended = np.isin(outcomes, [TouchdownOutcome.CLEAR, TouchdownOutcome.CAPTURED])
-    values[CAPTURED] = np.where(ended, (outcomes == CAPTURED).astype(float), np.nan)
-    unflown = {word: np.full(runs.run_count, np.nan) for word in FATES if word != CAPTURED}
-    found = state.met(values | unflown)
-    counts = fates.sum(axis=1)
-    if set(state.fates) <= set(OF_TOUCHDOWN) or not counts.any():
-        return found
-    by_fate = np.column_stack([state.met(values | _words(fate, runs.run_count)) for fate in RUN_FATES])
-    met = np.where(fates > 0, fates * by_fate, 0.0).sum(axis=1)
-    return np.where(counts > 0, met / np.maximum(counts, 1), found)
-
-
-def _words(fate: str, count: int) -> dict[str, np.ndarray]:
-    """Whether each word of the grammar holds of flights that ended so, [count] each; `captured` is of the touchdown."""
-    held = {status.value: status == fate for status in FlightStatus} | {STAYS: fate in STAYING}
-    return {word: np.full(count, float(one)) for word, one in held.items()}
 
 
 def _values_of_samples(samples: Samples, met: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
