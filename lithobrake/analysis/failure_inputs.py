@@ -65,7 +65,7 @@ def failure_inputs(
     dealt = np.array([random.permutation(weights) for _ in range(DRAW_COUNT)])
     drawn = weights * _counts_of_beds(beds, random)[:, beds]
     drawn = drawn[drawn.sum(axis=1) > 0.0]
-    columns = [Column.of(law, values) for law, values in zip(inputs.values(), points.T, strict=True)]
+    columns = [OrderedInput.of(law, values) for law, values in zip(inputs.values(), points.T, strict=True)]
     luck = np.quantile(np.max([column.distance(dealt) for column in columns], axis=0), LEVEL)
     found = {}
     for (name, law), column in zip(inputs.items(), columns, strict=True):
@@ -81,7 +81,7 @@ def failure_inputs(
 
 
 @dataclass(frozen=True)
-class Column:
+class OrderedInput:
     """One input of the runs: its values in order, their places among the runs, and its distribution function there."""
 
     values: Array
@@ -89,7 +89,7 @@ class Column:
     law: Array
 
     @classmethod
-    def of(cls, law: "Distribution", values: Array) -> "Column":
+    def of(cls, law: "Distribution", values: Array) -> "OrderedInput":
         """The values of one input, by its law."""
         order = np.argsort(values, kind="stable")
         return cls(values[order], order, law.cdf(values[order]))

@@ -5,7 +5,7 @@ import pytest
 from scipy import stats
 
 from lithobrake.analysis import failure_inputs
-from lithobrake.analysis.failure_inputs import Column
+from lithobrake.analysis.failure_inputs import OrderedInput
 from lithobrake.chaos import LogUniform, Uniform, sobol_sequence
 
 INPUTS = {"friction": Uniform(0.2, 0.8), "young_modulus": LogUniform(1e6, 1e8)}
@@ -31,7 +31,7 @@ def test_the_input_that_makes_failures_is_found_and_the_other_not() -> None:
 
 def test_the_distance_is_kolmogorovs() -> None:
     values = np.random.default_rng(4).beta(2.0, 2.0, 50)
-    column = Column.of(Uniform(0.0, 1.0), values)
+    column = OrderedInput.of(Uniform(0.0, 1.0), values)
     expected = stats.ks_1samp(values, stats.uniform().cdf).statistic
     assert column.distance(np.ones((1, 50)))[0] == pytest.approx(expected, rel=1e-12)
 
