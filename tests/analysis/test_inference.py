@@ -101,3 +101,22 @@ def test_observations_that_cannot_be_are_refused(
 ) -> None:
     with pytest.raises(ValueError, match=words):
         infer(model, observations, own=own)
+
+
+def test_bounds_that_follow_the_inputs_are_asked_for_at_the_points() -> None:
+    random, x = np.random.default_rng(3), sobol_sequence(INPUTS, 120, seed=4)
+    upper = 1.0 + 0.1 * np.exp(0.1 * x[:, 1])[:, None]
+    y = upper[:, 0] / (1.0 + np.exp(-x[:, 0] - 0.5 * random.standard_normal(120)))
+    bounded = emulator.fit(INPUTS, x, y, lower=0.0, upper=upper, output_names=["speed"])
+    seen = [Observation({"speed": 0.9})]
+    with pytest.raises(ValueError, match="upper is missing, but it differed between the runs"):
+        infer(bounded, seen, refit_count=0, point_count=512)
+    found = infer(
+        bounded,
+        seen,
+        refit_count=0,
+        point_count=512,
+        bounds=lambda points: (None, 1.0 + 0.1 * np.exp(0.1 * points[:, 1:])),
+    )
+    # A speed so near the bound is that of a slippery soil.
+    assert found.learnt()["friction"].after.value > 0.5
