@@ -3,7 +3,16 @@
 from lithobrake.analysis.confidence import LEVEL, IntervalEstimate
 from lithobrake.analysis.control_variate import regression_terms
 from lithobrake.analysis.ellipse import Ellipses, dispersion_ellipses
+from lithobrake.analysis.failure_inputs import FailureInput, failure_inputs
+from lithobrake.analysis.failure_probability import (
+    FailureProbability,
+    drawn_counts,
+    drawn_failures,
+    failure_probability,
+)
 from lithobrake.analysis.half_width import expected_half_width, runs_for_half_width
+from lithobrake.analysis.inference import LearntInput, Observation, Posterior, infer
+from lithobrake.analysis.observed_bounces import Identifiability, identifiability, predictive_p_value
 from lithobrake.analysis.outcome_model import OutcomeModel, upper_limit
 from lithobrake.analysis.output_estimates import mean_estimate, quantile_estimates
 from lithobrake.analysis.proportion import wilson_interval
@@ -12,21 +21,36 @@ from lithobrake.analysis.sampling import sample_inputs
 from lithobrake.analysis.sequential_stopping import half_width_of, next_run_count, scatter_of
 from lithobrake.analysis.share_estimate import ShareEstimate, share_estimate
 from lithobrake.analysis.side_runs import chaos_variance, soil_total_effect
+from lithobrake.analysis.subset_simulation import SubsetResult, subset_simulation
 from lithobrake.analysis.variance_shares import VarianceShares, variance_shares
 
 __all__ = [
     "LEVEL",
     "Ellipses",
+    "FailureInput",
+    "FailureProbability",
+    "Identifiability",
     "IntervalEstimate",
+    "LearntInput",
+    "Observation",
     "OutcomeModel",
+    "Posterior",
     "ShareEstimate",
+    "SubsetResult",
     "VarianceShares",
     "chaos_variance",
     "dispersion_ellipses",
+    "drawn_counts",
+    "drawn_failures",
     "expected_half_width",
+    "failure_inputs",
+    "failure_probability",
     "half_width_of",
+    "identifiability",
+    "infer",
     "mean_estimate",
     "next_run_count",
+    "predictive_p_value",
     "quantile_estimates",
     "refit_interval",
     "regression_terms",
@@ -35,6 +59,7 @@ __all__ = [
     "scatter_of",
     "share_estimate",
     "soil_total_effect",
+    "subset_simulation",
     "upper_limit",
     "variance_shares",
     "wilson_interval",

@@ -1,6 +1,7 @@
 """An emulator: what a stochastic model does at inputs that nobody has run, as draws."""
 
 import os
+from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
 
@@ -12,7 +13,8 @@ from lithobrake.chaos.counts import whole_number
 from lithobrake.chaos.polynomials import Array
 from lithobrake.chaos.storage import read, write
 from lithobrake.chaos.threads import one_thread
-from lithobrake.emulator.coordinates import from_coordinate
+from lithobrake.emulator.coordinates import from_coordinate, with_slope
+from lithobrake.emulator.density import kernels_of, log_density
 from lithobrake.emulator.law import fit_law
 from lithobrake.emulator.mean_law import MeanLaw, mean_law
 from lithobrake.emulator.outcome_classes import fit_classes
@@ -119,6 +121,49 @@ class Emulator(Parts):
             return Draws(np.empty((0, count, len(self.output_names))), empty, empty)
         return Draws(*(np.concatenate(part) for part in zip(*parts, strict=True)))
 
+    @one_thread()
+    def log_density(
+        self,
+        observed: Mapping[str, float],
+        x: ArrayLike,
+        *,
+        errors: Mapping[str, float] | None = None,
+        outcome: str | None = None,
+        lower: ArrayLike | None = None,
+        upper: ArrayLike | None = None,
+    ) -> Array:
+        """Logarithm of the density of one observed run at each x [point_count, input_count], shape [point_count].
+
+        That of what `draw` draws. observed: outputs by name, in their units, any of those that have a law (riders have
+        none); errors: standard deviation of each that was observed with one. outcome: how the run ended; None: as runs
+        with outputs do. An outcome without outputs has its chance alone. lower, upper: as in `sample`.
+        Raises ValueError for names and values that cannot be.
+        """
+        matrix = self._matrix(x)
+        linear = self._linear(matrix)
+        ended = self._checked_observation(observed, errors or {}, outcome)
+        chance = np.log(np.maximum(self.classes.chances(linear)[:, ended], np.finfo(float).tiny))
+        if not observed:
+            return chance
+        low, high = self.runs.bounds_at(lower, upper, len(matrix))
+        columns = [self.output_names.index(name) for name in observed]
+        y = np.broadcast_to(list(observed.values()), (len(matrix), len(columns)))
+        coordinate, slope = with_slope(y, low[:, columns], high[:, columns])
+        places = [self.runs.modelled.index(column) for column in columns]
+        location, scale = (one[:, places] for one in self.law.at(matrix))
+        # What lies beyond a bound at some point cannot have come from there.
+        inside: NDArray[np.bool_] = np.all(np.isfinite(coordinate), axis=1)
+        chances = row_weights(
+            linear, self._linear(self._run_matrix)[self.runs.has_outputs], self.law.weights, self.choices.bandwidth
+        )
+        error = slope * [(errors or {}).get(name, 0.0) for name in observed]
+        kernels = kernels_of(self.law.rows, *smoothing(self.law.rows, self.law.weights))
+        found = log_density(
+            kernels, places, np.where(inside[:, None], coordinate, 0.0), location, scale, error, chances
+        )  # fmt: skip
+        steepness = np.log(np.where(inside[:, None], slope, 1.0)).sum(axis=1)
+        return np.where(inside, chance + found + steepness, -np.inf)
+
     def refits(self, count: int = 200, seed: int = 0) -> list["Emulator"]:
         """Fit anew to groups drawn with replacement, `count` times: how far the emulator itself is uncertain.
 
@@ -164,6 +209,26 @@ class Emulator(Parts):
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write everything into one readable JSON file, from which `load` gives the same draws."""
         write(FORMAT, content_of(self, self.statement), path)
+
+    def _checked_observation(
+        self, observed: Mapping[str, float], errors: Mapping[str, float], outcome: str | None
+    ) -> int:
+        """Place of the outcome of an observation. Raises ValueError for names and values that cannot be."""
+        modelled = [self.output_names[column] for column in self.runs.modelled]
+        for name, value in observed.items():
+            if name not in modelled or not np.isfinite(value):
+                raise ValueError(f"{name} is observed as {value}; allowed: finite numbers of {', '.join(modelled)}")
+        for name, error in errors.items():
+            if name not in observed or not (np.isfinite(error) and error >= 0.0):
+                raise ValueError(f"the error of {name} is {error}; allowed: 0 or more, of what was observed")
+        if outcome is None:
+            return self.runs.output_outcome
+        if outcome not in self.outcome_names:
+            raise ValueError(f"outcome is {outcome!r}; allowed: {', '.join(self.outcome_names)}")
+        ended = self.outcome_names.index(outcome)
+        if observed and ended != self.runs.output_outcome:
+            raise ValueError(f"outcome is {outcome!r}, which has no outputs: leave {', '.join(observed)} out")
+        return ended
 
     @cached_property
     def _run_matrix(self) -> Array:

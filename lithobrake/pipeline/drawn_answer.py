@@ -1,5 +1,6 @@
 """The answer of a sequence in sentences, with its interval, and the numbers that tell most beside it."""
 
+import math
 from collections.abc import Mapping
 from typing import Any
 
@@ -27,6 +28,7 @@ def drawn_answer(study: Study, results: Mapping[str, Any]) -> list[str]:
         *_share(study, stays, down),
         *_missing(results["runs"], stays),
         _others(results["shares"], holds=holds),
+        *(one["statement"] for one in results["limit_states"].values()),
         *([site["warning"]] if site["warning"] else []),
     ]
 
@@ -42,6 +44,36 @@ def drawn_headline(study: Study, results: Mapping[str, Any]) -> list[str]:
         emulator["statement"],
         *([f"{emulator['warning']}."] if emulator["warning"] else []),
     ]
+
+
+def limit_statement(name: str, found: Mapping[str, Any]) -> str:
+    """The probability of a limit state in a sentence: its interval, what answers, and which inputs make it."""
+    share, runs = _small(found["probability"]), found["runs"]
+    begin = f"{name} ({found['condition']}): {share} of the landers"
+    if found["lower"] is None:
+        return f"{begin}, from {runs['from']}, without an interval: {found['why']}"
+    said = f"{begin} ({100 * found['level']:.0f} % interval {_small(found['lower'])} to {_small(found['upper'])})"
+    if found["source"] == "emulator":
+        said += f", by the emulator, as {found['failing_runs']:.3g} of {runs['from']} are too few to tell"
+        if found["probability"] < found["tail_limit"]:
+            said += f"; so many places rule out no tail below {_small(found['tail_limit'])}"
+    else:
+        said += f", from {runs['from']}"
+    made = [key for key, one in found["inputs"].items() if one["found"]]
+    made.sort(key=lambda key: -found["inputs"][key]["distance"])
+    no_input = "no input was found to make it" if found["inputs"] else "which inputs make it is not known"
+    return f"{said}; {'it comes with ' + ', '.join(made) if made else no_input}."
+
+
+def _small(share: float) -> str:
+    """A share in words, to two digits where it is rare or nearly certain."""
+    away = min(share, 1.0 - share)
+    return _percent(share) if away >= 0.1 or away == 0.0 else f"{100 * share:.{_digits(away)}f} %"
+
+
+def _digits(away: float) -> int:
+    """Digits behind the point of a percentage that show two of a share's distance from 0 or 1."""
+    return max(0, 1 - math.floor(math.log10(100.0 * away)))
 
 
 def _share(study: Study, stays: Mapping[str, Any], down: str) -> list[str]:

@@ -9,10 +9,11 @@ from lithobrake.outputs import OUTPUTS, SEQUENCE_DESIGNS, TOUCHDOWN
 from lithobrake.pipeline.beds import bed_files
 from lithobrake.pipeline.design_runs import DesignRuns
 from lithobrake.pipeline.dispersion_statistics import ellipses, rest_results, shares
-from lithobrake.pipeline.drawn_answer import drawn_answer, drawn_headline
+from lithobrake.pipeline.drawn_answer import drawn_answer, drawn_headline, limit_statement
 from lithobrake.pipeline.fitted_emulator import FILE as EMULATOR
 from lithobrake.pipeline.flights import flight_numbers, read_table
 from lithobrake.pipeline.job import Job
+from lithobrake.pipeline.limit_states import limit_state_results
 from lithobrake.pipeline.run_estimates import FILE as ESTIMATES
 from lithobrake.pipeline.samples import Samples
 from lithobrake.pipeline.shares_over_refits import Refits, journey_ends, sample_fates
@@ -43,6 +44,7 @@ def write_drawn_summary(job: Job) -> None:
         "site": site_results(job.study),
         **_dispersion(job, estimates),
     }
+    results["limit_states"] = _limit_states(job)
     results["emulator"] = _emulator(job, results)
     results["answer"] = drawn_answer(job.study, results)
     results["headline"] = drawn_headline(job.study, results)
@@ -57,6 +59,13 @@ def write_drawn_summary(job: Job) -> None:
             "provenance": provenance(job, sum(one.run_count for one in runs), distinct),
         },
     )
+
+
+def _limit_states(job: Job) -> dict[str, Any]:
+    """What the study file asks for, by name, each with a sentence."""
+    holds = bool(effective_acceleration_at_site(job.study)[2] < 0.0)
+    found = limit_state_results(job.study, job.folder, read_table(job.folder, "flights.csv"), holds=holds)
+    return {name: one | {"statement": limit_statement(name, one)} for name, one in found.items()}
 
 
 def _dispersion(job: Job, estimates: dict[str, Any]) -> dict[str, Any]:

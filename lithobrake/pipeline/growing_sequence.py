@@ -8,7 +8,7 @@ runs it has by now.
 from collections.abc import Callable
 from dataclasses import replace
 
-from lithobrake.pipeline.answers import ANSWER, answers_of, flown_shares
+from lithobrake.pipeline.answers import answer_words, answers_of, flown_shares
 from lithobrake.pipeline.folder import StudyFolder
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.planning.planned_runs import known_runs
@@ -58,8 +58,8 @@ def width_sentence(job: Job) -> str:
     width, design = _width(job), job.study.design
     known = "not known to any width yet" if width is None else f"known to +- {100 * width:.2g} points"
     return (
-        f"{ANSWER} is {known} from {design.run_count} runs on {job.study.bed_count} beds, and design.half_width asks "
-        f"for +- {100 * (design.half_width or 0.0):.2g}"
+        f"{answer_words(job.study)} is {known} from {design.run_count} runs on {job.study.bed_count} beds, and "
+        f"design.half_width asks for +- {100 * (design.half_width or 0.0):.2g}"
     )
 
 

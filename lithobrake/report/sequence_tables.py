@@ -6,6 +6,7 @@ from typing import Any
 from lithobrake.outcomes import TouchdownOutcome
 from lithobrake.report.captions import input_words, percent
 from lithobrake.report.dispersion_tables import dispersion_tables
+from lithobrake.report.limit_state_tables import limit_state_tables
 from lithobrake.report.page import PageTable, Tile, fixed, number
 from lithobrake.report.results import SequenceResults
 from lithobrake.report.sequence_answer import (
@@ -73,7 +74,7 @@ def tables(data: SequenceResults) -> list[PageTable]:
     }
     found = [table(data) for table, key in made.items() if results.get(key)]
     side = [_side_runs(data)] if data.table("runs", "side_runs", "chaos_deviation") else []
-    return [*found, *side, *dispersion_tables(data)]
+    return [*found, *side, *limit_state_tables(data), *dispersion_tables(data)]
 
 
 def _answer(data: SequenceResults) -> PageTable:

@@ -49,6 +49,7 @@ SUMMARY_TABLES = (
             "kept_share.*": "share of the variance of the screening expansion that the kept inputs explain together",
             "answer": "what becomes of the landers, over what that holds, and what is missing, in sentences",
             "headline": "the answer, then the numbers that tell most, in sentences",
+            "limit_states": "of a drawn study that asks for none: empty",
             "without_scatter": "null where the samples have no scatter from run to run, or are of an emulator",
         },
     ),

@@ -19,6 +19,8 @@ from lithobrake.study.study import Study
 BED_WIDTH_PER_LANDER = 2.0
 # An attitude is scaled to length 1; one so much longer or shorter is a slip, and its square may not be a number.
 LONGEST_QUATERNION = 1e3
+# Of what a user names.
+NAME = r"[\w-]+"
 # Fewer grains across are no bed.
 BED_WIDTH_PER_GRAIN = 3.0
 
@@ -31,6 +33,7 @@ def problems(study: Study) -> Iterator[str]:
     yield from _place_problems(study)
     yield from design_problems(study)
     yield from _solver_problems(study)
+    yield from _limit_state_problems(study)
     if study.has_soil:
         yield from contact_problems(study)
     gravity = study.surface.gravity
@@ -59,6 +62,19 @@ def _grain_problems(study: Study) -> Iterator[str]:
         yield (
             f"bed.diameter reaches to {largest:g} m; allowed: at most {limit:.3g} m, a third of bed.width; "
             "widen the bed or take smaller grains"
+        )
+
+
+def _limit_state_problems(study: Study) -> Iterator[str]:
+    """Names that no file or table can show, and a method that has no landings drawn from their law."""
+    names = study.limit_states.conditions()
+    for name in names:
+        if not re.fullmatch(NAME, name):
+            yield f"limit_states.{name} is no name; allowed: letters, digits, _ and -; rename it"
+    if names and study.design.method == "paper":
+        yield (
+            f'limit_states.{next(iter(names))} goes with design.method = "sequence", and it is "paper", whose runs are '
+            "no draws from the laws of the inputs; leave [limit_states] out, or draw the runs"
         )
 
 
@@ -140,7 +156,7 @@ def _solver_problems(study: Study) -> Iterator[str]:
         return
     for name in solver.inputs:
         # Names stand in figures and tables, where other characters have a meaning of their own.
-        if not re.fullmatch(r"[\w-]+", name):
+        if not re.fullmatch(NAME, name):
             yield f"solver.inputs.{name} is no name; allowed: letters, digits, _ and -; rename it"
     yield from _solver_file_problems(study)
     if solver.command is None:

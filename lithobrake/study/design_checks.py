@@ -55,7 +55,13 @@ def _bed_count_problems(study: Study) -> Iterator[str]:
 
 def _half_width_problems(study: Study) -> Iterator[str]:
     """Runs that no interval could end."""
-    design = study.design
+    design, asked = study.design, study.design.half_width_of
+    names = study.limit_states.conditions()
+    if asked is not None and asked not in names:
+        known = ", ".join(names) or "none: the study has no [limit_states]"
+        yield f'design.half_width_of is "{asked}"; allowed: a name of [limit_states] ({known}); add it there'
+    if design.half_width is None and asked is not None:
+        yield f'design.half_width_of is "{asked}", and there is no design.half_width; give one, or leave it out'
     if design.half_width is None:
         if design.largest_run_count is not None:
             yield (

@@ -2,7 +2,7 @@
 
 from typing import Annotated, Literal
 
-from pydantic import Field, StrictBool
+from pydantic import Field, StrictBool, StrictStr
 
 from lithobrake.outputs import OUTPUTS, OutputName
 from lithobrake.study.quantity import Number, Whole
@@ -16,7 +16,7 @@ PointCount = Annotated[int, Whole("", at_least=2, at_most=1_000_000)] | None
 # What a study that names no method is made by.
 DEFAULT_METHOD: Literal["sequence", "paper"] = "sequence"
 # Keys that only the sequence takes; all others belong to the paper's method.
-SEQUENCE_KEYS = ("run_count", "half_width", "largest_run_count", "side_runs", "twin_shift")
+SEQUENCE_KEYS = ("run_count", "half_width", "half_width_of", "largest_run_count", "side_runs", "twin_shift")
 
 
 class DesignSection(Section):
@@ -30,6 +30,8 @@ class DesignSection(Section):
     half_width: Annotated[float, Number("", above=0, below=0.5)] | None = None
     """sequence: half the interval that the answer is to have, as a share of 1; more runs than run_count are made, on
     more beds, until it has. Absent: run_count runs, whatever their interval."""
+    half_width_of: StrictStr | None = None
+    """sequence: name of the limit state that half_width is asked of. Absent: of the share that stays."""
     largest_run_count: PointCount = None
     """sequence: most runs that half_width may ask for. Absent: ten times run_count."""
     side_runs: StrictBool = False

@@ -19,6 +19,7 @@ from lithobrake.study.impact_sections import (
     PlaceSection,
     SurfaceSection,
 )
+from lithobrake.study.limit_sections import LimitStatesSection
 from lithobrake.study.material_sections import GrainSection, LanderSection
 from lithobrake.study.quantity import Scalar, Uncertain, Whole
 from lithobrake.study.section import Section
@@ -56,6 +57,7 @@ class Study(Section):
     site: SiteSection = SiteSection()
     flight: FlightSection = FlightSection()
     rest: RestSection = RestSection()
+    limit_states: LimitStatesSection = LimitStatesSection()
     _function: str | None = PrivateAttr(default=None)
 
     @model_validator(mode="before")

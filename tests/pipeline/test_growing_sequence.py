@@ -80,6 +80,19 @@ def test_runs_are_made_until_the_half_width_is_met(narrow: tuple[Path, DesignRun
     assert steps[-1].endswith("asks for +- 6: that is enough")
 
 
+def test_a_half_width_may_be_that_of_a_limit_state(tmp_path: Path) -> None:
+    said, tables = Said(), dict(source(half_width=0.06).tables)
+    tables |= {"design": tables["design"] | {"half_width_of": "caught"}, "limit_states": {"caught": "captured"}}
+    asked = StudySource.of_tables(tables, function_identity(land))
+    run_study(asked, tmp_path, until="fly_runs", worker_count=2, model=land, shown=said)
+    steps = [one for one in said.sentences if one.startswith("the probability of caught is known to +- ")]
+    assert len(steps) >= 2
+    assert steps[-1].endswith("asks for +- 6: that is enough")
+    runs = DesignRuns.load(StudyFolder.only_read(tmp_path), "sequence")
+    caught = (np.array(runs.outcomes) == "captured").astype(float)
+    assert (half_width_of(caught, runs.inputs["bed"]) or 1.0) <= 0.06
+
+
 def test_what_ends_is_the_study_of_that_many_runs(narrow: tuple[Path, DesignRuns, list[str]]) -> None:
     folder, runs, _ = narrow
     files = {path: path.stat().st_mtime_ns for path in folder.glob("designs/*")}

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from lithobrake.campaign import Record
-from lithobrake.pipeline.answers import ANSWER, answers_of, flown_shares
+from lithobrake.pipeline.answers import answer_words, answers_of, flown_shares
 from lithobrake.pipeline.folder import StudyFolder
 from lithobrake.pipeline.growing_sequence import sequence_keys
 from lithobrake.study import Study
@@ -78,7 +78,7 @@ def expected_width(study: Study, known: Mapping[str, Record], folder: StudyFolde
         correlation=CORRELATION,
         own=_own(values, bed, counts),
         own_run_count=int(np.isfinite(values).sum()),
-        answer=ANSWER,
+        answer=answer_words(study),
         level=LEVEL,
     )
 

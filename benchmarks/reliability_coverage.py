@@ -1,0 +1,211 @@
+"""How often the intervals of failure probabilities hold the truth, on limit states of closed form under noise.
+
+    python benchmarks/reliability_coverage.py [--studies 200]
+
+A strength R and a load S are the inputs of a stochastic model that gives S - R and scatter on top, normal or skewed
+(exponential), a twentieth of it the bed's: the probability that a limit is passed is known in closed form. Rows: what
+`failure_probability` says from 240 runs on 24 beds at .1, .02 and .005; what the runs and the emulator say alone; and
+`subset_simulation` on limit states of 2 to 100 inputs, beside OpenTURNS where that is installed.
+Writes benchmarks/results/reliability_coverage.csv, and .json beside it.
+"""
+
+import argparse
+import csv
+import json
+import math
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from origin import origin
+from scipy import stats
+
+from lithobrake import emulator
+from lithobrake.analysis import (
+    drawn_counts,
+    failure_probability,
+    regression_terms,
+    sample_inputs,
+    subset_simulation,
+)
+from lithobrake.chaos import Normal, sobol_sequence
+
+RESULTS = Path(__file__).parent / "results" / "reliability_coverage.csv"
+COLUMNS = ("quantity", "scatter", "probability", "repeats", "held", "too_high", "bias", "width", "by_emulator", "cost")
+INPUTS = {"strength": Normal(0.0, 1.0), "load": Normal(0.0, 1.0)}
+PROBABILITIES = (0.1, 0.02, 0.005)
+RUNS, BEDS, REFITS, DRAWS = 240, 24, 50, 2000
+# Of the variance of the response that is the inputs', and of the rest that is the bed's.
+EXPLAINED, BED = 0.3, 0.05
+Row = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Truth:
+    """A response of variance 1 and mean 0: load less strength, an effect of the bed, and scatter, skewed or normal."""
+
+    skewed: bool
+
+    def study(self, seed: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Inputs [RUNS, 2], response and bed [RUNS] of a study."""
+        random = np.random.default_rng(seed)
+        x = sobol_sequence(INPUTS, RUNS, seed=seed)
+        bed = np.concatenate([random.permutation(BEDS) for _ in range(RUNS // BEDS)])
+        scatter = random.exponential(size=RUNS) - 1.0 if self.skewed else random.standard_normal(RUNS)
+        rest = math.sqrt(BED) * random.standard_normal(BEDS)[bed] + math.sqrt(1.0 - BED) * scatter
+        return x, math.sqrt(EXPLAINED / 2.0) * (x[:, 1] - x[:, 0]) + math.sqrt(1.0 - EXPLAINED) * rest, bed
+
+    def limit(self, probability: float) -> float:
+        """What the response passes with this probability."""
+        if not self.skewed:
+            return float(stats.norm.isf(probability))
+        tail, middle = (1.0 - EXPLAINED) * (1.0 - BED), EXPLAINED + (1.0 - EXPLAINED) * BED
+        ratio = math.sqrt(tail / middle)
+        return float(stats.exponnorm(ratio, loc=-math.sqrt(tail), scale=math.sqrt(middle)).isf(probability))
+
+
+def one_study(truth: Truth, seed: int) -> dict[str, tuple[float, ...]]:
+    """Held, too high, error, width and whether the emulator answered, of each quantity and probability."""
+    x, y, bed = truth.study(seed)
+    model, refit = emulator.fit(INPUTS, x, y, groups=bed), np.repeat(np.arange(REFITS), DRAWS)
+    drawn = np.concatenate(
+        [
+            one.draw(sample_inputs(INPUTS, DRAWS, 1000 * seed + number), 1, number).y[:, 0, 0]
+            for number, one in enumerate(model.refits(REFITS, seed))
+        ]
+    )
+    terms, result = regression_terms(INPUTS, x), {}
+    for exact in PROBABILITIES:
+        limit = truth.limit(exact)
+        found = failure_probability(y > limit, bed, terms=terms, drawn=drawn_counts(drawn > limit, refit, REFITS))
+        runs, alone = found.by_runs, found.by_emulator
+        for name, share, low, high in (
+            ("failure_probability", found.probability, found.lower, found.upper),
+            ("runs alone", runs.share, runs.lower, runs.upper),
+            ("emulator alone", alone.value, alone.lower, alone.upper),
+        ):
+            held = (float(low <= exact <= high), float(low > exact), share - exact, high - low)
+            result[name, exact] = (*held, float(found.source == "emulator"))
+    return result
+
+
+def study_rows(truth: Truth, count: int) -> Iterator[Row]:
+    """A row a quantity and probability, over so many studies."""
+    begin = time.process_time()
+    studies = [one_study(truth, seed) for seed in range(count)]
+    cost = (time.process_time() - begin) / count
+    for name, exact in studies[0]:
+        mean = np.mean([one[name, exact] for one in studies], axis=0).tolist()
+        row = dict(zip(("held", "too_high", "bias", "width", "by_emulator"), mean, strict=True))
+        scatter = "skewed" if truth.skewed else "normal"
+        yield {"quantity": name, "scatter": scatter, "probability": exact, "repeats": count, "cost": cost} | row
+
+
+def _linear(points: np.ndarray, exact: float) -> np.ndarray:
+    return stats.norm.isf(exact) - points.sum(axis=1) / math.sqrt(points.shape[1])
+
+
+def _noisy(points: np.ndarray) -> np.ndarray:
+    """Strength less load in seven inputs, with scatter of three inputs of its own: normal in all."""
+    return stats.norm.isf(1e-3) * math.sqrt(10.0) - points[:, :7].sum(axis=1) - points[:, 7:].sum(axis=1)
+
+
+# Margin, dimension and probability of limit states of closed form.
+LIMIT_STATES: dict[str, tuple[Callable[[np.ndarray], np.ndarray], int, float]] = {
+    "linear, 2 inputs": (lambda u: _linear(u, 1e-3), 2, 1e-3),
+    "linear, 100 inputs": (lambda u: _linear(u, 1e-4), 100, 1e-4),
+    "R - S with noise, 10 inputs": (_noisy, 10, 1e-3),
+    "outside a sphere, 3 inputs": (lambda u: math.sqrt(stats.chi2.isf(1e-3, 3)) - np.linalg.norm(u, axis=1), 3, 1e-3),
+    "either of two, 5 inputs": (lambda u: stats.norm.isf(1e-4) - np.abs(u[:, 0]), 5, 2e-4),
+}
+
+
+def subset_rows(count: int) -> Iterator[Row]:
+    """Subset simulation of each limit state, 500 and 1000 points a level, over so many seeds."""
+    for name, (margin, dimension, exact) in LIMIT_STATES.items():
+        for points in (500, 1000):
+            found = [subset_simulation(margin, dimension, points_per_level=points, seed=seed) for seed in range(count)]
+            yield {
+                "quantity": f"subset simulation, {name}, {points} a level",
+                "probability": exact,
+                "repeats": count,
+                "held": float(np.mean([one.lower <= exact <= one.upper for one in found])),
+                "too_high": float(np.mean([one.lower > exact for one in found])),
+                "bias": float(np.mean([one.probability for one in found])) - exact,
+                "width": float(np.std([one.probability for one in found])) / exact,
+                "cost": float(np.mean([one.evaluation_count for one in found])),
+            }
+
+
+def openturns_rows(count: int) -> Iterator[Row]:
+    """The same limit states by OpenTURNS' SubsetSampling, where it is installed; width: over the exact probability."""
+    for name, (margin, dimension, exact) in LIMIT_STATES.items():
+        if openturns() is None:
+            return
+        found, calls = zip(*(openturns_subset(margin, dimension, 1000, seed) for seed in range(count)), strict=True)
+        yield {
+            "quantity": f"OpenTURNS SubsetSampling, {name}, 1000 a level", "probability": exact, "repeats": count,
+            "bias": float(np.mean(found)) - exact, "width": float(np.std(found)) / exact, "cost": float(np.mean(calls)),
+        }  # fmt: skip
+
+
+@lru_cache
+def openturns() -> Any:
+    """OpenTURNS, or None."""
+    try:
+        import openturns as found
+    except ImportError:
+        return None
+    return found
+
+
+def openturns_subset(
+    margin: Callable[[np.ndarray], np.ndarray], dimension: int, points: int, seed: int
+) -> tuple[float, int]:
+    """Probability that a margin is at most 0, and how many were asked for, by OpenTURNS."""
+    ot = openturns()
+    ot.RandomGenerator.SetSeed(seed)
+    asked = 0
+
+    def margins(sample: Any) -> np.ndarray:
+        nonlocal asked
+        asked += len(sample)
+        return margin(np.array(sample))[:, None]
+
+    law = ot.Normal(dimension)
+    output = ot.CompositeRandomVector(ot.PythonFunction(dimension, 1, func_sample=margins), ot.RandomVector(law))
+    algorithm = ot.SubsetSampling(ot.ThresholdEvent(output, ot.LessOrEqual(), 0.0))
+    algorithm.setMaximumOuterSampling(points)
+    algorithm.setBlockSize(1)
+    algorithm.run()
+    return algorithm.getResult().getProbabilityEstimate(), asked
+
+
+def main() -> None:
+    """Measure and write."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--studies", type=int, default=200)
+    count, begin = parser.parse_args().studies, time.process_time()
+    with RESULTS.open("w", newline="") as file:
+        writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
+        writer.writeheader()
+        parts = (
+            *(study_rows(Truth(skewed), count) for skewed in (False, True)),
+            *(subset_rows(count), openturns_rows(max(count // 10, 2))),
+        )
+        for row in (row for part in parts for row in part):
+            rounded = {key: float(f"{value:.4g}") if isinstance(value, float) else value for key, value in row.items()}
+            writer.writerow(rounded)
+            file.flush()
+    facts = {"studies": count, "level": 0.9, "cpu_s": round(time.process_time() - begin), "table": RESULTS.name}
+    facts |= origin(f"benchmarks/reliability_coverage.py --studies {count}")
+    facts["openturns"] = getattr(openturns(), "__version__", None)
+    RESULTS.with_suffix(".json").write_text(json.dumps(facts, indent=1) + "\n")
+
+
+if __name__ == "__main__":
+    main()

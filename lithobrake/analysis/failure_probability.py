@@ -1,0 +1,145 @@
+"""Probability that a landing meets a limit state: from the runs, and where it is rare from an emulator of them.
+
+A lander fails with some probability at every soil, so there is no surface between safe and failing soils: neither a
+design point nor a learning function that looks for such a surface says anything here. What counts is the share of
+landings, over beds that were not in the study.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from lithobrake.analysis.confidence import LEVEL, Array, IntervalEstimate, Labels
+from lithobrake.analysis.outcome_model import upper_limit
+from lithobrake.analysis.refit_interval import refit_interval
+from lithobrake.analysis.sampling import sample_inputs
+from lithobrake.analysis.share_estimate import Bounds, ShareEstimate, share_estimate
+
+if TYPE_CHECKING:
+    from lithobrake.emulator import Draws, Emulator
+
+# Of an event that is rarer (or whose opposite is) runs have met too few for the probability to be told from them alone.
+RARE = 1.0 / 50.0
+# What answers: the runs themselves, or draws of the emulator.
+RUNS, EMULATOR = "runs", "emulator"
+
+
+@dataclass(frozen=True)
+class FailureProbability:
+    """Probability of a limit state over the law of the inputs, on beds that were not in the study.
+
+    probability, lower, upper   from the runs where it is at least a fiftieth away from 0 and 1, else from the emulator;
+                                bounds None where there is none, and `why` says why
+    source                      "runs" or "emulator"
+    by_runs                     what the runs say, whichever answers: interval, next bed, bounds by missing runs
+    by_emulator                 what the emulator says; None where it was not asked, or cannot tell
+    tail_limit                  what so many places can say of any tail: the largest probability that an event may have
+                                of which they show none; an emulator's rarer ones rest on the form of its scatter
+    """
+
+    probability: float
+    lower: float | None
+    upper: float | None
+    source: str
+    by_runs: ShareEstimate
+    by_emulator: IntervalEstimate | None
+    tail_limit: float
+    level: float = LEVEL
+
+    @property
+    def why(self) -> str | None:
+        """Why there is no interval; None where there is one."""
+        return self.by_runs.why
+
+    def summary(self) -> dict[str, Any]:
+        """The estimate as `summary.json` holds it."""
+        emulator, runs = self.by_emulator, self.by_runs.summary()
+        return {
+            "probability": self.probability,
+            "lower": self.lower,
+            "upper": self.upper,
+            "level": self.level,
+            "source": self.source,
+            "runs": {key: runs[key] for key in ("share", "lower", "upper", "from", "next_bed", "if_missing")},
+            "emulator": None
+            if emulator is None
+            else {"share": emulator.value, "lower": emulator.lower, "upper": emulator.upper},
+            "tail_limit": self.tail_limit,
+            "why": self.why,
+        }
+
+
+def failure_probability(
+    failing: ArrayLike,
+    bed: ArrayLike,
+    *,
+    terms: tuple[Array, Labels] | None = None,
+    drawn: tuple[ArrayLike, ArrayLike] | None = None,
+    flight_count: int | None = None,
+    why: str | None = None,
+) -> FailureProbability:
+    """Estimate the probability of a limit state from runs, and from draws of an emulator fitted to them.
+
+    failing [run_count]  whether each run meets it, or the share of its flights that do; NaN where nobody knows
+    bed [run_count]      label of the bed of each run: the units of the interval
+    terms                as in `share_estimate`, which is what the runs say
+    drawn                how many draws of each refit of the emulator meet it, and how many were made, [refit_count]
+                         each, as `drawn_failures` gives them; None: runs alone
+    flight_count, why    as in `share_estimate`
+
+    Raises ValueError as `share_estimate` and `refit_interval` do.
+    """
+    runs = share_estimate(failing, bed, terms=terms, flight_count=flight_count, why=why)
+    answered = np.isfinite(np.asarray(failing, dtype=float))
+    run_count, limit = int(answered.sum()), upper_limit(int(answered.sum()), LEVEL)
+    if drawn is None or runs.why is not None:
+        return FailureProbability(runs.share, runs.lower, runs.upper, RUNS, runs, None, limit)
+    emulator = refit_interval(*drawn, len(np.unique(np.asarray(bed)[answered])), run_count)
+    if RARE <= runs.share <= 1.0 - RARE:
+        return FailureProbability(runs.share, runs.lower, runs.upper, RUNS, runs, emulator, limit)
+    return FailureProbability(emulator.value, *_with_tail(emulator, limit), EMULATOR, runs, emulator, limit)
+
+
+def drawn_failures(
+    model: "Emulator",
+    failing: Callable[["Draws"], ArrayLike],
+    *,
+    refit_count: int = 50,
+    sample_count: int = 100_000,
+    seed: int = 0,
+) -> tuple[Labels, Labels]:
+    """Count draws that meet a limit state, refit by refit: how many do, and how many were made, [refit_count] each.
+
+    failing: whether each of some draws does, [point_count, 1] or [point_count]; NaN where that is not known, which
+    does not count. Inputs are drawn from their laws, one draw at each point.
+    """
+    points, met = -(-sample_count // refit_count), []
+    for number, one in enumerate(model.refits(refit_count, seed)):
+        own = int(np.random.SeedSequence([seed, number]).generate_state(1)[0])
+        x = sample_inputs(model.runs.inputs, points, own)
+        met.append(np.asarray(failing(one.draw(x, 1, own)), dtype=float).ravel())
+    return drawn_counts(np.concatenate(met), np.repeat(np.arange(refit_count), points), refit_count)
+
+
+def drawn_counts(met: ArrayLike, refit: ArrayLike, refit_count: int) -> tuple[Labels, Labels]:
+    """Count draws by refit [refit_count]: those that meet a limit state, and all of which that is known.
+
+    met [draw_count]: 1, 0, or NaN where nobody knows; refit [draw_count]: place of the refit that each is of.
+    """
+    found, of = np.asarray(met, dtype=float), np.asarray(refit)
+    known = np.isfinite(found)
+    counts = np.bincount(of[known], weights=found[known], minlength=refit_count)
+    return counts.astype(np.int64), np.bincount(of[known], minlength=refit_count)
+
+
+def _with_tail(found: IntervalEstimate, limit: float) -> Bounds:
+    """Bounds of the emulator, which for a tail that is rarer than so many places can show reach to their limit."""
+    lower, upper = found.lower, found.upper
+    if found.value < limit:
+        upper = max(upper, limit)
+    if found.value > 1.0 - limit:
+        lower = min(lower, 1.0 - limit)
+    return lower, upper

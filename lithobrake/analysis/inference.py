@@ -1,0 +1,253 @@
+"""From observed bounces to the soil: the law of the inputs of a stochastic model, given what came out of it."""
+
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.special import logsumexp, ndtr, ndtri
+
+from lithobrake.analysis.confidence import LEVEL, Array, IntervalEstimate
+from lithobrake.analysis.sampling import sample_inputs
+
+if TYPE_CHECKING:
+    from lithobrake.chaos import Distribution
+    from lithobrake.emulator import Emulator
+
+REFIT_COUNT = 30
+POINT_COUNT = 1 << 12
+# While too few points carry weight new ones are drawn near those that do, so often at most; a part of them is drawn
+# from the prior still, and the others wider than what is known so far, so that nothing is lost.
+MOST_ROUNDS, OF_PRIOR, WIDER = 4, 0.2, 1.5
+# Fewer points of weight than this are no sample of a law.
+FEWEST_EFFECTIVE = 400.0
+# An input of which more than this part of the prior's standard deviation is left has learnt nothing worth saying.
+NOTHING_LEARNT = 0.9
+# Equal steps of probability in which an input's law is compared with its prior.
+STEPS = 20
+
+Bounds = Callable[[Array], tuple[ArrayLike | None, ArrayLike | None]]
+
+
+@dataclass(frozen=True)
+class Observation:
+    """One observed bounce.
+
+    outputs: those that were observed, by name, in their units; errors: standard deviations of those that have one;
+    known: inputs that are known of this bounce, by name, as its speed; outcome: how it ended, None: with outputs.
+    """
+
+    outputs: Mapping[str, float]
+    errors: Mapping[str, float] = field(default_factory=dict)
+    known: Mapping[str, float] = field(default_factory=dict)
+    outcome: str | None = None
+
+
+@dataclass(frozen=True)
+class LearntInput:
+    """An input before and after: bounds and median after, in its unit; sd_ratio: standard deviation after over before,
+    on the scale of its law; information: Kullback-Leibler divergence of after from before [nats].
+    """
+
+    after: IntervalEstimate
+    before: IntervalEstimate
+    sd_ratio: float
+    information: float
+
+
+@dataclass(frozen=True)
+class Posterior:
+    """The law of the inputs given the observations, as weighted points.
+
+    points [point_count, input_count] in physical units, of the inputs that all bounces share; weights [point_count],
+    which sum to 1; effective_count: of so many equal points the weights are worth; log_evidence: logarithm of the mean
+    likelihood over the prior.
+    """
+
+    inputs: dict[str, "Distribution"]
+    points: Array
+    weights: Array
+    effective_count: float
+    log_evidence: float
+
+    @property
+    def is_reliable(self) -> bool:
+        """Whether enough points carry weight for its numbers to be those of the law."""
+        return self.effective_count >= FEWEST_EFFECTIVE
+
+    def sample(self, count: int, seed: int = 0) -> Array:
+        """Draw points with replacement, [count, input_count]."""
+        random = np.random.default_rng(seed)
+        drawn: Array = self.points[random.choice(len(self.points), count, p=self.weights)]
+        return drawn
+
+    def learnt(self) -> dict[str, LearntInput]:
+        """What was learnt of each input."""
+        ends = [0.5 - 0.5 * LEVEL, 0.5, 0.5 + 0.5 * LEVEL]
+        found = {}
+        for (name, law), values in zip(self.inputs.items(), self.points.T, strict=True):
+            lower, middle, upper = self._quantiles(values, ends)
+            least, median, most = (float(law.ppf(end)) for end in ends)
+            germ = law.germ(values)
+            after, before = np.sqrt(np.cov(germ, aweights=self.weights)), _germ_deviation(law)
+            found[name] = LearntInput(
+                IntervalEstimate(middle, lower, upper), IntervalEstimate(median, least, most),
+                float(after / before), self._information(law.cdf(values)),
+            )  # fmt: skip
+        return found
+
+    def statement(self) -> str:
+        """What was learnt, and what not, in a sentence."""
+        learnt = self.learnt()
+        said = [
+            f"{name}: {one.after.value:.3g} (90 % interval {one.after.lower:.3g} to {one.after.upper:.3g}, before "
+            f"{one.before.lower:.3g} to {one.before.upper:.3g})"
+            for name, one in learnt.items()
+            if one.sd_ratio <= NOTHING_LEARNT
+        ]
+        nothing = [name for name, one in learnt.items() if one.sd_ratio > NOTHING_LEARNT]
+        if nothing:
+            said.append(f"the data say nothing about {', '.join(nothing)}")
+        if not self.is_reliable:
+            said.append(f"only {self.effective_count:.0f} points carry weight, too few to trust any of this")
+        words = "; ".join(said)
+        return f"{words[0].upper()}{words[1:]}." if said[0].startswith("the") else f"{words}."
+
+    def _quantiles(self, values: Array, probabilities: Sequence[float]) -> list[float]:
+        order = np.argsort(values)
+        steps = np.cumsum(self.weights[order]) - 0.5 * self.weights[order]
+        return [float(np.interp(one, steps, values[order])) for one in probabilities]
+
+    def _information(self, shares: Array) -> float:
+        """Divergence of the law after from that before, in equal steps of probability before [nats], freed of luck."""
+        place = np.minimum((shares * STEPS).astype(int), STEPS - 1)
+        parts = np.bincount(place, weights=self.weights, minlength=STEPS)
+        divergence = float(np.sum(parts[parts > 0.0] * np.log(parts[parts > 0.0] * STEPS)))
+        return max(divergence - 0.5 * (STEPS - 1) / self.effective_count, 0.0)
+
+
+def _germ_deviation(law: "Distribution") -> float:
+    """Standard deviation of a law on its own scale, in which a decade counts as a decade."""
+    return float(law.germ(law.ppf((np.arange(1000) + 0.5) / 1000.0)).std())
+
+
+def infer(
+    model: "Emulator",
+    observations: Sequence[Observation],
+    *,
+    own: Collection[str] = (),
+    bounds: Bounds | None = None,
+    refit_count: int = REFIT_COUNT,
+    point_count: int = POINT_COUNT,
+    seed: int = 0,
+) -> Posterior:
+    """Infer the inputs of an emulator from observed runs of what it stands for, its inputs' laws being the prior.
+
+    own: inputs that each bounce draws anew, as its speed where that is not known; the others are those of all bounces.
+    bounds: of the outputs at points [point_count, input_count], where they follow the inputs (as in `Emulator.sample`).
+    refit_count: fits to groups drawn with replacement, over which the likelihood is averaged; 0: the emulator alone.
+    point_count: points that are looked at, of the prior first, then near those that carry weight until 400 do.
+    Bounces on one terrain share its bed, which is not followed: they count as of beds of their own.
+    Raises ValueError for no observation, and for names and values that cannot be.
+    """
+    shared = _checked(model, observations, own)
+    models = model.refits(refit_count, seed) if refit_count else [model]
+    laws, proposal = {name: model.runs.inputs[name] for name in shared}, Proposal(None)
+    found: list[Posterior] = []
+    for number in range(1 + MOST_ROUNDS):
+        scores, excess = proposal.draw(len(laws), point_count, seed + number)
+        points = np.column_stack([law.ppf(ndtr(column)) for law, column in zip(laws.values(), scores.T, strict=True)])
+        logarithms = excess + _likelihood(models, observations, laws, points, bounds, seed)
+        if not np.isfinite(logarithms).any():
+            raise ValueError(
+                "the observations have no likelihood at any point of the prior: they lie beyond bounds of the outputs; "
+                "look at their units"
+            )
+        found.append(posterior_of(laws, points, logarithms))
+        if found[-1].is_reliable:
+            break
+        proposal = Proposal.near(scores, found[-1].weights)
+    return max(found, key=lambda one: one.effective_count)
+
+
+def posterior_of(laws: "Mapping[str, Distribution]", points: Array, logarithms: Array) -> Posterior:
+    """The posterior of points [point_count, input_count] that carry these logarithms of weights [point_count]."""
+    weights = np.exp(logarithms - logsumexp(logarithms))
+    evidence = float(logsumexp(logarithms)) - float(np.log(len(points)))
+    return Posterior(dict(laws), points, weights, 1.0 / float(np.sum(weights**2)), evidence)
+
+
+@dataclass(frozen=True)
+class Proposal:
+    """Where points are drawn, in normal scores, in which the prior is standard normal: near a mean, or the prior.
+
+    near: mean [input_count] and root of the covariance [input_count, input_count] of a normal law; None: prior alone.
+    Source: [Owen-2000] (defensive mixtures).
+    """
+
+    normal: tuple[Array, Array] | None
+
+    @classmethod
+    def near(cls, scores: Array, weights: Array) -> "Proposal":
+        """Of the weighted points so far; an input of which one point knows all keeps some width."""
+        mean = weights @ scores
+        covariance = (scores - mean).T @ ((scores - mean) * weights[:, None]) + 1e-4 * np.eye(len(mean))
+        root: Array = np.asarray(WIDER * np.linalg.cholesky(covariance), dtype=np.float64)
+        return cls((mean, root))
+
+    def draw(self, dimension: int, count: int, seed: int) -> tuple[Array, Array]:
+        """Normal scores [count, dimension], and the logarithm of the prior's density over that of the draws [count]."""
+        from lithobrake.chaos import Uniform, sobol_sequence
+
+        unit = {str(k): Uniform(0.0, 1.0) for k in range(dimension + 1)}
+        uniforms = np.clip(sobol_sequence(unit, count, seed=seed), 2.0**-53, 1.0 - 2.0**-53)
+        scores = ndtri(uniforms[:, 1:])
+        if self.normal is None:
+            return scores, np.zeros(count)
+        mean, root = self.normal
+        moved = mean + scores @ root.T
+        scores = np.where((uniforms[:, 0] < OF_PRIOR)[:, None], scores, moved)
+        prior = -0.5 * np.sum(scores**2, axis=1)
+        inner = np.linalg.solve(root, (scores - mean).T).T
+        other = -0.5 * np.sum(inner**2, axis=1) - float(np.log(np.diagonal(root)).sum())
+        return scores, prior - np.logaddexp(np.log(OF_PRIOR) + prior, np.log1p(-OF_PRIOR) + other)
+
+
+def _likelihood(
+    models: "Sequence[Emulator]",
+    observations: Sequence[Observation],
+    shared: Mapping[str, "Distribution"],
+    points: Array,
+    bounds: Bounds | None,
+    seed: int,
+) -> Array:
+    """Logarithm of the likelihood at points [point_count, shared_count], averaged over the refits, [point_count]."""
+    inputs, total = models[0].runs.inputs, np.zeros((len(models), len(points)))
+    for number, one in enumerate(observations):
+        drawn = {name: law for name, law in inputs.items() if name not in shared and name not in one.known}
+        anew = dict(zip(drawn, sample_inputs(drawn, len(points), seed * 1000 + number).T, strict=True))
+        given = dict(zip(shared, points.T, strict=True)) | {n: np.full(len(points), v) for n, v in one.known.items()}
+        x = np.column_stack([(given | anew)[name] for name in inputs])
+        low, high = bounds(x) if bounds else (None, None)
+        for place, refit in enumerate(models):
+            total[place] += refit.log_density(
+                one.outputs, x, errors=one.errors, outcome=one.outcome, lower=low, upper=high
+            )
+    # Each refit is one emulator of all bounces, so the mean is over products, not of means.
+    averaged: Array = logsumexp(total, axis=0) - np.log(len(models))
+    return averaged
+
+
+def _checked(model: "Emulator", observations: Sequence[Observation], own: Collection[str]) -> list[str]:
+    """Names of the inputs that all bounces share. Raises ValueError for names and observations that cannot be."""
+    inputs = model.runs.inputs
+    if not observations or not all(one.outputs or one.outcome for one in observations):
+        raise ValueError(f"{len(observations)} observations; give at least one, each with outputs or an outcome")
+    known = {name for one in observations for name in one.known}
+    if unknown := sorted((known | set(own)) - set(inputs)):
+        raise ValueError(f"{unknown[0]} is no input of the emulator; allowed: {', '.join(inputs)}")
+    shared = [name for name in inputs if name not in own and name not in known]
+    if not shared:
+        raise ValueError("every input is known, or drawn anew by each bounce: nothing is left to infer")
+    return shared

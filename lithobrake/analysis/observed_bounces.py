@@ -1,0 +1,170 @@
+"""Whether observed bounces are of what an emulator knows, and how many would say something of an input."""
+
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.special import logsumexp
+
+from lithobrake.analysis.confidence import Array
+from lithobrake.analysis.inference import Bounds, Observation, Posterior, posterior_of
+from lithobrake.analysis.sampling import sample_inputs
+
+if TYPE_CHECKING:
+    from lithobrake.emulator import Emulator
+
+# Draws of what would be observed, beside what was.
+REPLICATES = 400
+# Points that stand for the law of the inputs: of the posterior, and of the prior.
+POSTERIOR_POINTS, PRIOR_POINTS = 200, 2048
+# Bounces at most that are looked at, and truths over which the outcome is averaged.
+MOST_BOUNCES, TRUTHS = 128, 8
+HALF = 0.5
+# With fewer points of weight on any soil what is left of a standard deviation is not known, and not told.
+FEWEST_EFFECTIVE = 30.0
+
+
+def predictive_p_value(
+    model: "Emulator", posterior: Posterior, observation: Observation, *, bounds: Bounds | None = None, seed: int = 0
+) -> float:
+    """Probability that a bounce which follows the posterior is as unlikely by it as the one that was observed.
+
+    A small one, below .05, says that the emulator, at no inputs that the prior allows, gives such bounces often: look
+    for an error of the observation, or a thing that the model leaves out. observation: with outputs. bounds: as in
+    `infer`. Raises ValueError for an observation without outputs.
+    Source: [Gelman-2013], chapter 6 (posterior predictive checks; here of the density).
+    """
+    if not observation.outputs:
+        raise ValueError("the observation has no outputs; give one that has, as an outcome alone is never surprising")
+    random, names = np.random.default_rng(seed), list(observation.outputs)
+    x = _points(model, posterior, observation, POSTERIOR_POINTS, seed)
+    low, high = bounds(x) if bounds else (None, None)
+    drawn = model.draw(x, max(1, REPLICATES // POSTERIOR_POINTS) * 2, seed, lower=low, upper=high)
+    columns = [model.output_names.index(name) for name in names]
+    y = drawn.y[:, :, columns].reshape(-1, len(names))
+    y = y[np.isfinite(y).all(axis=1)][:REPLICATES]
+    # What is seen has the error of the observation on top.
+    y = y + random.standard_normal(y.shape) * [observation.errors.get(name, 0.0) for name in names]
+
+    def told(values: Sequence[float]) -> float:
+        seen = dict(zip(names, values, strict=True))
+        found = model.log_density(seen, x, errors=observation.errors, lower=low, upper=high)
+        return float(logsumexp(found))
+
+    observed = told(list(observation.outputs.values()))
+    return float(np.mean([told(one) <= observed for one in y.tolist()]))
+
+
+@dataclass(frozen=True)
+class Identifiability:
+    """What observed bounces on one soil would say of an input.
+
+    sd_ratio    standard deviation after over before, by number of bounces, as far as the points of the prior can tell
+    bounces     how many halve it; None where none of these do
+    """
+
+    sd_ratio: dict[int, float]
+    bounces: float | None
+
+
+def identifiability(
+    model: "Emulator",
+    outputs: Collection[str],
+    *,
+    errors: dict[str, float] | None = None,
+    own: Collection[str] = (),
+    bounds: Bounds | None = None,
+    truths: int = TRUTHS,
+    seed: int = 0,
+) -> dict[str, Identifiability]:
+    """Tell, before anything is observed, how many bounces would halve the uncertainty of each input.
+
+    outputs: that would be observed of each bounce, with errors (standard deviations, by name). Soils are drawn from
+    the prior, up to 128 bounces on each from the emulator, and the root mean square of what is left of the standard
+    deviation is averaged over soils. own, bounds: as in `infer`. The emulator is taken as exact, so the real number is
+    larger.
+    """
+    from lithobrake.chaos import sobol_sequence
+
+    inputs, random = model.runs.inputs, np.random.default_rng(seed)
+    counts = [1 << power for power in range(MOST_BOUNCES.bit_length())]
+    shared = {name: law for name, law in inputs.items() if name not in own}
+    points = sobol_sequence(shared, PRIOR_POINTS, seed=seed)
+    squares, fewest = {name: np.zeros(len(counts)) for name in shared}, np.full(len(counts), np.inf)
+    for number, truth in enumerate(sample_inputs(shared, truths, seed)):
+        likelihoods = _likelihoods(model, truth, points, outputs, errors or {}, own, bounds, seed + number, random)
+        for place, count in enumerate(counts):
+            found = posterior_of(shared, points, likelihoods[:count].sum(axis=0))
+            fewest[place] = min(fewest[place], found.effective_count)
+            for name, one in found.learnt().items():
+                squares[name][place] += one.sd_ratio**2 / truths
+    told = int(np.argmax([*(fewest < FEWEST_EFFECTIVE), True]))
+    return {
+        name: Identifiability(
+            dict(zip(counts, np.sqrt(of[:told]).tolist(), strict=False)), _halving(counts, np.sqrt(of[:told]))
+        )
+        for name, of in squares.items()
+    }
+
+
+def _likelihoods(
+    model: "Emulator",
+    truth: Array,
+    points: Array,
+    outputs: Collection[str],
+    errors: dict[str, float],
+    own: Collection[str],
+    bounds: Bounds | None,
+    seed: int,
+    random: np.random.Generator,
+) -> Array:
+    """Logarithms of the likelihoods of bounces on one soil at points of the prior, [MOST_BOUNCES, point_count]."""
+    inputs, names = model.runs.inputs, list(outputs)
+
+    def with_own(shared: Array, offset: int) -> Array:
+        drawn = {name: inputs[name] for name in own}
+        anew = dict(zip(drawn, sample_inputs(drawn, len(shared), 7919 * seed + offset).T, strict=True))
+        given = dict(zip((name for name in inputs if name not in own), shared.T, strict=True))
+        return np.column_stack([(given | anew)[name] for name in inputs])
+
+    at = with_own(np.tile(truth, (MOST_BOUNCES, 1)), 0)
+    low, high = bounds(at) if bounds else (None, None)
+    drawn = model.draw(at, 1, seed, lower=low, upper=high)
+    found = np.empty((MOST_BOUNCES, len(points)))
+    for number in range(MOST_BOUNCES):
+        x = with_own(points, 1 + number)
+        low, high = bounds(x) if bounds else (None, None)
+        ended = int(drawn.outcome[number, 0])
+        y = drawn.y[number, 0, [model.output_names.index(name) for name in names]]
+        if ended == model.runs.output_outcome:
+            blurred = y + random.standard_normal(len(names)) * [errors.get(name, 0.0) for name in names]
+            seen = dict(zip(names, blurred.tolist(), strict=True))
+            found[number] = model.log_density(seen, x, errors=errors, lower=low, upper=high)
+        else:
+            found[number] = model.log_density({}, x, outcome=model.outcome_names[ended])
+    return found
+
+
+def _halving(counts: Sequence[int], ratio: Array) -> float | None:
+    """At how many bounces a ratio that falls comes to a half; None where it does not."""
+    below = np.flatnonzero(ratio <= HALF)
+    if len(below) == 0:
+        return None
+    place = int(below[0])
+    if place == 0:
+        return float(counts[0])
+    first, second = ratio[place - 1], ratio[place]
+    # Straight between two counts on logarithmic scales, as a standard deviation falls with a power of their number.
+    share = np.log(first / HALF) / np.log(first / second)
+    return float(np.exp(np.log(counts[place - 1]) + share * np.log(counts[place] / counts[place - 1])))
+
+
+def _points(model: "Emulator", posterior: Posterior, observation: Observation, count: int, seed: int) -> Array:
+    """Points of the posterior with what is known of the bounce, the rest drawn anew, [count, input_count]."""
+    inputs = model.runs.inputs
+    given = dict(zip(posterior.inputs, posterior.sample(count, seed).T, strict=True))
+    given |= {name: np.full(count, value) for name, value in observation.known.items()}
+    drawn = {name: law for name, law in inputs.items() if name not in given}
+    given |= dict(zip(drawn, sample_inputs(drawn, count, seed).T, strict=True))
+    return np.column_stack([given[name] for name in inputs])

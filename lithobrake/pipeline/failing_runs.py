@@ -1,0 +1,40 @@
+"""Which runs meet a limit state of the study file, by their touchdowns and by how their flights ended."""
+
+import numpy as np
+
+from lithobrake.outcomes import FlightStatus, TouchdownOutcome
+from lithobrake.outputs import TOUCHDOWN
+from lithobrake.pipeline.design_runs import DesignRuns
+from lithobrake.pipeline.run_flights import FATES as RUN_FATES
+from lithobrake.pipeline.run_flights import STAYS as STAYING
+from lithobrake.study.limit_state import FATES, STAYS, LimitState
+
+CAPTURED = TouchdownOutcome.CAPTURED.value
+# Words of a run that its touchdown alone decides; all others take flights.
+OF_TOUCHDOWN = (CAPTURED,)
+
+
+def failing_runs(state: LimitState, runs: DesignRuns, fates: np.ndarray) -> np.ndarray:
+    """Share of the flights of each run that meet a limit state, NaN where nobody knows, [run_count].
+
+    fates [run_count, len(RUN_FATES)]: how many of its flights ended so.
+    """
+    outcomes = np.array(runs.outcomes)
+    values = {name: runs.output(name) for name in TOUCHDOWN}
+    # A run without a known end was neither captured nor not.
+    ended = np.isin(outcomes, [TouchdownOutcome.CLEAR, TouchdownOutcome.CAPTURED])
+    values[CAPTURED] = np.where(ended, (outcomes == CAPTURED).astype(float), np.nan)
+    unflown = {word: np.full(runs.run_count, np.nan) for word in FATES if word != CAPTURED}
+    found = state.met(values | unflown)
+    counts = fates.sum(axis=1)
+    if set(state.fates) <= set(OF_TOUCHDOWN) or not counts.any():
+        return found
+    by_fate = np.column_stack([state.met(values | _words(fate, runs.run_count)) for fate in RUN_FATES])
+    met = np.where(fates > 0, fates * by_fate, 0.0).sum(axis=1)
+    return np.where(counts > 0, met / np.maximum(counts, 1), found)
+
+
+def _words(fate: str, count: int) -> dict[str, np.ndarray]:
+    """Whether each word of the grammar holds of flights that ended so, [count] each; `captured` is of the touchdown."""
+    held = {status.value: status == fate for status in FlightStatus} | {STAYS: fate in STAYING}
+    return {word: np.full(count, float(one)) for word, one in held.items()}

@@ -1,0 +1,99 @@
+"""What the study file asks for under [limit_states]: the probability of each, and which inputs make the failures."""
+
+from typing import Any
+
+import numpy as np
+
+from lithobrake.analysis import drawn_counts, failure_inputs, failure_probability, regression_terms
+from lithobrake.outcomes import FlightStatus, SampleOutcome
+from lithobrake.pipeline.design_runs import DesignRuns
+from lithobrake.pipeline.designs import design_inputs
+from lithobrake.pipeline.dispersion_statistics import Rows
+from lithobrake.pipeline.failing_runs import CAPTURED, OF_TOUCHDOWN, failing_runs
+from lithobrake.pipeline.fitted_emulator import REFIT_COUNT
+from lithobrake.pipeline.folder import StudyFolder
+from lithobrake.pipeline.run_flights import FLIGHT_COUNT, RunFlights
+from lithobrake.pipeline.samples import Samples
+from lithobrake.pipeline.scope import why_no_interval
+from lithobrake.pipeline.shares_over_refits import sample_fates
+from lithobrake.study import Study
+from lithobrake.study.limit_state import STAYS, LimitState
+
+
+def limit_state_results(study: Study, folder: StudyFolder, flights: Rows, *, holds: bool) -> dict[str, Any]:
+    """The results of every limit state of a study, by its name; holds: whether the site holds what lies there.
+
+    Raises ValueError for an output that no run has.
+    """
+    conditions = study.limit_states.conditions()
+    if not conditions:
+        return {}
+    runs, samples = DesignRuns.load(folder, "sequence"), Samples.load(folder)
+    fates = RunFlights.load(folder, "sequence").fates
+    of_samples = _values_of_samples(samples, sample_fates(samples, flights, holds=holds))
+    return {name: _one(study, name, LimitState.of(text), runs, fates, of_samples) for name, text in conditions.items()}
+
+
+def _one(
+    study: Study,
+    name: str,
+    state: LimitState,
+    runs: DesignRuns,
+    fates: np.ndarray,
+    of_samples: dict[str, np.ndarray],
+) -> dict[str, Any]:
+    """The results of one limit state."""
+    for output in state.outputs:
+        if not np.isfinite(runs.output(output)).any():
+            raise ValueError(
+                f"limit_states.{name} asks for {output}, which no run has; let the program that makes the touchdowns "
+                "give it, or leave the limit state out"
+            )
+    failing, inputs = failing_runs(state, runs, fates), design_inputs(study)
+    if not np.isfinite(failing).any():
+        raise ValueError(
+            f"limit_states.{name} is {state.text!r}, of which no run is known to meet it or not (runs.sqlite has how "
+            "each ended); ask for something else, or mend what the runs say"
+        )
+    x = runs.columns(list(inputs))
+    found = failure_probability(
+        failing,
+        runs.inputs["bed"],
+        terms=regression_terms(inputs, x),
+        drawn=_drawn(state, of_samples),
+        flight_count=FLIGHT_COUNT if set(state.fates) - set(OF_TOUCHDOWN) else None,
+        why=why_no_interval(study),
+    )
+    several = len(np.unique(runs.inputs["bed"][np.isfinite(failing)])) > 1
+    of_inputs = failure_inputs(inputs, x, failing, runs.inputs["bed"], study.seed) if several else {}
+    return {
+        "condition": state.text,
+        **found.summary(),
+        "failing_runs": float(np.nansum(failing)),
+        "inputs": {key: one.summary() for key, one in of_inputs.items()},
+    }
+
+
+def _values_of_samples(samples: Samples, met: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """What limit states may name, of the samples up to the last that was looked at, and which of them are known."""
+    total = len(met["remains"])
+    known = ~met["missing"]
+    words = {status.value: met[status] for status in FlightStatus}
+    words |= {STAYS: met["remains"], CAPTURED: met[SampleOutcome.CAPTURED]}
+    values = {name: samples.output(name)[:total] for name in samples.output_names}
+    return values | {word: np.where(known, one.astype(float), np.nan) for word, one in words.items()}
+
+
+def _drawn(state: LimitState, values: dict[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray] | None:
+    """How many samples of each refit meet a limit state, and how many are known; None where samples cannot tell.
+
+    The emulator draws no outputs of landers that are captured: where one decides, only the runs can tell.
+    """
+    if any(name not in values for name in state.outputs):
+        return None
+    met, refit = state.met(values), np.arange(len(values[CAPTURED])) % REFIT_COUNT
+    if np.isnan(met[values[CAPTURED] == 1.0]).any():
+        return None
+    drawn = drawn_counts(met, refit, REFIT_COUNT)
+    # Of so few samples no scatter between refits can be told.
+    return drawn if drawn[1].min() >= 2 else None

@@ -1,0 +1,91 @@
+"""Subset simulation against probabilities in closed form, and against OpenTURNS."""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from lithobrake.analysis import subset_simulation
+
+sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
+from reliability_coverage import LIMIT_STATES, openturns_subset
+
+SEEDS = 40
+
+
+@pytest.mark.parametrize("name", LIMIT_STATES)
+def test_probabilities_of_closed_form_are_met_and_their_bounds_hold(name: str) -> None:
+    margin, dimension, exact = LIMIT_STATES[name]
+    found = [subset_simulation(margin, dimension, points_per_level=500, seed=seed) for seed in range(SEEDS)]
+    told = np.mean([one.coefficient_of_variation for one in found])
+    mean = np.mean([one.probability for one in found])
+    assert mean == pytest.approx(exact, rel=3.0 * told / np.sqrt(SEEDS))
+    # A nominal 90 % interval holds in .75 to 1 of forty (three standard deviations).
+    assert np.mean([one.lower <= exact <= one.upper for one in found]) >= 0.75
+    for one in found:
+        assert (margin(one.failing) <= 0.0).all()
+        assert one.thresholds[-1] == 0.0
+        assert (np.diff(one.thresholds) < 0.0).all()
+        assert one.evaluation_count < 500 * len(one.thresholds)
+
+
+def test_openturns_agrees() -> None:
+    pytest.importorskip("openturns", reason="openturns is not installed")
+    margin, dimension, exact = LIMIT_STATES["linear, 2 inputs"]
+    ours = [subset_simulation(margin, dimension, seed=seed).probability for seed in range(20)]
+    theirs = [openturns_subset(margin, dimension, 1000, seed)[0] for seed in range(20)]
+    # Each scatters by about a quarter.
+    assert np.mean(ours) == pytest.approx(np.mean(theirs), rel=3.0 * 0.27 * np.sqrt(2.0 / 20.0))
+    assert np.mean(ours) == pytest.approx(exact, rel=3.0 * 0.27 / np.sqrt(20.0))
+
+
+def test_kept_inputs_stay_along_a_chain() -> None:
+    """Beds that jump: the margin depends on which of twelve a landing is on, drawn at the start of each chain."""
+    beds = np.linspace(-0.4, 0.4, 12)
+
+    def margin(points: np.ndarray) -> np.ndarray:
+        bed = np.minimum((12.0 * stats.norm.cdf(points[:, 0])).astype(int), 11)
+        return 3.0 - beds[bed] - points[:, 1]
+
+    exact = stats.norm.sf(3.0 - beds).mean()
+    found = [subset_simulation(margin, 2, kept=[0], points_per_level=500, seed=seed) for seed in range(SEEDS)]
+    told = np.mean([one.coefficient_of_variation for one in found])
+    assert np.mean([one.probability for one in found]) == pytest.approx(exact, rel=3.0 * told / np.sqrt(SEEDS))
+
+
+def test_a_failure_that_is_common_takes_one_level() -> None:
+    found = subset_simulation(lambda points: 0.5 - points[:, 0], 1, points_per_level=1000)
+    assert (found.evaluation_count, found.thresholds.tolist()) == (1000, [0.0])
+    assert found.lower < stats.norm.sf(0.5) < found.upper
+
+
+def test_a_failure_that_cannot_be_has_probability_0_and_says_that_it_was_not_reached() -> None:
+    found = subset_simulation(lambda points: np.ones(len(points)), 2)
+    assert (found.probability, found.lower, found.reached) == (0.0, 0.0, False)
+
+
+def test_the_same_seed_gives_the_same_bits() -> None:
+    margin, dimension, _ = LIMIT_STATES["linear, 2 inputs"]
+    first, again = (subset_simulation(margin, dimension, seed=3) for _ in range(2))
+    assert first.probability == again.probability
+    assert np.array_equal(first.failing, again.failing)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ({"points_per_level": 25}, "points_per_level is 25; allowed: multiples of 10 from 20"),
+        ({"points_per_level": 10}, "points_per_level is 10"),
+        ({"kept": [0, 1]}, r"kept is \[0, 1\] of 2 inputs"),
+    ],
+)
+def test_counts_that_cannot_be_are_refused(arguments: dict[str, object], words: str) -> None:
+    with pytest.raises(ValueError, match=words):
+        subset_simulation(lambda points: points[:, 0], 2, **arguments)
+
+
+def test_margins_that_are_no_numbers_are_refused() -> None:
+    with pytest.raises(ValueError, match="margin gave shape"):
+        subset_simulation(lambda points: np.full(len(points), np.nan), 2)
