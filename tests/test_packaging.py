@@ -63,11 +63,12 @@ def test_imports_of_third_parties_are_declared() -> None:
     project = _project()
     # Dask is imported only by who asks for a cluster, others by who asks for their tables or files.
     extras = project["optional-dependencies"]
-    entries = [*project["dependencies"], *extras["dask"], *extras["data"], *extras["yaml"]]
+    entries = [*project["dependencies"], *extras["dask"], *extras["data"], *extras["yaml"], *extras["view"]]
     declared = {re.split(r"[>=<\[]", entry)[0] for entry in entries}
     # Some come with the package that they belong to, which asks for the one it needs.
     names_on_index = {
         "PIL": "matplotlib",
+        "imageio_ffmpeg": "imageio-ffmpeg",
         "sklearn": "scikit-learn",
         "mpl_toolkits": "matplotlib",
         "pydantic_core": "pydantic",

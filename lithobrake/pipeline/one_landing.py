@@ -69,7 +69,7 @@ class OneLanding:
 def landing_inputs(study: Study, changes: Iterable[str] = (), number: int = 1) -> dict[str, float]:
     """What the run of a number reads, counted from 1, but for changes such as "grain.friction=0.4".
 
-    By dotted key, in the units of the study file. A study of the paper's design lands at the medians, whatever the
+    By dotted key, in the units of the study file. A study in two stages lands at the medians, whatever the
     number. Raises ValueError for a change of what a landing does not read, a study without soil, or a number below 1.
     """
     if not study.has_soil:
@@ -122,9 +122,8 @@ def _changed(change: str, values: dict[str, float]) -> tuple[str, float]:
         value = float(tomllib.loads(f"x = {text}")["x"])
     except (tomllib.TOMLDecodeError, TypeError, ValueError):
         raise ValueError(f"--set {key} is {text!r}; allowed: a number, in the unit of the study file") from None
-    whole = key == "bed"
-    if not math.isfinite(value) or (whole and (value < 0.0 or value != round(value))):
-        raise ValueError(
-            f"--set {key} is {text}; allowed: {'a whole number from 0 on' if whole else 'a finite number'}"
-        )
+    if not math.isfinite(value):
+        raise ValueError(f"--set {key} is {text}; allowed: a finite number")
+    if key == "bed" and (value < 0.0 or value != round(value)):
+        raise ValueError(f"--set {key} is {text}; allowed: a whole number from 0 on")
     return key, value

@@ -1,7 +1,9 @@
 """Moving bodies as a VTKHDF file: ParaView opens it and plays it.
 
 One file of type PolyData, version 2.1, whose triangles stand there once and whose points and speeds stand there for
-each instant. Source: VTK, "VTKHDF File Format" (documentation of VTK, read 2026).
+each instant.
+
+Source: [Kitware-2026].
 """
 
 from pathlib import Path
