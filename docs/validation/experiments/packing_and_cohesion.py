@@ -86,6 +86,8 @@ def filled(kind: Kind, pull: float, seed: int) -> tuple[World, Floats]:
     for k, grain in enumerate(grains):
         cell = np.array([k % row, k // row % row, k // row**2]) + 0.5
         place = cell * [width / row, width / row, pitch] - [0.5 * width, 0.5 * width, 0.0]
+        # In straight columns spheres would stand on each other.
+        place[:2] += 0.5 * (width / row - 2.0 * grain.bounding_radius) * generator.uniform(-1.0, 1.0, 2)
         world.add_body(grain, stuff, place, orientation=tuple(random_orientation(generator)))
     world.add_plane((0, 0, 0), (0, 0, 1), stuff)
     for axis in (0, 1):
