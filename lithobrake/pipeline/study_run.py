@@ -45,9 +45,15 @@ def run(
     It is identified by its pickle, which holds the name of a function and not its body: after an edit, use another
     `out`.
     report: also make the page.
-    progress: shows the stages as they run; None: silence.
+    progress: shows the stages as they run, as lithobrake.progress.study_progress() does; None: silence.
     Raises ValueError for a study or folder that is refused, too few runs with outputs, a model that cannot be pickled.
     """
+    lacking = [name for name in ("begin", "say", "progress") if progress and not hasattr(progress, name)]
+    if lacking:
+        raise ValueError(
+            f"progress is {progress!r}, which has no {', '.join(lacking)}; allowed: None, or what "
+            "lithobrake.progress.study_progress() gives"
+        )
     function = None if model is None else function_identity(model)
     if isinstance(study, Mapping):
         if out is None:

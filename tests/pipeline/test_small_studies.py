@@ -12,6 +12,7 @@ from pathlib import Path
 
 import pytest
 
+import lithobrake
 from lithobrake.campaign import Record
 from lithobrake.results import open_study
 
@@ -214,3 +215,9 @@ def test_a_folder_that_may_only_be_read_is_refused_in_one_sentence_and_its_runs_
         ]
         assert {path: path.read_bytes() for path in out.rglob("*") if path.is_file()} == before
         out.chmod(0o755)
+
+
+def test_a_progress_that_shows_nothing_is_refused_before_anything_is_written(tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match="which has no begin, say, progress; allowed: None, or what"):
+        lithobrake.run("examples/ball_on_plate.toml", tmp_path / "study", progress=print)  # type: ignore[arg-type]
+    assert not (tmp_path / "study").exists()

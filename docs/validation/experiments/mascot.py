@@ -87,7 +87,7 @@ def main() -> None:
     work = parser.parse_args().work
     work.mkdir(parents=True, exist_ok=True)
     ball(work / "ryugu_ball.obj")
-    results = lithobrake.run(study((work / "ryugu_ball.obj").resolve()), work / "study", progress=print)
+    results = lithobrake.run(study((work / "ryugu_ball.obj").resolve()), work / "study")
     rest, samples = results.rest, results.samples
     soil = rest.where(rest["ground"] == "soil")
     first = soil["sample"].astype(int)

@@ -27,31 +27,16 @@ from fits import (
     speeds,
     stopping,
 )  # fmt: skip
+from low_gravity_parts import balls_part, packing_part, plate_part
 from page_text import TEXT, WHY_BEADS, WHY_GRAINS, WHY_GRAVITY
 from settling_in_other_gravities import DIAMETER
 from sphere_bed import read_rows
+from table_lines import HERE, Lines, line, said
 
-HERE = Path(__file__).parent
 PAGE = HERE.parent / "experiments.md"
 UNMEASURED = Estimate(0.42, 0.03, 0)  # of the slope of a heap, where none was measured: what glass beads have
 NOT_YET = "Too few rows yet: run the script."
 HEAD = "| quantity | measured | ours, 95 % | rows | ours over measured | agrees |\n|---|---|---|---|---|---|\n"
-
-
-def said(estimate: Estimate) -> str:
-    """Return a value with its interval."""
-    return f"{estimate.value:.3f} +- {estimate.half:.3f}" if math.isfinite(estimate.half) else f"{estimate.value:.3f}"
-
-
-def line(quantity: str, measured: float, ours: Estimate, bar: float, text: str = "") -> tuple[str, bool]:
-    """Return a row of the table: it agrees where our value is within a bar of the measured one."""
-    agrees = abs(ours.value - measured) <= bar
-    ratio = f"{ours.value / measured:.2f}" if measured else "-"
-    return (
-        f"| {quantity} | {text or f'{measured:.3g}'} | {said(ours)} | {ours.rows} | {ratio} | "
-        f"{'yes' if agrees else 'no'} |",
-        agrees,
-    )
 
 
 def came_from(name: str) -> str:
@@ -63,7 +48,7 @@ def came_from(name: str) -> str:
     return f"`{told['command']}`, {told['date']}, {told['machine']}, {told['cpu_s_of_rows']:g} s of CPU time in drops."
 
 
-def beads_part(work: Path) -> tuple[list[tuple[str, bool]], str, dict[str, Estimate]]:
+def beads_part(work: Path) -> tuple[Lines, str, dict[str, Estimate]]:
     """Return rows, a table of influences and estimates of the ball dropped into beads."""
     every = read_rows(HERE / "ball_into_beads.csv")
     drops = [row for row in every if "_drop_" in row["name"]]
@@ -100,7 +85,7 @@ def beads_part(work: Path) -> tuple[list[tuple[str, bool]], str, dict[str, Estim
     return rows, table + "\n".join(others), {"slope": slope, "density": density, "total": total}
 
 
-def gravity_part() -> tuple[list[tuple[str, bool]], str]:
+def gravity_part() -> tuple[Lines, str]:
     """Return rows and a table of the sphere that settles under other gravities."""
     rows = read_rows(HERE / "settling_in_other_gravities.csv")
     if len({row["share"] for row in rows}) < 3:
@@ -128,7 +113,7 @@ def gravity_part() -> tuple[list[tuple[str, bool]], str]:
     return lines, table
 
 
-def grains_part() -> tuple[list[tuple[str, bool]], str]:
+def grains_part() -> tuple[Lines, str]:
     """Return rows and a table of the grain shot at its own kind."""
     every = read_rows(HERE / "grain_on_its_own_kind.csv")
     if not every:
