@@ -12,8 +12,8 @@ from pathlib import Path
 
 import pytest
 
-import lithobrake
 from lithobrake.campaign import Record
+from lithobrake.pipeline.study_run import run
 from lithobrake.results import open_study
 
 from .ball_studies import FEW_RUNS, PROGRAM, write_ball
@@ -219,5 +219,5 @@ def test_a_folder_that_may_only_be_read_is_refused_in_one_sentence_and_its_runs_
 
 def test_a_progress_that_shows_nothing_is_refused_before_anything_is_written(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match="which has no begin, say, progress; allowed: None, or what"):
-        lithobrake.run("examples/ball_on_plate.toml", tmp_path / "study", progress=print)  # type: ignore[arg-type]
+        run("examples/ball_on_plate.toml", tmp_path / "study", progress=print)  # type: ignore[arg-type]
     assert not (tmp_path / "study").exists()

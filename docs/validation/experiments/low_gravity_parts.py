@@ -1,6 +1,7 @@
 """What the tables of the experiments in low gravity say: rows of the page's table, and tables of their own."""
 
 import math
+from collections import Counter
 
 import numpy as np
 from draw_low_gravity import of_balls, of_journeys, of_packing, of_plates
@@ -135,7 +136,7 @@ def mascot_part() -> tuple[Lines, str]:
         spread("MASCOT: time from the first contact to rest [s]", 663.0, column(rested, "time_s")),
         spread("MASCOT: way along the ground [m]", 17.0, column(rested, "path_length")),
     ]
-    others = {status: sum(row["status"] == status for row in rows) for status in dict.fromkeys(r["status"] for r in rows)}
+    others = Counter(str(row["status"]) for row in rows)
     of_journeys(rested, HERE / "mascot.png")
     return lines, (
         f"Of {len(rows)} landers whose first impact was like MASCOT's, "

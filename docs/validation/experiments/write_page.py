@@ -1,4 +1,4 @@
-"""Write docs/validation/experiments.md and its figures from the tables of the three experiments.
+"""Write docs/validation/experiments.md and its figures from the tables of the experiments.
 
 python docs/validation/experiments/write_page.py --work FOLDER
 """
@@ -27,8 +27,8 @@ from fits import (
     speeds,
     stopping,
 )  # fmt: skip
-from low_gravity_parts import balls_part, packing_part, plate_part
-from page_text import TEXT, WHY_BEADS, WHY_GRAINS, WHY_GRAVITY
+from low_gravity_parts import balls_part, mascot_part, packing_part, plate_part
+from page_text import TEXT, WHY
 from settling_in_other_gravities import DIAMETER
 from sphere_bed import read_rows
 from table_lines import HERE, Lines, line, said
@@ -39,13 +39,27 @@ NOT_YET = "Too few rows yet: run the script."
 HEAD = "| quantity | measured | ours, 95 % | rows | ours over measured | agrees |\n|---|---|---|---|---|---|\n"
 
 
+# Keys of the page's text, and the tables that its sections stand on.
+TABLES = {
+    "beads": "ball_into_beads", "gravity": "settling_in_other_gravities", "grains": "grain_on_its_own_kind",
+    "plate": "plate_into_loose_grains", "packing": "packing_and_cohesion", "balls": "ball_under_gravities",
+    "mascot": "mascot",
+}  # fmt: skip
+
+
+def wrapped(text: str) -> str:
+    """Return a paragraph in lines."""
+    return "\n".join(textwrap.wrap(text, 98))
+
+
 def came_from(name: str) -> str:
     """Return command, date, machine and cost of a table."""
     path = HERE / f"{name}.json"
     if not path.exists():
         return ""
     told = json.loads(path.read_text())
-    return f"`{told['command']}`, {told['date']}, {told['machine']}, {told['cpu_s_of_rows']:g} s of CPU time in drops."
+    cost = f", {told['cpu_s_of_rows']:g} s of CPU time in its rows" if "cpu_s_of_rows" in told else ""
+    return f"`{told['command']}`, {told['date']}, {told['machine']}{cost}."
 
 
 def beads_part(work: Path) -> tuple[Lines, str, dict[str, Estimate]]:
@@ -166,19 +180,21 @@ def main() -> None:
     beads, drops, found = beads_part(parser.parse_args().work)
     gravities, settled = gravity_part()
     grains, impacts = grains_part()
-    lines = beads + gravities + grains
+    plates, plate = plate_part()
+    packings, packing = packing_part()
+    balls, ball = balls_part()
+    journeys, mascot = mascot_part()
+    lines = beads + gravities + grains + plates + packings + balls + journeys
     yes = sum(agrees for _, agrees in lines)
     first = (
         f"{yes} of {len(lines)} quantities agree. Exponents of depth: {said(found['density'])} of the density (1/2), "
         f"{said(found['total'])} of the drop distance (1/3)."
     )
     page = TEXT.format(
-        why_beads=WHY_BEADS, why_gravity=WHY_GRAVITY, why_grains=WHY_GRAINS,
-        first="\n".join(textwrap.wrap(first, 98)), table=HEAD + "\n".join(text for text, _ in lines),
-        drops=drops, settled=settled, impacts=impacts, similar="\n".join(textwrap.wrap(similar(), 98)),
-        **{f"from_{key}": "\n".join(textwrap.wrap(came_from(name), 98)) for key, name in (
-            ("beads", "ball_into_beads"), ("gravity", "settling_in_other_gravities"),
-            ("grains", "grain_on_its_own_kind"))},
+        **{f"why_{key}": text for key, text in WHY.items()},
+        first=wrapped(first), table=HEAD + "\n".join(text for text, _ in lines),
+        drops=drops, settled=settled, impacts=impacts, similar=wrapped(similar()), plate=plate, packing=packing,
+        ball=ball, mascot=wrapped(mascot), **{f"from_{key}": wrapped(came_from(name)) for key, name in TABLES.items()},
     )  # fmt: skip
     PAGE.write_text(page)
     print("\n".join(text for text, _ in lines))
