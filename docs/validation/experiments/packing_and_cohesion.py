@@ -21,7 +21,8 @@ from sphere_bed import LOOKS, PATIENCE, POUR_STEPS, Floats, add_row, note_origin
 
 from lithobrake.dem import ConvexHull, Material, Shape, Sphere, World
 from lithobrake.touchdown import settling
-from lithobrake.touchdown.grains import make_grain, random_orientation
+from lithobrake.touchdown.grains import make_grain
+from lithobrake.touchdown.pouring import rain
 
 TABLE = Path(__file__).parent / "packing_and_cohesion.csv"
 PULLS = (0.0, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0)  # of a contact, over the weight of the mean grain
@@ -30,6 +31,8 @@ GRAVITY = 9.81
 WIDTH, DEPTH = 9.0, 14.0
 # sqrt(g d), the most at which grains fall.
 FALL_SPEED = 3.0
+# Times of free fall through the column for which contacts take steps of their own.
+FALLING = 3
 LOST = 2.0  # mean grains below the surface and above the floor that are not counted
 
 
@@ -76,19 +79,13 @@ def shapes(kind: Kind, generator: np.random.Generator) -> list[Shape]:
 
 
 def filled(kind: Kind, pull: float, seed: int) -> tuple[World, Floats]:
-    """Return grains at rest that fell from a lattice under a drag, and their volumes [m3]."""
+    """Return grains at rest that fell as a loose column under a drag, and their volumes [m3]."""
     generator = np.random.default_rng([seed, 7])
     grains, stuff = shapes(kind, generator), material_of(kind, pull)
     world = World((0.0, 0.0, -GRAVITY), None)
     width = WIDTH * kind.mean
-    pitch = 2.02 * max(grain.bounding_radius for grain in grains)
-    row = max(int(width / pitch), 1)
-    for k, grain in enumerate(grains):
-        cell = np.array([k % row, k // row % row, k // row**2]) + 0.5
-        place = cell * [width / row, width / row, pitch] - [0.5 * width, 0.5 * width, 0.0]
-        # In straight columns spheres would stand on each other.
-        place[:2] += 0.5 * (width / row - 2.0 * grain.bounding_radius) * generator.uniform(-1.0, 1.0, 2)
-        world.add_body(grain, stuff, place, orientation=tuple(random_orientation(generator)))
+    for grain, place, turn in zip(grains, *rain(generator, grains, (width, width)), strict=True):
+        world.add_body(grain, stuff, place, orientation=tuple(turn))
     world.add_plane((0, 0, 0), (0, 0, 1), stuff)
     for axis in (0, 1):
         for sign in (1.0, -1.0):
@@ -116,9 +113,13 @@ def fall(world: World, kind: Kind) -> None:
     duration = math.sqrt(2.0 * float(world.position[:, 2].max()) / GRAVITY)
     world.time_step = world.shortest_contact(2.0 * GRAVITY / world.drag) / POUR_STEPS
     for look in range(PATIENCE * LOOKS):
+        # What falls is stepped by what it meets; forces balance only at a common step.
+        if look < FALLING * LOOKS:
+            world.run_locally(duration / LOOKS, POUR_STEPS)
+            continue
         world.run(duration=duration / LOOKS)
         at_rest = settling.kinetic_ratio(world, kind.mean, GRAVITY) < settling.KINETIC_RATIO
-        if look >= LOOKS and at_rest and settling.unbalanced_force(world) < settling.UNBALANCED_FORCE:
+        if at_rest and settling.unbalanced_force(world) < settling.UNBALANCED_FORCE:
             return
     raise ValueError(f"grains were not at rest after {world.time:.3g} s: raise PATIENCE")
 

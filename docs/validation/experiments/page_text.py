@@ -95,7 +95,7 @@ which in 6 s moves nothing by more than a millimetre; no gas.
 
 [Keulen-2026]: settled in a drop tower, glass beads of .75 to 1 mm take up to 4.25 % more volume
 than on Earth (at .25 m/s2), broken basalt of 2 to 5 mm up to 12.2 % (at .15 m/s2). Ours: spheres
-and hulls of these sizes fall from a lattice under a drag that holds them below 3 sqrt(g d), in a
+and hulls of these sizes fall as a loose column under a drag that holds them below 3 sqrt(g d), in a
 box nine grains wide, as stiff as 2e4 times density, gravity and size. By similarity only the pull
 of a contact over the weight of a grain tells such beds apart, so one curve serves for every
 gravity.
