@@ -79,18 +79,19 @@ def put(soil: Soil) -> tuple[Floats, Floats]:
     radius *= np.cbrt(volume / (4.0 / 3.0 * np.pi * radius**3).sum())
     half = np.array([0.5 * soil.width, 0.5 * soil.width, 0.5 * soil.depth])
     place = generator.uniform(-1.0, 1.0, (len(radius), 3)) * (half - radius[:, None])
-    worst = np.inf
-    while worst > PUT * soil.grain:
+    while True:
         pair = cKDTree(place).query_pairs(2.0 * radius.max(), output_type="ndarray")
         between = place[pair[:, 1]] - place[pair[:, 0]]
         far = np.linalg.norm(between, axis=1)
         overlap = radius[pair].sum(axis=1) - far
+        worst = float(overlap.max(initial=0.0))
+        if worst <= PUT * soil.grain:
+            break
         pressed = overlap > 0.0
-        push = (0.55 * np.maximum(overlap, 0.0) / np.maximum(far, 1e-12))[pressed, None] * between[pressed]
+        push = (0.55 * overlap / np.maximum(far, 1e-12))[pressed, None] * between[pressed]
         np.subtract.at(place, pair[pressed, 0], push)
         np.add.at(place, pair[pressed, 1], push)
         place = np.clip(place, radius[:, None] - half, half - radius[:, None])
-        worst = float(overlap.max(initial=0.0))
     radius -= 0.5 * worst
     return place - [0.0, 0.0, half[2]], radius
 

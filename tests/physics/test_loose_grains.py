@@ -1,0 +1,60 @@
+"""Loose grains and grains that pull on each other: what docs/validation/experiments asks for, in small."""
+
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+EXPERIMENTS = Path(__file__).parents[2] / "docs" / "validation" / "experiments"
+
+
+@pytest.fixture(autouse=True)
+def experiments_on_path(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The scripts of the experiments import each other by name."""
+    monkeypatch.setattr(sys, "path", [str(EXPERIMENTS), *sys.path])
+
+
+def test_a_plate_is_slowed_more_by_denser_and_by_cohesive_grains(tmp_path: Path) -> None:
+    """Loose grains let OSIRIS-REx's plate through, dense ones and those of 100 Pa stop it [Ballouz-2021]."""
+    from plate_into_loose_grains import Soil, pressed_in
+
+    loose = Soil(filled=0.35, grain=0.12, width=0.8, depth=0.6)
+    speeds = {}
+    for name, soil in {
+        "loose": loose, "dense": replace(loose, filled=0.55), "cohesive": replace(loose, filled=0.55, cohesion=100.0),
+    }.items():  # fmt: skip
+        row, path = pressed_in(soil, tmp_path)
+        assert np.isfinite(path).all()
+        speeds[name] = row["speed_1"]
+    assert 0.09 < speeds["loose"] < 0.1
+    assert speeds["dense"] < speeds["loose"] - 0.002
+    assert speeds["cohesive"] < speeds["dense"]
+
+
+def test_grains_are_put_where_none_touch(tmp_path: Path) -> None:
+    from plate_into_loose_grains import Soil, bulk_density, put
+    from scipy.spatial import cKDTree
+
+    soil = Soil(filled=0.5, grain=0.1, width=0.7, depth=0.5)
+    place, radius = put(soil)
+    pair = cKDTree(place).query_pairs(2.0 * radius.max(), output_type="ndarray")
+    gap = np.linalg.norm(place[pair[:, 0]] - place[pair[:, 1]], axis=1) - radius[pair].sum(axis=1)
+    assert gap.min() > -1e-12
+    assert bulk_density(radius, soil) / soil.material.density == pytest.approx(0.5, abs=0.01)
+
+
+def test_grains_that_pull_on_each_other_lie_looser(monkeypatch: pytest.MonkeyPatch) -> None:
+    """So beds take more volume where gravity is less [Keulen-2026]; without a pull they do not."""
+    import packing_and_cohesion as packing
+
+    monkeypatch.setattr(packing, "WIDTH", 6.0)
+    monkeypatch.setattr(packing, "DEPTH", 7.0)
+    kind = packing.KINDS["glass"]
+    fraction = {}
+    for pull in (0.0, 30.0):
+        world, volumes = packing.filled(kind, pull, 1)
+        fraction[pull] = packing.solid_fraction(world, volumes, kind)
+    assert 0.5 < fraction[0.0] < 0.63
+    assert fraction[30.0] < fraction[0.0] - 0.03
