@@ -71,7 +71,8 @@ def packing_part() -> tuple[Lines, str]:
         tried = np.geomspace(1e-3, pulls.max() * share, 200)
         found = np.array([excess(pulls, fractions, float(pull), share) for pull in tried])
         count = sum(row["kind"] == kind for row in rows)
-        none = Estimate(float(found[0]), math.nan, count)
+        # By similarity, whatever the gravity.
+        none = Estimate(0.0, math.nan, count)
         lines.append(line(f"{kind}: excess volume in low gravity, no cohesion", measured, none, 0.25 * measured))
         if found.max() >= measured:
             pull = float(tried[int(np.argmax(found >= measured))])
