@@ -3,7 +3,7 @@
     python docs/validation/experiments/ball_under_gravities.py --work FOLDER [--froude 0 0.5 ...] [--shares 1 0.1 ...]
 
 The beads are of one modulus under every gravity and settle anew under each, so that no similarity makes the answer.
-Froude number: impact speed over sqrt(g D), D the ball's diameter. Rows that stand in ball_under_gravities.csv are not
+Froude number: speed at the first touch over sqrt(g D), D the ball's diameter. Rows that stand in ball_under_gravities.csv are not
 run again.
 
 Sources: [Sunday-2021], [Sunday-2022] (depth and duration follow the Froude number), [Murdoch-2017] (depth follows the
@@ -46,9 +46,8 @@ def drop(work: Path, share: float, froude: float) -> Row:
     unit = math.sqrt(DIAMETER / beads.gravity)
     speed = froude * DIAMETER / unit
     mass = DENSITY * math.pi / 6.0 * DIAMETER**3
-    fall = speed**2 / (2.0 * beads.gravity)
     bulk = bulk_density(world, beads)
-    result, path = dropped(world, Sphere(0.5 * DIAMETER), GLASS, mass, (0.0, 0.0), fall, PACE * unit, LOCAL)
+    result, path = dropped(world, Sphere(0.5 * DIAMETER), GLASS, mass, (0.0, 0.0), 0.0, PACE * unit, LOCAL, speed)
     np.save(work / f"gravities_{share:g}_{froude:g}.npy", path)
     return {
         "share": share, "froude": froude, "speed": speed, "beads": beads.count, "bulk_density": bulk,

@@ -115,6 +115,7 @@ def balls_part() -> tuple[Lines, str]:
     assert math.isfinite(of_speed.value)
     of_balls(rows, HERE / "ball_under_gravities.png")
     table = (
+        "![balls](experiments/ball_under_gravities.png)\n\n"
         "| gravity over Earth's | Froude number | speed [m/s] | depth below first touch [cm] "
         "| duration [sqrt(D/g)] | peak [g] |\n|---|---|---|---|---|---|"
     )

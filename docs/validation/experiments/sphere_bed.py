@@ -172,10 +172,11 @@ def dropped(
     fall: float,
     pace: float,
     local: float = 0.0,
+    touch_speed: float | None = None,
 ) -> tuple[Row, Floats]:
     """Let a ball fall from a height [m] of its lowest point above the mean surface, and follow it until it stops.
 
-    pace [s] is the time between two looks. local: steps in a contact at its own steps; 0: all at the world's step.
+    touch_speed [m/s]: with which it first touches a bead, instead of what the fall gives. pace [s] is the time between two looks. local: steps in a contact at its own steps; 0: all at the world's step.
     Returns the row of results and the path: time since the surface was reached [s], depth of the lowest point below the
     mean surface [m], speed downwards [m/s], deceleration [m/s2], shape [looks, 4].
     """
@@ -186,7 +187,7 @@ def dropped(
     sizes = np.array([body.shape.bounding_radius for body in world.bodies])
     span = (radius + sizes) ** 2 - (offset**2).sum(axis=1)
     start = float((world.position[:, 2] + np.sqrt(np.maximum(span, 0.0)))[span > 0.0].max()) * (1.0 + 1e-9) - radius
-    speed = math.sqrt(max(2.0 * gravity * (fall - (start - level)), 0.0))
+    speed = math.sqrt(max(2.0 * gravity * (fall - (start - level)), 0.0)) if touch_speed is None else touch_speed
     inertia = 0.4 * mass * radius**2 * np.eye(3)
     body = world.add_body(
         ball, material, (*place, start + radius), velocity=(0.0, 0.0, -speed), mass=mass, inertia=inertia
