@@ -3,8 +3,8 @@
     python docs/validation/experiments/ball_under_gravities.py --work FOLDER [--froude 0 0.5 ...] [--shares 1 0.1 ...]
 
 The beads are of one modulus under every gravity and settle anew under each, so that no similarity makes the answer.
-Froude number: speed at the first touch over sqrt(g D), D the ball's diameter. Rows that stand in ball_under_gravities.csv are not
-run again.
+Froude number: speed at the first touch over sqrt(g D), D the ball's diameter. Rows that stand in
+ball_under_gravities.csv are not run again.
 
 Sources: [Sunday-2021], [Sunday-2022] (depth and duration follow the Froude number), [Murdoch-2017] (depth follows the
 speed and no gravity).

@@ -176,7 +176,8 @@ def dropped(
 ) -> tuple[Row, Floats]:
     """Let a ball fall from a height [m] of its lowest point above the mean surface, and follow it until it stops.
 
-    touch_speed [m/s]: with which it first touches a bead, instead of what the fall gives. pace [s] is the time between two looks. local: steps in a contact at its own steps; 0: all at the world's step.
+    touch_speed [m/s]: with which it first touches a bead, instead of what the fall gives. pace [s] is the time between
+    two looks. local: steps in a contact at its own steps; 0: all at the world's step.
     Returns the row of results and the path: time since the surface was reached [s], depth of the lowest point below the
     mean surface [m], speed downwards [m/s], deceleration [m/s2], shape [looks, 4].
     """
