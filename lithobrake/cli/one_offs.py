@@ -1,4 +1,4 @@
-"""Commands beside a study: one landing of it, and a server of its models."""
+"""Commands beside a study: one landing of it, a server of its models, and a look at the installation."""
 
 from collections.abc import Callable
 from contextlib import suppress
@@ -14,6 +14,9 @@ from lithobrake.cli.telling import tell, tell_json
 
 if TYPE_CHECKING:
     from lithobrake.results.moving_bodies import MovingBodies
+
+# Exit code of `doctor` where a library is missing without which nothing works.
+INCOMPLETE = 1
 
 
 @app.command(epilog="Example: lithobrake land study.toml --set grain.friction=0.4 --out landing.h5")
@@ -77,6 +80,23 @@ def serve(
         # That it was ended is no news to whoever ended it.
         with suppress(KeyboardInterrupt):
             server.serve_forever()
+
+
+@app.command(epilog="Example: lithobrake doctor --json > doctor.json")
+def doctor(
+    quick: Annotated[bool, typer.Option("--quick", help="Measure no speeds.")] = False, json: Json = False
+) -> None:
+    """Tell what is installed, what is missing and how to get it, and how fast this machine is."""
+    with one_sentence():
+        from lithobrake.doctor import examine
+
+        found = examine(quick)
+    if json:
+        tell_json(found.to_json())
+    else:
+        tell(found.lines())
+    if found.lacking:
+        raise typer.Exit(INCOMPLETE)
 
 
 def _keep_motion(

@@ -3,15 +3,16 @@
 import shutil
 import sys
 from collections.abc import Callable
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from lithobrake.cli.application import app
-from lithobrake.cli.arguments import StudyDirectory, given_folder
-from lithobrake.cli.refusals import one_sentence
-from lithobrake.cli.telling import reader_may_leave, study_headline, tell
+from lithobrake.cli.arguments import Json, StudyDirectory, given_folder
+from lithobrake.cli.refusals import BAD_INPUT, leave, one_sentence
+from lithobrake.cli.telling import reader_may_leave, study_headline, tell, tell_json
 
 if TYPE_CHECKING:
     from lithobrake.results.moving_bodies import MovingBodies
@@ -30,7 +31,9 @@ def report(folder: StudyDirectory) -> None:
 
 @app.command(epilog="Example: lithobrake runs runs/study --csv > runs.csv")
 def runs(
-    folder: StudyDirectory, csv: Annotated[bool, typer.Option("--csv", help="Print every column as CSV.")] = False
+    folder: StudyDirectory,
+    csv: Annotated[bool, typer.Option("--csv", help="Print every column as CSV.")] = False,
+    json: Json = False,
 ) -> None:
     """List the runs of a study with the inputs that vary."""
     with one_sentence():
@@ -44,6 +47,11 @@ def runs(
             from lithobrake.study.units import run_units
 
             units = run_units()
+    if csv and json:
+        leave("--csv and --json are two forms of one list; give one of them", BAD_INPUT)
+    if json:
+        tell_json({"units": units, "runs": [asdict(record) for record in records]})
+        return
     if csv:
         with reader_may_leave():
             write_csv(records, sys.stdout, units)
@@ -124,6 +132,7 @@ def export(
         float, typer.Option("--resolution", metavar="DEGREES", help="geotiff: edge of a cell.")
     ] = 1.0,
     out: Annotated[str | None, typer.Option("--out", metavar="FOLDER", help="The default is DIR/export.")] = None,
+    json: Json = False,
 ) -> None:
     """Write results of a study as files of other programs: flights, shape, numbers per facet, map of the impacts."""
     place = folder / "export" if out is None else given_folder(out)
@@ -136,7 +145,10 @@ def export(
 
         choices = ExportOptions(flight or (), frame, epoch, step, resolution)
         written = export_study(results, place, to, choices)
-    tell(f"Wrote {path}" for path in written)
+    if json:
+        tell_json({"files": [str(path.resolve()) for path in written]})
+    else:
+        tell(f"Wrote {path}" for path in written)
 
 
 def _landing(
