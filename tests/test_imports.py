@@ -39,8 +39,8 @@ ALLOWED: dict[str, set[str]] = {
     "touchdown_model": {"dem", "touchdown", "study"},
     "results": {"campaign", "chaos", "emulator", "study", "touchdown", "touchdown_model"},
     "report": {"results"},
-    "view": {"results"},
-    "export": {"results", "smallbody", "study"},
+    "view": {"results", "report"},
+    "export": {"results", "smallbody", "study", "view"},
     # The reader makes words of a command absolute as the campaign starts them.
     "study": {"chaos", "campaign", "smallbody", "touchdown"},
     "pipeline": {

@@ -28,7 +28,11 @@ def land(
     number: Annotated[int, typer.Option("--number", metavar="N", help="Which run of the study, from 1.")] = 1,
     out: Annotated[
         Path | None,
-        typer.Option("--out", metavar="FILE", help="Keep the motion: .h5, .vtkhdf (ParaView), .mp4 or .webp (a film)."),
+        typer.Option(
+            "--out",
+            metavar="FILE",
+            help="Keep the motion: .h5, .vtkhdf (ParaView), .mp4, .webp (films), .png (a sheet).",
+        ),
     ] = None,
     show: Annotated[bool, typer.Option("--show", help="Open a window on the motion.")] = False,
     json: Json = False,

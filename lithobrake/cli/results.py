@@ -2,7 +2,8 @@
 
 import shutil
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -91,22 +92,24 @@ def film(
     run: Annotated[str | None, typer.Option("--run", metavar="ID", help="A run; absent: the landing shown.")] = None,
     out: Annotated[
         Path | None,
-        typer.Option("--out", metavar="FILE", help="A film, .mp4 or .webp, or .vtkhdf for ParaView; DIR/landing.mp4."),
+        typer.Option(
+            "--out",
+            metavar="FILE",
+            help="A film, .mp4 or .webp, a sheet of pictures, .png, or .vtkhdf for ParaView; DIR/landing.mp4.",
+        ),
     ] = None,
     seconds: Annotated[float, typer.Option("--seconds", metavar="S", help="How long the film lasts.")] = 8.0,
 ) -> None:
     """Make a landing of a study again, and show it as a film."""
     path = out or folder / "landing.mp4"
     with one_sentence():
-        from lithobrake.progress import study_progress
         from lithobrake.results import open_study
         from lithobrake.view import refuse_other_kinds, write_motion
 
         refuse_other_kinds(path)
-        with study_progress() as shown:
-            shown.begin("film", 1, 1)
-            bodies = _landing(open_study(folder), run, lambda done, what: shown.progress(done, 1.0, what))
-            write_motion(bodies, path, seconds, lambda done: shown.progress(done, 1.0, "drawing"))
+        with _landing_progress() as progress:
+            bodies = _landing(open_study(folder), run, progress)
+            write_motion(bodies, path, seconds, lambda done: progress(done, "drawing"))
     tell([f"Film: {path.resolve()}"])
 
 
@@ -115,7 +118,9 @@ def export(
     folder: StudyDirectory,
     to: Annotated[
         list[str],
-        typer.Option("--to", metavar="KIND", help="oem, plates, facets, geotiff or geojson; may be repeated."),
+        typer.Option(
+            "--to", metavar="KIND", help="oem, plates, facets, geotiff, geojson, vtkhdf or sheet; may be repeated."
+        ),
     ],
     flight: Annotated[
         list[int] | None, typer.Option("--flight", metavar="SAMPLE", help="oem: a sample to follow; may be repeated.")
@@ -131,10 +136,17 @@ def export(
     resolution: Annotated[
         float, typer.Option("--resolution", metavar="DEGREES", help="geotiff: edge of a cell.")
     ] = 1.0,
+    run: Annotated[
+        str | None,
+        typer.Option("--run", metavar="ID", help="vtkhdf, sheet: a run to make again; absent: the landing shown."),
+    ] = None,
+    bed: Annotated[
+        int, typer.Option("--bed", min=0, metavar="N", help="vtkhdf: which bed is shown as it settles.")
+    ] = 0,
     out: Annotated[str | None, typer.Option("--out", metavar="FOLDER", help="The default is DIR/export.")] = None,
     json: Json = False,
 ) -> None:
-    """Write results of a study as files of other programs: flights, shape, numbers per facet, map of the impacts."""
+    """Write results of a study as files of other programs: flights, shape, numbers per facet, map, motions."""
     place = folder / "export" if out is None else given_folder(out)
     with one_sentence():
         from lithobrake.results import open_study
@@ -143,8 +155,9 @@ def export(
         results = open_study(folder)
         from lithobrake.export import ExportOptions, export_study
 
-        choices = ExportOptions(flight or (), frame, epoch, step, resolution)
-        written = export_study(results, place, to, choices)
+        with _landing_progress() as progress:
+            choices = ExportOptions(flight or (), frame, epoch, step, resolution, run and _run_of(run), progress)
+            written = export_study(results, place, to, choices)
     if json:
         tell_json({"files": [str(path.resolve()) for path in written]})
     else:
@@ -157,4 +170,27 @@ def _landing(
     """The landing of a run, made again, or the one that the study keeps."""
     if run is None:
         return results.median_landing
-    return results.landing_bodies(int(run) if run.isdigit() and len(run) < 6 else run, progress=progress)
+    return results.landing_bodies(_run_of(run), progress=progress)
+
+
+def _run_of(text: str) -> str | int:
+    """A row among the runs, or the key of one or how that begins, from what was written for either."""
+    return int(text) if text.isdigit() and len(text) < 6 else text
+
+
+@contextmanager
+def _landing_progress() -> Iterator[Callable[[float, str], None]]:
+    """How far a landing is that is made again; nothing is shown where none is."""
+    from lithobrake.progress import study_progress
+
+    with study_progress() as shown:
+        begun = False
+
+        def tell_progress(done: float, what: str) -> None:
+            nonlocal begun
+            if not begun:
+                shown.begin("landing", 1, 1)
+            begun = True
+            shown.progress(done, 1.0, what)
+
+        yield tell_progress

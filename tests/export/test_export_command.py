@@ -13,7 +13,9 @@ RUNNER = CliRunner()
 
 
 def test_each_kind_is_written_once(results: StudyResults, tmp_path: Path) -> None:
-    kinds = [word for kind in [*KINDS, "plates"] for word in ("--to", kind)]
+    # A study whose solver is its own has no landing to show.
+    shown = [kind for kind in KINDS if kind not in ("vtkhdf", "sheet")]
+    kinds = [word for kind in [*shown, "plates"] for word in ("--to", kind)]
     sample = int(results.flights["sample"][0])
     found = RUNNER.invoke(app, ["export", str(results.folder), *kinds, "--flight", str(sample), "--out", str(tmp_path)])
     assert found.exit_code == 0, found.output
