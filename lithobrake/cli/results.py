@@ -113,36 +113,37 @@ def film(
     tell([f"Film: {path.resolve()}"])
 
 
+Kinds = Annotated[
+    list[str],
+    typer.Option(
+        "--to", metavar="KIND", help="oem, plates, facets, geotiff, geojson, vtkhdf or sheet; may be repeated."
+    ),
+]
+Samples = Annotated[
+    list[int] | None, typer.Option("--flight", metavar="SAMPLE", help="oem: a sample to follow; may be repeated.")
+]
+Frame = Annotated[str, typer.Option("--frame", metavar="inertial|fixed", help="oem: axes of the states.")]
+Epoch = Annotated[str | None, typer.Option("--epoch", metavar="UTC", help="oem: when all flights start.")]
+Step = Annotated[
+    float | None, typer.Option("--step", metavar="SECONDS", help="oem: between states; default: 1 % of the longest.")
+]
+Resolution = Annotated[float, typer.Option("--resolution", metavar="DEGREES", help="geotiff: edge of a cell.")]
+Again = Annotated[
+    str | None,
+    typer.Option("--run", metavar="ID", help="vtkhdf, sheet: a run to make again; absent: the landing shown."),
+]
+
+
 @app.command(epilog="Example: lithobrake export runs/study --to oem --flight 12 --epoch 2026-11-22T12:00:00")
 def export(
     folder: StudyDirectory,
-    to: Annotated[
-        list[str],
-        typer.Option(
-            "--to", metavar="KIND", help="oem, plates, facets, geotiff, geojson, vtkhdf or sheet; may be repeated."
-        ),
-    ],
-    flight: Annotated[
-        list[int] | None, typer.Option("--flight", metavar="SAMPLE", help="oem: a sample to follow; may be repeated.")
-    ] = None,
-    frame: Annotated[
-        str, typer.Option("--frame", metavar="inertial|fixed", help="oem: axes of the states.")
-    ] = "inertial",
-    epoch: Annotated[str | None, typer.Option("--epoch", metavar="UTC", help="oem: when all flights start.")] = None,
-    step: Annotated[
-        float | None,
-        typer.Option("--step", metavar="SECONDS", help="oem: between states; default: 1 % of the longest."),
-    ] = None,
-    resolution: Annotated[
-        float, typer.Option("--resolution", metavar="DEGREES", help="geotiff: edge of a cell.")
-    ] = 1.0,
-    run: Annotated[
-        str | None,
-        typer.Option("--run", metavar="ID", help="vtkhdf, sheet: a run to make again; absent: the landing shown."),
-    ] = None,
-    bed: Annotated[
-        int, typer.Option("--bed", min=0, metavar="N", help="vtkhdf: which bed is shown as it settles.")
-    ] = 0,
+    to: Kinds,
+    flight: Samples = None,
+    frame: Frame = "inertial",
+    epoch: Epoch = None,
+    step: Step = None,
+    resolution: Resolution = 1.0,
+    run: Again = None,
     out: Annotated[str | None, typer.Option("--out", metavar="FOLDER", help="The default is DIR/export.")] = None,
     json: Json = False,
 ) -> None:
