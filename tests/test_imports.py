@@ -22,6 +22,7 @@ LEAVES = {
         "plain",
         "reading",
         "hashing",
+        "html_table",
         "attitude",
     ),
 }
