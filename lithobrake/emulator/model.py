@@ -4,6 +4,7 @@ import os
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
+from html import escape
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -21,6 +22,7 @@ from lithobrake.emulator.outcome_classes import fit_classes
 from lithobrake.emulator.residual_rows import drawn_rows, row_weights, smoothed, smoothing
 from lithobrake.emulator.significance import found_inputs
 from lithobrake.emulator.storage import FORMAT, Parts, content_of, parts_of
+from lithobrake.html_table import html_table
 
 # Draws that are made at once: bounds the memory, and belongs to what a seed gives.
 _BLOCK = 1 << 18
@@ -55,6 +57,18 @@ class Emulator(Parts):
     def follows_inputs(self) -> bool:
         """Whether draws depend on the inputs; else each is one of the runs."""
         return self.choices.follows_inputs
+
+    def _repr_html_(self) -> str:
+        """What it makes of the inputs, the outcomes and the outputs, for a notebook."""
+        ended = np.asarray(self.runs.outcome)
+        outcomes = [(name, int((ended == place).sum())) for place, name in enumerate(self.outcome_names)]
+        modelled = [self.output_names[place] for place in self.runs.modelled]
+        scores = zip(modelled, self.scores.crps_skill.tolist(), self.scores.band_90.tolist(), strict=True)
+        return (
+            f"<p>{escape(self.statement)}</p>"
+            + html_table(f"Outcomes of {len(ended)} runs", ("outcome", "runs"), outcomes)
+            + html_table("Outputs, on groups left out", ("output", "CRPS skill", "in the 90 % band"), scores)
+        )
 
     @property
     def statement(self) -> str:

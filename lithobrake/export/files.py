@@ -8,19 +8,26 @@ from lithobrake.export.ephemerides import write_ephemerides
 from lithobrake.export.facet_table import write_facet_csv, write_facet_fits
 from lithobrake.export.geojson import write_geojson
 from lithobrake.export.geotiff import RESOLUTION_DEG, write_geotiff
+from lithobrake.export.motions import named_landing, write_motions, write_sheet
 from lithobrake.export.plate_text import write_plates
 from lithobrake.results import StudyResults
 
 
 @dataclass(frozen=True)
 class ExportOptions:
-    """What a user may choose of the files; the defaults are those of the functions that write them."""
+    """What a user may choose of the files; the defaults are those of the functions that write them.
+
+    run: whose landing is made again, by its row in `runs`, its key, or how that begins; None: the one that the study
+    keeps. progress: told the fraction that is done of such a landing, and what is being done.
+    """
 
     samples: Sequence[int] = ()
     frame: str = "inertial"
     epoch: str | None = None
     step: float | None = None
     resolution_deg: float = RESOLUTION_DEG
+    run: str | int | None = None
+    progress: Callable[[float, str], None] = lambda fraction, what: None
 
 
 def _oem(results: StudyResults, folder: Path, chosen: ExportOptions) -> list[Path]:
@@ -48,12 +55,23 @@ def _geojson(results: StudyResults, folder: Path, chosen: ExportOptions) -> list
     return [folder / "impacts.geojson"]
 
 
+def _vtkhdf(results: StudyResults, folder: Path, chosen: ExportOptions) -> list[Path]:
+    landing, name = named_landing(results, chosen.run, chosen.progress)
+    return write_motions(results, folder, landing, name)
+
+
+def _sheet(results: StudyResults, folder: Path, chosen: ExportOptions) -> list[Path]:
+    return [write_sheet(folder, *named_landing(results, chosen.run, chosen.progress))]
+
+
 KINDS: dict[str, Callable[[StudyResults, Path, ExportOptions], list[Path]]] = {
     "oem": _oem,
     "plates": _plates,
     "facets": _facets,
     "geotiff": _geotiff,
     "geojson": _geojson,
+    "vtkhdf": _vtkhdf,
+    "sheet": _sheet,
 }
 
 

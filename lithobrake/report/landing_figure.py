@@ -27,18 +27,23 @@ def instants(lander_height: Array, count: int = 6) -> list[int]:
 
 
 def landing_figure(
-    bodies: Sequence[Hull], time: Array, position: Array, orientation: Array, width: tuple[float, float]
+    bodies: Sequence[Hull],
+    time: Array,
+    position: Array,
+    orientation: Array,
+    width: tuple[float, float],
+    picture_count: int = 6,
 ) -> Figure:
     """Draw a landing; the lander is the last body and its path so far is a line.
 
     time [s], shape [frame]; position [m], shape [frame, body, 3]; orientation (w, x, y, z), shape [frame, body, 4].
     """
     path = position[:, -1]
-    chosen = instants(path[:, 2])
+    chosen = instants(path[:, 2], picture_count)
     surface_height = float(np.quantile(position[0, :-1, 2], 0.98))
     camera = _camera(path, surface_height, width)
     x_range, y_range = _extent(path[chosen], bodies, surface_height, width, camera)
-    column_count = 3 if len(chosen) > 4 else 2
+    column_count = 4 if len(chosen) > 6 else 3 if len(chosen) > 4 else 2
     row_count = -(-len(chosen) // column_count)
     picture_width = 9.2 / column_count
     picture_height = picture_width * (y_range[1] - y_range[0]) / (x_range[1] - x_range[0])

@@ -31,6 +31,19 @@ _PLACES = ("sample", "status", "latitude_deg", "longitude_deg")
 _WORDS = {"key", "design", "outcome", "reason", "status", "ground"}
 _SCORE = {"ape": [NUMBER | None], "mape": NUMBER | None, "q2": NUMBER | None, "rmse": NUMBER, "std": NUMBER}
 
+# What a notebook says can be asked for: the file that it takes, and what comes.
+_ASKED = {
+    "summary": ("summary.json", "every number of the report"),
+    "runs": ("runs.sqlite", "every touchdown: inputs, outcome, outputs"),
+    "samples": ("samples.h5", "samples of the Monte Carlo"),
+    "flights": ("flights.csv", "flights of the samples to their next impact"),
+    "rest": ("rest.csv", "where samples end after all bounces"),
+    "emulator": ("emulator.json", "the law of what comes out, at any inputs"),
+    "surrogate": ("refined.json", "the refined expansion, by the names of its inputs"),
+    "median_landing": ("landing.h5", "a landing with its frames"),
+    "bed_bodies()": ("beds/bed_0.h5", "the grains of a bed, and how they settled"),
+}
+
 
 class StudyResults:
     """What came out of a study; every table says of its columns what they are.
@@ -302,6 +315,24 @@ class StudyResults:
         """Say where they are, and the answer."""
         answer = self.summary["results"]["answer"][0] if (self.folder / "summary.json").is_file() else "not at its end"
         return f"StudyResults of {self.folder}: {answer}"
+
+    def _repr_html_(self) -> str:
+        """The most telling numbers, and what can be asked for, for a notebook."""
+        return _html(self)
+
+
+def _html(results: StudyResults) -> str:
+    """What came out, and what can be asked for."""
+    from html import escape
+
+    from lithobrake.html_table import html_table
+
+    rows = [(name, what) for name, (file, what) in _ASKED.items() if (results.folder / file).exists()]
+    table = html_table(f"Results of {results.folder}", ("ask for", "and get"), rows)
+    if not (results.folder / "summary.json").is_file():
+        return f"{table}<p>Not at its end: lithobrake status {escape(shlex.quote(str(results.folder)))}</p>"
+    sentences = "".join(f"<li>{escape(sentence)}</li>" for sentence in results.headline)
+    return f"<ul>{sentences}</ul>{table}"
 
 
 def open_study(folder: str | os.PathLike[str]) -> StudyResults:

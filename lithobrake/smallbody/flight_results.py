@@ -6,6 +6,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from lithobrake.html_table import html_table
 from lithobrake.outcomes import FlightStatus
 from lithobrake.smallbody.body import GRAVITATIONAL_CONSTANT, Body
 
@@ -57,6 +58,17 @@ class Flights:
     velocity: NDArray[np.float64]
     facet: NDArray[np.int64]
     step_count: NDArray[np.int64]
+
+    def _repr_html_(self) -> str:
+        """How many ended in which way, after how long and how fast, for a notebook."""
+        rows = []
+        for status in dict.fromkeys(self.status.tolist()):
+            these = self.status == status
+            impact = self.impact_speed[these]
+            speed = float(np.median(impact)) if np.isfinite(impact).all() else "none"
+            rows.append((status, int(these.sum()), float(these.mean()), float(np.median(self.time[these])), speed))
+        head = ("ended", "flights", "share", "median time [s]", "median impact speed [m/s]")
+        return html_table(f"{len(self)} flights around {self.body.name or 'a body'}", head, rows)
 
     def __len__(self) -> int:
         return len(self.status)

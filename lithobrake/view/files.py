@@ -4,13 +4,14 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from lithobrake.view.contact_sheet import contact_sheet
 from lithobrake.view.film import KINDS, film
 from lithobrake.view.vtkhdf import write_vtkhdf
 
 if TYPE_CHECKING:
     from lithobrake.results.moving_bodies import MovingBodies
 
-ALL_KINDS = (".vtkhdf", *KINDS)
+ALL_KINDS = (".vtkhdf", *KINDS, ".png")
 
 
 def refuse_other_kinds(path: Path, kinds: tuple[str, ...] = ALL_KINDS) -> None:
@@ -25,9 +26,11 @@ def write_motion(
     seconds: float = 8.0,
     progress: Callable[[float], None] = lambda fraction: None,
 ) -> None:
-    """Write a motion for ParaView (.vtkhdf), or as a film (.mp4, .webp) that lasts so many seconds."""
+    """Write a motion for ParaView (.vtkhdf), as a film of so many seconds (.mp4, .webp), or on a sheet (.png)."""
     refuse_other_kinds(path)
     if path.suffix == ".vtkhdf":
         write_vtkhdf(bodies, path)
+    elif path.suffix == ".png":
+        contact_sheet(bodies, path)
     else:
         film(bodies, path, seconds, progress)

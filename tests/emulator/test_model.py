@@ -52,6 +52,15 @@ def test_outputs_are_there_where_the_outcome_has_them() -> None:
     assert abs(stopped.mean() - chances.mean()) < 5.0 * np.sqrt(0.125 * 0.875 / stopped.size)
 
 
+def test_it_shows_itself_in_a_notebook() -> None:
+    shown = MODEL._repr_html_()
+    assert MODEL.statement in shown
+    stopped = int((runs()["outcome"] == "stopped").sum())
+    assert f"<td>stopped</td><td>{stopped}</td>" in shown
+    skill, covered = MODEL.scores.crps_skill[0], MODEL.scores.band_90[0]
+    assert f"<td>speed</td><td>{skill:.4g}</td><td>{covered:.4g}</td>" in shown
+
+
 def test_riders_come_unchanged_with_their_row() -> None:
     draws = MODEL.draw(X, 200, upper=UPPER)
     there = draws.row >= 0

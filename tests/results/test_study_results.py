@@ -3,6 +3,7 @@
 import copy
 import subprocess
 import sys
+from html import escape
 from pathlib import Path
 
 import h5py
@@ -57,6 +58,18 @@ def test_columns_say_what_they_are(results: StudyResults) -> None:
     assert all(column.long_name for table in (results.runs, results.flights) for column in table.columns.values())
     assert results.flights.row_count == 6
     assert "speed_out [m/s]" in results.samples._repr_html_()
+
+
+def test_a_notebook_shows_the_answer_and_what_can_be_asked_for(results: StudyResults, tmp_path: Path) -> None:
+    shown = results._repr_html_()
+    assert all(f"<li>{escape(sentence)}</li>" in shown for sentence in results.headline)
+    assert "<td>flights</td>" in shown
+    assert "<td>emulator</td>" not in shown
+    (tmp_path / "runs.sqlite").touch()
+    unfinished = lithobrake.open_study(tmp_path)._repr_html_()
+    assert "Not at its end: lithobrake status" in unfinished
+    assert "<td>runs</td>" in unfinished
+    assert "<td>summary</td>" not in unfinished
 
 
 def test_every_data_set_of_the_samples_says_of_its_columns_what_they_are(folder: Path) -> None:

@@ -26,6 +26,17 @@ def top() -> Body:
     return didymos(partner=False)
 
 
+def test_flights_show_themselves_by_how_they_ended(ball):
+    start = np.tile([100.0 * 1.001, 0.0, 0.0], (3, 1))
+    flights = fly(ball, start, [[0.001, 0.0, 0.0], [0.001, 0.0, 0.0], [5.0, 0.0, 0.0]], 3600.0)
+    shown = flights._repr_html_()
+    assert shown.startswith(f"<table><caption>3 flights around {ball.name}</caption>")
+    hit = flights.status == "impact"
+    time, speed = (float(np.median(values[hit])) for values in (flights.time, flights.impact_speed))
+    assert f"<td>impact</td><td>2</td><td>0.6667</td><td>{time:.4g}</td><td>{speed:.4g}</td>" in shown
+    assert "<td>none</td>" in shown
+
+
 def test_kepler_orbit_around_a_sphere(ball):
     """An inclined ellipse about a sphere, seen from the turning frame, against Kepler's equation."""
     mu, spin = ball.gravitational_parameter, ball.spin_rate

@@ -1,5 +1,6 @@
 """A motion as a file for ParaView and as a film: what is in them, read back by the libraries of their fields."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import h5py
@@ -7,7 +8,7 @@ import numpy as np
 import pytest
 
 from lithobrake.results import MovingBodies
-from lithobrake.view import film, write_motion, write_vtkhdf
+from lithobrake.view import contact_sheet, film, write_motion, write_vtkhdf
 from lithobrake.view.motion import body_speeds, placed
 
 TETRAHEDRON = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]) - 0.25
@@ -94,3 +95,22 @@ def test_other_kinds_and_durations_are_refused(motion: MovingBodies, tmp_path: P
         write_motion(motion, tmp_path / "motion.avi")
     with pytest.raises(ValueError, match=r"the film lasts 0\.0 s; allowed: a finite time above 0 s"):
         film(motion, tmp_path / "motion.mp4", seconds=0.0)
+
+
+def test_a_contact_sheet_has_one_picture_for_each_instant(motion: MovingBodies, tmp_path: Path) -> None:
+    from PIL import Image
+
+    landing = replace(motion, attributes={"format": "lithobrake landing", "width": [8.0, 8.0]})
+    for count in (1, 3):
+        contact_sheet(landing, tmp_path / f"{count}.png", picture_count=count)
+    one, three = (Image.open(tmp_path / f"{count}.png") for count in (1, 3))
+    # Two columns, so three pictures take two rows.
+    assert one.width == three.width
+    pixels = np.asarray(three.convert("RGB")).astype(float)
+    assert pixels[: three.height // 2].std() > 5.0 < pixels[three.height // 2 :].std()
+
+
+def test_what_is_no_landing_has_no_contact_sheet(motion: MovingBodies, tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match="is no landing, and a contact sheet shows one"):
+        write_motion(motion, tmp_path / "bed.png")
+    assert not (tmp_path / "bed.png").exists()

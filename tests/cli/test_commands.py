@@ -6,6 +6,7 @@ import sys
 from pathlib import Path
 
 import pytest
+import typer
 from typer.testing import CliRunner
 
 from lithobrake import __version__
@@ -43,9 +44,7 @@ def test_help_has_a_short_name_too(arguments: list[str]) -> None:
     assert RUNNER.invoke(app, arguments).output == RUNNER.invoke(app, [*arguments[:-1], "--help"]).output
 
 
-@pytest.mark.parametrize(
-    "command", ["new", "run", "status", "runs", "bed", "fly", "rest", "report", "export", "serve", "view"]
-)
+@pytest.mark.parametrize("command", sorted(typer.main.get_command(app).commands))
 def test_the_help_of_each_command_ends_in_an_example(command: str) -> None:
     shown = RUNNER.invoke(app, [command, "--help"])
     assert f"Example: lithobrake {command} " in shown.output

@@ -1,0 +1,115 @@
+# %% [markdown]
+# # A first study
+#
+# Where does a lander end up that bounces off ground whose friction and restitution nobody knows? A study answers from a
+# file: what is known, what is not, how many landings to make. This one lets a program of ours make the landings (a ball
+# on a hard plate, which takes milliseconds); without `[solver]` a bed of grains is poured and landed on.
+#
+# Each cell also runs in a script: `python examples/notebook_first_study.py`.
+
+# %%
+import subprocess
+import sys
+from pathlib import Path
+
+import lithobrake
+
+HERE = Path(__file__).parent if "__file__" in globals() else Path.cwd()
+PROGRAM = HERE / "ball_on_plate.py"
+
+# %% [markdown]
+# ## The study file
+#
+# A number that is not known is a distribution. `lithobrake new NAME` writes a file with every key and what it means.
+
+# %%
+study = f"""
+title = "Ball on a hard plate, from little knowledge"
+
+[solver]
+command = '"{sys.executable}" "{PROGRAM}"'
+
+[solver.inputs]
+plate_tilt_deg = {{ distribution = "uniform", lower = -4.0, upper = 4.0 }}
+
+[lander]
+shape = "sphere"
+diameter = 0.1             # m
+mass = 1.0                 # kg
+restitution = {{ distribution = "uniform", lower = 0.4, upper = 0.8 }}
+friction = {{ distribution = "uniform", lower = 0.05, upper = 0.4 }}
+
+[impact]
+speed = 0.08               # m/s
+incidence_deg = {{ distribution = "uniform", lower = 20.0, upper = 50.0 }}
+
+[surface]
+gravity = 3e-5             # m/s2
+
+# A program of one's own is told all of this, too; this one does not listen.
+[bed]
+grain_count = 100
+width = [0.6, 0.6]
+diameter = {{ distribution = "constant", value = 0.08 }}
+
+[grain]
+density = 2500.0
+young_modulus = 1e7
+poisson_ratio = 0.25
+restitution = 0.5
+friction = 0.5
+
+[design]
+run_count = 24
+
+[site]
+body = "dimorphos"
+latitude_deg = 20.0
+longitude_deg = 60.0
+heading_deg = {{ distribution = "uniform", lower = 0.0, upper = 360.0 }}
+
+[monte_carlo]
+sample_count = 1000
+
+[flight]
+flight_count = 50
+duration = 14_400.0        # s
+gravity = "exact"
+
+[rest]
+count = 0
+"""
+Path("first_study.toml").write_text(study)
+
+# %% [markdown]
+# ## What it will take
+#
+# In a notebook, `!lithobrake plan first_study.toml` does the same.
+
+# %%
+command = [sys.executable, "-m", "lithobrake"]
+plan = subprocess.run([*command, "plan", "first_study.toml"], capture_output=True, text=True, check=True).stdout
+print(plan)
+
+# %% [markdown]
+# ## Run it
+#
+# Stop it at any time: the same command goes on after the last run that has ended.
+
+# %%
+subprocess.run([*command, "run", "first_study.toml", "--out", "runs/first_study"], check=True)
+
+# %% [markdown]
+# ## The answer
+
+# %%
+results = lithobrake.open_study("runs/first_study")
+for sentence in results.headline:
+    print(sentence)
+
+# %% [markdown]
+# In a notebook, a value on the last line of a cell shows itself. The page `runs/first_study/report/index.html` has
+# figures, tables and where each number comes from.
+
+# %%
+results

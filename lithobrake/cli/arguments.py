@@ -1,0 +1,41 @@
+"""Arguments and options that several commands take, and the folder of a study that follows from them."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from lithobrake.cli.refusals import BAD_INPUT, leave
+
+StudyPath = Annotated[Path, typer.Argument(metavar="STUDY.toml", help="The study file.", show_default=False)]
+OutPath = Annotated[
+    str | None, typer.Option("--out", metavar="DIR", help="Folder of the study; the default is runs/<study name>.")
+]
+ExecutorName = Annotated[
+    str, typer.Option("--executor", metavar="local|dask", help="Run on this machine or on a Dask cluster.")
+]
+Scheduler = Annotated[
+    str | None, typer.Option("--scheduler", metavar="tcp://HOST:PORT", help="Address of the Dask scheduler.")
+]
+Logs = Annotated[bool, typer.Option("--logs", help="Keep a log of each run in DIR/logs.")]
+Workers = Annotated[
+    int | None, typer.Option("--workers", min=1, metavar="N", help="Number of processes; the default is all cores.")
+]
+Json = Annotated[bool, typer.Option("--json", help="Print JSON, all numbers in SI.")]
+StudyDirectory = Annotated[Path, typer.Argument(metavar="DIR", help="The folder of a study.", show_default=False)]
+
+
+def study_folder(study: Path, out: str | None) -> Path:
+    """The folder of a study: the one that is given, or runs/<study name>."""
+    return Path("runs") / study.stem if out is None else given_folder(out)
+
+
+def given_folder(out: str) -> Path:
+    """The folder that --out names; an empty one is refused."""
+    if not out.strip():
+        leave(
+            "--out is empty (an unset variable?) and would mean the current folder; "
+            "name a folder, or omit --out to use runs/<study name>",
+            BAD_INPUT,
+        )
+    return Path(out)

@@ -1,0 +1,119 @@
+"""Commands beside a study: one landing of it, a server of its models, and a look at the installation."""
+
+from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from lithobrake.cli.application import app
+from lithobrake.cli.arguments import Json, OutPath, StudyPath, study_folder
+from lithobrake.cli.refusals import one_sentence
+from lithobrake.cli.telling import tell, tell_json
+
+if TYPE_CHECKING:
+    from lithobrake.results.moving_bodies import MovingBodies
+
+# Exit code of `doctor` where a library is missing without which nothing works.
+INCOMPLETE = 1
+
+
+@app.command(epilog="Example: lithobrake land study.toml --set grain.friction=0.4 --out landing.h5")
+def land(
+    study: StudyPath,
+    change: Annotated[
+        list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Another value for a number that it reads.")
+    ] = None,
+    number: Annotated[int, typer.Option("--number", metavar="N", help="Which run of the study, from 1.")] = 1,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            "--out",
+            metavar="FILE",
+            help="Keep the motion: .h5, .vtkhdf (ParaView), .mp4, .webp (films), .png (a sheet).",
+        ),
+    ] = None,
+    show: Annotated[bool, typer.Option("--show", help="Open a window on the motion.")] = False,
+    json: Json = False,
+) -> None:
+    """Make one landing of a study and tell what came out. Nothing of the study's folder is read or written."""
+    with one_sentence():
+        from lithobrake.study import read_study
+
+        checked = read_study(study)
+        from lithobrake.pipeline import land_one, landing_inputs
+        from lithobrake.progress import study_progress
+
+        values = landing_inputs(checked, change or (), number)
+        if out is not None and out.suffix != ".h5":
+            from lithobrake.view import refuse_other_kinds
+
+            refuse_other_kinds(out)
+        with study_progress() as shown:
+            shown.begin("landing", 1, 1)
+            found = land_one(checked, values, lambda done, what: shown.progress(done, 1.0, what))
+        _keep_motion(found.save, found.bodies, out, show)
+    if json:
+        tell_json(found.to_json())
+    else:
+        tell([*found.lines(), *([] if out is None else [f"Motion: {out.resolve()}"])])
+
+
+@app.command(epilog="Example: lithobrake serve study.toml --out results --port 4242")
+def serve(
+    study: StudyPath,
+    out: OutPath = None,
+    host: Annotated[
+        str, typer.Option("--host", metavar="ADDRESS", help="Address to listen on; others than this machine need one.")
+    ] = "127.0.0.1",
+    port: Annotated[int, typer.Option("--port", min=0, max=65535, help="Port; 0 takes a free one.")] = 4242,
+) -> None:
+    """Serve landing, emulator and flight of a study to clients of UM-Bridge, until Ctrl-C. Writes nothing."""
+    folder = study_folder(study, out)
+    with one_sentence():
+        from lithobrake.pipeline import served_models
+
+        models = served_models(study, folder)
+        from lithobrake.serve import model_server
+
+        server = model_server(models, host, port)
+    with server:
+        names = ", ".join(model.name for model in models)
+        tell([f"Serving {names} at http://{host}:{server.server_port}; Ctrl-C ends it."])
+        # That it was ended is no news to whoever ended it.
+        with suppress(KeyboardInterrupt):
+            server.serve_forever()
+
+
+@app.command(epilog="Example: lithobrake doctor --json > doctor.json")
+def doctor(
+    quick: Annotated[bool, typer.Option("--quick", help="Measure no speeds.")] = False, json: Json = False
+) -> None:
+    """Tell what is installed, what is missing and how to get it, and how fast this machine is."""
+    with one_sentence():
+        from lithobrake.doctor import examine
+
+        found = examine(quick)
+    if json:
+        tell_json(found.to_json())
+    else:
+        tell(found.lines())
+    if found.lacking:
+        raise typer.Exit(INCOMPLETE)
+
+
+def _keep_motion(
+    save: Callable[[Path], None], bodies: Callable[[], "MovingBodies"], out: Path | None, shown: bool
+) -> None:
+    """Write a motion to a file of the kind that its name says, and open a window on it."""
+    if out is not None and out.suffix == ".h5":
+        save(out)
+    elif out is not None:
+        from lithobrake.view import write_motion
+
+        write_motion(bodies(), out)
+    if shown:
+        from lithobrake.view import show
+
+        show(bodies())

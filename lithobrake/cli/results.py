@@ -1,0 +1,197 @@
+"""Commands that show the results of a study and write them as files of other programs."""
+
+import shutil
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from lithobrake.cli.application import app
+from lithobrake.cli.arguments import Json, StudyDirectory, given_folder
+from lithobrake.cli.refusals import BAD_INPUT, leave, one_sentence
+from lithobrake.cli.telling import reader_may_leave, study_headline, tell, tell_json
+
+if TYPE_CHECKING:
+    from lithobrake.results.moving_bodies import MovingBodies
+    from lithobrake.results.study_results import StudyResults
+
+
+@app.command(epilog="Example: lithobrake report runs/study")
+def report(folder: StudyDirectory) -> None:
+    """Write the report of a study again from its files."""
+    with one_sentence():
+        from lithobrake.pipeline import write_report_again
+
+        write_report_again(folder)
+    tell(study_headline(folder))
+
+
+@app.command(epilog="Example: lithobrake runs runs/study --csv > runs.csv")
+def runs(
+    folder: StudyDirectory,
+    csv: Annotated[bool, typer.Option("--csv", help="Print every column as CSV.")] = False,
+    json: Json = False,
+) -> None:
+    """List the runs of a study with the inputs that vary."""
+    with one_sentence():
+        from lithobrake.campaign import run_lines, write_csv
+        from lithobrake.results import open_study
+
+        records = open_study(folder).ledger
+        units: dict[str, str] = {}
+        # The names of a campaign that is no study are its author's, and so are their units.
+        if (folder / "study.toml").is_file():
+            from lithobrake.study.units import run_units
+
+            units = run_units()
+    if csv and json:
+        leave("--csv and --json are two forms of one list; give one of them", BAD_INPUT)
+    if json:
+        tell_json({"units": units, "runs": [asdict(record) for record in records]})
+        return
+    if csv:
+        with reader_may_leave():
+            write_csv(records, sys.stdout, units)
+        return
+    width = shutil.get_terminal_size().columns if sys.stdout.isatty() else None
+    tell(run_lines(records, units, width))
+
+
+@app.command(epilog="Example: lithobrake view runs/study")
+def view(
+    folder: StudyDirectory,
+    solid: Annotated[bool, typer.Option("--3d", help="Open a window on a landing instead, by PyVista.")] = False,
+    run: Annotated[str | None, typer.Option("--run", metavar="ID", help="Which run --3d shows.")] = None,
+) -> None:
+    """Open the report of a study in the browser."""
+    if solid:
+        with one_sentence():
+            from lithobrake.results import open_study
+            from lithobrake.view import show
+
+            show(_landing(open_study(folder), run))
+        return
+    with one_sentence():
+        from lithobrake.pipeline import report_page
+
+        page, doubt = report_page(folder)
+    tell([doubt] if doubt else [])
+    import webbrowser
+
+    if not webbrowser.open(page.as_uri()):
+        tell([f"No browser found; open this file: {page}"])
+
+
+@app.command(epilog="Example: lithobrake film runs/study --run 3 --out landing.mp4")
+def film(
+    folder: StudyDirectory,
+    run: Annotated[str | None, typer.Option("--run", metavar="ID", help="A run; absent: the landing shown.")] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            "--out",
+            metavar="FILE",
+            help="A film, .mp4 or .webp, a sheet of pictures, .png, or .vtkhdf for ParaView; DIR/landing.mp4.",
+        ),
+    ] = None,
+    seconds: Annotated[float, typer.Option("--seconds", metavar="S", help="How long the film lasts.")] = 8.0,
+) -> None:
+    """Make a landing of a study again, and show it as a film."""
+    path = out or folder / "landing.mp4"
+    with one_sentence():
+        from lithobrake.results import open_study
+        from lithobrake.view import refuse_other_kinds, write_motion
+
+        refuse_other_kinds(path)
+        with _landing_progress() as progress:
+            bodies = _landing(open_study(folder), run, progress)
+            write_motion(bodies, path, seconds, lambda done: progress(done, "drawing"))
+    tell([f"Film: {path.resolve()}"])
+
+
+Kinds = Annotated[
+    list[str],
+    typer.Option(
+        "--to", metavar="KIND", help="oem, plates, facets, geotiff, geojson, vtkhdf or sheet; may be repeated."
+    ),
+]
+Samples = Annotated[
+    list[int] | None, typer.Option("--flight", metavar="SAMPLE", help="oem: a sample to follow; may be repeated.")
+]
+Frame = Annotated[str, typer.Option("--frame", metavar="inertial|fixed", help="oem: axes of the states.")]
+Epoch = Annotated[str | None, typer.Option("--epoch", metavar="UTC", help="oem: when all flights start.")]
+Step = Annotated[
+    float | None, typer.Option("--step", metavar="SECONDS", help="oem: between states; default: 1 % of the longest.")
+]
+Resolution = Annotated[float, typer.Option("--resolution", metavar="DEGREES", help="geotiff: edge of a cell.")]
+Again = Annotated[
+    str | None,
+    typer.Option("--run", metavar="ID", help="vtkhdf, sheet: a run to make again; absent: the landing shown."),
+]
+
+
+@app.command(epilog="Example: lithobrake export runs/study --to oem --flight 12 --epoch 2026-11-22T12:00:00")
+def export(
+    folder: StudyDirectory,
+    to: Kinds,
+    flight: Samples = None,
+    frame: Frame = "inertial",
+    epoch: Epoch = None,
+    step: Step = None,
+    resolution: Resolution = 1.0,
+    run: Again = None,
+    out: Annotated[str | None, typer.Option("--out", metavar="FOLDER", help="The default is DIR/export.")] = None,
+    json: Json = False,
+) -> None:
+    """Write results of a study as files of other programs: flights, shape, numbers per facet, map, motions."""
+    place = folder / "export" if out is None else given_folder(out)
+    with one_sentence():
+        from lithobrake.results import open_study
+
+        # A folder that is no study is refused before numbers are loaded.
+        results = open_study(folder)
+        from lithobrake.export import ExportOptions, export_study
+
+        with _landing_progress() as progress:
+            choices = ExportOptions(flight or (), frame, epoch, step, resolution, run and _run_of(run), progress)
+            written = export_study(results, place, to, choices)
+    if json:
+        tell_json({"files": [str(path.resolve()) for path in written]})
+    else:
+        tell(f"Wrote {path}" for path in written)
+
+
+def _landing(
+    results: "StudyResults", run: str | None, progress: Callable[[float, str], None] = lambda done, what: None
+) -> "MovingBodies":
+    """The landing of a run, made again, or the one that the study keeps."""
+    if run is None:
+        return results.median_landing
+    return results.landing_bodies(_run_of(run), progress=progress)
+
+
+def _run_of(text: str) -> str | int:
+    """A row among the runs, or the key of one or how that begins, from what was written for either."""
+    return int(text) if text.isdigit() and len(text) < 6 else text
+
+
+@contextmanager
+def _landing_progress() -> Iterator[Callable[[float, str], None]]:
+    """How far a landing is that is made again; nothing is shown where none is."""
+    from lithobrake.progress import study_progress
+
+    with study_progress() as shown:
+        begun = False
+
+        def tell_progress(done: float, what: str) -> None:
+            nonlocal begun
+            if not begun:
+                shown.begin("landing", 1, 1)
+            begun = True
+            shown.progress(done, 1.0, what)
+
+        yield tell_progress

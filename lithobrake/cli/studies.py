@@ -1,0 +1,133 @@
+"""Commands that begin, make, plan and watch a study."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from lithobrake.cli.application import app
+from lithobrake.cli.arguments import (
+    ExecutorName,
+    Json,
+    Logs,
+    OutPath,
+    Scheduler,
+    StudyDirectory,
+    StudyPath,
+    Workers,
+    study_folder,
+)
+from lithobrake.cli.refusals import BAD_INPUT, command_line, leave, one_sentence
+from lithobrake.cli.telling import study_headline, tell, tell_json
+
+
+@app.command(epilog="Example: lithobrake new bennu")
+def new(name: Annotated[str, typer.Argument(metavar="NAME", help="Name of the study.", show_default=False)]) -> None:
+    """Write a commented study file, NAME.toml."""
+    with one_sentence():
+        path = Path(name if name.endswith(".toml") else f"{name}.toml")
+        # The stem also names the folder of the study, and stands in commands that are pasted.
+        odd = path.stem in ("", ".toml", ".", "..") or path.stem[0] == "-" or path.stem != path.stem.strip()
+        if odd or not name.isprintable():
+            raise ValueError(f"NAME is {name!r}; allowed: a name, or a path that ends in one; write, say, bennu")
+        from lithobrake.study.template import template
+
+        try:
+            with path.open("x", encoding="utf-8") as file:
+                file.write(template())
+        except FileExistsError:
+            raise ValueError(f"{path} exists; choose another name or remove it") from None
+        except OSError as error:
+            reason = error.strerror or error
+            raise ValueError(
+                f"{path} cannot be written ({reason}); choose another name or an existing folder"
+            ) from error
+        print(f"Wrote {path}. Edit it, then: {command_line('run', path)}")
+
+
+def _study_command(name: str, what: str, until: str | None = None) -> None:
+    """Add the command that runs a study up to a stage."""
+    last = until or name
+
+    def command(
+        study: StudyPath,
+        out: OutPath = None,
+        workers: Workers = None,
+        executor: ExecutorName = "local",
+        scheduler: Scheduler = None,
+        logs: Logs = False,
+    ) -> None:
+        folder = study_folder(study, out)
+        _make(study, folder, last, workers, _scheduler(executor, scheduler), logs)
+        tell(study_headline(folder) if last == "report" else [f"Done: {folder}"])
+
+    app.command(name, help=what, epilog=f"Example: lithobrake {name} study.toml --out results --workers 4")(command)
+
+
+BEFORE = "Runs any earlier stage whose output is missing."
+_study_command(
+    "run", "Run a study from its file to its report. Reuses whatever its folder already has.", until="report"
+)
+_study_command("bed", f"Pour and settle the beds, and make one landing to look at. {BEFORE}", until="landing")
+_study_command("screen", f"Run the screening design and fit an expansion in all inputs. {BEFORE}")
+_study_command("refine", f"Run the refined design and fit an expansion in the inputs that matter. {BEFORE}")
+_study_command("test", f"Run the test points and score the expansions on them. {BEFORE}")
+_study_command("sample", f"Draw Monte Carlo samples from the refined expansion. {BEFORE}")
+_study_command("fly", f"Fly the samples that leave the surface to their next impact. {BEFORE}")
+_study_command("rest", f"Follow samples from bounce to bounce until they come to rest. {BEFORE}")
+
+
+@app.command(epilog="Example: lithobrake plan study.toml")
+def plan(
+    study: StudyPath,
+    out: OutPath = None,
+    workers: Workers = None,
+    json: Json = False,
+) -> None:
+    """Show what a study will make, how long that takes, and what to watch out for. Runs nothing."""
+    folder = study_folder(study, out)
+    with one_sentence():
+        from lithobrake.pipeline import plan_lines, plan_study
+
+        found = plan_study(study, folder, workers)
+    if json:
+        tell_json(found.to_json())
+    else:
+        tell(plan_lines(found))
+
+
+@app.command(epilog="Example: lithobrake status runs/study")
+def status(folder: StudyDirectory, json: Json = False) -> None:
+    """Show the progress of a study. Works from any terminal, even while the study runs."""
+    with one_sentence():
+        from lithobrake.pipeline import study_status
+
+        found = study_status(folder)
+        lines, content = found.lines(), found.to_json()
+    if json:
+        tell_json(content)
+    else:
+        tell(lines)
+
+
+def _scheduler(executor: str, scheduler: str | None) -> str | None:
+    """The address of the Dask scheduler, or None for runs made here."""
+    if executor not in ("local", "dask"):
+        leave(f"--executor is {executor!r}; allowed: local, dask", BAD_INPUT)
+    if (executor == "dask") != (scheduler is not None):
+        leave("--executor dask and --scheduler tcp://HOST:PORT go together; give both or neither", BAD_INPUT)
+    return scheduler
+
+
+def _make(study: Path, out: Path, until: str, workers: int | None, scheduler: str | None, logs: bool) -> None:
+    """Make the files of a study up to a stage, with two lines of progress."""
+    with one_sentence():
+        from lithobrake.study import StudySource
+
+        # A study that is refused is refused at once: what follows brings NumPy and the compiler.
+        source = StudySource.read(study)
+        from lithobrake.pipeline import run_study
+        from lithobrake.progress import study_progress
+
+        with study_progress() as shown:
+            run_study(source, out, until=until, worker_count=workers, scheduler=scheduler, shown=shown, keeps_logs=logs)

@@ -1,0 +1,46 @@
+"""Lines and JSON on standard output."""
+
+import os
+import sys
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from lithobrake.cli.refusals import one_sentence
+from lithobrake.plain import plain
+
+
+def tell(lines: Iterable[str]) -> None:
+    """Print lines without escape sequences."""
+    with reader_may_leave():
+        for line in lines:
+            print(plain(line))
+
+
+def tell_json(content: Any) -> None:
+    """Print JSON; it has no word for what is not a number, and neither has the content."""
+    from json import dumps
+
+    tell([dumps(content, indent=2, allow_nan=False)])
+
+
+@contextmanager
+def reader_may_leave() -> Iterator[None]:
+    """Write to standard output for as long as it is read; a reader that stops early (`| head`) is no error."""
+    try:
+        yield
+        print(end="", flush=True)
+    except BrokenPipeError:
+        # What is still buffered would be tried again at the end, and fail again.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def study_headline(folder: Path) -> list[str]:
+    """The headline of the summary and the path of the report, in lines."""
+    with one_sentence():
+        from lithobrake.results import open_study
+
+        headline = open_study(folder).headline
+    page = (folder / "report" / "index.html").resolve()
+    return [*(f"  {sentence}" for sentence in headline), f"Report: {page}"]

@@ -1,0 +1,69 @@
+"""The notebooks of examples/ as scripts, as a reader runs them, and what they print."""
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+NOTEBOOKS = sorted((ROOT / "examples").glob("notebook_*.py"))
+
+
+def printed(name: str, folder: Path) -> str:
+    """What a notebook prints, run as a script in a folder."""
+    setting = {**os.environ, "PYTHONPATH": str(ROOT)}
+    command = [sys.executable, str(ROOT / f"examples/notebook_{name}.py")]
+    ended = subprocess.run(command, cwd=folder, env=setting, capture_output=True, text=True, check=False, timeout=600)
+    assert ended.returncode == 0, ended.stderr
+    return ended.stdout
+
+
+def number(pattern: str, text: str) -> float:
+    """The number that a pattern has in brackets."""
+    found = re.search(pattern, text)
+    assert found, f"{pattern} is not in: {text}"
+    return float(found[1])
+
+
+@pytest.mark.parametrize("path", NOTEBOOKS, ids=[path.stem for path in NOTEBOOKS])
+def test_a_notebook_is_made_of_cells_that_begin_with_a_title(path: Path) -> None:
+    text = path.read_text(encoding="utf-8")
+    assert text.startswith("# %% [markdown]\n# # ")
+    assert text.count("\n# %%\n") >= 3
+
+
+def test_a_first_study_is_run_and_then_read(tmp_path: Path) -> None:
+    said = printed("first_study", tmp_path)
+    assert "24 of 24 touchdowns left the surface." in said
+    assert (tmp_path / "runs/first_study/report/index.html").is_file()
+    read = printed("reading_a_study", tmp_path)
+    assert read.startswith("Table of 24 rows (run): ")
+    assert 40.0 < number(r"(\d+) % of the speed of arrival", read) < 90.0
+    # More friction takes more of the speed along the plate.
+    slippery, rough = (number(rf"friction {one}: speed out ([\d.]+) to", read) for one in ("0.10", "0.35"))
+    assert slippery > rough
+
+
+def test_a_landing_by_hand_comes_out_with_its_picture(tmp_path: Path) -> None:
+    said = printed("one_landing", tmp_path)
+    assert 0.4 < number(r"([\d.]+) of the bed is solid", said) < 0.75
+    assert 0.0 < number(r"at 0.3 m/s it keeps (\d+) %", said) < 60.0
+    assert (tmp_path / "landing.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_a_solver_of_ones_own_is_run_once_and_replaced(tmp_path: Path) -> None:
+    first, second = (printed("own_solver", tmp_path) for _ in range(2))
+    assert "69 runs, 0 of them known before" in first
+    assert "69 runs, 69 of them known before" in second
+    # Restitution times the cosine of the incidence, which a polynomial of the third degree follows closely.
+    assert number(r"velocity_out_z: wrong by ([\d.]+) %", first) < 0.5
+
+
+def test_a_shape_of_ones_own_holds_and_loses_landers(tmp_path: Path) -> None:
+    said = printed("own_shape", tmp_path)
+    assert said.startswith("224 facets, ")
+    assert 1500.0 < number(r"m3, (\d+) kg/m3", said) < 2500.0
+    assert 0.0 < number(r"'impact': ([\d.]+)", said) < 1.0
