@@ -1,6 +1,7 @@
 """What the tables of the experiments in low gravity say: rows of the page's table, and tables of their own."""
 
 import math
+import textwrap
 from collections import Counter
 
 import numpy as np
@@ -94,7 +95,7 @@ def packing_part() -> tuple[Lines, str]:
                 f"\n| {kind} | {pull:g} | {len(own)} | {column(own, 'solid_fraction').mean():.4f} "
                 f"| {column(own, 'coordination').mean():.2f} |"
             )
-    return lines, table + "\n\n" + " ".join(said)
+    return lines, table + "\n\n" + "\n".join(textwrap.wrap(" ".join(said), 98))
 
 
 def balls_part() -> tuple[Lines, str]:
