@@ -41,12 +41,13 @@ def follow_samples(job: Job) -> None:
     study, why = job.study, why_no_soil(job.study)
     rows: list[list[Any]] = []
     if study.rest.count:
-        sites = Sites.of(job)
+        samples = Samples.load(job.folder).first(study.rest.count)
+        sites = Sites.of(study, samples, sample_sites(study, len(samples.outcome)))
         if why is None:
-            rows += sites.follow(job, "soil", *_on_soil(job, sites.samples))
+            rows += sites.follow(job, "soil", *on_soil(job, samples))
         else:
             job.say(f"Bounce after bounce on hard ground only: {why}.")
-        rows += sites.follow(job, "hard", *_on_hard_ground(study, sites))
+        rows += sites.follow(job, "hard", *on_hard_ground(study, sites))
     write_table(job.folder, "rest.csv", COLUMNS, rows)
     ranges = {name: list(ends) for name, ends in trained_ranges(study).items()}
     job.folder.write_json("rest.json", {"why_no_soil": why, "trained_ranges": ranges})
@@ -59,7 +60,7 @@ def hard_surface(study: Study) -> "HardSurface":
     return HardSurface(**study.rest.model_dump(exclude={"count", "duration"}))
 
 
-def _on_soil(job: Job, samples: Samples) -> tuple["Rebounds", "Bounce"]:
+def on_soil(job: Job, samples: Samples) -> tuple["Rebounds", "Bounce"]:
     """What the samples say of the first impact, and what the soil says of those that follow."""
     from lithobrake.smallbody import Rebounds
 
@@ -74,7 +75,7 @@ def _on_soil(job: Job, samples: Samples) -> tuple["Rebounds", "Bounce"]:
     return Rebounds(velocity, spin, captured, ~captured & ~samples.leaves), bounce
 
 
-def _on_hard_ground(study: Study, sites: "Sites") -> tuple["Rebounds", "Bounce"]:
+def on_hard_ground(study: Study, sites: "Sites") -> tuple["Rebounds", "Bounce"]:
     """What hard ground says of the first impact, and of all that follow."""
     from lithobrake.smallbody import Impacts
 
@@ -91,7 +92,7 @@ def _on_hard_ground(study: Study, sites: "Sites") -> tuple["Rebounds", "Bounce"]
 
 @dataclass(frozen=True)
 class Sites:
-    """Where each of the first samples touches down, all arrays [sample_count, ...].
+    """Where each of some samples touches down, all arrays [sample_count, ...].
 
     origin [m] and axes, in rows, of the local frames, body-fixed; effective_acceleration: along the outward
     normal [m/s2]; site: the numbers of SITE_KEYS.
@@ -105,10 +106,9 @@ class Sites:
     effective_acceleration: np.ndarray
 
     @classmethod
-    def of(cls, job: Job) -> "Sites":
-        """Those of a study with samples."""
-        body, samples = site_body(job.study), Samples.load(job.folder).first(job.study.rest.count)
-        site = sample_sites(job.study, len(samples.outcome))
+    def of(cls, study: Study, samples: Samples, site: dict[str, np.ndarray]) -> "Sites":
+        """Those of samples of a study at these places, by the keys of SITE_KEYS [sample_count]."""
+        body = site_body(study)
         origin, axes = frames(body, site)
         felt = body.effective_acceleration(origin, mass=site["mass"], spin_period=site["spin_period"])
         return cls(body, samples, site, origin, axes, np.einsum("ni,ni->n", felt, axes[:, 2]))

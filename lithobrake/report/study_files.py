@@ -29,6 +29,7 @@ CONTENTS = {
     "flight_paths.h5": "the ways of the first flights, as the page shows them about the body",
     "rest.csv": "the journey of each lander that was followed from bounce to bounce",
     "rest.json": "which ground could be asked, and the range of the runs",
+    "aim.csv": "the landers at every aim, on soil and on hard ground",
     "body.obj": "the shape of the body that the flights used",
 }
 

@@ -50,6 +50,7 @@ SUMMARY_TABLES = (
             "answer": "what becomes of the landers, over what that holds, and what is missing, in sentences",
             "headline": "the answer, then the numbers that tell most, in sentences",
             "limit_states": "of a drawn study that asks for none: empty",
+            "aim": "null in a drawn study that has no aims to choose from",
             "without_scatter": "null where the samples have no scatter from run to run, or are of an emulator",
         },
     ),
