@@ -215,7 +215,10 @@ SUMMARY_TABLES = (
     ),
     KeyTable(
         SUMMARY,
-        tuple(f"results.{place}ellipses" for place in ("", "without_scatter.", "rest.soil.", "rest.hard.")),
+        tuple(
+            f"results.{place}ellipses"
+            for place in ("", "without_scatter.", "rest.soil.", "rest.hard.", "rest.equivalent.")
+        ),
         "Ellipses that hold the places of the impacts, or of the landers that settled; null where there are too few",
         {
             "latitude_deg": "of the middle",
@@ -237,8 +240,9 @@ SUMMARY_TABLES = (
     ),
     KeyTable(
         SUMMARY,
-        ("results.rest.soil", "results.rest.hard"),
-        "Where the followed samples end on each ground (statuses: docs/flights.md); null where none were followed",
+        ("results.rest.soil", "results.rest.hard", "results.rest.equivalent"),
+        "Where the followed samples end on each ground (docs/flights.md; equivalent: hard ground with the restitution "
+        "that the soil implies, in a drawn study); null where none were followed",
         {
             "sample_count": "samples followed",
             **COUNTED,
