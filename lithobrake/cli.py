@@ -156,6 +156,25 @@ def land(
         _tell([f"Motion: {out.resolve()}"])
 
 
+@app.command(epilog="Example: lithobrake infer results --bounce bounces.csv")
+def infer(
+    folder: StudyDirectory,
+    bounce: Annotated[
+        Path | None,
+        typer.Option("--bounce", metavar="FILE", help="Observed bounces, a CSV file. Absent: what they would say."),
+    ] = None,
+) -> None:
+    """Infer the soil from observed bounces with a study's emulator: writes posterior.json and posterior.png there."""
+    with _one_sentence():
+        from lithobrake.pipeline import InferredStudy, infer_study
+
+        plan = InferredStudy.open(folder).plan_lines()
+        found = None if bounce is None else infer_study(folder, bounce)
+    _tell(plan)
+    if found is not None:
+        _tell([found["statement"], f"Posterior: {folder / 'posterior.json'}, {folder / 'posterior.png'}"])
+
+
 @app.command(epilog="Example: lithobrake plan study.toml")
 def plan(
     study: StudyPath,
