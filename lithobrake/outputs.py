@@ -76,6 +76,9 @@ RUN = {
 FLIGHT = {
     "sample": Quantity("", "row of the sample, from 0"),
     "ground": Quantity("", "what the lander bounces on"),
+    "aim": Quantity("", "place of the aim among those of the summary, from 0"),
+    "refit": Quantity("", "refit of the emulator that the lander meets, from 0"),
+    "distance": Quantity("m", "way over the ground from the aim to where the lander rests"),
     "status": Quantity("", "how the flight or the journey ended"),
     "start_speed": Quantity("m/s", "speed after the touchdown", LOCAL),
     "start_elevation_deg": Quantity("deg", "angle of that velocity above the surface", LOCAL),

@@ -1,5 +1,6 @@
 """What runs and a fitted expansion say: estimates with their intervals, samples, outcomes."""
 
+from lithobrake.analysis.best_choice import BestChoice, best_choice, quantile_within
 from lithobrake.analysis.confidence import LEVEL, IntervalEstimate
 from lithobrake.analysis.control_variate import regression_terms
 from lithobrake.analysis.ellipse import Ellipses, dispersion_ellipses
@@ -26,6 +27,7 @@ from lithobrake.analysis.variance_shares import VarianceShares, variance_shares
 
 __all__ = [
     "LEVEL",
+    "BestChoice",
     "Ellipses",
     "FailureInput",
     "FailureProbability",
@@ -38,6 +40,7 @@ __all__ = [
     "ShareEstimate",
     "SubsetResult",
     "VarianceShares",
+    "best_choice",
     "chaos_variance",
     "dispersion_ellipses",
     "drawn_counts",
@@ -52,6 +55,7 @@ __all__ = [
     "next_run_count",
     "predictive_p_value",
     "quantile_estimates",
+    "quantile_within",
     "refit_interval",
     "regression_terms",
     "runs_for_half_width",

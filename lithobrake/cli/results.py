@@ -165,6 +165,25 @@ def export(
         tell(f"Wrote {path}" for path in written)
 
 
+@app.command(epilog="Example: lithobrake infer results --bounce bounces.csv")
+def infer(
+    folder: StudyDirectory,
+    bounce: Annotated[
+        Path | None,
+        typer.Option("--bounce", metavar="FILE", help="Observed bounces, a CSV file. Absent: what they would say."),
+    ] = None,
+) -> None:
+    """Infer the soil from observed bounces with a study's emulator: writes posterior.json and posterior.png there."""
+    with one_sentence():
+        from lithobrake.pipeline import InferredStudy, infer_study
+
+        plan = InferredStudy.open(folder).plan_lines()
+        found = None if bounce is None else infer_study(folder, bounce)
+    tell(plan)
+    if found is not None:
+        tell([found["statement"], f"Posterior: {folder / 'posterior.json'}, {folder / 'posterior.png'}"])
+
+
 def _landing(
     results: "StudyResults", run: str | None, progress: Callable[[float, str], None] = lambda done, what: None
 ) -> "MovingBodies":

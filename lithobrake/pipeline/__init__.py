@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from lithobrake.pipeline.folder import StudyFolder
+    from lithobrake.pipeline.inferring import InferredStudy, infer_study
     from lithobrake.pipeline.job import Job
     from lithobrake.pipeline.one_landing import OneLanding, land_one, landing_inputs
     from lithobrake.pipeline.planning.plan import Plan
@@ -17,11 +18,13 @@ if TYPE_CHECKING:
     from lithobrake.pipeline.study_run import run_study, write_report_again
 
 _HOME = {
+    "InferredStudy": "inferring",
     "Job": "job",
     "OneLanding": "one_landing",
     "Plan": "planning.plan",
     "Stage": "stages",
     "StudyFolder": "folder",
+    "infer_study": "inferring",
     "land_one": "one_landing",
     "landing_inputs": "one_landing",
     "make": "stages",
@@ -36,11 +39,13 @@ _HOME = {
     "write_report_again": "study_run",
 }
 __all__ = [
+    "InferredStudy",
     "Job",
     "OneLanding",
     "Plan",
     "Stage",
     "StudyFolder",
+    "infer_study",
     "land_one",
     "landing_inputs",
     "make",

@@ -120,7 +120,7 @@ def rest_results(job: Job) -> dict[str, Any]:
     """What became of the samples that were followed, on each ground."""
     rows, known = read_table(job.folder, "rest.csv"), job.folder.read_json("rest.json")
     table: dict[str, Any] = {"why_no_soil": known["why_no_soil"], "trained_ranges": known["trained_ranges"]}
-    for ground in ("soil", "hard"):
+    for ground in ("soil", "hard", "equivalent"):
         part = [row for row in rows if row["ground"] == ground]
         table[ground] = _ends(job.study, part, known["trained_ranges"]) if part else None
     return table

@@ -29,6 +29,7 @@ def drawn_answer(study: Study, results: Mapping[str, Any]) -> list[str]:
         *_missing(results["runs"], stays),
         _others(results["shares"], holds=holds),
         *(one["statement"] for one in results["limit_states"].values()),
+        *([results["aim"]["statement"]] if results["aim"] else []),
         *([site["warning"]] if site["warning"] else []),
     ]
 

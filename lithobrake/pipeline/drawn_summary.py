@@ -6,6 +6,7 @@ import numpy as np
 
 from lithobrake.outcomes import FlightStatus, TouchdownOutcome
 from lithobrake.outputs import OUTPUTS, SEQUENCE_DESIGNS, TOUCHDOWN
+from lithobrake.pipeline.aim_results import aim_results
 from lithobrake.pipeline.beds import bed_files
 from lithobrake.pipeline.design_runs import DesignRuns
 from lithobrake.pipeline.dispersion_statistics import ellipses, rest_results, shares
@@ -45,6 +46,7 @@ def write_drawn_summary(job: Job) -> None:
         **_dispersion(job, estimates),
     }
     results["limit_states"] = _limit_states(job)
+    results["aim"] = aim_results(job.study, job.folder, _refits(estimates))
     results["emulator"] = _emulator(job, results)
     results["answer"] = drawn_answer(job.study, results)
     results["headline"] = drawn_headline(job.study, results)
@@ -68,12 +70,21 @@ def _limit_states(job: Job) -> dict[str, Any]:
     return {name: one | {"statement": limit_statement(name, one)} for name, one in found.items()}
 
 
+def _ended(estimates: dict[str, Any]) -> dict[str, int]:
+    """How many runs ended in each way, without those that failed."""
+    return {name: count for name, count in estimates["runs"]["outcomes"].items() if name in list(TouchdownOutcome)}
+
+
+def _refits(estimates: dict[str, Any]) -> Refits:
+    """What the emulator was fitted to."""
+    return Refits(estimates["runs"]["beds"], sum(_ended(estimates).values()), estimates["stays"]["why"])
+
+
 def _dispersion(job: Job, estimates: dict[str, Any]) -> dict[str, Any]:
     """What became of the samples, with intervals from refits; the share of the runs gets that of the emulator."""
     study, samples, flights = job.study, Samples.load(job.folder), read_table(job.folder, "flights.csv")
-    holds, met = bool(effective_acceleration_at_site(study)[2] < 0.0), estimates["runs"]["outcomes"]
-    ended = {name: count for name, count in met.items() if name in list(TouchdownOutcome)}
-    refits = Refits(estimates["runs"]["beds"], sum(ended.values()), estimates["stays"]["why"])
+    holds, ended = bool(effective_acceleration_at_site(study)[2] < 0.0), _ended(estimates)
+    refits = _refits(estimates)
     fates = sample_fates(samples, flights, holds=holds)
     table = shares(samples, flights, ended, holds=holds)
     for entry in table.values():

@@ -17,8 +17,17 @@ def draw_emulator_samples(job: Job) -> None:
 
     So every share of the samples has its scatter over refits in itself, and no flight is made for an interval alone.
     """
+    study = job.study
+    x = sample_inputs(design_inputs(study), study.monte_carlo.sample_count, hashed_seed(study.seed, "samples"))
+    drawn_samples(job, x, "draws").save(job.folder)
+
+
+def drawn_samples(job: Job, x: np.ndarray, purpose: str) -> Samples:
+    """Draw a landing at each x [sample_count, input_count]; sample i by refit i modulo that.
+
+    purpose: of the random numbers.
+    """
     study, inputs = job.study, design_inputs(job.study)
-    x = sample_inputs(inputs, study.monte_carlo.sample_count, hashed_seed(study.seed, "samples"))
     bound = energy_bound(study, height_of_beds(study, job.folder), dict(zip(inputs, x.T, strict=True)), len(x))
     models = refits(job)
     names: list[str] = []
@@ -26,9 +35,9 @@ def draw_emulator_samples(job: Job) -> None:
     for number, model in enumerate(models):
         job.progress(number, len(models), "samples")
         part = slice(number, None, REFIT_COUNT)
-        drawn = DrawnLandings.of(model, x[part], bound.at(part), hashed_seed(study.seed, "draws", number))
+        drawn = DrawnLandings.of(model, x[part], bound.at(part), hashed_seed(study.seed, purpose, number))
         table = drawn.table()
         if not names:
             names, outputs = list(table), np.empty((len(x), len(table)))
         outputs[part], outcome[part] = np.column_stack(list(table.values())), drawn.outcome
-    Samples(list(inputs), names, x, outputs, outcome).save(job.folder)
+    return Samples(list(inputs), names, x, outputs, outcome)

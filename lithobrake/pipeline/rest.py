@@ -1,4 +1,4 @@
-"""From bounce to bounce until the landers rest: on the soil, and on hard ground beside it."""
+"""From bounce to bounce until the landers rest: on the soil, and on hard ground of two kinds beside it."""
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -7,8 +7,11 @@ import numpy as np
 
 from lithobrake.outcomes import JourneyStatus
 from lithobrake.outputs import SPIN_OUT
+from lithobrake.pipeline.design_runs import DesignRuns
 from lithobrake.pipeline.emulator_bounce import emulator_bounce
 from lithobrake.pipeline.flights import partner_time, sample_sites, write_table
+from lithobrake.pipeline.hard_equivalents import FILE as RESTITUTION
+from lithobrake.pipeline.hard_equivalents import restitution_table
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.outgoing import VELOCITY, rolling_spin
 from lithobrake.pipeline.samples import CAPTURED, Samples, sampling_seed, touchdown_values
@@ -17,7 +20,7 @@ from lithobrake.pipeline.surrogate_bounce import soil_bounce, trained_ranges, wh
 from lithobrake.study import Study
 
 if TYPE_CHECKING:
-    from lithobrake.smallbody import Body, Bounce, HardSurface, Rebounds
+    from lithobrake.smallbody import Body, Bounce, HardSurface, Impacts, Rebounds
 
 # docs/flights.md says what each is.
 COLUMNS = (
@@ -31,6 +34,12 @@ DOWN = (
 )
 
 
+def rest_files(study: Study) -> list[str]:
+    """What the stage writes; the table of restitution where the emulator knows other impacts than the first."""
+    asks = study.design.method == "sequence" and why_no_soil(study) is None and bool(study.rest.count)
+    return ["rest.csv", "rest.json", *([RESTITUTION] if asks else [])]
+
+
 def rest_reads(study: Study) -> dict[str, Any]:
     """What the journeys depend on beside samples and flights."""
     return study.rest.model_dump()
@@ -41,12 +50,15 @@ def follow_samples(job: Job) -> None:
     study, why = job.study, why_no_soil(job.study)
     rows: list[list[Any]] = []
     if study.rest.count:
-        sites = Sites.of(job)
+        samples = Samples.load(job.folder).first(study.rest.count)
+        sites = Sites.of(study, samples, sample_sites(study, len(samples.outcome)))
         if why is None:
-            rows += sites.follow(job, "soil", *_on_soil(job, sites.samples))
+            rows += sites.follow(job, "soil", *on_soil(job, samples))
         else:
             job.say(f"Bounce after bounce on hard ground only: {why}.")
-        rows += sites.follow(job, "hard", *_on_hard_ground(study, sites))
+        rows += sites.follow(job, "hard", *on_hard_ground(study, sites))
+        if RESTITUTION in rest_files(study):
+            rows += sites.follow(job, "equivalent", *_on_equivalent_ground(job, sites))
     write_table(job.folder, "rest.csv", COLUMNS, rows)
     ranges = {name: list(ends) for name, ends in trained_ranges(study).items()}
     job.folder.write_json("rest.json", {"why_no_soil": why, "trained_ranges": ranges})
@@ -59,7 +71,7 @@ def hard_surface(study: Study) -> "HardSurface":
     return HardSurface(**study.rest.model_dump(exclude={"count", "duration"}))
 
 
-def _on_soil(job: Job, samples: Samples) -> tuple["Rebounds", "Bounce"]:
+def on_soil(job: Job, samples: Samples) -> tuple["Rebounds", "Bounce"]:
     """What the samples say of the first impact, and what the soil says of those that follow."""
     from lithobrake.smallbody import Rebounds
 
@@ -74,24 +86,38 @@ def _on_soil(job: Job, samples: Samples) -> tuple["Rebounds", "Bounce"]:
     return Rebounds(velocity, spin, captured, ~captured & ~samples.leaves), bounce
 
 
-def _on_hard_ground(study: Study, sites: "Sites") -> tuple["Rebounds", "Bounce"]:
+def on_hard_ground(study: Study, sites: "Sites") -> tuple["Rebounds", "Bounce"]:
     """What hard ground says of the first impact, and of all that follow."""
+    bounce = hard_surface(study)
+    # Hard ground has no scatter, so no random number is drawn.
+    return bounce(_first_impacts(study, sites), np.random.default_rng(0)), bounce
+
+
+def _on_equivalent_ground(job: Job, sites: "Sites") -> tuple["Rebounds", "Bounce"]:
+    """What hard ground says that has the restitution the soil implies; its table is written beside."""
+    study = job.study
+    table = restitution_table(study, Samples.load(job.folder), DesignRuns.load(job.folder, "sequence"))
+    table.save(job.folder / RESTITUTION)
+    random = np.random.default_rng(sampling_seed(study, "equivalent ground"))
+    return table(_first_impacts(study, sites), random), table
+
+
+def _first_impacts(study: Study, sites: "Sites") -> "Impacts":
+    """The first impact of each lander."""
     from lithobrake.smallbody import Impacts
 
-    bounce, samples = hard_surface(study), sites.samples
+    samples = sites.samples
     speed, incidence_deg, *spin = (
         touchdown_values(study, samples.input_names, samples.inputs, f"impact.{name}")
         for name in ("speed", "incidence_deg", "spin_x", "spin_y", "spin_z")
     )
     lander = np.arange(len(samples.outcome))
-    first = Impacts(speed, np.radians(incidence_deg), np.column_stack(spin), sites.effective_acceleration, lander)
-    # Hard ground has no scatter, so no random number is drawn.
-    return bounce(first, np.random.default_rng(0)), bounce
+    return Impacts(speed, np.radians(incidence_deg), np.column_stack(spin), sites.effective_acceleration, lander)
 
 
 @dataclass(frozen=True)
 class Sites:
-    """Where each of the first samples touches down, all arrays [sample_count, ...].
+    """Where each of some samples touches down, all arrays [sample_count, ...].
 
     origin [m] and axes, in rows, of the local frames, body-fixed; effective_acceleration: along the outward
     normal [m/s2]; site: the numbers of SITE_KEYS.
@@ -105,10 +131,9 @@ class Sites:
     effective_acceleration: np.ndarray
 
     @classmethod
-    def of(cls, job: Job) -> "Sites":
-        """Those of a study with samples."""
-        body, samples = site_body(job.study), Samples.load(job.folder).first(job.study.rest.count)
-        site = sample_sites(job.study, len(samples.outcome))
+    def of(cls, study: Study, samples: Samples, site: dict[str, np.ndarray]) -> "Sites":
+        """Those of samples of a study at these places, by the keys of SITE_KEYS [sample_count]."""
+        body = site_body(study)
         origin, axes = frames(body, site)
         felt = body.effective_acceleration(origin, mass=site["mass"], spin_period=site["spin_period"])
         return cls(body, samples, site, origin, axes, np.einsum("ni,ni->n", felt, axes[:, 2]))

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from lithobrake.hashing import json_hash, source_hash
+from lithobrake.pipeline.aiming import aim_files, aim_reads, follow_aims
 from lithobrake.pipeline.beds import bed_files, bed_reads, pour_beds
 from lithobrake.pipeline.design_runs import file_of
 from lithobrake.pipeline.designs import design_reads
@@ -26,7 +27,7 @@ from lithobrake.pipeline.making_runs import (
     make_test_runs,
 )
 from lithobrake.pipeline.place_region import place_region
-from lithobrake.pipeline.rest import follow_samples, rest_reads
+from lithobrake.pipeline.rest import follow_samples, rest_files, rest_reads
 from lithobrake.pipeline.run_estimates import estimate
 from lithobrake.pipeline.run_flights import fly_runs, run_flight_reads
 from lithobrake.pipeline.samples import draw_samples
@@ -173,13 +174,14 @@ SEQUENCE = (
     Stage("emulator", "emulator", _files("emulator.json", EXPLORER), _nothing, ("runs",), EMULATE, _emulate),
     Stage("sample", "samples", _files("samples.h5"), _sample, ("emulator",), EMULATE, draw_emulator_samples),
     Stage("fly", "flights", _files(*FLIGHT_FILES), flight_reads, ("sample",), FLY, fly_samples),
-    Stage("rest", "bounces until rest", _files("rest.csv", "rest.json"), rest_reads, ("fly",), FLY, follow_samples),
+    Stage("rest", "bounces until rest", rest_files, rest_reads, ("fly",), FLY, follow_samples),
+    Stage("aim", "aims", aim_files, aim_reads, ("fly",), (*FLY, "analysis", "emulator"), follow_aims),
     Stage(
         "summary",
         "summary",
         _files("summary.json"),
         study_tables,
-        ("landing", "estimate", "rest"),
+        ("landing", "estimate", "rest", "aim"),
         (*SUM_UP, "emulator"),
         write_drawn_summary,
     ),

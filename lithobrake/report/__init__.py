@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from pathlib import Path
 
-__all__ = ["write_report"]
+__all__ = ["write_corner", "write_report"]
 
 
 def write_report(folder: Path, progress: Callable[[int, int], None] = lambda done, total: None) -> Path:
@@ -16,3 +16,13 @@ def write_report(folder: Path, progress: Callable[[int, int], None] = lambda don
     from lithobrake.report.study_report import write_report as write
 
     return write(folder, progress)
+
+
+def write_corner(posterior: Path, picture: Path) -> None:
+    """Draw the posterior.json of an inference as a corner plot, a PNG file: each input before and after, and each pair.
+
+    Raises ValueError for another file.
+    """
+    from lithobrake.report.corner_figure import write_corner as write
+
+    write(posterior, picture)

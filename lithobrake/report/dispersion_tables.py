@@ -30,7 +30,7 @@ JOURNEY_WORDS: dict[str, str] = {
     JourneyStatus.ESCAPED: JourneyStatus.ESCAPED.label,
     JourneyStatus.PARTNER: "on the partner",
 }
-GROUND_WORDS = {"soil": "soil", "hard": "hard ground"}
+GROUND_WORDS = {"soil": "soil", "hard": "hard ground", "equivalent": "hard ground like the soil"}
 QUANTILES = ("quantile_0.05", "quantile_0.5", "quantile_0.95")
 ACCELERATIONS = ("effective_acceleration_outward", "effective_acceleration_along_heading")
 
@@ -158,7 +158,8 @@ def _journeys(data: Results) -> PageTable:
     note = (
         f"Hard ground: restitution {rest['normal_restitution']:g} along the normal, {rest['tangential_restitution']:g} "
         f"along the ground, friction {rest['friction']:g}; at rest where a rebound rises less than "
-        f"{rest['rest_height']:g} m. The path is the sum of straight lines between impacts."
+        f"{rest['rest_height']:g} m. Hard ground like the soil draws the restitution that the soil implies by "
+        "speed and incidence (restitution.csv). The path is the sum of straight lines between impacts."
     )
     return PageTable("Journeys to rest", columns, rows, note, frozenset(columns[2:]))
 

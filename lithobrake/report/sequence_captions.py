@@ -187,3 +187,13 @@ def samples(data: SequenceResults, colour_name: str | None) -> str:
 def impacts_absent(data: SequenceResults) -> str:
     """Figures 7 and 8, where nothing was flown."""
     return f"The folder has no flights of samples, so where those landers come down that {action(data)} is not drawn."
+
+
+def aims(data: SequenceResults) -> str:
+    """The figure of the aims."""
+    table = data.table("aim")
+    crossed = " Aims that the limits rule out are crossed." if table["within"] else ""
+    return (
+        f"{thousands(table['lander_count'])} landers at each aim, followed until they rest; below each number its 90 % "
+        f"interval, a frame about the best.{crossed} {table['statement']}"
+    )

@@ -8,6 +8,7 @@ from lithobrake.outcomes import TouchdownOutcome
 from lithobrake.outputs import OVER_RIM
 from lithobrake.report import any_study_figures as any_study
 from lithobrake.report import captions, sequence_captions
+from lithobrake.report.aim_figure import aim_figure
 from lithobrake.report.calibration_figure import calibration_figure, histograms
 from lithobrake.report.explorer import explorer_sections
 from lithobrake.report.page import Content, Plot
@@ -52,6 +53,8 @@ def _plots(data: SequenceResults) -> list[Plot]:
         plots.append(Plot("map", "Where the lander comes down", words.impacts_absent(data), lambda: None))
     if data.results.get("rest") and data.results.get("site"):
         plots.append(Plot("rest", "Where it rests", captions.rest(data), lambda: any_study.draw_rest(data)))
+    if data.table("aim"):
+        plots.append(Plot("aim", "Where to aim", words.aims(data), lambda: aim_figure(data.table("aim"))))
     return plots
 
 

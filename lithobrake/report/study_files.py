@@ -28,7 +28,9 @@ CONTENTS = {
     "flights.json": "how exact the flights are",
     "flight_paths.h5": "the ways of the first flights, as the page shows them about the body",
     "rest.csv": "the journey of each lander that was followed from bounce to bounce",
+    "restitution.csv": "restitution, friction and scatter that the soil implies, by speed and incidence",
     "rest.json": "which ground could be asked, and the range of the runs",
+    "aim.csv": "the landers at every aim, on soil and on hard ground",
     "body.obj": "the shape of the body that the flights used",
 }
 

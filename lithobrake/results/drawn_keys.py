@@ -87,6 +87,57 @@ DRAWN_TABLES = (
     ),
     KeyTable(
         SUMMARY,
+        ("results.aim",),
+        "The aims of the study file (docs/aiming.md), the last name running fastest",
+        {
+            "names": "what is aimed at, by dotted key, in the order of aims.values",
+            "units": "of the names",
+            "within": "limits that the best aim keeps",
+            "lander_count": "landers at each aim",
+            "refit_count": "fits of the emulator to beds drawn anew that they share in",
+            "level": "probability that the bounds of this table stand for",
+            "why": "why the soil gives no interval, in a sentence; null where it gives one",
+            "aims.values": "of the names, in the units of the study file",
+            **{
+                f"aims.{ground}.{key}": words
+                for ground, bounds in (("soil", "over refits"), ("hard", "by the number of landers"))
+                for key, words in {
+                    "settled.share": "landers that rest where the ground holds them, after all bounces",
+                    "settled.lower": f"lower bound, {bounds}; null where there is none",
+                    "settled.upper": "upper bound likewise",
+                    "missing": "share of the landers of which nobody knows where they end",
+                    "distance_p95": "null where no lander settles",
+                    "distance_p95.value": "95 % of those that settle lie within this way over the ground [m]",
+                    "time_p95": "null where no lander settles",
+                    "time_p95.value": "95 % of those that settle rest within this time [s]",
+                    **{
+                        f"{name}.{end}": f"{end} bound; null where so few landers do not tell it"
+                        for name in ("distance_p95", "time_p95")
+                        for end in ("lower", "upper")
+                    },
+                    "allowed": "whether the aim keeps the limits on this ground",
+                }.items()
+            },
+            "aims.soil.share_of_refits": "share of the refits in which most landers settle here",
+            **{
+                f"best_on_{ground}{key}": words
+                for ground in ("soil", "hard")
+                for key, words in {
+                    "": "null where no aim is allowed, or at none of them a lander settles",
+                    ".aim": "place of the best among the aims, from 0",
+                    ".share_of_refits": "share of the refits in which it is the best; null on hard ground",
+                    ".next": "place of the second best likewise",
+                    ".difference": "null where there is no second, and on hard ground",
+                    ".difference.value": "settled share of the best less that of the second",
+                    ".difference.lower": "lower bound of that, over refits",
+                    ".difference.upper": "upper bound likewise",
+                }.items()
+            },
+            "statement": "the best aim and how sure it is, in sentences",
+        },
+    ),
+    KeyTable(
+        SUMMARY,
         ("results.emulator",),
         "The emulator of a drawn study, on beds that were left out (docs/emulator.md)",
         {

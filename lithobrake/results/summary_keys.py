@@ -50,6 +50,7 @@ SUMMARY_TABLES = (
             "answer": "what becomes of the landers, over what that holds, and what is missing, in sentences",
             "headline": "the answer, then the numbers that tell most, in sentences",
             "limit_states": "of a drawn study that asks for none: empty",
+            "aim": "null in a drawn study that has no aims to choose from",
             "without_scatter": "null where the samples have no scatter from run to run, or are of an emulator",
         },
     ),
@@ -214,7 +215,10 @@ SUMMARY_TABLES = (
     ),
     KeyTable(
         SUMMARY,
-        tuple(f"results.{place}ellipses" for place in ("", "without_scatter.", "rest.soil.", "rest.hard.")),
+        tuple(
+            f"results.{place}ellipses"
+            for place in ("", "without_scatter.", "rest.soil.", "rest.hard.", "rest.equivalent.")
+        ),
         "Ellipses that hold the places of the impacts, or of the landers that settled; null where there are too few",
         {
             "latitude_deg": "of the middle",
@@ -236,8 +240,9 @@ SUMMARY_TABLES = (
     ),
     KeyTable(
         SUMMARY,
-        ("results.rest.soil", "results.rest.hard"),
-        "Where the followed samples end on each ground (statuses: docs/flights.md); null where none were followed",
+        ("results.rest.soil", "results.rest.hard", "results.rest.equivalent"),
+        "Where the followed samples end on each ground (docs/flights.md; equivalent: hard ground with the restitution "
+        "that the soil implies, in a drawn study); null where none were followed",
         {
             "sample_count": "samples followed",
             **COUNTED,

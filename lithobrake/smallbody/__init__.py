@@ -7,6 +7,7 @@ from lithobrake.smallbody.built_in_bodies import didymos, dimorphos
 from lithobrake.smallbody.flight import fly
 from lithobrake.smallbody.flight_results import Flights
 from lithobrake.smallbody.hopping import Journeys, Launch, hop
+from lithobrake.smallbody.restitution_table import RestitutionTable
 from lithobrake.smallbody.shape import Shape
 from lithobrake.smallbody.spice_kernels import PartnerPlace, SpinState, read_partner, read_spin
 
@@ -23,6 +24,7 @@ __all__ = [
     "Partner",
     "PartnerPlace",
     "Rebounds",
+    "RestitutionTable",
     "Shape",
     "SpinState",
     "didymos",

@@ -8,6 +8,7 @@ import shutil
 from collections.abc import Iterator
 from pathlib import Path
 
+from lithobrake.study.aim_checks import aim_problems
 from lithobrake.study.body_checks import body_problems
 from lithobrake.study.contact_checks import contact_problems, inertia_problems
 from lithobrake.study.design_checks import design_problems
@@ -34,6 +35,7 @@ def problems(study: Study) -> Iterator[str]:
     yield from design_problems(study)
     yield from _solver_problems(study)
     yield from _limit_state_problems(study)
+    yield from aim_problems(study)
     if study.has_soil:
         yield from contact_problems(study)
     gravity = study.surface.gravity

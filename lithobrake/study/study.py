@@ -8,6 +8,7 @@ from typing import Annotated, Any
 
 from pydantic import BaseModel, PrivateAttr, model_validator
 
+from lithobrake.study.aim_section import AimSection
 from lithobrake.study.bed_section import BedSection
 from lithobrake.study.campaign_sections import CampaignSection, SolverSection
 from lithobrake.study.design_sections import DEFAULT_METHOD, DesignSection, MonteCarloSection
@@ -58,6 +59,7 @@ class Study(Section):
     flight: FlightSection = FlightSection()
     rest: RestSection = RestSection()
     limit_states: LimitStatesSection = LimitStatesSection()
+    aim: AimSection = AimSection()
     _function: str | None = PrivateAttr(default=None)
 
     @model_validator(mode="before")

@@ -4,7 +4,7 @@ import tomllib
 from pathlib import Path
 
 from lithobrake.outputs import BEDS, FLIGHT, OUTPUTS, RUN, TOUCHDOWN, quantity
-from lithobrake.pipeline import flights, rest
+from lithobrake.pipeline import aiming, flights, rest
 from lithobrake.pipeline.design_runs import PLAIN_COLUMNS
 from lithobrake.study import check_tables
 from lithobrake.study.template import template
@@ -30,7 +30,7 @@ def test_every_output_has_its_unit() -> None:
 
 def test_every_column_of_the_tables_has_words() -> None:
     assert set(PLAIN_COLUMNS) <= set(RUN)
-    own = {name for name in (*flights.COLUMNS, *rest.COLUMNS) if not name.startswith("site_")}
+    own = {name for name in (*flights.COLUMNS, *rest.COLUMNS, *aiming.COLUMNS) if not name.startswith("site_")}
     assert own == set(FLIGHT)
     assert all(one.long_name for one in (FLIGHT | RUN | BEDS).values())
     # A name that ends with its unit has that unit.

@@ -1,0 +1,193 @@
+"""From bounces in a file to the soil of a study: its emulator turned round, and what a bounce could say at all."""
+
+import json
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from lithobrake.analysis import (
+    LEVEL,
+    Observation,
+    Posterior,
+    identifiability,
+    infer,
+    predictive_p_value,
+)
+from lithobrake.atomic import atomic_path
+from lithobrake.outcomes import TouchdownOutcome
+from lithobrake.pipeline.beds import bed_files
+from lithobrake.pipeline.designs import design_inputs
+from lithobrake.pipeline.energy_bound import energy_bound, height_of_beds
+from lithobrake.pipeline.fitted_emulator import FILE as EMULATOR
+from lithobrake.pipeline.fitted_emulator import SPEED, SPIN
+from lithobrake.pipeline.folder import StudyFolder
+from lithobrake.pipeline.site import with_site_gravity
+from lithobrake.reading import DamagedFileError, read_rows
+from lithobrake.study import Study, StudySource
+from lithobrake.study.units import input_units
+
+if TYPE_CHECKING:
+    from lithobrake.emulator import Emulator
+
+POSTERIOR, PICTURE = "posterior.json", "posterior.png"
+# Points of the posterior that the file keeps and the picture draws.
+DRAWN = 2000
+# What a bounce has of its own, whether known of it or not; all else is the soil and the lander of all bounces.
+OWN, ERROR = "impact.", "error:"
+
+
+@dataclass(frozen=True)
+class InferredStudy:
+    """A study that ran, and its emulator."""
+
+    study: Study
+    folder: StudyFolder
+    model: "Emulator"
+
+    @classmethod
+    def open(cls, path: Path) -> "InferredStudy":
+        """Read a study's folder. Raises ValueError where it has no emulator."""
+        from lithobrake.emulator import load
+
+        folder = StudyFolder.only_read(path)
+        if not (folder / EMULATOR).is_file():
+            raise ValueError(f"{path} has no {EMULATOR}; run a drawn study there first (design.method = sequence)")
+        source = StudySource.read(folder / "study.toml")
+        study = with_site_gravity(source.study, source.name)
+        # The file does not say that a Python function made the touchdowns; then there are no beds.
+        if not all((folder / name).is_file() for name in bed_files(study)):
+            study = study.with_function("of the folder's runs")
+        return cls(study, folder, load(folder / EMULATOR))
+
+    @property
+    def outputs(self) -> list[str]:
+        """Outputs that may be observed: those that have a law of their own."""
+        return [self.model.output_names[column] for column in self.model.runs.modelled]
+
+    @property
+    def of_each_bounce(self) -> list[str]:
+        """Inputs that each bounce has of its own."""
+        return [name for name in self.model.runs.inputs if name.startswith(OWN)]
+
+    def bounds(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Bounds of the outputs at points [point_count, input_count]: what energy allows, where the runs keep to it."""
+        runs = self.model.runs
+        lower, upper = np.tile(runs.lower[0], (len(x), 1)), np.tile(runs.upper[0], (len(x), 1))
+        speed, spin = (self.model.output_names.index(name) for name in (SPEED, SPIN))
+        if np.isfinite(upper[0, speed]):
+            names = design_inputs(self.study)
+            height = height_of_beds(self.study, self.folder)
+            bound = energy_bound(self.study, height, dict(zip(names, x.T, strict=True)), len(x))
+            upper[:, speed], upper[:, spin] = bound.speed, bound.spin()
+        return lower, upper
+
+    def plan(self) -> dict[str, Any]:
+        """What bounces of which all outputs are seen would say: keys of `identifiability`, by input."""
+        found = identifiability(self.model, self.outputs, own=self.of_each_bounce, bounds=self.bounds, seed=1)
+        return {
+            name: {"halved_by": one.bounces, "left_of_sd": {str(count): left for count, left in one.sd_ratio.items()}}
+            for name, one in found.items()
+        }
+
+    def plan_lines(self) -> list[str]:
+        """The same in words, which a person should read before any bounce is looked at."""
+        lines = [f"Of bounces whose {', '.join(self.outputs)} are seen, taking the emulator as exact:"]
+        for name, one in self.plan().items():
+            after = one["left_of_sd"].get("1")
+            first = "" if after is None else f"one leaves {100 * after:.0f} % of its standard deviation; "
+            count = one["halved_by"]
+            halved = "no number that was looked at halves it" if count is None else f"{count:.0f} halve it"
+            lines.append(f"  {name}: {first}{halved}")
+        return lines
+
+    def infer(self, bounces: Path) -> dict[str, Any]:
+        """Infer the soil from the bounces of a CSV file; what posterior.json holds."""
+        seen = read_bounces(bounces)
+        known = {name for one in seen for name in one.known}
+        if known - set(self.of_each_bounce):
+            raise ValueError(
+                f"{bounces} gives {sorted(known - set(self.of_each_bounce))[0]} of a bounce; allowed: "
+                f"{', '.join(self.of_each_bounce) or 'none, as [impact] has no uncertain number'}"
+            )
+        anew = [name for name in self.of_each_bounce if any(name not in one.known for one in seen)]
+        found = infer(self.model, seen, own=anew, bounds=self.bounds, seed=1)
+        return self._content(found, seen)
+
+    def _content(self, found: Posterior, seen: list[Observation]) -> dict[str, Any]:
+        units, points = input_units(), found.sample(DRAWN, seed=1)
+        surprise = [
+            predictive_p_value(self.model, found, one, bounds=self.bounds, seed=1) if one.outputs else None
+            for one in seen
+        ]
+        return {
+            "bounces": [
+                {"outputs": dict(one.outputs), "known": dict(one.known), "outcome": one.outcome} for one in seen
+            ],
+            "statement": found.statement(),
+            "level": LEVEL,
+            "effective_count": found.effective_count,
+            "is_reliable": found.is_reliable,
+            "log_evidence": found.log_evidence,
+            "predictive_p_value": surprise,
+            "inputs": {
+                name: {
+                    "unit": units.get(name, ""),
+                    "before": [one.before.lower, one.before.value, one.before.upper],
+                    "after": [one.after.lower, one.after.value, one.after.upper],
+                    "sd_ratio": one.sd_ratio,
+                    "information": one.information,
+                    "prior": law.ppf((np.arange(DRAWN) + 0.5) / DRAWN).tolist(),
+                    "points": values.tolist(),
+                }
+                for (name, law), one, values in zip(
+                    found.inputs.items(), found.learnt().values(), points.T, strict=True
+                )
+            },
+        }
+
+
+def infer_study(folder: Path, bounces: Path) -> dict[str, Any]:
+    """Infer the soil of a study from bounces and write posterior.json and a picture into its folder."""
+    from lithobrake.report import write_corner
+
+    content = InferredStudy.open(folder).infer(bounces)
+    with atomic_path(folder / POSTERIOR) as draft:
+        draft.write_text(json.dumps(content, indent=2, allow_nan=False) + "\n", encoding="utf-8")
+    write_corner(folder / POSTERIOR, folder / PICTURE)
+    return content
+
+
+def read_bounces(path: str | os.PathLike[str]) -> list[Observation]:
+    """Read bounces, one a row, from a CSV file; an empty cell was not observed.
+
+    Columns: outputs of the touchdown [SI], `error:` and the name of one for its standard deviation, uncertain numbers
+    of [impact] by dotted key where they are known, and outcome. Raises ValueError for what is no number, and no bounce.
+    """
+    rows = read_rows(path, (), "write a line of names, and a line for each bounce")
+    found = [_bounce(path, number, row) for number, row in enumerate(rows, start=1)]
+    if not found:
+        raise ValueError(f"{path} has no bounce; write one a line below the line of names")
+    return found
+
+
+def _bounce(path: str | os.PathLike[str], number: int, row: Mapping[str, str]) -> Observation:
+    given: dict[str, float] = {}
+    for name, text in row.items():
+        if name != "outcome" and text.strip():
+            try:
+                given[name] = float(text)
+            except ValueError as error:
+                raise DamagedFileError(
+                    f'{path} has "{text}" for {name} in row {number}; write a number, or nothing'
+                ) from error
+    outcome = (row.get("outcome") or "").strip() or None
+    if outcome not in (None, *TouchdownOutcome):
+        raise ValueError(f'{path} has the outcome "{outcome}" in row {number}; allowed: {", ".join(TouchdownOutcome)}')
+    errors = {name.removeprefix(ERROR): value for name, value in given.items() if name.startswith(ERROR)}
+    known = {name: value for name, value in given.items() if "." in name and not name.startswith(ERROR)}
+    outputs = {name: value for name, value in given.items() if name not in known and not name.startswith(ERROR)}
+    return Observation(outputs, errors, known, outcome)

@@ -1,0 +1,66 @@
+"""What is wrong with the aims that a study is to choose from, found before anything runs."""
+
+import math
+from collections.abc import Iterator
+from itertools import pairwise
+
+from lithobrake.study.aim_section import AIM_RESULTS, AimLimit
+from lithobrake.study.quantity import reach, uncertain
+from lithobrake.study.refusals import closest
+from lithobrake.study.study import Study
+
+# A figure has two axes and a row of pictures; more aims than this nobody looks at.
+MOST_AXES, MOST_AIMS = 3, 500
+PLACES = {"site.latitude_deg": 90.0, "site.longitude_deg": 360.0, "site.heading_deg": 360.0}
+# Landers go on from bounce to bounce, so the emulator has to know other impacts than the first.
+NEEDED = ("impact.speed", "impact.incidence_deg")
+
+
+def aim_problems(study: Study) -> Iterator[str]:
+    """One sentence for each thing wrong with the table [aim]; none where the study has no grid."""
+    grid = study.aim.grid
+    if not grid:
+        if study.aim.within:
+            yield "aim.within is given without aim.grid; say there between which values there is to choose"
+        return
+    inputs = uncertain(study.touchdown_values())
+    if study.design.method == "paper":
+        yield 'aim.grid goes with design.method = "sequence", and it is "paper"; leave [aim] out, or draw the runs'
+    absent = [name for name in NEEDED if name not in inputs]
+    if absent:
+        yield (
+            f"aim.grid follows landers from bounce to bounce, and {' and '.join(absent)} "
+            f"{'is' if len(absent) == 1 else 'are'} no uncertain input; give a distribution that reaches over the "
+            "impacts to come"
+        )
+    count = math.prod(len(values) for values in grid.values())
+    if len(grid) > MOST_AXES or count > MOST_AIMS:
+        yield (
+            f"aim.grid has {len(grid)} names and {count} aims; allowed: at most {MOST_AXES} and {MOST_AIMS}; leave "
+            "some values out"
+        )
+    known = (*(name for name in inputs if name.startswith("impact.")), *PLACES)
+    for name, values in grid.items():
+        if name not in known:
+            yield f'aim.grid."{name}" is no aim; allowed: {", ".join(known)}{closest(name, known)}'
+            continue
+        lower, upper = reach(inputs[name]) if name in inputs else (-PLACES[name], PLACES[name])
+        inside = all(lower <= value <= upper for value in values)
+        if not values or not inside or any(later <= earlier for earlier, later in pairwise(values)):
+            yield (
+                f'aim.grid."{name}" is {values}; allowed: ascending values from {lower:g} to {upper:g}, which the runs '
+                "reach over; leave others out, or widen its distribution"
+            )
+    yield from _limit_problems(study)
+
+
+def _limit_problems(study: Study) -> Iterator[str]:
+    """Limits of the best aim that cannot be read, or name nothing."""
+    names = [*(name.partition(".")[2] for name in study.aim.grid), *AIM_RESULTS]
+    for text in study.aim.within:
+        limit = AimLimit.of(text)
+        if limit is None or limit.name not in names:
+            yield (
+                f'aim.within has "{text}"; allowed: one of {", ".join(names)}, compared by <, <=, > or >= with a '
+                'number, as in "incidence_deg < 45"; write it so'
+            )

@@ -1,0 +1,71 @@
+"""The best of several choices, and how sure it is, against draws whose truth is known."""
+
+import math
+
+import numpy as np
+import pytest
+
+from lithobrake.analysis import best_choice, quantile_within
+
+BEDS = 24
+
+
+def drawn(chances: list[float], spread: float, random: np.random.Generator, draws: int = 20) -> np.ndarray:
+    """Whether draws met an event [choice, refit, draw]: the fit is wrong by a normal error, refits scatter about it."""
+    fitted = np.array(chances) + spread * random.standard_normal(len(chances))
+    # Drawing beds of beds scatters by a little less than beds do.
+    refits = fitted[:, None] + spread * math.sqrt(1 - 1 / BEDS) * random.standard_normal((len(chances), 50))
+    return random.random((len(chances), 50, draws)) < np.clip(refits, 0.0, 1.0)[:, :, None]
+
+
+def test_the_difference_to_the_next_holds_the_truth_as_often_as_it_says() -> None:
+    random, held = np.random.default_rng(1), 0
+    for _ in range(300):
+        found = best_choice(drawn([0.3, 0.7], 0.05, random), BEDS, [True, True])
+        assert (found.best, found.runner_up) == (1, 0)
+        held += found.difference.lower <= 0.4 <= found.difference.upper
+    # Here 50 refits know the scatter, and Student's quantile of 23 degrees of freedom (1.714) is that of a normal error
+    # at .9135; two standard deviations of luck.
+    assert abs(held / 300 - 0.9135) < 2 * math.sqrt(0.9135 * 0.0865 / 300)
+
+
+def test_choices_that_are_alike_share_the_refits_and_a_clear_one_has_them_all() -> None:
+    random = np.random.default_rng(2)
+    alike = np.mean([best_choice(drawn([0.5] * 4, 0.05, random), BEDS, [True] * 4).shares for _ in range(60)], axis=0)
+    assert alike == pytest.approx([0.25] * 4, abs=0.06)
+    found = best_choice(drawn([0.2, 0.8, 0.5], 0.03, random), BEDS, [True] * 3)
+    assert found.shares.tolist() == [0.0, 1.0, 0.0]
+    assert found.difference.lower > 0.0
+
+
+def test_few_draws_of_a_refit_leave_the_best_less_sure_but_far_surer_than_their_own_luck_does() -> None:
+    random, shares = np.random.default_rng(3), {}
+    for draws in (6, 60):
+        all_met = [drawn([0.5, 0.6], 0.04, random, draws) for _ in range(200)]
+        shares[draws] = np.mean([best_choice(met, BEDS, [True] * 2).shares[1] for met in all_met])
+        shares[-draws] = np.mean([met.mean(axis=2)[1] > met.mean(axis=2)[0] for met in all_met])
+    assert shares[-6] + 0.1 < shares[6] < shares[60]
+    # The truth, of two errors of .04 each: the chance of 1.77 standard deviations.
+    assert shares[60] == pytest.approx(0.9, abs=0.05)
+
+
+def test_what_is_not_allowed_is_never_the_best() -> None:
+    met = drawn([0.9, 0.5, 0.3], 0.02, np.random.default_rng(4))
+    found = best_choice(met, BEDS, [False, True, True])
+    assert (found.best, found.runner_up, found.shares[0]) == (1, 2, 0.0)
+    alone = best_choice(met, BEDS, [False, False, True])
+    assert (alone.best, alone.runner_up, alone.difference, alone.shares[2]) == (2, None, None, 1.0)
+
+
+@pytest.mark.parametrize("allowed", [[False, False], [True, True]])
+def test_what_says_nothing_is_refused(allowed: list[bool]) -> None:
+    met = drawn([0.5, 0.5], 0.1, np.random.default_rng(5), draws=2 if not any(allowed) else 1)
+    with pytest.raises(ValueError, match="at least two refits, two draws of each"):
+        best_choice(met, BEDS, allowed)
+
+
+def test_a_quantile_has_the_bounds_at_the_levels_of_its_share() -> None:
+    values = np.arange(1, 101)
+    middle, lower, upper = quantile_within(values, 0.95, (0.9, 0.98))
+    assert (middle, lower, upper) == pytest.approx((95.5, 90.5, 98.5))
+    assert quantile_within(values, 0.95, (0.001, 0.999))[1:] == (-math.inf, math.inf)

@@ -1,0 +1,84 @@
+"""Observed bounces in a file, from the emulator of a study to posterior.json and its picture."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+import lithobrake
+from lithobrake.cli import app
+from lithobrake.pipeline.inferring import InferredStudy, infer_study, read_bounces
+
+from ..synthetic_landings import STRONG
+from .synthetic_lander import SOIL, SyntheticLander, synthetic_tables
+
+SEEN = "speed_out [m/s],elevation_out [rad],error:speed_out [m/s],outcome\n0.12,0.5,0.002,\n,,,captured\n"
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A study of 96 landings whose soil counts."""
+    few = {"design": {"run_count": 96}, "monte_carlo": {"sample_count": 200}, "flight": {"flight_count": 50}}
+    out = tmp_path_factory.mktemp("infer") / "out"
+    lithobrake.run(synthetic_tables(**few), out, workers=1, model=SyntheticLander(STRONG), report=False)
+    return out
+
+
+def bounces(folder: Path, text: str) -> Path:
+    path = folder / "bounces.csv"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def test_a_file_of_bounces_is_read_row_by_row(tmp_path: Path) -> None:
+    first, second = read_bounces(bounces(tmp_path, SEEN))
+    assert first.outputs == {"speed_out": 0.12, "elevation_out": 0.5}
+    assert (first.errors, first.outcome) == ({"speed_out": 0.002}, None)
+    assert (second.outputs, second.outcome) == ({}, "captured")
+    known = read_bounces(bounces(tmp_path, "impact.speed [m/s],speed_out\n0.3,0.1\n"))[0]
+    assert (known.known, known.outputs) == ({"impact.speed": 0.3}, {"speed_out": 0.1})
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("speed_out\nfast\n", 'has "fast" for speed_out in row 1; write a number'),
+        ("outcome\nlost\n", 'has the outcome "lost" in row 1; allowed: clear, captured'),
+        ("speed_out\n", "has no bounce"),
+    ],
+)
+def test_a_file_that_tells_no_bounce_is_refused(text: str, words: str, tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match=words):
+        read_bounces(bounces(tmp_path, text))
+
+
+def test_the_posterior_and_its_picture_are_written(folder: Path, tmp_path: Path) -> None:
+    found = infer_study(folder, bounces(tmp_path, SEEN))
+    content = json.loads((folder / "posterior.json").read_text(encoding="utf-8"))
+    assert content == json.loads(json.dumps(found))
+    assert set(content["inputs"]) == set(SOIL)
+    friction = content["inputs"]["grain.friction"]
+    lower, middle, upper = friction["after"]
+    assert 0.3 <= lower < middle < upper <= 0.9
+    assert np.quantile(friction["points"], [0.05, 0.95]) == pytest.approx([lower, upper], abs=0.04)
+    assert friction["sd_ratio"] < 1.0
+    assert content["is_reliable"]
+    assert 0.0 <= content["predictive_p_value"][0] <= 1.0
+    assert content["predictive_p_value"][1] is None
+    assert (folder / "posterior.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_the_command_says_first_what_bounces_can_say(folder: Path, tmp_path: Path) -> None:
+    said = CliRunner().invoke(app, ["infer", str(folder), "--bounce", str(bounces(tmp_path, SEEN))])
+    assert said.exit_code == 0, said.output
+    lines = " ".join(said.output.split())
+    assert lines.index("Of bounces whose speed_out, elevation_out, spin_out are seen") < lines.index("Posterior:")
+    assert "grain.friction: one leaves" in lines
+    assert InferredStudy.open(folder).of_each_bounce == []
+
+
+def test_a_folder_without_an_emulator_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match=r"has no emulator\.json; run a drawn study there first"):
+        InferredStudy.open(tmp_path)
