@@ -51,16 +51,16 @@ def cells_of(bodies: Bodies, skin: float) -> Cells:
         np.where(is_large, -1, 0), np.flatnonzero(is_large), np.full(n, -1),
         np.array([reach]),
     )  # fmt: skip
-    fill(cells, bodies)
+    fill(bodies, cells)
     return cells
 
 
 @large_kernel
-def fill(cells: Cells, bodies: Bodies) -> None:
+def fill(bodies: Bodies, cells: Cells) -> None:
     """Put all bodies that are not large in the cells of where they are. Writes to cells."""
     for body in range(len(cells.cell)):
         if cells.cell[body] >= 0:
-            put_in_cell(cells, bodies, body)
+            put_in_cell(bodies, cells, body)
 
 
 @kernel
@@ -99,7 +99,7 @@ def number_of(cells: Cells, place: Place) -> int:
 
 
 @kernel
-def put_in_cell(cells: Cells, bodies: Bodies, body: int) -> None:
+def put_in_cell(bodies: Bodies, cells: Cells, body: int) -> None:
     """Put a body in the cell of where it is. Writes to cells."""
     cell = number_of(cells, cell_along(cells, row(bodies.position, body)))
     after = cells.first[cell]
@@ -110,7 +110,7 @@ def put_in_cell(cells: Cells, bodies: Bodies, body: int) -> None:
 
 
 @kernel
-def move_to_cell(cells: Cells, bodies: Bodies, body: int) -> None:
+def move_to_cell(bodies: Bodies, cells: Cells, body: int) -> None:
     """Put a body that stands in a cell in that of where it is now. Writes to cells."""
     cell, before, after = cells.cell[body], cells.before[body], cells.following[body]
     if cell < 0:
@@ -121,4 +121,4 @@ def move_to_cell(cells: Cells, bodies: Bodies, body: int) -> None:
         cells.first[cell] = after
     if after >= 0:
         cells.before[after] = before
-    put_in_cell(cells, bodies, body)
+    put_in_cell(bodies, cells, body)

@@ -152,7 +152,7 @@ def search_neighbours(
     fly_to(bodies, flight, body, now, rules)
     if not np.isfinite(bodies.travel[body]):
         return LOST
-    move_to_cell(cells, bodies, body)
+    move_to_cell(bodies, cells, body)
     here, reach = row(bodies.position, body), bodies.bounding_radius[body] + rules.skin
     drop_distant(bodies, planes, pairs, flight, plans, agenda, body, here, reach, now, rules)
     has_room = True

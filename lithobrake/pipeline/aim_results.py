@@ -19,6 +19,7 @@ from lithobrake.study import Study
 from lithobrake.study.aim_section import AimLimit
 from lithobrake.study.units import input_units
 
+SETTLED = JourneyStatus.SETTLED.value
 FAR = 0.95
 # Nobody knows where these landers are.
 UNKNOWN = (JourneyStatus.OUTSIDE, JourneyStatus.SLIDING, JourneyStatus.BOUNCING)
@@ -87,7 +88,7 @@ def _of_aim(landers: Landers, row: int, ground: str, fitted: Refits) -> dict[str
     refit, every = landers.refit[row], np.ones(len(settled), dtype=bool)
     share, lower, upper = _share(settled, every, refit, ground, fitted)
     table: dict[str, Any] = {
-        "settled": {"share": share, "lower": lower, "upper": upper},
+        SETTLED: {"share": share, "lower": lower, "upper": upper},
         "missing": float(unknown.mean()),
     }
     for name, values in (("distance_p95", landers.distance[row]), ("time_p95", landers.time[row])):
@@ -123,7 +124,7 @@ def _share(
 def _keeps(limits: list[AimLimit], aim: dict[str, float], part: dict[str, Any]) -> bool:
     """Whether an aim and what comes of it keep all limits."""
     known: dict[str, float | None] = {name.partition(".")[2]: value for name, value in aim.items()}
-    known |= {"settled": part["settled"]["share"], "missing": part["missing"]}
+    known |= {SETTLED: part[SETTLED]["share"], "missing": part["missing"]}
     known |= {name: part[name] and part[name]["value"] for name in ("distance_p95", "time_p95")}
     return all(limit.keeps(known[limit.name]) for limit in limits)
 
@@ -135,7 +136,7 @@ def _best(
 
     bed_count: None where refits tell nothing, as on hard ground; then there is no share of refits and no interval.
     """
-    shares = np.where(allowed, [part["settled"]["share"] for part in parts], -1.0)
+    shares = np.where(allowed, [part[SETTLED]["share"] for part in parts], -1.0)
     if shares.max() <= 0.0:
         return None
     table: dict[str, Any] = {"aim": int(shares.argmax()), "share_of_refits": None, "next": None, "difference": None}
@@ -161,7 +162,7 @@ def _statement(table: dict[str, Any]) -> str:
         return f"Of {len(aims)} aims {count} are allowed{within}, and at none of these a lander settles."
     part = aims[best["aim"]]["soil"]
     said = [
-        f"Of {count} aims{within} landers settle most often at {_words(table, best['aim'])}: {_span(part['settled'])}"
+        f"Of {count} aims{within} landers settle most often at {_words(table, best['aim'])}: {_span(part[SETTLED])}"
     ]
     if part["distance_p95"] is not None:
         far, late = part["distance_p95"]["value"], part["time_p95"]["value"] / HOUR
@@ -178,7 +179,7 @@ def _statement(table: dict[str, Any]) -> str:
             )
         said.append(sure)
     if hard is not None:
-        share = _span(aims[hard["aim"]]["hard"]["settled"])
+        share = _span(aims[hard["aim"]]["hard"][SETTLED])
         where = "this one, too" if best["aim"] == hard["aim"] else _words(table, hard["aim"])
         said.append(f"Hard ground is best at {where}: {share}")
     return ". ".join(said) + "."
@@ -186,8 +187,8 @@ def _statement(table: dict[str, Any]) -> str:
 
 def _rivals(table: dict[str, Any], best: int) -> str:
     """How many other aims would be better if all settled there of which nobody knows where they end."""
-    least = table["aims"][best]["soil"]["settled"]["share"]
-    most = [one["soil"]["settled"]["share"] + one["soil"]["missing"] for one in table["aims"] if one["soil"]["allowed"]]
+    least = table["aims"][best]["soil"][SETTLED]["share"]
+    most = [one["soil"][SETTLED]["share"] + one["soil"]["missing"] for one in table["aims"] if one["soil"]["allowed"]]
     count = sum(share > least for share in most) - 1
     return f", and if all of these settled, as many as {count} other aims could be better" if count > 0 else ""
 

@@ -10,8 +10,10 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 from numpy.typing import NDArray
 
+from lithobrake.outcomes import JourneyStatus
 from lithobrake.report.style import QUIET, SITE, input_label
 
+SETTLED = JourneyStatus.SETTLED.value
 HOUR = 3600.0
 # Colours darker than this part of their scale have white figures.
 DARK = 0.55
@@ -29,7 +31,7 @@ class AimRow:
 
 def _share(ground: str) -> Callable[[Mapping[str, Any]], tuple[float, float | None, float | None]]:
     def read(aim: Mapping[str, Any]) -> tuple[float, float | None, float | None]:
-        share = aim[ground]["settled"]
+        share = aim[ground][SETTLED]
         low, high = (None if share[end] is None else 100 * share[end] for end in ("lower", "upper"))
         return 100 * share["share"], low, high
 

@@ -86,7 +86,7 @@ class Explorer {
       draws++;
       if (row < 0) {
         const outcome = law.facts.outcomeNames[-1 - row];
-        if (outcome !== facts.captured) return;
+        if (outcome !== facts.capturedName) return;
         known[refit]++;
         if (facts.holds) stays[refit]++;
         return;

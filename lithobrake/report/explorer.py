@@ -76,7 +76,7 @@ def _facts(data: SequenceResults, explorer: ExplorerTables) -> dict[str, Any]:
         ],
         "outcomeNames": list(explorer.outcome_names),
         "outputOutcome": explorer.output_outcome,
-        "captured": str(TouchdownOutcome.CAPTURED),
+        "capturedName": str(TouchdownOutcome.CAPTURED),
         "bound": explorer.bound,
         **{name.removesuffix("_out"): names.index(name) for name in SHOWN},
         "fates": [str(fate) for fate in FlightStatus],

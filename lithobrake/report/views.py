@@ -26,7 +26,7 @@ DECADES = 4.0
 FATE_COLOURS = {
     FlightStatus.IMPACT: ("blue", "came down", "#2f6fb0"),
     FlightStatus.FLYING: ("grey", "still flew", "#8b8f96"),
-    FlightStatus.ESCAPED: ("orange", "escaped", "#e69f00"),
+    FlightStatus.ESCAPED: ("orange", "flew away", "#e69f00"),
     FlightStatus.PARTNER: ("violet", "came down on the partner", "#a8659a"),
 }
 # A view takes in a sphere when its middle is so many radii away.

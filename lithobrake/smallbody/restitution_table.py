@@ -9,17 +9,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lithobrake.atomic import atomic_path
+from lithobrake.outcomes import TouchdownOutcome
 from lithobrake.reading import read_rows
 from lithobrake.smallbody.bounce import Impacts, Rebounds
 
 Array = NDArray[np.float64]
 # Levels of the quantiles of each cell; the outermost are the smallest and largest value.
+CAPTURED = TouchdownOutcome.CAPTURED.value
 LEVELS = (0.0, 0.05, 0.25, 0.5, 0.75, 0.95, 1.0)
 DRAWN = ("normal_restitution", "tangential_restitution", "azimuth_deg")
 # Follows from the two restitutions and the direction; for tools that ask for it.
 FRICTION = "friction"
 EDGES = ("speed_from [m/s]", "speed_to [m/s]", "incidence_from_deg", "incidence_to_deg")
-COUNTS = ("samples", "runs", "captured", "correlation")
+COUNTS = ("samples", "runs", CAPTURED, "correlation")
 
 
 @dataclass(frozen=True)
@@ -97,7 +99,7 @@ class RestitutionTable:
             name: np.stack([column(f"{name}_q{level:g}") for level in LEVELS], axis=-1) for name in (*DRAWN, FRICTION)
         }
         samples, runs = (column(name).astype(np.int64) for name in ("samples", "runs"))
-        found = (column("correlation"), column("captured"), samples, runs)
+        found = (column("correlation"), column(CAPTURED), samples, runs)
         return cls(speed, incidence, quantiles, *found, rest_height)
 
 

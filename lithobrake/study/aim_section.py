@@ -8,11 +8,13 @@ from typing import Annotated
 
 from pydantic import Field
 
+from lithobrake.outcomes import JourneyStatus
 from lithobrake.study.quantity import Number, Whole
 from lithobrake.study.section import Section
 
 # What comes of an aim, and may be limited as the aim itself is.
-AIM_RESULTS = ("settled", "missing", "distance_p95", "time_p95")
+SETTLED = JourneyStatus.SETTLED.value
+AIM_RESULTS = (SETTLED, "missing", "distance_p95", "time_p95")
 COMPARED: dict[str, Callable[[float, float], bool]] = {
     "<": lambda a, b: a < b,
     "<=": lambda a, b: a <= b,

@@ -27,7 +27,7 @@ WORKS = {
     "refinement": ["refined fit, outputs"],
     "test runs": ["test kept runs", "test all runs"],
     "scores": ["scores with their intervals"],
-    "flights": ["gravity table", "checks of flights", "flights", "flights without scatter"],
+    "flights": ["gravity table", "checks of flights", "flights", "ways of flights", "flights without scatter"],
     "bounces until rest": ["bounces, hard ground"],
 }
 

@@ -61,4 +61,4 @@ def test_the_page_says_how_far_places_are_rounded(study_folder: Path) -> None:
     assert "12 grains and the lander in 8 pictures" in landing.html
     assert "Places are rounded to" in landing.html
     assert 'id="body-3d-data"' in body.html
-    assert "the first 2 flights, seen from the turning body; orange: escaped, blue: came down." in body.html
+    assert "the first 2 flights, seen from the turning body; orange: flew away, blue: came down." in body.html

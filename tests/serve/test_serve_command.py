@@ -16,7 +16,14 @@ BALL = Path(__file__).parents[2] / "examples" / "ball_on_plate.toml"
 
 def test_a_server_says_where_it_is_and_ends_with_an_interrupt(tmp_path: Path) -> None:
     words = [sys.executable, "-m", "lithobrake", "serve", str(BALL), "--out", str(tmp_path / "out"), "--port", "0"]
-    with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as server:
+    # Where the tests run in the background they ignore interrupts, and so would what they start.
+    with subprocess.Popen(
+        words,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
+    ) as server:
         assert server.stdout is not None
         said = server.stdout.readline()
         found = re.fullmatch(r"Serving flight, landing at (http://127\.0\.0\.1:\d+); Ctrl-C ends it\.\n", said)
