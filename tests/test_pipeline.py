@@ -27,6 +27,7 @@ from lithobrake.pipeline.site import (
     with_site_gravity,
 )
 from lithobrake.pipeline.summary import study_tables
+from lithobrake.smallbody.restitution_table import COUNTS, EDGES
 from lithobrake.study import Study, StudyError, check_tables
 from lithobrake.touchdown_model import ORIENTATION, PLACE, acceleration, draw, in_words_of_the_study, medians
 
@@ -283,9 +284,22 @@ def test_the_study_in_the_summary_reads_back_as_the_same_study() -> None:
 
 def test_every_column_of_the_flights_is_documented() -> None:
     text = (Path(__file__).parents[1] / "docs" / "flights.md").read_text(encoding="utf-8")
+    flights, hard = (_names_in_tables(part) for part in text.split("| column of `restitution.csv` |"))
+    assert [*flights, *hard[len(RESTITUTION_NAMES) :]] == [*COLUMNS, *rest.COLUMNS]
+    assert hard[: len(RESTITUTION_NAMES)] == RESTITUTION_NAMES
+
+
+def _names_in_tables(text: str) -> list[str]:
+    """What stands as code in the first cells of the rows of tables."""
     rows = [line.split("|")[1] for line in text.splitlines() if line.startswith("| `")]
-    named = [name for row in rows for name in re.findall(r"`(\w+)`", row)]
-    assert named == [*COLUMNS, *rest.COLUMNS]
+    return [name for row in rows for name in re.findall(r"`(\w+)[`.]", row)]
+
+
+# Of each of the four quantities that have quantiles the table names the first.
+RESTITUTION_NAMES = [
+    *(name.partition(" ")[0] for name in EDGES), *COUNTS,
+    "normal_restitution_q0", "_q1", "tangential_restitution_q", "azimuth_deg_q", "friction_q",
+]  # fmt: skip
 
 
 def test_the_partner_stands_where_the_sample_says() -> None:

@@ -15,12 +15,12 @@ from lithobrake.smallbody.bounce import Impacts, Rebounds
 
 Array = NDArray[np.float64]
 # Levels of the quantiles of each cell; the outermost are the smallest and largest value.
-CAPTURED = TouchdownOutcome.CAPTURED.value
 LEVELS = (0.0, 0.05, 0.25, 0.5, 0.75, 0.95, 1.0)
 DRAWN = ("normal_restitution", "tangential_restitution", "azimuth_deg")
 # Follows from the two restitutions and the direction; for tools that ask for it.
 FRICTION = "friction"
 EDGES = ("speed_from [m/s]", "speed_to [m/s]", "incidence_from_deg", "incidence_to_deg")
+CAPTURED = TouchdownOutcome.CAPTURED.value
 COUNTS = ("samples", "runs", CAPTURED, "correlation")
 
 

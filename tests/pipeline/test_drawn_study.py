@@ -48,7 +48,7 @@ def grown(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, DesignRuns, s
     """A study of twelve runs that then had 14, and side runs: its folder, its first runs, what was said at last."""
     folder = tmp_path_factory.mktemp("grown")
     said = lithobrake("run", ball(folder, 12), "--out", folder / "out", "--workers", 2)
-    assert "stage 3 of 12: runs" in said
+    assert "stage 3 of 13: runs" in said
     assert f"Report: {folder / 'out' / 'report' / 'index.html'}" in said
     first = DesignRuns.load(StudyFolder.only_read(folder / "out"), "sequence")
     return folder, first, lithobrake("run", ball(folder, 14, "side_runs = true"), "--out", folder / "out")
