@@ -2,9 +2,19 @@
 
 import os
 
+import pytest
+
 # The suite runs in two processes; linear algebra with threads of its own in each would have them wait for one another,
 # which costs many times what it gains on arrays of this size. Set before NumPy is imported for the first time.
 for name in ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS"):
     os.environ.setdefault(name, "1")
 # Beds that a test needs are poured: the tests of the library have one of their own.
 os.environ["LITHOBRAKE_BED_LIBRARY_GB"] = "0"
+
+# Files that take minutes are begun first: at the end one process would work while the other waits.
+LONGEST = ("test_killed.py", "test_whole_study.py", "test_drawn_study.py", "test_pouring.py", "test_folder_state.py")
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Put the tests of the longest files in front, and leave all else in its order."""
+    items.sort(key=lambda item: item.path.name not in LONGEST)
