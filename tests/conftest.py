@@ -11,10 +11,16 @@ for name in ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS"):
 # Beds that a test needs are poured: the tests of the library have one of their own.
 os.environ["LITHOBRAKE_BED_LIBRARY_GB"] = "0"
 
-# Files that take minutes are begun first: at the end one process would work while the other waits.
-LONGEST = ("test_killed.py", "test_whole_study.py", "test_drawn_study.py", "test_pouring.py", "test_folder_state.py")
+# Files that take minutes, the longest first: at the end one process would work on them while the other waits.
+LONGEST = ("test_killed.py", "test_whole_study.py", "test_drawn_study.py", "test_folder_state.py", "test_pouring.py")
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Have pytest-xdist take the files in their order; by itself it begins with those of most tests."""
+    if hasattr(config.option, "loadscopereorder"):
+        config.option.loadscopereorder = False
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Put the tests of the longest files in front, and leave all else in its order."""
-    items.sort(key=lambda item: item.path.name not in LONGEST)
+    items.sort(key=lambda item: LONGEST.index(item.path.name) if item.path.name in LONGEST else len(LONGEST))
