@@ -25,7 +25,7 @@ from origin import origin
 Floats = NDArray[np.float64]
 Row = dict[str, Any]
 
-POUR_STEPS = 16.0  # in the shortest contact while beads fall and settle
+POUR_STEPS = 18.0  # in the shortest contact while beads fall and settle (16 where the restitution is above .6)
 DROP_STEPS = 15.0  # in the shortest contact while the ball comes down
 LOOKS = 12  # a time of free fall through the whole column
 PATIENCE = 40  # times of fall
