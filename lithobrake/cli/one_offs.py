@@ -1,6 +1,5 @@
 """Commands beside a study: one landing of it, a server of its models, and a look at the installation."""
 
-from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -13,7 +12,7 @@ from lithobrake.cli.refusals import one_sentence
 from lithobrake.cli.telling import tell, tell_json
 
 if TYPE_CHECKING:
-    from lithobrake.results.moving_bodies import MovingBodies
+    from lithobrake.pipeline import OneLanding
 
 # Exit code of `doctor` where a library is missing without which nothing works.
 INCOMPLETE = 1
@@ -53,7 +52,7 @@ def land(
         with study_progress() as shown:
             shown.begin("landing", 1, 1)
             found = land_one(checked, values, lambda done, what: shown.progress(done, 1.0, what))
-        _keep_motion(found.save, found.bodies, out, show)
+        _keep_motion(found, out, show)
     if json:
         tell_json(found.to_json())
     else:
@@ -103,17 +102,17 @@ def doctor(
         raise typer.Exit(INCOMPLETE)
 
 
-def _keep_motion(
-    save: Callable[[Path], None], bodies: Callable[[], "MovingBodies"], out: Path | None, shown: bool
-) -> None:
+def _keep_motion(landed: "OneLanding", out: Path | None, shown: bool) -> None:
     """Write a motion to a file of the kind that its name says, and open a window on it."""
     if out is not None and out.suffix == ".h5":
-        save(out)
-    elif out is not None:
-        from lithobrake.view import write_motion
+        landed.save(out)
+        out = None
+    if out is None and not shown:
+        return
+    from lithobrake.view import show, write_motion
 
-        write_motion(bodies(), out)
+    bodies = landed.bodies()
+    if out is not None:
+        write_motion(bodies, out)
     if shown:
-        from lithobrake.view import show
-
-        show(bodies())
+        show(bodies)

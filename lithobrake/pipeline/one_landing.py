@@ -56,10 +56,7 @@ class OneLanding:
         """The hulls and how they moved, the lander last."""
         from lithobrake.results.moving_bodies import MovingBodies
 
-        with TemporaryDirectory(prefix="lithobrake-") as folder:
-            path = Path(folder) / "landing.h5"
-            self.save(path)
-            return MovingBodies.read(path, "land again")
+        return MovingBodies.of_landing(self.outcome, self.bed, self.lander, self.landing)
 
     def save(self, path: Path) -> None:
         """Write hulls and frames to an HDF5 file, as a study keeps its landing."""

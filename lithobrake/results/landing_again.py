@@ -3,7 +3,6 @@
 import shlex
 from collections.abc import Callable
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
 from lithobrake.reading import read_json
@@ -58,10 +57,7 @@ def bodies_again(
     """Land as land_again does, and return the hulls with their frames; the lander is the last of them."""
     outcome, study = land_again(folder, record, frame_count, progress), _study(folder)
     bed = stored_bed(folder / f"beds/bed_{round(record.inputs['bed'])}.h5")
-    with TemporaryDirectory(prefix="lithobrake-") as place:
-        path = Path(place) / "landing.h5"
-        outcome.save_frames(path, bed, lander(study, record.inputs), landing(study, record.inputs))
-        return MovingBodies.read(path, "land again")
+    return MovingBodies.of_landing(outcome, bed, lander(study, record.inputs), landing(study, record.inputs))
 
 
 def _study(folder: Path) -> Study:

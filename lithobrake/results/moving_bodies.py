@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 from lithobrake.reading import reading
@@ -10,6 +11,8 @@ from lithobrake.reading import reading
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
+
+    from lithobrake.touchdown import Bed, Lander, Landing, Outcome
 
     Array = NDArray[np.float64]
     Faces = NDArray[np.int64]
@@ -51,6 +54,14 @@ class MovingBodies:
                 history=history,
                 **frames,
             )
+
+    @classmethod
+    def of_landing(cls, outcome: "Outcome", bed: "Bed", lander: "Lander", landing: "Landing") -> "MovingBodies":
+        """Those of a landing that was recorded, as its file would have them; the lander is the last."""
+        with TemporaryDirectory(prefix="lithobrake-") as folder:
+            path = Path(folder) / "landing.h5"
+            outcome.save_frames(path, bed, lander, landing)
+            return cls.read(path, "land again")
 
 
 def _parts(rows: Any, start: Any) -> tuple[Any, ...]:

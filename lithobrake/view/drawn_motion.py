@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from lithobrake.view.motion import body_speeds, placed
+from lithobrake.view.motion import body_speeds, placed, triangles
 
 if TYPE_CHECKING:
     from lithobrake.results.moving_bodies import MovingBodies
@@ -36,27 +36,23 @@ class DrawnMotion:
             os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
         pv = pyvista()
         self.bodies, self.speeds = bodies, body_speeds(bodies)
-        counts = [len(hull) for hull in bodies.vertices]
-        start = np.concatenate([[0], np.cumsum(counts)[:-1]])
-        faces = np.concatenate([hull + first for hull, first in zip(bodies.faces, start, strict=True)])
-        self.owner = np.repeat(np.arange(len(counts)), [len(hull) for hull in bodies.faces])
+        faces, self.owner = triangles(bodies)
         self.mesh = pv.PolyData.from_regular_faces(placed(bodies, 0), faces)
         self.plotter = pv.Plotter(off_screen=off_screen, window_size=list(size))
-        fastest = float(self.speeds.max()) or 1.0
-        self.mesh.cell_data["speed"] = self._speeds_at(0, fastest)
+        self.fastest = float(self.speeds.max()) or 1.0
+        self.mesh.cell_data["speed"] = self._speeds_at(0)
         self.plotter.add_mesh(
-            self.mesh, scalars="speed", cmap=COLOURS, clim=(SLOWEST * fastest, fastest), log_scale=True,
+            self.mesh, scalars="speed", cmap=COLOURS, clim=(SLOWEST * self.fastest, self.fastest), log_scale=True,
             scalar_bar_args={
                 "title": "speed [m/s]", "fmt": "%.2g", "vertical": True, "position_x": 0.88, "position_y": 0.25,
                 "height": 0.5, "color": "black",
             },
         )  # fmt: skip
-        self.fastest = fastest
         self._look()
         self.clock = self.plotter.add_text(self._time(0), font_size=10, color="black")
 
-    def _speeds_at(self, frame: int, fastest: float) -> np.ndarray:
-        return np.maximum(self.speeds[frame, self.owner], SLOWEST * fastest)
+    def _speeds_at(self, frame: int) -> np.ndarray:
+        return np.maximum(self.speeds[frame, self.owner], SLOWEST * self.fastest)
 
     def _time(self, frame: int) -> str:
         return f"t = {self.bodies.time[frame] - self.bodies.time[0]:.3g} s"
@@ -71,7 +67,7 @@ class DrawnMotion:
     def go_to(self, frame: int) -> None:
         """Move all bodies to where they were at a frame."""
         self.mesh.points = placed(self.bodies, frame)
-        self.mesh.cell_data["speed"] = self._speeds_at(frame, self.fastest)
+        self.mesh.cell_data["speed"] = self._speeds_at(frame)
         self.clock.set_text("upper_left", self._time(frame))
 
     def picture(self) -> np.ndarray:

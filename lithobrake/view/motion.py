@@ -12,12 +12,21 @@ if TYPE_CHECKING:
     from lithobrake.results.moving_bodies import MovingBodies
 
     Floats = NDArray[np.float64]
+    Faces = NDArray[np.int64]
 
 
 def placed(bodies: "MovingBodies", frame: int) -> "Floats":
     """Return all vertices at a frame [m], one hull after the other, shape [vertex_count, 3]."""
     turn, place = rotation_matrices(bodies.orientation[frame]), bodies.position[frame]
     return np.concatenate([hull @ turn[body].T + place[body] for body, hull in enumerate(bodies.vertices)])
+
+
+def triangles(bodies: "MovingBodies") -> "tuple[Faces, Faces]":
+    """Return all triangles, counted over all vertices as `placed` has them, [face_count, 3], and the body of each."""
+    counts = [len(hull) for hull in bodies.vertices]
+    start = np.concatenate([[0], np.cumsum(counts)[:-1]])
+    faces = np.concatenate([hull + first for hull, first in zip(bodies.faces, start, strict=True)])
+    return faces, np.repeat(np.arange(len(counts)), [len(hull) for hull in bodies.faces])
 
 
 def body_speeds(bodies: "MovingBodies") -> "Floats":

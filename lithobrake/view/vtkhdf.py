@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from lithobrake.atomic import atomic_path
-from lithobrake.view.motion import body_speeds, placed
+from lithobrake.view.motion import body_speeds, placed, triangles
 
 if TYPE_CHECKING:
     from lithobrake.results.moving_bodies import MovingBodies
@@ -28,11 +28,8 @@ def write_vtkhdf(bodies: "MovingBodies", path: str | Path) -> None:
     """
     import h5py
 
-    counts = np.array([len(hull) for hull in bodies.vertices])
-    start = np.concatenate([[0], np.cumsum(counts)[:-1]])
-    faces = np.concatenate([hull + first for hull, first in zip(bodies.faces, start, strict=True)])
-    owner = np.repeat(np.arange(len(counts)), [len(hull) for hull in bodies.faces])
-    frames, points = len(bodies.time), int(counts.sum())
+    faces, owner = triangles(bodies)
+    frames, points = len(bodies.time), sum(len(hull) for hull in bodies.vertices)
     with atomic_path(path) as draft, h5py.File(draft, "w") as file:
         root = file.create_group("VTKHDF")
         root.attrs["Version"] = VERSION
