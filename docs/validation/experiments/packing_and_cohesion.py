@@ -17,7 +17,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from sphere_bed import LOOKS, PATIENCE, POUR_STEPS, Floats, add_row, note_origin, read_rows
+from sphere_bed import LOOKS, PATIENCE, POUR_STEPS, Floats, add_box, add_row, note_origin, read_rows
 
 from lithobrake.dem import ConvexHull, Material, Shape, Sphere, World
 from lithobrake.touchdown import settling
@@ -86,12 +86,7 @@ def filled(kind: Kind, pull: float, seed: int) -> tuple[World, Floats]:
     width = WIDTH * kind.mean
     for grain, place, turn in zip(grains, *rain(generator, grains, (width, width)), strict=True):
         world.add_body(grain, stuff, place, orientation=tuple(turn))
-    world.add_plane((0, 0, 0), (0, 0, 1), stuff)
-    for axis in (0, 1):
-        for sign in (1.0, -1.0):
-            normal = np.zeros(3)
-            normal[axis] = sign
-            world.add_plane(-0.5 * width * normal, normal, stuff)
+    add_box(world, width, 0.0, stuff)
     world.drag = math.sqrt(GRAVITY / kind.mean) / FALL_SPEED
     fall(world, kind)
     return world, np.array([volume(grain) for grain in grains])

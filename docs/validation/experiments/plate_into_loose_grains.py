@@ -15,7 +15,7 @@ from pathlib import Path
 
 import numpy as np
 from scipy.spatial import cKDTree
-from sphere_bed import Floats, Row, add_row, note_origin, read_rows
+from sphere_bed import Floats, Row, add_box, add_row, note_origin, read_rows
 
 from lithobrake.dem import ConvexHull, Material, Sphere, World
 
@@ -128,12 +128,7 @@ def pressed_in(soil: Soil, work: Path) -> tuple[Row, Floats]:
     world, stuff = World(), soil.material
     for point, size in zip(place, radius, strict=True):
         world.add_body(Sphere(float(size)), stuff, point)
-    world.add_plane((0, 0, -soil.depth), (0, 0, 1), stuff)
-    for axis in (0, 1):
-        for sign in (1.0, -1.0):
-            normal = np.zeros(3)
-            normal[axis] = sign
-            world.add_plane(-0.5 * soil.width * normal, normal, stuff)
+    add_box(world, soil.width, -soil.depth, stuff)
     # The whole spacecraft is behind it: it hardly turns.
     body = world.add_body(
         plate(), replace(stuff, cohesion_force=0.0), (0.0, 0.0, 0.5 * THICK + 1e-6), (0.0, 0.0, -SPEED), mass=MASS,

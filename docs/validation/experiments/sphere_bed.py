@@ -59,13 +59,18 @@ class Beads:
 def walled_world(beads: Beads) -> World:
     """Return an empty box of the material of its beads: a floor at height 0 and four walls."""
     world = World((0.0, 0.0, -beads.gravity), None)
-    world.add_plane((0, 0, 0), (0, 0, 1), beads.material)
+    add_box(world, beads.width, 0.0, beads.material)
+    return world
+
+
+def add_box(world: World, width: float, floor: float, material: Material) -> None:
+    """Add a floor at a height [m] and the four walls of a square box of a width [m] about the origin."""
+    world.add_plane((0, 0, floor), (0, 0, 1), material)
     for axis in (0, 1):
         for sign in (1.0, -1.0):
-            point, normal = np.zeros(3), np.zeros(3)
-            point[axis], normal[axis] = -0.5 * sign * beads.width, sign
-            world.add_plane(point, normal, beads.material)
-    return world
+            normal = np.zeros(3)
+            normal[axis] = sign
+            world.add_plane(-0.5 * width * normal, normal, material)
 
 
 def poured(beads: Beads) -> World:
