@@ -1,0 +1,236 @@
+"""Draw and tabulate the paper's study, the drawn ones beside it, and what they depend on: paper_study.md.
+
+    python docs/validation/paper_study_figures.py
+
+Reads results/paper, results/mission, results/efficient (docs/validation/keep_results.py) and paper_study.json; writes
+paper_study_answers.png, paper_study_errors.png and paper_study.md beside itself.
+"""
+
+import csv
+import json
+import math
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import matplotlib
+
+matplotlib.use("agg")
+import matplotlib.pyplot as plt
+import numpy as np
+
+from lithobrake.report.style import INK, QUIET, STYLE, TEST, TRAINING
+
+HERE = Path(__file__).parent
+RESULTS = HERE.parents[1] / "results"
+SPEED, ELEVATION, SPIN = OUTPUTS = "speed_out", "elevation_out", "spin_out"
+SYMBOLS = {SPEED: "V+", ELEVATION: "theta+", SPIN: "omega+"}
+# Factor and unit of the tables.
+UNITS = {SPEED: (100.0, "cm/s"), ELEVATION: (math.degrees(1.0), "deg"), SPIN: (1.0, "rad/s")}
+PAPER_MAPE = {SPEED: 1.73, ELEVATION: 0.52, SPIN: 4.59}  # %, the paper's Figure 5
+PAPER_SHARE = 48.26  # %, the paper's, of trajectories that remain
+WAYS = {"paper": "the paper's way, 1500 grains", "efficient": "drawn, few runs", "mission": "drawn"}
+Entry = dict[str, Any]
+
+
+def kept(name: str) -> Entry:
+    """The results of a study that the repository keeps, as `told` of paper_study.py has them."""
+    found: Entry = json.loads((RESULTS / name / "summary.json").read_text())["results"]
+    if "designs" in found:
+        outcomes = {design: runs["outcomes"] for design, runs in found["designs"].items()}
+    else:
+        outcomes = found["runs"]["outcomes"]
+    return found | {"samples": found["monte_carlo"]["outputs"], "outcomes": outcomes}
+
+
+def entries(kind: str) -> list[Entry]:
+    """What paper_study.py found of a kind."""
+    path = HERE / "paper_study.json"
+    return [one for one in json.loads(path.read_text())["studies"] if one["kind"] == kind]
+
+
+def share(one: Entry) -> tuple[float, float, float]:
+    """Share that comes down again [%] and its interval; of one bed, the sampling of flights alone."""
+    stays = one["stays"]
+    half = stays.get("flight_sampling") or 0.0
+    low = stays["share"] - half if stays.get("lower") is None else stays["lower"]
+    high = stays["share"] + half if stays.get("upper") is None else stays["upper"]
+    return 100.0 * stays["share"], 100.0 * low, 100.0 * high
+
+
+def drivers(one: Entry) -> str:
+    """What the variance of V+ comes from, the largest first."""
+    if one.get("variance_shares"):
+        parts = one["variance_shares"][SPEED]
+        words = {"soil": "soil", "bed": "bed", "place_and_attitude": "place and attitude"}
+        return "; ".join(
+            f"{word} {parts[part]['share']:.2f} ({parts[part]['lower']:.2f} to {parts[part]['upper']:.2f})"
+            for part, word in words.items()
+        )
+    total = one["screening"]["sobol_total"][SPEED]
+    return "; ".join(f"{name} {total[name]:.2f}" for name in sorted(total, key=lambda key: -total[key])[:3])
+
+
+def every_study() -> Iterator[tuple[str, Entry]]:
+    """All studies that answer the same question."""
+    yield WAYS["paper"], kept("paper")
+    yield from ((f"the paper's way, {one['name']}", one) for one in entries("other beds"))
+    yield from ((WAYS[name], kept(name)) for name in ("efficient", "mission"))
+
+
+def answer_table() -> list[str]:
+    """A line a study."""
+    heads = [f"{SYMBOLS[output]} [{UNITS[output][1]}]" for output in OUTPUTS]
+    lines = [f"| study | {' | '.join(heads)} | down again [%] | variance of V+ |", "|---" * 6 + "|"]
+    for name, one in every_study():
+        cells = []
+        for output in OUTPUTS:
+            factor, sample = UNITS[output][0], one["samples"][output]
+            cells.append(f"{factor * sample['mean']:.3g} ± {factor * sample['std']:.2g}")
+        value, low, high = share(one)
+        lines.append(f"| {name} | {' | '.join(cells)} | {value:.1f} ({low:.1f} to {high:.1f}) | {drivers(one)} |")
+    return lines
+
+
+def draw_answers() -> None:
+    """The share that comes down again and the outgoing speed, study by study."""
+    studies = list(every_study())
+    with plt.rc_context(STYLE):
+        figure, axes = plt.subplots(1, 2, figsize=(9.0, 4.4), constrained_layout=True, sharey=True)
+        for place, (_, one) in enumerate(studies):
+            colour = TRAINING if one.get("variance_shares") else TEST
+            value, low, high = share(one)
+            bars = [[max(value - low, 0.0)], [max(high - value, 0.0)]]
+            axes[0].errorbar(value, place, xerr=bars, fmt="o", color=colour, capsize=3, ms=4.5)
+            sample = one["samples"][SPEED]
+            ends = [100.0 * sample[f"quantile_{level}"] for level in ("0.05", "0.95")]
+            axes[1].plot(ends, [place, place], color=colour)
+            axes[1].plot(100.0 * sample["mean"], place, "o", color=colour, ms=4.5)
+        axes[0].axvline(PAPER_SHARE, color=QUIET, ls="--", lw=0.8, zorder=0)
+        axes[0].text(PAPER_SHARE, len(studies) - 0.4, "the paper's 48.26 %", color=INK, ha="center", va="bottom")
+        axes[0].set_yticks(range(len(studies)), [name for name, _ in studies])
+        axes[0].set_xlabel("landers that come down again within 12 h [%]")
+        axes[1].set_xlabel("outgoing speed [cm/s]: mean, 5 to 95 %")
+        figure.savefig(HERE / "paper_study_answers.png", dpi=150)
+
+
+def true_values(design: str, output: str) -> np.ndarray:
+    """Values of an output in the runs of a design, NaN for those that have none."""
+    with (RESULTS / "paper" / "runs" / f"{design}.csv").open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    name = next(column for column in rows[0] if column.startswith(f"output:{output} ["))
+    return np.array([float(row[name] or "nan") for row in rows])
+
+
+def from_normal(design: str) -> np.ndarray:
+    """Absolute errors of theta+ [%] where it counts from the normal of the surface."""
+    elevation = true_values(design, ELEVATION)
+    elevation = elevation[np.isfinite(elevation)]
+    ape = np.array(json.loads((RESULTS / "paper" / "scores.json").read_text())[design][ELEVATION]["ape"])
+    return ape * elevation / (0.5 * math.pi - elevation)
+
+
+def floor(output: str) -> tuple[float, float]:
+    """Error of a run as the foretelling of one beside it: in the unit of the output, and in %, means.
+
+    Both runs have the scatter, so a law without error is off by 1/sqrt(2) of their difference.
+    """
+    beside = np.array(entries("twin")[0]["screening_runs"][output])
+    here = true_values("screening", output)
+    apart = np.abs(beside - here) / math.sqrt(2.0)
+    return math.sqrt(float(np.nanmean(apart**2))), 100.0 * float(np.nanmean(apart / np.abs(here)))
+
+
+def error_table() -> list[str]:
+    """Errors of the refined expansion beside the paper's."""
+    scores = json.loads((RESULTS / "paper" / "scores.json").read_text())
+    lines = [
+        "| output | the paper's MAPE [%] | ours on its own runs | on fresh runs, kept inputs | on fresh runs, all "
+        "inputs | Q2 of both | error of both | scatter of runs beside |",
+        "|---" * 8 + "|",
+    ]
+    for output in OUTPUTS:
+        factor, unit = UNITS[output]
+        own, kept_inputs, every = (scores[name][output] for name in ("refined", "test_kept", "test_all"))
+        low, high = kept_inputs["mape_interval"]
+        error, percent = floor(output)
+        lines.append(
+            f"| {SYMBOLS[output]} | {PAPER_MAPE[output]} | {own['mape']:.3g} | {kept_inputs['mape']:.3g} ({low:.3g} to "
+            f"{high:.3g}) | {every['mape']:.3g} | {kept_inputs['q2']:.2f}; {every['q2']:.2f} | "
+            f"{factor * kept_inputs['rmse']:.2g}; {factor * every['rmse']:.2g} {unit} | {factor * error:.2g} {unit}, "
+            f"{percent:.2g} % |"
+        )
+    angles = [float(from_normal(name).mean()) for name in ("refined", "test_kept", "test_all")]
+    cells = " | ".join(f"{angle:.3g}" for angle in angles)
+    return [*lines, f"| theta+ from the normal | {PAPER_MAPE[ELEVATION]} | {cells} | | | |"]
+
+
+def draw_errors() -> None:
+    """Absolute percentage errors of the refined expansion, on its own runs and on fresh ones (the paper's Figure 5)."""
+    scores = json.loads((RESULTS / "paper" / "scores.json").read_text())
+    with plt.rc_context(STYLE):
+        figure, axes = plt.subplots(1, 3, figsize=(9.0, 3.2), constrained_layout=True)
+        for axis, output in zip(axes, OUTPUTS, strict=True):
+            sets = {name: np.array(scores[name][output]["ape"]) for name in ("refined", "test_kept")}
+            bins = np.linspace(0.0, np.quantile(np.concatenate(list(sets.values())), 0.95), 30)
+            for (name, errors), colour, word in zip(
+                sets.items(), (TRAINING, TEST), ("its own runs", "fresh runs"), strict=True
+            ):
+                axis.hist(errors, bins, density=True, color=colour, alpha=0.6, label=f"{word} ({len(errors)})")
+                axis.axvline(scores[name][output]["mape"], color=colour, ls="--", lw=1.0)
+            axis.axvline(PAPER_MAPE[output], color=INK, ls=":", lw=1.2, label="the paper's mean")
+            axis.set_xlabel(f"absolute error of {SYMBOLS[output]} [%]")
+        axes[0].set_ylabel("density")
+        axes[0].legend()
+        figure.savefig(HERE / "paper_study_errors.png", dpi=150)
+
+
+def numerics_table() -> list[str]:
+    """Means of the drawn study with one number of the model changed after the other."""
+    found = entries("numerics")
+    heads = " | ".join(f"{SYMBOLS[output]} [{UNITS[output][1]}] | over the first" for output in OUTPUTS)
+    lines = [f"| study | outcomes | {heads} |", "|---" * (2 + 2 * len(OUTPUTS)) + "|"]
+    for one in found:
+        cells = []
+        for output in OUTPUTS:
+            factor, mean, first = UNITS[output][0], one["outputs"][output]["mean"], found[0]["outputs"][output]["mean"]
+            ends = f"{factor * mean['lower']:.3g} to {factor * mean['upper']:.3g}"
+            cells += [f"{factor * mean['value']:.3g} ({ends})", f"{mean['value'] / first['value']:.2f}"]
+        outcomes = ", ".join(f"{name} {count}" for name, count in one["outcomes"].items())
+        lines.append(f"| {one['name']} | {outcomes} | {' | '.join(cells)} |")
+    return lines
+
+
+def time_table() -> list[str]:
+    """What each study cost."""
+    lines = ["| study | runs | wall [min] | CPU [min] | load |", "|---" * 5 + "|"]
+    for name in WAYS:
+        noted = json.loads((RESULTS / name / "origin.json").read_text())
+        keys = {row["key"] for path in (RESULTS / name / "runs").glob("*.csv") for row in csv.DictReader(path.open())}
+        times = f"{noted['wall_s'] / 60.0:.0f} | {noted['cpu_s'] / 60.0:.0f} | {noted['load']:.1f}"
+        lines.append(f"| `{noted['command']}` | {len(keys)} | {times} |")
+    return lines
+
+
+PARTS = {
+    "What each study says": answer_table,
+    "Errors of the expansion": error_table,
+    "What the model of the soil's numbers change": numerics_table,
+    "Cost": time_table,
+}
+HEAD = """# The paper's study: the tables
+
+Written by `python docs/validation/paper_study_figures.py`; [The paper's study](../paper_study.md) says what they mean.
+"""
+
+
+def main() -> None:
+    """Draw and write."""
+    draw_answers()
+    draw_errors()
+    parts = [f"## {title}\n\n" + "\n".join(table()) + "\n" for title, table in PARTS.items()]
+    (HERE / "paper_study.md").write_text("\n".join([HEAD, *parts]))
+
+
+if __name__ == "__main__":
+    main()
