@@ -96,6 +96,32 @@ def plan(
         tell(plan_lines(found))
 
 
+@app.command(epilog="Example: lithobrake rare study.toml fast --landings 500")
+def rare(
+    study: StudyPath,
+    name: Annotated[str, typer.Argument(metavar="NAME", help="A name of [limit_states].", show_default=False)],
+    landings: Annotated[int, typer.Option("--landings", metavar="N", help="Landings of each level.")] = 500,
+    out: OutPath = None,
+    workers: Workers = None,
+    executor: ExecutorName = "local",
+    scheduler: Scheduler = None,
+) -> None:
+    """Tell how probable a rare limit state is by levels of landings of their own; writes rare_NAME.json."""
+    folder, address = study_folder(study, out), _scheduler(executor, scheduler)
+    with one_sentence():
+        from lithobrake.study import StudySource
+
+        source = StudySource.read(study)
+        from lithobrake.pipeline import rare_failure
+        from lithobrake.progress import study_progress
+
+        with study_progress() as shown:
+            found = rare_failure(
+                source, folder, name, landing_count=landings, worker_count=workers, scheduler=address, shown=shown
+            )
+    tell([found["statement"], f"Written: {folder / f'rare_{name}.json'}"])
+
+
 @app.command(epilog="Example: lithobrake status runs/study")
 def status(folder: StudyDirectory, json: Json = False) -> None:
     """Show the progress of a study. Works from any terminal, even while the study runs."""
