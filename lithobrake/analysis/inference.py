@@ -90,7 +90,8 @@ class Posterior:
             lower, middle, upper = self._quantiles(values, ends)
             least, median, most = (float(law.ppf(end)) for end in ends)
             germ = law.germ(values)
-            after, before = np.sqrt(np.cov(germ, aweights=self.weights)), _germ_deviation(law)
+            # Where one point has all the weight its law has no width, and no more is known of it.
+            after, before = np.sqrt(np.cov(germ, aweights=self.weights, ddof=0)), _germ_deviation(law)
             found[name] = LearntInput(
                 IntervalEstimate(middle, lower, upper), IntervalEstimate(median, least, most),
                 float(after / before), self._information(law.cdf(values)),

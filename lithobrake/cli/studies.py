@@ -82,6 +82,9 @@ def plan(
     study: StudyPath,
     out: OutPath = None,
     workers: Workers = None,
+    infer: Annotated[
+        bool, typer.Option("--infer", help="Say too how many observed bounces would halve what is unknown of an input.")
+    ] = False,
     json: Json = False,
 ) -> None:
     """Show what a study will make, how long that takes, and what to watch out for. Runs nothing."""
@@ -89,7 +92,7 @@ def plan(
     with one_sentence():
         from lithobrake.pipeline import plan_lines, plan_study
 
-        found = plan_study(study, folder, workers)
+        found = plan_study(study, folder, workers, infers=infer)
     if json:
         tell_json(found.to_json())
     else:

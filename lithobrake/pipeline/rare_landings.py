@@ -182,6 +182,7 @@ def _statement(name: str, found: dict[str, Any]) -> str:
         said = f"no landing met it, and where the levels ended {found['rarest']:.2g} of all landings were left"
     unknown = found["without_known_end"]
     lost = f"; {unknown} without a known end count as not meeting it" if unknown else ""
-    landings = f"{found['landings']} landings in {found['levels']} levels on {found['beds']} beds"
+    levels = f"{found['levels']} level{'s' * (found['levels'] != 1)}"
+    landings = f"{found['landings']} landings in {levels} on {found['beds']} beds"
     why = f" {found['why']}" if found["why"] else ""
     return f"{name} ({found['condition']}): {said}; by {landings}{lost}.{why}"
