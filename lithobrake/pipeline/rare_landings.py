@@ -32,6 +32,8 @@ from lithobrake.study.limit_state import LimitState
 
 # Landings of a level are made in chains of ten.
 CHAIN, FEWEST = 10, 20
+# A landing is dear, and a probability below 1e-6 is less sure than what a study assumes.
+MOST_LEVELS = 6
 # Probabilities as near to 0 and 1 as a law without ends can take.
 LEAST = 2.0**-53
 
@@ -70,6 +72,7 @@ def rare_failure(
                 landings.dimension,
                 points_per_level=landing_count,
                 kept=[landings.dimension - 1],
+                most_levels=MOST_LEVELS,
                 seed=hashed_seed(study.seed, "rare", name),
             )
         except BaseException:
@@ -179,7 +182,7 @@ def _statement(name: str, found: dict[str, Any]) -> str:
     if found["lower"] is not None:
         said += f" ({100 * found['level']:.0f} % interval {found['lower']:.2g} to {found['upper']:.2g})"
     if not found["reached"]:
-        said = f"no landing met it, and where the levels ended {found['rarest']:.2g} of all landings were left"
+        said = f"no landing met it down to the last level, which stands for {found['rarest']:.1g} of all landings"
     unknown = found["without_known_end"]
     lost = f"; {unknown} without a known end count as not meeting it" if unknown else ""
     levels = f"{found['levels']} level{'s' * (found['levels'] != 1)}"

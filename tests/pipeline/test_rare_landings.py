@@ -25,7 +25,12 @@ OF_FRICTION, OF_PLACE = 0.6, 0.7
 SPREAD, MIDDLE = 0.3, 0.1
 RARE = 1e-3
 LIMIT = MIDDLE * math.exp(SPREAD * stats.norm.isf(RARE))
-CONDITIONS = {"fast": f"speed_out > {LIMIT!r}", "gone": "not stays", "hard": "peak_acceleration > 50"}
+CONDITIONS = {
+    "fast": f"speed_out > {LIMIT!r}",
+    "never": "speed_out > 10",
+    "gone": "not stays",
+    "hard": "peak_acceleration > 50",
+}
 
 
 @dataclass(frozen=True)
@@ -122,10 +127,19 @@ def test_landings_without_a_known_end_are_counted_and_said(tmp_path: Path) -> No
     assert "without a known end count as not meeting it" in found["statement"]
 
 
+def test_what_never_happens_is_not_looked_for_without_end(tmp_path: Path) -> None:
+    found = rare(tmp_path / "out", "never", landing_count=20)
+    assert (found["probability"], found["reached"]) == (0.0, False)
+    assert found["levels"] <= 6
+    assert found["inputs"]["grain.friction"]["median"] is None
+    assert found["landings"] <= 20 + 6 * 18
+    assert "no landing met it down to the last level, which stands for" in found["statement"]
+
+
 @pytest.mark.parametrize(
     ("name", "count", "words"),
     [
-        ("slow", 200, r"NAME is 'slow'; allowed: a name of \[limit_states\] \(fast, gone, hard\)"),
+        ("slow", 200, r"NAME is 'slow'; allowed: a name of \[limit_states\] \(fast, never, gone, hard\)"),
         ("gone", 200, r"limit_states\.gone asks for stays, which is true or false"),
         ("hard", 20, r"limit_states\.hard asks for peak_acceleration, which no landing has"),
         ("fast", 25, r"--landings is 25; allowed: multiples of 10 from 20"),
