@@ -1,7 +1,8 @@
 """From observed bounces to the soil: the law of the inputs of a stochastic model, given what came out of it."""
 
+import itertools
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -9,6 +10,7 @@ from numpy.typing import ArrayLike
 from scipy.special import logsumexp, ndtr, ndtri
 
 from lithobrake.analysis.confidence import LEVEL, Array, IntervalEstimate
+from lithobrake.analysis.ensemble_walk import ENDLESS, INSTALL, WALKER_COUNT, can_walk, walk
 from lithobrake.analysis.sampling import sample_inputs
 
 if TYPE_CHECKING:
@@ -24,9 +26,14 @@ MOST_ROUNDS, OF_PRIOR, WIDER = 4, 0.2, 1.5
 FEWEST_EFFECTIVE = 400.0
 # An input of which more than this part of the prior's standard deviation is left has learnt nothing worth saying.
 NOTHING_LEARNT = 0.9
+# Probability as near to 0, or to 1, as a law without ends takes.
+LEAST = 2.0**-53
+# How far beside points walkers begin, as a part of their spread, which is at least so much in normal scores.
+BESIDE, NARROWEST = 0.1, 0.01
 # Equal steps of probability in which an input's law is compared with its prior.
 STEPS = 20
 
+Likelihood = Callable[[Array, int], Array]
 Bounds = Callable[[Array], tuple[ArrayLike | None, ArrayLike | None]]
 
 
@@ -61,8 +68,8 @@ class Posterior:
     """The law of the inputs given the observations, as weighted points.
 
     points [point_count, input_count] in physical units, of the inputs that all bounces share; weights [point_count],
-    which sum to 1; effective_count: of so many equal points the weights are worth; log_evidence: logarithm of the mean
-    likelihood over the prior.
+    which sum to 1; effective_count: of so many equal points they are worth; log_evidence: logarithm of the mean
+    likelihood over the prior, by points that were drawn from it and near it; remedy: where too few carry weight.
     """
 
     inputs: dict[str, "Distribution"]
@@ -70,6 +77,7 @@ class Posterior:
     weights: Array
     effective_count: float
     log_evidence: float
+    remedy: str = ""
 
     @property
     def is_reliable(self) -> bool:
@@ -90,7 +98,8 @@ class Posterior:
             lower, middle, upper = self._quantiles(values, ends)
             least, median, most = (float(law.ppf(end)) for end in ends)
             germ = law.germ(values)
-            after, before = np.sqrt(np.cov(germ, aweights=self.weights)), _germ_deviation(law)
+            # Where one point has all the weight its law has no width, and no more is known of it.
+            after, before = np.sqrt(np.cov(germ, aweights=self.weights, ddof=0)), _germ_deviation(law)
             found[name] = LearntInput(
                 IntervalEstimate(middle, lower, upper), IntervalEstimate(median, least, most),
                 float(after / before), self._information(law.cdf(values)),
@@ -110,7 +119,8 @@ class Posterior:
         if nothing:
             said.append(f"the data say nothing about {', '.join(nothing)}")
         if not self.is_reliable:
-            said.append(f"only {self.effective_count:.0f} points carry weight, too few to trust any of this")
+            few = f"only {self.effective_count:.0f} points carry weight, too few to trust any of this"
+            said.append(f"{few}: {self.remedy}" if self.remedy else few)
         words = "; ".join(said)
         return f"{words[0].upper()}{words[1:]}." if said[0].startswith("the") else f"{words}."
 
@@ -147,28 +157,72 @@ def infer(
     own: inputs that each bounce draws anew, as its speed where that is not known; the others are those of all bounces.
     bounds: of the outputs at points [point_count, input_count], where they follow the inputs (as in `Emulator.sample`).
     refit_count: fits to groups drawn with replacement, over which the likelihood is averaged; 0: the emulator alone.
-    point_count: points that are looked at, of the prior first, then near those that carry weight until 400 do.
+    point_count: points that are looked at, of the prior first, then near those that carry weight until 400 do. Where
+    these rounds end with fewer the walkers of emcee follow, if it is installed.
     Bounces on one terrain share its bed, which is not followed: they count as of beds of their own.
     Raises ValueError for no observation, and for names and values that cannot be.
     """
     shared = _checked(model, observations, own)
     models = model.refits(refit_count, seed) if refit_count else [model]
-    laws, proposal = {name: model.runs.inputs[name] for name in shared}, Proposal(None)
-    found: list[Posterior] = []
+    laws = {name: model.runs.inputs[name] for name in shared}
+
+    def logarithm(scores: Array, draws: int) -> Array:
+        return _likelihood(models, observations, laws, _physical(laws, scores), bounds, draws)
+
+    found = _drawn(laws, logarithm, point_count, seed)
+    return found if found.is_reliable else _walked(found, logarithm, seed)
+
+
+def _drawn(laws: "Mapping[str, Distribution]", logarithm: Likelihood, point_count: int, seed: int) -> Posterior:
+    """The posterior by weighted points, of the prior and then near those that carry weight.
+
+    Raises ValueError where none does.
+    """
+    proposal, found = Proposal(None), list[Posterior]()
     for number in range(1 + MOST_ROUNDS):
         scores, excess = proposal.draw(len(laws), point_count, seed + number)
-        points = np.column_stack([law.ppf(ndtr(column)) for law, column in zip(laws.values(), scores.T, strict=True)])
-        logarithms = excess + _likelihood(models, observations, laws, points, bounds, seed)
+        logarithms = excess + logarithm(scores, seed)
         if not np.isfinite(logarithms).any():
             raise ValueError(
                 "the observations have no likelihood at any point of the prior: they lie beyond bounds of the outputs; "
                 "look at their units"
             )
-        found.append(posterior_of(laws, points, logarithms))
+        found.append(posterior_of(laws, _physical(laws, scores), logarithms))
         if found[-1].is_reliable:
             break
         proposal = Proposal.near(scores, found[-1].weights)
     return max(found, key=lambda one: one.effective_count)
+
+
+def _walked(found: Posterior, logarithm: Likelihood, seed: int) -> Posterior:
+    """The posterior by walkers that begin at the points of another; that one, with what may help, where none arrive."""
+    if not can_walk():
+        return replace(found, remedy=INSTALL)
+    shares = [law.cdf(values) for law, values in zip(found.inputs.values(), found.points.T, strict=True)]
+    scores = ndtri(np.clip(np.column_stack(shares), LEAST, 1.0 - LEAST))
+    random, middle = np.random.default_rng(seed), found.weights @ scores
+    spread = np.sqrt(found.weights @ (scores - middle) ** 2) + NARROWEST
+    start = scores[random.choice(len(scores), WALKER_COUNT, p=found.weights)]
+    # Walkers that all begin at one point would never leave it.
+    start = start + BESIDE * spread * random.standard_normal(start.shape)
+    # What each bounce draws anew is drawn at every call: so the walk is right in the mean over it.
+    calls = itertools.count(seed + 1)
+
+    def density(at: Array) -> Array:
+        value = logarithm(at, next(calls)) - 0.5 * np.sum(at**2, axis=1)
+        return np.where(np.isnan(value), -np.inf, value)
+
+    walked = walk(density, start, seed)
+    if walked is None:
+        return replace(found, remedy=ENDLESS)
+    points, effective = _physical(found.inputs, walked[0]), walked[1]
+    return replace(found, points=points, weights=np.full(len(points), 1.0 / len(points)), effective_count=effective)
+
+
+def _physical(laws: "Mapping[str, Distribution]", scores: Array) -> Array:
+    """Points [count, input_count] in physical units from normal scores."""
+    shares = np.clip(ndtr(scores), LEAST, 1.0 - LEAST)
+    return np.column_stack([law.ppf(share) for law, share in zip(laws.values(), shares.T, strict=True)])
 
 
 def posterior_of(laws: "Mapping[str, Distribution]", points: Array, logarithms: Array) -> Posterior:
@@ -201,7 +255,7 @@ class Proposal:
         from lithobrake.chaos import Uniform, sobol_sequence
 
         unit = {str(k): Uniform(0.0, 1.0) for k in range(dimension + 1)}
-        uniforms = np.clip(sobol_sequence(unit, count, seed=seed), 2.0**-53, 1.0 - 2.0**-53)
+        uniforms = np.clip(sobol_sequence(unit, count, seed=seed), LEAST, 1.0 - LEAST)
         scores = ndtri(uniforms[:, 1:])
         if self.normal is None:
             return scores, np.zeros(count)

@@ -52,13 +52,20 @@ class SubsetResult:
 
 
 def subset_simulation(
-    margin: Margin, dimension: int, *, points_per_level: int = 1000, kept: Sequence[int] = (), seed: int = 0
+    margin: Margin,
+    dimension: int,
+    *,
+    points_per_level: int = 1000,
+    kept: Sequence[int] = (),
+    most_levels: int = MOST_LEVELS,
+    seed: int = 0,
 ) -> SubsetResult:
     """Estimate the probability that a margin is at most 0, over independent standard normal inputs.
 
     margin: of points [count, dimension], shape [count]; the same point has the same margin, so whatever is random in a
     model is an input of its own. kept: inputs that a chain keeps from its start, as those that pick a bed: a model that
     jumps when they change would refuse nearly every move. points_per_level: a multiple of ten, 20 at least.
+    most_levels: after which a failure that no point has shown is not looked for further.
     Raises ValueError for other counts, and for margins that are no numbers.
     """
     chain_count = _checked(dimension, points_per_level, kept)
@@ -70,17 +77,19 @@ def subset_simulation(
     probability, step, count = 1.0, FIRST_STEP, points_per_level
     thresholds: list[float] = []
     variations: list[float] = []
-    for number in range(MOST_LEVELS):
+    for number in range(most_levels + 1):
         order = np.argsort(values, kind="stable")
         threshold = max(0.5 * float(values[order[chain_count - 1]] + values[order[chain_count]]), 0.0)
-        below = values <= threshold
+        below = values <= (threshold if number < most_levels else 0.0)
         share = float(below.mean())
+        if share == 0.0:
+            break
         chains = below.reshape(-1, chain_count) if number else below[None]
         variations.append(_variation(chains, share))
         probability *= share
-        thresholds.append(threshold)
+        thresholds.append(threshold if number < most_levels else 0.0)
         # Where many points have one margin a level may hold all of them and lead nowhere.
-        if threshold == 0.0 or share == 1.0:
+        if threshold == 0.0 or share == 1.0 or number == most_levels:
             break
         seeds = random.permutation(np.flatnonzero(below))[:chain_count]
         points, values, step = _chains(margin, points[seeds], values[seeds], threshold, moved, step, random)

@@ -177,7 +177,7 @@ def infer(
     with one_sentence():
         from lithobrake.pipeline import InferredStudy, infer_study
 
-        plan = InferredStudy.open(folder).plan_lines()
+        plan = InferredStudy.open(folder).plan().lines()
         found = None if bounce is None else infer_study(folder, bounce)
     tell(plan)
     if found is not None:

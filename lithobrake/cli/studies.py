@@ -82,6 +82,9 @@ def plan(
     study: StudyPath,
     out: OutPath = None,
     workers: Workers = None,
+    infer: Annotated[
+        bool, typer.Option("--infer", help="Say too how many observed bounces would halve what is unknown of an input.")
+    ] = False,
     json: Json = False,
 ) -> None:
     """Show what a study will make, how long that takes, and what to watch out for. Runs nothing."""
@@ -89,11 +92,37 @@ def plan(
     with one_sentence():
         from lithobrake.pipeline import plan_lines, plan_study
 
-        found = plan_study(study, folder, workers)
+        found = plan_study(study, folder, workers, infers=infer)
     if json:
         tell_json(found.to_json())
     else:
         tell(plan_lines(found))
+
+
+@app.command(epilog="Example: lithobrake rare study.toml fast --landings 500")
+def rare(
+    study: StudyPath,
+    name: Annotated[str, typer.Argument(metavar="NAME", help="A name of [limit_states].", show_default=False)],
+    landings: Annotated[int, typer.Option("--landings", metavar="N", help="Landings of each level.")] = 500,
+    out: OutPath = None,
+    workers: Workers = None,
+    executor: ExecutorName = "local",
+    scheduler: Scheduler = None,
+) -> None:
+    """Tell how probable a rare limit state is by levels of landings of their own; writes rare_NAME.json."""
+    folder, address = study_folder(study, out), _scheduler(executor, scheduler)
+    with one_sentence():
+        from lithobrake.study import StudySource
+
+        source = StudySource.read(study)
+        from lithobrake.pipeline import rare_failure
+        from lithobrake.progress import study_progress
+
+        with study_progress() as shown:
+            found = rare_failure(
+                source, folder, name, landing_count=landings, worker_count=workers, scheduler=address, shown=shown
+            )
+    tell([found["statement"], f"Written: {folder / f'rare_{name}.json'}"])
 
 
 @app.command(epilog="Example: lithobrake status runs/study")

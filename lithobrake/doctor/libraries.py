@@ -11,6 +11,7 @@ EXTRAS = {
     "spice": "NAIF's kernels of shape, spin and place",
     "thin": "meshes of millions of facets",
     "yaml": "answers of your own program as YAML",
+    "infer": "inference where few points carry weight",
     "data": "results as pandas and xarray",
     "view": "windows and films of landings",
 }

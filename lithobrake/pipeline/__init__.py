@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from lithobrake.pipeline.planning.plan import Plan
     from lithobrake.pipeline.planning.plan_in_words import plan_lines
     from lithobrake.pipeline.planning.planner import plan_study
+    from lithobrake.pipeline.rare_landings import rare_failure
     from lithobrake.pipeline.serving import served_models
     from lithobrake.pipeline.stages import Stage, make, stage_keys, stages_of
     from lithobrake.pipeline.state import report_page
@@ -30,6 +31,7 @@ _HOME = {
     "make": "stages",
     "plan_lines": "planning.plan_in_words",
     "plan_study": "planning.planner",
+    "rare_failure": "rare_landings",
     "report_page": "state",
     "run_study": "study_run",
     "served_models": "serving",
@@ -51,6 +53,7 @@ __all__ = [
     "make",
     "plan_lines",
     "plan_study",
+    "rare_failure",
     "report_page",
     "run_study",
     "served_models",

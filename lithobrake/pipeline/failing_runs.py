@@ -19,11 +19,7 @@ def failing_runs(state: LimitState, runs: DesignRuns, fates: np.ndarray) -> np.n
 
     fates [run_count, len(RUN_FATES)]: how many of its flights ended so.
     """
-    outcomes = np.array(runs.outcomes)
-    values = {name: runs.output(name) for name in TOUCHDOWN}
-    # A run without a known end was neither captured nor not.
-    ended = np.isin(outcomes, [TouchdownOutcome.CLEAR, TouchdownOutcome.CAPTURED])
-    values[CAPTURED] = np.where(ended, (outcomes == CAPTURED).astype(float), np.nan)
+    values = values_of_runs(runs)
     unflown = {word: np.full(runs.run_count, np.nan) for word in FATES if word != CAPTURED}
     found = state.met(values | unflown)
     counts = fates.sum(axis=1)
@@ -32,6 +28,15 @@ def failing_runs(state: LimitState, runs: DesignRuns, fates: np.ndarray) -> np.n
     by_fate = np.column_stack([state.met(values | _words(fate, runs.run_count)) for fate in RUN_FATES])
     met = np.where(fates > 0, fates * by_fate, 0.0).sum(axis=1)
     return np.where(counts > 0, met / np.maximum(counts, 1), found)
+
+
+def values_of_runs(runs: DesignRuns) -> dict[str, np.ndarray]:
+    """What limit states may name of touchdowns, [run_count] each: outputs, and whether the lander was captured."""
+    outcomes = np.array(runs.outcomes)
+    # A run without a known end was neither captured nor not.
+    ended = np.isin(outcomes, [TouchdownOutcome.CLEAR, TouchdownOutcome.CAPTURED])
+    captured = np.where(ended, (outcomes == CAPTURED).astype(float), np.nan)
+    return {name: runs.output(name) for name in TOUCHDOWN} | {CAPTURED: captured}
 
 
 def _words(fate: str, count: int) -> dict[str, np.ndarray]:

@@ -22,6 +22,7 @@ from lithobrake.outcomes import TouchdownOutcome
 from lithobrake.pipeline.beds import bed_files
 from lithobrake.pipeline.designs import design_inputs
 from lithobrake.pipeline.energy_bound import energy_bound, height_of_beds
+from lithobrake.pipeline.expected_inference import ExpectedInference, ExpectedInput
 from lithobrake.pipeline.fitted_emulator import FILE as EMULATOR
 from lithobrake.pipeline.fitted_emulator import SPEED, SPIN
 from lithobrake.pipeline.folder import StudyFolder
@@ -85,24 +86,14 @@ class InferredStudy:
             upper[:, speed], upper[:, spin] = bound.speed, bound.spin()
         return lower, upper
 
-    def plan(self) -> dict[str, Any]:
-        """What bounces of which all outputs are seen would say: keys of `identifiability`, by input."""
+    def plan(self) -> ExpectedInference:
+        """What bounces of which all outputs are seen would say."""
         found = identifiability(self.model, self.outputs, own=self.of_each_bounce, bounds=self.bounds, seed=1)
-        return {
-            name: {"halved_by": one.bounces, "left_of_sd": {str(count): left for count, left in one.sd_ratio.items()}}
+        inputs = {
+            name: ExpectedInput({str(count): left for count, left in one.sd_ratio.items()}, one.bounces)
             for name, one in found.items()
         }
-
-    def plan_lines(self) -> list[str]:
-        """The same in words, which a person should read before any bounce is looked at."""
-        lines = [f"Of bounces whose {', '.join(self.outputs)} are seen, taking the emulator as exact:"]
-        for name, one in self.plan().items():
-            after = one["left_of_sd"].get("1")
-            first = "" if after is None else f"one leaves {100 * after:.0f} % of its standard deviation; "
-            count = one["halved_by"]
-            halved = "no number that was looked at halves it" if count is None else f"{count:.0f} halve it"
-            lines.append(f"  {name}: {first}{halved}")
-        return lines
+        return ExpectedInference(tuple(self.outputs), inputs)
 
     def infer(self, bounces: Path) -> dict[str, Any]:
         """Infer the soil from the bounces of a CSV file; what posterior.json holds."""

@@ -11,6 +11,7 @@ at each multiple of ten runs, from 120 to 600, all beds have ten.
 
 import math
 from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -21,6 +22,9 @@ from lithobrake.pipeline.place_region import place_region
 from lithobrake.study import Study
 from lithobrake.study.study import FEWEST_BEDS, MOST_BEDS, RUNS_A_BED
 from lithobrake.touchdown_model import ORIENTATION, PLACE, given_attitude, medians
+
+if TYPE_CHECKING:
+    from lithobrake.chaos import Distribution
 
 AZIMUTH = "impact.azimuth_deg"
 # Coordinates of the sequence beside the uncertain inputs. All are there in every study, used or not, so that a place or
@@ -33,12 +37,23 @@ SIDE_DESIGNS = ("soil_pairs", "twins")
 
 def sequence_rows(study: Study, count: int | None = None) -> list[dict[str, float]]:
     """All inputs of the first `count` runs (None: of all), by dotted key in the file's units, with what each drew."""
-    from lithobrake.chaos import Uniform, sobol_sequence
+    from lithobrake.chaos import sobol_sequence
 
-    inputs, count = design_inputs(study), count or study.design.run_count
-    coordinates = inputs | dict.fromkeys(DRAWN, Uniform(0.0, 1.0))
-    x = sobol_sequence(coordinates, count, hashed_seed(study.seed, "sequence"))
-    beds, middle, region = beds_of_runs(study, count), medians(study), place_region(study)
+    count = count or study.design.run_count
+    x = sobol_sequence(coordinates(study), count, hashed_seed(study.seed, "sequence"))
+    return rows_at(study, beds_of_runs(study, count), x)
+
+
+def coordinates(study: Study) -> "dict[str, Distribution]":
+    """What a run takes from its point, but for its bed: the uncertain inputs, then what it draws, with their laws."""
+    from lithobrake.chaos import Uniform
+
+    return design_inputs(study) | dict.fromkeys(DRAWN, Uniform(0.0, 1.0))
+
+
+def rows_at(study: Study, beds: Sequence[int], x: np.ndarray) -> list[dict[str, float]]:
+    """All inputs of the runs on these beds [run_count] at these coordinates [run_count, coordinate_count]."""
+    inputs, middle, region = design_inputs(study), medians(study), place_region(study)
     rows = []
     for bed, point in zip(beds, x.tolist(), strict=True):
         soil, uniform = dict(zip(inputs, point, strict=False)), dict(zip(DRAWN, point[len(inputs) :], strict=True))

@@ -32,6 +32,8 @@ COMPARISONS: dict[type, Callable[[Any, Any], Any]] = {
     ast.Lt: lambda a, b: a < b,
     ast.LtE: lambda a, b: a <= b,
 }
+# Distances where there is none: of what is true or false alone, or is not known, and of what lies on the boundary.
+FAR, NEAR = 1e30, 1e-30
 TRUTH = {"true": True, "false": False}
 ALLOWED = (
     "outputs (SI) compared by <, <=, >, >= with numbers or each other, the words "
@@ -79,6 +81,18 @@ class LimitState:
 
         found = _met(_parsed(self.text), values)
         return np.where(found.surely == found.maybe, found.surely.astype(float), np.nan)
+
+    def margin(self, values: Mapping[str, "NDArray[np.float64]"], scale: Mapping[str, float]) -> "NDArray[np.float64]":
+        """How far landings are from meeting it, shape [count]: at most 0 where they do, FAR where nobody knows.
+
+        values: as for `met`; scale: of each output that it uses, in its unit, in which distances are counted.
+        """
+        import numpy as np
+
+        met = self.met(values)
+        # The sign is that of `met`, whatever a distance of several comparisons, or one of exactly 0, would have.
+        size = np.maximum(np.abs(np.nan_to_num(_distance(_parsed(self.text), values, scale), nan=FAR)), NEAR)
+        return np.where(met == 1.0, -size, np.where(met == 0.0, size, FAR))
 
 
 class LimitStateText:
@@ -211,3 +225,26 @@ def _compared(sides: list[ast.expr], operators: list[ast.cmpop], values: Mapping
     for place, operator in enumerate(operators):
         met &= COMPARISONS[type(operator)](numbers[place], numbers[place + 1])
     return Met(known & met, ~known | met)
+
+
+def _distance(node: ast.expr, values: Mapping[str, Any], scale: Mapping[str, float]) -> Any:
+    """Distance of landings from meeting a condition, [count], below 0 where they do; NaN where an output is missing."""
+    import numpy as np
+
+    match node:
+        case ast.BoolOp(op=op, values=parts):
+            # One that is not known leaves the others of an `or` as near as they are.
+            nearest = np.maximum if isinstance(op, ast.And) else np.fmin
+            return nearest.reduce([_distance(part, values, scale) for part in parts])
+        case ast.UnaryOp(operand=operand):
+            return -_distance(operand, values, scale)
+        case ast.Compare(left=left, ops=ops, comparators=others) if _word_and_truth(node) is None:
+            sides = [left, *others]
+            numbers: list[Any] = [values[side.id] if isinstance(side, ast.Name) else _number(side) for side in sides]
+            size = max(scale[side.id] for side in sides if isinstance(side, ast.Name))
+            rising = [isinstance(operator, ast.Lt | ast.LtE) for operator in ops]
+            gaps = zip(rising, numbers, numbers[1:], strict=False)
+            return np.maximum.reduce([(a - b if up else b - a) / size for up, a, b in gaps])
+    # What is true or false has no distance.
+    found = _met(node, values)
+    return np.where(found.surely, -FAR, FAR)

@@ -54,8 +54,9 @@ def test_the_posterior_of_a_linear_law_is_met(model: Emulator, values: list[floa
 
 def test_many_bounces_take_points_near_those_that_carry_weight(model: Emulator) -> None:
     values = [1.5] * 30
-    found = infer(model, [Observation({"speed": value}) for value in values], refit_count=0, point_count=512)
-    assert found.effective_count > 200.0
+    found = infer(model, [Observation({"speed": value}) for value in values], refit_count=0, point_count=1024)
+    assert found.is_reliable
+    assert len(found.points) == 1024
     mean, deviation = closed_form(values)
     # What thirty responses leave is as small as what the emulator does not know of the law.
     assert moments(found.points[:, 0], found.weights) == pytest.approx((mean, deviation), abs=0.1)

@@ -66,6 +66,16 @@ def test_a_failure_that_cannot_be_has_probability_0_and_says_that_it_was_not_rea
     assert (found.probability, found.lower, found.reached) == (0.0, 0.0, False)
 
 
+def test_few_levels_end_with_what_their_points_show_of_a_rarer_failure() -> None:
+    margin, dimension, exact = LIMIT_STATES["linear, 2 inputs"]
+    # Two levels end at 1e-2, of which a tenth fails.
+    found = [subset_simulation(margin, dimension, most_levels=2, seed=seed) for seed in range(10)]
+    assert {len(one.thresholds) for one in found} == {3}
+    assert np.mean([one.probability for one in found]) == pytest.approx(exact, rel=3.0 * 0.27 / np.sqrt(10.0))
+    never = subset_simulation(lambda points: 20.0 - points[:, 0], 2, most_levels=2)
+    assert (never.probability, never.reached, never.upper) == (0.0, False, pytest.approx(1e-2))
+
+
 def test_the_same_seed_gives_the_same_bits() -> None:
     margin, dimension, _ = LIMIT_STATES["linear, 2 inputs"]
     first, again = (subset_simulation(margin, dimension, seed=3) for _ in range(2))

@@ -18,6 +18,15 @@ FEW_SAMPLES = {
     "flight_count = 50": "flight_count = 5",
     "count = 200 ": "count = 5 ",
 }
+# What the example says of its design, for `drawn` to stand in the place of.
+PAPERS = """method = "paper"                                           # two steps, each with an expansion of its own
+screening_level = 2
+screening_degree = 2
+refined_level = 3
+refined_degree = 3
+kept_outputs = ["speed_out"]
+test_count = 10
+"""
 
 
 def write_ball(path: Path, changes: dict[str, str], program: Path = PROGRAM) -> Path:
@@ -34,3 +43,8 @@ def edit(path: Path, changes: dict[str, str]) -> Path:
         text = text.replace(old, new)
     path.write_text(text)
     return path
+
+
+def drawn(run_count: int, more: str = "") -> str:
+    """The design of a study that draws so many runs, and more lines of that table."""
+    return f'method = "sequence"\nrun_count = {run_count}\n{more}'

@@ -15,20 +15,7 @@ from lithobrake.results import open_study
 from lithobrake.study import StudySource
 
 from ..few_grains import few_grains
-from .ball_studies import FEW_RUNS, write_ball
-
-PAPERS = """method = "paper"                                           # two steps, each with an expansion of its own
-screening_level = 2
-screening_degree = 2
-refined_level = 3
-refined_degree = 3
-kept_outputs = ["speed_out"]
-test_count = 10
-"""
-
-
-def drawn(run_count: int, more: str = "") -> str:
-    return f'method = "sequence"\nrun_count = {run_count}\n{more}'
+from .ball_studies import FEW_RUNS, PAPERS, drawn, write_ball
 
 
 def lithobrake(*arguments: object, code: int = 0) -> str:

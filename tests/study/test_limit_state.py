@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from lithobrake.study import StudyError, check_tables
-from lithobrake.study.limit_state import FATES, LimitState
+from lithobrake.study.limit_state import FAR, FATES, NEAR, LimitState
 from lithobrake.study.template import template
 
 NAN = np.nan
@@ -34,6 +34,16 @@ MET: list[tuple[str, list[float]]] = [
     ("(escaped or captured) and peak_acceleration > 50", [0, 0, 1, NAN]),
     ("speed_out > -1 and not stays", [1, 0, 0, NAN]),
 ]
+# How far the same landings are from meeting conditions, speeds counted in .1 m/s and accelerations in 10 m/s2.
+SCALE = {"speed_out": 0.1, "peak_acceleration": 10.0}
+MARGINS: list[tuple[str, list[float]]] = [
+    ("speed_out > 0.1", [-1.0, 0.5, FAR, FAR]),
+    ("not speed_out > 0.1", [1.0, -0.5, -FAR, FAR]),
+    ("0.05 < speed_out <= 0.3", [-1.0, NEAR, FAR, FAR]),
+    ("speed_out > 0.1 and peak_acceleration > 50", [2.0, 0.5, FAR, FAR]),
+    ("speed_out > 0.3 or peak_acceleration > 50", [1.0, -1.0, -2.0, FAR]),
+    ("speed_out > 0.1 and not captured", [-1.0, 0.5, FAR, FAR]),
+]
 REFUSED: list[tuple[str, str]] = [
     ("speed > 1", "speed is no output; did you mean speed_out?"),
     ("speed_out", "speed_out is a number: compare it"),
@@ -50,6 +60,14 @@ REFUSED: list[tuple[str, str]] = [
     ("stays\0", "it cannot be read"),
     (" and ".join(["stays"] * 100), "it has 995 characters"),
 ]
+
+
+@pytest.mark.parametrize(("text", "margins"), MARGINS)
+def test_a_margin_says_how_far_a_landing_is_from_meeting_it(text: str, margins: list[float]) -> None:
+    values = {name: np.array(numbers) for name, numbers in LANDINGS.items()}
+    found = LimitState.of(text).margin(values, SCALE)
+    assert found == pytest.approx(np.array(margins), rel=1e-12)
+    assert np.array_equal(found <= 0.0, LimitState.of(text).met(values) == 1.0)
 
 
 def refusal(limit_states: object, **tables: dict[str, Any]) -> str:

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import Any
 
+from lithobrake.pipeline.expected_inference import ExpectedInference
 from lithobrake.pipeline.planning.expected_time import Span
 from lithobrake.pipeline.planning.expected_width import ExpectedHalfWidth
 from lithobrake.pipeline.planning.planned_beds import PlannedBeds
@@ -29,6 +30,7 @@ class Plan:
     bytes           of all files when finished, by what they hold
     free_bytes      where the folder is
     warnings        in sentences, the most important first
+    inference       what observed bounces would say of the inputs; None where that is not asked
     """
 
     study: str
@@ -44,6 +46,7 @@ class Plan:
     bytes: Mapping[str, int]
     free_bytes: int
     warnings: tuple[str, ...]
+    inference: ExpectedInference | None = None
 
     @property
     def time(self) -> Span:

@@ -27,6 +27,7 @@ def plan_lines(plan: Plan) -> list[str]:
     size, free = bytes_in_words(sum(plan.bytes.values())), bytes_in_words(plan.free_bytes)
     lines += [f"Disk: about {size} when finished; {free} are free."]
     lines += plan.half_width.lines() if plan.half_width else []
+    lines += plan.inference.lines() if plan.inference else []
     lines += [f"Warnings: {len(plan.warnings) or 'none'}."]
     return lines + [f"  {number}. {warning}" for number, warning in enumerate(plan.warnings, start=1)]
 

@@ -1,12 +1,16 @@
 """Planning a study: what is still to be made, and what that will cost."""
 
+import shlex
 import shutil
 from collections.abc import Set
+from dataclasses import replace
 from pathlib import Path
 
 from lithobrake.campaign import available_cores
+from lithobrake.pipeline.expected_inference import ExpectedInference
 from lithobrake.pipeline.folder import StudyFolder
 from lithobrake.pipeline.growing_sequence import grown
+from lithobrake.pipeline.inferring import InferredStudy
 from lithobrake.pipeline.owner import refuse_others_folder
 from lithobrake.pipeline.planning.expected_disk import expected_bytes, flight_count, journey_count
 from lithobrake.pipeline.planning.expected_steps import ExpectedSoil
@@ -22,18 +26,35 @@ from lithobrake.pipeline.stages import stage_keys, stages_of
 from lithobrake.study import Study, StudySource
 
 MAKE_RUNS = frozenset({"screening_runs", "refined_runs", "test_runs", "runs", "side_runs"})
+# The title of the stage whose emulator tells what bounces would say.
+EMULATOR = "emulator"
 
 
-def plan_study(path: Path, out: Path, worker_count: int | None = None) -> Plan:
+def plan_study(path: Path, out: Path, worker_count: int | None = None, *, infers: bool = False) -> Plan:
     """Say what `run_study` would do with the same arguments; nothing is written.
 
+    infers: also what bounces on the soil of the study would say, by its emulator, within seconds.
     Raises ValueError for a study file that is refused, a folder of something else, a mesh that cannot be read, a ledger
     that is none.
     """
     source = StudySource.read(path)
     study, folder = with_site_gravity(source.study, source.name), StudyFolder.only_read(out)
     refuse_others_folder(source, out)
-    return plan_of(grown(study, folder), study.title or path.stem, folder, worker_count)
+    plan = plan_of(grown(study, folder), study.title or path.stem, folder, worker_count)
+    return replace(plan, inference=_expected_inference(plan, study, path)) if infers else plan
+
+
+def _expected_inference(plan: Plan, study: Study, path: Path) -> ExpectedInference:
+    """What observed bounces would say, or what is to be run before that can be told."""
+    why = None
+    if study.design.method == "paper":
+        why = 'what they would say is told by an emulator, which design.method = "sequence" makes'
+    elif EMULATOR in plan.stages:
+        why = (
+            "what they would say is told by the emulator, which is not there yet; make it with: "
+            f"{shlex.join(['lithobrake', 'run', str(path), '--out', plan.folder])}"
+        )
+    return ExpectedInference((), {}, why) if why else InferredStudy.open(Path(plan.folder)).plan()
 
 
 def plan_of(

@@ -1,0 +1,191 @@
+"""A limit state too rare for the runs of a study: subset simulation whose landings are made, and kept in the ledger.
+
+Each landing is a point of independent standard normal numbers, which its soil, place, azimuth and attitude follow from,
+and its bed, which a chain keeps from its start. The points follow from the margins of those before them, so one that is
+stopped and begun again asks for the same landings, finds them in the ledger, and goes on where it was.
+"""
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from scipy.special import ndtr
+
+from lithobrake.analysis import SubsetResult, subset_simulation
+from lithobrake.campaign import DaskExecutor, LocalExecutor
+from lithobrake.hashing import hashed_seed
+from lithobrake.pipeline.design_runs import DesignRuns
+from lithobrake.pipeline.designs import design_inputs
+from lithobrake.pipeline.failing_runs import OF_TOUCHDOWN, values_of_runs
+from lithobrake.pipeline.folder import StudyFolder
+from lithobrake.pipeline.growing_sequence import grown
+from lithobrake.pipeline.job import Job, Progress, Silent
+from lithobrake.pipeline.scope import why_no_interval
+from lithobrake.pipeline.sequence import coordinates, rows_at
+from lithobrake.pipeline.site import with_site_gravity
+from lithobrake.pipeline.solver import Model
+from lithobrake.pipeline.study_run import run_study
+from lithobrake.pipeline.touchdown_runs import touchdowns
+from lithobrake.study import Study, StudySource
+from lithobrake.study.limit_state import LimitState
+
+# Landings of a level are made in chains of ten.
+CHAIN, FEWEST = 10, 20
+# A landing is dear, and a probability below 1e-6 is less sure than what a study assumes.
+MOST_LEVELS = 6
+# Probabilities as near to 0 and 1 as a law without ends can take.
+LEAST = 2.0**-53
+
+
+def rare_failure(
+    source: StudySource,
+    out: Path,
+    name: str,
+    *,
+    landing_count: int = 500,
+    worker_count: int | None = None,
+    scheduler: str | None = None,
+    model: Model | None = None,
+    shown: Progress | None = None,
+) -> dict[str, Any]:
+    """Tell the probability of a rare limit state by subset simulation, and write it to rare_NAME.json of the folder.
+
+    landing_count: of a level, each a tenth as probable as the one before; all else: as for `run_study`, which pours
+    the beds first. Raises ValueError for a limit state that has no distance, and for what `run_study` refuses.
+    """
+    shown = shown or Silent()
+    state = _limit_state(source.study, name)
+    if landing_count < FEWEST or landing_count % CHAIN:
+        raise ValueError(f"--landings is {landing_count}; allowed: multiples of {CHAIN} from {FEWEST}; take 500")
+    run_study(source, out, until="bed", worker_count=worker_count, scheduler=scheduler, model=model, shown=shown)
+    folder = StudyFolder(out)
+    with folder.alone(), DaskExecutor(scheduler) if scheduler else LocalExecutor(worker_count) as executor:
+        study = grown(with_site_gravity(source.study, source.name), folder)
+        landings = Landings(Job(study, source.tables, folder, executor, shown, model), name, state)
+        if not study.has_soil:
+            shown.say("A program with chance of its own, beside its inputs, makes the interval too narrow.")
+        shown.begin(f"landings of {name}", 1, 1)
+        try:
+            found = subset_simulation(
+                landings.margins,
+                landings.dimension,
+                points_per_level=landing_count,
+                kept=[landings.dimension - 1],
+                most_levels=MOST_LEVELS,
+                seed=hashed_seed(study.seed, "rare", name),
+            )
+        except BaseException:
+            executor.shutdown(cancel_futures=True)
+            raise
+        if landings.reused_count:
+            shown.say(f"{landings.reused_count} of {found.evaluation_count} landings were known and are reused")
+        content = landings.told(found, landing_count)
+        folder.write_json(f"rare_{name}.json", content)
+    return content
+
+
+@dataclass
+class Landings:
+    """The landings of a subset simulation, as margins of points; scale is that of the first level's outputs."""
+
+    job: Job
+    name: str
+    state: LimitState
+    scale: dict[str, float] = field(default_factory=dict)
+    made_count: int = 0
+    reused_count: int = 0
+    unknown_count: int = 0
+
+    @property
+    def dimension(self) -> int:
+        """How many numbers a point has; the last picks the bed."""
+        return len(coordinates(self.job.study)) + 1
+
+    def margins(self, points: np.ndarray) -> np.ndarray:
+        """Land at standard normal points [count, dimension], and say how far each is from the limit state, [count].
+
+        Raises ValueError for an output that no landing has.
+        """
+        study = self.job.study
+        shares = np.clip(ndtr(points), LEAST, 1.0 - LEAST)
+        laws = coordinates(study).values()
+        x = np.column_stack([law.ppf(share) for law, share in zip(laws, shares.T, strict=False)])
+        beds = (shares[:, -1] * study.bed_count).astype(int).tolist()
+        made = touchdowns(self.job, rows_at(study, beds, x), f"{self.name}, after {self.made_count}", 0)
+        self.made_count += len(made.records)
+        self.reused_count += made.reused_count
+        values = values_of_runs(DesignRuns.of(made))
+        self.scale = self.scale or {output: self._spread(output, values[output]) for output in self.state.outputs}
+        self.unknown_count += int(np.isnan(self.state.met(values)).sum())
+        return self.state.margin(values, self.scale)
+
+    def _spread(self, output: str, values: np.ndarray) -> float:
+        """Standard deviation of an output of the first level; 1 where it does not vary. Raises ValueError for none."""
+        if not np.isfinite(values).any():
+            raise ValueError(
+                f"limit_states.{self.name} asks for {output}, which no landing has; let the program that makes the "
+                "touchdowns give it, or ask for another limit state"
+            )
+        return float(np.nanstd(values)) or 1.0
+
+    def told(self, found: SubsetResult, landing_count: int) -> dict[str, Any]:
+        """What rare_NAME.json holds."""
+        study, laws = self.job.study, design_inputs(self.job.study)
+        shares = ndtr(found.failing)
+        medians = {
+            name: {"median": float(law.ppf(np.median(share))) if len(share) else None, "median_of_all": law.median}
+            for (name, law), share in zip(laws.items(), shares.T, strict=False)
+        }
+        why = why_no_interval(study)
+        content = {
+            "condition": self.state.text,
+            "probability": found.probability,
+            "lower": None if why else found.lower,
+            "upper": None if why else found.upper,
+            "why": why,
+            "level": found.level,
+            "coefficient_of_variation": found.coefficient_of_variation,
+            "reached": found.reached,
+            "rarest": found.probability if found.reached else found.upper,
+            "levels": len(found.thresholds),
+            "thresholds": found.thresholds.tolist(),
+            "landings_a_level": landing_count,
+            "landings": found.evaluation_count,
+            "without_known_end": self.unknown_count,
+            "beds": study.bed_count,
+            "inputs": medians,
+        }
+        return content | {"statement": _statement(self.name, content)}
+
+
+def _limit_state(study: Study, name: str) -> LimitState:
+    """The limit state of a name. Raises ValueError where there is none, or landings have no distance from it."""
+    conditions = study.limit_states.conditions()
+    if name not in conditions:
+        known = ", ".join(conditions) or "none: the study has no [limit_states]"
+        raise ValueError(f"NAME is {name!r}; allowed: a name of [limit_states] ({known}); add it there")
+    state = LimitState.of(conditions[name])
+    words = [word for word in state.fates if word not in OF_TOUCHDOWN]
+    if words or not state.outputs:
+        word = (words or state.fates)[0]
+        raise ValueError(
+            f"limit_states.{name} asks for {word}, which is true or false, and levels need a distance from it; ask for "
+            "an output of the touchdown, as in speed_out > 0.1, or read its probability in the summary of the study"
+        )
+    return state
+
+
+def _statement(name: str, found: dict[str, Any]) -> str:
+    """The result in a sentence."""
+    said = f"probability {found['probability']:.2g}"
+    if found["lower"] is not None:
+        said += f" ({100 * found['level']:.0f} % interval {found['lower']:.2g} to {found['upper']:.2g})"
+    if not found["reached"]:
+        said = f"no landing met it down to the last level, which stands for {found['rarest']:.1g} of all landings"
+    unknown = found["without_known_end"]
+    lost = f"; {unknown} without a known end count as not meeting it" if unknown else ""
+    levels = f"{found['levels']} level{'s' * (found['levels'] != 1)}"
+    landings = f"{found['landings']} landings in {levels} on {found['beds']} beds"
+    why = f" {found['why']}" if found["why"] else ""
+    return f"{name} ({found['condition']}): {said}; by {landings}{lost}.{why}"
