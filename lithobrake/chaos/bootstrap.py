@@ -79,6 +79,29 @@ def sobol_estimates(
     return {"first": surrogate.shaped(table[:, 0]), "total": surrogate.shaped(table[:, 1])}
 
 
+@one_thread()
+def coefficient_changes(
+    surrogate: Surrogate, x: ArrayLike, y: ArrayLike, *, count: int, seed: int = 0
+) -> tuple[Indices, Array]:
+    """How the coefficients change when the residuals of the training runs x, y fall on other runs.
+
+    Result: multi_indices [term_count, input_count] and changes [count, term_count, output_count] of the orthonormal
+    terms, as `sobol_estimates` fits its draws; 0 for an output that does not vary.
+    """
+    training = checked_training(surrogate.inputs, x, y, output_names=surrogate.output_names)
+    rows = np.random.default_rng(seed).integers(training.count, size=(count, training.count))
+    varying = [output for output in range(len(surrogate.output_names)) if np.ptp(training.y[:, output]) > 0.0]
+    refits = {output: _refit_of(surrogate, training, output) for output in varying}
+    indices = np.unique(np.concatenate([surrogate.multi_indices, *(one.indices for one in refits.values())]), axis=0)
+    place = {tuple(index): row for row, index in enumerate(indices.tolist())}
+    changes = np.zeros((count, len(indices), len(surrogate.output_names)))
+    for output, refit in refits.items():
+        own = [place[tuple(index)] for index in refit.indices.tolist()]
+        # A fit is linear in its outputs, so the change is the fit of the drawn residuals alone.
+        changes[:, own, output] = refit.coefficients(refit.residuals[rows].T).T
+    return indices, changes
+
+
 def sobol_intervals(
     surrogate: Surrogate, x: ArrayLike, y: ArrayLike, *, count: int = 500, level: float = 0.95, seed: int = 0
 ) -> dict[str, Any]:

@@ -12,6 +12,7 @@ from lithobrake.pipeline.design_runs import file_of
 from lithobrake.pipeline.designs import design_reads
 from lithobrake.pipeline.drawn_summary import write_drawn_summary
 from lithobrake.pipeline.emulator_samples import draw_emulator_samples
+from lithobrake.pipeline.expansion_tables import write_expansion_explorer
 from lithobrake.pipeline.expansions import fit_refined, fit_screening, score_all
 from lithobrake.pipeline.explorer_tables import FILE as EXPLORER
 from lithobrake.pipeline.explorer_tables import write_explorer
@@ -92,6 +93,11 @@ def _emulate(job: Job) -> None:
     write_explorer(job)
 
 
+def _sample_expansion(job: Job) -> None:
+    draw_samples(job)
+    write_expansion_explorer(job)
+
+
 def _write_report(job: Job) -> None:
     from lithobrake.report import write_report
 
@@ -147,7 +153,7 @@ PAPER = (
         make_test_runs,
     ),
     Stage("test", "scores", _files("scores.json"), _nothing, ("refine", "test_runs"), FIT, score_all),
-    Stage("sample", "samples", _files("samples.h5"), _sample, ("refine", "test"), FIT, draw_samples),
+    Stage("sample", "samples", _files("samples.h5", EXPLORER), _sample, ("refine", "test"), FIT, _sample_expansion),
     Stage(
         "fly",
         "flights",

@@ -28,8 +28,9 @@ class Results:
     study, results, provenance: the three tables of summary.json;
     latitude, longitude: of the impacts [deg], shape [impact], and facet, the one of the body that was hit;
     body_vertices of the body [m] and its body_faces, counted from 0; rest: latitude and longitude [deg] of the landers
-    that rest, by ground; paths: places on the ways of some flights [m] and how each ended. bed and landing are None
-    where a solver of the user's own made the touchdowns.
+    that rest, by ground; paths: places on the ways of some flights [m] and how each ended; flights: of the samples;
+    explorer: what the page evaluates of the model. None where there are none; bed and landing are so where a solver of
+    the user's own made the touchdowns.
     """
 
     model: ClassVar[str]
@@ -52,6 +53,15 @@ class Results:
     body_faces: NDArray[np.int64]
     rest: dict[str, tuple[Array, Array]]
     paths: tuple[Array, tuple[str, ...]] | None
+    flights: Table | None
+    explorer: ExplorerTables | None
+
+    def table(self, *keys: str) -> Mapping[str, Any]:
+        """A table within the results, by the keys that lead to it; an empty one where the summary has none."""
+        found: Mapping[str, Any] = self.results
+        for key in keys:
+            found = found.get(key) or {}
+        return found
 
 
 @dataclass(frozen=True)
@@ -67,8 +77,8 @@ class PaperResults(Results):
 
 @dataclass(frozen=True)
 class SequenceResults(Results):
-    """Results of a sequence; runs: its landings, without side runs; samples: of the emulator; flights: of the samples;
-    explorer: what the page evaluates of the emulator. None where there are none.
+    """Results of a sequence; runs: its landings, without side runs; samples: of the emulator, None where there are
+    none.
     """
 
     model, level = "emulator", 0.9
@@ -76,15 +86,6 @@ class SequenceResults(Results):
 
     runs: Table
     samples: Table | None
-    flights: Table | None
-    explorer: ExplorerTables | None
-
-    def table(self, *keys: str) -> Mapping[str, Any]:
-        """A table within the results, by the keys that lead to it; an empty one where the summary has none."""
-        found: Mapping[str, Any] = self.results
-        for key in keys:
-            found = found.get(key) or {}
-        return found
 
 
 class SummaryTable(dict[str, Any]):
@@ -115,15 +116,11 @@ def page_results(found: StudyResults) -> PaperResults | SequenceResults:
 
 def _sequence_results(found: StudyResults, summary: SummaryTable) -> SequenceResults:
     """Those of a sequence, whose page has what there is so far of flights and samples."""
-    has_samples, has_flights, has_explorer = (
-        (found.folder / name).is_file() for name in ("samples.h5", "flights.csv", "explorer.h5")
-    )
+    has_samples = (found.folder / "samples.h5").is_file()
     return SequenceResults(
         **_of_any_study(found, summary),
         runs=found.runs.where(found.runs["design"] == "sequence"),
         samples=found.samples if has_samples else None,
-        flights=found.flights if has_flights else None,
-        explorer=found.explorer if has_explorer else None,
     )
 
 
@@ -149,6 +146,8 @@ def _of_any_study(found: StudyResults, summary: SummaryTable) -> dict[str, Any]:
         "body_vertices": vertices,
         "body_faces": faces,
         "paths": found.flight_paths if (found.folder / PATHS).is_file() else None,
+        "flights": found.flights if (found.folder / "flights.csv").is_file() else None,
+        "explorer": found.explorer if (found.folder / "explorer.h5").is_file() else None,
         "rest": {ground: _resting(found, ground) for ground in GROUNDS},
     }
 

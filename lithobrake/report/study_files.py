@@ -18,7 +18,7 @@ CONTENTS = {
     "estimates.json": "what the runs say, with intervals",
     "landing.h5": "one landing: shapes, poses, and how they moved",
     "emulator.json": "the emulator (lithobrake.emulator.load reads it)",
-    "explorer.h5": "the same fitted anew to other beds, as the explorer of this page evaluates it",
+    "explorer.h5": "what the explorer of this page evaluates: the emulator or the expansion, fitted anew many times",
     "screening.json": "the expansion in all inputs",
     "refined.json": "the expansion in the kept inputs",
     "scores.json": "the errors of the expansions, run by run",

@@ -241,7 +241,7 @@ class StudyResults:
 
     @cached_property
     def explorer(self) -> "ExplorerTables":
-        """The emulator's refits to other beds as plain tables, for programs in other languages."""
+        """The refits of the emulator or expansion as plain tables, for programs in other languages."""
         from lithobrake.results.explorer_tables import ExplorerTables
 
         return ExplorerTables.read(self.folder / "explorer.h5", self.remedy)
