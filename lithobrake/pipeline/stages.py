@@ -33,7 +33,7 @@ from lithobrake.pipeline.run_estimates import estimate
 from lithobrake.pipeline.run_flights import fly_runs, run_flight_reads
 from lithobrake.pipeline.samples import draw_samples
 from lithobrake.pipeline.sequence import SIDE_DESIGNS, beds_of_runs
-from lithobrake.pipeline.shown_landing import land_once, landing_files, landing_reads
+from lithobrake.pipeline.shown_landing import land_once, land_tellingly, landing_files, landing_reads, telling_files
 from lithobrake.pipeline.summary import study_tables, write_summary
 from lithobrake.study import Study
 
@@ -176,6 +176,7 @@ SEQUENCE = (
     Stage(
         "fly_runs", "flights of the runs", _files("run_flights.csv"), run_flight_reads, ("side_runs",), FLY, fly_runs
     ),
+    Stage("telling_landing", "telling landing", telling_files, _nothing, ("runs",), (), land_tellingly),
     Stage("estimate", "estimates", _files("estimates.json"), _nothing, ("fly_runs",), FIT, estimate),
     Stage("emulator", "emulator", _files("emulator.json", EXPLORER), _nothing, ("runs",), EMULATE, _emulate),
     Stage("sample", "samples", _files("samples.h5"), _sample, ("emulator",), EMULATE, draw_emulator_samples),
@@ -187,7 +188,7 @@ SEQUENCE = (
         "summary",
         _files("summary.json"),
         study_tables,
-        ("landing", "estimate", "rest", "aim"),
+        ("landing", "telling_landing", "estimate", "rest", "aim"),
         (*SUM_UP, "emulator"),
         write_drawn_summary,
     ),

@@ -37,9 +37,6 @@ class Results:
     """What was fitted to the runs and stands for them in the samples, in a word."""
     level: ClassVar[float]
     """Probability that intervals and limits of shares stand for."""
-    shown_landing: ClassVar[str]
-    """Which landing has been kept with its pictures, as a sentence about it begins."""
-
     study: dict[str, Any]
     results: dict[str, Any]
     provenance: dict[str, Any]
@@ -56,6 +53,11 @@ class Results:
     flights: Table | None
     explorer: ExplorerTables | None
 
+    @property
+    def shown_landing(self) -> str:
+        """Which landing has been kept with its pictures, as a sentence about it begins; empty where none has."""
+        return ""
+
     def table(self, *keys: str) -> Mapping[str, Any]:
         """A table within the results, by the keys that lead to it; an empty one where the summary has none."""
         found: Mapping[str, Any] = self.results
@@ -69,10 +71,13 @@ class PaperResults(Results):
     """Results of the method in two steps; scores: stage, output, score."""
 
     model, level = "expansion", 0.95
-    shown_landing = "With every uncertain input at its median"
-
     scores: dict[str, dict[str, Score]]
     samples: Table
+
+    @property
+    def shown_landing(self) -> str:
+        """That of the medians."""
+        return "With every uncertain input at its median"
 
 
 @dataclass(frozen=True)
@@ -82,10 +87,18 @@ class SequenceResults(Results):
     """
 
     model, level = "emulator", 0.9
-    shown_landing = "In the first run"
 
     runs: Table
     samples: Table | None
+
+    @property
+    def shown_landing(self) -> str:
+        """The run that its file names, or the first one."""
+        attributes = {} if self.landing is None else self.landing.moving.attributes
+        if "run" not in attributes:
+            return "In the first run"
+        which = "of the median speed of those that leave" if attributes["status"] == "clear" else "as none leaves"
+        return f"In run {str(attributes['run'])[:8]}, {which}"
 
 
 class SummaryTable(dict[str, Any]):

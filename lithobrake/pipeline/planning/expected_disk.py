@@ -4,6 +4,7 @@ from lithobrake.outputs import OUTPUTS
 from lithobrake.pipeline.designs import design_inputs
 from lithobrake.pipeline.planning.expected_steps import ExpectedSoil
 from lithobrake.pipeline.planning.planned_runs import PlannedRuns
+from lithobrake.pipeline.shown_landing import landing_files, telling_files
 from lithobrake.pipeline.site import site_body
 from lithobrake.study import Study
 
@@ -32,7 +33,8 @@ def expected_bytes(study: Study, runs: PlannedRuns, soil: ExpectedSoil | None) -
     if soil is not None:
         grains = soil.recipe.grain_count
         one = BED_GRAIN * grains + BED_STEP * round(soil.pour_steps())
-        found["beds"] = study.bed_count * one + LANDING_BODY * (grains + 1)
+        shown = len(landing_files(study) + telling_files(study))
+        found["beds"] = study.bed_count * one + shown * LANDING_BODY * (grains + 1)
     return found
 
 

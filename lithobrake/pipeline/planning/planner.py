@@ -22,6 +22,7 @@ from lithobrake.pipeline.stages import stage_keys, stages_of
 from lithobrake.study import Study, StudySource
 
 MAKE_RUNS = frozenset({"screening_runs", "refined_runs", "test_runs", "runs", "side_runs"})
+SHOW_LANDINGS = frozenset({"landing", "telling_landing"})
 
 
 def plan_study(path: Path, out: Path, worker_count: int | None = None) -> Plan:
@@ -78,7 +79,7 @@ def _made(
 ) -> dict[str, tuple[int, int]]:
     """How many of each are to be made, at least and at most."""
     new = [one.new for one in runs] if stale & MAKE_RUNS else [0]
-    landings = int("landing" in stale and study.has_soil)
+    landings = len(stale & SHOW_LANDINGS) * study.has_soil
     return {
         "beds": (beds[0].new, beds[-1].new),
         "landings": (landings, landings),
