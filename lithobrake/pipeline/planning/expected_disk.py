@@ -11,7 +11,7 @@ from lithobrake.study import Study
 NUMBER = 8
 # A bed: hulls, poses and frames of a grain, and the history, a row in every eight steps.
 BED_GRAIN, BED_STEP = 1400, 4
-LANDING_BODY = 10_300  # poses of a body in all frames of a landing
+LANDING_BODY = 11_800  # poses of a body and forces on it in all frames of a landing
 LEDGER_RUN = 5_000
 FLIGHT_ROW, JOURNEY_ROW = 270, 120
 SHAPE_FACET = 45
