@@ -110,6 +110,7 @@ BODIES = {
     "faces": Quantity("", "triangles of the hulls, as vertices counted from the first of the hull"),
     "face_start": Quantity("", "row of the first triangle of each hull, and the number of all"),
     "position": Quantity("m", "places of the centroids", BED),
+    "force": Quantity("N", "sizes of the sums of the contact forces on each body"),
     "orientation": Quantity("", "unit quaternions w, x, y, z that turn the hulls as given into place", BED),
     "diameter": Quantity("m", "diameters of the grains, as spheres of equal volume"),
     "time": Quantity("s", "simulated time"),

@@ -56,6 +56,19 @@ class OutcomeModel:
             table[block, self._met] = self._regression.predict_proba(self._scaled(x[block]))
         return table
 
+    def logits(self, x: np.ndarray) -> np.ndarray:
+        """Logarithms of the probabilities but for a term that all outcomes share, shape [point_count, len(names)].
+
+        They are quadratic in the germs; minus infinity for an outcome that no run had.
+        """
+        table = np.full((len(x), len(self.names)), -np.inf)
+        table[:, self._met] = 0.0
+        if len(self._met) > 1:
+            decided = self._regression.decision_function(self._scaled(x))
+            # Of two outcomes the regression tells the second alone.
+            table[:, self._met if decided.ndim > 1 else self._met[1:]] = decided.reshape(len(x), -1)
+        return table
+
     def draw(self, x: np.ndarray, random: np.random.Generator) -> np.ndarray:
         """An outcome for each point x [point_count, input_count], as its place among the names, shape [point_count]."""
         # The last one takes what rounding leaves of the whole.

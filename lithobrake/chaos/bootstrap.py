@@ -79,6 +79,29 @@ def sobol_estimates(
     return {"first": surrogate.shaped(table[:, 0]), "total": surrogate.shaped(table[:, 1])}
 
 
+@one_thread()
+def coefficient_changes(
+    surrogate: Surrogate, x: ArrayLike, y: ArrayLike, *, count: int, seed: int = 0
+) -> tuple[Indices, Array]:
+    """How the coefficients change when the residuals of the training runs x, y fall on other runs.
+
+    Result: multi_indices [term_count, input_count], and changes [count, term_count, output_count] as `sobol_estimates`
+    fits its draws; 0 for an output that does not vary.
+    """
+    training = checked_training(surrogate.inputs, x, y, output_names=surrogate.output_names)
+    rows = np.random.default_rng(seed).integers(training.count, size=(count, training.count))
+    varying = np.flatnonzero(np.ptp(training.y, axis=0) > 0.0).tolist()
+    refits = {output: _refit_of(surrogate, training, output) for output in varying}
+    indices = np.unique(np.concatenate([surrogate.multi_indices, *(one.indices for one in refits.values())]), axis=0)
+    place = {tuple(index): row for row, index in enumerate(indices.tolist())}
+    changes = np.zeros((count, len(indices), training.y.shape[1]))
+    for output, refit in refits.items():
+        # A fit is linear in its outputs, so the change is the fit of the drawn residuals alone.
+        own = [place[tuple(index)] for index in refit.indices.tolist()]
+        changes[:, own, output] = refit.coefficients(refit.residuals[rows].T).T
+    return indices, changes
+
+
 def sobol_intervals(
     surrogate: Surrogate, x: ArrayLike, y: ArrayLike, *, count: int = 500, level: float = 0.95, seed: int = 0
 ) -> dict[str, Any]:
@@ -87,11 +110,10 @@ def sobol_intervals(
     Result: "first" and "total", each [2 (lower, upper), input_count, output_count] (last axis dropped for a
     one-dimensional y).
     """
-    own, found = _own_indices(surrogate), sobol_estimates(surrogate, x, y, count=count, level=level, seed=seed)
-    result = {}
-    for index, key in enumerate(("first", "total")):
-        _, low, high = found[key].reshape(3, *own[index].shape)
-        result[key] = surrogate.shaped(np.stack([np.minimum(low, own[index]), np.maximum(high, own[index])]))
+    found, result = sobol_estimates(surrogate, x, y, count=count, level=level, seed=seed), {}
+    for own, key in zip(_own_indices(surrogate), ("first", "total"), strict=True):
+        _, low, high = found[key].reshape(3, *own.shape)
+        result[key] = surrogate.shaped(np.stack([np.minimum(low, own), np.maximum(high, own)]))
     return result
 
 

@@ -1,14 +1,15 @@
 """Every public name of the part, from the file that it stands in."""
 
 from lithobrake.chaos.abstract_distribution import Distribution
-from lithobrake.chaos.basis import condition_number
-from lithobrake.chaos.bootstrap import score_intervals, sobol_estimates, sobol_intervals
+from lithobrake.chaos.basis import basis_matrix, condition_number
+from lithobrake.chaos.bootstrap import coefficient_changes, score_intervals, sobol_estimates, sobol_intervals
 from lithobrake.chaos.bounded_distributions import Beta, LogUniform, Uniform
 from lithobrake.chaos.counts import smolyak_count, term_count
 from lithobrake.chaos.design import latin_hypercube, sobol_sequence, tensor_count, tensor_grid
 from lithobrake.chaos.distribution_registry import distribution
 from lithobrake.chaos.fitting import fit
 from lithobrake.chaos.gaussian_copula import DependentSurrogate, GaussianCopula, fit_dependent, load_dependent
+from lithobrake.chaos.germ_tables import input_tables
 from lithobrake.chaos.multi_index import multi_index_set
 from lithobrake.chaos.noise import replicates
 from lithobrake.chaos.numerical_distributions import Empirical, TruncatedNormal
@@ -45,8 +46,10 @@ __all__ = [
     "TruncatedNormal",
     "Uniform",
     "absolute_percentage_error",
+    "basis_matrix",
     "christoffel",
     "christoffel_weights",
+    "coefficient_changes",
     "condition_number",
     "d_optimal",
     "density",
@@ -56,6 +59,7 @@ __all__ = [
     "fit_dependent",
     "fit_stochastic",
     "gradient",
+    "input_tables",
     "joint_scatter",
     "latin_hypercube",
     "load",

@@ -1,8 +1,12 @@
-"""One landing of a study to look at, with its pictures."""
+"""Landings of a study to look at, with their pictures: one before all runs, and one that the runs say is telling."""
 
 from typing import Any
 
+import numpy as np
+
+from lithobrake.outcomes import TouchdownOutcome
 from lithobrake.pipeline.beds import bed_files, touchdown_reads
+from lithobrake.pipeline.design_runs import DesignRuns
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.kernels import compile_kernels
 from lithobrake.pipeline.sequence import sequence_rows
@@ -10,11 +14,17 @@ from lithobrake.study import Study
 from lithobrake.touchdown_model import draw, in_words_of_the_study, lander, landing, medians, stored_bed
 
 SNAPSHOT_FRAMES = 120
+FIRST, TELLING = "landing.h5", "telling_landing.h5"
 
 
 def landing_files(study: Study) -> list[str]:
-    """Name of the file of the landing to look at."""
-    return [] if not study.has_soil else ["landing.h5"]
+    """Name of the file of the landing to look at before all runs."""
+    return [FIRST] if study.has_soil else []
+
+
+def telling_files(study: Study) -> list[str]:
+    """Name of the file of the landing that the runs have shown to be telling."""
+    return [TELLING] if study.has_soil and study.design.method == "sequence" else []
 
 
 def landing_reads(study: Study) -> dict[str, Any]:
@@ -30,13 +40,44 @@ def landing_values(study: Study) -> dict[str, float]:
 
 
 def land_once(job: Job) -> None:
-    """Land once and keep the pictures."""
+    """Land once before all runs and keep the pictures."""
+    compile_kernels(job)
+    _land(job, landing_values(job.study), FIRST)
+
+
+def land_tellingly(job: Job) -> None:
+    """Make the telling run of the sequence again, for its pictures.
+
+    Says where it comes out otherwise than as a run: another machine may have made that.
+    """
+    runs = DesignRuns.load(job.folder, "sequence")
+    row = telling_run(runs)
+    ended = _land(job, sequence_rows(job.study)[row], TELLING, run=runs.keys[row])
+    if ended != runs.outcomes[row]:
+        job.say(
+            f"the landing that is shown, run {runs.keys[row][:8]}, ended as {ended} here: {runs.outcomes[row]} as a run"
+        )
+
+
+def telling_run(runs: DesignRuns) -> int:
+    """The row of the run with the median speed [m/s] of those that leave, of two the slower; of none, the first.
+
+    First that has ended: a run that failed has nothing to show.
+    """
+    left = np.flatnonzero(runs.has_outputs)
+    if len(left):
+        by_speed = left[np.argsort(runs.output("speed_out")[left], kind="stable")]
+        return int(by_speed[(len(left) - 1) // 2])
+    return next(row for row, outcome in enumerate(runs.outcomes) if outcome in list(TouchdownOutcome))
+
+
+def _land(job: Job, values: dict[str, float], file: str, **notes: str) -> str:
+    """Land with all these inputs, keep the pictures with notes, and return how it ended."""
     from lithobrake.touchdown import land
 
-    compile_kernels(job)
-    values = landing_values(job.study)
     bed = stored_bed(job.folder / bed_files(job.study)[round(values["bed"])])
     with in_words_of_the_study():
         body, arrival = lander(job.study, values), landing(job.study, values)
         outcome = land(bed, body, arrival, SNAPSHOT_FRAMES, lambda fraction, what: job.progress(fraction, 1.0, what))
-    outcome.save_frames(job.folder / "landing.h5", bed, body, arrival)
+    outcome.save_frames(job.folder / file, bed, body, arrival, **notes)
+    return str(outcome.status)

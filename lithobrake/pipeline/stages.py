@@ -12,6 +12,7 @@ from lithobrake.pipeline.design_runs import file_of
 from lithobrake.pipeline.designs import design_reads
 from lithobrake.pipeline.drawn_summary import write_drawn_summary
 from lithobrake.pipeline.emulator_samples import draw_emulator_samples
+from lithobrake.pipeline.expansion_tables import write_expansion_explorer
 from lithobrake.pipeline.expansions import fit_refined, fit_screening, score_all
 from lithobrake.pipeline.explorer_tables import FILE as EXPLORER
 from lithobrake.pipeline.explorer_tables import write_explorer
@@ -32,7 +33,7 @@ from lithobrake.pipeline.run_estimates import estimate
 from lithobrake.pipeline.run_flights import fly_runs, run_flight_reads
 from lithobrake.pipeline.samples import draw_samples
 from lithobrake.pipeline.sequence import SIDE_DESIGNS, beds_of_runs
-from lithobrake.pipeline.shown_landing import land_once, landing_files, landing_reads
+from lithobrake.pipeline.shown_landing import land_once, land_tellingly, landing_files, landing_reads, telling_files
 from lithobrake.pipeline.summary import study_tables, write_summary
 from lithobrake.study import Study
 
@@ -92,6 +93,11 @@ def _emulate(job: Job) -> None:
     write_explorer(job)
 
 
+def _sample_expansion(job: Job) -> None:
+    draw_samples(job)
+    write_expansion_explorer(job)
+
+
 def _write_report(job: Job) -> None:
     from lithobrake.report import write_report
 
@@ -147,7 +153,7 @@ PAPER = (
         make_test_runs,
     ),
     Stage("test", "scores", _files("scores.json"), _nothing, ("refine", "test_runs"), FIT, score_all),
-    Stage("sample", "samples", _files("samples.h5"), _sample, ("refine", "test"), FIT, draw_samples),
+    Stage("sample", "samples", _files("samples.h5", EXPLORER), _sample, ("refine", "test"), FIT, _sample_expansion),
     Stage(
         "fly",
         "flights",
@@ -170,6 +176,7 @@ SEQUENCE = (
     Stage(
         "fly_runs", "flights of the runs", _files("run_flights.csv"), run_flight_reads, ("side_runs",), FLY, fly_runs
     ),
+    Stage("telling_landing", "telling landing", telling_files, _nothing, ("runs",), (), land_tellingly),
     Stage("estimate", "estimates", _files("estimates.json"), _nothing, ("fly_runs",), FIT, estimate),
     Stage("emulator", "emulator", _files("emulator.json", EXPLORER), _nothing, ("runs",), EMULATE, _emulate),
     Stage("sample", "samples", _files("samples.h5"), _sample, ("emulator",), EMULATE, draw_emulator_samples),
@@ -181,7 +188,7 @@ SEQUENCE = (
         "summary",
         _files("summary.json"),
         study_tables,
-        ("landing", "estimate", "rest", "aim"),
+        ("landing", "telling_landing", "estimate", "rest", "aim"),
         (*SUM_UP, "emulator"),
         write_drawn_summary,
     ),

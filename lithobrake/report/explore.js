@@ -34,9 +34,9 @@ class Explorer {
   }
 
   widestAxes() {
-    const found = Array.from({ length: this.law.outputs }, () => []);
+    const found = this.facts.outputs.map(() => []);
     this.eachDraw(Array.from({ length: this.law.inputs }, () => [0, 1]), POINTS, (refit, row) => {
-      if (row >= 0) for (let k = 0; k < found.length; k++) found[k].push(this.y[k]);
+      if (row >= 0 && this.canLeave()) for (let k = 0; k < found.length; k++) found[k].push(this.y[k]);
     });
     return found.map((values, k) => {
       values.sort((a, b) => a - b);
@@ -75,6 +75,18 @@ class Explorer {
     }
   }
 
+  // Whether speed and elevation of the drawn outputs are a way to leave; those of an expansion need not be.
+  canLeave() {
+    const elevation = this.y[this.facts.elevation];
+    return this.y[this.facts.speed] > 0 && elevation > 0 && elevation <= 0.5 * Math.PI;
+  }
+
+  // Direction [rad] of the drawn lander: that of its row, or of its own velocity where outputs hold one.
+  azimuthOf(row) {
+    const { level } = this.facts;
+    return level ? Math.atan2(this.y[level[1]], this.y[level[0]]) : this.law.azimuth[row];
+  }
+
   // Everything that is shown, at inputs between two probabilities of their laws.
   at(ranges, points = POINTS) {
     const { law, flown, facts } = this, cells = MAP_COLUMNS * MAP_ROWS;
@@ -84,20 +96,20 @@ class Explorer {
     let draws = 0;
     this.eachDraw(ranges, points, (refit, row, uniform) => {
       draws++;
-      if (row < 0) {
-        const outcome = law.facts.outcomeNames[-1 - row];
-        if (outcome !== facts.capturedName) return;
-        known[refit]++;
-        if (facts.holds) stays[refit]++;
+      const isCaptured = row < 0 && facts.outcomeNames[-1 - row] === facts.capturedName;
+      if (row < 0 || !this.canLeave()) {
+        if (isCaptured || facts.ofAll) known[refit]++;
+        if (isCaptured && facts.holds) stays[refit]++;
         return;
       }
       left[refit]++;
-      for (let k = 0; k < law.outputs; k++) {
-        const bin = Math.floor(BINS * this.y[k] / this.axes[k]);
+      for (let k = 0; k < facts.outputs.length; k++) {
+        // A spin without bounds may be drawn below 0, and is then none.
+        const bin = Math.max(Math.floor(BINS * this.y[k] / this.axes[k]), 0);
         if (bin < BINS) counts[(refit * law.outputs + k) * BINS + bin]++;
       }
       if (!flown) return;
-      const flight = flown.near(this.y[facts.speed], this.y[facts.elevation], law.azimuth[row], uniform);
+      const flight = flown.near(this.y[facts.speed], this.y[facts.elevation], this.azimuthOf(row), uniform);
       known[refit]++;
       fates[flown.status[flight]]++;
       if (flown.status[flight] !== facts.impact) return;

@@ -121,11 +121,11 @@ function pictures(explorer, holder) {
 function startExplorer() {
   const explorer = readExplorer(), holder = document.getElementById("explorer");
   if (!explorer) return null;
-  const show = pictures(explorer, holder);
+  const { facts } = explorer, show = pictures(explorer, holder);
   let waiting = false, points = POINTS, settled = 0;
   const draw = (all) => {
     waiting = false;
-    const began = performance.now(), ranges = controls.map((one) => one.range());
+    const began = performance.now(), ranges = facts.inputs.map((_, input) => controls.get(input)?.range() ?? [0, 1]);
     const found = explorer.at(ranges, all ? POINTS : points), took = performance.now() - began;
     // A slow machine has fewer draws while an end moves, and all of them when it has stopped.
     if (!all) points = Math.min(Math.max(Math.round(points * FRAME / took), FEWEST_POINTS), POINTS);
@@ -137,13 +137,13 @@ function startExplorer() {
     clearTimeout(settled);
     settled = setTimeout(() => draw(true), 200);
   };
-  const controls = explorer.facts.inputs.map((_, input) => inputControl(explorer, input, changed));
+  const controls = new Map(facts.moved.map((input) => [input, inputControl(explorer, input, changed)]));
   const set = (words, low, high) => {
     const button = element("button", { type: "button", textContent: words });
     button.addEventListener("click", () => { controls.forEach((one) => one.reset(low, high)); changed(); });
     return button;
   };
-  holder.querySelector(".controls").append(...controls.map((one) => one.box),
+  holder.querySelector(".controls").append(...Array.from(controls.values(), (one) => one.box),
     element("p", { className: "buttons" }, set("The whole law", 0, 1), set("All at their medians", 0.5, 0.5)));
   addEventListener("resize", changed);
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", changed);

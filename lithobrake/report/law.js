@@ -1,5 +1,6 @@
 "use strict";
-// The law of the emulator: what lithobrake.emulator evaluates, from the same numbers, in the same order of steps.
+// The law of the emulator: what lithobrake.emulator evaluates, from the same numbers, in the same order of steps. An
+// expansion is one without bounds, whose scatter may grow with the speed of the impact.
 
 // Arrays of the page by name: each was packed as base64 of little-endian numbers with a shape.
 function unpack(packed) {
@@ -37,6 +38,8 @@ class Law {
     [this.terms, this.inputs] = this.multi_indices.shape;
     this.degree = this.center.shape[1];
     this.classes = facts.outcomeNames.length;
+    this.classTerms = this.class_slopes.shape[2];
+    this.grows ??= new Float64Array(this.outputs);
     this.withOutputs = facts.outcomeNames.indexOf(facts.outputOutcome);
     this.kernelWidth = this.bandwidth[0] * Math.sqrt(2 * this.inputs);
     this.polynomial = new Float64Array(this.degree + 1);
@@ -56,7 +59,7 @@ class Law {
     for (let refit = 0; refit < this.refits; refit++)
       for (let k = 0; k < this.outputs; k++)
         if (this.location[(refit * (this.terms + 1) + term + 1) * this.outputs + k] !== 0) return true;
-    return term < this.inputs;
+    return term < Math.max(this.inputs, this.classTerms);
   }
 
   germOf(input, x) {
@@ -120,8 +123,8 @@ class Law {
     let largest = -Infinity, total = 0, never = 0;
     for (let c = 0; c < this.classes; c++) {
       let logit = this.class_intercepts[refit * this.classes + c];
-      for (let input = 0; input < this.inputs; input++)
-        logit += terms[input] * this.class_slopes[(refit * this.classes + c) * this.inputs + input];
+      for (let term = 0; term < this.classTerms; term++)
+        logit += terms[term] * this.class_slopes[(refit * this.classes + c) * this.classTerms + term];
       const unmet = this.class_never[refit * this.classes + c];
       never += unmet;
       into[c] = unmet > 0 ? -Infinity : logit;
@@ -172,17 +175,25 @@ class Law {
     return into;
   }
 
-  // A point of the inputs, ready for draws: terms, nearness of rows, and upper bounds of the outputs.
+  // A point of the inputs, ready for draws: terms, nearness of rows, upper bounds of the outputs, and how much larger
+  // than that of the runs the scatter is that grows.
   pointAt(germs) {
     const terms = this.termsAt(germs, new Float64Array(this.terms));
     const near = this.nearnessAt(terms), upper = Float64Array.from(this.upper);
+    const values = Array.from(germs, (germ, input) => this.valueOf(input, germ));
+    const growth = this.scatter_speed ? this.valueIn(values, "impact.speed") / this.scatter_speed[0] : 1;
     let gyration = 0;
     if (Number.isFinite(upper[this.facts.speed])) {
-      const values = Array.from(germs, (germ, input) => this.valueOf(input, germ));
       [upper[this.facts.speed], gyration] = this.energyBoundAt(values);
       upper[this.facts.spin] = upper[this.facts.speed] / gyration;
     }
-    return { terms, near: near && Float64Array.from(near), upper, gyration };
+    return { terms, near: near && Float64Array.from(near), upper, gyration, growth };
+  }
+
+  // An input among values, or what the study fixes it to; 0 for one that it has not.
+  valueIn(values, name) {
+    const { bound, inputNames } = this.facts;
+    return inputNames.includes(name) ? values[inputNames.indexOf(name)] : bound[name] ?? 0;
   }
 
   // One draw of a refit at a point, from two uniform numbers and normal ones, which begin at a place: the row that it
@@ -196,7 +207,8 @@ class Law {
     this.scatterOf(refit, row, normals, place, y);
     this.placeAt(refit, point.terms);
     for (let k = 0; k < this.outputs; k++)
-      y[k] = fromCoordinate(this.where[k] + this.scale[k] * y[k], this.lower[k], point.upper[k]);
+      y[k] = fromCoordinate(
+        this.where[k] + this.scale[k] * y[k] * (this.grows[k] ? point.growth : 1), this.lower[k], point.upper[k]);
     // What the speed has taken is not there for the spin.
     const { speed, spin } = this.facts, most = point.upper[speed] ** 2 - y[speed] ** 2;
     if (point.gyration) y[spin] = Math.min(y[spin], Math.sqrt(Math.max(most, 0)) / point.gyration);
@@ -205,8 +217,7 @@ class Law {
 
   // The most that energy allows at values of the inputs: speed [m/s] and radius of gyration [m].
   energyBoundAt(values) {
-    const { bound, inputNames } = this.facts;
-    const at = (name) => inputNames.includes(name) ? values[inputNames.indexOf(name)] : bound[name] ?? 0;
+    const { bound } = this.facts, at = (name) => this.valueIn(values, name);
     const ratio = (name) => bound[name] ? at(name) / bound[name] : 1;
     const power = ratio("lander.mass") ** bound.mass_power * ratio("lander.diameter") ** bound.diameter_power;
     const spin = ["x", "y", "z"].reduce((sum, axis) => sum + at(`impact.spin_${axis}`) ** 2, 0);

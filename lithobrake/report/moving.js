@@ -27,7 +27,7 @@ function triangles({ vertices, faces, paint, vertexBody }) {
 }
 
 // Poses [8 frames bodies] of steps between frames of whole quanta.
-function poses(found, { bodyCount, frameCount, fastest }) {
+function poses(found, { bodyCount, frameCount }) {
   const made = new Float32Array(8 * frameCount * bodyCount), sums = new Int16Array(7 * bodyCount), size = 7 * bodyCount;
   for (let frame = 0; frame < frameCount; frame++)
     for (let body = 0; body < bodyCount; body++) {
@@ -39,8 +39,6 @@ function poses(found, { bodyCount, frameCount, fastest }) {
         made[to + part + (part > 2 ? 1 : 0)] = part > 2 ? value / 32767
           : found.middles[3 * body + part] + found.quanta[body] * value;
       }
-      const shade = found.speed[frame * bodyCount + body];
-      made[to + 3] = shade ? fastest * 10 ** (4 * (shade / 255 - 1)) : 0;
     }
   return made;
 }
@@ -55,7 +53,7 @@ function showLanding(holder, scene, times) {
   const ends = { min: 0, max: last, step: "any", value: 0 };
   const slider = element("input", { type: "range", ...ends, ariaLabel: "Time of the landing" });
   const shown = element("output"), button = element("button", { type: "button", textContent: "Play" });
-  const follows = element("input", { type: "checkbox" }), bySpeed = element("input", { type: "checkbox" });
+  const follows = element("input", { type: "checkbox" }), colour = element("select");
   const draw = () => {
     view.moment = Math.min(Number(slider.value), last);
     const frame = Math.min(Math.floor(view.moment), last - 1), part = view.moment - frame;
@@ -80,8 +78,11 @@ function showLanding(holder, scene, times) {
   });
   slider.addEventListener("input", () => { stop(); draw(); });
   follows.addEventListener("change", () => { view.follows = follows.checked; draw(); });
-  bySpeed.addEventListener("change", () => { view.bySpeed = bySpeed.checked; draw(); });
-  const choices = [control("follow the lander", follows), control("colour by speed", bySpeed)];
+  for (const name of ["body", ...scene.shades.map((one) => one.name)])
+    colour.append(element("option", { value: name, textContent: name }));
+  colour.addEventListener("change", () => { view.colourBy(colour.value === "body" ? null : colour.value); draw(); });
+  const colours = element("label", { textContent: "colour by " }, colour);
+  const choices = [control("follow the lander", follows), colours];
   holder.querySelector(".tools").append(button, slider, shown, ...choices);
   draw();
   return view;
@@ -101,7 +102,7 @@ async function start3d(name, show) {
 }
 
 const landing3d = start3d("landing-3d", (holder, scene, found) =>
-  showLanding(holder, { ...scene, poses: poses(found, scene) }, found.times));
+  showLanding(holder, { ...scene, poses: poses(found, scene), shading: found }, found.times));
 const body3d = start3d("body-3d", (holder, scene, found) => {
   const lines = found.path_corner ? { corner: found.path_corner, paint: found.path_paint } : null;
   const still = Float32Array.of(0, 0, 0, 0, 0, 0, 0, 1);

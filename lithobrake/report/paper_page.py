@@ -9,6 +9,7 @@ from lithobrake.report import any_study_figures as any_study
 from lithobrake.report import captions
 from lithobrake.report.count_figure import Design, count_figure
 from lithobrake.report.error_figure import error_figure
+from lithobrake.report.explorer import explorer_sections
 from lithobrake.report.page import Content, Plot
 from lithobrake.report.results import PaperResults
 from lithobrake.report.scatter_figure import scatter_figure
@@ -24,7 +25,8 @@ if TYPE_CHECKING:
 
 def paper_content(data: PaperResults) -> Content:
     """All that the page shows of the study."""
-    return Content(captions.answer(data), [], tiles(data), _plots(data), tables(data), view_sections(data))
+    live = [*explorer_sections(data), *view_sections(data)]
+    return Content(captions.answer(data), [], tiles(data), _plots(data), tables(data), live)
 
 
 def _plots(data: PaperResults) -> list[Plot]:

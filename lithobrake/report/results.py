@@ -28,17 +28,15 @@ class Results:
     study, results, provenance: the three tables of summary.json;
     latitude, longitude: of the impacts [deg], shape [impact], and facet, the one of the body that was hit;
     body_vertices of the body [m] and its body_faces, counted from 0; rest: latitude and longitude [deg] of the landers
-    that rest, by ground; paths: places on the ways of some flights [m] and how each ended. bed and landing are None
-    where a solver of the user's own made the touchdowns.
+    that rest, by ground; paths: places on the ways of some flights [m] and how each ended; flights: of the samples;
+    explorer: what the page evaluates of the model. None where there are none; bed and landing are so where a solver of
+    the user's own made the touchdowns.
     """
 
     model: ClassVar[str]
     """What was fitted to the runs and stands for them in the samples, in a word."""
     level: ClassVar[float]
     """Probability that intervals and limits of shares stand for."""
-    shown_landing: ClassVar[str]
-    """Which landing has been kept with its pictures, as a sentence about it begins."""
-
     study: dict[str, Any]
     results: dict[str, Any]
     provenance: dict[str, Any]
@@ -52,32 +50,13 @@ class Results:
     body_faces: NDArray[np.int64]
     rest: dict[str, tuple[Array, Array]]
     paths: tuple[Array, tuple[str, ...]] | None
-
-
-@dataclass(frozen=True)
-class PaperResults(Results):
-    """Results of the method in two steps; scores: stage, output, score."""
-
-    model, level = "expansion", 0.95
-    shown_landing = "With every uncertain input at its median"
-
-    scores: dict[str, dict[str, Score]]
-    samples: Table
-
-
-@dataclass(frozen=True)
-class SequenceResults(Results):
-    """Results of a sequence; runs: its landings, without side runs; samples: of the emulator; flights: of the samples;
-    explorer: what the page evaluates of the emulator. None where there are none.
-    """
-
-    model, level = "emulator", 0.9
-    shown_landing = "In the first run"
-
-    runs: Table
-    samples: Table | None
     flights: Table | None
     explorer: ExplorerTables | None
+
+    @property
+    def shown_landing(self) -> str:
+        """Which landing has been kept with its pictures, as a sentence about it begins; empty where none has."""
+        return ""
 
     def table(self, *keys: str) -> Mapping[str, Any]:
         """A table within the results, by the keys that lead to it; an empty one where the summary has none."""
@@ -85,6 +64,41 @@ class SequenceResults(Results):
         for key in keys:
             found = found.get(key) or {}
         return found
+
+
+@dataclass(frozen=True)
+class PaperResults(Results):
+    """Results of the method in two steps; scores: stage, output, score."""
+
+    model, level = "expansion", 0.95
+    scores: dict[str, dict[str, Score]]
+    samples: Table
+
+    @property
+    def shown_landing(self) -> str:
+        """That of the medians."""
+        return "With every uncertain input at its median"
+
+
+@dataclass(frozen=True)
+class SequenceResults(Results):
+    """Results of a sequence; runs: its landings, without side runs; samples: of the emulator, None where there are
+    none.
+    """
+
+    model, level = "emulator", 0.9
+
+    runs: Table
+    samples: Table | None
+
+    @property
+    def shown_landing(self) -> str:
+        """The run that its file names, or the first one."""
+        attributes = {} if self.landing is None else self.landing.moving.attributes
+        if "run" not in attributes:
+            return "In the first run"
+        which = "of the median speed of those that leave" if attributes["status"] == "clear" else "as none leaves"
+        return f"In run {str(attributes['run'])[:8]}, {which}"
 
 
 class SummaryTable(dict[str, Any]):
@@ -115,15 +129,11 @@ def page_results(found: StudyResults) -> PaperResults | SequenceResults:
 
 def _sequence_results(found: StudyResults, summary: SummaryTable) -> SequenceResults:
     """Those of a sequence, whose page has what there is so far of flights and samples."""
-    has_samples, has_flights, has_explorer = (
-        (found.folder / name).is_file() for name in ("samples.h5", "flights.csv", "explorer.h5")
-    )
+    has_samples = (found.folder / "samples.h5").is_file()
     return SequenceResults(
         **_of_any_study(found, summary),
         runs=found.runs.where(found.runs["design"] == "sequence"),
         samples=found.samples if has_samples else None,
-        flights=found.flights if has_flights else None,
-        explorer=found.explorer if has_explorer else None,
     )
 
 
@@ -149,6 +159,8 @@ def _of_any_study(found: StudyResults, summary: SummaryTable) -> dict[str, Any]:
         "body_vertices": vertices,
         "body_faces": faces,
         "paths": found.flight_paths if (found.folder / PATHS).is_file() else None,
+        "flights": found.flights if (found.folder / "flights.csv").is_file() else None,
+        "explorer": found.explorer if (found.folder / "explorer.h5").is_file() else None,
         "rest": {ground: _resting(found, ground) for ground in GROUNDS},
     }
 

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 
 from lithobrake.outcomes import TouchdownOutcome
 from lithobrake.report.captions import hours, listing, percent, place_words
-from lithobrake.report.results import SequenceResults
+from lithobrake.report.results import Results, SequenceResults
 
 # With fewer beds intervals are wide, and how much beds differ is hardly known.
 FEW_BEDS = 12
@@ -20,14 +20,14 @@ def answer(data: SequenceResults) -> str:
     return " ".join([*place_words(data), *said])
 
 
-def action(data: SequenceResults) -> str:
+def action(data: Results) -> str:
     """What the share of the answer is of: landers that do this."""
     limit, site = hours(data.study["flight"]["duration"]), data.table("site")
     holds = site.get("effective_acceleration_outward", -1.0) < 0.0
     return f"stay or come down again within {limit}" if holds else f"come down again within {limit}"
 
 
-def has_interval(data: SequenceResults) -> bool:
+def has_interval(data: Results) -> bool:
     """Whether the runs tell how sure the share is."""
     return data.table("stays").get("lower") is not None
 

@@ -12,7 +12,7 @@ in vec3 corner;
 in float body;
 in vec3 paint;
 uniform sampler2D poses;
-uniform float moment, bodies, bySpeed, fastest;
+uniform float moment, bodies, shaded;
 uniform mat4 camera;
 out vec3 place, colour;
 
@@ -35,8 +35,8 @@ void main() {
   // Quaternions stand as x, y, z, w.
   vec3 turned = corner + 2. * cross(q.xyz, cross(q.xyz, corner) + q.w * corner);
   place = turned + mix(here.xyz, there.xyz, part);
-  float speed = mix(here.w, there.w, part);
-  colour = bySpeed > .5 ? scale(clamp(1. + log(max(speed, 1e-30) / fastest) / log(1e4), 0., 1.)) : paint;
+  // Between two frames straight on the scale, which is one of equal factors.
+  colour = shaded > .5 ? scale(mix(here.w, there.w, part)) : paint;
   gl_Position = camera * vec4(place, 1.);
 }`;
 
@@ -86,9 +86,10 @@ function cameraMatrix(eye, target, aspect, near, far) {
 }
 
 class View3d {
-  // scene: corner [3 n], body [n], paint [3 n] of the corners; poses [8 frames bodies]: place, speed, quaternion.
+  // scene: corner [3 n], body [n], paint [3 n] of the corners; poses [8 frames bodies]: place, shade, quaternion;
+  // shades by name [frames bodies]: places on the scale of colours, from 0 to 255.
   constructor(canvas, scene) {
-    Object.assign(this, { canvas, scene, moment: 0, bySpeed: false, drawCalls: 0, lines: scene.lines });
+    Object.assign(this, { canvas, scene, moment: 0, drawCalls: 0, lines: scene.lines });
     this.gl = canvas.getContext("webgl2", { antialias: true, preserveDrawingBuffer: true });
     if (!this.gl) throw new Error("this browser has no WebGL 2");
     const { gl } = this;
@@ -101,13 +102,21 @@ class View3d {
     gl.bindTexture(gl.TEXTURE_2D, gl.createTexture());
     for (const name of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER])
       gl.texParameteri(gl.TEXTURE_2D, name, gl.NEAREST);
-    const rows = Math.ceil(scene.poses.length / 4 / ROW), texels = new Float32Array(4 * ROW * rows);
-    texels.set(scene.poses);
-    gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA32F, ROW, rows, 0, gl.RGBA, gl.FLOAT, texels);
+    this.colourBy(null);
     gl.enable(gl.DEPTH_TEST);
     this.orbit = { ...scene.orbit };
     this.listen();
     new ResizeObserver(() => this.draw()).observe(canvas);
+  }
+
+  // Colour by a shade of this name, or each body by its own paint; poses go to the machine with it.
+  colourBy(name) {
+    const { gl, scene } = this, rows = Math.ceil(scene.poses.length / 4 / ROW);
+    const texels = new Float32Array(4 * ROW * rows);
+    texels.set(scene.poses);
+    this.shade = name;
+    if (name) scene.shading[name].forEach((shade, place) => { texels[8 * place + 3] = shade / 255; });
+    gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA32F, ROW, rows, 0, gl.RGBA, gl.FLOAT, texels);
   }
 
   held(corner, body, paint) {
@@ -149,8 +158,7 @@ class View3d {
     set("camera", "Matrix4fv", false, seen);
     set("moment", "1f", this.moment);
     set("bodies", "1f", scene.bodyCount);
-    set("bySpeed", "1f", this.bySpeed ? 1 : 0);
-    set("fastest", "1f", scene.fastest);
+    set("shaded", "1f", this.shade ? 1 : 0);
     // A sun at the upper left of whoever looks.
     const turn = orbit.azimuth - 1, light = [0.66 * Math.cos(turn), 0.66 * Math.sin(turn), 0.75];
     set("light", "3f", ...light);

@@ -1,6 +1,6 @@
 """The views of the page in three dimensions: hulls, quantised poses and painted facets, for a browser to draw."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from html import escape
 from typing import Any
 
@@ -20,8 +20,10 @@ Array = NDArray[np.float64]
 SCRIPTS = ("view3d.js", "moving.js")
 # Half of the range of a signed number of 16 bits.
 LARGEST = 32767
-# Speeds are told apart over so many decades below the fastest.
+# Speeds and forces are told apart over so many decades below the largest.
 DECADES = 4.0
+SHADE_UNITS = {"speed": "m/s", "force": "N"}
+SHADE_WORDS = {"speed": "speed", "force": "the size of the sum of contact forces"}
 # How a flight ended: its colour in a word, what it did, and the colour.
 FATE_COLOURS = {
     FlightStatus.IMPACT: ("blue", "came down", "#2f6fb0"),
@@ -53,9 +55,8 @@ def _landing(scene: Scene, which: str) -> LiveSection:
     quantum = 1e3 * float(arrays["quanta"].max())
     words = (
         f"{which}: {len(moving.vertices) - 1} grains and the lander in {len(moving.time)} pictures, straight between "
-        f"them. Places are rounded to {number(quantum, 2)} mm, and grains that hardly move to less. Colour by "
-        f"speed: from {number(facts['fastest'] * 10**-DECADES, 2)} (dark) over equal factors to "
-        f"{number(facts['fastest'], 2)} m/s (yellow)."
+        f"them. Places are rounded to {number(quantum, 2)} mm, and grains that hardly move to less. "
+        f"Colour by {' or '.join(_scale_words(one) for one in facts['shades'])}, over equal factors."
     )
     return _section("landing-3d", "The landing, to turn", words, arrays, facts)
 
@@ -77,21 +78,34 @@ def landing_arrays(scene: Scene) -> tuple[dict[str, np.ndarray], dict[str, Any]]
     whole = np.concatenate([place, turn], axis=2).astype(np.int32)
     # Differences may be twice as large as the numbers: they wrap around, and so do their sums.
     steps = np.diff(whole, axis=0, prepend=np.zeros_like(whole[:1])).astype(np.int16)
-    speed = np.linalg.norm(np.gradient(moving.position, moving.time, axis=0), axis=2)
-    fastest = float(speed.max()) or 1.0
-    with np.errstate(divide="ignore"):
-        shade = np.clip(np.rint(255.0 * (1.0 + np.log10(speed / fastest) / DECADES)), 0, 255).astype(np.uint8)
+    shown = {"speed": np.linalg.norm(np.gradient(moving.position, moving.time, axis=0), axis=2)}
+    if moving.force is not None:
+        shown["force"] = moving.force
+    largest = {name: float(values.max()) or 1.0 for name, values in shown.items()}
     arrays = {
         **_geometry([(body.vertices, body.faces) for body in scene.bodies]),
         "paint": _painted([to_rgb(body.colour) for body in scene.bodies], [len(body.faces) for body in scene.bodies]),
         "times": moving.time.astype(np.float32),
         "steps": steps,
-        "speed": shade,
         "middles": middles,
         "quanta": quanta,
+        **{name: _shades(values / largest[name]) for name, values in shown.items()},
     }
-    facts = {"bodyCount": len(scene.bodies), "frameCount": len(moving.time), "fastest": fastest}
-    return arrays, facts
+    shades = [{"name": name, "unit": SHADE_UNITS[name], "largest": most} for name, most in largest.items()]
+    return arrays, {"bodyCount": len(scene.bodies), "frameCount": len(moving.time), "shades": shades}
+
+
+def _shades(parts: Array) -> np.ndarray:
+    """Parts of the largest value, any shape, as places on a scale of equal factors from 0 to 255."""
+    with np.errstate(divide="ignore"):
+        return np.clip(np.rint(255.0 * (1.0 + np.log10(parts) / DECADES)), 0, 255).astype(np.uint8)
+
+
+def _scale_words(shade: Mapping[str, Any]) -> str:
+    """The ends of a scale: "speed, from 1e-05 (dark) to 0.1 m/s (yellow)"."""
+    most = shade["largest"]
+    ends = f"from {number(most * 10**-DECADES, 2)} (dark) to {number(most, 2)} {shade['unit']} (yellow)"
+    return f"{SHADE_WORDS[shade['name']]}, {ends}"
 
 
 def _continuous(orientation: Array) -> Array:
@@ -112,7 +126,7 @@ def _body(data: Results) -> LiveSection:
     site = np.array(data.results["site"]["place_m"])
     longitude, latitude = np.arctan2(site[1], site[0]), np.arctan2(site[2], np.hypot(site[0], site[1]))
     arrays = {**_geometry([(vertices, faces)]), "paint": np.rint(255.0 * colours).astype(np.uint8)}
-    facts: dict[str, Any] = {"bodyCount": 1, "frameCount": 1, "fastest": 1.0}
+    facts: dict[str, Any] = {"bodyCount": 1, "frameCount": 1, "shades": []}
     radius = float(np.linalg.norm(vertices, axis=1).max())
     facts["orbit"] = _orbit(np.zeros(3), radius, float(longitude) - 0.4, float(latitude) + 0.3)
     words = (

@@ -18,6 +18,8 @@ NAMES = ("input_names", "output_names", "outcome_names")
 class ExplorerTables:
     """tables by name, as `lithobrake.emulator.law_tables` says, and azimuth [row_count] of each row [rad].
 
+    Those of an expansion have velocities among their outputs and no azimuth, scatter that grows [output_count] with the
+    impact's speed from the runs' scatter_speed [m/s], and chances of outcomes that follow its first terms.
     group_count: groups of runs that refits draw; interval_reach: standard errors that an interval over them reaches to.
     bound: numbers of the energy bound, and by dotted key the medians of what it depends on.
     """

@@ -24,7 +24,9 @@ class MovingBodies:
 
     vertices: of each hull [m], shape [vertex_count, 3]; faces: of each, shape [face_count, 3], counted from its first
     vertex; time [s], shape [frame_count]; position [m], shape [frame_count, body_count, 3]; orientation (w, x, y, z),
-    shape [frame_count, body_count, 4]; attributes of the file; history of the settling by name, empty for a landing.
+    shape [frame_count, body_count, 4]; attributes of the file; history of the settling by name, empty for a landing;
+    force, the size of the sum of contact forces on each [N], shape [frame_count, body_count], None where it was not
+    kept: in beds, and in landings of earlier versions.
     """
 
     vertices: "tuple[Array, ...]"
@@ -34,6 +36,7 @@ class MovingBodies:
     orientation: "Array"
     attributes: dict[str, Any]
     history: "dict[str, Array]"
+    force: "Array | None" = None
 
     @classmethod
     def read(cls, path: Path, remedy: str) -> "MovingBodies":
@@ -44,6 +47,7 @@ class MovingBodies:
             if "frames" not in file:
                 raise ValueError("it has no group 'frames': it was written without pictures")
             frames = {name: file[f"frames/{name}"][:] for name in ("time", "position", "orientation")}
+            force = file["frames/force"][:] if "force" in file["frames"] else None
             history = {name: data[:] for name, data in file["history"].items()} if "history" in file else {}
             return cls(
                 vertices=_parts(file["vertices"][:], file["vertex_start"][:]),
@@ -52,6 +56,7 @@ class MovingBodies:
                     name: value.tolist() if hasattr(value, "tolist") else value for name, value in file.attrs.items()
                 },
                 history=history,
+                force=force,
                 **frames,
             )
 

@@ -168,8 +168,12 @@ class StudyResults:
 
     @cached_property
     def median_landing(self) -> "MovingBodies":
-        """The landing at the medians, or the first of a sequence: grains and, as the last body, the lander."""
-        return self._bodies("landing.h5")
+        """The landing at the medians, or in a drawn study that with the median speed of the runs that leave.
+
+        Until all runs of a drawn study have ended, its first. Grains and, as the last body, the lander.
+        """
+        told = (self.folder / "telling_landing.h5").is_file()
+        return self._bodies("telling_landing.h5" if told else "landing.h5")
 
     def landing(
         self,
@@ -241,7 +245,7 @@ class StudyResults:
 
     @cached_property
     def explorer(self) -> "ExplorerTables":
-        """The emulator's refits to other beds as plain tables, for programs in other languages."""
+        """The refits of the emulator or expansion as plain tables, for programs in other languages."""
         from lithobrake.results.explorer_tables import ExplorerTables
 
         return ExplorerTables.read(self.folder / "explorer.h5", self.remedy)

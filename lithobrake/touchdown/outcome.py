@@ -28,8 +28,8 @@ SPHERE_PICTURE_POINTS = 200
 class Outcome:
     """How it ended, and its outputs: the keys OUTPUTS (SI); those of LEAVING are NaN unless the lander is clear.
 
-    frames holds "time" [s, frame_count], "position" [m, frame_count, body_count, 3] and "orientation"; the last body is
-    the lander.
+    frames holds "time" [s, frame_count], "position" [m, frame_count, body_count, 3], "orientation", and "force", the
+    size of the sum of the contact forces on each body [N, frame_count, body_count]; the last body is the lander.
     """
 
     status: TouchdownOutcome
@@ -37,8 +37,10 @@ class Outcome:
     simulated_time: float  # s
     frames: dict[str, Floats] | None = None
 
-    def save_frames(self, path: str | os.PathLike[str], bed: Bed, lander: Lander, landing: Landing) -> None:
-        """Write a recorded landing to an HDF5 file: hulls, the lander last, and where they were."""
+    def save_frames(
+        self, path: str | os.PathLike[str], bed: Bed, lander: Lander, landing: Landing, **notes: str
+    ) -> None:  # fmt: skip
+        """Write a recorded landing to an HDF5 file: hulls, the lander last, and where they were; notes: more to say."""
         import h5py
 
         if self.frames is None:
@@ -53,6 +55,7 @@ class Outcome:
             file.attrs["format"], file.attrs["format_version"] = "lithobrake landing", 1
             file.attrs["status"], file.attrs["width"] = self.status.value, bed.width
             file.attrs["speed"], file.attrs["incidence"] = landing.speed, landing.incidence
+            file.attrs.update(notes)
 
 
 def outgoing(

@@ -36,7 +36,7 @@ class OutcomeJudge:
         self.lowest = self.height()
         self.still_since: float | None = None
         self.frame_count, self.stride, self.looks = frame_count, 1, 0
-        self.frames: list[tuple[float, Floats, Floats]] = []
+        self.frames: list[dict[str, Floats]] = []
         self.keep_frame()
 
     def energy(self) -> float:
@@ -97,7 +97,10 @@ class OutcomeJudge:
         """Keep a frame now and then: never more than twice those asked for, evenly spread over the whole landing."""
         if self.frame_count == 0 or self.looks % self.stride:
             return
-        self.frames.append((self.world.time - self.start_time, self.world.position, self.world.orientation))
+        world = self.world
+        force = np.linalg.norm(world.contact_force, axis=1)
+        frame = {"position": world.position, "orientation": world.orientation, "force": force}
+        self.frames.append({"time": np.array(world.time - self.start_time), **frame})
         if len(self.frames) == 2 * self.frame_count:
             self.frames, self.stride = self.frames[::2], 2 * self.stride
 
@@ -116,11 +119,7 @@ class OutcomeJudge:
         outputs["energy_lost"] = self.start_energy - self.energy()
         frames = None
         if self.frame_count:
-            frames = {
-                "time": np.array([frame[0] for frame in self.frames]),
-                "position": np.array([frame[1] for frame in self.frames]),
-                "orientation": np.array([frame[2] for frame in self.frames]),
-            }
+            frames = {name: np.array([frame[name] for frame in self.frames]) for name in self.frames[0]}
         if not all(math.isfinite(value) for value in outputs.values()) and left:
             raise FloatingPointError(f"the landing gave values that are not finite: {outputs}")
         return Outcome(self.ended, outputs, world.time - self.start_time, frames)

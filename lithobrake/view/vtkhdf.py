@@ -1,7 +1,7 @@
 """Moving bodies as a VTKHDF file: ParaView opens it and plays it.
 
-One file of type PolyData, version 2.1, whose triangles stand there once and whose points and speeds stand there for
-each instant.
+One file of type PolyData, version 2.1, whose triangles stand there once and whose points, speeds and forces
+stand there for each instant.
 
 Source: [Kitware-2026].
 """
@@ -24,6 +24,8 @@ EMPTY = ("Vertices", "Lines", "Strips")
 def write_vtkhdf(bodies: "MovingBodies", path: str | Path) -> None:
     """Write bodies and their motion: points [m], and for each triangle the number and the speed [m/s] of its body.
 
+    Where forces were kept also the size of the sum of contact forces on it [N].
+
     The lander of a landing is the body with the last number.
     """
     import h5py
@@ -40,6 +42,8 @@ def write_vtkhdf(bodies: "MovingBodies", path: str | Path) -> None:
         data = root.create_group("CellData")
         data["body"] = owner.astype(np.int32)
         data["speed"] = body_speeds(bodies)[:, owner].astype(np.float32).ravel()
+        if bodies.force is not None:
+            data["force"] = bodies.force[:, owner].astype(np.float32).ravel()
         _write_steps(root, bodies.time, points, len(faces))
 
 
@@ -67,4 +71,5 @@ def _write_steps(root: Any, time: np.ndarray, points: int, cells: int) -> None:
     steps["CellOffsets"] = np.zeros((frames, 4), np.int64)
     steps["ConnectivityIdOffsets"] = np.zeros((frames, 4), np.int64)
     offsets = steps.create_group("CellDataOffsets")
-    offsets["body"], offsets["speed"] = np.zeros(frames, np.int64), each * cells
+    for name in root["CellData"]:
+        offsets[name] = np.zeros(frames, np.int64) if name == "body" else each * cells

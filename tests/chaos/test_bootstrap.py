@@ -5,6 +5,8 @@ import pytest
 
 from lithobrake.chaos import (
     Uniform,
+    basis_matrix,
+    coefficient_changes,
     fit,
     score_intervals,
     smolyak,
@@ -185,3 +187,15 @@ def test_wrong_levels_and_counts_are_refused():
         score_intervals(surrogate, x, y, level=1.5)
     with pytest.raises(ValueError, match="count"):
         sobol_intervals(surrogate, x, y, count=3)
+
+
+def test_changes_of_coefficients_scatter_as_least_squares_does():
+    x, y = runs(60, 3)
+    surrogate = fit(CUBE, x, y, degree=2, method="ols")
+    indices, changes = coefficient_changes(surrogate, x, y, count=4000, seed=1)
+    assert indices.tolist() == sorted(surrogate.multi_indices.tolist())
+    matrix = basis_matrix(CUBE, indices, x)
+    expected = 0.2 * np.sqrt(np.diag(np.linalg.inv(matrix.T @ matrix)))
+    # Sixty residuals know their own spread to a tenth; they are enlarged to those of left-out points.
+    assert changes[..., 0].std(axis=0) == pytest.approx(expected, rel=0.35)
+    assert np.all(np.abs(changes[..., 0].mean(axis=0)) < 4.0 * expected / np.sqrt(4000))

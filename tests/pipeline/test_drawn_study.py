@@ -8,14 +8,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from lithobrake.outputs import ORIENTATION_OUT, SPIN_OUT
+from lithobrake.outputs import ORIENTATION_OUT, OUTPUTS, SPIN_OUT
 from lithobrake.pipeline import StudyFolder, plan_study, run_study, study_status
 from lithobrake.pipeline.design_runs import DesignRuns
+from lithobrake.pipeline.shown_landing import telling_run
 from lithobrake.results import open_study
 from lithobrake.study import StudySource
 
 from ..few_grains import few_grains
-from .ball_studies import FEW_RUNS, PAPERS, drawn, write_ball
+from .ball_studies import FEW_RUNS, PAPERS, drawn, edit, write_ball
 
 
 def lithobrake(*arguments: object, code: int = 0) -> str:
@@ -35,7 +36,7 @@ def grown(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, DesignRuns, s
     """A study of twelve runs that then had 14, and side runs: its folder, its first runs, what was said at last."""
     folder = tmp_path_factory.mktemp("grown")
     said = lithobrake("run", ball(folder, 12), "--out", folder / "out", "--workers", 2)
-    assert "stage 3 of 13: runs" in said
+    assert "stage 3 of 14: runs" in said
     assert f"Report: {folder / 'out' / 'report' / 'index.html'}" in said
     first = DesignRuns.load(StudyFolder.only_read(folder / "out"), "sequence")
     return folder, first, lithobrake("run", ball(folder, 14, "side_runs = true"), "--out", folder / "out")
@@ -121,6 +122,38 @@ def test_landings_of_a_sequence_use_their_beds_and_tell_how_the_lander_turns(soi
     assert np.all(twins.output("speed_out")[both] != runs.output("speed_out")[both])
     column = open_study(soil / "out").runs.columns["spin_out_x"]
     assert (column.units, column.frame.split(":")[0]) == ("rad/s", "of the touchdown")
+
+
+def test_the_landing_that_is_shown_is_the_run_of_the_median_speed(soil: Path, tmp_path: Path) -> None:
+    shutil.copytree(soil, tmp_path / "study")
+    study, out = tmp_path / "study" / "study.toml", tmp_path / "study" / "out"
+    first = open_study(out).median_landing
+    assert "run" not in first.attributes
+    run_study(StudySource.read(study), out, until="telling_landing")
+    runs, shown = DesignRuns.load(StudyFolder.only_read(out), "sequence"), open_study(out).median_landing
+    speeds = np.sort(runs.output("speed_out")[runs.has_outputs])
+    row = runs.keys.index(shown.attributes["run"])
+    assert runs.output("speed_out")[row] == speeds[(len(speeds) - 1) // 2]
+    # The last way of the lander is that of the run, up to where its frames end.
+    velocity = np.diff(shown.position[-2:, -1], axis=0)[0] / np.diff(shown.time[-2:])
+    assert np.linalg.norm(velocity) == pytest.approx(runs.output("speed_out")[row], rel=1e-2)
+    # What was there to look at before all runs is there still, and a stopped study goes on behind it.
+    assert (out / "landing.h5").is_file()
+    made = (out / "telling_landing.h5").stat().st_mtime_ns
+    run_study(StudySource.read(study), out, until="telling_landing")
+    assert (out / "telling_landing.h5").stat().st_mtime_ns == made
+    run_study(StudySource.read(edit(study, {"run_count = 4": "run_count = 5"})), out, until="telling_landing")
+    assert (out / "telling_landing.h5").stat().st_mtime_ns > made
+
+
+def test_where_no_lander_leaves_the_first_run_that_ended_is_shown() -> None:
+    def of(outcomes: list[str], speeds: list[float]) -> int:
+        outputs = {name: np.array(speeds) for name in OUTPUTS}
+        return telling_run(DesignRuns(["a", "b", "c"], outcomes, ["", "", ""], {}, outputs))
+
+    assert of(["failed", "captured", "time_limit"], [np.nan] * 3) == 1
+    assert of(["clear", "clear", "clear"], [0.3, 0.1, 0.2]) == 2
+    assert of(["clear", "captured", "clear"], [0.3, np.nan, 0.2]) == 2
 
 
 def test_a_landing_of_a_sequence_can_be_made_again_from_its_folder(soil: Path) -> None:

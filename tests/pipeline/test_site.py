@@ -14,6 +14,8 @@ from lithobrake.smallbody.built_in_bodies import top_shape
 from lithobrake.study import Study, check_tables
 from lithobrake.study.template import template
 
+from ..test_mesh_files import write_kernel
+
 
 def changed(**sections: dict[str, Any]) -> Study:
     """The template with some keys changed."""
@@ -65,3 +67,14 @@ def test_the_escape_speed_is_that_of_the_potential_at_the_site() -> None:
     # Far from a point mass, and still within some per cent of it.
     assert escape_speed(study) == pytest.approx(math.sqrt(2.0 * body.gravitational_parameter / radius), rel=0.08)
     assert escape_speed(study) != escape_speed(changed(site={"latitude_deg": 0.0, "partner": False}))
+
+
+def test_the_body_may_be_a_shape_kernel_of_spice(tmp_path: Path) -> None:
+    spice = pytest.importorskip("spiceypy")
+    write_kernel(spice, tmp_path / "rock.bds", 1)
+    site = {"body": str(tmp_path / "rock.bds"), "mass": 2.6e12, "spin_period": 2e4}
+    body = site_body(changed(site=site))
+    # An octahedron with corners at a kilometre: kernels have no other unit.
+    assert body.shape.volume == pytest.approx(4.0 / 3.0 * 1e9)
+    with pytest.raises(ValueError, match="says km"):
+        changed(site=site | {"unit": "m"})

@@ -53,6 +53,8 @@ def write_bodies(path: Path, count: int, attributes: dict[str, object]) -> None:
         file["face_start"] = len(OCTAHEDRON_FACES) * np.arange(count + 1)
         for name, data in (("time", time), ("position", position), ("orientation", orientation)):
             file[f"frames/{name}"] = data
+        if "status" in attributes:
+            file["frames/force"] = 0.1 * np.exp(-5.0 * time)[:, None] * np.linspace(0.1, 1.0, count)
         for name in ("time", "kinetic_ratio", "unbalanced_force", "gravity"):
             file[f"history/{name}"] = time if name == "time" else np.exp(-10 * time)
         file.attrs.update(attributes)

@@ -11,7 +11,7 @@ import numpy as np
 
 from lithobrake import emulator
 from lithobrake.analysis import mean_estimate, quantile_estimates, regression_terms, share_estimate, variance_shares
-from lithobrake.pipeline.explorer_tables import save_explorer
+from lithobrake.pipeline.explorer_tables import save_explorer, tables_of_refits
 
 from ..synthetic_landings import ELEVATION_LIMIT, INPUTS, OUTPUT_NAMES, SPEED_LIMIT, Truth, stays
 
@@ -40,7 +40,7 @@ def write_sequence(
     )  # fmt: skip
     write_runs(folder / "designs" / "sequence.csv", x, y, outcome, bed)
     by_emulator = write_samples_of(model, inputs, folder / "samples.h5")
-    save_explorer(folder / "explorer.h5", model.refits(5, seed=1), BOUND)
+    save_explorer(folder / "explorer.h5", tables_of_refits(model.refits(5, seed=1), BOUND))
     columns = {name: y[:, OUTPUT_NAMES.index(name)] for name in SHOWN} | {"stays": staying}
     twins = 0.1 * np.random.default_rng(seed).standard_normal(12)
     terms = regression_terms(inputs, x)

@@ -148,8 +148,20 @@ def test_the_landing_moves_as_it_was_stored(page: Page, sequence: Path, sequence
     # Something is seen, and it is another picture when the lander is followed.
     look = "landing3d.then((view) => { view.follows = %s; view.draw(); return view.canvas.toDataURL(); })"
     assert page.value(look % "false") != page.value(look % "true")
-    speeds = "landing3d.then((view) => { view.bySpeed = %s; view.draw(); return view.canvas.toDataURL(); })"
-    assert page.value(speeds % "false") != page.value(speeds % "true")
+    colour = "landing3d.then((view) => { view.colourBy(%s); view.draw(); return view.canvas.toDataURL(); })"
+    assert len({page.value(colour % name) for name in ("null", "'speed'", "'force'")}) == 3
+
+
+def test_the_choice_of_colour_is_what_the_landing_has(page: Page, sequence: Path) -> None:
+    page.open(sequence, LAPTOP)
+    assert page.value(STARTED) is True
+    names = "[...document.querySelectorAll('#landing-3d select option')].map((one) => one.value)"
+    assert page.value(names) == ["body", "speed", "force"]
+    chosen = page.value(
+        "(() => { const colour = document.querySelector('#landing-3d select'); colour.value = 'force';"
+        "colour.dispatchEvent(new Event('change')); return landing3d.then((view) => view.shade); })()"
+    )
+    assert chosen == "force"
 
 
 def test_the_slider_of_the_landing_tells_the_time(page: Page, sequence: Path) -> None:

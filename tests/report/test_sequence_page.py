@@ -9,9 +9,10 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import h5py
 import pytest
 
-from lithobrake.report import sequence_captions, sequence_tables, write_report
+from lithobrake.report import captions, sequence_captions, sequence_tables, write_report
 from lithobrake.report.results import SequenceResults, page_results
 from lithobrake.report.sequence_answer import answer, warnings
 from lithobrake.report.sequence_page import sequence_content
@@ -256,3 +257,14 @@ def write_changed(folder: Path, room: Path, change: Callable[[dict[str, Any]], o
     change(summary["results"])
     (copy / "summary.json").write_text(json.dumps(summary), encoding="utf-8")
     return write_report(copy).read_text(encoding="utf-8")
+
+
+def test_the_landing_is_that_of_the_telling_run(sequence_folder: Path, tmp_path: Path) -> None:
+    folder = Path(shutil.copytree(sequence_folder, tmp_path / "study"))
+    assert page_results(open_study(folder)).shown_landing == "In the first run"
+    shutil.copy(folder / "landing.h5", folder / "telling_landing.h5")
+    with h5py.File(folder / "telling_landing.h5", "a") as file:
+        file.attrs["run"] = "0123abcd4567"
+    found = page_results(open_study(folder))
+    begin = "In run 0123abcd, of the median speed of those that leave, the lander arrives at 0.2 m/s"
+    assert captions.landing(found).startswith(begin)

@@ -1,5 +1,6 @@
 """What a view in three dimensions is given: poses that come back to within half a quantum, and paints of faces."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -40,9 +41,19 @@ def test_poses_come_back_from_their_steps() -> None:
     # Both signs are one turn.
     assert np.abs((turn * orientation).sum(axis=2)) == pytest.approx(np.ones((40, 3)), abs=1e-4)
     assert ((turn[1:] * turn[:-1]).sum(axis=2) > -1e-4).all()
-    assert facts["fastest"] == pytest.approx(100.0, rel=0.2)
+    assert [one["name"] for one in facts["shades"]] == ["speed"]
+    assert facts["shades"][0]["largest"] == pytest.approx(100.0, rel=0.2)
     assert arrays["speed"].max() == 255
     assert not arrays["speed"][:, 1].any()
+
+
+def test_forces_are_shaded_over_equal_factors_where_they_were_kept() -> None:
+    force = np.array([[0.0, 1e-3], [1e-1, 10.0]])
+    still = moving(np.zeros((2, 2, 3)), np.tile([1.0, 0.0, 0.0, 0.0], (2, 2, 1)))
+    arrays, facts = landing_arrays(replace(still, moving=replace(still.moving, force=force)))
+    # Four decades in 255 steps; what is weaker by more is as dark as nothing.
+    assert arrays["force"].tolist() == [[0, 0], [round(255 * 0.5), 255]]
+    assert facts["shades"][1] == {"name": "force", "unit": "N", "largest": 10.0}
 
 
 def test_faces_count_from_the_first_vertex_of_all_and_have_the_colour_of_their_body() -> None:

@@ -137,6 +137,17 @@ def test_recorded_landing_is_written(bed, tmp_path):
         assert file.attrs["status"] == "clear"
         assert len(file["vertex_start"]) == 26
         assert file["frames/position"].shape[1:] == (25, 3)
+        force = file["frames/force"][:]
+    # A lander above its bed and one that has left it feel no grain; between, the sum that slowed it down.
+    assert force.shape[1:] == (25,)
+    assert force[0, -1] == force[-1, -1] == 0.0
+
+
+def test_the_pictures_change_nothing_of_a_landing(bed):
+    plain, seen = (land(bed, ball(), landing(), frame_count=count) for count in (0, 50))
+    assert plain.outputs == seen.outputs
+    assert seen.frames["force"][:, -1].max() > 0.0
+    assert seen.frames["force"][:, -1].max() <= seen.outputs["peak_acceleration"] * ball().mass * (1 + 1e-12)
 
 
 def test_every_data_set_of_a_bed_and_of_a_landing_says_what_it_holds(bed, tmp_path):
@@ -145,7 +156,7 @@ def test_every_data_set_of_a_bed_and_of_a_landing_says_what_it_holds(bed, tmp_pa
     outcome = land(bed, ball(), landing(), frame_count=1)
     outcome.save_frames(tmp_path / "landing.h5", bed, ball(), landing())
     bed.save(tmp_path / "bed.h5")
-    for name, count in (("landing.h5", 10), ("bed.h5", 14)):
+    for name, count in (("landing.h5", 11), ("bed.h5", 14)):
         with h5py.File(tmp_path / name) as file:
             found = {}
             file.visititems(lambda key, entry, found=found: found.update({key: dict(entry.attrs)}))

@@ -47,7 +47,19 @@ def test_the_file_holds_the_triangles_once_and_all_instants(motion: MovingBodies
         np.testing.assert_array_equal(root["CellData/speed"][-4:], [2.0, 2.0, 2.0, 2.0])
 
 
+def test_forces_are_there_where_they_were_kept(motion: MovingBodies, tmp_path: Path) -> None:
+    for force in (None, np.array([[0.0, 1.0], [2.0, 3.0], [4.0, 5.0]])):
+        write_vtkhdf(replace(motion, force=force), tmp_path / "motion.vtkhdf")
+        with h5py.File(tmp_path / "motion.vtkhdf") as file:
+            data, offsets = file["VTKHDF/CellData"], file["VTKHDF/Steps/CellDataOffsets"]
+            assert set(data) == set(offsets) == {"body", "speed"} | ({"force"} if force is not None else set())
+            if force is not None:
+                np.testing.assert_array_equal(data["force"][:], np.repeat(force.ravel(), 4))
+                np.testing.assert_array_equal(offsets["force"][:], [0, 8, 16])
+
+
 def test_vtk_reads_what_was_written(motion: MovingBodies, tmp_path: Path) -> None:
+    motion = replace(motion, force=np.array([[0.0, 1.0], [2.0, 3.0], [4.0, 5.0]]))
     io = pytest.importorskip("vtkmodules.vtkIOHDF", reason="VTK, which reads the file back, is not installed")
     path = tmp_path / "motion.vtkhdf"
     write_vtkhdf(motion, path)
@@ -65,6 +77,8 @@ def test_vtk_reads_what_was_written(motion: MovingBodies, tmp_path: Path) -> Non
         np.testing.assert_array_equal(cells, np.concatenate([FACES, FACES + 4]))
         speed = read.GetCellData().GetArray("speed")
         np.testing.assert_allclose([speed.GetValue(c) for c in range(8)], np.repeat(body_speeds(motion)[step], 4))
+        force = read.GetCellData().GetArray("force")
+        assert [force.GetValue(c) for c in range(8)] == np.repeat(motion.force[step], 4).tolist()
 
 
 @pytest.mark.parametrize("kind", [".mp4", ".webp"])

@@ -4,13 +4,14 @@ from lithobrake.outputs import OUTPUTS
 from lithobrake.pipeline.designs import design_inputs
 from lithobrake.pipeline.planning.expected_steps import ExpectedSoil
 from lithobrake.pipeline.planning.planned_runs import PlannedRuns
+from lithobrake.pipeline.shown_landing import landing_files, telling_files
 from lithobrake.pipeline.site import site_body
 from lithobrake.study import Study
 
 NUMBER = 8
 # A bed: hulls, poses and frames of a grain, and the history, a row in every eight steps.
 BED_GRAIN, BED_STEP = 1400, 4
-LANDING_BODY = 10_300  # poses of a body in all frames of a landing
+LANDING_BODY = 11_800  # poses of a body and forces on it in all frames of a landing
 LEDGER_RUN = 5_000
 FLIGHT_ROW, JOURNEY_ROW = 270, 120
 SHAPE_FACET = 45
@@ -32,7 +33,8 @@ def expected_bytes(study: Study, runs: PlannedRuns, soil: ExpectedSoil | None) -
     if soil is not None:
         grains = soil.recipe.grain_count
         one = BED_GRAIN * grains + BED_STEP * round(soil.pour_steps())
-        found["beds"] = study.bed_count * one + LANDING_BODY * (grains + 1)
+        shown = len(landing_files(study) + telling_files(study))
+        found["beds"] = study.bed_count * one + shown * LANDING_BODY * (grains + 1)
     return found
 
 

@@ -28,6 +28,7 @@ from lithobrake.study import Study, StudySource
 MAKE_RUNS = frozenset({"screening_runs", "refined_runs", "test_runs", "runs", "side_runs"})
 # The title of the stage whose emulator tells what bounces would say.
 EMULATOR = "emulator"
+SHOW_LANDINGS = frozenset({"landing", "telling_landing"})
 
 
 def plan_study(path: Path, out: Path, worker_count: int | None = None, *, infers: bool = False) -> Plan:
@@ -99,7 +100,7 @@ def _made(
 ) -> dict[str, tuple[int, int]]:
     """How many of each are to be made, at least and at most."""
     new = [one.new for one in runs] if stale & MAKE_RUNS else [0]
-    landings = int("landing" in stale and study.has_soil)
+    landings = len(stale & SHOW_LANDINGS) * study.has_soil
     return {
         "beds": (beds[0].new, beds[-1].new),
         "landings": (landings, landings),
