@@ -50,6 +50,7 @@ class EmulatorBounce:
                 drawn = DrawnLandings.of(self.refits[number], x[of_refit], bound.at(of_refit), seed)
                 velocity[of_refit], spin[of_refit], outcome[of_refit] = drawn.velocity, drawn.spin, drawn.outcome
         captured = outcome == CAPTURED
+        velocity[captured] = 0.0
         return Rebounds(velocity, spin, captured, outside | ~(captured | (outcome == CLEAR)))
 
 
