@@ -110,7 +110,7 @@ def hop(
         hits = flights.status == FlightStatus.IMPACT
         going, facet = going[hits], flights.facet[hits]
         grazes = np.cos(flights.incidence[hits]) < GRAZE
-        on = state.slide(going[grazes], facet[grazes])
+        on = state.slide(going[grazes])
         going, facet = going[~grazes], facet[~grazes]
         if number < bounce_limit:
             random = np.random.default_rng([seed, number])
@@ -191,14 +191,7 @@ class _State:
     def first_flights(self, captured: ArrayLike) -> NDArray[np.int64]:
         """Landers that fly at the start: those that were not captured, and those that slide off the ground."""
         lies = np.broadcast_to(np.asarray(captured, dtype=bool), self.time.shape)
-        which, shape = np.flatnonzero(lies), self.body.shape
-        height, facet = np.empty(len(which)), np.empty(len(which), dtype=np.int64)
-        near_heights(shape.grid, shape.corners, shape.pseudonormals, self.position[which], height, facet)
-        if (facet < 0).any():
-            raise ValueError(
-                "launch: a lander that is captured is above the ground; give it a position on the surface."
-            )
-        return np.sort(np.concatenate([np.flatnonzero(~lies), self.slide(which, facet)]))
+        return np.sort(np.concatenate([np.flatnonzero(~lies), self.slide(np.flatnonzero(lies))]))
 
     def fly(self, going: NDArray[np.int64], gravity: str, threads: int | None) -> Flights:
         """Fly the landers `going` to the ends of their flights, which are given back."""
@@ -247,10 +240,18 @@ class _State:
         self.velocity[going] = np.einsum("nji,nj->ni", axes, result.velocity)
         self.spin[going[on]] = np.einsum("nji,nj->ni", axes[on], result.spin[on])
         self.bounce_count[going[on]] += 1
-        return np.concatenate([going[on], self.slide(going[stays], facet[stays])])
+        return np.concatenate([going[on], self.slide(going[stays])])
 
-    def slide(self, which: NDArray[np.int64], facet: NDArray[np.int64]) -> NDArray[np.int64]:
-        """Let landers on the ground slide; gives those that leave it again and fly on."""
+    def slide(self, which: NDArray[np.int64]) -> NDArray[np.int64]:
+        """Let landers on the ground slide; gives those that leave it again and fly on.
+
+        Raises ValueError for one that is above the ground.
+        """
+        shape, height, facet = self.body.shape, np.empty(len(which)), np.empty(len(which), dtype=np.int64)
+        # A flight that comes in along the ground may end beside the facet that it has met.
+        near_heights(shape.grid, shape.corners, shape.pseudonormals, self.position[which], height, facet)
+        if (facet < 0).any():
+            raise ValueError("launch: a captured lander is above the ground; give it a position on the surface.")
         own = (self.friction[which], self.mass[which], self.spin_period[which])
         ground, left = OnGround(self.body, facet, *own, self.rolls), self.duration - self.time[which]
         ends = slide(ground, self.position[which], self.velocity[which], left)

@@ -64,6 +64,11 @@ class OnGround:
         """Outward normals of the facets, [count, 3]."""
         return self.body.shape.normals[self.facet]
 
+    def along(self, vectors: Array) -> Array:
+        """Parts of vectors [count, 3] along the facets."""
+        part: Array = vectors - np.einsum("ni,ni->n", vectors, self.up)[:, None] * self.up
+        return part
+
     @property
     def braking(self) -> Array:
         """What friction takes of the speed over what presses, [count]."""
@@ -99,13 +104,13 @@ class OnGround:
 def slide(ground: OnGround, position: Array, velocity: Array, duration: Array) -> Slides:
     """Follow landers along the ground for at most a duration [s] each, [count].
 
-    position [m] and velocity [m/s]: body-fixed, [count, 3]; what of the velocity is not along the facet is dropped.
-    Infinite friction stops a lander where it is.
+    position [m] and velocity [m/s]: body-fixed, [count, 3]; what of either is not along the facet is dropped. Infinite
+    friction stops a lander where it is.
     """
-    count = len(position)
-    velocity = velocity - np.einsum("ni,ni->n", velocity, ground.up)[:, None] * ground.up
+    count, corner = len(position), ground.body.shape.corners[ground.facet, 0]
+    position, velocity = corner + ground.along(position - corner), ground.along(velocity)
     velocity[np.isinf(ground.friction)] = 0.0
-    facet, position, time, length = ground.facet.copy(), position.copy(), np.zeros(count), np.zeros(count)
+    facet, time, length = ground.facet.copy(), np.zeros(count), np.zeros(count)
     rests, leaves = np.zeros(count, dtype=bool), np.zeros(count, dtype=bool)
     going, seen, number = np.arange(count), position.copy(), 0
     while len(going):
