@@ -56,11 +56,11 @@ class FlightStatus(_Ending):
 class JourneyStatus(_Ending):
     """How a journey from bounce to bounce ended."""
 
-    SETTLED = "settled", "The lander was captured where gravity and rotation together hold it."
+    SETTLED = "settled", "The lander came to rest where gravity, rotation and friction together hold it."
     LOFTED = "lofted", "The lander was captured where gravity and rotation together push it outwards."
     OUTSIDE = "outside", "The model of the bounce does not know the impact, and the journey stops there."
     FLYING = FlightStatus.FLYING.texts
     ESCAPED = FlightStatus.ESCAPED.texts
     PARTNER = FlightStatus.PARTNER.value, "The lander came down on the partner, where no bounce is followed."
-    SLIDING = "sliding", "The lander moves along the ground, which is not followed."
+    SLIDING = "sliding", "The lander still slid along the ground when the time was over."
     BOUNCING = "bouncing", "The largest number of bounces did not bring the lander to rest."

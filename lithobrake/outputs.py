@@ -93,6 +93,8 @@ FLIGHT = {
     "impact_incidence_deg": Quantity("deg", "angle of that velocity from the inward normal"),
     "rebounds": Quantity("", "impacts after which the lander went on"),
     "path_length": Quantity("m", "sum of the straight lines between impacts"),
+    "slid_length": Quantity("m", "way along the ground, in contact with it"),
+    "slid_time_s": Quantity("s", "time of that, part of time_s"),
 }
 BEDS = {
     "solid_fraction": Quantity("", "share of the volume that grains fill"),

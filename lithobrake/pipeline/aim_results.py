@@ -22,7 +22,7 @@ from lithobrake.study.units import input_units
 SETTLED = JourneyStatus.SETTLED.value
 FAR = 0.95
 # Nobody knows where these landers are.
-UNKNOWN = (JourneyStatus.OUTSIDE, JourneyStatus.SLIDING, JourneyStatus.BOUNCING)
+UNKNOWN = (JourneyStatus.OUTSIDE, JourneyStatus.BOUNCING)
 HOUR = 3600.0
 
 

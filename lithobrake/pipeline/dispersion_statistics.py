@@ -131,8 +131,9 @@ def _ends(study: Study, rows: Rows, ranges: dict[str, list[float]]) -> dict[str,
     statuses = [row["status"] for row in rows]
     table: dict[str, Any] = {"sample_count": len(rows)}
     table |= {name: proportion(statuses.count(name), len(rows)) for name in JourneyStatus}
+    table["slid"] = proportion(sum(float(row["slid_length"]) > 0.0 for row in rows), len(rows))
     settled = [row for row in rows if row["status"] == JourneyStatus.SETTLED]
-    for name in ("time_s", "path_length", "rebounds") if settled else ():
+    for name in ("time_s", "path_length", "rebounds", "slid_length", "slid_time_s") if settled else ():
         values = np.array([float(row[name]) for row in settled])
         table[name] = {f"quantile_{level:g}": float(np.quantile(values, level)) for level in QUANTILES}
     table["ellipses"] = ellipses(study, rows, JourneyStatus.SETTLED)

@@ -50,17 +50,18 @@ class EmulatorBounce:
                 drawn = DrawnLandings.of(self.refits[number], x[of_refit], bound.at(of_refit), seed)
                 velocity[of_refit], spin[of_refit], outcome[of_refit] = drawn.velocity, drawn.spin, drawn.outcome
         captured = outcome == CAPTURED
+        velocity[captured] = 0.0
         return Rebounds(velocity, spin, captured, outside | ~(captured | (outcome == CLEAR)))
 
 
 def emulator_bounce(job: Job, samples: Samples) -> EmulatorBounce:
-    """The bounce of a study for the samples that leave, in their order; each goes on with the refit it was drawn of."""
-    leaving, names = np.flatnonzero(samples.leaves), list(samples.input_names)
-    inputs = dict(zip(names, samples.inputs[leaving].T, strict=True))
+    """The bounce of a study for samples whose place is known, in their order; each keeps the refit it was drawn of."""
+    known, names = np.flatnonzero(samples.known), list(samples.input_names)
+    inputs = dict(zip(names, samples.inputs[known].T, strict=True))
     # Every bed is read for it, which no impact should wait for.
     height = height_of_beds(job.study, job.folder)
 
     def bound(x: np.ndarray) -> EnergyBound:
         return energy_bound(job.study, height, dict(zip(names, x.T, strict=True)), len(x))
 
-    return EmulatorBounce(refits(job), leaving % REFIT_COUNT, inputs, trained_ranges(job.study), bound)
+    return EmulatorBounce(refits(job), known % REFIT_COUNT, inputs, trained_ranges(job.study), bound)

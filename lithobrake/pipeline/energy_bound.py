@@ -50,7 +50,7 @@ def energy_bound(
     slope = np.radians(known["surface.slope_deg"])
     # Gravity that points outwards lifts a lander as far as the other makes it fall.
     gained = np.abs(known["surface.gravity"]) * (bed_height + np.hypot(*study.bed.width) * np.sin(slope))
-    smallest, largest = _gyrations(study, known)
+    smallest, largest = gyrations(study, known)
     return EnergyBound(np.sqrt(known["impact.speed"] ** 2 + largest * spin + 2.0 * gained), np.sqrt(smallest))
 
 
@@ -61,7 +61,7 @@ def bound_numbers(study: Study, bed_height: float) -> dict[str, float]:
     these powers of mass and diameter; and the medians of whatever the bound depends on, by dotted key.
     """
     known = medians(study)
-    smallest, largest = (float(one[0]) for one in _gyrations(study, {key: np.array([known[key]]) for key in known}))
+    smallest, largest = (float(one[0]) for one in gyrations(study, {key: np.array([known[key]]) for key in known}))
     has_inertia, is_ball = study.lander.inertia is not None, "lander.diameter" in known
     names = ("impact.speed", *SPIN, "surface.slope_deg", "surface.gravity", "lander.mass", "lander.diameter")
     return {
@@ -80,7 +80,7 @@ def height_of_beds(study: Study, folder: StudyFolder) -> float:
     return max((float(stored_bed(folder / name).surface_height) for name in bed_files(study)), default=0.0)
 
 
-def _gyrations(
+def gyrations(
     study: Study, values: "Mapping[str, NDArray[np.float64]]"
 ) -> "tuple[NDArray[np.float64], NDArray[np.float64]]":
     """Smallest and largest principal moment of inertia over the mass [m2], [count] each."""

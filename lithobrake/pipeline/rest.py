@@ -16,16 +16,17 @@ from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.outgoing import VELOCITY, rolling_spin
 from lithobrake.pipeline.samples import CAPTURED, Samples, sampling_seed, touchdown_values
 from lithobrake.pipeline.site import frames, site_body
+from lithobrake.pipeline.slow_arrivals import slow_arrivals
 from lithobrake.pipeline.surrogate_bounce import soil_bounce, trained_ranges, why_no_soil
 from lithobrake.study import Study
 
 if TYPE_CHECKING:
-    from lithobrake.smallbody import Body, Bounce, HardSurface, Impacts, Rebounds
+    from lithobrake.smallbody import Body, Bounce, HardSurface, Impacts, Journeys, Rebounds
 
 # docs/flights.md says what each is.
 COLUMNS = (
     "ground", "sample", "status", "time_s", "latitude_deg", "longitude_deg", "rebounds", "path_length",
-    "impact_speed", "impact_incidence_deg",
+    "slid_length", "slid_time_s", "impact_speed", "impact_incidence_deg",
 )  # fmt: skip
 # Statuses of landers that lie on, or have just touched, the ground of the body.
 DOWN = (
@@ -41,8 +42,8 @@ def rest_files(study: Study) -> list[str]:
 
 
 def rest_reads(study: Study) -> dict[str, Any]:
-    """What the journeys depend on beside samples and flights."""
-    return study.rest.model_dump()
+    """What the journeys depend on beside samples and flights; a table with other columns is made anew."""
+    return study.rest.model_dump(exclude_none=True) | {"columns": COLUMNS}
 
 
 def follow_samples(job: Job) -> None:
@@ -68,7 +69,7 @@ def hard_surface(study: Study) -> "HardSurface":
     """The hard ground of a study."""
     from lithobrake.smallbody import HardSurface
 
-    return HardSurface(**study.rest.model_dump(exclude={"count", "duration"}))
+    return HardSurface(**study.rest.model_dump(exclude={"count", "duration", "rolling_friction"}))
 
 
 def on_soil(job: Job, samples: Samples) -> tuple["Rebounds", "Bounce"]:
@@ -76,14 +77,31 @@ def on_soil(job: Job, samples: Samples) -> tuple["Rebounds", "Bounce"]:
     from lithobrake.smallbody import Rebounds
 
     velocity, captured = np.column_stack([samples.output(name) for name in VELOCITY]), samples.outcome == CAPTURED
+    # The runs do not tell with which velocity a lander is captured, only that little is left.
+    velocity[captured] = 0.0
     if job.study.design.method == "sequence":
         spin = np.column_stack([samples.output(name) for name in SPIN_OUT])
         bounce: Bounce = emulator_bounce(job, samples)
     else:
         spin = rolling_spin(velocity, np.maximum(samples.output("spin_out"), 0.0))
-        inputs = {name: samples.inputs[samples.leaves, index] for index, name in enumerate(samples.input_names)}
+        inputs = {name: samples.inputs[samples.known, index] for index, name in enumerate(samples.input_names)}
         bounce = soil_bounce(job, inputs)
-    return Rebounds(velocity, spin, captured, ~captured & ~samples.leaves), bounce
+    return Rebounds(velocity, spin, captured, ~samples.known), slow_arrivals(job.study, samples, bounce)
+
+
+def sliding_friction(study: Study, samples: Samples, ground: str) -> np.ndarray:
+    """Friction under each sample once it is captured, [sample_count]: on soil that of hull and grain."""
+    from lithobrake.dem.material import pair_value
+
+    rest, rule, hull = study.rest, study.contact.pair_rule, "grain" if study.lander.friction is None else "lander"
+    if rest.rolling_friction is not None or ground == "hard":
+        fixed = rest.friction if rest.rolling_friction is None else rest.rolling_friction
+        return np.full(len(samples.outcome), fixed)
+    of_grain, of_hull = (
+        touchdown_values(study, samples.input_names, samples.inputs, f"{part}.friction").tolist()
+        for part in ("grain", hull)
+    )
+    return np.array([pair_value(one, other, rule) for one, other in zip(of_grain, of_hull, strict=True)])
 
 
 def on_hard_ground(study: Study, sites: "Sites") -> tuple["Rebounds", "Bounce"]:
@@ -142,30 +160,35 @@ class Sites:
         """A row of rest.csv for each sample, in their order: from how it leaves the first impact to where it ends."""
         from lithobrake.smallbody import Launch, hop
 
-        going = np.flatnonzero(~(first.captured | first.outside))
+        going = np.flatnonzero(~first.outside)
         site = {key: values[going] for key, values in self.site.items()}
         velocity, spin = (np.einsum("nij,ni->nj", self.axes[going], v[going]) for v in (first.velocity, first.spin))
-        time = partner_time(self.body, site)
-        launch = Launch(self.origin[going], velocity, spin, time, site["mass"], site["spin_period"])
+        time, captured = partner_time(self.body, site), first.captured[going]
+        launch = Launch(self.origin[going], velocity, spin, time, captured, site["mass"], site["spin_period"])
         ends = hop(
             *(self.body, launch, bounce, job.study.rest.duration),
+            friction=sliding_friction(job.study, self.samples, ground)[going],
+            rolls=job.study.rest.rolling_friction is not None,
             gravity=job.study.flight.gravity,
             seed=sampling_seed(job.study, f"rest on {ground} ground"),
             threads=getattr(job.executor, "worker_count", None),
             progress=lambda done: job.progress(round(done * len(going)), len(going), f"bounces, {ground} ground"),
         )
-        latitude, longitude = self.body.shape.latitude_longitude(self.origin)
-        held = np.where(self.effective_acceleration < 0.0, JourneyStatus.SETTLED, JourneyStatus.LOFTED)
-        status = np.where(first.outside, JourneyStatus.OUTSIDE, held).tolist()
-        rows = [
-            [ground, sample, end, 0.0, *place, 0, 0.0, "", ""]
-            for sample, (end, *place) in enumerate(zip(status, latitude.tolist(), longitude.tolist(), strict=True))
+        latitude, longitude = (one.tolist() for one in self.body.shape.latitude_longitude(self.origin))
+        rows: list[list[Any]] = [
+            [ground, sample, JourneyStatus.OUTSIDE.value, 0.0, *place, 0, 0.0, 0.0, 0.0, "", ""]
+            for sample, place in enumerate(zip(latitude, longitude, strict=True))
         ]
         for row, sample in enumerate(going.tolist()):
-            end, speed = str(ends.status[row]), float(ends.impact_speed[row])
-            place = [float(ends.latitude[row]), float(ends.longitude[row])] if end in DOWN else ["", ""]
-            last = ["", ""] if np.isnan(speed) else [speed, float(np.degrees(ends.incidence[row]))]
-            # The journey began with the first rebound, which is counted here.
-            rebounds, path = int(ends.bounce_count[row]) + 1, float(ends.path_length[row])
-            rows[sample] = [ground, sample, end, float(ends.time[row]), *place, rebounds, path, *last]
+            rows[sample] = [ground, sample, *_end(ends, row, bounced=not captured[row])]
         return rows
+
+
+def _end(ends: "Journeys", row: int, *, bounced: bool) -> list[Any]:
+    """Where one journey ends, in the columns from the status on; bounced: it left the first impact."""
+    end, speed = str(ends.status[row]), float(ends.impact_speed[row])
+    place = [float(ends.latitude[row]), float(ends.longitude[row])] if end in DOWN else ["", ""]
+    last = ["", ""] if np.isnan(speed) else [speed, float(np.degrees(ends.incidence[row]))]
+    ways = [float(one[row]) for one in (ends.path_length, ends.slid_length, ends.slid_time)]
+    # The journey began with the first rebound, which is counted here.
+    return [end, float(ends.time[row]), *place, int(ends.bounce_count[row]) + bounced, *ways, *last]

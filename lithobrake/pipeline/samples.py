@@ -74,6 +74,12 @@ class Samples:
         left: np.ndarray = self.outcome == CLEAR
         return left
 
+    @property
+    def known(self) -> np.ndarray:
+        """Of which samples it is known where they go: they leave the surface or are captured; shape [sample_count]."""
+        followed: np.ndarray = self.leaves | (self.outcome == CAPTURED)
+        return followed
+
     def output(self, name: str) -> np.ndarray:
         """One output, shape [sample_count]."""
         return self.outputs[:, self.output_names.index(name)]

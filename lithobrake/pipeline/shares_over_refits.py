@@ -55,6 +55,7 @@ def sample_fates(samples: Samples, flights: Rows, *, holds: bool) -> dict[str, n
 
 
 def journey_ends(rows: Sequence[Mapping[str, str]]) -> dict[str, np.ndarray]:
-    """Which of the journeys met each end."""
+    """Which of the journeys met each end, and which moved along the ground."""
     status = np.array([row["status"] for row in rows], dtype=object)
-    return {str(name): status == name for name in JourneyStatus}
+    slid = np.array([float(row["slid_length"]) > 0.0 for row in rows], dtype=bool)
+    return {str(name): status == name for name in JourneyStatus} | {"slid": slid}

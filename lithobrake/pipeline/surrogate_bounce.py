@@ -83,6 +83,7 @@ class SoilBounce:
         captured = drawn == CAPTURED
         outside |= ~captured & ~((drawn == CLEAR) & possible)
         velocity = outputs[:, [names.index(name) for name in VELOCITY]]
+        velocity[captured] = 0.0
         spin = rolling_spin(velocity, np.maximum(outputs[:, names.index("spin_out")], 0.0))
         return Rebounds(velocity, spin, captured, outside)
 

@@ -23,7 +23,7 @@ SHORT_JOURNEY_WORDS = {
     JourneyStatus.SETTLED: "at rest",
     JourneyStatus.LOFTED: "lifted off again",
     JourneyStatus.OUTSIDE: "outside the runs",
-    JourneyStatus.SLIDING: JourneyStatus.SLIDING.label,
+    JourneyStatus.SLIDING: "still sliding",
     JourneyStatus.BOUNCING: "still bouncing",
     JourneyStatus.FLYING: "not at rest, {hours}",
     JourneyStatus.ESCAPED: JourneyStatus.ESCAPED.label,

@@ -21,14 +21,15 @@ OUTCOME_WORDS: dict[str, str] = {
 SUMS = ("remains", "missing")
 JOURNEY_WORDS: dict[str, str] = {
     JourneyStatus.SETTLED: "at rest",
-    JourneyStatus.LOFTED: "captured, and lifted off again by the spin",
+    JourneyStatus.LOFTED: "captured where the spin lifts it off again",
     JourneyStatus.OUTSIDE: "stopped where the {model} has no answer",
     "outside_too_slow": "(of these: slower than any run)",
-    JourneyStatus.SLIDING: "sliding along the ground",
+    JourneyStatus.SLIDING: "still sliding along the ground after {hours}",
     JourneyStatus.BOUNCING: "still bouncing after a thousand bounces",
     JourneyStatus.FLYING: "not at rest after {hours}",
     JourneyStatus.ESCAPED: JourneyStatus.ESCAPED.label,
     JourneyStatus.PARTNER: "on the partner",
+    "slid": "(of all: slid along the ground for a while)",
 }
 GROUND_WORDS = {"soil": "soil", "hard": "hard ground", "equivalent": "hard ground like the soil"}
 QUANTILES = ("quantile_0.05", "quantile_0.5", "quantile_0.95")
@@ -148,6 +149,7 @@ def _statuses(data: Results) -> PageTable:
 def _journeys(data: Results) -> PageTable:
     columns = ["landers that rest", "ground", "5 %", "median", "95 %"]
     words = {"time_s": "time to rest [s]", "rebounds": "rebounds", "path_length": "path [m]"}
+    words |= {"slid_length": "slid along the ground [m]", "slid_time_s": "time of that [s]"}
     rows = [
         [words[key], GROUND_WORDS[ground], *(number(table[key][level]) for level in QUANTILES)]
         for key in words
@@ -159,9 +161,18 @@ def _journeys(data: Results) -> PageTable:
         f"Hard ground: restitution {rest['normal_restitution']:g} along the normal, {rest['tangential_restitution']:g} "
         f"along the ground, friction {rest['friction']:g}; at rest where a rebound rises less than "
         f"{rest['rest_height']:g} m. Hard ground like the soil draws the restitution that the soil implies by "
-        "speed and incidence (restitution.csv). The path is the sum of straight lines between impacts."
+        "speed and incidence (restitution.csv). The path is the sum of straight lines between impacts. What is "
+        f"captured {_sliding(rest)} from facet to facet until it rests or leaves the ground again; no landing has been "
+        "fitted to that law, and on soil it starts from rest, as runs do not tell what speed is left."
     )
     return PageTable("Journeys to rest", columns, rows, note, frozenset(columns[2:]))
+
+
+def _sliding(rest: Mapping[str, Any]) -> str:
+    """The law by which a captured lander moves on, in words."""
+    if rest.get("rolling_friction") is not None:
+        return f"rolls on like a ball against a resistance of {rest['rolling_friction']:g} of what presses it down,"
+    return "slides on by Coulomb friction, on soil that of hull and grain,"
 
 
 def _ellipses(data: Results) -> PageTable:

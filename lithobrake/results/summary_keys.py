@@ -242,7 +242,8 @@ SUMMARY_TABLES = (
         SUMMARY,
         ("results.rest.soil", "results.rest.hard", "results.rest.equivalent"),
         "Where the followed samples end on each ground (docs/flights.md; equivalent: hard ground with the restitution "
-        "that the soil implies, in a drawn study); null where none were followed",
+        "that the soil implies, in a drawn study); slid: moved along the ground at all, however they ended; null where "
+        "none were followed",
         {
             "sample_count": "samples followed",
             **COUNTED,
@@ -251,6 +252,8 @@ SUMMARY_TABLES = (
             "time_s.quantile_*": f"time until rest [s] of those that settled, {QUANTILES}",
             "path_length.quantile_*": f"sum of the straight lines between impacts [m] likewise, {QUANTILES}",
             "rebounds.quantile_*": f"impacts after which the lander went on likewise, {QUANTILES}",
+            "slid_length.quantile_*": f"way along the ground, in contact with it [m] likewise, {QUANTILES}",
+            "slid_time_s.quantile_*": f"time of that [s], part of time_s, likewise, {QUANTILES}",
         },
     ),
     KeyTable(

@@ -34,9 +34,9 @@ class Impacts:
 class Rebounds:
     """How the landers leave, in the frame of each impact.
 
-    velocity    [m/s], [count, 3]
+    velocity    [m/s], [count, 3]; of a captured lander what it slides on with, of which only x and y are read
     spin        [rad/s], [count, 3]
-    captured    the lander stays, [count]
+    captured    the lander stays on the ground, [count]
     outside     the model does not cover this impact, [count]; neither velocity nor captured is then read
     """
 
@@ -56,9 +56,8 @@ class HardSurface:
     The normal velocity v becomes -normal_restitution v. The horizontal one becomes tangential_restitution times itself,
     unless that takes more than friction times the normal impulse. A lander whose rebound rises less than rest_height
     [m] under the effective acceleration is captured; where that points outwards none is. Keep that height above a
-    millimetre: flights are not told from rest below a millionth of the body's radius. How far it would still slide, its
-    horizontal velocity squared over twice friction times that acceleration, is not followed. Spin is kept: a point has
-    none to change.
+    millimetre: flights are not told from rest below a millionth of the body's radius. It slides on with its horizontal
+    velocity. Spin is kept: a point has none to change.
 
     Source: [Tardivel-2014]: an impact as normal restitution and Coulomb friction.
     """

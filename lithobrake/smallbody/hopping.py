@@ -1,7 +1,7 @@
 """From bounce to bounce until a lander rests, escapes, or the time is over."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import cached_property
 
 import numpy as np
@@ -12,6 +12,8 @@ from lithobrake.smallbody.body import Body
 from lithobrake.smallbody.bounce import Bounce, Impacts
 from lithobrake.smallbody.flight import fly
 from lithobrake.smallbody.flight_results import Flights
+from lithobrake.smallbody.signed_distance import near_heights
+from lithobrake.smallbody.sliding import OnGround, slide
 
 GRAZE = 1e-5  # cosine of the incidence below which a lander does not hit the ground but slides along it
 
@@ -27,6 +29,7 @@ class Journeys:
     spin           angular velocity at the end, body-fixed axes [rad/s], [count, 3]
     bounce_count   impacts after which the lander went on
     path_length    sum of the straight lines between starts and ends of the flights [m]
+    slid_length    way along the ground in contact with it [m], and slid_time: how long it took, part of time [s]
     impact_speed   at the last impact, against the ground [m/s]; nan where there was none
     incidence      there, of the velocity from the inward normal [rad]; nan likewise
     """
@@ -38,6 +41,8 @@ class Journeys:
     spin: NDArray[np.float64]
     bounce_count: NDArray[np.int64]
     path_length: NDArray[np.float64]
+    slid_length: NDArray[np.float64]
+    slid_time: NDArray[np.float64]
     impact_speed: NDArray[np.float64]
     incidence: NDArray[np.float64]
 
@@ -59,6 +64,7 @@ class Launch:
     position       [m] and velocity [m/s], body-fixed as of `fly`, [count, 3] or [3]
     spin           angular velocity, body-fixed axes, relative to the stars [rad/s], [count, 3] or [3]
     time           of the start [s]: start_time of `fly`
+    captured       it does not fly but is captured where it is, and slides on from there
     mass           of the body [kg] and spin_period [s], in place of its own: for a body that is not well known
     """
 
@@ -66,6 +72,7 @@ class Launch:
     velocity: ArrayLike
     spin: ArrayLike = (0.0, 0.0, 0.0)
     time: ArrayLike = 0.0
+    captured: ArrayLike = False
     mass: ArrayLike | None = None
     spin_period: ArrayLike | None = None
 
@@ -76,41 +83,40 @@ def hop(
     bounce: Bounce,
     duration: float,
     *,
+    friction: ArrayLike = np.inf,
+    rolls: bool = False,
     gravity: str = "table",
     bounce_limit: int = 1000,
     seed: int = 0,
     threads: int | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> Journeys:
-    """Fly, bounce and fly again, for at most `duration` [s] in all.
+    """Fly, bounce and fly again, slide where captured, for at most `duration` [s] in all.
 
     bounce     called once a round with the impacts of all landers still under way and a generator of random numbers
+    friction   of the ground under landers that are captured or come in along it, which slide on until they rest or
+               leave the ground again: a coefficient for each or for all; infinite: they rest where they are
+    rolls      they roll like balls, and friction is the resistance to that
     gravity    as of `fly`, and so are threads
     seed       of the generator: the same call gives the same result
     progress   called with the fraction of landers that have ended
     """
-    state = _State.of(body, launch)
-    going = np.arange(len(state.time))
+    state = _State.of(body, launch, duration, friction, rolls)
+    going = state.first_flights(launch.captured)
     for number in range(bounce_limit + 1):
-        flights = fly(
-            *(body, state.position[going], state.velocity[going], duration - state.time[going]),
-            gravity=gravity,
-            start_time=state.begin[going] + state.time[going],
-            mass=state.mass[going],
-            spin_period=state.spin_period[going],
-            threads=threads,
-        )
-        state.advance(going, flights)
-        hits = flights.status == FlightStatus.IMPACT
-        slides = hits & (np.cos(flights.incidence) < GRAZE)
-        state.status[going[slides]] = JourneyStatus.SLIDING
-        bounces = hits & ~slides
-        going, facet = going[bounces], flights.facet[bounces]
-        if number < bounce_limit and len(going):
-            going = state.rebound(going, facet, bounce, np.random.default_rng([seed, number]))
+        if number:
             going = going[state.time[going] < duration]
-        elif len(going):
-            state.status[going] = JourneyStatus.BOUNCING
+        flights = state.fly(going, gravity, threads)
+        hits = flights.status == FlightStatus.IMPACT
+        going, facet = going[hits], flights.facet[hits]
+        grazes = np.cos(flights.incidence[hits]) < GRAZE
+        on = state.slide(going[grazes])
+        going, facet = going[~grazes], facet[~grazes]
+        if number < bounce_limit:
+            random = np.random.default_rng([seed, number])
+            going = np.sort(np.concatenate([state.rebound(going, facet, bounce, random), on]))
+        else:
+            state.status[going] = state.status[on] = JourneyStatus.BOUNCING
             going = going[:0]
         if progress:
             progress(1.0 - len(going) / max(len(state.time), 1))
@@ -121,9 +127,12 @@ def hop(
 
 @dataclass
 class _State:
-    """Where all landers are now; arrays as in Journeys, begin, mass and spin_period as in Launch."""
+    """Where all landers are now; arrays as in Journeys, begin, mass and spin_period as in Launch, the rest of hop."""
 
     body: Body
+    duration: float
+    rolls: bool
+    friction: NDArray[np.float64]
     begin: NDArray[np.float64]
     mass: NDArray[np.float64]
     spin_period: NDArray[np.float64]
@@ -134,11 +143,13 @@ class _State:
     status: NDArray[np.str_]
     bounce_count: NDArray[np.int64]
     path_length: NDArray[np.float64]
+    slid_length: NDArray[np.float64]
+    slid_time: NDArray[np.float64]
     impact_speed: NDArray[np.float64]
     incidence: NDArray[np.float64]
 
     @classmethod
-    def of(cls, body: Body, launch: Launch) -> "_State":
+    def of(cls, body: Body, launch: Launch, duration: float, friction: ArrayLike, rolls: bool) -> "_State":
         """The landers at the start."""
         position = np.array(np.atleast_2d(np.asarray(launch.position, dtype=np.float64)))
         count = len(position)
@@ -154,6 +165,9 @@ class _State:
 
         return cls(
             body=body,
+            duration=duration,
+            rolls=rolls,
+            friction=each("friction", friction),
             begin=each("time", launch.time),
             mass=each("mass", body.mass if launch.mass is None else launch.mass),
             spin_period=each("spin_period", body.spin_period if launch.spin_period is None else launch.spin_period),
@@ -164,17 +178,31 @@ class _State:
             status=np.full(count, JourneyStatus.FLYING.value, dtype="<U8"),
             bounce_count=np.zeros(count, dtype=np.int64),
             path_length=np.zeros(count),
+            slid_length=np.zeros(count),
+            slid_time=np.zeros(count),
             impact_speed=np.full(count, np.nan),
             incidence=np.full(count, np.nan),
         )
 
     def journeys(self) -> Journeys:
         """What has become of the landers."""
-        names = ("status", "time", "position", "spin", "bounce_count", "path_length", "impact_speed", "incidence")
-        return Journeys(self.body, *(getattr(self, name) for name in names))
+        return Journeys(**{field.name: getattr(self, field.name) for field in fields(Journeys)})
 
-    def advance(self, going: NDArray[np.int64], flights: Flights) -> None:
-        """Take the ends of the flights of the landers `going`."""
+    def first_flights(self, captured: ArrayLike) -> NDArray[np.int64]:
+        """Landers that fly at the start: those that were not captured, and those that slide off the ground."""
+        lies = np.broadcast_to(np.asarray(captured, dtype=bool), self.time.shape)
+        return np.sort(np.concatenate([np.flatnonzero(~lies), self.slide(np.flatnonzero(lies))]))
+
+    def fly(self, going: NDArray[np.int64], gravity: str, threads: int | None) -> Flights:
+        """Fly the landers `going` to the ends of their flights, which are given back."""
+        flights = fly(
+            *(self.body, self.position[going], self.velocity[going], self.duration - self.time[going]),
+            gravity=gravity,
+            start_time=self.begin[going] + self.time[going],
+            mass=self.mass[going],
+            spin_period=self.spin_period[going],
+            threads=threads,
+        )
         self.path_length[going] += np.linalg.norm(flights.position - self.position[going], axis=1)
         self.position[going], self.velocity[going] = flights.position, flights.velocity
         self.time[going] += flights.time
@@ -186,11 +214,14 @@ class _State:
         c, s = np.cos(turn), np.sin(turn)
         x, y = self.spin[going, 0], self.spin[going, 1]
         self.spin[going, 0], self.spin[going, 1] = c * x + s * y, c * y - s * x
+        return flights
 
     def rebound(
         self, going: NDArray[np.int64], facet: NDArray[np.int64], bounce: Bounce, random: np.random.Generator
     ) -> NDArray[np.int64]:
-        """Bounce the landers `going` off their facets; gives those that fly on."""
+        """Bounce the landers `going` off their facets, or let them slide; gives those that fly on."""
+        if not len(going):
+            return going
         up = self.body.shape.normals[facet]
         velocity = self.velocity[going]
         axes = impact_frame(velocity, up)
@@ -201,16 +232,40 @@ class _State:
         outward = np.einsum("ni,ni->n", felt, up)
         local_spin = np.einsum("nij,nj->ni", axes, self.spin[going])
         result = bounce(Impacts(speed, incidence, local_spin, outward, going), random)
-        stays = result.captured & ~result.outside
         self.status[going[result.outside]] = JourneyStatus.OUTSIDE
-        self.status[going[stays]] = np.where(outward[stays] < 0.0, JourneyStatus.SETTLED, JourneyStatus.LOFTED)
+        stays = result.captured & ~result.outside
         on = ~(stays | result.outside)
         if not (result.velocity[on, 2] > 0.0).all():
             raise ValueError("a bounce sent a lander into the ground; it must call it captured or outside instead.")
-        self.velocity[going[on]] = np.einsum("nji,nj->ni", axes[on], result.velocity[on])
+        self.velocity[going] = np.einsum("nji,nj->ni", axes, result.velocity)
         self.spin[going[on]] = np.einsum("nji,nj->ni", axes[on], result.spin[on])
         self.bounce_count[going[on]] += 1
-        return going[on]
+        return np.concatenate([going[on], self.slide(going[stays])])
+
+    def slide(self, which: NDArray[np.int64]) -> NDArray[np.int64]:
+        """Let landers on the ground slide; gives those that leave it again and fly on.
+
+        Raises ValueError for one that is above the ground.
+        """
+        shape, height, facet = self.body.shape, np.empty(len(which)), np.empty(len(which), dtype=np.int64)
+        # A flight that comes in along the ground may end beside the facet that it has met.
+        near_heights(shape.grid, shape.corners, shape.pseudonormals, self.position[which], height, facet)
+        if (facet < 0).any():
+            raise ValueError("launch: a captured lander is above the ground; give it a position on the surface.")
+        own = (self.friction[which], self.mass[which], self.spin_period[which])
+        ground, left = OnGround(self.body, facet, *own, self.rolls), self.duration - self.time[which]
+        ends = slide(ground, self.position[which], self.velocity[which], left)
+        self.position[which], self.velocity[which] = ends.position, ends.velocity
+        for total, part in ((self.time, ends.time), (self.slid_time, ends.time), (self.slid_length, ends.length)):
+            total[which] += part
+        # What moves along the ground turns with it, or rolls, which counts for little against the stars.
+        self.spin[which] = np.outer(2.0 * np.pi / self.spin_period[which], [0.0, 0.0, 1.0])
+        # Nothing says how a lander leaves that is pushed off the ground at rest.
+        lofted = ends.leaves & ~ends.velocity.any(axis=1)
+        ended = (ends.rests, lofted, ends.leaves)
+        words = [word.value for word in (JourneyStatus.SETTLED, JourneyStatus.LOFTED, JourneyStatus.FLYING)]
+        self.status[which] = np.select(ended, words, JourneyStatus.SLIDING.value)
+        return which[ends.leaves & ~lofted]
 
 
 def impact_frame(velocity: NDArray[np.float64], up: NDArray[np.float64]) -> NDArray[np.float64]:

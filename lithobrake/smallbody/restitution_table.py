@@ -68,7 +68,10 @@ class RestitutionTable:
         with np.errstate(divide="ignore"):
             apex = np.where(outward < 0.0, up**2 / (-2.0 * outward), np.inf)
         velocity = np.stack([along * np.cos(azimuth), along * np.sin(azimuth), up], axis=1)
-        captured = (apex < self.rest_height) | (stays < self.captured[row, column]) | (up <= 0.0)
+        stopped = stays < self.captured[row, column]
+        # The runs do not tell with which velocity a lander is captured, only that little is left.
+        velocity[stopped] = 0.0
+        captured = (apex < self.rest_height) | stopped | (up <= 0.0)
         return Rebounds(velocity, impacts.spin, captured, np.zeros(count, dtype=bool))
 
     def save(self, path: str | os.PathLike[str]) -> None:

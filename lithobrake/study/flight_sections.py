@@ -59,7 +59,8 @@ class RestSection(Section):
 
     The soil is asked again at each impact where impact.speed and impact.incidence_deg are both uncertain; an impact
     outside the range of the runs ends the journey there. Hard ground answers every impact, the first among them, with
-    the same restitution and friction; the defaults are in the middle of what is used, not measured."""
+    the same restitution and friction; the defaults are in the middle of what is used, not measured. On either, what is
+    captured slides on until it rests or leaves the ground again."""
 
     count: Annotated[int, Whole("", at_least=0)] = Field(default=10_000, examples=["1000"])
     """How many samples are followed, the first ones; 0: none."""
@@ -70,6 +71,9 @@ class RestSection(Section):
     tangential_restitution: Annotated[float, Number("", at_least=0, at_most=1)] = 0.8
     """Hard ground: the same along the ground, unless friction takes less."""
     friction: Annotated[float, Number("", at_least=0)] = 0.6
-    """Hard ground: largest loss along the ground over the change along the normal."""
+    """Hard ground: largest loss along the ground over the change along the normal, and of what slides."""
     rest_height: Annotated[float, Number("m", above=0)] = 0.01
-    """Hard ground: a lander rests where its rebound would rise less than this."""
+    """Hard ground: a lander bounces no more where its rebound would rise less than this."""
+    rolling_friction: Annotated[float, Number("", at_least=0)] | None = None
+    """Every ground: resistance, over the force on the ground, of a captured lander that rolls on like a ball; absent:
+    it slides, on hard ground with the friction above, on soil with that of its hull."""

@@ -33,7 +33,7 @@ FEW = {"design": {"run_count": 48}, "monte_carlo": {"sample_count": 200}, "fligh
 
 
 def tables(**aim: Any) -> dict[str, Any]:
-    return synthetic_tables(**FEW, impact=ARRIVAL, site={"latitude_deg": 50.0}, aim={**AIM, **aim})
+    return synthetic_tables(**FEW, impact=ARRIVAL, site={"latitude_deg": 75.0}, aim={**AIM, **aim})
 
 
 @pytest.fixture(scope="module")

@@ -18,11 +18,14 @@ from lithobrake.pipeline.dispersion_statistics import dispersion_results, propor
 from lithobrake.pipeline.flights import COLUMNS, read_table, write_table
 from lithobrake.pipeline.job import Silent
 from lithobrake.pipeline.outgoing import rolling_spin
-from lithobrake.pipeline.rest import follow_samples
+from lithobrake.pipeline.rest import COLUMNS as REST
+from lithobrake.pipeline.rest import Sites, follow_samples, sliding_friction
 from lithobrake.pipeline.run_noise import Scatter
 from lithobrake.pipeline.samples import SAMPLE_OUTCOMES, Samples
+from lithobrake.pipeline.site import site_medians
+from lithobrake.pipeline.slow_arrivals import SlowArrivals
 from lithobrake.pipeline.surrogate_bounce import SoilBounce, trained_ranges, why_no_soil
-from lithobrake.smallbody import Impacts
+from lithobrake.smallbody import HardSurface, Impacts, Rebounds
 from lithobrake.study import Study, check_tables
 
 from ..paper_tables import paper_tables
@@ -162,8 +165,8 @@ def test_hard_ground_is_followed_from_the_first_impact_and_the_summary_adds_up(t
     assert sum(table["hard"][name]["count"] for name in JourneyStatus) == 60
     assert table["hard"]["settled"] == proportion(60, 60)
     assert (folder / "rest.csv").read_text().splitlines()[0] == (
-        "ground,sample,status,time_s,latitude_deg,longitude_deg,rebounds,path_length [m],impact_speed [m/s],"
-        "impact_incidence_deg"
+        "ground,sample,status,time_s,latitude_deg,longitude_deg,rebounds,path_length [m],slid_length [m],slid_time_s,"
+        "impact_speed [m/s],impact_incidence_deg"
     )
     titles = (folder / "flights.csv").read_text().strip().split(",")
     assert titles[1:4] == ["start_speed [m/s]", "start_elevation_deg", "velocity_x [m/s]"]
@@ -175,3 +178,72 @@ def test_hard_ground_is_followed_from_the_first_impact_and_the_summary_adds_up(t
     down, along = 0.1 * math.cos(math.radians(30.0)), 0.1 * math.sin(math.radians(30.0))
     hop = 2.0 * 0.6 * down / 2.3e-4 * max(0.8 * along, along - 0.6 * 1.6 * down)
     assert 0.5 * hop < float(rows[0]["path_length"]) < 3.0 * hop
+    # Where bounces rise no more than a centimetre the rest is slid, some speed squared over twice the friction.
+    along = max(0.8 * along, along - 0.6 * 1.6 * down)
+    assert 0.0 < float(rows[0]["slid_length"]) < along**2 / (2.0 * 0.6 * 2e-4)
+    assert 0.0 < float(rows[0]["slid_time_s"]) < float(rows[0]["time_s"])
+    assert table["hard"]["slid"]["count"] == 60
+    assert table["hard"]["slid_length"]["quantile_0.5"] == float(rows[0]["slid_length"])
+
+
+def captured_sites(study: Study, latitude: float) -> tuple[Sites, Rebounds]:
+    """Two captured landers and one of which nobody knows, at a latitude."""
+    names = ["captured", "captured", "time_limit"]
+    outcome = np.array([SAMPLE_OUTCOMES.index(name) for name in names], dtype=np.uint8)
+    samples = Samples(["grain.friction"], list(OUTPUTS), np.array([[0.9], [0.05], [0.9]]), np.zeros((3, 6)), outcome)
+    site = {key: np.full(3, value) for key, value in site_medians(study).items()} | {
+        "latitude_deg": np.full(3, latitude)
+    }
+    first = Rebounds(np.zeros((3, 3)), np.zeros((3, 3)), np.array([True, True, False]), ~samples.known)
+    return Sites.of(study, samples, site), first
+
+
+def test_a_captured_lander_rests_or_slides_by_the_friction_of_its_soil(tmp_path: Path) -> None:
+    """On a slope of Didymos the rough one rests where it is, the smooth one goes downhill; at the equator both lift."""
+    study = changed(site={"partner": False}, rest={"duration": 20000.0}, flight={"gravity": "exact"})
+    sites, first = captured_sites(study, 40.0)
+    slope = float(sites.body.slope(40.0, 0.0))
+    assert 0.05 < math.tan(slope) < 0.9
+    with ThreadPoolExecutor(1) as executor:
+        job = Job(study, {}, StudyFolder(tmp_path / "out"), executor, Silent())
+        rough, smooth, unknown = (
+            dict(zip(REST, row, strict=True)) for row in sites.follow(job, "soil", first, HardSurface(0.0))
+        )
+        lifted = captured_sites(study, 0.0)
+        ends = [row[2] for row in lifted[0].follow(job, "soil", lifted[1], HardSurface(0.0))]
+    assert (rough["status"], rough["time_s"], rough["slid_length"], rough["rebounds"]) == ("settled", 0.0, 0.0, 0)
+    assert smooth["slid_length"] > 1.0
+    assert smooth["slid_time_s"] > math.sqrt(2.0 * smooth["slid_length"] / 1e-3)
+    # Downhill on a body that spins at its limit is toward the equator.
+    assert abs(smooth["latitude_deg"]) < 40.0
+    assert (unknown["status"], unknown["slid_length"], unknown["latitude_deg"]) == ("outside", 0.0, pytest.approx(40.0))
+    assert ends == ["lofted", "lofted", "outside"]
+
+
+def test_the_friction_of_a_slide_is_that_of_hull_and_grain_or_of_rolling() -> None:
+    samples = captured_sites(changed(), 40.0)[0].samples
+    drawn = changed(lander={"friction": 0.4})
+    assert sliding_friction(drawn, samples, "soil").tolist() == [0.4, 0.05, 0.4]
+    assert sliding_friction(drawn, samples, "hard").tolist() == [0.6] * 3
+    rolls = changed(rest={"rolling_friction": 0.1})
+    assert sliding_friction(rolls, samples, "soil").tolist() == [0.1] * 3
+    assert sliding_friction(rolls, samples, "hard").tolist() == [0.1] * 3
+
+
+def test_what_comes_too_slowly_to_leave_is_captured_where_the_soil_has_no_answer() -> None:
+    """Below the square root of g times the smallest edge, which half of that edge's lift is the energy of."""
+    limit = math.sqrt(1e-5 * 0.1)
+
+    def silent(hits: Impacts, random: np.random.Generator) -> Rebounds:
+        nothing = np.zeros(len(hits.speed), dtype=bool)
+        return Rebounds(np.full((len(hits.speed), 3), np.nan), hits.spin, nothing, hits.speed < 0.5)
+
+    ground = SlowArrivals(silent, np.array([0.1]), np.array([0.002]))
+    hits = impacts([0.99 * limit, 1.01 * limit, 0.6], [60.0] * 3, [0] * 3)
+    found = ground(hits, np.random.default_rng(0))
+    assert (found.captured.tolist(), found.outside.tolist()) == ([True, False, False], [False, True, False])
+    assert found.velocity[0] == pytest.approx([0.99 * limit * math.sin(math.radians(60.0)), 0.0, 0.0])
+    turning = replace(hits, spin=np.tile([0.0, limit / 0.05, 0.0], (3, 1)))
+    assert not ground(turning, np.random.default_rng(0)).captured.any()
+    outward = replace(hits, effective_acceleration=np.full(3, 1e-5))
+    assert not ground(outward, np.random.default_rng(0)).captured.any()

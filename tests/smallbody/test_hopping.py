@@ -118,12 +118,20 @@ def test_a_bounce_is_told_which_lander_it_is(plain):
     assert np.isnan(away.impact_speed[0])
 
 
-def test_a_lander_that_only_its_own_motion_holds_down_slides():
+def test_a_lander_that_only_its_own_motion_holds_down_slides_until_it_leaves_the_ground():
     """Westward along the equator of Didymos it stays down, though the ground there throws off what lies on it."""
     body = didymos(partner=False)
     origin, axes = body.local_frame(0.0, 0.0, 270.0)
     assert axes[2] @ body.effective_acceleration(origin) > 0.0
-    end = hop(body, Launch(origin, 0.15 * axes[0]), HardSurface(0.6), 1e5, gravity="exact")
-    assert end.status[0] == "sliding"
-    assert 5 < end.bounce_count[0] < 100
-    assert -90.0 < end.longitude[0] < 0.0
+    launch = Launch(origin, 0.15 * axes[0])
+    stuck = hop(body, launch, HardSurface(0.6), 1e5, gravity="exact")
+    assert (stuck.status[0], stuck.slid_length[0]) == ("lofted", 0.0)
+    assert 5 < stuck.bounce_count[0] < 100
+    # Friction takes the motion that holds it down, and the spin throws it off.
+    short = hop(body, launch, HardSurface(0.6), 4000.0, friction=0.1, gravity="exact")
+    assert short.status[0] == "sliding"
+    assert short.slid_time[0] > 3000.0
+    end = hop(body, launch, HardSurface(0.6), 1e5, friction=0.6, gravity="exact")
+    assert end.status[0] == "flying"
+    assert end.slid_time[0] > 1000.0
+    assert end.path_length[0] > 100.0

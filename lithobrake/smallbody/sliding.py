@@ -1,0 +1,168 @@
+"""Landers that move along the ground, from facet to facet, until they rest or leave it.
+
+The law is Coulomb's: friction times the force that gravity, rotation and the lander's own motion press it on the ground
+with, against the velocity.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lithobrake.smallbody.body import Body
+from lithobrake.smallbody.facet_edges import first_edge, over_edges, sizes, unit
+
+Array = NDArray[np.float64]
+TURN = 0.05  # rad by which the velocity may turn in a step
+FACET_STEP = 0.25  # of a facet's size: how far a step may go
+NEAR = 1e-3  # m; a lander that comes to a stop within this does so in one step
+# A trough between facets is entered and left ever faster: what so many steps do not carry ten times NEAR rests there.
+TRAPPED = 64
+# Over mass and squared radius, of a ball: what rolls is slower to gain and to lose speed by this and one.
+ROLLING_INERTIA = 0.4
+
+
+@dataclass(frozen=True)
+class Slides:
+    """Where landers are that moved along the ground; one entry or row a lander.
+
+    position   body-fixed [m], and velocity [m/s], [count, 3]
+    time       that it took [s], and length of the way along the ground [m], [count]
+    rests      it has come to rest where the ground holds it, [count]
+    leaves     it is no longer pressed on the ground, or the ground falls away; neither: the time was over, [count]
+    """
+
+    position: Array
+    velocity: Array
+    time: Array
+    length: Array
+    rests: NDArray[np.bool_]
+    leaves: NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class OnGround:
+    """Landers on the ground: facet that each lies on, friction, mass [kg] and spin_period [s] of the body, [count].
+
+    rolls: the friction is a resistance to rolling, as a ball rolls.
+    """
+
+    body: Body
+    facet: NDArray[np.int64]
+    friction: Array
+    mass: Array
+    spin_period: Array
+    rolls: bool = False
+
+    def of(self, some: NDArray[np.int64]) -> "OnGround":
+        """Some of them."""
+        names = ("facet", "friction", "mass", "spin_period")
+        return replace(self, **{name: getattr(self, name)[some] for name in names})
+
+    @property
+    def up(self) -> Array:
+        """Outward normals of the facets, [count, 3]."""
+        return self.body.shape.normals[self.facet]
+
+    def along(self, vectors: Array) -> Array:
+        """Parts of vectors [count, 3] along the facets."""
+        part: Array = vectors - np.einsum("ni,ni->n", vectors, self.up)[:, None] * self.up
+        return part
+
+    @property
+    def braking(self) -> Array:
+        """What friction takes of the speed over what presses, [count]."""
+        return self.friction / self.inertia
+
+    @property
+    def inertia(self) -> float:
+        """What moves over the mass: more than one where the lander turns as it goes."""
+        return 1.0 + ROLLING_INERTIA if self.rolls else 1.0
+
+    def forces(self, position: Array, velocity: Array) -> tuple[Array, Array]:
+        """Force over mass [m/s2] that presses on the facet, [count], and the one along it without friction."""
+        felt = self.body.effective_acceleration(position, mass=self.mass, spin_period=self.spin_period)
+        turn = 4.0 * np.pi / self.spin_period
+        felt[:, 0] += turn * velocity[:, 1]
+        felt[:, 1] -= turn * velocity[:, 0]
+        press = -np.einsum("ni,ni->n", felt, self.up)
+        return press, felt + press[:, None] * self.up
+
+    def acceleration(self, velocity: Array, press: Array, along: Array) -> tuple[Array, Array]:
+        """Acceleration along the facet [m/s2] and unit vector of the motion, which begins downhill, [count, 3]."""
+        heading = unit(np.where(np.any(velocity, axis=1, keepdims=True), velocity, along))
+        return along / self.inertia - (self.braking * np.maximum(press, 0.0))[:, None] * heading, heading
+
+    def holds(self, velocity: Array, press: Array, along: Array) -> NDArray[np.bool_]:
+        """Which landers lie still so that friction holds them, [count]."""
+        pressed = press > 0.0
+        grip = self.friction * np.where(pressed, press, 1.0)
+        held: NDArray[np.bool_] = pressed & ~velocity.any(axis=1) & (np.linalg.norm(along, axis=1) <= grip)
+        return held
+
+
+def slide(ground: OnGround, position: Array, velocity: Array, duration: Array) -> Slides:
+    """Follow landers along the ground for at most a duration [s] each, [count].
+
+    position [m] and velocity [m/s]: body-fixed, [count, 3]; what of either is not along the facet is dropped. Infinite
+    friction stops a lander where it is.
+    """
+    count, corner = len(position), ground.body.shape.corners[ground.facet, 0]
+    position, velocity = corner + ground.along(position - corner), ground.along(velocity)
+    velocity[np.isinf(ground.friction)] = 0.0
+    facet, time, length = ground.facet.copy(), np.zeros(count), np.zeros(count)
+    rests, leaves = np.zeros(count, dtype=bool), np.zeros(count, dtype=bool)
+    going, seen, number = np.arange(count), position.copy(), 0
+    while len(going):
+        here = replace(ground.of(going), facet=facet[going])
+        press, along = here.forces(position[going], velocity[going])
+        leaves[going], held = press <= 0.0, here.holds(velocity[going], press, along)
+        if number % TRAPPED == 0 and number:
+            held |= (press > 0.0) & (np.linalg.norm(position[going] - seen[going], axis=1) < 10.0 * NEAR)
+            seen[going] = position[going]
+        rests[going] = held
+        on = np.flatnonzero((press > 0.0) & ~held & (time[going] < duration[going]))
+        going, here, press, along = going[on], here.of(on), press[on], along[on]
+        step, way, after = _step(here, position[going], velocity[going], press, along, duration[going] - time[going])
+        ends = over_edges(here.body.shape, here.facet, position[going], way, after, press, here.braking)
+        position[going], velocity[going], facet[going], leaves[going] = ends
+        time[going] += step
+        length[going] += np.linalg.norm(way, axis=1)
+        going, number = going[~leaves[going]], number + 1
+    velocity[rests] = 0.0
+    return Slides(position, velocity, time, length, rests, leaves)
+
+
+def _step(
+    ground: OnGround, position: Array, velocity: Array, press: Array, along: Array, left: Array
+) -> tuple[Array, Array, Array]:
+    """Time of a step [s], [count], the way on the facet's plane [m] and the velocity after it, [count, 3].
+
+    A step by the middle: exact on a plane under a constant force along the way. press, along: the forces at its start;
+    left: time that may pass [s].
+    """
+    push, heading = ground.acceleration(velocity, press, along)
+    speed, slowing = np.linalg.norm(velocity, axis=1), -np.einsum("ni,ni->n", push, heading)
+    across = np.linalg.norm(push + slowing[:, None] * heading, axis=1)
+    shape, facet = ground.body.shape, ground.facet
+    with np.errstate(divide="ignore", invalid="ignore"):
+        turning = np.fmax(TURN * speed / across, _time_to_go(np.full_like(speed, NEAR), speed, slowing))
+        stop = np.where((slowing > 0.0) & (speed > 0.0), speed / slowing, np.inf)
+    step = np.fmin(turning, _time_to_go(FACET_STEP * sizes(shape, facet), speed, slowing))
+    step = np.minimum(np.minimum(step, stop), left)
+    # Beyond its edge a facet is not the ground any more: a step ends right behind it.
+    way = step[:, None] * velocity + 0.5 * step[:, None] ** 2 * push
+    before = first_edge(shape, facet, position, way)[1] * np.linalg.norm(way, axis=1)
+    step = np.minimum(step, _time_to_go(before + NEAR, speed, slowing))
+    half = 0.5 * step[:, None]
+    middle = velocity + half * push
+    push, _ = ground.acceleration(middle, *ground.forces(position + half * velocity, middle))
+    way = step[:, None] * velocity + 0.5 * step[:, None] ** 2 * push
+    return step, way, np.where((step == stop)[:, None], 0.0, velocity + step[:, None] * push)
+
+
+def _time_to_go(distance: Array, speed: Array, slowing: Array) -> Array:
+    """Time [s] in which landers go a distance [m]; more than they have until they stop where they do not get there."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        time: Array = 2.0 * distance / (speed + np.sqrt(np.maximum(speed**2 - 2.0 * slowing * distance, 0.0)))
+    return np.where(np.isnan(time), np.inf, time)
