@@ -2,13 +2,14 @@
 
     python docs/validation/paper_study_figures.py
 
-Reads results/paper, results/mission, results/efficient (docs/validation/keep_results.py) and paper_study.json; writes
-paper_study_answers.png, paper_study_errors.png and paper_study.md beside itself.
+Reads results/paper, results/mission, results/efficient (docs/validation/keep_results.py), paper_study.json and
+paper_fits.json; writes paper_study_*.png and paper_study.md beside itself.
 """
 
 import csv
 import json
 import math
+import shutil
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -165,24 +166,15 @@ def error_table() -> list[str]:
     return [*lines, f"| theta+ from the normal | {PAPER_MAPE[ELEVATION]} | {cells} | | | |"]
 
 
-def draw_errors() -> None:
-    """Absolute percentage errors of the refined expansion, on its own runs and on fresh ones (the paper's Figure 5)."""
-    scores = json.loads((RESULTS / "paper" / "scores.json").read_text())
-    with plt.rc_context(STYLE):
-        figure, axes = plt.subplots(1, 3, figsize=(9.0, 3.2), constrained_layout=True)
-        for axis, output in zip(axes, OUTPUTS, strict=True):
-            sets = {name: np.array(scores[name][output]["ape"]) for name in ("refined", "test_kept")}
-            bins = np.linspace(0.0, np.quantile(np.concatenate(list(sets.values())), 0.95), 30)
-            for (name, errors), colour, word in zip(
-                sets.items(), (TRAINING, TEST), ("its own runs", "fresh runs"), strict=True
-            ):
-                axis.hist(errors, bins, density=True, color=colour, alpha=0.6, label=f"{word} ({len(errors)})")
-                axis.axvline(scores[name][output]["mape"], color=colour, ls="--", lw=1.0)
-            axis.axvline(PAPER_MAPE[output], color=INK, ls=":", lw=1.2, label="the paper's mean")
-            axis.set_xlabel(f"absolute error of {SYMBOLS[output]} [%]")
-        axes[0].set_ylabel("density")
-        axes[0].legend()
-        figure.savefig(HERE / "paper_study_errors.png", dpi=150)
+def fit_table() -> list[str]:
+    """Other fits of the same runs, and of fewer."""
+    content = json.loads((HERE / "paper_fits.json").read_text())
+    heads = " | ".join(f"{SYMBOLS[output]}: MAPE [%], Q2" for output in OUTPUTS)
+    lines = [f"| runs | fit | {heads} |", "|---" * 5 + "|"]
+    for row in content["fits"]:
+        cells = [f"{row['scores'][output]['mape']:.3g}, {row['scores'][output]['q2']:.2f}" for output in OUTPUTS]
+        lines.append(f"| {row['count']}, {row['runs']} | {row['fit']} | {' | '.join(cells)} |")
+    return lines
 
 
 def numerics_table() -> list[str]:
@@ -212,10 +204,15 @@ def time_table() -> list[str]:
     return lines
 
 
+# Pictures of the kept study that the page shows: a page can show none from outside docs/.
+SHOWN = {
+    "landing/landing.png": "landing", "figures/figure_6_outputs.png": "outputs", "figures/figure_7_map.png": "map",
+}  # fmt: skip
 PARTS = {
     "What each study says": answer_table,
     "Errors of the expansion": error_table,
-    "What the model of the soil's numbers change": numerics_table,
+    "Other fits of the same runs": fit_table,
+    "What numbers of the model change": numerics_table,
     "Cost": time_table,
 }
 HEAD = """# The paper's study: the tables
@@ -227,7 +224,8 @@ Written by `python docs/validation/paper_study_figures.py`; [The paper's study](
 def main() -> None:
     """Draw and write."""
     draw_answers()
-    draw_errors()
+    for source, name in SHOWN.items():
+        shutil.copy(RESULTS / "paper" / source, HERE / f"paper_study_{name}.png")
     parts = [f"## {title}\n\n" + "\n".join(table()) + "\n" for title, table in PARTS.items()]
     (HERE / "paper_study.md").write_text("\n".join([HEAD, *parts]))
 
