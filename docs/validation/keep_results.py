@@ -65,7 +65,8 @@ def keep(study: Path, out: Path, motion: bool) -> None:
     for table in (study / "designs").glob("*.csv"):
         shutil.copy(table, out / "runs" / table.name)
     (out / "figures").mkdir(exist_ok=True)
-    for figure in (study / "report").glob("*.png"):
+    # The sheet shows the landing in more frames than its figure.
+    for figure in sorted(set((study / "report").glob("*.png")) - {study / "report" / "figure_2_landing.png"}):
         shutil.copy(figure, out / "figures" / figure.name)
     results = lithobrake.StudyResults(study)
     (out / "rank_correlations.json").write_text(json.dumps(rank_correlations(results), indent=1) + "\n")

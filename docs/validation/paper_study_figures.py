@@ -61,15 +61,14 @@ def share(one: Entry) -> tuple[float, float, float]:
 
 def drivers(one: Entry) -> str:
     """What the variance of V+ comes from, the largest first."""
-    if one.get("variance_shares"):
-        parts = one["variance_shares"][SPEED]
-        words = {"soil": "soil", "bed": "bed", "place_and_attitude": "place and attitude"}
-        return "; ".join(
-            f"{word} {parts[part]['share']:.2f} ({parts[part]['lower']:.2f} to {parts[part]['upper']:.2f})"
-            for part, word in words.items()
-        )
-    total = one["screening"]["sobol_total"][SPEED]
-    return "; ".join(f"{name} {total[name]:.2f}" for name in sorted(total, key=lambda key: -total[key])[:3])
+    if "screening" in one:
+        total = one["screening"]["sobol_total"][SPEED]
+        return "; ".join(f"{name} {total[name]:.2f}" for name in sorted(total, key=lambda key: -total[key])[:3])
+    words = {"soil": "soil", "bed": "bed", "place_and_attitude": "place and attitude"}
+    parts = {word: one["variance_shares"][SPEED][part] for part, word in words.items()}
+    return "; ".join(
+        f"{word} {part['share']:.2f} ({part['lower']:.2f} to {part['upper']:.2f})" for word, part in parts.items()
+    )
 
 
 def every_study() -> Iterator[tuple[str, Entry]]:
@@ -99,7 +98,7 @@ def draw_answers() -> None:
     with plt.rc_context(STYLE):
         figure, axes = plt.subplots(1, 2, figsize=(9.0, 4.4), constrained_layout=True, sharey=True)
         for place, (_, one) in enumerate(studies):
-            colour = TRAINING if one.get("variance_shares") else TEST
+            colour = TEST if "screening" in one else TRAINING
             value, low, high = share(one)
             bars = [[max(value - low, 0.0)], [max(high - value, 0.0)]]
             axes[0].errorbar(value, place, xerr=bars, fmt="o", color=colour, capsize=3, ms=4.5)
