@@ -107,7 +107,7 @@ def draw_answers() -> None:
             axes[1].plot(ends, [place, place], color=colour)
             axes[1].plot(100.0 * sample["mean"], place, "o", color=colour, ms=4.5)
         axes[0].axvline(PAPER_SHARE, color=QUIET, ls="--", lw=0.8, zorder=0)
-        axes[0].text(PAPER_SHARE, len(studies) - 0.4, "the paper's 48.26 %", color=INK, ha="center", va="bottom")
+        axes[0].text(PAPER_SHARE + 0.5, 0.5 * len(studies), "the paper's 48.26 %", color=INK, rotation=90, va="center")
         axes[0].set_yticks(range(len(studies)), [name for name, _ in studies])
         axes[0].set_xlabel("landers that come down again within 12 h [%]")
         axes[1].set_xlabel("outgoing speed [cm/s]: mean, 5 to 95 %")
