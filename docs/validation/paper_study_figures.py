@@ -216,7 +216,8 @@ PARTS = {
 }
 HEAD = """# The paper's study: the tables
 
-Written by `python docs/validation/paper_study_figures.py`; [The paper's study](../paper_study.md) says what they mean.
+Written by `python docs/validation/paper_study_figures.py`; [The paper's
+study](../paper_study.md) says what they mean.
 """
 
 
