@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from lithobrake.outcomes import FlightStatus, JourneyStatus
+from lithobrake.outcomes import FlightStatus, JourneyStatus, TouchdownOutcome
 from lithobrake.reading import DamagedFileError, reading
 from lithobrake.report.error_figure import Score
 from lithobrake.report.scene import Scene, scene
@@ -97,7 +97,11 @@ class SequenceResults(Results):
         attributes = {} if self.landing is None else self.landing.moving.attributes
         if "run" not in attributes:
             return "In the first run"
-        which = "of the median speed of those that leave" if attributes["status"] == "clear" else "as none leaves"
+        which = (
+            "of the median speed of those that leave"
+            if attributes["status"] == TouchdownOutcome.CLEAR
+            else "as none leaves"
+        )
         return f"In run {str(attributes['run'])[:8]}, {which}"
 
 
