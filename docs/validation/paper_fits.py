@@ -16,18 +16,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lithobrake.chaos import LogUniform, Uniform, fit
+from lithobrake.chaos import fit
+from lithobrake.pipeline.designs import design_inputs
+from lithobrake.study import read_study
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
 from origin import origin
 
 HERE = Path(__file__).parent
 RUNS = HERE.parents[1] / "results" / "paper" / "runs"
-INPUTS = {
-    "grain.young_modulus": LogUniform(1e6, 1e7), "grain.poisson_ratio": Uniform(0.15, 0.35),
-    "grain.restitution": Uniform(0.3, 0.8), "grain.friction": Uniform(0.4, 0.9),
-    "lander.restitution": Uniform(0.4, 0.9),
-}  # fmt: skip
+INPUTS = design_inputs(read_study(RUNS.parent / "study.toml"))
 OUTPUTS = ("speed_out", "elevation_out", "spin_out")
 HELD_BACK = 50  # test runs that every fit is scored on
 WAYS: dict[str, dict[str, Any]] = {
