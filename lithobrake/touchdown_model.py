@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
-from functools import cache, lru_cache
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -118,18 +118,23 @@ def touchdown_version() -> str:
     return f"{__version__}+{engine_hash()}"
 
 
+# In all beds that a process keeps: 1000 take 13 MB. Each run takes another bed, and reading one takes longer than to
+# land on it.
+GRAINS_KEPT = 40_000
+_beds: dict[tuple[Path, int, int], "Bed"] = {}
+
+
 def stored_bed(path: Path) -> "Bed":
-    """Read a bed, once for all runs of a process as long as the file stays the same."""
-    status = path.stat()
-    return _read_bed(path, status.st_mtime_ns, status.st_size)
-
-
-# The beds of a study of the default size: each run takes another. A bed of 1000 grains takes 13 MB.
-@lru_cache(maxsize=24)
-def _read_bed(path: Path, _changed: int, _size: int) -> "Bed":
+    """Read a bed, once for all runs of a process as long as the file stays the same and there is room for it."""
     from lithobrake.touchdown import Bed
 
-    return Bed.load(path)
+    status = path.stat()
+    key = path, status.st_mtime_ns, status.st_size
+    # The last is the one that was used last.
+    _beds[key] = bed = _beds.pop(key, None) or Bed.load(path)
+    while len(_beds) > 1 and sum(len(one.grains) for one in _beds.values()) > GRAINS_KEPT:
+        del _beds[next(iter(_beds))]
+    return bed
 
 
 def draw(study: Study, values: Values, seed: int) -> dict[str, float]:

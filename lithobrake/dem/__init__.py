@@ -5,12 +5,13 @@ Other parts use this one by the names that stand here.
 
 from lithobrake.dem.assembly import rotation_matrices
 from lithobrake.dem.material import Material
+from lithobrake.dem.observables import BodyMotion
 from lithobrake.dem.rigid_body import checked_inertia
 from lithobrake.dem.shape import Box, ConvexHull, Shape, Sphere, equivalent_radius
 from lithobrake.dem.timestep import contact_duration
 from lithobrake.dem.world import World
 
 __all__ = [
-    "Box", "ConvexHull", "Material", "Shape", "Sphere", "World", "checked_inertia", "contact_duration",
+    "BodyMotion", "Box", "ConvexHull", "Material", "Shape", "Sphere", "World", "checked_inertia", "contact_duration",
     "equivalent_radius", "rotation_matrices",
 ]  # fmt: skip

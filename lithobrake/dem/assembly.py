@@ -1,15 +1,12 @@
 """From what a person adds to a world to the arrays that kernels work on."""
 
-from typing import Any
-
 import numpy as np
-from numpy.typing import NDArray
 
 from lithobrake.dem.arrays import Bodies, Cores, Floats, Integers, Laws, Planes
 from lithobrake.dem.material import Material, pair_law
 from lithobrake.dem.motion import write_matrices, write_rotations
 from lithobrake.dem.rigid_body import Plane, RigidBody
-from lithobrake.dem.shape import ConvexHull, Shape, Sphere, equivalent_radius
+from lithobrake.dem.shape import Shape, Sphere
 
 
 def shapes_of(bodies: list[RigidBody]) -> list[Shape]:
@@ -42,30 +39,20 @@ def rotation_matrices(quaternions: Floats) -> Floats:
 
 def cores_of(shapes: list[Shape]) -> Cores:
     """Lay the convex cores of shapes one after the other."""
-    vertex, normal, offset, edge, line, adjacent_face = [], [], [], [], [], []
-    for shape in shapes:
-        vertex.append(shape.core)
-        if isinstance(shape, ConvexHull):
-            core = shape.core_polyhedron
-            normal.append(core.face_normals)
-            offset.append(core.face_offsets)
-            edge.append(core.edges)
-            line.append(shape.core[core.edges[:, :2]])
-            adjacent_face += core.adjacent_faces
-        else:
-            normal.append(np.zeros((0, 3)))
-            offset.append(np.zeros(0))
-            edge.append(np.zeros((0, 4), dtype=np.int64))
+    cores = [shape.core_polyhedron for shape in shapes]
 
-    def starts(parts: list) -> np.ndarray:
-        return np.concatenate([[0], np.cumsum([len(part) for part in parts])]).astype(np.int64)
+    def starts(counts: list[int] | np.ndarray) -> np.ndarray:
+        return np.concatenate([[0], np.cumsum(counts)]).astype(np.int64)
 
-    ends = np.concatenate([np.zeros((0, 2, 3)), *line])
-    no_face = np.zeros(0, dtype=np.int64)
+    lines = np.concatenate([core.lines for core in cores])
     return Cores(
-        np.concatenate(vertex), starts(vertex), np.concatenate(normal), np.concatenate(offset), starts(normal),
-        np.concatenate(edge), starts(edge), ends[:, 0].copy(), ends[:, 1] - ends[:, 0],
-        np.concatenate([no_face, *adjacent_face]), starts(adjacent_face),
+        np.concatenate([core.vertices for core in cores]), starts([len(core.vertices) for core in cores]),
+        np.concatenate([core.face_normals for core in cores]), np.concatenate([core.face_offsets for core in cores]),
+        starts([len(core.face_offsets) for core in cores]),
+        np.concatenate([core.edges for core in cores]), starts([len(core.edges) for core in cores]),
+        lines[:, 0].copy(), lines[:, 1] - lines[:, 0],
+        np.concatenate([core.adjacent_faces for core in cores]),
+        starts(np.concatenate([core.edges_of_face for core in cores])),
         np.array([shape.rounding for shape in shapes]),
     )  # fmt: skip
 
@@ -87,9 +74,15 @@ def planes_of(planes: list[Plane], materials: list[Material], body_count: int) -
     return Planes(normal, offset, material_numbers(planes, materials), meets)
 
 
-def inverse_inertias(bodies: list[RigidBody]) -> NDArray[Any]:
-    """Return the inverses of the inertias of bodies [1/(kg m2)], shape [body_count, 3, 3], body frame."""
-    return np.linalg.inv(np.array([body.inertia for body in bodies]).reshape(-1, 3, 3))
+def inverses(matrices: Floats) -> Floats:
+    """Return the inverses of matrices, shape [count, 3, 3]."""
+    inverse: Floats = np.linalg.inv(matrices).astype(np.float64)
+    return inverse
+
+
+def inertias(bodies: list[RigidBody]) -> Floats:
+    """Return the inertias of bodies [kg m2], shape [body_count, 3, 3], body frame."""
+    return np.array([body.inertia for body in bodies]).reshape(-1, 3, 3)
 
 
 def bodies_of(
@@ -97,14 +90,15 @@ def bodies_of(
 ) -> Bodies:
     """Return bodies as arrays, in a motion of position, velocity, quaternion and angular_momentum."""
     n, bounding = len(bodies), np.array([body.shape.bounding_radius for body in bodies])
+    inertia = inertias(bodies)
     arrays = Bodies(
         shape=shape_numbers(bodies, shapes),
         material=material_numbers(bodies, materials),
         mass=np.array([body.mass for body in bodies]), inverse_mass=np.array([1.0 / body.mass for body in bodies]),
-        inverse_inertia_body=inverse_inertias(bodies),
-        isotropic=np.array([np.array_equal(body.inertia, body.inertia[0, 0] * np.eye(3)) for body in bodies]),
-        contact_radius=np.array([equivalent_radius(body.shape) for body in bodies]),
-        curvature=np.array([1.0 / equivalent_radius(body.shape) for body in bodies]),
+        inverse_inertia_body=inverses(inertia),
+        isotropic=(inertia == inertia[:, :1, :1] * np.eye(3)).all(axis=(1, 2)),
+        contact_radius=np.array([body.shape.contact_radius for body in bodies]),
+        curvature=np.array([1.0 / body.shape.contact_radius for body in bodies]),
         bounding_radius=bounding, turning_radius=np.where([isinstance(b.shape, Sphere) for b in bodies], 0.0, bounding),
         position=motion["position"], velocity=motion["velocity"], quaternion=motion["quaternion"],
         angular_momentum=motion["angular_momentum"], rotation=np.zeros((n, 3, 3)), inverse_inertia=np.zeros((n, 3, 3)),

@@ -80,7 +80,7 @@ def read_checkpoint(path: str | os.PathLike[str]) -> tuple[WorldState, Step, dic
     state.motion = {name: data[f"body/{name}"].copy() for name in state.motion}
     damping_with_reduced_mass = state.options["damping_mass"] == "paper"
     step = Step(0.0, float(attributes["drag"]), tuple(data["gravity"].tolist()), damping_with_reduced_mass)
-    _restore(state.assembled(step), data, float(attributes["skin"]))
+    _restore(state.stepping_together(step), data, float(attributes["skin"]))
     state.lost[:] = data["lost"]
     return state, step, json.loads(attributes["clock"])
 
@@ -92,7 +92,8 @@ def _add_members(state: WorldState, data: dict[str, Any], attributes: dict[str, 
     for shape, material, mass, inertia in zip(
         data["body/shape"], data["body/material"], data["body/mass"], data["body/inertia"], strict=True
     ):
-        state.bodies.append(RigidBody(shapes[shape], materials[material], float(mass), inertia))
+        uniform = np.array_equal(inertia, shapes[shape].inertia_per_density * (float(mass) / shapes[shape].volume))
+        state.bodies.append(RigidBody(shapes[shape], materials[material], float(mass), inertia, uniform))
     for k, everything in enumerate(json.loads(attributes["meets_all"])):
         meets = None if everything else frozenset(np.flatnonzero(data["plane/meets"][k]).tolist())
         material = materials[data["plane/material"][k]]

@@ -6,9 +6,10 @@ from lithobrake.dem.arrays import Floats, Pairs
 from lithobrake.dem.contact_law import DAMPING, FRICTION, ROLLING
 
 
-def kinetic(mass: Floats, velocity: Floats, spin: Floats, angular_momentum: Floats) -> Floats:
-    """Return the kinetic energy of each body [J]."""
-    return 0.5 * (mass * (velocity * velocity).sum(axis=1) + (spin * angular_momentum).sum(axis=1))
+def kinetic(mass: Floats | float, velocity: Floats, spin: Floats, angular_momentum: Floats) -> Floats:
+    """Return the kinetic energy [J] of bodies, shape [...], from vectors of shape [..., 3]."""
+    energy: Floats = 0.5 * (mass * (velocity * velocity).sum(axis=-1) + (spin * angular_momentum).sum(axis=-1))
+    return energy
 
 
 def ledger(

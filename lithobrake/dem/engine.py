@@ -60,8 +60,8 @@ class Engine:
         self.lost, self.watch_record = lost, watch_record
         self.skin = SKIN * float(self.bodies.bounding_radius.min())
         self.thread_count, self.pool = thread_count, pool_of(thread_count)
+        # Neighbours are not listed yet, and no list of features says when it was made.
         self.gather(pairs)
-        self._list_neighbours()
         self.pairs.wake[:] = 0.0
 
     def advance(self, steps: int, step: Step, watched: int) -> tuple[int, int]:
@@ -74,7 +74,7 @@ class Engine:
             taken, reason, drifted = self._advance(left, drifted, step, watched)
             left -= taken
             if reason == LIST_USED_UP:
-                self._list_neighbours()
+                self.list_neighbours()
             elif reason == FEATURES_OVERFLOW:
                 self.gather(with_more_overflow(self.pairs))
             elif reason != DONE:
@@ -112,11 +112,6 @@ class Engine:
         self.skin = skin
         self.gather(pairs)
 
-    def renew(self, pairs: Pairs) -> None:
-        """Go on with pairs that came and went one by one: neighbours are listed anew, contacts keep their history."""
-        self.pairs = pairs
-        self._list_neighbours()
-
     def use_threads(self, thread_count: int) -> None:
         """Go on with so many threads."""
         self.thread_count, self.pool = thread_count, pool_of(thread_count)
@@ -146,7 +141,8 @@ class Engine:
         """How far a surface may come nearer to others before neighbours are listed anew [m]."""
         return 0.5 * (1.0 - BOUND_SLACK) * self.skin
 
-    def _list_neighbours(self) -> None:
+    def list_neighbours(self) -> None:
+        """List neighbours anew; contacts keep their history."""
         self.book()
         first, second = neighbouring_pairs(self.bodies, self.cores, self.planes, self.scratch, self.skin)
         self.gather(carry_over(self.pairs, first, second))

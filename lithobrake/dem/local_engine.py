@@ -68,7 +68,8 @@ class LocalEngine:
         skin = SKIN * float(np.median(engine.bodies.bounding_radius))
         self.rules = Rules(step.gravity, step.drag, step.paper_mass, setting.steps_per_contact, skin)
         self.cells = cells_of(engine.bodies, skin)
-        self.record: Floats = np.array([0.0, -1.0, -1.0])
+        self.record: Floats = np.array([0.0, -1.0, -1.0, 0.0])
+        self.summed = True  # the forces on each body stand in the engine's arrays
         self.plans: Plans
         self.agenda: Agenda
         count = len(engine.pairs.first)
@@ -127,8 +128,14 @@ class LocalEngine:
                 break
         self.time = end
         fly_all_to(engine.bodies, self.flight, end, self.rules)
-        sum_forces(engine.bodies, self.pairs, self.reactions)
+        self.summed = False
         return reason == LISTED and bool(np.isfinite(engine.bodies.travel).all())
+
+    def sum_forces(self) -> None:
+        """Let the engine's arrays have the forces that the contacts had when they were last looked at."""
+        if not self.summed:
+            sum_forces(self.engine.bodies, self.pairs, self.reactions)
+            self.summed = True
 
     def hold(self, share: float, reach: float) -> None:
         """Hold what is slower than a share of the watched body and beyond a reach [m] of it, and let go the rest."""
@@ -142,8 +149,10 @@ class LocalEngine:
         """Leave the engine with its pairs in order, ready for steps that all contacts share."""
         pairs = self.pairs
         self.hold(0.0, 0.0)
+        self.sum_forces()
         self.engine.book()
         used = np.flatnonzero(pairs.first >= 0)
         used = used[np.lexsort((pairs.second[used], pairs.first[used]))]
         arrays = {name: getattr(pairs, name)[used] for name in Pairs._fields[:-1]}
-        self.engine.renew(with_overflow_where_used(Pairs(**arrays, overflow=pairs.overflow)))
+        self.engine.pairs = with_overflow_where_used(Pairs(**arrays, overflow=pairs.overflow))
+        self.engine.list_neighbours()

@@ -39,8 +39,9 @@ NO_ROOM = 3
 STEPS_NEAR, NARROWEST = 10.0, 1e-3
 # Largest c dt + (w dt)^2 / 4 of one contact, see stability.py; kicks follow each other, so each must be stable alone.
 STABLE_PART = 0.6
-# What is recorded of a watched body, and where: largest force [N], first and last instant of touch [s; -1: none].
-PEAK, FIRST_TOUCH, LAST_TOUCH = 0, 1, 2
+# What is recorded of a watched body, and where: largest force [N], first and last instant of touch [s; -1: none], and
+# whether anything touches it (1) or not (0).
+PEAK, FIRST_TOUCH, LAST_TOUCH, TOUCHED = 0, 1, 2, 3
 
 
 @kernel
@@ -245,7 +246,10 @@ def meet(
 def record_touch(
     pairs: Pairs, reactions: Reactions, flight: Flight, plans: Plans, watched: int, now: float, record: Floats
 ) -> None:  # fmt: skip
-    """Note the largest force on the watched body, and when it was first and last touched. Writes to record."""
+    """Note the largest force on the watched body, when it was touched first and last, and whether it is now.
+
+    Writes to record.
+    """
     force, touched, entry = (0.0, 0.0, 0.0), False, flight.head[watched]
     while entry >= 0:
         pair = entry >> 1
@@ -253,6 +257,7 @@ def record_touch(
             touched = True
             force = plus(force, scaled(1.0 if entry & 1 else -1.0, row(reactions.force, pair)))
         entry = plans.link[entry]
+    record[TOUCHED] = 1.0 if touched else 0.0
     if touched:
         record[PEAK] = max(record[PEAK], dot(force, force) ** 0.5)
         if record[FIRST_TOUCH] < 0.0:

@@ -134,11 +134,12 @@ def with_more_overflow(pairs: Pairs) -> Pairs:
 
 
 def with_overflow_for_all(pairs: Pairs) -> Pairs:
-    """Return the pairs, each with a row for as many features as any asks for: so they seldom ask again."""
+    """Return the pairs, each with a row for twice as many features as any asks for: so they seldom ask again."""
     roomy = with_more_overflow(pairs)
-    rows = np.zeros((len(pairs.first), roomy.overflow.shape[1]), dtype=np.int64)
+    width = roomy.overflow.shape[1]
+    rows = np.zeros((len(pairs.first), 2 * width), dtype=np.int64)
     using = np.flatnonzero(roomy.overflow_row >= 0)
-    rows[using] = roomy.overflow[roomy.overflow_row[using]]
+    rows[using, :width] = roomy.overflow[roomy.overflow_row[using]]
     roomy.overflow_row[:] = np.arange(len(rows))
     return roomy._replace(overflow=rows)
 

@@ -1,7 +1,7 @@
 """What a person reads of a world: its motion, its forces and contacts, its energies."""
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -10,10 +10,27 @@ from lithobrake.dem import energy, timestep
 from lithobrake.dem.arrays import Floats, Step
 from lithobrake.dem.contacts import contacts_of
 from lithobrake.dem.engine import Engine
+from lithobrake.dem.local_steps import TOUCHED
 from lithobrake.dem.rigid_body import Plane, RigidBody, vector
 from lithobrake.dem.stability import largest_step
 from lithobrake.dem.time_loop import WATCHED
 from lithobrake.dem.world_state import WorldState
+
+
+class BodyMotion(NamedTuple):
+    """How one body moves, world frame."""
+
+    position: Floats  # m, of the centroid, [3]
+    velocity: Floats  # m/s, [3]
+    orientation: Floats  # unit quaternion w, x, y, z, body to world
+    angular_momentum: Floats  # kg m2/s, about the centroid, [3]
+    spin: Floats  # rad/s, [3]
+    mass: float  # kg
+
+    @property
+    def kinetic_energy(self) -> float:
+        """Kinetic energy [J]."""
+        return float(energy.kinetic(self.mass, self.velocity, self.spin, self.angular_momentum))
 
 
 class Observables:
@@ -40,8 +57,8 @@ class Observables:
         reduced = self._state.options["damping_mass"] == "paper"
         return Step(time_step, float(self.drag), tuple(self.gravity), reduced)
 
-    def _assembled(self) -> Engine:
-        return self._state.assembled(self._step(0.0))
+    def _read(self) -> Engine:
+        return self._state.read(self._step(0.0))
 
     @property
     def bodies(self) -> list[RigidBody]:
@@ -56,7 +73,7 @@ class Observables:
     @property
     def mass(self) -> Floats:
         """Masses [kg], shape [body_count]."""
-        return np.array([body.mass for body in self.bodies])
+        return self._state.mass.copy()
 
     @property
     def inertia(self) -> Floats:
@@ -88,19 +105,28 @@ class Observables:
     @property
     def spin(self) -> Floats:
         """Angular velocities [rad/s], shape [body_count, 3], world frame."""
-        return self._state.spin()
+        return self._state.spin(slice(None))
+
+    def motion_of(self, body: int) -> BodyMotion:
+        """Return how one body moves: cheaper than the arrays of all."""
+        number = range(len(self.bodies))[body]
+        motion = {name: array[number].copy() for name, array in self._state.motion.items()}
+        return BodyMotion(
+            motion["position"], motion["velocity"], motion["quaternion"], motion["angular_momentum"],
+            self._state.spin(slice(number, number + 1))[0], self.bodies[number].mass,
+        )  # fmt: skip
 
     # --- forces and contacts -------------------------------------------------------------------------------------
 
     @property
     def contact_force(self) -> Floats:
         """Sum of the contact forces on each body [N], shape [body_count, 3]."""
-        return self._assembled().bodies.force.copy()
+        return self._read().bodies.force.copy()
 
     @property
     def contact_torque(self) -> Floats:
         """Sum of the torques of the contacts on each body about its centroid [N m], world frame, [body_count, 3]."""
-        return self._assembled().bodies.torque.copy()
+        return self._read().bodies.torque.copy()
 
     @property
     def watched(self) -> dict[str, float]:
@@ -110,8 +136,16 @@ class Observables:
         """
         local = self._state.local
         if local is not None:
-            return dict(zip(WATCHED, local.record.tolist(), strict=True))
+            return dict(zip(WATCHED, local.record[: len(WATCHED)].tolist(), strict=True))
         return {name: float(self._state.watch_record[place]) for name, place in WATCHED.items()}
+
+    @property
+    def is_touched(self) -> bool:
+        """Whether anything touches the watched body."""
+        local = self._state.local
+        if local is not None:
+            return bool(local.record[TOUCHED])
+        return bool(self._read().bodies.force[self._state.watched].any())
 
     def contacts(self) -> NDArray[Any]:
         """Return the contacts (overlap > 0), a structured array.
@@ -119,7 +153,7 @@ class Observables:
         body_a, body_b (plane k is -1 - k), point [m], normal from a to b, overlap [m], normal_force [N],
         tangential_force on b [N, 3].
         """
-        return contacts_of(self._assembled().pairs)
+        return contacts_of(self._read().pairs)
 
     @property
     def largest_step(self) -> float:
@@ -127,7 +161,7 @@ class Observables:
 
         How it follows from them: stability.py.
         """
-        engine, paper_mass = self._assembled(), self._step(0.0).paper_mass
+        engine, paper_mass = self._read(), self._step(0.0).paper_mass
         return float(largest_step(engine.bodies, engine.planes, engine.pairs, engine.laws, paper_mass))
 
     def shortest_contact(self, speed: float) -> float:
@@ -146,6 +180,6 @@ class Observables:
 
     def energy(self) -> dict[str, float]:
         """Return the energy ledger [J]: see energy.ledger: kinetic, potential, elastic, cohesive, lost ones, total."""
-        engine = self._assembled()
+        engine = self._read()
         kinetic = float(self.kinetic_energy.sum())
         return energy.ledger(kinetic, self.mass, self.position, self.gravity, engine.pairs, engine.losses())

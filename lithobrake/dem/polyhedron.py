@@ -25,11 +25,26 @@ class Polyhedron:
     edges: NDArray[np.int64]  # [edge_count, 4]: from vertex, to vertex, left face, right face
 
     @cached_property
-    def adjacent_faces(self) -> list[NDArray[np.int64]]:
-        """The faces across the edges of each face."""
-        left, right = self.edges[:, 2], self.edges[:, 3]
-        faces = range(len(self.face_normals))
-        return [np.concatenate([right[left == face], left[right == face]]) for face in faces]
+    def lines(self) -> NDArray[np.float64]:
+        """Where each edge begins and ends [m], [edge_count, 2, 3]."""
+        return self.vertices[self.edges[:, :2]]
+
+    @cached_property
+    def adjacent_faces(self) -> NDArray[np.int64]:
+        """The faces across the edges of each face, face by face, [2 edge_count]."""
+        left, right = self.edges[:, 2:].T
+        return np.concatenate([right, left])[np.argsort(np.concatenate([left, right]), kind="stable")]
+
+    @cached_property
+    def edges_of_face(self) -> NDArray[np.int64]:
+        """How many edges each face has, [face_count]."""
+        return np.bincount(self.edges[:, 2:].ravel(), minlength=len(self.face_normals))
+
+
+def single_point() -> Polyhedron:
+    """Return a point at the origin: the core of a sphere."""
+    none, vectors = np.zeros(0, dtype=np.int64), np.zeros((0, 3))
+    return Polyhedron(np.zeros((1, 3)), vectors, np.zeros(0), none.reshape(0, 3), none, none.reshape(0, 4))
 
 
 def power_of_two_above(value: float) -> float:

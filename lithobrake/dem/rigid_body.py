@@ -1,7 +1,9 @@
 """Bodies and planes as a person adds them to a world, and the checks of their values."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import repeat
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -21,21 +23,14 @@ class RigidBody:
     material: Material
     mass: float  # kg
     inertia: Floats  # kg m2, [3, 3], about the centroid, in the frame the shape was given in
+    is_uniform: bool = False  # its mass is known to be spread evenly
 
     @cached_property
     def smallest_mass_at_contact(self) -> float:
-        """Smallest mass [kg] that a contact force meets: 1/(n . W . n) over the corners of the faces.
-
-        A cube's corner pushed along the normal of one of its faces weighs a quarter of the cube.
-        """
-        if not isinstance(self.shape, ConvexHull):
-            return self.mass
-        surface = self.shape.polyhedron
-        normals = np.repeat(surface.face_normals[surface.triangle_face], 3, axis=0)
-        arms = surface.vertices[surface.triangles.ravel()] - self.shape.centroid
-        turns = np.cross(arms, normals)
-        turning = np.einsum("ij,ij->i", turns, np.linalg.solve(self.inertia, turns.T).T)
-        return float(1.0 / (1.0 / self.mass + turning).max())
+        """Smallest mass [kg] that a contact force meets."""
+        if self.is_uniform or not isinstance(self.shape, ConvexHull):
+            return self.mass * self.shape.smallest_mass_fraction
+        return self.mass * self.shape.mass_fraction(self.inertia / self.mass)
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,8 +51,21 @@ def new_body(shape: Shape, material: Material, mass: float | None, inertia: Arra
     if mass is not None and not 0.0 < mass < np.inf:
         raise ValueError(f"add_body mass is {mass!r} kg; allowed is a finite value above 0: change it")
     mass = material.density * shape.volume if mass is None else float(mass)
-    tensor = shape.inertia_per_density * (mass / shape.volume) if inertia is None else inertia
-    return RigidBody(shape, material, mass, checked_inertia(tensor, "add_body inertia"))
+    if inertia is None:
+        return RigidBody(shape, material, mass, shape.inertia_per_density * (mass / shape.volume), is_uniform=True)
+    return RigidBody(shape, material, mass, checked_inertia(inertia, "add_body inertia"), is_uniform=False)
+
+
+def uniform_bodies(shapes: Sequence[Shape], material: Material) -> list[RigidBody]:
+    """Return bodies of one material, as new_body makes each."""
+    volume = np.array([shape.volume for shape in shapes])
+    mass = material.density * volume
+    inertia = (
+        np.array([shape.inertia_per_density for shape in shapes]).reshape(-1, 3, 3) * (mass / volume)[:, None, None]
+    )
+    return [
+        RigidBody(*one, is_uniform=True) for one in zip(shapes, repeat(material), mass.tolist(), inertia, strict=False)
+    ]
 
 
 def checked_inertia(inertia: ArrayLike, name: str) -> Floats:
@@ -88,10 +96,27 @@ def vector(value: ArrayLike, name: str) -> Floats:
     return array
 
 
+def rows(value: ArrayLike, width: int, count: int, name: str) -> Floats:
+    """Return finite numbers, [count, width]. Raises ValueError for anything else."""
+    array = np.array(value, dtype=np.float64)
+    if array.shape != (count, width) or not np.isfinite(array).all():
+        raise ValueError(
+            f"add_bodies {name} has shape {array.shape}; allowed are finite numbers in {(count, width)}, one row a "
+            "shape: change it"
+        )
+    return array
+
+
 def unit(value: ArrayLike, name: str) -> Floats:
     """Return a vector of unit length. Raises ValueError where it has none."""
-    array = np.array(value, dtype=np.float64)
-    length = float(np.sqrt((array * array).sum()))
-    if not 0.0 < length < np.inf:
-        raise ValueError(f"{name} is {value!r}; allowed is any finite vector other than zero: change it")
-    return array / length
+    return units(np.array(value, dtype=np.float64)[None], name)[0]
+
+
+def units(vectors: Floats, name: str) -> Floats:
+    """Return vectors of unit length, [count, 3 or 4]. Raises ValueError where one has none."""
+    length = np.sqrt((vectors * vectors).sum(axis=1))
+    if not ((length > 0.0) & (length < np.inf)).all():
+        wrong = vectors[~((length > 0.0) & (length < np.inf))][0].tolist()
+        raise ValueError(f"{name} is {wrong}; allowed is any finite vector other than zero: change it")
+    unit: Floats = vectors / length[:, None]
+    return unit

@@ -13,7 +13,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lithobrake.dem.polyhedron import MassProperties, Polyhedron, convex_polyhedron, mass_properties
+from lithobrake.dem.polyhedron import MassProperties, Polyhedron, convex_polyhedron, mass_properties, single_point
 
 # Rounding radius over the distance from the centroid to the nearest face.
 ROUNDING_FRACTION = 0.02
@@ -33,7 +33,13 @@ class Shape(Protocol):
     @property
     def core(self) -> NDArray[np.float64]: ...  # m, [vertex_count, 3], about the centroid
     @property
+    def core_polyhedron(self) -> Polyhedron: ...  # the same, with its faces and edges
+    @property
     def bounding_radius(self) -> float: ...  # m, about the centroid
+    @property
+    def contact_radius(self) -> float: ...  # m, of the sphere of equal volume: enters Hertz' law
+    @property
+    def smallest_mass_fraction(self) -> float: ...  # of a uniform body's mass, that a contact force meets
 
 
 class Sphere:
@@ -47,8 +53,11 @@ class Sphere:
         self.centroid = np.zeros(3)
         self.inertia_per_density = 0.4 * self.volume * self.radius**2 * np.eye(3)
         self.rounding = self.radius
-        self.core = np.zeros((1, 3))
+        self.core_polyhedron = single_point()
+        self.core = self.core_polyhedron.vertices
         self.bounding_radius = self.radius
+        self.contact_radius = self.radius
+        self.smallest_mass_fraction = 1.0
 
 
 class ConvexHull:
@@ -104,6 +113,29 @@ class ConvexHull:
     def bounding_radius(self) -> float:
         """Radius of a sphere about the centroid that holds the rounded body [m]."""
         return float(np.linalg.norm(self.core, axis=1).max()) + self.rounding
+
+    @cached_property
+    def contact_radius(self) -> float:
+        """Radius of the sphere of equal volume [m]."""
+        return equivalent_radius(self)
+
+    @cached_property
+    def smallest_mass_fraction(self) -> float:
+        """Part of its mass, spread evenly, that a contact force meets at least."""
+        return self.mass_fraction(self.inertia_per_density / self.volume)
+
+    def mass_fraction(self, inertia_per_mass: NDArray[np.float64]) -> float:
+        """Return the part of a mass that a contact force meets at least, with an inertia over mass [m2, 3 x 3].
+
+        1/(1 + m n . W . n) over the corners of the faces: a cube's corner pushed along the normal of one of its faces
+        weighs a quarter of the cube.
+        """
+        surface = self.polyhedron
+        normals = np.repeat(surface.face_normals[surface.triangle_face], 3, axis=0)
+        arms = surface.vertices[surface.triangles.ravel()] - self.centroid
+        turns = np.cross(arms, normals)
+        turning = np.einsum("ij,ij->i", turns, np.linalg.solve(inertia_per_mass, turns.T).T)
+        return float(1.0 / (1.0 + turning.max()))
 
 
 class Box(ConvexHull):

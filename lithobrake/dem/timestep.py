@@ -7,7 +7,6 @@ import numpy as np
 from lithobrake.dem.arrays import Floats
 from lithobrake.dem.material import Material, pair_law
 from lithobrake.dem.rigid_body import Plane, RigidBody
-from lithobrake.dem.shape import equivalent_radius
 
 # Steps in the shortest contact when a world chooses its own step.
 STEPS_PER_CONTACT = 50.0
@@ -59,7 +58,7 @@ def shortest_contact(bodies: list[RigidBody], planes: list[Plane], options: dict
     """
     if not speed > 0.0:
         raise ValueError("World time_step cannot be chosen while nothing moves or falls: give a time_step [s]")
-    parts = [(b.material, b.smallest_mass_at_contact, equivalent_radius(b.shape)) for b in bodies]
+    parts = [(b.material, b.smallest_mass_at_contact, b.shape.contact_radius) for b in bodies]
     made_of = [plane.material for plane in planes]
     rules = options["shear_modulus_rule"], options["pair_rule"]
     duration = shortest_contact_duration(parts, made_of, speed, *rules)

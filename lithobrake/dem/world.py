@@ -5,6 +5,7 @@ import os
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict
 
+import numpy as np
 from numpy.typing import ArrayLike
 
 from lithobrake.dem import timestep
@@ -14,7 +15,7 @@ from lithobrake.dem.clock import Clock, checked_count, checked_step
 from lithobrake.dem.local_engine import FEWEST_STEPS, Setting
 from lithobrake.dem.material import Material, contact_options
 from lithobrake.dem.observables import Observables
-from lithobrake.dem.rigid_body import Plane, new_body, unit, vector
+from lithobrake.dem.rigid_body import Plane, new_body, rows, uniform_bodies, unit, units, vector
 from lithobrake.dem.shape import Shape
 from lithobrake.dem.time_loop import DIVERGED, STEP_TOO_LARGE
 from lithobrake.dem.world_state import NOTHING_WATCHED, WorldState
@@ -75,7 +76,24 @@ class World(Observables):
             "angular_momentum": rotation @ (body.inertia @ (rotation.T @ vector(spin, "add_body spin"))),
         }
         self._clock.choose_anew()
-        return self._state.add_body(body, motion)
+        return self._state.add_bodies([body], {name: value[None] for name, value in motion.items()})
+
+    def add_bodies(
+        self, shapes: Sequence[Shape], material: Material, position: ArrayLike, orientation: ArrayLike
+    ) -> range:
+        """Add bodies at rest, of one material, and return their numbers.
+
+        position [m], shape [count, 3], and orientation, [count, 4], as of add_body, which takes far longer for many.
+        Raises ValueError for values that are not finite, and for other shapes.
+        """
+        place, turn = rows(position, 3, len(shapes), "position"), rows(orientation, 4, len(shapes), "orientation")
+        quaternion = units(turn, "add_bodies orientation")
+        bodies = uniform_bodies(shapes, material)
+        rest = np.zeros_like(place)
+        motion = {"position": place, "velocity": rest, "quaternion": quaternion, "angular_momentum": rest}
+        self._clock.choose_anew()
+        last = self._state.add_bodies(bodies, motion)
+        return range(last + 1 - len(shapes), last + 1)
 
     def add_plane(
         self,

@@ -6,7 +6,7 @@ The engine advances `motion` in place, so what a person reads of it needs no eng
 import numpy as np
 
 from lithobrake.dem.arrays import Floats, Pairs, Step
-from lithobrake.dem.assembly import inverse_inertias, rotation_matrices
+from lithobrake.dem.assembly import inertias, inverses, rotation_matrices
 from lithobrake.dem.contact_law import LOSSES
 from lithobrake.dem.engine import Engine
 from lithobrake.dem.local_engine import LocalEngine, Setting
@@ -34,45 +34,79 @@ class WorldState:
         self.watched, self.watch_record = NOTHING_WATCHED, np.zeros(4)  # see time_loop.py
         self.thread_count = 1
         self.engine: Engine | None = None
+        self.reader: Engine | None = None  # in place of an engine, as long as there is none
         self.local: LocalEngine | None = None
-        self._inverse_inertia = np.zeros((0, 3, 3))
+        self._mass: Floats = np.zeros(0)
+        self._inverse_inertia: Floats = np.zeros((0, 3, 3))
 
-    def add_body(self, body: RigidBody, motion: dict[str, Floats]) -> int:
-        """Add a body in its motion, by the names above; return its number."""
+    def add_bodies(self, bodies: list[RigidBody], motion: dict[str, Floats]) -> int:
+        """Add bodies in their motion, by the names above, [count, 3 or 4]; return the number of the last."""
         self.disassemble()
-        self.motion = {name: np.vstack([array, motion[name]]) for name, array in self.motion.items()}
-        self.bodies.append(body)
+        self.motion = {name: np.concatenate([array, motion[name]]) for name, array in self.motion.items()}
+        self.bodies += bodies
         return len(self.bodies) - 1
 
-    def assembled(self, step: Step) -> Engine:
-        """Return the engine for what is in the world now, with the forces of the motion at hand.
+    @property
+    def mass(self) -> Floats:
+        """Masses [kg], shape [body_count]."""
+        if len(self._mass) != len(self.bodies):
+            self._mass = np.array([body.mass for body in self.bodies])
+        return self._mass
 
-        A new one takes a step of no duration first, for which gravity and drag are those of `step`.
+    @property
+    def inverse_inertia(self) -> Floats:
+        """Inverses of the inertias [1/(kg m2)], shape [body_count, 3, 3], body frame."""
+        if len(self._inverse_inertia) != len(self.bodies):
+            self._inverse_inertia = inverses(inertias(self.bodies))
+        return self._inverse_inertia
+
+    def read(self, step: Step) -> Engine:
+        """Return an engine with the forces of the motion at hand, to be read: nothing that comes later depends on it.
+
+        Where nothing has been stepped yet, one on copies takes a step of no duration, with gravity and drag of `step`.
         """
-        if self.engine is None:
-            self.engine = Engine(
-                self.bodies, self.planes, self.options, self.motion, self.pairs, self.lost, self.watch_record,
-                self.thread_count,
-            )  # fmt: skip
-            self.engine.advance(1, step._replace(time_step=0.0), NOTHING_WATCHED)
-        return self.engine
+        if self.local is not None:
+            self.local.sum_forces()
+        if self.engine is not None:
+            return self.engine
+        if self.reader is None:
+            motion = {name: array.copy() for name, array in self.motion.items()}
+            pairs = self.pairs._replace(**{name: array.copy() for name, array in self.pairs._asdict().items()})
+            self.reader = self._ready(motion, pairs, self.lost.copy(), step)
+        return self.reader
 
     def stepping_together(self, step: Step) -> Engine:
-        """Return the engine, all contacts at the same steps again."""
+        """Return the engine, all contacts at the same steps again; a new one has taken a step of no duration."""
         self._step_together()
-        return self.assembled(step)
+        if self.engine is None:
+            self.engine = self._ready(self.motion, self.pairs, self.lost, step)
+        return self.engine
 
-    def _step_together(self) -> None:
-        if self.local is not None:
-            self.local.give_back()
-            self.local = None
+    def _ready(self, motion: dict[str, Floats], pairs: Pairs, lost: Floats, step: Step) -> Engine:
+        engine = self._new_engine(motion, pairs, lost)
+        engine.list_neighbours()
+        engine.advance(1, step._replace(time_step=0.0), NOTHING_WATCHED)
+        return engine
+
+    def _new_engine(self, motion: dict[str, Floats], pairs: Pairs, lost: Floats) -> Engine:
+        return Engine(
+            self.bodies, self.planes, self.options, motion, pairs, lost, self.watch_record, self.thread_count
+        )  # fmt: skip
 
     def stepping_locally(self, setting: Setting, time: float) -> LocalEngine:
         """Return the engine that moves each contact at its own steps, from an instant [s] on."""
         if self.local is None or self.local.setting != setting or self.local.time != time:
-            engine = self.stepping_together(setting.step)
-            self.local = LocalEngine(engine, self.bodies, setting, time)
+            self._step_together()
+            # It searches neighbours and looks at every contact by itself.
+            self.engine = self.engine or self._new_engine(self.motion, self.pairs, self.lost)
+            self.local = LocalEngine(self.engine, self.bodies, setting, time)
         return self.local
+
+    def _step_together(self) -> None:
+        self.reader = None
+        if self.local is not None:
+            self.local.give_back()
+            self.local = None
 
     def disassemble(self) -> None:
         """Make ready for a change of what is in the world; contacts keep their history."""
@@ -90,10 +124,9 @@ class WorldState:
         if self.engine is not None:
             self.engine.use_threads(thread_count)
 
-    def spin(self) -> Floats:
-        """Return the angular velocities [rad/s], shape [body_count, 3], world frame."""
-        if len(self._inverse_inertia) != len(self.bodies):
-            self._inverse_inertia = inverse_inertias(self.bodies)
-        spin, rotation = np.zeros((len(self.bodies), 3)), rotation_matrices(self.motion["quaternion"])
-        write_spins(rotation, self.motion["angular_momentum"], self._inverse_inertia, spin)
+    def spin(self, some: slice) -> Floats:
+        """Return the angular velocities of some bodies [rad/s], shape [count, 3], world frame."""
+        momentum, rotation = self.motion["angular_momentum"][some], rotation_matrices(self.motion["quaternion"][some])
+        spin = np.zeros_like(momentum)
+        write_spins(rotation, momentum, self.inverse_inertia[some], spin)
         return spin

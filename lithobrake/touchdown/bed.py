@@ -3,6 +3,7 @@
 import itertools
 import os
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -10,6 +11,7 @@ from numpy.typing import NDArray
 
 from lithobrake.atomic import atomic_path
 from lithobrake.dem import ConvexHull, Material, World
+from lithobrake.dem.material import pair_law
 from lithobrake.outputs import describe
 from lithobrake.reading import reading
 
@@ -70,6 +72,8 @@ class Bed:
     width: tuple[float, float]  # m, along x and y
     gravity: tuple[float, float, float]  # m/s2, that it settled under
     density: float  # kg/m3
+    young_modulus: float  # Pa, of the grains at rest, and poisson_ratio
+    poisson_ratio: float
     seed: int
     surface_height: float  # m, mean over the box
     surface_top: float  # m, highest point of a grain
@@ -82,6 +86,13 @@ class Bed:
     def grain_diameter(self) -> float:
         """Mean diameter of the grains [m]."""
         return float(self.diameter.mean())
+
+    @cached_property
+    def elastic_energy_per_modulus(self) -> float:
+        """Elastic energy of its contacts as they overlap, over the effective Young's modulus that they have [m3]."""
+        unit = Material(young_modulus=1.0, poisson_ratio=0.0, restitution=1.0, friction=0.0, density=self.density)
+        elastic = self.world(unit, self.gravity, ContactModel()).energy()["elastic"]
+        return elastic / pair_law(unit, unit).young_modulus
 
     def world(self, material: Material, gravity: tuple[float, float, float], contact: ContactModel) -> World:
         """Return a world with these grains at rest, of a material, in their box of the same material."""
@@ -111,6 +122,9 @@ class Bed:
         with reading(path, "pour it again"), h5py.File(path, "r") as file:
             if file.attrs.get("format") != "lithobrake bed" or file.attrs["format_version"] > FORMAT_VERSION:
                 raise ValueError(f"it is not a bed of format_version up to {FORMAT_VERSION}")
+            lacking = [name for name in SCALARS if name not in file.attrs]
+            if lacking:
+                raise ValueError(f"it does not say what its {lacking[0]} is, as older beds do not")
             scalars = {name: plain(file.attrs[name]) for name in SCALARS}
             groups: dict[str, Any] = {g: {n: file[g][n][()] for n in file.get(g, {})} for g in ("frames", "history")}
             arrays: dict[str, Any] = {name: file[name][()] for name in ("position", "orientation", "diameter")}
@@ -118,7 +132,8 @@ class Bed:
 
 
 SCALARS = (
-    "width", "gravity", "density", "seed", "surface_height", "surface_top", "solid_fraction", "coordination_number",
+    "width", "gravity", "density", "young_modulus", "poisson_ratio", "seed", "surface_height", "surface_top",
+    "solid_fraction", "coordination_number",
 )  # fmt: skip
 
 
@@ -147,10 +162,8 @@ def boxed_world(
 ) -> World:  # fmt: skip
     """Return a world of grains at rest in an open box. The floor stops everything, the walls only the grains."""
     world = contact.world(gravity)
-    for grain, place, turn in zip(grains, position, orientation, strict=True):
-        world.add_body(grain, material, place, orientation=turn)
+    numbers = world.add_bodies(grains, material, position, orientation)
     world.add_plane((0.0, 0.0, 0.0), (0.0, 0.0, 1.0), material)
-    numbers = range(len(grains))
     for axis in (0, 1):
         for sign in (-1.0, 1.0):
             point, normal = np.zeros(3), np.zeros(3)

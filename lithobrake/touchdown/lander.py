@@ -2,6 +2,7 @@
 
 import os
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,7 +32,7 @@ class Lander:
         if self.inertia is not None:
             checked_inertia(self.inertia, "Lander.inertia")
 
-    @property
+    @cached_property
     def smallest_edge(self) -> float:
         """Smallest extent of the body [m]: the shortest edge of a box, the least width of a hull across a face."""
         if isinstance(self.shape, Box):

@@ -28,7 +28,8 @@ class OutcomeJudge:
     def __init__(self, bed: Bed, lander: Lander, landing: Landing, world: World, number: int, frame_count: int) -> None:
         self.bed, self.lander, self.landing, self.world, self.number = bed, lander, landing, world, number
         self.start_time = world.time
-        self.start_energy = self.energy()
+        self.motion = world.motion_of(number)
+        self.start_energy = self.motion.kinetic_energy
         self.clear_height = bed.surface_height + bed.grain_diameter
         self.ended: TouchdownOutcome | None = None
         self.over_rim = False
@@ -39,20 +40,16 @@ class OutcomeJudge:
         self.frames: list[dict[str, Floats]] = []
         self.keep_frame()
 
-    def energy(self) -> float:
-        """Return the lander's kinetic energy [J]."""
-        return float(self.world.kinetic_energy[self.number])
-
     def height(self) -> float:
         """Return the height of the lander's lowest point [m]."""
-        rotation = rotation_matrix(self.world.orientation[self.number])
-        return self.lander.lowest(self.world.position[self.number], rotation)
+        return self.lander.lowest(self.motion.position, rotation_matrix(self.motion.orientation))
 
     def look(self) -> None:
         """Take note of the lander, and tell its outcome once it can be told.
 
         Raises ValueError for a lander that went through the floor: no outcome is to be told of that.
         """
+        self.motion = self.world.motion_of(self.number)
         height, has_touched = self.height(), self.world.touch_duration is not None
         if height < -SUNK_FRACTION * self.lander.smallest_edge:
             raise ValueError(
@@ -69,9 +66,8 @@ class OutcomeJudge:
 
     def judge(self, height: float, has_touched: bool) -> TouchdownOutcome | None:
         """Return how the touchdown ended, or None while it is open."""
-        world, k = self.world, self.number
-        position, velocity = world.position[k], world.velocity[k]
-        free, energy = not np.any(world.contact_force[k]), self.energy() if has_touched else math.inf
+        world, position, velocity = self.world, self.motion.position, self.motion.velocity
+        free, energy = not world.is_touched, self.motion.kinetic_energy if has_touched else math.inf
         flies, outward = has_touched and free, bool(velocity[2] > 0.0)
         lift = -world.gravity[2] * CAPTURED_APEX * self.lander.smallest_edge
         held = energy < self.lander.mass * lift
@@ -106,17 +102,17 @@ class OutcomeJudge:
 
     def outcome(self) -> Outcome:
         """Return what came of the landing."""
-        world, k = self.world, self.number
+        world, motion = self.world, self.motion
         assert self.ended is not None
         left = self.ended == TouchdownOutcome.CLEAR
-        state = world.velocity[k], world.spin[k], world.orientation[k]
         outputs = dict.fromkeys(LEAVING, math.nan)
         if left:
+            state = motion.velocity, motion.spin, motion.orientation
             outputs = outgoing(*state, self.landing.azimuth, over_rim=self.over_rim)
         outputs["contact_duration"] = world.touch_duration or 0.0
         outputs["penetration"] = 0.0 if self.height_at_contact is None else self.height_at_contact - self.lowest
         outputs["peak_acceleration"] = world.watched["peak_force"] / self.lander.mass
-        outputs["energy_lost"] = self.start_energy - self.energy()
+        outputs["energy_lost"] = self.start_energy - motion.kinetic_energy
         frames = None
         if self.frame_count:
             frames = {name: np.array([frame[name] for frame in self.frames]) for name in self.frames[0]}

@@ -244,7 +244,8 @@ def finished(world: World, recorder: Recorder, recipe: BedRecipe, grains: list[C
     names = ("time", "kinetic_ratio", "unbalanced_force", "gravity")
     return Bed(
         grains=grains, position=world.position, orientation=world.orientation, diameter=diameter, width=recipe.width,
-        gravity=recipe.gravity, density=recipe.material.density, seed=recipe.seed,
+        gravity=recipe.gravity, density=recipe.material.density, young_modulus=recipe.material.young_modulus,
+        poisson_ratio=recipe.material.poisson_ratio, seed=recipe.seed,
         surface_height=float(heights.mean()), surface_top=float(heights.max()),
         solid_fraction=sum(grain.volume for grain in grains) / (area * float(heights.mean())),
         coordination_number=2.0 * int((contacts["body_b"] >= 0).sum()) / len(grains),

@@ -2,11 +2,13 @@
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from itertools import count
 
 import numpy as np
 
-from lithobrake.dem import World
+from lithobrake.dem import BodyMotion, Material, World
+from lithobrake.dem.material import pair_law
 from lithobrake.touchdown import settling
 from lithobrake.touchdown.bed import Bed
 from lithobrake.touchdown.lander import Lander
@@ -20,9 +22,9 @@ RELAX_FADING = 5.0  # periods in which the damping of contacts falls by a factor
 CHECKS_PER_CONTACT = 5  # looks at the lander in the time of the shortest contact
 # Where contacts step for themselves, looks are farther apart: until the lander moves by this part of its smallest edge,
 # and never farther than this part of the time limit.
-LOOK_WAY, LOOK_TIME = 0.02, 1e-3
-# A bed takes on another soil at once where its grains, if all that their contacts hold set them in motion, would not
-# reach this part of the impact speed.
+LOOK_WAY, LOOK_TIME = 0.05, 1e-3
+# A bed takes on another soil at once where its grains, if all that this frees set them in motion, would not reach this
+# part of the impact speed.
 RELEASED_SPEED = 1e-3
 
 
@@ -48,7 +50,7 @@ def land(
         )
     world = bed.world(landing.grain, bed.gravity, landing.contact)
     locally = landing.contact.stepping == "local"
-    if locally and released_speed(world) < RELEASED_SPEED * landing.speed:
+    if locally and released_speed(bed, landing.grain) < RELEASED_SPEED * landing.speed:
         world.gravity = np.array(landing.gravity)
     else:
         relax(world, bed, landing, lambda fraction: progress(fraction, "bed taking on the soil of the landing"))
@@ -60,7 +62,7 @@ def land(
     reach = moving_reach(bed, lander, landing)
     while judge.ended is None:
         if locally:
-            interval = look_interval(world, number, lander, landing)
+            interval = look_interval(world, judge.motion, lander, landing)
             contact = landing.contact
             world.run_locally(interval, contact.steps_per_contact, held_speed=contact.held_speed, reach=reach)
         else:
@@ -70,15 +72,25 @@ def land(
     return judge.outcome()
 
 
-def released_speed(world: World) -> float:
-    """Return the speed [m/s] of bodies if all elastic energy of their contacts set them in motion."""
-    return math.sqrt(2.0 * world.energy()["elastic"] / float(world.mass.sum()))
+def released_speed(bed: Bed, material: Material) -> float:
+    """Return the speed [m/s] of a bed's grains if all that is freed as they take on a material set them in motion.
+
+    Either all that their contacts then hold, which friction may have to find again, or, where the grains become softer,
+    what they lose as they sink to the overlaps of a soil k times as stiff: k - 5/2 + 3/2 k^(-2/3) of what they held,
+    from Hertz' law for a constant load.
+    """
+    rest = replace(material, young_modulus=bed.young_modulus, poisson_ratio=bed.poisson_ratio)
+    held, stiffness = (pair_law(one, one).young_modulus for one in (rest, material))
+    k = stiffness / held
+    freed = bed.elastic_energy_per_modulus * held * max(k, k - 2.5 + 1.5 * k ** (-2.0 / 3.0))
+    mass = material.density * sum(grain.volume for grain in bed.grains)
+    return math.sqrt(2.0 * freed / mass)
 
 
-def look_interval(world: World, number: int, lander: Lander, landing: Landing) -> float:
-    """Return the time [s] until the lander is to be looked at again, where contacts step for themselves."""
-    turning = float(np.linalg.norm(world.spin[number])) * lander.shape.bounding_radius
-    speed = float(np.linalg.norm(world.velocity[number])) + turning
+def look_interval(world: World, motion: BodyMotion, lander: Lander, landing: Landing) -> float:
+    """Return the time [s] until a lander in motion is to be looked at again, where contacts step for themselves."""
+    turning = float(np.linalg.norm(motion.spin)) * lander.shape.bounding_radius
+    speed = float(np.linalg.norm(motion.velocity)) + turning
     shortest = world.time_step * landing.contact.steps_per_contact / CHECKS_PER_CONTACT
     longest = LOOK_TIME * landing.time_limit
     way = LOOK_WAY * lander.smallest_edge
