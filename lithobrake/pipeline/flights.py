@@ -1,7 +1,7 @@
 """The flights of the samples that leave the surface, from the site to the next impact."""
 
 import csv
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,7 +12,7 @@ from lithobrake.atomic import atomic_path
 from lithobrake.hashing import content_hash
 from lithobrake.mesh_units import mesh_unit
 from lithobrake.outcomes import FlightStatus
-from lithobrake.outputs import FLIGHT, quantity
+from lithobrake.outputs import FLIGHT, Quantity, quantity
 from lithobrake.pipeline.flight_paths import write_flight_paths
 from lithobrake.pipeline.folder import AGAIN, StudyFolder
 from lithobrake.pipeline.job import Job
@@ -121,10 +121,16 @@ def fly_samples(job: Job) -> None:
     write_table(job.folder, "flights.csv", COLUMNS, _rows(start, flown))
 
 
-def write_table(folder: StudyFolder, name: str, columns: Sequence[str], rows: Iterable[list[Any]]) -> None:
-    """Write a CSV file of the folder, with the unit behind each name that does not hold it."""
+def write_table(
+    folder: StudyFolder,
+    name: str,
+    columns: Sequence[str],
+    rows: Iterable[list[Any]],
+    known: Mapping[str, Quantity] = FLIGHT,
+) -> None:
+    """Write a CSV file of the folder, with the unit behind each name that does not hold it; known: its quantities."""
     study_units = input_units()
-    units = {column: quantity(column, FLIGHT, study_units).units for column in columns}
+    units = {column: quantity(column, known, study_units).units for column in columns}
     titles = [
         column if not unit or column.endswith(f"_{unit}") else f"{column} [{unit}]" for column, unit in units.items()
     ]

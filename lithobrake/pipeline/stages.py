@@ -28,6 +28,7 @@ from lithobrake.pipeline.making_runs import (
     make_test_runs,
 )
 from lithobrake.pipeline.place_region import place_region
+from lithobrake.pipeline.rest import FILES as REST_FILES
 from lithobrake.pipeline.rest import follow_samples, rest_files, rest_reads
 from lithobrake.pipeline.run_estimates import estimate
 from lithobrake.pipeline.run_flights import fly_runs, run_flight_reads
@@ -163,7 +164,7 @@ PAPER = (
         FLY,
         fly_expansion_samples,
     ),
-    Stage("rest", "bounces until rest", _files("rest.csv", "rest.json"), rest_reads, ("fly",), FLY, follow_samples),
+    Stage("rest", "bounces until rest", _files(*REST_FILES), rest_reads, ("fly",), FLY, follow_samples),
     Stage("summary", "summary", _files("summary.json"), study_tables, ("landing", "rest"), SUM_UP, write_summary),
     REPORT,
 )

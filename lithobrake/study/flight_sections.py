@@ -66,6 +66,8 @@ class RestSection(Section):
     """How many samples are followed, the first ones; 0: none."""
     duration: Annotated[float, Number("s", above=0)] = 86_400.0
     """Longest journey, counted from the first impact."""
+    arc_count: Annotated[int, Whole("", at_least=0, at_most=300)] = 100
+    """Of how many of these samples, the first ones, each flight on the soil is noted, to be passed on; 0: none."""
     normal_restitution: Annotated[float, Number("", at_least=0, at_most=1)] = 0.6
     """Hard ground: outgoing over incoming speed along the normal."""
     tangential_restitution: Annotated[float, Number("", at_least=0, at_most=1)] = 0.8
