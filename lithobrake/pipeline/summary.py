@@ -34,6 +34,7 @@ from lithobrake.pipeline.site import (
 )
 from lithobrake.results.study_results import SUMMARY_FORMAT
 from lithobrake.study import BUILT_IN_BODIES, Study
+from lithobrake.study.site_kernels import kernel_partner, kernel_spin
 
 if TYPE_CHECKING:
     from lithobrake.chaos import Surrogate
@@ -89,7 +90,7 @@ def write_summary(job: Job) -> None:
 def study_tables(study: Study, tables: Any = None) -> dict[str, Any]:
     """The study with the defaults of its method, as the tables of its file; paths of meshes as they were written."""
     dump: dict[str, Any] = _plain(study.model_dump(exclude={"design": study.design.keys_of_the_other_method}))
-    for section, key in (("lander", "file"), ("site", "body"), ("solver", "command")):
+    for section, key in (("lander", "file"), ("site", "body"), ("site", "kernels"), ("solver", "command")):
         dump[section][key] = (tables or {}).get(section, {}).get(key, dump[section][key])
     return dump
 
@@ -223,6 +224,7 @@ def site_results(study: Study) -> dict[str, Any]:
         "mass_kg": body.mass,
         "bulk_density_kg_m3": body.density,
         "spin_period_s": body.spin_period,
+        "kernels": _of_kernels(study),
         "extents_m": np.ptp(body.shape.vertices, axis=0).tolist(),
         "facet_count": len(body.shape.faces),
         "centroid_m": body.shape.centroid.tolist(),
@@ -237,6 +239,27 @@ def site_results(study: Study) -> dict[str, Any]:
         "escape_speed_m_s": escape_speed(study),
         "warning": site_warning(study),
         "gravity_warning": gravity_warning(study),
+    }
+
+
+def _of_kernels(study: Study) -> dict[str, float] | None:
+    """What was read from kernels, degrees and SI; None without any."""
+    spin, place = kernel_spin(study.site), kernel_partner(study.site)
+    if spin is None:
+        return None
+    table = {
+        "spin_period_s": spin.period,
+        "pole_right_ascension_deg": spin.pole_right_ascension_deg,
+        "pole_declination_deg": spin.pole_declination_deg,
+        "prime_meridian_deg": spin.prime_meridian_deg,
+    }
+    if place is None:
+        return table
+    return table | {
+        "partner_longitude_deg": place.longitude_deg,
+        "partner_latitude_deg": place.latitude_deg,
+        "partner_distance_m": place.distance,
+        "partner_period_s": place.period,
     }
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 from lithobrake.study.flight_sections import BUILT_IN_BODIES
 from lithobrake.study.quantity import Scalar, usual_reach
 from lithobrake.study.refusals import closest, show
+from lithobrake.study.site_kernels import kernel_problems
 from lithobrake.study.study import Study
 
 # Bulk density [kg/m3]: nuclei of comets are near 500 (67P: 533, Paetzold et al. 2016, Nature 530), iron-nickel is 7900.
@@ -22,6 +23,9 @@ FASTEST = 1.0
 def body_problems(study: Study) -> Iterator[str]:
     """One sentence for each thing wrong; a mesh is read for that, and no kernel is compiled or loaded."""
     site = study.site
+    if unread := list(kernel_problems(site)):
+        yield from unread
+        return
     yield from _spin_problems(study)
     if site.body in BUILT_IN_BODIES:
         yield from _unit_problems(study)
@@ -51,7 +55,7 @@ def _unit_problems(study: Study) -> Iterator[str]:
 
 
 def _spin_problems(study: Study) -> Iterator[str]:
-    shortest = math.inf if study.site.spin_period is None else usual_reach(study.site.spin_period)[0]
+    shortest = usual_reach(study.site_values().get("site.spin_period", math.inf))[0]
     if shortest < FASTEST:
         yield (
             f"site.spin_period reaches down to {shortest:.4g} s; allowed: at least {FASTEST:g} s, as no known body "
@@ -67,7 +71,7 @@ def _lacking(study: Study) -> Iterator[str]:
         yield f"site.body is {show(study.site.body)}; allowed: {names} or the path of a mesh; no such file{meant}"
         return
     for key in ("mass", "spin_period"):
-        if getattr(study.site, key) is None:
+        if f"site.{key}" not in study.site_values():
             yield f"site.{key} is missing; a body read from a mesh needs its {key.replace('_', ' ')}"
 
 
