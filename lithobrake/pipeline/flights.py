@@ -10,6 +10,7 @@ import numpy as np
 
 from lithobrake.atomic import atomic_path
 from lithobrake.hashing import content_hash
+from lithobrake.mesh_labels import labelled_mesh
 from lithobrake.mesh_units import mesh_unit
 from lithobrake.outcomes import FlightStatus
 from lithobrake.outputs import FLIGHT, Quantity, quantity
@@ -49,7 +50,8 @@ class Starts:
 def flight_reads(study: Study) -> dict[str, Any]:
     """What the flights depend on beside the samples."""
     built_in = study.site.body in BUILT_IN_BODIES
-    body = study.site.body if built_in else content_hash(Path(study.site.body))
+    mesh = labelled_mesh(Path(study.site.body))
+    body = study.site.body if built_in else content_hash(mesh)
     # A key that came later is left out where it says nothing, so that folders of before stay whole.
     thinned = {} if study.site.gravity_facets is None else {"gravity_facets": study.site.gravity_facets}
     return (
@@ -58,7 +60,7 @@ def flight_reads(study: Study) -> dict[str, Any]:
         | {
             "seed": study.seed,
             "body": body,
-            "unit": "m" if built_in else mesh_unit(Path(study.site.body), study.site.unit),
+            "unit": "m" if built_in else mesh_unit(mesh, study.site.unit),
             "partner": study.site.partner,
             "site": {name: str(value) for name, value in study.site_values().items()},
         }

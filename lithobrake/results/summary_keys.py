@@ -143,6 +143,7 @@ SUMMARY_TABLES = (
         "The body, and a point at rest on the ground of the site; what is uncertain at its median",
         {
             "body": "name of the built-in body, or mesh",
+            "product_id": "product of an archive that the mesh is, and its version, by its label; null without one",
             "mass_kg": "mass of the body",
             "bulk_density_kg_m3": "mass over the volume of the shape",
             "spin_period_s": "time of a turn",

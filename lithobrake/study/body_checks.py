@@ -6,6 +6,7 @@ import warnings
 from collections.abc import Iterator
 from pathlib import Path
 
+from lithobrake.mesh_labels import labelled_mesh
 from lithobrake.study.flight_sections import BUILT_IN_BODIES
 from lithobrake.study.quantity import Scalar, usual_reach
 from lithobrake.study.refusals import closest, show
@@ -86,7 +87,7 @@ def _volume(study: Study) -> float:
     from lithobrake.mesh import closed_faces, holds_origin, volume_of
     from lithobrake.mesh_files import read_mesh
 
-    vertices, faces = read_mesh(site.body, site.unit)
+    vertices, faces = read_mesh(labelled_mesh(Path(site.body)), site.unit)
     with warnings.catch_warnings():
         # Whoever uses the mesh is warned of what is mended in it.
         warnings.simplefilter("ignore")
@@ -107,7 +108,7 @@ def _bulk_problems(study: Study, volume: float) -> Iterator[str]:
 
     low, high = (mass / volume for mass in usual_reach(study.site.mass))
     built_in = study.site.body in BUILT_IN_BODIES
-    given = "m" if built_in else mesh_unit(Path(study.site.body), study.site.unit)
+    given = "m" if built_in else mesh_unit(labelled_mesh(Path(study.site.body)), study.site.unit)
     diameter, here = 2.0 * _ball_radius(volume), UNITS[given]
     fitting = [unit for unit, length in UNITS.items() if _is_a_body(low, high, diameter, length / here)]
     if given in fitting:
