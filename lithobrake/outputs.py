@@ -96,6 +96,18 @@ FLIGHT = {
     "slid_length": Quantity("m", "way along the ground, in contact with it"),
     "slid_time_s": Quantity("s", "time of that, part of time_s"),
 }
+# Of a flight between two impacts of a journey.
+ARC = {
+    "sample": FLIGHT["sample"],
+    "arc": Quantity("", "number of the flight in the journey of the sample, from 0"),
+    "begin_s": Quantity("s", "time from the first impact to the beginning of the flight"),
+    "end_s": Quantity("s", "time from the first impact to its end"),
+    "clock_s": Quantity("s", "time at its beginning in the clock of the partner's motion"),
+    **{f"position_{axis}": Quantity("m", f"place of its beginning along {axis}", FIXED) for axis in "xyz"},
+    **{f"velocity_{axis}": Quantity("m/s", f"velocity at its beginning along {axis}", FIXED) for axis in "xyz"},
+    "site_mass": Quantity("kg", "mass of the body of the sample"),
+    "site_spin_period": Quantity("s", "spin period of the body of the sample"),
+}
 BEDS = {
     "solid_fraction": Quantity("", "share of the volume that grains fill"),
     "coordination_number": Quantity("", "contacts of a grain in the mean"),

@@ -15,6 +15,7 @@ LEAVES = {
         "atomic",
         "mesh",
         "mesh_files",
+        "mesh_labels",
         "mesh_units",
         "shape_kernel",
         "outputs",

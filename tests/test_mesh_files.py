@@ -7,6 +7,8 @@ import pytest
 
 from lithobrake.mesh import closed_faces, volume_of
 from lithobrake.mesh_files import read_mesh
+from lithobrake.mesh_labels import labelled_mesh, product_id
+from lithobrake.smallbody import Shape
 
 OCTAHEDRON = "\n".join(
     [
@@ -129,3 +131,33 @@ def write_kernel(spice: object, path: Path, segments: int) -> None:
             handle, 120065803, 1, 1, "J2000", 1, np.zeros(10), *bounds, -1e9, 1e9, vertices, plates, *index
         )
     spice.dskcls(handle, True)  # type: ignore[attr-defined]
+
+
+PRODUCT = """<Product_Observational xmlns="http://pds.nasa.gov/pds4/pds/v1"><Identification_Area>
+  <logical_identifier> urn:nasa:pds:rocks:data:rock </logical_identifier>
+  <version_id>3.0</version_id>
+  <Modification_History><version_id>1.0</version_id></Modification_History></Identification_Area>
+  <File_Area_Observational><File><file_name>{file}</file_name></File>
+  <Field_Character><unit>km</unit></Field_Character></File_Area_Observational></Product_Observational>
+"""
+
+
+def test_a_label_names_its_product_and_its_mesh(tmp_path: Path) -> None:
+    path = mesh(tmp_path, label=PRODUCT.format(file="rock.obj"))
+    label = path.with_suffix(".xml")
+    assert product_id(path) == "urn:nasa:pds:rocks:data:rock::3.0"
+    assert labelled_mesh(label) == labelled_mesh(path) == path
+    assert Shape.read(label).radius == 1e3
+    label.write_text(PDS4_LABEL)
+    assert product_id(path) is None
+    label.unlink()
+    assert product_id(path) is None
+    assert labelled_mesh(label) == label
+
+
+@pytest.mark.parametrize("file", ["other.obj", "rock.stl", "../rock.obj"])
+def test_a_label_of_another_file_is_no_mesh(tmp_path: Path, file: str) -> None:
+    """What is not beside it under its name may be in another unit than the label says."""
+    label = mesh(tmp_path, label=PRODUCT.format(file=file)).with_suffix(".xml")
+    with pytest.raises(ValueError, match=f"this label names {file}; allowed: one file beside it that is named rock"):
+        labelled_mesh(label)

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from lithobrake.chaos import Uniform, fit, smolyak
-from lithobrake.outputs import OUTPUTS
+from lithobrake.outputs import ARC, OUTPUTS
 from lithobrake.pipeline import StudyFolder, rest, stage_keys, stages_of
 from lithobrake.pipeline.designs import design_inputs, kept_inputs, points
 from lithobrake.pipeline.dispersion_statistics import shares, stays
@@ -285,7 +285,7 @@ def test_the_study_in_the_summary_reads_back_as_the_same_study() -> None:
 def test_every_column_of_the_flights_is_documented() -> None:
     text = (Path(__file__).parents[1] / "docs" / "flights.md").read_text(encoding="utf-8")
     flights, hard = (_names_in_tables(part) for part in text.split("| column of `restitution.csv` |"))
-    assert [*flights, *hard[len(RESTITUTION_NAMES) :]] == [*COLUMNS, *rest.COLUMNS]
+    assert [*flights, *hard[len(RESTITUTION_NAMES) :]] == [*COLUMNS, *rest.COLUMNS, *ARC]
     assert hard[: len(RESTITUTION_NAMES)] == RESTITUTION_NAMES
 
 

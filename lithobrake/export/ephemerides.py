@@ -1,5 +1,6 @@
-"""Flights of a study as Orbit Ephemeris Messages: chosen ones, and the mean of the cloud with its covariance."""
+"""Flights of a study as Orbit Ephemeris Messages: those of chosen samples, and the mean of the cloud of first ones."""
 
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
@@ -29,9 +30,9 @@ def write_ephemerides(
     epoch: str | None = None,
     step: float | None = None,
 ) -> list[Path]:
-    """Write flight_mean.oem, of all flights, and a file for each chosen sample; give their paths.
+    """Write flight_mean.oem, of all first flights, and a file for each chosen sample; give their paths.
 
-    The standard has one object in a file.
+    The standard has one object in a file. That of a sample has a segment for each of its flights over the bounces.
 
     samples   by their number in flights.csv
     frame     "inertial": axes that do not turn and are the body's at the epoch; "fixed": body-fixed axes
@@ -43,44 +44,62 @@ def write_ephemerides(
     if frame not in FRAMES:
         raise ValueError(f"frame is {frame!r}; allowed: {', '.join(FRAMES)}")
     flown = Flown.of(results)
-    chosen, longest = flown.of_samples(samples), float(flown.end_time.max())
+    chosen, longest = flown.journeys(results, list(dict.fromkeys(samples))), float(flown.end_time.max())
     step = longest / STEPS if step is None else step
     if not 10.0 * RESOLUTION <= step <= longest:
         raise ValueError(f"step is {step} s; allowed: {10.0 * RESOLUTION:g} to {longest:.6g} s, the longest flight")
     name, start = body_name(results), parsed_epoch(NO_EPOCH if epoch is None else epoch)
     comments = [
-        f"Flights of a study of lithobrake, from the touchdown to the next impact. {_frame_sentence(name, frame)}",
-        "All flights start at the epoch of the frame"
+        f"Flights of a study of lithobrake on {name}. {_frame_sentence(name, frame)}",
+        "All touchdowns are at the epoch of the frame"
         + (", which stands for no date: none was given." if epoch is None else "."),
     ]
-    written = []
-    for file, segment in (("flight_mean", _cloud(flown, name, frame, step)), *_paths(chosen, name, frame, step)):
-        written.append(folder / f"{file}.oem")
-        write_oem(written[-1], [segment], start, comments)
+    files = {"flight_mean": [_cloud(flown, name, frame, step)]}
+    for sample, segment in _paths(chosen, name, frame, step):
+        files.setdefault(f"flight_{sample}", []).append(segment)
+    written = [folder / f"{file}.oem" for file in files]
+    for path, segments in zip(written, files.values(), strict=True):
+        write_oem(path, segments, start, comments)
     return written
 
 
-def _paths(flown: Flown, name: str, frame: str, step: float) -> Iterator[tuple[str, Segment]]:
-    """The name of the file and the segment of each flight, from its start to its end."""
-    ends = _states(flown, flown.end_time, *flown.ends(), frame) if len(flown.sample) else np.empty((0, 6))
-    last = dict(zip(flown.sample.tolist(), flown.end_time.tolist(), strict=True))
-    times: dict[int, list[float]] = {sample: [] for sample in flown.sample.tolist()}
-    states: dict[int, list[NDArray[np.float64]]] = {sample: [] for sample in times}
-    for aloft in _epochs(flown, step, fewest=1):
-        for sample, state in zip(aloft.sample.tolist(), _here(aloft, frame), strict=True):
+def _paths(chosen: Flown, name: str, frame: str, step: float) -> Iterator[tuple[int, Segment]]:
+    """The sample and the segment of each flight, from its beginning to its end, those of a sample in order."""
+    keys = _keys(chosen)
+    ends = _states(chosen, chosen.end_time, *chosen.ends(), frame) if keys else np.empty((0, 6))
+    last = dict(zip(keys, chosen.end_time.tolist(), strict=True))
+    times: dict[tuple[int, int], list[float]] = {key: [] for key in keys}
+    states: dict[tuple[int, int], list[NDArray[np.float64]]] = {key: [] for key in keys}
+    for aloft in _epochs(chosen, step, fewest=1):
+        for key, state in zip(_keys(aloft), _here(aloft, frame), strict=True):
             # The end is a state of its own, which must not stand twice.
-            if last[sample] - aloft.time > RESOLUTION:
-                times[sample].append(aloft.time)
-                states[sample].append(state)
-    for (sample, end_time), end in zip(last.items(), ends, strict=True):
-        segment = Segment(
-            *(f"SAMPLE_{sample}", name, _frame_name(name, frame)),
-            *(np.array([*times[sample], end_time]), np.array([*states[sample], end])),
-            comments=[f"Sample {sample} of the study; the last state is the end of its flight."],
-            # Hermite's polynomials of degree 7 go through four states.
-            interpolation_degree=7 if len(times[sample]) >= 3 else None,
+            if last[key] - aloft.time > RESOLUTION:
+                times[key].append(aloft.time)
+                states[key].append(state)
+    count = Counter(sample for sample, _ in keys)
+    for key, begin, end in zip(keys, chosen.begin.tolist(), ends, strict=True):
+        sample, arc = key
+        time = np.array([*times[key], last[key]])
+        yield (
+            sample,
+            Segment(
+                *(f"SAMPLE_{sample}", name, _frame_name(name, frame)),
+                *(begin + time, np.array([*states[key], end])),
+                comments=[_path_sentence(sample, arc, count[sample])],
+                # Hermite's polynomials take two numbers of each state; four states are plenty.
+                interpolation_degree=2 * min(len(time), 4) - 1 if len(time) > 1 else None,
+            ),
         )
-        yield f"flight_{sample}", segment
+
+
+def _keys(flown: Flown) -> list[tuple[int, int]]:
+    """Sample of each flight and its number in the journey of that."""
+    return list(zip(flown.sample.tolist(), flown.arc.tolist(), strict=True))
+
+
+def _path_sentence(sample: int, arc: int, count: int) -> str:
+    words = "; between flights that do not follow at once the lander slid over the ground" if count > 1 else ""
+    return f"Flight {arc + 1} of {count} that are known of sample {sample}; its last state is its end{words}."
 
 
 def _cloud(flown: Flown, name: str, frame: str, step: float) -> Segment:

@@ -1,9 +1,13 @@
-"""The flights of a finished study, made again from its files to see where each was in between."""
+"""The flights of a finished study, made again from its files to see where each was in between.
+
+A flight is one arc of a journey: the first, from the touchdown to the next impact, or one between later impacts.
+"""
 
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +18,10 @@ from lithobrake.smallbody import Body, Shape, fly
 from lithobrake.study import BUILT_IN_BODIES
 
 Floats = NDArray[np.float64]
+# Arrays of Flown with an entry or row a flight.
+_EACH = (
+    "sample", "arc", "begin", "start_time", "position", "velocity", "mass", "spin_period", "end_time", "duration",
+)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -22,24 +30,28 @@ class Flown:
 
     time           since the start [s]
     sample         row in samples.h5
+    arc            number of the flight in the sample's journey, from 0
+    begin          of the flight, since the touchdown [s]
     start_time     of the flight in the clock of the partner's motion [s]: start_time of smallbody.fly
     position       at the time [m], velocity [m/s], body-fixed, [count, 3]
     mass           of the body [kg]; spin_period [s]
     end_time       from the start to the end of the flight [s]
-    gravity        as the study has it: table or exact; duration: of its longest flight [s]
+    gravity        as the study has it: table or exact; duration: for how long the flight was allowed to last [s]
     """
 
     body: Body
     time: float
     sample: NDArray[np.int64]
+    arc: NDArray[np.int64]
+    begin: Floats
     start_time: Floats
     position: Floats
     velocity: Floats
     mass: Floats
     spin_period: Floats
     end_time: Floats
+    duration: Floats
     gravity: str
-    duration: float
 
     @classmethod
     def of(cls, results: StudyResults) -> "Flown":
@@ -56,15 +68,47 @@ class Flown:
             body=body,
             time=0.0,
             sample=table["sample"].astype(np.int64),
+            arc=np.zeros(table.row_count, dtype=np.int64),
+            begin=np.zeros(table.row_count),
             start_time=body.partner_time(table["site_partner_longitude_deg"], spin_period),
             position=origin,
             velocity=np.einsum("nij,ni->nj", axes, local),
             mass=mass,
             spin_period=spin_period,
             end_time=table["time_s"],
+            duration=np.full(table.row_count, results.study["flight"]["duration"]),
             gravity=results.study["flight"]["gravity"],
-            duration=results.study["flight"]["duration"],
         )
+
+    def journeys(self, results: StudyResults, samples: Sequence[int]) -> "Flown":
+        """All flights of these samples over their bounces; of one whose journey is not noted, the first alone.
+
+        Raises ValueError for a sample that did not fly.
+        """
+        # The folder of an earlier version notes no journeys.
+        if not (results.folder / "arcs.csv").is_file():
+            return self.of_samples(samples)
+        table = results.arcs
+        rows = np.isin(table["sample"], samples)
+        columns = {name: table[name][rows] for name in table.columns}
+        position, velocity = (
+            np.column_stack([columns[f"{of}_{axis}"] for axis in "xyz"]) for of in ("position", "velocity")
+        )
+        noted: dict[str, Any] = {
+            "sample": columns["sample"].astype(np.int64),
+            "arc": columns["arc"].astype(np.int64),
+            "begin": columns["begin_s"],
+            "start_time": columns["clock_s"],
+            "position": position,
+            "velocity": velocity,
+            "mass": columns["site_mass"],
+            "spin_period": columns["site_spin_period"],
+            "end_time": columns["end_s"] - columns["begin_s"],
+            "duration": results.study["rest"]["duration"] - columns["begin_s"],
+        }
+        alone = self.of_samples([sample for sample in samples if sample not in noted["sample"]])
+        joined: dict[str, Any] = {name: np.concatenate([getattr(alone, name), noted[name]]) for name in _EACH}
+        return replace(self, **joined)
 
     def of_samples(self, samples: Sequence[int]) -> "Flown":
         """The flights of these samples, in their order. Raises ValueError for a sample that did not fly."""
@@ -92,17 +136,17 @@ class Flown:
         return flown.position, flown.velocity
 
     def inertial(self, time: Floats | float, position: Floats, velocity: Floats) -> tuple[Floats, Floats]:
-        """Body-fixed states at times since the start [s] in axes that do not turn and are the body's at the start."""
+        """Body-fixed states at times since the start [s] in axes that do not turn, the body's at the touchdown."""
         rate = 2.0 * np.pi / self.spin_period
-        spin = np.outer(rate, [0.0, 0.0, 1.0])
-        c, s = np.cos(rate * time), np.sin(rate * time)
+        spin, angle = np.outer(rate, [0.0, 0.0, 1.0]), rate * (self.begin + time)
+        c, s = np.cos(angle), np.sin(angle)
         turned = []
         for vector in (position, velocity + np.cross(spin, position)):
             x, y, z = vector.T
             turned.append(np.column_stack([c * x - s * y, s * x + c * y, z]))
         return turned[0], turned[1]
 
-    def _flown(self, duration: float) -> "Flown":
+    def _flown(self, duration: Floats | float) -> "Flown":
         """Flights that go on for so long [s], or to their end."""
         flights = fly(
             *(self.body, self.position, self.velocity, duration),
@@ -114,8 +158,7 @@ class Flown:
         return replace(self, position=flights.position, velocity=flights.velocity)
 
     def _rows(self, rows: NDArray[np.int64]) -> "Flown":
-        names = ("sample", "start_time", "position", "velocity", "mass", "spin_period", "end_time")
-        return replace(self, **{name: getattr(self, name)[rows] for name in names})
+        return replace(self, **{name: getattr(self, name)[rows] for name in _EACH})
 
 
 def study_body(results: StudyResults, mass: float, spin_period: float) -> Body:

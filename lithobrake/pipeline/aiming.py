@@ -12,7 +12,7 @@ from lithobrake.pipeline.emulator_samples import drawn_samples
 from lithobrake.pipeline.fitted_emulator import REFIT_COUNT
 from lithobrake.pipeline.flights import sample_sites, write_table
 from lithobrake.pipeline.job import Job
-from lithobrake.pipeline.rest import Sites, on_hard_ground, on_soil, rest_reads
+from lithobrake.pipeline.rest import Sites, journey_reads, on_hard_ground, on_soil
 from lithobrake.study import Study
 
 if TYPE_CHECKING:
@@ -32,7 +32,7 @@ def aim_files(study: Study) -> list[str]:
 def aim_reads(study: Study) -> dict[str, Any]:
     """What the landers at the aims depend on beside the emulator and the site."""
     # Which aims are allowed is asked of what is already there.
-    return {"rest": rest_reads(study), "grid": study.aim.grid, "lander_count": study.aim.lander_count}
+    return {"rest": journey_reads(study), "grid": study.aim.grid, "lander_count": study.aim.lander_count}
 
 
 def follow_aims(job: Job) -> None:

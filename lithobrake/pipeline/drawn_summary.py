@@ -19,12 +19,12 @@ from lithobrake.pipeline.run_estimates import FILE as ESTIMATES
 from lithobrake.pipeline.samples import Samples
 from lithobrake.pipeline.shares_over_refits import Refits, journey_ends, sample_fates
 from lithobrake.pipeline.site import effective_acceleration_at_site
+from lithobrake.pipeline.site_summary import site_results
 from lithobrake.pipeline.summary import (
     bed_results,
     monte_carlo_results,
     outputs_of_runs,
     provenance,
-    site_results,
     study_tables,
 )
 from lithobrake.results.study_results import SUMMARY_FORMAT

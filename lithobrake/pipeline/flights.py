@@ -1,7 +1,7 @@
 """The flights of the samples that leave the surface, from the site to the next impact."""
 
 import csv
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -10,9 +10,10 @@ import numpy as np
 
 from lithobrake.atomic import atomic_path
 from lithobrake.hashing import content_hash
+from lithobrake.mesh_labels import labelled_mesh
 from lithobrake.mesh_units import mesh_unit
 from lithobrake.outcomes import FlightStatus
-from lithobrake.outputs import FLIGHT, quantity
+from lithobrake.outputs import FLIGHT, Quantity, quantity
 from lithobrake.pipeline.flight_paths import write_flight_paths
 from lithobrake.pipeline.folder import AGAIN, StudyFolder
 from lithobrake.pipeline.job import Job
@@ -49,7 +50,8 @@ class Starts:
 def flight_reads(study: Study) -> dict[str, Any]:
     """What the flights depend on beside the samples."""
     built_in = study.site.body in BUILT_IN_BODIES
-    body = study.site.body if built_in else content_hash(Path(study.site.body))
+    mesh = labelled_mesh(Path(study.site.body))
+    body = study.site.body if built_in else content_hash(mesh)
     # A key that came later is left out where it says nothing, so that folders of before stay whole.
     thinned = {} if study.site.gravity_facets is None else {"gravity_facets": study.site.gravity_facets}
     return (
@@ -58,7 +60,7 @@ def flight_reads(study: Study) -> dict[str, Any]:
         | {
             "seed": study.seed,
             "body": body,
-            "unit": "m" if built_in else mesh_unit(Path(study.site.body), study.site.unit),
+            "unit": "m" if built_in else mesh_unit(mesh, study.site.unit),
             "partner": study.site.partner,
             "site": {name: str(value) for name, value in study.site_values().items()},
         }
@@ -121,10 +123,16 @@ def fly_samples(job: Job) -> None:
     write_table(job.folder, "flights.csv", COLUMNS, _rows(start, flown))
 
 
-def write_table(folder: StudyFolder, name: str, columns: Sequence[str], rows: Iterable[list[Any]]) -> None:
-    """Write a CSV file of the folder, with the unit behind each name that does not hold it."""
+def write_table(
+    folder: StudyFolder,
+    name: str,
+    columns: Sequence[str],
+    rows: Iterable[list[Any]],
+    known: Mapping[str, Quantity] = FLIGHT,
+) -> None:
+    """Write a CSV file of the folder, with the unit behind each name that does not hold it; known: its quantities."""
     study_units = input_units()
-    units = {column: quantity(column, FLIGHT, study_units).units for column in columns}
+    units = {column: quantity(column, known, study_units).units for column in columns}
     titles = [
         column if not unit or column.endswith(f"_{unit}") else f"{column} [{unit}]" for column, unit in units.items()
     ]

@@ -120,6 +120,12 @@ class StudyFolder:
         if notes.designs.get(design) != keys:
             replace(notes, designs=notes.designs | {design: keys}).write(self.path)
 
+    def note_rare(self, name: str, keys: list[str]) -> None:
+        """Remember which landings a rare limit state asks for, which no design of the study does."""
+        notes = Notes.read(self.path)
+        if notes.rare.get(name) != keys:
+            replace(notes, rare=notes.rare | {name: keys}).write(self.path)
+
     def wall_times(self) -> dict[str, float]:
         """Wall time of each stage when its files were made [s]."""
         return dict(Notes.read(self.path).wall_s)

@@ -1,6 +1,7 @@
 """From bounces in a file to the soil of a study: its emulator turned round, and what a bounce could say at all."""
 
 import json
+import math
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -26,8 +27,9 @@ from lithobrake.pipeline.expected_inference import ExpectedInference, ExpectedIn
 from lithobrake.pipeline.fitted_emulator import FILE as EMULATOR
 from lithobrake.pipeline.fitted_emulator import SPEED, SPIN
 from lithobrake.pipeline.folder import StudyFolder
+from lithobrake.pipeline.notes import REMEDY
 from lithobrake.pipeline.site import with_site_gravity
-from lithobrake.reading import DamagedFileError, read_rows
+from lithobrake.reading import DamagedFileError, read_json, read_rows
 from lithobrake.study import Study, StudySource
 from lithobrake.study.units import input_units
 
@@ -62,7 +64,9 @@ class InferredStudy:
         # The file does not say that a Python function made the touchdowns; then there are no beds.
         if not all((folder / name).is_file() for name in bed_files(study)):
             study = study.with_function("of the folder's runs")
-        return cls(study, folder, load(folder / EMULATOR))
+        model = load(folder / EMULATOR)
+        _refuse_unbounded(folder / EMULATOR, model)
+        return cls(study, folder, model)
 
     @property
     def outputs(self) -> list[str]:
@@ -139,6 +143,17 @@ class InferredStudy:
                 )
             },
         }
+
+
+def _refuse_unbounded(path: Path, model: "Emulator") -> None:
+    """Raise ValueError for an emulator of before energy bounded speed and spin together: no bounds fit its runs."""
+    upper = dict(zip(model.output_names, model.runs.upper[0].tolist(), strict=True))
+    if math.isinf(upper[SPEED]) != math.isinf(upper[SPIN]):
+        heading = read_json(path, {"format_version": int, "written_by": str}, REMEDY)
+        raise ValueError(
+            f"{path} has an emulator of an earlier version (format {heading['format_version']}, {heading['written_by']}"
+            f"), which bounds only one of {SPEED} and {SPIN}, so that no bounce can be inferred from; {REMEDY}"
+        )
 
 
 def infer_study(folder: Path, bounces: Path) -> dict[str, Any]:

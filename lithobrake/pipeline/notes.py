@@ -4,6 +4,7 @@ study     file: the study file, its path counted from the folder; sha256: of its
 stages    of the study when it last ran, in order: title, key of all that the stage depends on, files that it writes
 files     as they were made: key of the stage that made them, sha256 of their bytes
 designs   which runs each design of the study asks for, by their keys in the ledger
+rare      which landings `lithobrake rare` asked for when it last ran, by the name of the limit state
 wall_s    wall time of each stage when its files were made [s]
 """
 
@@ -24,6 +25,7 @@ _FORM = {
     "stages": {str: {"title": str, "key": str, "files": [str]}},
     "files": {str: {"key": str, "sha256": str}},
     "designs": {str: [str]},
+    "rare": {str: [str]},
     "wall_s": {str: NUMBER},
 }
 # Format 1 had files and wall_s alone.
@@ -43,6 +45,7 @@ class Notes:
     stages: dict[str, dict[str, Any]] = field(default_factory=dict)
     files: dict[str, dict[str, str]] = field(default_factory=dict)
     designs: dict[str, list[str]] = field(default_factory=dict)
+    rare: dict[str, list[str]] = field(default_factory=dict)
     wall_s: dict[str, float] = field(default_factory=dict)
 
     @classmethod

@@ -26,7 +26,7 @@ from lithobrake.pipeline.sequence import coordinates, rows_at
 from lithobrake.pipeline.site import with_site_gravity
 from lithobrake.pipeline.solver import Model
 from lithobrake.pipeline.study_run import run_study
-from lithobrake.pipeline.touchdown_runs import touchdowns
+from lithobrake.pipeline.touchdown_runs import touchdown_keys, touchdowns
 from lithobrake.study import Study, StudySource
 from lithobrake.study.limit_state import LimitState
 
@@ -87,12 +87,16 @@ def rare_failure(
 
 @dataclass
 class Landings:
-    """The landings of a subset simulation, as margins of points; scale is that of the first level's outputs."""
+    """The landings of a subset simulation, as margins of points.
+
+    scale: of the first level's outputs. keys: of all landings so far, in the ledger.
+    """
 
     job: Job
     name: str
     state: LimitState
     scale: dict[str, float] = field(default_factory=dict)
+    keys: list[str] = field(default_factory=list)
     made_count: int = 0
     reused_count: int = 0
     unknown_count: int = 0
@@ -112,7 +116,11 @@ class Landings:
         laws = coordinates(study).values()
         x = np.column_stack([law.ppf(share) for law, share in zip(laws, shares.T, strict=False)])
         beds = (shares[:, -1] * study.bed_count).astype(int).tolist()
-        made = touchdowns(self.job, rows_at(study, beds, x), f"{self.name}, after {self.made_count}", 0)
+        rows = rows_at(study, beds, x)
+        self.keys += touchdown_keys(study, rows, 0)
+        # Noted before they are made, so that whoever looks meanwhile can tell them from runs of the study.
+        self.job.folder.note_rare(self.name, self.keys)
+        made = touchdowns(self.job, rows, f"{self.name}, after {self.made_count}", 0)
         self.made_count += len(made.records)
         self.reused_count += made.reused_count
         values = values_of_runs(DesignRuns.of(made))

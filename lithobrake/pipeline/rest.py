@@ -6,13 +6,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from lithobrake.outcomes import JourneyStatus
-from lithobrake.outputs import SPIN_OUT
+from lithobrake.outputs import ARC, SPIN_OUT
 from lithobrake.pipeline.design_runs import DesignRuns
 from lithobrake.pipeline.emulator_bounce import emulator_bounce
 from lithobrake.pipeline.flights import partner_time, sample_sites, write_table
 from lithobrake.pipeline.hard_equivalents import FILE as RESTITUTION
 from lithobrake.pipeline.hard_equivalents import restitution_table
 from lithobrake.pipeline.job import Job
+from lithobrake.pipeline.journey_arcs import FILE as ARCS
+from lithobrake.pipeline.journey_arcs import arc_rows
 from lithobrake.pipeline.outgoing import VELOCITY, rolling_spin
 from lithobrake.pipeline.samples import CAPTURED, Samples, sampling_seed, touchdown_values
 from lithobrake.pipeline.site import frames, site_body
@@ -28,6 +30,7 @@ COLUMNS = (
     "ground", "sample", "status", "time_s", "latitude_deg", "longitude_deg", "rebounds", "path_length",
     "slid_length", "slid_time_s", "impact_speed", "impact_incidence_deg",
 )  # fmt: skip
+FILES = ("rest.csv", ARCS, "rest.json")
 # Statuses of landers that lie on, or have just touched, the ground of the body.
 DOWN = (
     *(JourneyStatus.SETTLED, JourneyStatus.LOFTED, JourneyStatus.OUTSIDE, JourneyStatus.SLIDING),
@@ -38,29 +41,39 @@ DOWN = (
 def rest_files(study: Study) -> list[str]:
     """What the stage writes; the table of restitution where the emulator knows other impacts than the first."""
     asks = study.design.method == "sequence" and why_no_soil(study) is None and bool(study.rest.count)
-    return ["rest.csv", "rest.json", *([RESTITUTION] if asks else [])]
+    return [*FILES, *([RESTITUTION] if asks else [])]
+
+
+def journey_reads(study: Study) -> dict[str, Any]:
+    """What journeys depend on beside samples and flights; a table with other columns is made anew."""
+    return study.rest.model_dump(exclude={"arc_count"}, exclude_none=True) | {"columns": COLUMNS}
 
 
 def rest_reads(study: Study) -> dict[str, Any]:
-    """What the journeys depend on beside samples and flights; a table with other columns is made anew."""
-    return study.rest.model_dump(exclude_none=True) | {"columns": COLUMNS}
+    """What the files of the stage depend on beside that."""
+    return journey_reads(study) | {"arc_count": study.rest.arc_count, "arc_columns": tuple(ARC)}
 
 
 def follow_samples(job: Job) -> None:
-    """Follow the first samples from bounce to bounce and write rest.csv and rest.json."""
+    """Follow the first samples from bounce to bounce and write rest.csv, arcs.csv and rest.json."""
     study, why = job.study, why_no_soil(job.study)
     rows: list[list[Any]] = []
+    arcs: list[list[Any]] = []
     if study.rest.count:
         samples = Samples.load(job.folder).first(study.rest.count)
         sites = Sites.of(study, samples, sample_sites(study, len(samples.outcome)))
         if why is None:
-            rows += sites.follow(job, "soil", *on_soil(job, samples))
+            first, bounce = on_soil(job, samples)
+            journeys = sites.journeys(job, "soil", first, bounce, study.rest.arc_count)
+            rows += sites.rows("soil", first, journeys)
+            arcs = arc_rows(journeys.arcs, np.flatnonzero(~first.outside))
         else:
             job.say(f"Bounce after bounce on hard ground only: {why}.")
         rows += sites.follow(job, "hard", *on_hard_ground(study, sites))
         if RESTITUTION in rest_files(study):
             rows += sites.follow(job, "equivalent", *_on_equivalent_ground(job, sites))
     write_table(job.folder, "rest.csv", COLUMNS, rows)
+    write_table(job.folder, ARCS, tuple(ARC), arcs, ARC)
     ranges = {name: list(ends) for name, ends in trained_ranges(study).items()}
     job.folder.write_json("rest.json", {"why_no_soil": why, "trained_ranges": ranges})
 
@@ -69,7 +82,7 @@ def hard_surface(study: Study) -> "HardSurface":
     """The hard ground of a study."""
     from lithobrake.smallbody import HardSurface
 
-    return HardSurface(**study.rest.model_dump(exclude={"count", "duration", "rolling_friction"}))
+    return HardSurface(**study.rest.model_dump(exclude={"count", "duration", "arc_count", "rolling_friction"}))
 
 
 def on_soil(job: Job, samples: Samples) -> tuple["Rebounds", "Bounce"]:
@@ -158,6 +171,13 @@ class Sites:
 
     def follow(self, job: Job, ground: str, first: "Rebounds", bounce: "Bounce") -> list[list[Any]]:
         """A row of rest.csv for each sample, in their order: from how it leaves the first impact to where it ends."""
+        return self.rows(ground, first, self.journeys(job, ground, first, bounce))
+
+    def journeys(self, job: Job, ground: str, first: "Rebounds", bounce: "Bounce", arc_count: int = 0) -> "Journeys":
+        """Those of the samples of which `first` knows how they leave the first impact, in their order.
+
+        arc_count: of how many samples, the first ones, the flights are noted.
+        """
         from lithobrake.smallbody import Launch, hop
 
         going = np.flatnonzero(~first.outside)
@@ -165,22 +185,26 @@ class Sites:
         velocity, spin = (np.einsum("nij,ni->nj", self.axes[going], v[going]) for v in (first.velocity, first.spin))
         time, captured = partner_time(self.body, site), first.captured[going]
         launch = Launch(self.origin[going], velocity, spin, time, captured, site["mass"], site["spin_period"])
-        ends = hop(
+        return hop(
             *(self.body, launch, bounce, job.study.rest.duration),
             friction=sliding_friction(job.study, self.samples, ground)[going],
             rolls=job.study.rest.rolling_friction is not None,
             gravity=job.study.flight.gravity,
+            arc_landers=int(np.searchsorted(going, arc_count)),
             seed=sampling_seed(job.study, f"rest on {ground} ground"),
             threads=getattr(job.executor, "worker_count", None),
             progress=lambda done: job.progress(round(done * len(going)), len(going), f"bounces, {ground} ground"),
         )
+
+    def rows(self, ground: str, first: "Rebounds", ends: "Journeys") -> list[list[Any]]:
+        """A row of rest.csv for each sample, in their order."""
         latitude, longitude = (one.tolist() for one in self.body.shape.latitude_longitude(self.origin))
         rows: list[list[Any]] = [
             [ground, sample, JourneyStatus.OUTSIDE.value, 0.0, *place, 0, 0.0, 0.0, 0.0, "", ""]
             for sample, place in enumerate(zip(latitude, longitude, strict=True))
         ]
-        for row, sample in enumerate(going.tolist()):
-            rows[sample] = [ground, sample, *_end(ends, row, bounced=not captured[row])]
+        for row, sample in enumerate(np.flatnonzero(~first.outside).tolist()):
+            rows[sample] = [ground, sample, *_end(ends, row, bounced=not first.captured[sample])]
         return rows
 
 

@@ -28,13 +28,14 @@ from lithobrake.pipeline.making_runs import (
     make_test_runs,
 )
 from lithobrake.pipeline.place_region import place_region
+from lithobrake.pipeline.rest import FILES as REST_FILES
 from lithobrake.pipeline.rest import follow_samples, rest_files, rest_reads
 from lithobrake.pipeline.run_estimates import estimate
 from lithobrake.pipeline.run_flights import fly_runs, run_flight_reads
 from lithobrake.pipeline.samples import draw_samples
 from lithobrake.pipeline.sequence import SIDE_DESIGNS, beds_of_runs
 from lithobrake.pipeline.shown_landing import land_once, land_tellingly, landing_files, landing_reads, telling_files
-from lithobrake.pipeline.summary import study_tables, write_summary
+from lithobrake.pipeline.summary import summary_reads, write_summary
 from lithobrake.study import Study
 
 
@@ -108,7 +109,7 @@ RUNS = ("pipeline", "chaos", "outputs.py", "attitude.py")
 FIT = ("pipeline", "chaos", "analysis", "outputs.py")
 EMULATE = (*FIT, "emulator")
 SUM_UP = (*FIT, "results/telling_numbers.py")
-FLY = ("pipeline", "smallbody", "mesh.py", "mesh_files.py", "outputs.py")
+FLY = ("pipeline", "smallbody", "mesh.py", "mesh_files.py", "mesh_labels.py", "outputs.py")
 # The points of one design are best for the degree that is fitted to them.
 _SCREENING_RUNS = ("points", "replicate_count", "screening_level", "screening_count", "screening_degree")
 _REFINED_RUNS = _design("refined_level", "refined_count", "refined_degree", "kept_share", "kept_outputs")
@@ -163,8 +164,8 @@ PAPER = (
         FLY,
         fly_expansion_samples,
     ),
-    Stage("rest", "bounces until rest", _files("rest.csv", "rest.json"), rest_reads, ("fly",), FLY, follow_samples),
-    Stage("summary", "summary", _files("summary.json"), study_tables, ("landing", "rest"), SUM_UP, write_summary),
+    Stage("rest", "bounces until rest", _files(*REST_FILES), rest_reads, ("fly",), FLY, follow_samples),
+    Stage("summary", "summary", _files("summary.json"), summary_reads, ("landing", "rest"), SUM_UP, write_summary),
     REPORT,
 )
 
@@ -187,7 +188,7 @@ SEQUENCE = (
         "summary",
         "summary",
         _files("summary.json"),
-        study_tables,
+        summary_reads,
         ("landing", "telling_landing", "estimate", "rest", "aim"),
         (*SUM_UP, "emulator"),
         write_drawn_summary,

@@ -20,12 +20,14 @@ from lithobrake.results import open_study
 class RunsStatus:
     """The runs that a study asks for as it is now.
 
-    others: how many more its ledger has. outcomes: how often each came. reasons: why runs failed, and how often.
-    estimates: what they say so far, of a sequence; None for another study, and before enough have ended.
+    others: how many more its ledger has. rare: how many of the ledger's only a limit state asks for, by its name.
+    outcomes: how often each came. reasons: why runs failed, and how often. estimates: what they say so far, of a
+    sequence; None for another study, and before enough have ended.
     """
 
     tally: Tally
     others: int
+    rare: dict[str, int]
     outcomes: "Counter[str]"
     reasons: "Counter[str]"
     estimates: RunningEstimates | None
@@ -33,6 +35,10 @@ class RunsStatus:
     def lines(self) -> list[str]:
         """The runs in words."""
         lines = [self.tally.sentence()]
+        lines += [
+            f"{count} more runs in the ledger are landings of lithobrake rare: {name}"
+            for name, count in self.rare.items()
+        ]
         if self.others:
             lines.append(f"{self.others} more runs in the ledger are of earlier settings of the study")
         if self.outcomes:
@@ -52,6 +58,7 @@ class RunsStatus:
             "running": state.running,
             "failed": state.failed,
             "of_earlier_settings": self.others,
+            "of_rare": self.rare,
             "rate": _finite(state.rate),
             "seconds_left": _finite(state.time_left),
             "outcomes": dict(sorted(self.outcomes.items())),
@@ -160,11 +167,14 @@ def _runs(path: Path, notes: Notes, flown: dict[str, float]) -> RunsStatus:
     asked = {key for keys in notes.designs.values() for key in keys}
     # A ledger of which nothing is noted is that of a campaign, or of an earlier format.
     records = [entry for entry in every if entry.key in asked] if notes.stages else every
+    others = {entry.key for entry in every} - {entry.key for entry in records}
+    rare = {name: len(others.intersection(keys)) for name, keys in notes.rare.items()}
     # Those beside the sequence are at places and soils of its runs, and say nothing new.
     drawn = set(notes.designs.get("sequence", ()))
     return RunsStatus(
         tally=ledger_tally(records, campaign_began(path / "runs.sqlite")),
-        others=len(every) - len(records),
+        others=len(others.difference(*notes.rare.values())),
+        rare={name: count for name, count in rare.items() if count},
         outcomes=Counter(entry.outcome or "" for entry in records if entry.status == RunStatus.DONE),
         reasons=Counter(entry.reason or "" for entry in records if entry.status == RunStatus.FAILED),
         estimates=running_estimates([entry for entry in records if entry.key in drawn], flown),

@@ -23,17 +23,9 @@ from lithobrake.pipeline.headline import answer, headline
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.run_estimates import SPLIT
 from lithobrake.pipeline.samples import Samples
-from lithobrake.pipeline.site import (
-    effective_acceleration_at_site,
-    escape_speed,
-    gravity_warning,
-    has_heading,
-    site_body,
-    site_medians,
-    site_warning,
-)
+from lithobrake.pipeline.site_summary import body_product, site_results
 from lithobrake.results.study_results import SUMMARY_FORMAT
-from lithobrake.study import BUILT_IN_BODIES, Study
+from lithobrake.study import Study
 
 if TYPE_CHECKING:
     from lithobrake.chaos import Surrogate
@@ -86,10 +78,15 @@ def write_summary(job: Job) -> None:
     )
 
 
+def summary_reads(study: Study) -> dict[str, Any]:
+    """What the summary depends on beside the files of the stages before it."""
+    return study_tables(study) | {"product": body_product(study)}
+
+
 def study_tables(study: Study, tables: Any = None) -> dict[str, Any]:
     """The study with the defaults of its method, as the tables of its file; paths of meshes as they were written."""
     dump: dict[str, Any] = _plain(study.model_dump(exclude={"design": study.design.keys_of_the_other_method}))
-    for section, key in (("lander", "file"), ("site", "body"), ("solver", "command")):
+    for section, key in (("lander", "file"), ("site", "body"), ("site", "kernels"), ("solver", "command")):
         dump[section][key] = (tables or {}).get(section, {}).get(key, dump[section][key])
     return dump
 
@@ -211,33 +208,6 @@ def monte_carlo_results(samples: Samples) -> dict[str, Any]:
         quantiles = {f"quantile_{level:g}": float(np.quantile(values, level)) for level in QUANTILES}
         table["outputs"][name] = {"mean": float(values.mean()), "std": float(values.std()), **quantiles}
     return table
-
-
-def site_results(study: Study) -> dict[str, Any]:
-    """The body at the medians, and the acceleration of a point at rest on the ground at the site."""
-    body, site, effective = site_body(study), site_medians(study), effective_acceleration_at_site(study)
-    built_in, heads = study.site.body in BUILT_IN_BODIES, has_heading(study)
-    partner = None if body.partner is None else body.partner.body.name
-    return {
-        "body": study.site.body if built_in else "mesh",
-        "mass_kg": body.mass,
-        "bulk_density_kg_m3": body.density,
-        "spin_period_s": body.spin_period,
-        "extents_m": np.ptp(body.shape.vertices, axis=0).tolist(),
-        "facet_count": len(body.shape.faces),
-        "centroid_m": body.shape.centroid.tolist(),
-        "partner": partner,
-        "partner_distance_m": None if partner is None else float(body.orbit.distance),
-        **{key: site[key] for key in ("latitude_deg", "longitude_deg")},
-        "heading_deg": site["heading_deg"] if heads else None,
-        "place_m": body.shape.surface_point(site["latitude_deg"], site["longitude_deg"]).tolist(),
-        "effective_acceleration_outward": float(effective[2]),
-        "effective_acceleration_along_heading": float(effective[0]) if heads else None,
-        # In axes that do not turn, from the body alone.
-        "escape_speed_m_s": escape_speed(study),
-        "warning": site_warning(study),
-        "gravity_warning": gravity_warning(study),
-    }
 
 
 def provenance(job: Job, asked: int, runs: DesignRuns) -> dict[str, Any]:

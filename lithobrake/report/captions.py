@@ -54,7 +54,9 @@ def place_words(data: Results) -> list[str]:
     if not site:
         return []
     place = f"latitude {site['latitude_deg']:g} deg, longitude {site['longitude_deg']:g} deg on {body_name(data)}"
-    return [f"Landing at {place}."]
+    # A product of an archive tells which shape "the body" is.
+    product = f" ({site['product_id']})" if site.get("product_id") else ""
+    return [f"Landing at {place}{product}."]
 
 
 def body_name(data: Results) -> str:

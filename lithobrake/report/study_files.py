@@ -29,6 +29,7 @@ CONTENTS = {
     "flights.json": "how exact the flights are",
     "flight_paths.h5": "the ways of the first flights, as the page shows them about the body",
     "rest.csv": "the journey of each lander that was followed from bounce to bounce",
+    "arcs.csv": "each flight of the first of those landers on the soil: where it begins, and when it ends",
     "restitution.csv": "restitution, friction and scatter that the soil implies, by speed and incidence",
     "rest.json": "which ground could be asked, and the range of the runs",
     "aim.csv": "the landers at every aim, on soil and on hard ground",

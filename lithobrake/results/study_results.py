@@ -8,7 +8,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from lithobrake.outputs import BEDS, DESIGNS, FLIGHT, RUN, SEQUENCE_DESIGNS, TOUCHDOWN, Quantity, quantity
+from lithobrake.outputs import ARC, BEDS, DESIGNS, FLIGHT, RUN, SEQUENCE_DESIGNS, TOUCHDOWN, Quantity, quantity
 from lithobrake.reading import NUMBER, DamagedFileError, read_json, read_rows, reading
 
 if TYPE_CHECKING:
@@ -38,6 +38,7 @@ _ASKED = {
     "samples": ("samples.h5", "samples of the Monte Carlo"),
     "flights": ("flights.csv", "flights of the samples to their next impact"),
     "rest": ("rest.csv", "where samples end after all bounces"),
+    "arcs": ("arcs.csv", "each flight of the first samples between bounces"),
     "emulator": ("emulator.json", "the law of what comes out, at any inputs"),
     "surrogate": ("refined.json", "the refined expansion, by the names of its inputs"),
     "median_landing": ("landing.h5", "a landing with its frames"),
@@ -153,6 +154,11 @@ class StudyResults:
         """Where samples end after all bounces, on each ground (docs/flights.md)."""
         columns = ("ground", *_PLACES)
         return self._table("journey", self._rows("rest.csv", columns), columns, FLIGHT)
+
+    @cached_property
+    def arcs(self) -> "Table":
+        """Each flight of the first samples' journeys on the soil: where it begins, and when it ends."""
+        return self._table("arc", self._rows("arcs.csv", tuple(ARC)), tuple(ARC), ARC)
 
     @cached_property
     def beds(self) -> "Table":

@@ -1,6 +1,7 @@
 """Small bodies: shape, gravity, rotation and flight."""
 
 from lithobrake.outcomes import FlightStatus, JourneyStatus
+from lithobrake.smallbody.arcs import Arcs
 from lithobrake.smallbody.body import Body, Partner
 from lithobrake.smallbody.bounce import Bounce, HardSurface, Impacts, Rebounds
 from lithobrake.smallbody.built_in_bodies import didymos, dimorphos
@@ -12,6 +13,7 @@ from lithobrake.smallbody.shape import Shape
 from lithobrake.smallbody.spice_kernels import PartnerPlace, SpinState, read_partner, read_spin
 
 __all__ = [
+    "Arcs",
     "Body",
     "Bounce",
     "FlightStatus",

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lithobrake.outcomes import FlightStatus, JourneyStatus
+from lithobrake.smallbody.arcs import Arcs
 from lithobrake.smallbody.body import Body
 from lithobrake.smallbody.bounce import Bounce, Impacts
 from lithobrake.smallbody.flight import fly
@@ -32,6 +33,7 @@ class Journeys:
     slid_length    way along the ground in contact with it [m], and slid_time: how long it took, part of time [s]
     impact_speed   at the last impact, against the ground [m/s]; nan where there was none
     incidence      there, of the velocity from the inward normal [rad]; nan likewise
+    arcs           the flights of the first landers, as many as were asked for
     """
 
     body: Body
@@ -45,6 +47,7 @@ class Journeys:
     slid_time: NDArray[np.float64]
     impact_speed: NDArray[np.float64]
     incidence: NDArray[np.float64]
+    arcs: Arcs
 
     @cached_property
     def latitude(self) -> NDArray[np.float64]:
@@ -87,6 +90,7 @@ def hop(
     rolls: bool = False,
     gravity: str = "table",
     bounce_limit: int = 1000,
+    arc_landers: int = 0,
     seed: int = 0,
     threads: int | None = None,
     progress: Callable[[float], None] | None = None,
@@ -98,15 +102,18 @@ def hop(
                leave the ground again: a coefficient for each or for all; infinite: they rest where they are
     rolls      they roll like balls, and friction is the resistance to that
     gravity    as of `fly`, and so are threads
+    arc_landers   how many landers, the first ones, have their flights in Journeys.arcs: bounce_limit + 1 each at most
     seed       of the generator: the same call gives the same result
     progress   called with the fraction of landers that have ended
     """
-    state = _State.of(body, launch, duration, friction, rolls)
+    state, parts = _State.of(body, launch, duration, friction, rolls), []
     going = state.first_flights(launch.captured)
     for number in range(bounce_limit + 1):
         if number:
             going = going[state.time[going] < duration]
+        begin = state.time[going]
         flights = state.fly(going, gravity, threads)
+        parts.append(Arcs.of(flights, going, begin, arc_landers))
         hits = flights.status == FlightStatus.IMPACT
         going, facet = going[hits], flights.facet[hits]
         grazes = np.cos(flights.incidence[hits]) < GRAZE
@@ -122,7 +129,7 @@ def hop(
             progress(1.0 - len(going) / max(len(state.time), 1))
         if not len(going):
             break
-    return state.journeys()
+    return state.journeys(Arcs.joined(parts))
 
 
 @dataclass
@@ -184,9 +191,10 @@ class _State:
             incidence=np.full(count, np.nan),
         )
 
-    def journeys(self) -> Journeys:
-        """What has become of the landers."""
-        return Journeys(**{field.name: getattr(self, field.name) for field in fields(Journeys)})
+    def journeys(self, arcs: Arcs) -> Journeys:
+        """What has become of the landers; arcs: on these flights."""
+        names = (field.name for field in fields(Journeys) if field.name != "arcs")
+        return Journeys(**{name: getattr(self, name) for name in names}, arcs=arcs)
 
     def first_flights(self, captured: ArrayLike) -> NDArray[np.int64]:
         """Landers that fly at the start: those that were not captured, and those that slide off the ground."""

@@ -3,12 +3,14 @@
 import os
 import warnings
 from functools import cached_property
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lithobrake.mesh import closed_faces, mass_properties
 from lithobrake.mesh_files import read_mesh
+from lithobrake.mesh_labels import labelled_mesh
 from lithobrake.smallbody.attraction import Gravity
 from lithobrake.smallbody.gravity_table import LEVELS, GravityTable
 from lithobrake.smallbody.gravity_table_build import TableError, gravity_table_of
@@ -61,11 +63,12 @@ class Shape:
     ) -> "Shape":
         """Read a mesh: .obj, .stl, plates or Gaskell's quadrilaterals (.tab, .txt, .icq), or a shape kernel (.bds).
 
+        The path may also be that of the mesh's label of PDS4 (.xml), beside it under its name.
         unit: of its lengths (m, km, cm, mm); absent: what its header or the label beside it says, else m. An archive's
         file that does not say it is refused, as is a unit that the file contradicts.
         Warns where the centre of mass is off the origin by more than a thousandth of the radius; nothing is moved.
         """
-        vertices, faces = read_mesh(path, unit)
+        vertices, faces = read_mesh(labelled_mesh(Path(path)), unit)
         shape = cls(vertices, faces, name=os.fspath(path), gravity_facets=gravity_facets)
         offset = float(np.linalg.norm(shape.centroid))
         if offset > OFF_CENTRE * shape.radius:

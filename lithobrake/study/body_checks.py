@@ -6,9 +6,11 @@ import warnings
 from collections.abc import Iterator
 from pathlib import Path
 
+from lithobrake.mesh_labels import labelled_mesh
 from lithobrake.study.flight_sections import BUILT_IN_BODIES
 from lithobrake.study.quantity import Scalar, usual_reach
 from lithobrake.study.refusals import closest, show
+from lithobrake.study.site_kernels import kernel_problems
 from lithobrake.study.study import Study
 
 # Bulk density [kg/m3]: nuclei of comets are near 500 (67P: 533, Paetzold et al. 2016, Nature 530), iron-nickel is 7900.
@@ -22,6 +24,9 @@ FASTEST = 1.0
 def body_problems(study: Study) -> Iterator[str]:
     """One sentence for each thing wrong; a mesh is read for that, and no kernel is compiled or loaded."""
     site = study.site
+    if unread := list(kernel_problems(site)):
+        yield from unread
+        return
     yield from _spin_problems(study)
     if site.body in BUILT_IN_BODIES:
         yield from _unit_problems(study)
@@ -51,7 +56,7 @@ def _unit_problems(study: Study) -> Iterator[str]:
 
 
 def _spin_problems(study: Study) -> Iterator[str]:
-    shortest = math.inf if study.site.spin_period is None else usual_reach(study.site.spin_period)[0]
+    shortest = usual_reach(study.site_values().get("site.spin_period", math.inf))[0]
     if shortest < FASTEST:
         yield (
             f"site.spin_period reaches down to {shortest:.4g} s; allowed: at least {FASTEST:g} s, as no known body "
@@ -67,7 +72,7 @@ def _lacking(study: Study) -> Iterator[str]:
         yield f"site.body is {show(study.site.body)}; allowed: {names} or the path of a mesh; no such file{meant}"
         return
     for key in ("mass", "spin_period"):
-        if getattr(study.site, key) is None:
+        if f"site.{key}" not in study.site_values():
             yield f"site.{key} is missing; a body read from a mesh needs its {key.replace('_', ' ')}"
 
 
@@ -82,7 +87,7 @@ def _volume(study: Study) -> float:
     from lithobrake.mesh import closed_faces, holds_origin, volume_of
     from lithobrake.mesh_files import read_mesh
 
-    vertices, faces = read_mesh(site.body, site.unit)
+    vertices, faces = read_mesh(labelled_mesh(Path(site.body)), site.unit)
     with warnings.catch_warnings():
         # Whoever uses the mesh is warned of what is mended in it.
         warnings.simplefilter("ignore")
@@ -103,7 +108,7 @@ def _bulk_problems(study: Study, volume: float) -> Iterator[str]:
 
     low, high = (mass / volume for mass in usual_reach(study.site.mass))
     built_in = study.site.body in BUILT_IN_BODIES
-    given = "m" if built_in else mesh_unit(Path(study.site.body), study.site.unit)
+    given = "m" if built_in else mesh_unit(labelled_mesh(Path(study.site.body)), study.site.unit)
     diameter, here = 2.0 * _ball_radius(volume), UNITS[given]
     fitting = [unit for unit, length in UNITS.items() if _is_a_body(low, high, diameter, length / here)]
     if given in fitting:

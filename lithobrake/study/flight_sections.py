@@ -28,7 +28,14 @@ class SiteSection(Section):
     mass: Annotated[Scalar, MaybeUncertain("kg", above=0)] | None = None
     """Mass of the body; absent: that of the built-in body."""
     spin_period: Annotated[Scalar, MaybeUncertain("s", above=0)] | None = None
-    """Spin period of the body; absent: that of the built-in body."""
+    """Spin period of the body; absent: that of the kernels, or of the built-in body."""
+    kernels: list[str] = Field(default=[])
+    """Kernels of SPICE, counted from the study file, from which the spin is read: text constants (PCK); with an epoch
+    also leap seconds (LSK) and an ephemeris of body and partner (SPK)."""
+    kernel_body: str | None = None
+    """Name of the body in the kernels, or its number as text; absent: that of the built-in body."""
+    epoch: str | None = None
+    """UTC date and time of the touchdown, "2027-01-20T12:00:00": the partner stands where the kernels have it then."""
     latitude_deg: Annotated[Scalar, MaybeUncertain("deg", at_least=-90, at_most=90)] = 0.0
     """Latitude, planetocentric."""
     longitude_deg: Angle = 0.0
@@ -66,6 +73,8 @@ class RestSection(Section):
     """How many samples are followed, the first ones; 0: none."""
     duration: Annotated[float, Number("s", above=0)] = 86_400.0
     """Longest journey, counted from the first impact."""
+    arc_count: Annotated[int, Whole("", at_least=0, at_most=300)] = 100
+    """Of how many of these samples, the first ones, each flight on the soil is noted, to be passed on; 0: none."""
     normal_restitution: Annotated[float, Number("", at_least=0, at_most=1)] = 0.6
     """Hard ground: outgoing over incoming speed along the normal."""
     tangential_restitution: Annotated[float, Number("", at_least=0, at_most=1)] = 0.8

@@ -102,15 +102,17 @@ def _tables(path: str, model: type[BaseModel]) -> Iterator[tuple[str, tuple[str,
 
 
 def _absolute(tables: Mapping[str, Any], folder: Path) -> dict[str, Any]:
-    """The tables with each path of a mesh, program or template counted from the folder of the study file."""
+    """The tables with each path of a mesh, kernel, program or template counted from the folder of the study file."""
     result = {key: dict(value) if isinstance(value, Mapping) else value for key, value in tables.items()}
     for section, key in (("lander", "file"), ("site", "body")):
         table = result.get(section)
         if isinstance(table, dict) and isinstance(table.get(key), str) and table[key] not in BUILT_IN_BODIES:
             table[key] = str(folder / table[key])
+    for section, key in (("solver", "templates"), ("site", "kernels")):
+        table = result.get(section)
+        if isinstance(table, dict) and isinstance(table.get(key), list):
+            table[key] = [str(folder / name) if isinstance(name, str) else name for name in table[key]]
     solver = result.get("solver")
-    if isinstance(solver, dict) and isinstance(solver.get("templates"), list):
-        solver["templates"] = [str(folder / name) if isinstance(name, str) else name for name in solver["templates"]]
     if isinstance(solver, dict) and isinstance(solver.get("command"), str):
         from lithobrake.campaign import absolute_words
 

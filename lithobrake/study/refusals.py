@@ -10,6 +10,7 @@ LONGEST = 200  # characters of a value that a sentence shows
 TYPES = {
     "string_type": "text; write it in quotation marks",
     "bool_type": "true or false; write it without quotation marks",
+    "list_type": "a list; write its entries in square brackets",
     "tuple_type": "a list; write its entries in square brackets",
 }
 

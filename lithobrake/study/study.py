@@ -24,6 +24,7 @@ from lithobrake.study.limit_sections import LimitStatesSection
 from lithobrake.study.material_sections import GrainSection, LanderSection
 from lithobrake.study.quantity import Scalar, Uncertain, Whole
 from lithobrake.study.section import Section
+from lithobrake.study.site_kernels import kernel_values
 
 # Ten landings on a bed cost least for what they tell, where a bed costs some six landings; an interval needs a dozen.
 RUNS_A_BED, FEWEST_BEDS, MOST_BEDS = 10, 12, 60
@@ -117,8 +118,12 @@ class Study(Section):
         return values
 
     def site_values(self) -> dict[str, Scalar]:
-        """Every scalar that only the flight reads, by dotted key."""
-        return _scalars("site", self.site)
+        """Every scalar that only the flight reads, by dotted key, those of kernels among them.
+
+        Raises ValueError or ImportError where the kernels do not tell any more what they did when the study was read.
+        """
+        read = {f"site.{key}": value for key, value in kernel_values(self.site).items()}
+        return _scalars("site", self.site) | read
 
 
 def _scalars(path: str, section: BaseModel) -> dict[str, Scalar]:

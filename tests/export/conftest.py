@@ -19,3 +19,11 @@ def results(tmp_path_factory: pytest.TempPathFactory) -> StudyResults:
     out = tmp_path_factory.mktemp("export") / "out"
     lithobrake.run(export_models.study_with_flights(), out, workers=1, model=export_models.bounce, report=False)
     return lithobrake.open_study(out)
+
+
+@pytest.fixture(scope="session")
+def bouncing(tmp_path_factory: pytest.TempPathFactory) -> StudyResults:
+    """Those of a study whose first landers are followed over their bounces on the soil."""
+    out = tmp_path_factory.mktemp("bounces") / "out"
+    lithobrake.run(export_models.study_with_bounces(), out, workers=1, model=export_models.bounce, report=False)
+    return lithobrake.open_study(out)

@@ -83,6 +83,19 @@ def test_one_bed_or_one_place_gives_no_interval_anywhere(
     assert found["outputs"]["speed_out"]["mean"]["lower"] is None
 
 
+def test_a_journey_has_a_flight_for_each_rebound(journeys: StudyResults) -> None:
+    """Whatever leaves an impact flies; who never slides has no other flight, and ends when the last of them does."""
+    soil = journeys.rest.where(journeys.rest["ground"] == "soil")
+    sample = journeys.arcs["sample"].astype(int)
+    assert sample.max() < 100
+    flown = np.bincount(sample, minlength=100)
+    bounced = (soil["slid_length"][:100] == 0.0) & (soil["rebounds"][:100] > 0)
+    assert bounced.sum() > 20
+    assert flown[bounced].tolist() == soil["rebounds"][:100][bounced].tolist()
+    last = np.searchsorted(sample, np.flatnonzero(bounced), side="right") - 1
+    assert np.array_equal(journeys.arcs["end_s"][last], soil["time_s"][:100][bounced])
+
+
 def test_landers_over_the_rim_never_count_as_staying(tmp_path: Path) -> None:
     results = made(tmp_path / "out", SyntheticLander(dataclasses.replace(WEAK, rim="fast_flat")))
     found = results.summary["results"]

@@ -1,6 +1,7 @@
 """Observed bounces in a file, from the emulator of a study to posterior.json and its picture."""
 
 import json
+import shutil
 from pathlib import Path
 
 import numpy as np
@@ -68,6 +69,25 @@ def test_the_posterior_and_its_picture_are_written(folder: Path, tmp_path: Path)
     assert 0.0 <= content["predictive_p_value"][0] <= 1.0
     assert content["predictive_p_value"][1] is None
     assert (folder / "posterior.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_an_emulator_of_before_the_spin_had_a_bound_is_refused_by_its_name_and_version(
+    folder: Path, tmp_path: Path
+) -> None:
+    old = tmp_path / "old"
+    shutil.copytree(folder, old)
+    content = json.loads((old / "emulator.json").read_text(encoding="utf-8"))
+    speed, spin = (content["output_names"].index(name) for name in ("speed_out", "spin_out"))
+    for row in content["upper"]:
+        row[speed], row[spin] = 1.0, None
+    (old / "emulator.json").write_text(json.dumps(content), encoding="utf-8")
+    said = CliRunner().invoke(app, ["infer", str(old), "--bounce", str(bounces(tmp_path, SEEN))])
+    assert (said.exit_code, said.stdout) == (2, "")
+    assert said.stderr.startswith(
+        f"{old / 'emulator.json'} has an emulator of an earlier version (format 1, lithobrake "
+    )
+    assert "made again with: lithobrake run STUDY.toml" in said.stderr
+    assert len(said.stderr.splitlines()) == 1
 
 
 def test_the_command_says_first_what_bounces_can_say(folder: Path, tmp_path: Path) -> None:

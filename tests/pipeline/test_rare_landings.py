@@ -121,6 +121,15 @@ def test_one_that_is_stopped_ends_with_the_same_bits_and_makes_no_landing_twice(
     assert any("chance of its own" in sentence for sentence in shown.said)
 
 
+def test_its_landings_are_counted_as_what_they_are(folder: Path) -> None:
+    landings = json.loads((folder / "rare_fast.json").read_text(encoding="utf-8"))["landings"]
+    said = CliRunner().invoke(app, ["status", str(folder)]).stdout
+    assert f"{landings} more runs in the ledger are landings of lithobrake rare: fast" in said
+    assert "earlier settings" not in said
+    runs = json.loads(CliRunner().invoke(app, ["status", str(folder), "--json"]).stdout)["runs"]
+    assert (runs["of_rare"], runs["of_earlier_settings"], runs["total"]) == ({"fast": landings}, 0, 0)
+
+
 def test_landings_without_a_known_end_are_counted_and_said(tmp_path: Path) -> None:
     found = rare(tmp_path / "out", model=NoisyLander(lost=True), landing_count=50)
     assert 0.05 < found["without_known_end"] / found["landings"] < 0.2

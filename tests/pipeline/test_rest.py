@@ -12,11 +12,12 @@ import pytest
 from lithobrake.analysis import OutcomeModel
 from lithobrake.chaos import Uniform, fit, smolyak
 from lithobrake.outcomes import JourneyStatus, TouchdownOutcome
-from lithobrake.outputs import OUTPUTS
+from lithobrake.outputs import ARC, OUTPUTS
 from lithobrake.pipeline import Job, StudyFolder
 from lithobrake.pipeline.dispersion_statistics import dispersion_results, proportion
 from lithobrake.pipeline.flights import COLUMNS, read_table, write_table
 from lithobrake.pipeline.job import Silent
+from lithobrake.pipeline.journey_arcs import arc_rows
 from lithobrake.pipeline.outgoing import rolling_spin
 from lithobrake.pipeline.rest import COLUMNS as REST
 from lithobrake.pipeline.rest import Sites, follow_samples, sliding_friction
@@ -25,7 +26,7 @@ from lithobrake.pipeline.samples import SAMPLE_OUTCOMES, Samples
 from lithobrake.pipeline.site import site_medians
 from lithobrake.pipeline.slow_arrivals import SlowArrivals
 from lithobrake.pipeline.surrogate_bounce import SoilBounce, trained_ranges, why_no_soil
-from lithobrake.smallbody import HardSurface, Impacts, Rebounds
+from lithobrake.smallbody import Arcs, HardSurface, Impacts, Rebounds
 from lithobrake.study import Study, check_tables
 
 from ..paper_tables import paper_tables
@@ -168,6 +169,10 @@ def test_hard_ground_is_followed_from_the_first_impact_and_the_summary_adds_up(t
         "ground,sample,status,time_s,latitude_deg,longitude_deg,rebounds,path_length [m],slid_length [m],slid_time_s,"
         "impact_speed [m/s],impact_incidence_deg"
     )
+    # Flights on the soil are noted, and there are none.
+    assert (folder / "arcs.csv").read_text().strip().split(",")[:6] == (
+        ["sample", "arc", "begin_s", "end_s", "clock_s", "position_x [m]"]
+    )
     titles = (folder / "flights.csv").read_text().strip().split(",")
     assert titles[1:4] == ["start_speed [m/s]", "start_elevation_deg", "velocity_x [m/s]"]
     assert {"site_mass [kg]", "site_spin_period [s]", "site_north_error [m]", "time_s"} <= set(titles)
@@ -184,6 +189,20 @@ def test_hard_ground_is_followed_from_the_first_impact_and_the_summary_adds_up(t
     assert 0.0 < float(rows[0]["slid_time_s"]) < float(rows[0]["time_s"])
     assert table["hard"]["slid"]["count"] == 60
     assert table["hard"]["slid_length"]["quantile_0.5"] == float(rows[0]["slid_length"])
+
+
+def test_a_flight_is_noted_by_its_sample_and_its_number_in_the_journey() -> None:
+    """The second sample has left the runs' range at its first impact and is no lander of the journeys."""
+    lander, begin = np.array([0, 0, 1]), np.array([0.0, 5.0, 1.0])
+    vectors = np.arange(9.0).reshape(3, 3)
+    arcs = Arcs(lander, begin, begin + 2.0, begin + 100.0, vectors, -vectors, np.full(3, 4e9), np.full(3, 3e4))
+    rows = [dict(zip(ARC, row, strict=True)) for row in arc_rows(arcs, np.array([0, 2, 3]))]
+    assert [(row["sample"], row["arc"]) for row in rows] == [(0, 0), (0, 1), (2, 0)]
+    assert rows[1] == {
+        "sample": 0, "arc": 1, "begin_s": 5.0, "end_s": 7.0, "clock_s": 105.0,
+        "position_x": 3.0, "position_y": 4.0, "position_z": 5.0,
+        "velocity_x": -3.0, "velocity_y": -4.0, "velocity_z": -5.0, "site_mass": 4e9, "site_spin_period": 3e4,
+    }  # fmt: skip
 
 
 def captured_sites(study: Study, latitude: float) -> tuple[Sites, Rebounds]:

@@ -8,13 +8,16 @@ from typing import Any
 import numpy as np
 import pytest
 
+from lithobrake.pipeline.flights import flight_reads
 from lithobrake.pipeline.site import escape_speed, frames, gravity_warning, site_body
+from lithobrake.pipeline.site_summary import site_results
+from lithobrake.pipeline.summary import summary_reads
 from lithobrake.smallbody import Body
 from lithobrake.smallbody.built_in_bodies import top_shape
 from lithobrake.study import Study, check_tables
 from lithobrake.study.template import template
 
-from ..test_mesh_files import write_kernel
+from ..test_mesh_files import PRODUCT, mesh, write_kernel
 
 
 def changed(**sections: dict[str, Any]) -> Study:
@@ -78,3 +81,23 @@ def test_the_body_may_be_a_shape_kernel_of_spice(tmp_path: Path) -> None:
     assert body.shape.volume == pytest.approx(4.0 / 3.0 * 1e9)
     with pytest.raises(ValueError, match="says km"):
         changed(site=site | {"unit": "m"})
+
+
+def test_the_product_of_an_archive_is_named_by_the_label_of_its_mesh(tmp_path: Path) -> None:
+    """Given by its label, or found beside the mesh; another version of it makes the summary anew, not the flights."""
+    path = mesh(tmp_path, label=PRODUCT.format(file="rock.obj"))
+    label = path.with_suffix(".xml")
+    given, found = (changed(site={"body": str(one), "mass": 3e12, "spin_period": 1e4}) for one in (label, path))
+    for study in (given, found):
+        told = site_results(study)
+        assert (told["body"], told["product_id"]) == ("mesh", "urn:nasa:pds:rocks:data:rock::3.0")
+        assert told["extents_m"] == [2e3, 2e3, 2e3]
+    assert flight_reads(given) == flight_reads(found)
+    before = flight_reads(found), summary_reads(found)
+    label.write_text(label.read_text().replace("3.0", "4.0"))
+    assert flight_reads(found) == before[0]
+    assert summary_reads(found) != before[1]
+    assert site_results(changed())["product_id"] is None
+    label.write_text(PRODUCT.format(file="other.obj"))
+    with pytest.raises(ValueError, match=r"study\.toml: site\.body: .*rock\.xml: this label names other\.obj"):
+        changed(site={"body": str(label), "mass": 3e12, "spin_period": 1e4})

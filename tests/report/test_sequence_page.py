@@ -13,6 +13,7 @@ import h5py
 import pytest
 
 from lithobrake.report import captions, sequence_captions, sequence_tables, write_report
+from lithobrake.report.captions import place_words
 from lithobrake.report.results import SequenceResults, page_results
 from lithobrake.report.sequence_answer import answer, warnings
 from lithobrake.report.sequence_page import sequence_content
@@ -52,6 +53,13 @@ def holding(data: SequenceResults) -> SequenceResults:
     """The study of section 3.4 of the audit, at a site that holds what lies there."""
     site = data.results["site"] | {"effective_acceleration_outward": -1e-5}
     return told(data, site=site, stays=STAYS, runs=RUNS)
+
+
+def test_the_product_of_an_archive_stands_beside_the_body(data: SequenceResults) -> None:
+    site = data.results["site"] | {"product_id": "urn:nasa:pds:rocks:data:rock::3.0"}
+    assert place_words(told(data, site=site)) == [
+        "Landing at latitude 0 deg, longitude 0 deg on Didymos (urn:nasa:pds:rocks:data:rock::3.0)."
+    ]
 
 
 def test_every_figure_is_there_with_its_caption_and_its_file(page: str, sequence_folder: Path) -> None:

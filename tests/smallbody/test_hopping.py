@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from lithobrake.smallbody import Body, HardSurface, Impacts, Launch, Rebounds, Shape, didymos, hop
+from lithobrake.smallbody import Body, HardSurface, Impacts, Launch, Rebounds, Shape, didymos, fly, hop
 
 from .meshes import CUBE_FACES, cube_vertices
 
@@ -135,3 +135,40 @@ def test_a_lander_that_only_its_own_motion_holds_down_slides_until_it_leaves_the
     assert end.status[0] == "flying"
     assert end.slid_time[0] > 1000.0
     assert end.path_length[0] > 100.0
+
+
+def test_flights_that_are_noted_lead_from_bounce_to_bounce_and_change_nothing():
+    """Made again one by one, they end to the last bit where the next begins; the ends of journeys stay the same."""
+    body = didymos(partner=False)
+    origin, axes = body.local_frame([40.0, 0.0, 50.0], [0.0, 10.0, 90.0])
+    launch = Launch(origin, 0.1 * axes[:, 2] + 0.05 * axes[:, 0], time=[5.0, 6.0, 7.0], mass=[5e11, 5.2e11, 5.4e11])
+    settings = {"friction": 0.6, "gravity": "exact"}
+    noted = hop(body, launch, HardSurface(0.7), 2e4, arc_landers=2, **settings)
+    plain = hop(body, launch, HardSurface(0.7), 2e4, **settings)
+    for name in ("status", "time", "position", "spin", "bounce_count", "path_length", "slid_length", "impact_speed"):
+        assert np.array_equal(getattr(noted, name), getattr(plain, name), equal_nan=name == "impact_speed"), name
+    arcs = noted.arcs
+    assert len(plain.arcs.lander) == 0
+    assert sorted(set(arcs.lander.tolist())) == [0, 1]
+    assert (np.diff(arcs.lander) >= 0).all()
+    again = fly(
+        *(body, arcs.position, arcs.velocity, 2e4 - arcs.begin),
+        gravity="exact", start_time=arcs.clock, mass=arcs.mass, spin_period=arcs.spin_period,
+    )  # fmt: skip
+    assert np.array_equal(arcs.begin + again.time, arcs.end)
+    follows = (arcs.lander[1:] == arcs.lander[:-1]) & (arcs.begin[1:] == arcs.end[:-1])
+    assert follows.sum() > 3
+    assert np.array_equal(again.position[:-1][follows], arcs.position[1:][follows])
+    assert np.array_equal(arcs.clock, np.array([5.0, 6.0])[arcs.lander] + arcs.begin)
+    assert (arcs.end[np.searchsorted(arcs.lander, [0, 1], side="right") - 1] <= noted.time[:2]).all()
+
+
+def test_between_flights_a_lander_may_slide():
+    """What is captured on steep ground begins its first flight after it has slid off the ground."""
+    body = didymos(partner=False)
+    origin, axes = body.local_frame(0.0, 0.0, 270.0)
+    launch = Launch(origin, 0.15 * axes[0])
+    end = hop(body, launch, HardSurface(0.6), 1e5, friction=0.6, gravity="exact", arc_landers=1)
+    gaps = end.arcs.begin[1:] - end.arcs.end[:-1]
+    assert (gaps >= 0.0).all()
+    assert gaps.sum() + end.arcs.begin[0] == pytest.approx(end.slid_time[0])
