@@ -74,7 +74,7 @@ class LocalEngine:
         self.agenda: Agenda
         count = len(engine.pairs.first)
         engine.book()
-        self._take(engine.pairs, max(SLOTS * len(bodies), 2 * count))
+        self._take(engine.pairs, max(SLOTS * len(bodies), 2 * count, 1))
         # All neighbours are searched anew: the skin is another.
         self._enter(np.full(len(bodies) + count, time))
 

@@ -162,3 +162,43 @@ def test_what_cannot_be_run_is_refused() -> None:
         world.run_locally(1.0, 15.0, held_speed=math.nan)
     with pytest.raises(ValueError, match=r"held_speed is 0\.1, but no body is watched"):
         world.run_locally(1.0, 15.0, held_speed=0.1)
+
+
+@pytest.mark.parametrize("begun", [0.0, 0.6], ids=["before it moves", "on its way"])
+def test_reading_a_world_changes_nothing_of_what_comes(begun: float) -> None:
+    ends = []
+    for reads in (False, True):
+        world = cluster(rock(0.6, 0.5), gravity=0.1)
+        world.add_plane((0.0, 0.0, -0.3), (0.0, 0.0, 1.0), rock(0.6, 0.5))
+        if begun:
+            world.run_locally(begun, 15.0)
+        if reads:
+            world.contact_force, world.contacts(), world.energy(), world.largest_step, world.motion_of(3)
+        world.run_locally(1.0, 15.0)
+        ends.append(world.position.tobytes() + world.orientation.tobytes())
+    assert ends[0] == ends[1]
+
+
+def test_one_body_is_read_as_among_all() -> None:
+    world = cluster(rock(0.6, 0.5), gravity=0.1)
+    world.watch(5)
+    world.run_locally(0.7, 15.0)
+    one = world.motion_of(5)
+    for name in ("position", "velocity", "orientation", "angular_momentum", "spin"):
+        assert np.array_equal(getattr(one, name), getattr(world, name)[5])
+    assert one.kinetic_energy == pytest.approx(world.kinetic_energy[5], rel=1e-15)
+
+
+def test_a_watched_body_tells_whether_anything_touches_it() -> None:
+    world = World(gravity=(0.0, 0.0, -1.0))
+    world.add_plane((0.0, 0.0, 0.0), (0.0, 0.0, 1.0), rock(0.3, 0.5))
+    world.add_body(Sphere(0.05), rock(0.3, 0.5), (0.0, 0.0, 0.051))
+    world.watch(0)
+    touched = []
+    for _ in range(60):
+        world.run_locally(0.005, 15.0)
+        touched.append(world.is_touched)
+        assert world.is_touched == bool(world.contact_force[0].any())
+    # It falls for .045 s, bounces, and comes to rest.
+    assert not any(touched[:8])
+    assert all(touched[-5:])

@@ -200,3 +200,38 @@ def test_motion_that_is_lost_is_told(shape, name, value):
     getattr(world._state.engine.bodies, name)[0] = value
     with pytest.raises(FloatingPointError, match="diverged"):
         world.run(steps=5)
+
+
+def test_many_bodies_at_once_are_those_added_one_by_one():
+    generator = np.random.default_rng(4)
+    shapes = [ConvexHull(0.1 * generator.normal(size=(14, 3))) for _ in range(5)] + [Sphere(0.1)]
+    position, orientation = generator.normal(size=(6, 3)), generator.normal(size=(6, 4))
+    one_by_one, at_once = World(), World()
+    for shape, place, turn in zip(shapes, position, orientation, strict=True):
+        one_by_one.add_body(shape, ROCK, place, orientation=turn)
+    at_once.add_body(Sphere(1.0), ROCK, (9.0, 0.0, 0.0))
+    assert at_once.add_bodies(shapes, ROCK, position, orientation) == range(1, 7)
+    for name in ("position", "orientation", "mass", "inertia"):
+        assert np.array_equal(getattr(at_once, name)[1:], getattr(one_by_one, name))
+    lightest = [body.smallest_mass_at_contact for body in at_once.bodies[1:]]
+    assert lightest == [body.smallest_mass_at_contact for body in one_by_one.bodies]
+
+
+def test_many_bodies_ask_for_a_row_each():
+    with pytest.raises(
+        ValueError, match=r"add_bodies position has shape \(1, 3\); allowed are finite numbers in \(2, 3\)"
+    ):
+        World().add_bodies([Sphere(1.0)] * 2, ROCK, np.zeros((1, 3)), np.ones((2, 4)))
+    with pytest.raises(
+        ValueError, match=r"add_bodies orientation is \[0\.0, 0\.0, 0\.0, 0\.0\]; allowed is any finite"
+    ):
+        World().add_bodies([Sphere(1.0)], ROCK, np.zeros((1, 3)), np.zeros((1, 4)))
+
+
+def test_a_given_inertia_decides_what_a_contact_meets():
+    # A cube's corner along a face's normal: 1/m + 2 (a/2)^2/I, with I = m a^2/6 a quarter of m.
+    cube, world = Box((1.0, 1.0, 1.0)), World()
+    world.add_body(cube, ROCK, (0.0, 0.0, 0.0), mass=8.0)
+    world.add_body(cube, ROCK, (3.0, 0.0, 0.0), mass=8.0, inertia=np.eye(3) * 8.0 / 3.0)
+    assert world.bodies[0].smallest_mass_at_contact == pytest.approx(2.0)
+    assert world.bodies[1].smallest_mass_at_contact == pytest.approx(8.0 / 2.5)
