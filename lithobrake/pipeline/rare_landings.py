@@ -34,6 +34,8 @@ from lithobrake.study.limit_state import LimitState
 CHAIN, FEWEST = 10, 20
 # A landing is dear, and a probability below 1e-6 is less sure than what a study assumes.
 MOST_LEVELS = 6
+# Landings that meet it descend from so few groups of one size: on a second go they may descend from quite others.
+FEW_ORIGINS = 3.0
 # Probabilities as near to 0 and 1 as a law without ends can take.
 LEAST = 2.0**-53
 
@@ -64,7 +66,7 @@ def rare_failure(
         study = grown(with_site_gravity(source.study, source.name), folder)
         landings = Landings(Job(study, source.tables, folder, executor, shown, model), name, state)
         if not study.has_soil:
-            shown.say("A program with chance of its own, beside its inputs, makes the interval too narrow.")
+            shown.say("A program with chance of its own, beside its inputs, makes the interval wide.")
         shown.begin(f"landings of {name}", 1, 1)
         try:
             found = subset_simulation(
@@ -72,6 +74,7 @@ def rare_failure(
                 landings.dimension,
                 points_per_level=landing_count,
                 kept=[landings.dimension - 1],
+                groups=landings.beds,
                 most_levels=MOST_LEVELS,
                 seed=hashed_seed(study.seed, "rare", name),
             )
@@ -102,6 +105,11 @@ class Landings:
         """How many numbers a point has; the last picks the bed."""
         return len(coordinates(self.job.study)) + 1
 
+    def beds(self, points: np.ndarray) -> np.ndarray:
+        """Beds of points [count, dimension], [count]."""
+        shares = np.clip(ndtr(points[:, -1]), LEAST, 1.0 - LEAST)
+        return (shares * self.job.study.bed_count).astype(int)
+
     def margins(self, points: np.ndarray) -> np.ndarray:
         """Land at standard normal points [count, dimension], and say how far each is from the limit state, [count].
 
@@ -111,8 +119,9 @@ class Landings:
         shares = np.clip(ndtr(points), LEAST, 1.0 - LEAST)
         laws = coordinates(study).values()
         x = np.column_stack([law.ppf(share) for law, share in zip(laws, shares.T, strict=False)])
-        beds = (shares[:, -1] * study.bed_count).astype(int).tolist()
-        made = touchdowns(self.job, rows_at(study, beds, x), f"{self.name}, after {self.made_count}", 0)
+        made = touchdowns(
+            self.job, rows_at(study, self.beds(points).tolist(), x), f"{self.name}, after {self.made_count}", 0
+        )
         self.made_count += len(made.records)
         self.reused_count += made.reused_count
         values = values_of_runs(DesignRuns.of(made))
@@ -146,10 +155,13 @@ class Landings:
             "why": why,
             "level": found.level,
             "coefficient_of_variation": found.coefficient_of_variation,
+            "origins": found.origins,
+            "warning": _few_origins(found.origins, study.bed_count) if found.reached else None,
             "reached": found.reached,
             "rarest": found.probability if found.reached else found.upper,
             "levels": len(found.thresholds),
             "thresholds": found.thresholds.tolist(),
+            "shares": found.shares.tolist(),
             "landings_a_level": landing_count,
             "landings": found.evaluation_count,
             "without_known_end": self.unknown_count,
@@ -188,4 +200,16 @@ def _statement(name: str, found: dict[str, Any]) -> str:
     levels = f"{found['levels']} level{'s' * (found['levels'] != 1)}"
     landings = f"{found['landings']} landings in {levels} on {found['beds']} beds"
     why = f" {found['why']}" if found["why"] else ""
-    return f"{name} ({found['condition']}): {said}; by {landings}{lost}.{why}"
+    warning = f" {found['warning']}" if found["warning"] and found["lower"] is not None else ""
+    return f"{name} ({found['condition']}): {said}; by {landings}{lost}.{why}{warning}"
+
+
+def _few_origins(origins: float, bed_count: int) -> str | None:
+    """What to say where equal runs of the command would scatter much."""
+    if origins >= FEW_ORIGINS:
+        return None
+    what, more = ("beds", "bed.bed_count") if bed_count > 1 else ("first landings", "--landings")
+    return (
+        f"The landings that meet it descend from few {what}, as {origins:.1f} of one size would have it, so the same "
+        f"with another seed may give quite another probability: raise {more}."
+    )
