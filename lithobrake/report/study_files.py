@@ -31,6 +31,7 @@ CONTENTS = {
     "rest.csv": "the journey of each lander that was followed from bounce to bounce",
     "restitution.csv": "restitution, friction and scatter that the soil implies, by speed and incidence",
     "rest.json": "which ground could be asked, and the range of the runs",
+    "rare_*.json": "a rare limit state: its probability and the levels down to it, from landings of its own",
     "aim.csv": "the landers at every aim, on soil and on hard ground",
     "body.obj": "the shape of the body that the flights used",
 }
