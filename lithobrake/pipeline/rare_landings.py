@@ -69,15 +69,7 @@ def rare_failure(
             shown.say("A program with chance of its own, beside its inputs, makes the interval wide.")
         shown.begin(f"landings of {name}", 1, 1)
         try:
-            found = subset_simulation(
-                landings.margins,
-                landings.dimension,
-                points_per_level=landing_count,
-                kept=[landings.dimension - 1],
-                groups=landings.beds,
-                most_levels=MOST_LEVELS,
-                seed=hashed_seed(study.seed, "rare", name),
-            )
+            found = landings.simulation(landing_count)
         except BaseException:
             executor.shutdown(cancel_futures=True)
             raise
@@ -104,6 +96,18 @@ class Landings:
     def dimension(self) -> int:
         """How many numbers a point has; the last picks the bed."""
         return len(coordinates(self.job.study)) + 1
+
+    def simulation(self, landing_count: int) -> SubsetResult:
+        """Subset simulation with so many landings a level."""
+        return subset_simulation(
+            self.margins,
+            self.dimension,
+            points_per_level=landing_count,
+            kept=[self.dimension - 1],
+            groups=self.beds,
+            most_levels=MOST_LEVELS,
+            seed=hashed_seed(self.job.study.seed, "rare", self.name),
+        )
 
     def beds(self, points: np.ndarray) -> np.ndarray:
         """Beds of points [count, dimension], [count]."""
@@ -140,13 +144,7 @@ class Landings:
 
     def told(self, found: SubsetResult, landing_count: int) -> dict[str, Any]:
         """What rare_NAME.json holds."""
-        study, laws = self.job.study, design_inputs(self.job.study)
-        shares = ndtr(found.failing)
-        medians = {
-            name: {"median": float(law.ppf(np.median(share))) if len(share) else None, "median_of_all": law.median}
-            for (name, law), share in zip(laws.items(), shares.T, strict=False)
-        }
-        why = why_no_interval(study)
+        study, why = self.job.study, why_no_interval(self.job.study)
         content = {
             "condition": self.state.text,
             "probability": found.probability,
@@ -166,9 +164,17 @@ class Landings:
             "landings": found.evaluation_count,
             "without_known_end": self.unknown_count,
             "beds": study.bed_count,
-            "inputs": medians,
+            "inputs": self._medians(found.failing),
         }
         return content | {"statement": _statement(self.name, content)}
+
+    def _medians(self, failing: np.ndarray) -> dict[str, dict[str, float | None]]:
+        """Median of each input among points that fail [count, dimension], and by its law; None where there are none."""
+        laws = design_inputs(self.job.study)
+        return {
+            name: {"median": float(law.ppf(np.median(share))) if len(share) else None, "median_of_all": law.median}
+            for (name, law), share in zip(laws.items(), ndtr(failing).T, strict=False)
+        }
 
 
 def _limit_state(study: Study, name: str) -> LimitState:
