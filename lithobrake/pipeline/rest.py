@@ -7,6 +7,7 @@ import numpy as np
 
 from lithobrake.outcomes import JourneyStatus
 from lithobrake.outputs import SPIN_OUT
+from lithobrake.pipeline import sliding_law
 from lithobrake.pipeline.design_runs import DesignRuns
 from lithobrake.pipeline.emulator_bounce import emulator_bounce
 from lithobrake.pipeline.flights import partner_time, sample_sites, write_table
@@ -42,8 +43,9 @@ def rest_files(study: Study) -> list[str]:
 
 
 def rest_reads(study: Study) -> dict[str, Any]:
-    """What the journeys depend on beside samples and flights; a table with other columns is made anew."""
-    return study.rest.model_dump(exclude_none=True) | {"columns": COLUMNS}
+    """What the journeys depend on beside samples and flights; a table with other columns or law is made anew."""
+    law = sliding_law.INTERCEPT, sliding_law.SLOPE
+    return study.rest.model_dump(exclude_none=True) | {"columns": COLUMNS, "sliding_law": law}
 
 
 def follow_samples(job: Job) -> None:
@@ -90,7 +92,7 @@ def on_soil(job: Job, samples: Samples) -> tuple["Rebounds", "Bounce"]:
 
 
 def sliding_friction(study: Study, samples: Samples, ground: str) -> np.ndarray:
-    """Friction under each sample once it is captured, [sample_count]: on soil that of hull and grain."""
+    """Friction under each sample once it is captured, [sample_count]: on soil that of hull and grain, or their law."""
     from lithobrake.dem.material import pair_value
 
     rest, rule, hull = study.rest, study.contact.pair_rule, "grain" if study.lander.friction is None else "lander"
@@ -101,7 +103,8 @@ def sliding_friction(study: Study, samples: Samples, ground: str) -> np.ndarray:
         touchdown_values(study, samples.input_names, samples.inputs, f"{part}.friction").tolist()
         for part in ("grain", hull)
     )
-    return np.array([pair_value(one, other, rule) for one, other in zip(of_grain, of_hull, strict=True)])
+    of_contacts = np.array([pair_value(one, other, rule) for one, other in zip(of_grain, of_hull, strict=True)])
+    return sliding_law.effective_friction(of_contacts) if sliding_law.has_measured_size(study) else of_contacts
 
 
 def on_hard_ground(study: Study, sites: "Sites") -> tuple["Rebounds", "Bounce"]:
