@@ -28,5 +28,5 @@ def has_measured_size(study: Study) -> bool:
 
 
 def effective_friction(friction: np.ndarray) -> np.ndarray:
-    """Friction that stops a lander on hulls, for frictions of its contacts; beyond the measured ones that of the end."""
+    """Friction that stops a lander on hulls, by that of its contacts; beyond the measured ones that of the end."""
     return INTERCEPT + SLOPE * np.clip(friction, *FRICTIONS)
