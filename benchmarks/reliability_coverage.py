@@ -1,12 +1,13 @@
 """How often the intervals of failure probabilities hold the truth, on limit states of closed form under noise.
 
-    python benchmarks/reliability_coverage.py [--studies 200]
+    python benchmarks/reliability_coverage.py [--studies 200] [--subset]
 
 A strength R and a load S are the inputs of a stochastic model that gives S - R and scatter on top, normal or skewed
 (exponential), a twentieth of it the bed's: the probability that a limit is passed is known in closed form. Rows: what
 `failure_probability` says from 240 runs on 24 beds at .1, .02 and .005; what the runs and the emulator say alone; and
 `subset_simulation` on limit states of 2 to 100 inputs, beside OpenTURNS where that is installed.
-Writes benchmarks/results/reliability_coverage.csv, and .json beside it.
+Writes benchmarks/results/reliability_coverage.csv, and .json beside it; with --subset the rows of
+`subset_simulation` alone are made anew, and the others stay as they stand there.
 """
 
 import argparse
@@ -189,21 +190,34 @@ def main() -> None:
     """Measure and write."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--studies", type=int, default=200)
-    count, begin = parser.parse_args().studies, time.process_time()
+    parser.add_argument("--subset", action="store_true", help="only the rows of subset_simulation")
+    chosen, begin = parser.parse_args(), time.process_time()
+    count, facts = chosen.studies, {"studies": chosen.studies, "level": 0.9, "table": RESULTS.name}
+    parts = [
+        *(study_rows(Truth(skewed), count) for skewed in (False, True)),
+        *(subset_rows(count), openturns_rows(max(count // 10, 2))),
+    ]
+    command = f"benchmarks/reliability_coverage.py --studies {count}"
+    if chosen.subset:
+        kept = list(csv.DictReader(RESULTS.read_text().splitlines()))
+        before, after = (
+            [row for row in kept if row["quantity"].startswith("OpenTURNS") == is_last] for is_last in (False, True)
+        )
+        before = [row for row in before if not row["quantity"].startswith("subset simulation")]
+        parts = [iter(before), subset_rows(count), iter(after)]
     with RESULTS.open("w", newline="") as file:
         writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
         writer.writeheader()
-        parts = (
-            *(study_rows(Truth(skewed), count) for skewed in (False, True)),
-            *(subset_rows(count), openturns_rows(max(count // 10, 2))),
-        )
         for row in (row for part in parts for row in part):
             rounded = {key: float(f"{value:.4g}") if isinstance(value, float) else value for key, value in row.items()}
             writer.writerow(rounded)
             file.flush()
-    facts = {"studies": count, "level": 0.9, "cpu_s": round(time.process_time() - begin), "table": RESULTS.name}
-    facts |= origin(f"benchmarks/reliability_coverage.py --studies {count}")
-    facts["openturns"] = getattr(openturns(), "__version__", None)
+    measured = {"cpu_s": round(time.process_time() - begin)}
+    if chosen.subset:
+        facts = json.loads(RESULTS.with_suffix(".json").read_text())
+        facts["subset"] = measured | origin(f"{command} --subset")
+    else:
+        facts |= measured | origin(command) | {"openturns": getattr(openturns(), "__version__", None)}
     RESULTS.with_suffix(".json").write_text(json.dumps(facts, indent=1) + "\n")
 
 

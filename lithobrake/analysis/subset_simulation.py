@@ -1,6 +1,6 @@
 """Probabilities of rare failures, by subset simulation: from level to level, each a tenth of the one before.
 
-Source: [Au-2001] (subset simulation, and its coefficient of variation); [Papaioannou-2015] (conditional sampling).
+Source: [Au-2001] (subset simulation); [Papaioannou-2015] (conditional sampling); [Lee-2018] (variance by ancestors).
 """
 
 import math
@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lithobrake.analysis.confidence import LEVEL, Array, normal_quantile
+from lithobrake.analysis.confidence import LEVEL, Array, Labels, t_quantile
 
 # Share of the points of a level that make the next one.
 LEVEL_SHARE = 0.1
@@ -18,14 +18,10 @@ LEVEL_SHARE = 0.1
 BEST_ACCEPTANCE = 0.44
 # How far a first move goes, as a part of the standard deviation of the seeds.
 FIRST_STEP = 0.6
-# Correlation of the errors of two levels, whose chains have ancestors in common: without it bounds of 90 % hold .81 to
-# .89 of the probabilities of docs/reliability.md, with it .88 to .96.
-CORRELATION_OF_LEVELS = 0.15
 # Levels after which a probability is below 1e-20 and the model is more likely wrong than that rare.
 MOST_LEVELS = 20
 
 Margin = Callable[[Array], ArrayLike]
-Flags = NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
@@ -33,8 +29,10 @@ class SubsetResult:
     """What subset simulation found.
 
     probability, lower, upper   of failure, its bounds from the coefficient of variation on the logarithmic scale
-    coefficient_of_variation    standard deviation of the probability over itself, as the chains tell it
+    coefficient_of_variation    standard deviation of the probability over itself, as the groups of points tell it
+    origins                     how many groups of one size the points that fail descend from; 0 without any
     thresholds [level_count]    margins that the levels lay below; the last is 0
+    shares [level_count]        of the points of a level that lie below its threshold; their product is the probability
     failing [count, dimension]  points that fail, standard normal: which inputs make it, and where
     evaluation_count            how many margins were asked for
     reached                     whether a level had failing points; without, probability is 0 and upper a rough bound
@@ -44,7 +42,9 @@ class SubsetResult:
     lower: float
     upper: float
     coefficient_of_variation: float
+    origins: float
     thresholds: Array
+    shares: Array
     failing: Array
     evaluation_count: int
     reached: bool = True
@@ -57,6 +57,7 @@ def subset_simulation(
     *,
     points_per_level: int = 1000,
     kept: Sequence[int] = (),
+    groups: Callable[[Array], ArrayLike] | None = None,
     most_levels: int = MOST_LEVELS,
     seed: int = 0,
 ) -> SubsetResult:
@@ -64,8 +65,9 @@ def subset_simulation(
 
     margin: of points [count, dimension], shape [count]; the same point has the same margin, so whatever is random in a
     model is an input of its own. kept: inputs that a chain keeps from its start, as those that pick a bed: a model that
-    jumps when they change would refuse nearly every move. points_per_level: a multiple of ten, 20 at least.
-    most_levels: after which a failure that no point has shown is not looked for further.
+    jumps when they change would refuse nearly every move. groups: labels [count] of points, by kept inputs alone, where
+    points have something in common that is itself a draw, as landings on one bed have. points_per_level: a multiple of
+    ten, 20 at least. most_levels: after which a failure that no point has shown is not looked for further.
     Raises ValueError for other counts, and for margins that are no numbers.
     """
     chain_count = _checked(dimension, points_per_level, kept)
@@ -73,31 +75,66 @@ def subset_simulation(
     points = random.standard_normal((points_per_level, dimension))
     values = _margins(margin, points)
     moved = np.setdiff1d(np.arange(dimension), np.asarray(kept, dtype=int))
-    # At the first level points are independent; later ones stand in chains.
-    probability, step, count = 1.0, FIRST_STEP, points_per_level
-    thresholds: list[float] = []
-    variations: list[float] = []
+    levels, step, count = _Levels(_groups(groups, points)), FIRST_STEP, points_per_level
     for number in range(most_levels + 1):
         order = np.argsort(values, kind="stable")
         threshold = max(0.5 * float(values[order[chain_count - 1]] + values[order[chain_count]]), 0.0)
-        below = values <= (threshold if number < most_levels else 0.0)
-        share = float(below.mean())
-        if share == 0.0:
+        threshold = threshold if number < most_levels else 0.0
+        below = values <= threshold
+        if not below.any():
             break
-        chains = below.reshape(-1, chain_count) if number else below[None]
-        variations.append(_variation(chains, share))
-        probability *= share
-        thresholds.append(threshold if number < most_levels else 0.0)
+        levels.add(threshold, below)
         # Where many points have one margin a level may hold all of them and lead nowhere.
-        if threshold == 0.0 or share == 1.0 or number == most_levels:
+        if threshold == 0.0 or below.all():
             break
         seeds = random.permutation(np.flatnonzero(below))[:chain_count]
+        levels.descend(seeds)
         points, values, step = _chains(margin, points[seeds], values[seeds], threshold, moved, step, random)
         # A level may keep some points more than its share, where margins are equal.
         count += len(points) - chain_count
-    failing = points[values <= 0.0]
-    reached = len(failing) > 0
-    return _result(probability if reached else 0.0, probability, variations, thresholds, failing, count, reached)
+    return levels.result(points, values <= 0.0, count)
+
+
+class _Levels:
+    """What the levels have told so far, and which group each point of the present one descends from, [count].
+
+    The influence of a group is how much it changed the logarithm of the probability, over all levels: its share of the
+    points that fail less its share of the first points. So chance that chains share, by an ancestor or a bed, is in it.
+    """
+
+    def __init__(self, group: Labels) -> None:
+        self.group, self.influence = group, np.zeros(group.max() + 1)
+        self.thresholds: list[float] = []
+        self.shares: list[float] = []
+
+    def add(self, threshold: float, below: NDArray[np.bool_]) -> None:
+        """Note a level by its threshold and which of its points lie below, [count]."""
+        share = float(below.mean())
+        self.thresholds.append(threshold)
+        self.shares.append(share)
+        self.influence += np.bincount(self.group, below / share - 1.0, len(self.influence)) / len(below)
+
+    def descend(self, seeds: NDArray[np.intp]) -> None:
+        """Go on with chains that start from some points, [chain_count]."""
+        self.group = np.tile(self.group[seeds], round(1.0 / LEVEL_SHARE))
+
+    def result(self, points: Array, fails: NDArray[np.bool_], count: int) -> SubsetResult:
+        """The result, given the points of the last level, which of them fail, and how many margins were asked for."""
+        probability, variation = math.prod(self.shares), self._variation()
+        failing = np.bincount(self.group[fails]).astype(float)
+        # Groups of unlike size tell as little of their scatter as fewer of one size.
+        origins = float(failing.sum() ** 2 / np.sum(failing**2)) if len(failing) else 0.0
+        told = variation, origins, np.array(self.thresholds), np.array(self.shares), points[fails], count
+        if not len(failing):
+            return SubsetResult(0.0, 0.0, probability, *told, reached=False)
+        # One origin alone is counted as two.
+        half = t_quantile(max(origins - 1.0, 1.0)) * math.sqrt(math.log1p(variation**2))
+        return SubsetResult(probability, probability * math.exp(-half), min(probability * math.exp(half), 1.0), *told)
+
+    def _variation(self) -> float:
+        """Coefficient of variation of the probability, as groups differ. Source: [Lee-2018]."""
+        group_count = len(self.influence)
+        return math.sqrt(group_count / (group_count - 1.0) * float(np.sum(self.influence**2)))
 
 
 def _chains(
@@ -130,39 +167,16 @@ def _chains(
     return np.concatenate(all_points), np.concatenate(all_values), step
 
 
-def _variation(below: Flags, share: float) -> float:
-    """Coefficient of variation of the share of a level, from chains [chain_length, chain_count] of its points.
+def _groups(groups: Callable[[Array], ArrayLike] | None, points: Array) -> Labels:
+    """Groups of the first points [count], numbered from 0: as labelled, else each point by itself.
 
-    Source: [Au-2001], Eqs 25 to 29.
+    One group alone says nothing of another, so it counts as none.
     """
-    length = len(below)
-    if not 0.0 < share < 1.0:
-        return 0.0
-    deviations = below - share
-    variance = share * (1.0 - share)
-    inefficiency = 0.0
-    for lag in range(1, length):
-        correlation = float(np.mean(deviations[:-lag] * deviations[lag:])) / variance
-        inefficiency += 2.0 * (1.0 - lag / length) * correlation
-    return math.sqrt((1.0 - share) / (share * below.size) * max(1.0 + inefficiency, 1.0 / length))
-
-
-def _result(
-    probability: float,
-    rarest: float,
-    variations: list[float],
-    thresholds: list[float],
-    failing: Array,
-    count: int,
-    reached: bool,
-) -> SubsetResult:
-    """The result with its bounds; rarest: probability of the last level that was reached."""
-    variance = (1.0 - CORRELATION_OF_LEVELS) * sum(one**2 for one in variations)
-    variance += CORRELATION_OF_LEVELS * sum(variations) ** 2
-    half = normal_quantile() * math.sqrt(math.log1p(variance))
-    lower, upper = (probability * math.exp(-half), min(probability * math.exp(half), 1.0)) if reached else (0.0, rarest)
-    margins = np.array(thresholds)
-    return SubsetResult(probability, lower, upper, math.sqrt(variance), margins, failing, count, reached)
+    alone = np.arange(len(points))
+    if groups is None:
+        return alone
+    labels = np.unique(np.asarray(groups(points)), return_inverse=True)[1].astype(np.int64)
+    return labels if labels.max() > 0 else alone
 
 
 def _margins(margin: Margin, points: Array) -> Array:

@@ -34,6 +34,8 @@ from lithobrake.study.limit_state import LimitState
 CHAIN, FEWEST = 10, 20
 # A landing is dear, and a probability below 1e-6 is less sure than what a study assumes.
 MOST_LEVELS = 6
+# Landings that meet it descend from so few groups of one size: on a second go they may descend from quite others.
+FEW_ORIGINS = 3.0
 # Probabilities as near to 0 and 1 as a law without ends can take.
 LEAST = 2.0**-53
 
@@ -64,17 +66,10 @@ def rare_failure(
         study = grown(with_site_gravity(source.study, source.name), folder)
         landings = Landings(Job(study, source.tables, folder, executor, shown, model), name, state)
         if not study.has_soil:
-            shown.say("A program with chance of its own, beside its inputs, makes the interval too narrow.")
+            shown.say("A program with chance of its own, beside its inputs, makes the interval wide.")
         shown.begin(f"landings of {name}", 1, 1)
         try:
-            found = subset_simulation(
-                landings.margins,
-                landings.dimension,
-                points_per_level=landing_count,
-                kept=[landings.dimension - 1],
-                most_levels=MOST_LEVELS,
-                seed=hashed_seed(study.seed, "rare", name),
-            )
+            found = landings.simulation(landing_count)
         except BaseException:
             executor.shutdown(cancel_futures=True)
             raise
@@ -106,6 +101,23 @@ class Landings:
         """How many numbers a point has; the last picks the bed."""
         return len(coordinates(self.job.study)) + 1
 
+    def simulation(self, landing_count: int) -> SubsetResult:
+        """Subset simulation with so many landings a level."""
+        return subset_simulation(
+            self.margins,
+            self.dimension,
+            points_per_level=landing_count,
+            kept=[self.dimension - 1],
+            groups=self.beds,
+            most_levels=MOST_LEVELS,
+            seed=hashed_seed(self.job.study.seed, "rare", self.name),
+        )
+
+    def beds(self, points: np.ndarray) -> np.ndarray:
+        """Beds of points [count, dimension], [count]."""
+        shares = np.clip(ndtr(points[:, -1]), LEAST, 1.0 - LEAST)
+        return (shares * self.job.study.bed_count).astype(int)
+
     def margins(self, points: np.ndarray) -> np.ndarray:
         """Land at standard normal points [count, dimension], and say how far each is from the limit state, [count].
 
@@ -115,8 +127,7 @@ class Landings:
         shares = np.clip(ndtr(points), LEAST, 1.0 - LEAST)
         laws = coordinates(study).values()
         x = np.column_stack([law.ppf(share) for law, share in zip(laws, shares.T, strict=False)])
-        beds = (shares[:, -1] * study.bed_count).astype(int).tolist()
-        rows = rows_at(study, beds, x)
+        rows = rows_at(study, self.beds(points).tolist(), x)
         self.keys += touchdown_keys(study, rows, 0)
         # Noted before they are made, so that whoever looks meanwhile can tell them from runs of the study.
         self.job.folder.note_rare(self.name, self.keys)
@@ -139,13 +150,7 @@ class Landings:
 
     def told(self, found: SubsetResult, landing_count: int) -> dict[str, Any]:
         """What rare_NAME.json holds."""
-        study, laws = self.job.study, design_inputs(self.job.study)
-        shares = ndtr(found.failing)
-        medians = {
-            name: {"median": float(law.ppf(np.median(share))) if len(share) else None, "median_of_all": law.median}
-            for (name, law), share in zip(laws.items(), shares.T, strict=False)
-        }
-        why = why_no_interval(study)
+        study, why = self.job.study, why_no_interval(self.job.study)
         content = {
             "condition": self.state.text,
             "probability": found.probability,
@@ -154,17 +159,28 @@ class Landings:
             "why": why,
             "level": found.level,
             "coefficient_of_variation": found.coefficient_of_variation,
+            "origins": found.origins,
+            "warning": _few_origins(found.origins, study.bed_count) if found.reached else None,
             "reached": found.reached,
             "rarest": found.probability if found.reached else found.upper,
             "levels": len(found.thresholds),
             "thresholds": found.thresholds.tolist(),
+            "shares": found.shares.tolist(),
             "landings_a_level": landing_count,
             "landings": found.evaluation_count,
             "without_known_end": self.unknown_count,
             "beds": study.bed_count,
-            "inputs": medians,
+            "inputs": self._medians(found.failing),
         }
         return content | {"statement": _statement(self.name, content)}
+
+    def _medians(self, failing: np.ndarray) -> dict[str, dict[str, float | None]]:
+        """Median of each input among points that fail [count, dimension], and by its law; None where there are none."""
+        laws = design_inputs(self.job.study)
+        return {
+            name: {"median": float(law.ppf(np.median(share))) if len(share) else None, "median_of_all": law.median}
+            for (name, law), share in zip(laws.items(), ndtr(failing).T, strict=False)
+        }
 
 
 def _limit_state(study: Study, name: str) -> LimitState:
@@ -196,4 +212,16 @@ def _statement(name: str, found: dict[str, Any]) -> str:
     levels = f"{found['levels']} level{'s' * (found['levels'] != 1)}"
     landings = f"{found['landings']} landings in {levels} on {found['beds']} beds"
     why = f" {found['why']}" if found["why"] else ""
-    return f"{name} ({found['condition']}): {said}; by {landings}{lost}.{why}"
+    warning = f" {found['warning']}" if found["warning"] and found["lower"] is not None else ""
+    return f"{name} ({found['condition']}): {said}; by {landings}{lost}.{why}{warning}"
+
+
+def _few_origins(origins: float, bed_count: int) -> str | None:
+    """What to say where equal runs of the command would scatter much."""
+    if origins >= FEW_ORIGINS:
+        return None
+    what, more = ("beds", "bed.bed_count") if bed_count > 1 else ("first landings", "--landings")
+    return (
+        f"The landings that meet it descend from few {what}, as {origins:.1f} of one size would have it, so the same "
+        f"with another seed may give quite another probability: raise {more}."
+    )

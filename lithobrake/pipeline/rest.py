@@ -7,6 +7,7 @@ import numpy as np
 
 from lithobrake.outcomes import JourneyStatus
 from lithobrake.outputs import ARC, SPIN_OUT
+from lithobrake.pipeline import sliding_law
 from lithobrake.pipeline.design_runs import DesignRuns
 from lithobrake.pipeline.emulator_bounce import emulator_bounce
 from lithobrake.pipeline.flights import partner_time, sample_sites, write_table
@@ -45,8 +46,10 @@ def rest_files(study: Study) -> list[str]:
 
 
 def journey_reads(study: Study) -> dict[str, Any]:
-    """What journeys depend on beside samples and flights; a table with other columns is made anew."""
-    return study.rest.model_dump(exclude={"arc_count"}, exclude_none=True) | {"columns": COLUMNS}
+    """What journeys depend on beside samples and flights; a table with other columns or law is made anew."""
+    law = sliding_law.INTERCEPT, sliding_law.SLOPE
+    own = study.rest.model_dump(exclude={"arc_count"}, exclude_none=True)
+    return own | {"columns": COLUMNS, "sliding_law": law}
 
 
 def rest_reads(study: Study) -> dict[str, Any]:
@@ -103,7 +106,7 @@ def on_soil(job: Job, samples: Samples) -> tuple["Rebounds", "Bounce"]:
 
 
 def sliding_friction(study: Study, samples: Samples, ground: str) -> np.ndarray:
-    """Friction under each sample once it is captured, [sample_count]: on soil that of hull and grain."""
+    """Friction under each sample once it is captured, [sample_count]: on soil that of hull and grain, or their law."""
     from lithobrake.dem.material import pair_value
 
     rest, rule, hull = study.rest, study.contact.pair_rule, "grain" if study.lander.friction is None else "lander"
@@ -114,7 +117,8 @@ def sliding_friction(study: Study, samples: Samples, ground: str) -> np.ndarray:
         touchdown_values(study, samples.input_names, samples.inputs, f"{part}.friction").tolist()
         for part in ("grain", hull)
     )
-    return np.array([pair_value(one, other, rule) for one, other in zip(of_grain, of_hull, strict=True)])
+    of_contacts = np.array([pair_value(one, other, rule) for one, other in zip(of_grain, of_hull, strict=True)])
+    return sliding_law.effective_friction(of_contacts) if sliding_law.has_measured_size(study) else of_contacts
 
 
 def on_hard_ground(study: Study, sites: "Sites") -> tuple["Rebounds", "Bounce"]:

@@ -83,13 +83,14 @@ class PaperResults(Results):
 @dataclass(frozen=True)
 class SequenceResults(Results):
     """Results of a sequence; runs: its landings, without side runs; samples: of the emulator, None where there are
-    none.
+    none; rare: what `lithobrake rare` found, by limit state.
     """
 
     model, level = "emulator", 0.9
 
     runs: Table
     samples: Table | None
+    rare: Mapping[str, Mapping[str, Any]]
 
     @property
     def shown_landing(self) -> str:
@@ -138,6 +139,7 @@ def _sequence_results(found: StudyResults, summary: SummaryTable) -> SequenceRes
         **_of_any_study(found, summary),
         runs=found.runs.where(found.runs["design"] == "sequence"),
         samples=found.samples if has_samples else None,
+        rare=found.rare,
     )
 
 

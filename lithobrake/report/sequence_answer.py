@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 
 from lithobrake.outcomes import TouchdownOutcome
 from lithobrake.report.captions import hours, listing, percent, place_words
+from lithobrake.report.rare_tables import rare_warnings
 from lithobrake.report.results import Results, SequenceResults
 
 # With fewer beds intervals are wide, and how much beds differ is hardly known.
@@ -143,7 +144,8 @@ def missing_sentence(data: SequenceResults) -> str:
 
 def warnings(data: SequenceResults) -> list[str]:
     """What makes the numbers of the page weaker than they look."""
-    return [words for words in (_few_beds(data), emulator_outside(data), _gravity(data)) if words]
+    found = [_few_beds(data), emulator_outside(data), _gravity(data), *rare_warnings(data.rare)]
+    return [words for words in found if words]
 
 
 def _few_beds(data: SequenceResults) -> str:

@@ -12,6 +12,8 @@ from lithobrake.report.aim_figure import aim_figure
 from lithobrake.report.calibration_figure import calibration_figure, histograms
 from lithobrake.report.explorer import explorer_sections
 from lithobrake.report.page import Content, Plot
+from lithobrake.report.rare_figure import rare_figure
+from lithobrake.report.rare_tables import rare_caption
 from lithobrake.report.results import SequenceResults
 from lithobrake.report.runs_figure import LandingsOfRuns, runs_figure
 from lithobrake.report.scatter_figure import scatter_figure
@@ -55,6 +57,8 @@ def _plots(data: SequenceResults) -> list[Plot]:
         plots.append(Plot("rest", "Where it rests", captions.rest(data), lambda: any_study.draw_rest(data)))
     if data.table("aim"):
         plots.append(Plot("aim", "Where to aim", words.aims(data), lambda: aim_figure(data.table("aim"))))
+    if data.rare:
+        plots.append(Plot("rare", "What is rare", rare_caption(data.rare), lambda: rare_figure(data.rare)))
     return plots
 
 

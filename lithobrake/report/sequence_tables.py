@@ -8,6 +8,7 @@ from lithobrake.report.captions import input_words, percent
 from lithobrake.report.dispersion_tables import dispersion_tables
 from lithobrake.report.limit_state_tables import limit_state_tables
 from lithobrake.report.page import PageTable, Tile, fixed, number
+from lithobrake.report.rare_tables import rare_tables
 from lithobrake.report.results import SequenceResults
 from lithobrake.report.sequence_answer import (
     action,
@@ -74,7 +75,7 @@ def tables(data: SequenceResults) -> list[PageTable]:
     }
     found = [table(data) for table, key in made.items() if results.get(key)]
     side = [_side_runs(data)] if data.table("runs", "side_runs", "chaos_deviation") else []
-    return [*found, *side, *limit_state_tables(data), *dispersion_tables(data)]
+    return [*found, *side, *limit_state_tables(data), *rare_tables(data.rare), *dispersion_tables(data)]
 
 
 def _answer(data: SequenceResults) -> PageTable:

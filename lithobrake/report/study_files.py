@@ -32,6 +32,7 @@ CONTENTS = {
     "arcs.csv": "each flight of the first of those landers on the soil: where it begins, and when it ends",
     "restitution.csv": "restitution, friction and scatter that the soil implies, by speed and incidence",
     "rest.json": "which ground could be asked, and the range of the runs",
+    "rare_*.json": "a rare limit state: its probability and the levels down to it, from landings of its own",
     "aim.csv": "the landers at every aim, on soil and on hard ground",
     "body.obj": "the shape of the body that the flights used",
 }

@@ -30,6 +30,11 @@ _PLACES = ("sample", "status", "latitude_deg", "longitude_deg")
 # Columns that hold no numbers.
 _WORDS = {"key", "design", "outcome", "reason", "status", "ground"}
 _SCORE = {"ape": [NUMBER | None], "mape": NUMBER | None, "q2": NUMBER | None, "rmse": NUMBER, "std": NUMBER}
+_RARE = {
+    "condition": str, "probability": NUMBER, "lower": NUMBER | None, "upper": NUMBER | None, "origins": NUMBER,
+    "warning": str | None, "reached": bool, "rarest": NUMBER, "thresholds": [NUMBER], "shares": [NUMBER],
+    "landings": int, "beds": int, "statement": str,
+}  # fmt: skip
 
 # What a notebook says can be asked for: the file that it takes, and what comes.
 _ASKED = {
@@ -117,6 +122,15 @@ class StudyResults:
         self._refuse_drawn("scores", "errors of expansions")
         content: dict[str, Any] = read_json(self.folder / "scores.json", {str: {str: _SCORE}}, self.remedy)
         return content
+
+    @cached_property
+    def rare(self) -> dict[str, dict[str, Any]]:
+        """What `lithobrake rare` found of each limit state it was asked for, by name (docs/reliability.md)."""
+        files = sorted(self.folder.glob("rare_*.json"))
+        return {
+            path.stem.removeprefix("rare_"): read_json(path, _RARE, "make it again with: lithobrake rare")
+            for path in files
+        }
 
     @cached_property
     def samples(self) -> "Table":

@@ -85,4 +85,4 @@ class RestSection(Section):
     """Hard ground: a lander bounces no more where its rebound would rise less than this."""
     rolling_friction: Annotated[float, Number("", at_least=0)] | None = None
     """Every ground: resistance, over the force on the ground, of a captured lander that rolls on like a ball; absent:
-    it slides, on hard ground with the friction above, on soil with that of its hull."""
+    it slides, on hard ground with the friction above, on soil with one that follows from that of its hull."""

@@ -11,6 +11,8 @@ from lithobrake.analysis import subset_simulation
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
 from reliability_coverage import LIMIT_STATES, openturns_subset
+from subset_with_chance import EXACT
+from subset_with_chance import one as with_chance
 
 SEEDS = 40
 
@@ -53,6 +55,29 @@ def test_kept_inputs_stay_along_a_chain() -> None:
     found = [subset_simulation(margin, 2, kept=[0], points_per_level=500, seed=seed) for seed in range(SEEDS)]
     told = np.mean([one.coefficient_of_variation for one in found])
     assert np.mean([one.probability for one in found]) == pytest.approx(exact, rel=3.0 * told / np.sqrt(SEEDS))
+
+
+@pytest.mark.parametrize(
+    ("noise_share", "bed_share", "bed_count"),
+    [(0.75, 0.0, 1), (0.0, 0.2, 12)],
+    ids=["chance that is no input", "beds that differ"],
+)
+def test_bounds_hold_where_chains_share_chance(noise_share: float, bed_share: float, bed_count: int) -> None:
+    found = [with_chance(noise_share, bed_share, bed_count, 500, seed) for seed in range(SEEDS)]
+    # Bounds from the correlation within chains alone held .6 of both.
+    assert np.mean([each.lower <= EXACT <= each.upper for each in found]) >= 0.75
+
+
+def test_shares_of_levels_make_the_probability_and_origins_count_those_that_led_to_it() -> None:
+    margin, dimension, _ = LIMIT_STATES["linear, 2 inputs"]
+    found = subset_simulation(margin, dimension, points_per_level=500)
+    assert len(found.shares) == len(found.thresholds)
+    assert found.probability == pytest.approx(np.prod(found.shares))
+    assert 1.0 <= found.origins <= 50.0
+    # The first of two groups has all that fails.
+    kept = {"kept": [0], "groups": lambda points: points[:, 0] > 0.0}
+    halves = subset_simulation(lambda points: np.where(points[:, 0] > 0.0, 2.0 - points[:, 1], 9.0), 2, **kept)
+    assert (halves.origins, halves.coefficient_of_variation) == (1.0, pytest.approx(1.0, abs=0.1))
 
 
 def test_a_failure_that_is_common_takes_one_level() -> None:

@@ -99,10 +99,18 @@ def test_the_interval_holds_a_probability_that_is_known_under_noise(folder: Path
     assert found["landings"] == 200 + (found["levels"] - 1) * 180
     assert found["levels"] in (3, 4)
     assert found["thresholds"] == sorted(found["thresholds"], reverse=True)
+    assert math.prod(found["shares"]) == pytest.approx(found["probability"])
     # Fast landers stand on rough soils.
     assert found["inputs"]["grain.friction"]["median"] > 0.8
     assert found["statement"].startswith("fast (speed_out > ")
     assert f"by {found['landings']} landings in {found['levels']} levels" in found["statement"]
+
+
+def test_few_beds_that_led_to_all_of_it_are_warned_of(folder: Path) -> None:
+    found = json.loads((folder / "rare_fast.json").read_text(encoding="utf-8"))
+    assert 1.0 <= found["origins"] < 3.0
+    assert f"descend from few beds, as {found['origins']:.1f} of one size would have it" in found["warning"]
+    assert found["statement"].endswith("raise bed.bed_count.")
 
 
 def test_one_that_is_stopped_ends_with_the_same_bits_and_makes_no_landing_twice(folder: Path, tmp_path: Path) -> None:
@@ -138,7 +146,7 @@ def test_landings_without_a_known_end_are_counted_and_said(tmp_path: Path) -> No
 
 def test_what_never_happens_is_not_looked_for_without_end(tmp_path: Path) -> None:
     found = rare(tmp_path / "out", "never", landing_count=20)
-    assert (found["probability"], found["reached"]) == (0.0, False)
+    assert (found["probability"], found["reached"], found["warning"]) == (0.0, False, None)
     assert found["levels"] <= 6
     assert found["inputs"]["grain.friction"]["median"] is None
     assert found["landings"] <= 20 + 6 * 18

@@ -1,5 +1,6 @@
 """Bounce after bounce of a study: what the soil answers to later impacts, and where samples end."""
 
+import json
 import math
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
@@ -20,10 +21,11 @@ from lithobrake.pipeline.job import Silent
 from lithobrake.pipeline.journey_arcs import arc_rows
 from lithobrake.pipeline.outgoing import rolling_spin
 from lithobrake.pipeline.rest import COLUMNS as REST
-from lithobrake.pipeline.rest import Sites, follow_samples, sliding_friction
+from lithobrake.pipeline.rest import Sites, follow_samples, rest_reads, sliding_friction
 from lithobrake.pipeline.run_noise import Scatter
 from lithobrake.pipeline.samples import SAMPLE_OUTCOMES, Samples
 from lithobrake.pipeline.site import site_medians
+from lithobrake.pipeline.sliding_law import FRICTIONS, INTERCEPT, SLOPE, effective_friction
 from lithobrake.pipeline.slow_arrivals import SlowArrivals
 from lithobrake.pipeline.surrogate_bounce import SoilBounce, trained_ranges, why_no_soil
 from lithobrake.smallbody import Arcs, HardSurface, Impacts, Rebounds
@@ -31,6 +33,9 @@ from lithobrake.study import Study, check_tables
 
 from ..paper_tables import paper_tables
 
+ROOT = Path(__file__).parents[2]
+# Grains so small that nothing is known of how they hold a lander.
+FINE = {"distribution": "constant", "value": 0.02}
 INPUTS = {
     "grain.friction": Uniform(0.2, 0.8),
     "impact.speed": Uniform(0.0, 0.4),
@@ -219,7 +224,8 @@ def captured_sites(study: Study, latitude: float) -> tuple[Sites, Rebounds]:
 
 def test_a_captured_lander_rests_or_slides_by_the_friction_of_its_soil(tmp_path: Path) -> None:
     """On a slope of Didymos the rough one rests where it is, the smooth one goes downhill; at the equator both lift."""
-    study = changed(site={"partner": False}, rest={"duration": 20000.0}, flight={"gravity": "exact"})
+    rest, flight = {"duration": 20000.0}, {"gravity": "exact"}
+    study = changed(bed={"diameter": FINE}, site={"partner": False}, rest=rest, flight=flight)
     sites, first = captured_sites(study, 40.0)
     slope = float(sites.body.slope(40.0, 0.0))
     assert 0.05 < math.tan(slope) < 0.9
@@ -241,12 +247,31 @@ def test_a_captured_lander_rests_or_slides_by_the_friction_of_its_soil(tmp_path:
 
 def test_the_friction_of_a_slide_is_that_of_hull_and_grain_or_of_rolling() -> None:
     samples = captured_sites(changed(), 40.0)[0].samples
-    drawn = changed(lander={"friction": 0.4})
+    drawn = changed(lander={"friction": 0.4}, bed={"diameter": FINE})
     assert sliding_friction(drawn, samples, "soil").tolist() == [0.4, 0.05, 0.4]
     assert sliding_friction(drawn, samples, "hard").tolist() == [0.6] * 3
     rolls = changed(rest={"rolling_friction": 0.1})
     assert sliding_friction(rolls, samples, "soil").tolist() == [0.1] * 3
     assert sliding_friction(rolls, samples, "hard").tolist() == [0.1] * 3
+
+
+def test_stones_as_large_as_the_lander_hold_it_more_than_its_contacts_do() -> None:
+    samples, drawn = captured_sites(changed(), 40.0)[0].samples, changed(lander={"friction": 0.4})
+    at_ends = INTERCEPT + SLOPE * np.array([0.4, 0.2, 0.4])
+    for ground in ("soil", "equivalent"):
+        assert sliding_friction(drawn, samples, ground) == pytest.approx(at_ends)
+    assert sliding_friction(drawn, samples, "hard").tolist() == [0.6] * 3
+    assert rest_reads(drawn)["sliding_law"] == (INTERCEPT, SLOPE)
+    ball = {"shape": "sphere", "diameter": 0.1, "edges": None, "friction": 0.4}
+    assert sliding_friction(changed(lander=ball), samples, "soil").tolist() == [0.4, 0.05, 0.4]
+
+
+def test_the_law_of_sliding_is_that_of_its_measurement() -> None:
+    found = json.loads((ROOT / "docs" / "validation" / "sliding_law.json").read_text(encoding="utf-8"))["law"]
+    assert pytest.approx((found["intercept"], found["slope"]), abs=0.005) == (INTERCEPT, SLOPE)
+    low, high = FRICTIONS
+    assert found["scatter"] < found["scatter_about_coulomb"]
+    assert (effective_friction(np.array([0.0, 2.0])) == effective_friction(np.array([low, high]))).all()
 
 
 def test_what_comes_too_slowly_to_leave_is_captured_where_the_soil_has_no_answer() -> None:

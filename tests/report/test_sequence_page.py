@@ -14,6 +14,7 @@ import pytest
 
 from lithobrake.report import captions, sequence_captions, sequence_tables, write_report
 from lithobrake.report.captions import place_words
+from lithobrake.report.rare_tables import rare_tables
 from lithobrake.report.results import SequenceResults, page_results
 from lithobrake.report.sequence_answer import answer, warnings
 from lithobrake.report.sequence_page import sequence_content
@@ -136,6 +137,43 @@ def test_caption_of_what_decides_explains_parts_below_0_and_chaos_without_twins(
     assert "(1 here, as bed of V+)" in words
     assert "each bar adds up to 100 %" in words
     assert "Without twins chaos is not known apart: it is within place and attitude." in words
+
+
+def rare(**changes: Any) -> dict[str, Any]:
+    """What the command writes of a limit state, of which the page reads a part."""
+    return {
+        "condition": "speed_out > 0.3", "probability": 0.0015, "lower": 4e-4, "upper": 0.005, "origins": 2.4,
+        "warning": "Few beds led to it: raise bed.bed_count.", "reached": True, "rarest": 0.0015,
+        "thresholds": [1.7, 0.9, 0.0], "shares": [0.1, 0.1, 0.15], "landings": 1400, "beds": 12,
+        "statement": "fast: probability .0015.",
+    } | changes  # fmt: skip
+
+
+def test_rare_limit_states_have_their_levels_a_figure_and_a_warning(sequence_folder: Path, tmp_path: Path) -> None:
+    never = rare(condition="speed_out > 9", probability=0.0, lower=None, upper=None, origins=0.0, warning=None,
+                 reached=False, rarest=2e-6, statement="never: no landing met it.")  # fmt: skip
+    folder = tmp_path / "study"
+    shutil.copytree(sequence_folder, folder, ignore=shutil.ignore_patterns("report"))
+    for name, content in (("fast", rare()), ("never", never)):
+        (folder / f"rare_{name}.json").write_text(json.dumps(content), encoding="utf-8")
+    text = write_report(folder, lambda done, total: None).read_text(encoding="utf-8")
+    assert (folder / "report" / "figure_10_rare.png").stat().st_size > 10_000
+    assert '<p class="warning">fast: Few beds led to it: raise bed.bed_count.</p>' in text
+    for words in ("0.0015", "4 × 10⁻⁴ to 0.005", "below 2 × 10⁻⁶", "fast: probability .0015."):
+        assert words in text
+    assert "rare_fast.json" in text
+    found = page_results(open_study(folder))
+    assert isinstance(found, SequenceResults)
+    levels = rare_tables(found.rare)[1].rows
+    assert levels[0] == ["fast", "1", "1.70", "10.0 %", "0.1"]
+    assert levels[2] == ["", "3", "0.00", "15.0 %", "0.0015"]
+    (folder / "rare_fast.json").write_text("{}", encoding="utf-8")
+    with pytest.raises(ValueError, match=r"rare_fast\.json .*make it again with: lithobrake rare"):
+        write_report(folder, lambda done, total: None)
+
+
+def test_without_rare_results_the_page_has_nothing_of_them(page: str) -> None:
+    assert "are limit state" not in page
 
 
 def record() -> dict[str, Any]:
