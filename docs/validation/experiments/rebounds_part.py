@@ -17,15 +17,17 @@ from lithobrake.analysis import wilson_interval
 
 EARTH, DIAMETER = 9.81, 0.02  # m/s2, m
 RISEN = 5e-4  # m above its deepest place, from which a ball counts as rebounding
+LOWEST = "below 1e-4 g, lowest energies, here 1-10 cm/s (PRIME-3)"
 # What the sources say: gravity over Earth's, speeds [m/s] from and to, and whether the ball rebounds. The lowest
 # energies below 1e-4 of Earth's gravity have no number; up to .1 m/s is our reading, where ejecta begin.
 SAID = {
     "1e-3 g, 1-20 cm/s (COLLIDE-2)": (1e-3, 0.01, 0.2, 0.0),
     "1e-3 g, 25-100 cm/s (COLLIDE-2)": (1e-3, 0.25, 1.0, 1.0),
     "1e-2 g, 4-230 cm/s (PRIME)": (1e-2, 0.04, 2.3, 0.0),
-    "below 1e-4 g, lowest energies, here 1-10 cm/s (PRIME-3)": (1e-4, 0.01, 0.1, 1.0),
+    LOWEST: (1e-4, 0.01, 0.1, 1.0),
 }
-SHOWN = ("sand", "coarser", "gravel", "pebbles", "cohesive_0.0001", "cohesive_0.01")
+SHOWN = ("sand", "coarser", "softer", "pebbles", "gravel", "lunar_0.0001")
+SPHERES = ("sand", "coarser")
 
 
 def froude(share: float, speed: float) -> float:
@@ -55,12 +57,19 @@ def rebounds_part() -> tuple[Lines, str]:
     every = read_rows(HERE / "who_rebounds.csv")
     if not every:
         return [], ""
-    sand = [row for row in every if row["kind"] == "sand"]
+    sand = [row for row in every if row["kind"] in SPHERES]
     lines = []
     for text, (share, slow, fast, expected) in SAID.items():
         low, high = froude(share, slow), froude(share, fast)
         own = [row for row in sand if low <= row["froude"] <= high]
         lines.append(share_line(f"ball: rebounds, {text}", "rebounds" if expected else "stays", expected, own))
+    share, low, high, expected = SAID[LOWEST]
+    pulling = [
+        row for row in every
+        if row["kind"] == "lunar_0.0001" and froude(share, low) <= row["froude"] <= froude(share, high)
+    ]  # fmt: skip
+    if pulling:
+        lines.append(share_line("ball: the same, grains that pull as lunar soil", "rebounds", expected, pulling))
     slow = [row for row in sand if froude(1e-3, 0.01) <= row["froude"] <= froude(1e-3, 0.2)]
     lines.append(line("ball: speed out over speed in, 1e-3 g, 1-20 cm/s (COLLIDE-1)", 0.05,
                       mean_of(list(column(slow, "upward_out"))), 0.025, "order of .05"))  # fmt: skip
@@ -118,10 +127,13 @@ def of_rebounds(rows: list[Row], to: Path) -> None:
                          label=kind.replace("_", " "))  # fmt: skip
         out = [column(part, "upward_out") for part in parts]
         axes[1].errorbar(at, [o.mean() for o in out], [o.std() for o in out], fmt=marks[kind], color=ink, capsize=2)
+    needed = np.geomspace(0.8, 400.0, 50)
+    axes[1].plot(needed, math.sqrt(2.0 * RISEN / DIAMETER) / needed, ":", color=MEASURED)
+    axes[1].text(1.7, 0.16, "rises by .5 mm\nabove this line", fontsize=7, color=MEASURED)
     axes[1].axhline(0.05, color=MEASURED, lw=2)
-    axes[1].text(0.3, 0.053, "COLLIDE-1, order of", fontsize=7, color=MEASURED)
+    axes[1].text(100.0, 0.053, "COLLIDE-1, order of", fontsize=7, color=MEASURED)
     axes[0].set(xscale="log", xlabel="Froude number v / sqrt(g D)", ylabel="share that rebounds", ylim=(-0.25, 1.25))
-    axes[1].set(xscale="log", xlabel="Froude number v / sqrt(g D)", ylabel="speed out over speed in")
+    axes[1].set(xscale="log", xlabel="Froude number v / sqrt(g D)", ylabel="speed out over speed in", ylim=(-0.01, 0.2))
     axes[0].legend(fontsize=7, loc="center right")
     figure.savefig(to, dpi=110)
     plt.close(figure)

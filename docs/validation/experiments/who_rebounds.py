@@ -36,7 +36,10 @@ AIM = 0.008  # m from the middle along x and y, at most
 QUARTZ = Material(
     young_modulus=1e7, poisson_ratio=0.25, restitution=0.6, friction=0.5, density=2650.0, rolling_friction=0.1
 )
-STIFF = 2000.0  # modulus over density v^2 and over density g D, at least
+# Modulus over density v^2 and over density g D, at least. At 2000 the ball, of the mass of many grains, presses one in
+# by a quarter, and comes deeper.
+STIFF = 20_000.0
+PULLED = 9000.0  # modulus over surface energy over grain, at least: a pull then presses in by a hundredth of a grain
 FALL_SPEED = 3.0  # sqrt(g d), the most at which grains fall while they are poured
 LOCAL = 20.0  # steps of its own that each contact takes while grains fall
 STEPS = 30.0  # in the shortest contact while the ball comes down
@@ -62,40 +65,40 @@ class Kind:
     ball_density: float = 2650.0  # kg/m3, quartz
     stiff: float = STIFF
     surface_energy: float = 0.0  # J/m2
-    share: float = 0.0  # of Earth's gravity; 0: any
+    share: float = 1.0  # of Earth's gravity; of no account where nothing pulls
+    steps: float = STEPS
     froude: tuple[float, ...] = FROUDE
 
     def scaled(self, froude: float) -> tuple[float, float, Material]:
         """Return the speed [m/s], gravity [m/s2] and material of the similar drop on grains of the given modulus."""
-        stuff = self.material
-        speed = math.sqrt(stuff.young_modulus / (self.stiff * stuff.density)) * min(1.0, froude)
-        gravity = (speed / froude) ** 2 / DIAMETER
-        # Forces go as the modulus, and that as the gravity.
-        pull = self.surface_energy * gravity / (EARTH * self.share) if self.share else 0.0
-        return speed, gravity, replace(stuff, surface_energy=pull)
+        gravity, stuff = EARTH * self.share, self.material
+        speed = froude * math.sqrt(gravity * DIAMETER)
+        needed = max(
+            self.stiff * stuff.density * max(speed**2, gravity * DIAMETER), PULLED * self.surface_energy / self.grain
+        )
+        scale = stuff.young_modulus / needed
+        return speed * math.sqrt(scale), gravity * scale, replace(stuff, surface_energy=self.surface_energy * scale)
 
 
 OF_THE_POUR = ("grain", "hulls", "width", "depth", "material")
 FEW = (3.0, 30.0)
 HULLS = (3.0, 10.0, 30.0, 100.0, 300.0)
-# The surface energy is that of clean lunar soil [Perko-2001]; the strength that it gives to grains of 4 mm is a
-# fortieth of that of sand of .1 mm.
-LUNAR, SAND_SIZE = 0.0029, 1e-4
+COARSE = 0.006  # m, of all spheres but the first: they cost a fifth
+LUNAR = 0.0029  # J/m2, of clean lunar soil [Perko-2001]
 KINDS = {
     "sand": Kind(),
-    "coarser": Kind(grain=0.006),
+    "coarser": Kind(grain=COARSE),
     "pebbles": Kind(grain=0.01, hulls=True, width=0.09, depth=0.035, froude=HULLS),
     "gravel": Kind(grain=0.006, hulls=True, width=0.066, depth=0.025, froude=HULLS),
-    "cohesive_0.0001": Kind(surface_energy=LUNAR * 0.004 / SAND_SIZE, share=1e-4, froude=(3.0, 10.0, 30.0, 100.0)),
-    "cohesive_0.01": Kind(surface_energy=LUNAR * 0.004 / SAND_SIZE, share=1e-2, froude=(1.0, 3.0, 10.0, 30.0)),
-    "lunar_0.0001": Kind(surface_energy=LUNAR, share=1e-4, froude=FEW),
-    "restitution_0.9": Kind(material=replace(QUARTZ, restitution=0.9), froude=FEW),
-    "friction_0.2": Kind(material=replace(QUARTZ, friction=0.2, rolling_friction=0.0), froude=FEW),
-    "stiffer": Kind(stiff=10.0 * STIFF, froude=FEW),
-    "wider": Kind(width=0.08, froude=FEW),
-    "deeper": Kind(depth=0.03, froude=FEW),
-    "teflon": Kind(ball_density=2200.0, froude=FEW),
-    "finer": Kind(grain=0.003, froude=FEW),
+    "lunar_0.0001": Kind(grain=COARSE, surface_energy=LUNAR, share=1e-4, steps=40.0, froude=(3.0, 10.0, 30.0)),
+    "lunar_0.01": Kind(grain=COARSE, surface_energy=LUNAR, share=1e-2, steps=40.0, froude=FEW),
+    "restitution_0.9": Kind(grain=COARSE, material=replace(QUARTZ, restitution=0.9), froude=FEW),
+    "friction_0.2": Kind(grain=COARSE, material=replace(QUARTZ, friction=0.2, rolling_friction=0.0), froude=FEW),
+    "softer": Kind(grain=COARSE, stiff=0.1 * STIFF),
+    "stiffer": Kind(grain=COARSE, stiff=10.0 * STIFF, froude=FEW),
+    "wider": Kind(grain=COARSE, width=0.08, froude=FEW),
+    "deeper": Kind(grain=COARSE, depth=0.03, froude=FEW),
+    "teflon": Kind(grain=COARSE, ball_density=2200.0, froude=FEW),
 }
 
 
@@ -209,7 +212,7 @@ class Ejecta:
         }  # fmt: skip
 
 
-def followed(world: World, ball: int, speed: float) -> Row:
+def followed(world: World, ball: int, speed: float, steps: float) -> Row:
     """Follow a ball until it flies off, or stops; return how deep it comes and how high and fast it leaves.
 
     Its rise is that above its deepest place, by free flight to its end where nothing touches it. Its speed out is the
@@ -217,7 +220,7 @@ def followed(world: World, ball: int, speed: float) -> Row:
     """
     gravity, begun = -float(world.gravity[2]), world.time
     # Not local steps: they keep a bed at rest jittering, at a rate that a slow ball would feel.
-    world.time_step = world.shortest_contact(max(speed, math.sqrt(gravity * DIAMETER))) / STEPS
+    world.time_step = world.shortest_contact(max(speed, math.sqrt(gravity * DIAMETER))) / steps
     pace = max(round(DIAMETER / (LOOKS * speed) / world.time_step), 1) * world.time_step
     start = deepest = float(world.position[ball, 2])
     struck, slow_since, top, out, status = False, math.inf, deepest, np.zeros(3), "longest"
@@ -254,7 +257,7 @@ def drop(work: Path, name: str, froude: float, number: int) -> Row:
     place = np.random.default_rng([7, number]).uniform(-AIM, AIM, 2)
     ejecta = Ejecta(world)
     ball = aimed(world, kind, place, speed)
-    row = followed(world, ball, speed)
+    row = followed(world, ball, speed, kind.steps)
     return {
         "kind": name, "froude": froude, "drop": number, "bed": seed, "grains": ball, **row,
         **ejecta.told(world, kind.grain, speed), "cpu_s": time.process_time() - start,
