@@ -178,11 +178,12 @@ def dropped(
     pace: float,
     local: float = 0.0,
     touch_speed: float | None = None,
+    steps: float = DROP_STEPS,
 ) -> tuple[Row, Floats]:
     """Let a ball fall from a height [m] of its lowest point above the mean surface, and follow it until it stops.
 
     touch_speed [m/s]: with which it first touches a bead, instead of what the fall gives. pace [s] is the time between
-    two looks. local: steps in a contact at its own steps; 0: all at the world's step.
+    two looks. steps: in the shortest contact. local: steps in a contact at its own; 0: all at the world's step.
     Returns the row of results and the path: time since the surface was reached [s], depth of the lowest point below the
     mean surface [m], speed downwards [m/s], deceleration [m/s2], shape [looks, 4].
     """
@@ -199,7 +200,7 @@ def dropped(
         ball, material, (*place, start + radius), velocity=(0.0, 0.0, -speed), mass=mass, inertia=inertia
     )  # fmt: skip
     # Ball and beads are of about the same modulus: the lightest pair of beads has the shortest contact.
-    world.time_step = world.shortest_contact(max(speed, math.sqrt(gravity * radius))) / DROP_STEPS
+    world.time_step = world.shortest_contact(max(speed, math.sqrt(gravity * radius))) / steps
     pace = max(round(pace / world.time_step), 1) * world.time_step
     begun, path = world.time, []
     stopped = 0.0
@@ -214,12 +215,12 @@ def dropped(
         path.append((world.time - begun, level - height, -now, (now - before) / pace))
         if stopped == 0.0 and now >= 0.0:
             stopped = world.time - begun
-    steps = np.array(path)
+    looks = np.array(path)
     return {
         "impact_speed": math.sqrt(2.0 * gravity * fall), "level": level, "touch_height": start - level,
-        "deepest": float(steps[:, 1].max()),
-        "depth": float(steps[-1, 1]), "stopping_time": stopped, "peak_deceleration": float(steps[:, 3].max()),
-    }, steps  # fmt: skip
+        "deepest": float(looks[:, 1].max()),
+        "depth": float(looks[-1, 1]), "stopping_time": stopped, "peak_deceleration": float(looks[:, 3].max()),
+    }, looks  # fmt: skip
 
 
 def read_rows(path: Path) -> list[Row]:

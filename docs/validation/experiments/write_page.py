@@ -29,6 +29,7 @@ from fits import (
 )  # fmt: skip
 from low_gravity_parts import balls_part, mascot_part, packing_part, plate_part
 from page_text import TEXT, WHY
+from rebounds_part import rebounds_part
 from settling_in_other_gravities import DIAMETER
 from sphere_bed import read_rows
 from table_lines import HERE, Lines, line, said
@@ -43,7 +44,7 @@ HEAD = "| quantity | measured | ours, 95 % | rows | ours over measured | agrees 
 TABLES = {
     "beads": "ball_into_beads", "gravity": "settling_in_other_gravities", "grains": "grain_on_its_own_kind",
     "plate": "plate_into_loose_grains", "packing": "packing_and_cohesion", "balls": "ball_under_gravities",
-    "mascot": "mascot",
+    "rebounds": "who_rebounds", "mascot": "mascot",
 }  # fmt: skip
 
 
@@ -183,8 +184,9 @@ def main() -> None:
     plates, plate = plate_part()
     packings, packing = packing_part()
     balls, ball = balls_part()
+    rebounds, rebound = rebounds_part()
     journeys, mascot = mascot_part()
-    lines = beads + gravities + grains + plates + packings + balls + journeys
+    lines = beads + gravities + grains + plates + packings + balls + rebounds + journeys
     yes = sum(agrees for _, agrees in lines)
     first = (
         f"{yes} of {len(lines)} quantities agree. Exponents of depth: {said(found['density'])} of the density (1/2), "
@@ -194,7 +196,8 @@ def main() -> None:
         **{f"why_{key}": text for key, text in WHY.items()},
         first=wrapped(first), table=HEAD + "\n".join(text for text, _ in lines),
         drops=drops, settled=settled, impacts=impacts, similar=wrapped(similar()), plate=plate, packing=packing,
-        ball=ball, mascot=wrapped(mascot), **{f"from_{key}": wrapped(came_from(name)) for key, name in TABLES.items()},
+        ball=ball, rebound=rebound, mascot=wrapped(mascot),
+        **{f"from_{key}": wrapped(came_from(name)) for key, name in TABLES.items()},
     )  # fmt: skip
     PAGE.write_text(page)
     print("\n".join(text for text, _ in lines))
