@@ -9,9 +9,9 @@ from lithobrake.dem.observables import BodyMotion
 from lithobrake.dem.rigid_body import checked_inertia
 from lithobrake.dem.shape import Box, ConvexHull, Shape, Sphere, equivalent_radius
 from lithobrake.dem.timestep import contact_duration
-from lithobrake.dem.world import World
+from lithobrake.dem.world import StepTooLargeError, World
 
 __all__ = [
-    "BodyMotion", "Box", "ConvexHull", "Material", "Shape", "Sphere", "World", "checked_inertia", "contact_duration",
-    "equivalent_radius", "rotation_matrices",
+    "BodyMotion", "Box", "ConvexHull", "Material", "Shape", "Sphere", "StepTooLargeError", "World", "checked_inertia",
+    "contact_duration", "equivalent_radius", "rotation_matrices",
 ]  # fmt: skip

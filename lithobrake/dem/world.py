@@ -21,6 +21,10 @@ from lithobrake.dem.time_loop import DIVERGED, STEP_TOO_LARGE
 from lithobrake.dem.world_state import NOTHING_WATCHED, WorldState
 
 
+class StepTooLargeError(ValueError):
+    """A contact that was met asks for a smaller time step; the step at which it was met has been taken."""
+
+
 class World(Observables):
     """Rigid bodies and planes in contact under a constant acceleration.
 
@@ -178,7 +182,7 @@ class World(Observables):
     def run(self, duration: float | None = None, *, steps: int | None = None) -> None:
         """Advance by a duration [s], rounded to whole steps, or by a number of steps.
 
-        Raises ValueError where the time step is too large for a contact (it names the largest safe one), and
+        Raises StepTooLargeError where the time step is too large for a contact (it names the largest safe one), and
         FloatingPointError where the motion diverged.
         """
         if (duration is None) == (steps is None):
@@ -231,7 +235,7 @@ class World(Observables):
     def _refuse(self, reason: int) -> None:
         """Say why the time loop could not go on."""
         if reason == STEP_TOO_LARGE:
-            raise ValueError(
+            raise StepTooLargeError(
                 f"World time_step is {self.time_step:.6g} s; allowed for the contact met at t = {self.time:.6g} s "
                 f"is at most {self.largest_step:.6g} s: make it smaller"
             )

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from lithobrake.dem import Material, Sphere, StepTooLargeError, World
 from lithobrake.touchdown import Bed, GrainSizes, pour_bed, pouring, settling
 from lithobrake.touchdown.grains import make_grain
 from lithobrake.touchdown.surface import height_map
@@ -171,3 +172,22 @@ def test_height_map_sees_the_top_of_every_grain(bed):
 def test_impossible_recipes_are_refused(recipe, name, value):
     with pytest.raises(ValueError, match=f"BedRecipe.{name}"):
         recipe(**{name: value})
+
+
+def test_a_grain_that_meets_another_hard_makes_the_steps_smaller_and_is_not_refused():
+    rock = Material(young_modulus=1e6, poisson_ratio=0.25, restitution=0.5, friction=0.5, density=2500.0)
+    worlds = World(), World(), World()
+    for world in worlds:
+        world.add_plane((0.0, 0.0, 0.0), (0.0, 0.0, 1.0), rock)
+        world.add_body(Sphere(0.05), rock, (0.0, 0.0, 0.0501), (0.0, 0.0, -0.05))
+    world, other, last = worlds
+    chunk = 0.8 * world.shortest_contact(0.05)
+    world.time_step = chunk / 4.0
+    with pytest.raises(StepTooLargeError, match="make it smaller"):
+        world.run(steps=4)
+    for _ in range(10):
+        settling.run_quietly(other, chunk)
+    assert other.time == pytest.approx(10.0 * chunk, rel=1e-12)
+    assert other.velocity[0, 2] == pytest.approx(0.5 * 0.05, rel=0.04)
+    with pytest.raises(StepTooLargeError, match="make it smaller"):
+        settling.run_quietly(last, 3.0 * chunk)
