@@ -134,6 +134,6 @@ def of_rebounds(rows: list[Row], to: Path) -> None:
     axes[1].text(100.0, 0.053, "COLLIDE-1, order of", fontsize=7, color=MEASURED)
     axes[0].set(xscale="log", xlabel="Froude number v / sqrt(g D)", ylabel="share that rebounds", ylim=(-0.25, 1.25))
     axes[1].set(xscale="log", xlabel="Froude number v / sqrt(g D)", ylabel="speed out over speed in", ylim=(-0.01, 0.2))
-    axes[0].legend(fontsize=7, loc="center right")
+    axes[1].legend(*axes[0].get_legend_handles_labels(), fontsize=7, loc="upper right")
     figure.savefig(to, dpi=110)
     plt.close(figure)
