@@ -4,7 +4,7 @@ Other parts use this one by the names that stand here.
 """
 
 from lithobrake.dem.assembly import rotation_matrices
-from lithobrake.dem.material import Material
+from lithobrake.dem.material import Material, pair_law
 from lithobrake.dem.observables import BodyMotion
 from lithobrake.dem.rigid_body import checked_inertia
 from lithobrake.dem.shape import Box, ConvexHull, Shape, Sphere, equivalent_radius
@@ -13,5 +13,5 @@ from lithobrake.dem.world import StepTooLargeError, World
 
 __all__ = [
     "BodyMotion", "Box", "ConvexHull", "Material", "Shape", "Sphere", "StepTooLargeError", "World", "checked_inertia",
-    "contact_duration", "equivalent_radius", "rotation_matrices",
+    "contact_duration", "equivalent_radius", "pair_law", "rotation_matrices",
 ]  # fmt: skip

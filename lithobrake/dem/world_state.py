@@ -97,9 +97,12 @@ class WorldState:
         """Return the engine that moves each contact at its own steps, from an instant [s] on."""
         if self.local is None or self.local.setting != setting or self.local.time != time:
             self._step_together()
-            # It searches neighbours and looks at every contact by itself.
+            is_new = self.engine is None
             self.engine = self.engine or self._new_engine(self.motion, self.pairs, self.lost)
             self.local = LocalEngine(self.engine, self.bodies, setting, time)
+            if is_new:
+                # It searches neighbours and looks at every contact by itself, for who is held must be known to touch.
+                self.local.run(0.0)
         return self.local
 
     def _step_together(self) -> None:

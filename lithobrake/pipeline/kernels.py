@@ -20,6 +20,7 @@ def compile_kernels(job: Job) -> None:
     # Settling asks for the largest step, the watch on a lander for spins.
     world.time_step = min(world.time_step, world.largest_step)
     world.energy()
-    # Grains fall, and landers land, with contacts at steps of their own.
+    # Grains fall, and landers land, with contacts at steps of their own; a bed tells whether it rests by its forces.
     world.run_locally(world.time_step, 25.0)
+    world.contacts()
     job.progress(1, 1, "compiling kernels")

@@ -10,8 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lithobrake.atomic import atomic_path
-from lithobrake.dem import ConvexHull, Material, World
-from lithobrake.dem.material import pair_law
+from lithobrake.dem import ConvexHull, Material, World, pair_law
 from lithobrake.outputs import describe
 from lithobrake.reading import reading
 

@@ -7,8 +7,7 @@ from itertools import count
 
 import numpy as np
 
-from lithobrake.dem import BodyMotion, Material, World
-from lithobrake.dem.material import pair_law
+from lithobrake.dem import BodyMotion, Material, World, pair_law
 from lithobrake.touchdown import settling
 from lithobrake.touchdown.bed import Bed
 from lithobrake.touchdown.lander import Lander
