@@ -23,13 +23,15 @@ def test_a_plate_is_slowed_more_by_denser_and_by_cohesive_grains(tmp_path: Path)
     loose = Soil(filled=0.35, grain=0.12, width=0.8, depth=0.6)
     depths = {}
     for name, soil in {
-        "loose": loose, "dense": replace(loose, filled=0.55), "cohesive": replace(loose, filled=0.55, cohesion=1000.0),
+        "loose": loose, "dense": replace(loose, filled=0.55), "cohesive": replace(loose, cohesion=1000.0),
     }.items():  # fmt: skip
         row, path = pressed_in(soil, tmp_path)
         assert np.isfinite(path).all()
         depths[name] = path[:, 1].max()
         assert row["depth_1"] <= depths[name] + 1e-12
-    assert depths["cohesive"] < depths["dense"] < depths["loose"]
+    # Between equal soils chance is a few hundredths.
+    assert depths["cohesive"] < depths["loose"] / 3.0
+    assert depths["dense"] < depths["loose"] / 3.0
 
 
 def test_grains_are_put_where_none_touch(tmp_path: Path) -> None:
