@@ -17,7 +17,7 @@ from lithobrake.dem.material import Material, contact_options
 from lithobrake.dem.observables import Observables
 from lithobrake.dem.rigid_body import Plane, new_body, rows, uniform_bodies, unit, units, vector
 from lithobrake.dem.shape import Shape
-from lithobrake.dem.time_loop import DIVERGED, STEP_TOO_LARGE
+from lithobrake.dem.time_loop import DIVERGED, STEP_TOO_LARGE, STEPS
 from lithobrake.dem.world_state import NOTHING_WATCHED, WorldState
 
 
@@ -170,6 +170,14 @@ class World(Observables):
         if value != int(value) or value < 1:
             raise ValueError(f"World thread_count is {value!r}; allowed is a whole number of at least 1: change it")
         self._state.use_threads(int(value))
+
+    @property
+    def first_touch(self) -> float | None:
+        """Instant at which the watched body was first touched [s]; None where it was not."""
+        first = self.watched["first_contact"]
+        if self._state.local is not None:
+            return first if first >= 0.0 else None
+        return self.time - (self._state.watch_record[STEPS] - first) * self.time_step if first > 0.0 else None
 
     @property
     def touch_duration(self) -> float | None:

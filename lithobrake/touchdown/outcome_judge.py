@@ -34,7 +34,8 @@ class OutcomeJudge:
         self.ended: TouchdownOutcome | None = None
         self.over_rim = False
         self.height_at_contact: float | None = None
-        self.lowest = self.height()
+        self.lowest = self.last_height = self.height()
+        self.last_time = world.time
         self.still_since: float | None = None
         self.frame_count, self.stride, self.looks = frame_count, 1, 0
         self.frames: list[dict[str, Floats]] = []
@@ -49,20 +50,21 @@ class OutcomeJudge:
 
         Raises ValueError for a lander that went through the floor: no outcome is to be told of that.
         """
-        self.motion = self.world.motion_of(self.number)
-        height, has_touched = self.height(), self.world.touch_duration is not None
+        before, self.motion = self.motion, self.world.motion_of(self.number)
+        height, first_touch = self.height(), self.world.first_touch
         if height < -SUNK_FRACTION * self.lander.smallest_edge:
             raise ValueError(
                 f"the lander went through the floor: it is {-height:.3g} m below it, of {self.lander.mass:.3g} kg and "
                 f"come with {self.landing.speed:.3g} m/s, for which these grains are too soft or too few; raise "
                 "grain.young_modulus or bed.grain_count, or lower lander.mass or impact.speed"
             )
-        if has_touched and self.height_at_contact is None:
-            self.height_at_contact = self.lowest
-        self.lowest = min(self.lowest, height)
+        if first_touch is not None and self.height_at_contact is None:
+            # It flew freely since the last look.
+            self.height_at_contact = self.last_height + float(before.velocity[2]) * (first_touch - self.last_time)
+        self.lowest, self.last_height, self.last_time = min(self.lowest, height), height, self.world.time
         self.looks += 1
         self.keep_frame()
-        self.ended = self.judge(height, has_touched)
+        self.ended = self.judge(height, first_touch is not None)
 
     def judge(self, height: float, has_touched: bool) -> TouchdownOutcome | None:
         """Return how the touchdown ended, or None while it is open."""

@@ -8,7 +8,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from lithobrake.dem import Box, Material, Sphere
-from lithobrake.touchdown import OUTPUTS, ContactModel, Lander, Landing, land, read_hull
+from lithobrake.touchdown import OUTPUTS, ContactModel, Lander, Landing, land, read_hull, simulation
 from lithobrake.touchdown.outcome import outgoing
 from lithobrake.touchdown.simulation import RELEASED_SPEED, released_speed
 
@@ -288,3 +288,15 @@ def test_held_grains_ask_for_local_steps():
         ContactModel(stepping="global", held_speed=0.1)
     with pytest.raises(ValueError, match=r"held_speed is 1\.0; allowed is 0 <= value < 1"):
         ContactModel(stepping="local", held_speed=1.0)
+
+
+@pytest.mark.parametrize("stepping", ["local", "global"])
+def test_the_depth_does_not_depend_on_how_often_the_lander_is_looked_at(bed, stepping, monkeypatch):
+    depths = []
+    for way, checks in ((0.05, 5), (0.002, 50)):
+        monkeypatch.setattr(simulation, "LOOK_WAY", way)
+        monkeypatch.setattr(simulation, "CHECKS_PER_CONTACT", checks)
+        contact = ContactModel(steps_per_contact=50.0, stepping=stepping)
+        depths.append(land(bed, ball(), landing(contact=contact, time_limit=0.3)).outputs["penetration"])
+    assert depths[0] > 0.0
+    assert depths[0] == pytest.approx(depths[1], rel=0.01)

@@ -23,7 +23,8 @@ def world(velocity=(0.1, 0.0, 0.05), touches=False, touched=1.0, x=0.6):
     )  # fmt: skip
     return SimpleNamespace(
         time=1.0, time_step=1e-3, gravity=np.array([0.0, 0.0, -1e-4]), touch_duration=touched,
-        motion_of=lambda number: motion, is_touched=touches, watched={"peak_force": 1.0},
+        first_touch=None if touched is None else 0.5, motion_of=lambda number: motion, is_touched=touches,
+        watched={"peak_force": 1.0},
     )  # fmt: skip
 
 
