@@ -27,7 +27,7 @@ from origin import origin
 
 Tables = dict[str, Any]
 OTHER_SEEDS = range(2, 12)
-RUNS, BEDS = 640, 8
+RUNS, BEDS = 160, 8
 ROOT_2 = 2.0**0.5
 BESIDE = 1e-4  # m
 PAIRED = ("speed_out", "elevation_out", "spin_out")
