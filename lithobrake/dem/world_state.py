@@ -101,7 +101,7 @@ class WorldState:
             self.engine = self.engine or self._new_engine(self.motion, self.pairs, self.lost)
             self.local = LocalEngine(self.engine, self.bodies, setting, time)
             if is_new:
-                # It searches neighbours and looks at every contact by itself, for who is held must be known to touch.
+                # Nobody knows yet what touches: it finds neighbours and contacts by itself, before anybody is held.
                 self.local.run(0.0)
         return self.local
 
