@@ -15,10 +15,12 @@ from lithobrake.touchdown.surface import height_map
 Progress = Callable[[float, str], None]
 RAIN_ROOM = 1.05  # room of a grain in the rain, in its bounding radii
 RAIN_PLACES = 20  # tried for each grain
-FALL_STEPS = 15.0  # at most, in each contact: the bed does not remember how its grains bounced
+FALL_STEPS = 8.0  # at most, in each contact: the bed does not remember how its grains bounced
 FALL_CHECKS = 40  # looks at the grains in the time that the highest falls
 FALLS_PATIENCE = 25  # after so many times of that the pour is given up
 FALLEN = 1e-3  # kinetic ratio below which the grains lie, and only have to settle
+FALLEN_CHECKS = 4  # in a row
+FALLEN_STEPS = 40.0  # at least, in a grain's small oscillation at its rest overlap under the pour gravity
 PERIODS_LOOSENED = 10.0  # of a grain's small oscillation at its rest overlap under the local gravity
 TOPPLING_TIMES = 3.0  # sqrt(diameter / gravity), for which a bed must rest before its gravity is lowered
 # A bed in which a grain creeps on, at a hundredth of its weight against the drag, is poured anew, so often in all.
@@ -102,7 +104,6 @@ def _poured(recipe: BedRecipe, generator: np.random.Generator, tell: Progress) -
     world = boxed_world(grains, position, orientation, recipe.width, recipe.material, down, recipe.contact)
     recorder = Recorder(float(diameter.mean()))
     fall(world, recorder, recipe, tell)
-    settle(world, recorder, recipe, False, lambda done: tell(0.4 + 0.2 * done, "settling under the pour gravity"))
     world = loosened(world, recorder, recipe, grains, tell)
     lower(world, recorder, recipe, lambda done: tell(0.7 + 0.15 * done, "letting loose grains fall"))
     settle(world, recorder, recipe, True, lambda done: tell(0.85 + 0.15 * done, "settling under the local gravity"))
@@ -129,23 +130,29 @@ def rain(generator: np.random.Generator, grains: Sequence[Shape], width: tuple[f
 
 
 def fall(world: World, recorder: Recorder, recipe: BedRecipe, tell: Progress) -> None:
-    """Let the grains fall and come to a first rest under the pour gravity."""
-    height = float(world.position[:, 2].max())
-    fall_time = math.sqrt(2.0 * height / recipe.pour_gravity)
+    """Let the grains fall, and then lie still as far as the pour gravity is concerned.
+
+    In flight they take steps of their own; once most of them touch, common ones are larger.
+    """
+    fall_time = math.sqrt(2.0 * float(world.position[:, 2].max()) / recipe.pour_gravity)
     chunk = fall_time / FALL_CHECKS
     steps = min(FALL_STEPS, recipe.contact.steps_per_contact)
     recorder.frame(world)
-    calm = 0
-    for check in range(FALLS_PATIENCE * FALL_CHECKS):
+    for check in range(FALL_CHECKS):
         world.run_locally(chunk, steps)
         recorder.note(world)
-        if check < FALL_CHECKS and check % 8 == 7:
+        if check % 8 == 7:
             recorder.frame(world)
-        if check == FALL_CHECKS:
-            world.drag = settling.free_fall_drag(recipe.pour_gravity, recorder.diameter)
-        calm = calm + 1 if check > FALL_CHECKS and recorder.rows[-1][1] < FALLEN else 0
-        tell(0.4 * (1.0 - math.exp(-check / FALL_CHECKS)), "pouring grains")
-        if calm >= 4:
+        tell(0.4 * check / FALL_CHECKS, "pouring grains")
+    world.drag = settling.free_fall_drag(recipe.pour_gravity, recorder.diameter)
+    longest = settling.rest_period(recipe.material, recorder.diameter, recipe.pour_gravity) / FALLEN_STEPS
+    calm = 0
+    for check in range((FALLS_PATIENCE - 1) * FALL_CHECKS):
+        settling.run_quietly(world, chunk, longest)
+        recorder.note(world)
+        calm = calm + 1 if recorder.rows[-1][1] < FALLEN else 0
+        tell(0.6 - 0.2 * math.exp(-check / FALL_CHECKS), "pouring grains")
+        if calm == FALLEN_CHECKS:
             return
     raise ValueError(
         f"the poured grains were not calm after {FALLS_PATIENCE * fall_time:.3g} s: raise grain.friction or lower "

@@ -11,7 +11,7 @@ from lithobrake.dem import Material, StepTooLargeError, World
 Floats = NDArray[np.float64]
 
 CONTACT_DAMPING = 0.1  # damping ratio of a grain's small oscillation while a bed takes on another gravity or material
-FREE_FALL_DAMPING = 2.0  # drag while a bed comes to rest, in units of sqrt(gravity / diameter)
+FREE_FALL_DAMPING = 0.5  # drag while a bed comes to rest, in units of sqrt(gravity / diameter)
 RAMP_PERIODS = 2.0  # time constant of a ramp of gravity, in periods of a grain at rest under the gravity it ends at
 RAMP_STEPS = 40  # changes of gravity a time constant
 RAMP_LEFT = 1e-3  # of the gravity it ends at, where a ramp makes its last step
@@ -20,10 +20,10 @@ UNBALANCED_FORCE = 1e-2  # of the mean contact force
 PERIODS_HELD = 10.0  # settled: both hold for so many periods of a grain's small oscillation at its rest overlap
 PERIODS_RELAXED = 5.0
 PERIODS_PATIENCE = 1200.0  # after so many the bed is given up
-QUIET_FRACTION = 0.8  # of the largest safe step, while nothing collides
+QUIET_FRACTION = 0.95  # of the largest safe step, while nothing collides
 QUIET_STEPS = 8  # between looks at what the largest safe step has become
 TOO_LARGE = 2.0  # largest safe steps: one step so large changes the speed of a bounce by a few hundredths
-CHECKS_PER_PERIOD = 20
+CHECKS_PER_PERIOD = 10
 
 
 class CreepingBedError(ValueError):
@@ -73,11 +73,15 @@ def unbalanced_force(world: World) -> float:
     return float(np.linalg.norm(resultant, axis=1).mean()) / carried if carried > 0.0 else math.inf
 
 
-def run_quietly(world: World, chunk: float) -> None:
-    """Run for a chunk [s] in steps, at least four, that are safe for the contacts at their present overlaps."""
+def run_quietly(world: World, chunk: float, longest: float = math.inf) -> None:
+    """Run for a chunk [s] in steps that are safe for the contacts at their present overlaps.
+
+    At least four, and none above the longest [s], which is for what touches nothing yet.
+    """
+    longest = min(longest, chunk / 4.0)
     left = chunk
     while left > 0.0:
-        steps = math.ceil(left / min(chunk / 4.0, QUIET_FRACTION * world.largest_step))
+        steps = math.ceil(left / min(longest, QUIET_FRACTION * world.largest_step))
         taken, start = min(steps, QUIET_STEPS), world.time
         world.time_step = left / steps
         try:

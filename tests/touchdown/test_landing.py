@@ -263,7 +263,7 @@ def test_a_bed_takes_on_its_soil_at_once_where_that_frees_little(bed):
     speeds = [released_speed(bed, material) for material in (soft, stiff)]
     # Of overlaps that stay, a soil a hundred times as stiff holds a hundred times the energy.
     assert speeds[1] == pytest.approx(10.0 * speeds[0], rel=1e-6)
-    assert speeds[0] < RELEASED_SPEED * 0.3 < speeds[1]
+    assert speeds[0] < RELEASED_SPEED * 0.5 < speeds[1]
     world = bed.world(stiff, bed.gravity, ContactModel())
     assert speeds[1] == pytest.approx(math.sqrt(2.0 * world.energy()["elastic"] / float(world.mass.sum())), rel=1e-6)
 

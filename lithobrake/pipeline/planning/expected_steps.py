@@ -36,7 +36,7 @@ CROSSINGS, CROSSINGS_OF_DEPTH, DEEP = 2.0, 2.2, 2.0
 OUTGOING = 0.5  # speed of a lander that leaves, over that of its impact
 HELD_CROSSINGS = 0.4  # likewise, where it comes too slowly to leave and is soon captured
 # Fewest steps in which a period of a grain is settled through (settling.run_quietly).
-STEPS_PER_PERIOD = 80.0
+STEPS_PER_PERIOD = 40.0
 
 
 @dataclass(frozen=True)
@@ -94,10 +94,9 @@ class ExpectedSoil:
         rung = min(pouring.RUNG * local, recipe.pour_gravity)
         lowered = max(rung / local - 1.0, settling.RAMP_LEFT)
         periods = settling.RAMP_PERIODS * math.log(lowered / settling.RAMP_LEFT)
-        for gravity in (recipe.pour_gravity, rung):
-            toppling = pouring.TOPPLING_TIMES * math.sqrt(self.diameter / gravity)
-            period = settling.rest_period(recipe.material, self.diameter, gravity)
-            periods += max(toppling / period, settling.PERIODS_RELAXED)
+        toppling = pouring.TOPPLING_TIMES * math.sqrt(self.diameter / rung)
+        period = settling.rest_period(recipe.material, self.diameter, rung)
+        periods += max(toppling / period, settling.PERIODS_RELAXED)
         return periods + pouring.PERIODS_LOOSENED + settling.PERIODS_RELAXED + settling.PERIODS_HELD
 
     def landing_steps(self, lander: "Lander", landing: "Landing") -> tuple[float, float]:
