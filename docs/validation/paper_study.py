@@ -1,12 +1,14 @@
 """The paper's way on ten other beds, and what the numbers of mission.toml depend on in the model of the soil.
 
-    python docs/validation/paper_study.py [--work FOLDER] [--kinds twin "other beds" numerics] [--out docs/validation]
+    python docs/validation/paper_study.py [--work FOLDER] [--kinds twin "other beds" ...] [--out docs/validation]
 
 "twin": scenarios/paper.toml a tenth of a millimetre beside, at order 3: what of its errors no expansion can take away.
 "other beds": scenarios/paper.toml with seeds from 2 on, each with a bed of its own, as deep and wide as those of
 scenarios/mission.toml, at order 3 in both steps. "numerics": RUNS landings of scenarios/mission.toml on BEDS beds, with
-one number of the model halved and doubled after the other. paper_study.json gets an entry a study as it ends; a study
-that stands in it is not run again: delete it to start anew. docs/validation/paper_study_figures.py draws them.
+one number of the model halved and doubled after the other. "grain sizes": SIZE_RUNS landings on as many beds of smaller
+grains (SIZES), poured under so much more gravity that they overlap as much. paper_study.json gets an entry a study as
+it ends; a study that stands in it is not run again: delete it to start anew. docs/validation/paper_study_figures.py
+draws them.
 """
 
 import argparse
@@ -27,7 +29,10 @@ from origin import origin
 
 Tables = dict[str, Any]
 OTHER_SEEDS = range(2, 12)
-RUNS, BEDS = 160, 8
+RUNS, BEDS = 640, 8
+# Longest edge of the lander over the diameter of a grain: grains of a bed, and its width [m].
+SIZES = {2.0: (500, 1.65), 5.0: (1200, 1.1), 10.0: (4500, 0.9)}
+SIZE_RUNS = 320
 ROOT_2 = 2.0**0.5
 BESIDE = 1e-4  # m
 PAIRED = ("speed_out", "elevation_out", "spin_out")
@@ -79,6 +84,21 @@ def numerics() -> Iterator[tuple[str, Tables]]:
     yield "area doubled", changed(base, "bed", grain_count=2 * grains, width=[width * ROOT_2] * 2)
 
 
+def grain_sizes() -> Iterator[tuple[str, Tables]]:
+    """The drawn study on smaller grains."""
+    base = changed(scenario("mission"), "monte_carlo", sample_count=10_000)
+    base = changed(base, "design", run_count=SIZE_RUNS)
+    coarse, gravity = base["bed"]["diameter"]["value"], base["bed"]["pour_gravity"]
+    for ratio, (grains, width) in SIZES.items():
+        size = max(base["lander"]["edges"]) / ratio
+        soil = {"grain_count": grains, "width": [width] * 2, "bed_count": BEDS}
+        sizes = {"distribution": "constant", "value": size}
+        yield (
+            f"lander {ratio:g} grains",
+            changed(base, "bed", **soil, diameter=sizes, pour_gravity=gravity * coarse / size),
+        )
+
+
 def told(found: Tables) -> Tables:
     """What the tables and figures need of a study's results."""
     entry = {name: found[name] for name in ("stays", "headline", "shares")} | {
@@ -92,7 +112,7 @@ def told(found: Tables) -> Tables:
     return entry | {"outcomes": found["runs"]["outcomes"]}
 
 
-KINDS = {"twin": twin, "other beds": other_beds, "numerics": numerics}
+KINDS = {"twin": twin, "other beds": other_beds, "numerics": numerics, "grain sizes": grain_sizes}
 
 
 def main() -> None:

@@ -22,7 +22,13 @@ from lithobrake.pipeline.designs import design_inputs
 from lithobrake.pipeline.job import Silent
 from lithobrake.pipeline.planning.expected_disk import expected_bytes
 from lithobrake.pipeline.planning.expected_steps import ExpectedSoil
-from lithobrake.pipeline.planning.expected_time import landing_time, run_time
+from lithobrake.pipeline.planning.expected_time import (
+    SPREAD,
+    SPREAD_OF_TOUCHDOWNS,
+    landing_time,
+    pour_time,
+    run_time,
+)
 from lithobrake.pipeline.planning.plan_in_words import brief_lines
 from lithobrake.pipeline.planning.planned_runs import PlannedRuns
 from lithobrake.pipeline.planning.planner import plan_of
@@ -273,14 +279,17 @@ def test_a_half_width_that_is_asked_for_may_take_runs_and_beds_up_to_the_most(tm
     assert "Touchdowns: 144 to 400 drawn, until design.half_width is met;" in " ".join(plan_lines(plan))
 
 
-def test_a_landing_of_local_steps_is_expected_to_take_the_measured_share_of_time() -> None:
-    measured = json.loads((HERE / "benchmarks" / "landing_ensembles.json").read_text())["ways"]
-    times = {}
-    for stepping, steps in (("global", 30), ("local", 15), ("local", 25)):
-        soil = soil_of(soft(contact={"stepping": stepping, "steps_per_contact": steps}))
-        times[f"{stepping}:{steps}"] = sum(landing_time(soil, *landing) for landing in soil.landings)
-    for way in ("local:15", "local:25"):
-        assert times["global:30"] / times[way] == pytest.approx(measured[way]["cpu_ratio"], rel=0.01)
+@pytest.mark.parametrize("name", ["quick", "mission", "bounces"])
+def test_beds_and_landings_are_expected_to_take_what_they_took(name: str) -> None:
+    measured = json.loads((HERE / "benchmarks" / "plan_estimate.json").read_text())[name]["result"]
+    pace = np.mean(measured["paces"])
+    soil = soil_of(read_study(SCENARIOS / f"{name}.toml"))
+    assert 1.0 / SPREAD < pace * pour_time(soil) / measured["pour"]["cpu_s"] < SPREAD
+    for one in measured["landings"]:
+        contact = {"held_speed": one["held_speed"]}
+        ways = [(lander, replace(event, contact=replace(event.contact, **contact))) for lander, event in soil.landings]
+        expected = pace * np.mean([landing_time(soil, *way) for way in ways[1:]])
+        assert 1.0 / SPREAD_OF_TOUCHDOWNS < expected / one["cpu_s"] < SPREAD_OF_TOUCHDOWNS
 
 
 def test_a_disk_that_is_too_small_is_the_first_warning(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -303,13 +312,13 @@ def test_a_touchdown_is_expected_to_take_the_steps_of_its_contacts() -> None:
     stiff = replace(landing, grain=replace(landing.grain, young_modulus=1e8))
     stiff_lander = replace(lander, material=replace(lander.material, young_modulus=1e8))
     # Hertz (1882): the time of a contact goes with the modulus to the power of -2/5, and with speed to that of -1/5.
-    ratio = soil.landing_steps(stiff_lander, stiff)[1] / soil.landing_steps(lander, landing)[1]
+    ratio = soil.landing_steps(stiff_lander, stiff) / soil.landing_steps(lander, landing)
     assert ratio == pytest.approx(100.0**0.4, rel=1e-9)
     slow = replace(landing, speed=0.5 * landing.speed)
-    ratio = soil.landing_steps(lander, slow)[1] / soil.landing_steps(lander, landing)[1]
+    ratio = soil.landing_steps(lander, slow) / soil.landing_steps(lander, landing)
     assert ratio == pytest.approx(2.0 * 2.0**-0.2, rel=1e-9)
     brief = replace(landing, time_limit=0.5 * soil.touchdown_time(lander, landing))
-    assert soil.landing_steps(lander, brief)[1] == pytest.approx(0.5 * soil.landing_steps(lander, landing)[1])
+    assert soil.landing_steps(lander, brief) == pytest.approx(0.5 * soil.landing_steps(lander, landing))
 
 
 def test_a_bed_is_expected_as_deep_as_its_grains_fill_it() -> None:

@@ -28,8 +28,7 @@ LANDING_COUNT = 40
 RAIN_FRACTION = 0.31  # of the rain is bounding spheres
 SOLID_FRACTION = 0.6  # of a settled bed
 FALLS = 1.4  # until poured grains lie, in the time that the highest falls
-SETTLING = 3.5  # steps that a bed settles for, over the fewest that its criteria of rest ask for
-RELAXING = 6.0  # likewise, for a bed that takes on the material of a landing
+SETTLING = 7.0  # steps that a bed settles for, over the fewest that its criteria of rest ask for
 # Until a lander is clear, in the time in which it crosses itself and a grain at the speed of impact: the first, and
 # what the square of the depth over the lander's size adds, up to DEEP, since a floor gives back what grains do not.
 CROSSINGS, CROSSINGS_OF_DEPTH, DEEP = 2.0, 2.2, 2.0
@@ -99,13 +98,13 @@ class ExpectedSoil:
         periods += max(toppling / period, settling.PERIODS_RELAXED)
         return periods + pouring.PERIODS_LOOSENED + settling.PERIODS_RELAXED + settling.PERIODS_HELD
 
-    def landing_steps(self, lander: "Lander", landing: "Landing") -> tuple[float, float]:
-        """Steps in which it takes on the material of a landing, and steps of the touchdown itself."""
-        from lithobrake.touchdown import settling
+    def landing_steps(self, lander: "Lander", landing: "Landing") -> float:
+        """Steps of a touchdown, were they common to all contacts and so many in the shortest as the landing asks for.
 
+        The bed is expected to take on the material at once.
+        """
         lasting = min(self.touchdown_time(lander, landing), landing.time_limit)
-        step = self._shortest_contact(landing.speed, lander, landing) / landing.contact.steps_per_contact
-        return RELAXING * STEPS_PER_PERIOD * settling.PERIODS_RELAXED, lasting / step
+        return lasting * landing.contact.steps_per_contact / self._shortest_contact(landing.speed, lander, landing)
 
     def touchdown_time(self, lander: "Lander", landing: "Landing") -> float:
         """Time [s] until the outcome of a touchdown is known, were there no limit."""

@@ -8,7 +8,6 @@ import math
 import os
 import statistics
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from lithobrake.campaign import Record, available_cores
@@ -23,18 +22,18 @@ if TYPE_CHECKING:
 
 Span = tuple[float, float]
 
-# A step of a landing, and of grains that settle, which are looked at more often: of the bed, and of each grain [s].
+# A common step of a landing, and of grains that settle, which are looked at more often: of the bed, of each grain [s].
 LANDING_STEP, LANDING_GRAIN = 3.5e-5, 5.0e-7
 SETTLING_STEP, SETTLING_GRAIN = 6.0e-5, 7.0e-7
+# Contacts at steps of their own: for each grain that moves and each duration of the shortest contact, at no steps a
+# contact and for each [s]; where slow grains are held, so many move.
+LOCAL_GRAIN, LOCAL_LOOK, MOVING = 2.7e-6, 7.2e-8, 40
 COMPILING = 60.0  # s
-# What a landing whose contacts have steps of their own takes, over one with COMMON_STEPS common ones: at no steps a
-# contact, and for each (1 / 4.77 with 15, 1 / 4.12 with 25: cpu_ratio in benchmarks/landing_ensembles.json).
-COMMON_STEPS, LOCAL_LANDING, LOCAL_STEP = 30.0, 0.160, 0.0033
 # Flights and journeys over a body of FACETS facets [s]: by the table, once it is built, and by the facets' sum.
 FACETS, TABLE, FLIGHT, EXACT_FLIGHT, JOURNEY, EXACT_JOURNEY = 1920, 10.0, 2.0e-4, 3.5e-3, 1.1e-3, 2.0e-2
 REPORT = 15.0  # s: fits, scores, samples, summary and page
 # An estimate and the time that it then took differ by these factors, either way; that of touchdowns by the second.
-SPREAD, SPREAD_OF_TOUCHDOWNS = 1.6, 2.0
+SPREAD, SPREAD_OF_TOUCHDOWNS = 1.6, 3.0
 # So many runs of a study tell how long the others take, to this factor at best.
 RUNS_THAT_TELL, SPREAD_OF_RUNS = 5, 1.15
 BUSY = 0.7  # of the cores: a load above this is other work
@@ -139,16 +138,12 @@ def run_time(soil: ExpectedSoil | None, ended: Sequence[Record], pace: float) ->
 
 def landing_time(soil: ExpectedSoil, lander: "Lander", landing: "Landing") -> float:
     """Time [s] of one landing."""
-    contact = landing.contact
-    if contact.stepping == "local":
-        common = replace(
-            landing, contact=replace(contact, stepping="global", held_speed=0.0, steps_per_contact=COMMON_STEPS)
-        )
-        return (LOCAL_LANDING + LOCAL_STEP * contact.steps_per_contact) * landing_time(soil, lander, common)
-    grains = soil.recipe.grain_count
-    relaxing, touching = soil.landing_steps(lander, landing)
-    settling = relaxing * (SETTLING_STEP + SETTLING_GRAIN * grains)
-    return settling + touching * (LANDING_STEP + LANDING_GRAIN * grains)
+    contact, grains = landing.contact, soil.recipe.grain_count
+    steps = soil.landing_steps(lander, landing)
+    if contact.stepping == "global":
+        return steps * (LANDING_STEP + LANDING_GRAIN * grains)
+    moving = min(grains, MOVING) if contact.held_speed > 0.0 else grains
+    return steps / contact.steps_per_contact * moving * (LOCAL_GRAIN + LOCAL_LOOK * contact.steps_per_contact)
 
 
 def flights_time(study: Study) -> float:
