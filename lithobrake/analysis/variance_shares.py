@@ -157,6 +157,8 @@ def _left_out(
 ) -> list[IntervalEstimate]:
     """Shares of groups [group_count, term_count] of terms, with intervals from leaving out each bed in turn.
 
+    A share that comes out below 0 counts as 0 for its upper bound: evenly spread runs have less scatter in their
+    coefficients than is taken off, and no bound should say that there is surely nothing.
     Source: [Davison-1997], section 2.7 (jackknife), beds as units.
     """
     rows = []
@@ -166,7 +168,7 @@ def _left_out(
     count = len(rows)
     half = t_quantile(count - 1) * np.sqrt((count - 1) * np.var(rows, axis=0))
     shares = groups @ found.squares / total
-    return [_within(s, s - h, s + h) for s, h in zip(shares.tolist(), half.tolist(), strict=True)]
+    return [_within(s, s - h, max(s, 0.0) + h) for s, h in zip(shares.tolist(), half.tolist(), strict=True)]
 
 
 def _remainder(parts: list[IntervalEstimate]) -> IntervalEstimate:

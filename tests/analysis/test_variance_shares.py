@@ -114,6 +114,8 @@ def test_where_inputs_do_nothing_none_is_found() -> None:
     assert soil.min() < 0.0
     assert found[0].arrival is None
     assert np.mean([part.lower > 0.0 for one in found for part in one.soil_by_input.values()]) <= 0.1
+    # Nothing found is not nothing for sure.
+    assert min(one.soil.upper for one in found) > 0.01
 
 
 def test_few_runs_drop_terms_and_then_the_answer() -> None:
