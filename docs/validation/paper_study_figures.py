@@ -192,6 +192,21 @@ def numerics_table() -> list[str]:
     return lines
 
 
+def grain_size_table() -> list[str]:
+    """What decides on smaller grains: outcomes, V+, and the parts of its variance."""
+    lines = ["| study | outcomes | V+ [cm/s] | down again [%] | variance of V+ |", "|---" * 5 + "|"]
+    for name, one in [
+        ("lander 1.2 grains (drawn)", kept("mission")),
+        *((e["name"], e) for e in entries("grain sizes")),
+    ]:
+        mean, factor = one["outputs"][SPEED]["mean"], UNITS[SPEED][0]
+        speed = f"{factor * mean['value']:.3g} ({factor * mean['lower']:.3g} to {factor * mean['upper']:.3g})"
+        value, low, high = share(one)
+        outcomes = ", ".join(f"{outcome} {count}" for outcome, count in one["outcomes"].items())
+        lines.append(f"| {name} | {outcomes} | {speed} | {value:.0f} ({low:.0f} to {high:.0f}) | {drivers(one)} |")
+    return lines
+
+
 def time_table() -> list[str]:
     """What each study cost."""
     lines = ["| study | runs | wall [min] | CPU [min] | load |", "|---" * 5 + "|"]
@@ -212,6 +227,7 @@ PARTS = {
     "Errors of the expansion": error_table,
     "Other fits of the same runs": fit_table,
     "What numbers of the model change": numerics_table,
+    "Smaller grains": grain_size_table,
     "Cost": time_table,
 }
 HEAD = """# The paper's study: the tables
