@@ -7,16 +7,21 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
-from fits import Estimate, below_first_touch, below_mean_surface, column, leaving, scale, speeds
+from fits import Estimate, below_first_touch, below_mean_surface, column, drop_exponents, leaving, scale, speeds
+from matplotlib.axes import Axes
 from sphere_bed import Row
 
 INK = ("#1b6ca8", "#d1495b", "#3a7d44", "#8d5fa8")
 MEASURED = "0.45"
 
 
-def of_drops(rows: list[Row], slope: Estimate, work: Path, to: Path) -> None:
-    """Depth against the experiment's law, stopping time, and deceleration in time of the drops from .1 m."""
-    figure, (left, middle, right) = plt.subplots(1, 3, figsize=(12, 3.9), layout="constrained")
+def of_drops(beds: list[list[Row]], slope: Estimate, work: Path, to: Path) -> None:
+    """Depth against the experiment's law, stopping time and deceleration in the finest beads, exponents over size.
+
+    beds: the drops into beads of each size, finest first.
+    """
+    rows = beds[0]
+    figure, ((left, middle), (right, last)) = plt.subplots(2, 2, figsize=(10, 7.6), layout="constrained")
     law = 0.14 / slope.value * scale(rows)
     reach = np.array([0.8 * law.min(), 1.2 * law.max()]) * 100
     left.plot(reach, reach, color=MEASURED, label="law of the experiment")
@@ -37,14 +42,33 @@ def of_drops(rows: list[Row], slope: Estimate, work: Path, to: Path) -> None:
     left.set(xlabel=r"$(0.14/\mu)\,(\rho/\rho_b)^{1/2} D^{2/3} H^{1/3}$ [cm]", ylabel="depth [cm]")
     left.plot([], [], "o", color="0.3", mfc="none", label="below the first touch")
     left.legend(fontsize=8)
+    left.set_title(f"beads of {1e3 * rows[0]['bead_size']:g} mm", fontsize=10)
     far = np.array([0.0, middle.get_xlim()[1]])
     middle.plot(far, 3.0 * far, color=MEASURED, label="3 d/v, measured")
     middle.set(xlabel="depth over impact speed [ms]", ylabel="stopping time [ms]")
     middle.legend(fontsize=8)
     right.set(xlabel="time since contact [ms]", ylabel="deceleration over g", title="fall .1 m; mean of 2.5 ms")
     right.axhline(0.0, color="0.8", lw=0.8)
+    draw_exponents(last, beds)
     figure.savefig(to, dpi=110)
     plt.close(figure)
+
+
+def draw_exponents(axis: Axes, beds: list[list[Row]]) -> None:
+    """Exponents of density and drop distance over the size of the beads, from either surface."""
+    for which, name, law, ink in ((0, "density", 0.5, INK[0]), (1, "drop distance", 1 / 3, INK[1])):
+        axis.axhspan(law - 0.05, law + 0.05, color=ink, alpha=0.15, lw=0)
+        for shift, depth_of, face, text in (
+            (-0.04, below_mean_surface, ink, name), (0.04, below_first_touch, "none", f"{name}, from the first touch"),
+        ):  # fmt: skip
+            found = [drop_exponents(rows, depth_of(rows))[which] for rows in beds]
+            axis.errorbar(
+                [1e3 * rows[0]["bead_size"] + shift for rows in beds], [one.value for one in found],
+                [one.half for one in found], fmt="o", color=ink, mfc=face, capsize=3, label=text,
+            )  # fmt: skip
+    axis.set(xlabel="size of the beads [mm]", ylabel="exponent", xlim=(0.0, None), ylim=(0.0, 1.0))
+    axis.set_title("bands: measured +- .05", fontsize=10)
+    axis.legend(fontsize=8)
 
 
 def of_gravities(rows: list[Row], diameter: float, to: Path) -> None:
