@@ -3,7 +3,6 @@
 import math
 from pathlib import Path
 
-import numpy as np
 from draw import of_drops
 from fits import (
     FALL,
@@ -117,8 +116,9 @@ def drop_table(every: list[Row], sizes: list[float]) -> str:
     ]
     for cell in sorted({cell for rows in found for cell in rows}):
         own = [rows.get(cell) for rows in found]
-        cells = [f"{100 * float(value[0]):.2f}" if row else "-"
-                 for depth_of in SURFACES.values() for row in own for value in [depth_of([row]) if row else ()]]  # fmt: skip
+        cells = [
+            f"{100 * float(depth_of([row])[0]):.2f}" if row else "-" for depth_of in SURFACES.values() for row in own
+        ]
         cells += [f"{stopping([row])[0]:.1f}" if row else "-" for row in own]
         table += f"|\n| {cell[0]:g} | {1e3 * cell[1]:g} | {cell[2]:g} | " + " | ".join(cells) + " "
     return table + "|"
