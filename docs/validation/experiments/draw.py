@@ -22,15 +22,9 @@ def of_drops(beds: list[list[Row]], slope: Estimate, work: Path, to: Path) -> No
     """
     rows = beds[0]
     figure, ((left, middle), (right, last)) = plt.subplots(2, 2, figsize=(10, 7.6), layout="constrained")
-    law = 0.14 / slope.value * scale(rows)
-    reach = np.array([0.8 * law.min(), 1.2 * law.max()]) * 100
-    left.plot(reach, reach, color=MEASURED, label="law of the experiment")
-    left.fill_between(reach, 0.75 * reach, 1.25 * reach, color=MEASURED, alpha=0.2, lw=0, label="+-25 %")
+    draw_depths(left, rows, 0.14 / slope.value)
     for density, ink in zip(sorted({row["density"] for row in rows}), INK, strict=False):
         own = [row for row in rows if row["density"] == density]
-        left.plot(0.14 / slope.value * scale(own) * 100, below_mean_surface(own) * 100, "o", color=ink,
-                  label=f"ours, {density:g} kg/m$^3$")  # fmt: skip
-        left.plot(0.14 / slope.value * scale(own) * 100, below_first_touch(own) * 100, "o", color=ink, mfc="none")
         speed, depth = column(own, "impact_speed"), column(own, "deepest")
         middle.plot(depth / speed * 1e3, column(own, "stopping_time") * 1e3, "o", color=ink)
         path = work / f"path_{next((row['name'] for row in own if row['fall'] == 0.1), own[0]['name'])}.npy"
@@ -39,19 +33,33 @@ def of_drops(beds: list[list[Row]], slope: Estimate, work: Path, to: Path) -> No
             wide = np.ones(5) / 5
             smooth = np.convolve(deceleration, wide, mode="valid") / 9.81
             right.plot(time[2:-2] * 1e3, smooth, color=ink, lw=1.2)
-    left.set(xlabel=r"$(0.14/\mu)\,(\rho/\rho_b)^{1/2} D^{2/3} H^{1/3}$ [cm]", ylabel="depth [cm]")
-    left.plot([], [], "o", color="0.3", mfc="none", label="below the first touch")
-    left.legend(fontsize=8)
-    left.set_title(f"beads of {1e3 * rows[0]['bead_size']:g} mm", fontsize=10)
     far = np.array([0.0, middle.get_xlim()[1]])
     middle.plot(far, 3.0 * far, color=MEASURED, label="3 d/v, measured")
     middle.set(xlabel="depth over impact speed [ms]", ylabel="stopping time [ms]")
     middle.legend(fontsize=8)
-    right.set(xlabel="time since contact [ms]", ylabel="deceleration over g", title="fall .1 m; mean of 2.5 ms")
+    right.set(xlabel="time since contact [ms]", ylabel="deceleration over g")
+    right.set_title("fall .1 m; mean of 2.5 ms", fontsize=10)
     right.axhline(0.0, color="0.8", lw=0.8)
     draw_exponents(last, beds)
     figure.savefig(to, dpi=110)
     plt.close(figure)
+
+
+def draw_depths(axis: Axes, rows: list[Row], prefactor: float) -> None:
+    """Depth, from either surface, against the experiment's law with a prefactor."""
+    law = prefactor * scale(rows)
+    reach = np.array([0.8 * law.min(), 1.2 * law.max()]) * 100
+    axis.plot(reach, reach, color=MEASURED, label="law of the experiment")
+    axis.fill_between(reach, 0.75 * reach, 1.25 * reach, color=MEASURED, alpha=0.2, lw=0, label="+-25 %")
+    for density, ink in zip(sorted({row["density"] for row in rows}), INK, strict=False):
+        own = [row for row in rows if row["density"] == density]
+        across = prefactor * scale(own) * 100
+        axis.plot(across, below_mean_surface(own) * 100, "o", color=ink, label=f"ours, {density:g} kg/m$^3$")
+        axis.plot(across, below_first_touch(own) * 100, "o", color=ink, mfc="none")
+    axis.plot([], [], "o", color="0.3", mfc="none", label="below the first touch")
+    axis.set(xlabel=r"$(0.14/\mu)\,(\rho/\rho_b)^{1/2} D^{2/3} H^{1/3}$ [cm]", ylabel="depth [cm]")
+    axis.set_title(f"beads of {1e3 * rows[0]['bead_size']:g} mm", fontsize=10)
+    axis.legend(fontsize=8)
 
 
 def draw_exponents(axis: Axes, beds: list[list[Row]]) -> None:
