@@ -69,3 +69,15 @@ def test_other_beds_differ_in_one_respect_and_take_a_light_and_a_heavy_ball() ->
     named = dict(found["box"])
     assert named["5mm_wider"]["density"] == 2200.0
     assert named["5mm_wider_heavy"]["density"] == 15000.0
+
+
+def test_a_low_restitution_gets_more_steps() -> None:
+    """Its damping asks for up to 25 in a contact at .5; beds that have rows keep their steps."""
+    from dataclasses import replace
+
+    from ball_into_beads import GLASS
+    from sphere_bed import POUR_STEPS, steps_for
+
+    assert steps_for(GLASS, POUR_STEPS) == POUR_STEPS
+    assert steps_for(replace(GLASS, restitution=0.6), POUR_STEPS) == POUR_STEPS
+    assert steps_for(replace(GLASS, restitution=0.5), POUR_STEPS) > 25.0

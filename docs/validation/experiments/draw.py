@@ -7,7 +7,17 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
-from fits import Estimate, below_first_touch, below_mean_surface, column, drop_exponents, leaving, scale, speeds
+from fits import (
+    Estimate,
+    below_first_touch,
+    below_mean_surface,
+    column,
+    drop_exponents,
+    leaving,
+    mean_of,
+    scale,
+    speeds,
+)
 from matplotlib.axes import Axes
 from sphere_bed import Row
 
@@ -103,8 +113,8 @@ def of_gravities(rows: list[Row], diameter: float, to: Path) -> None:
 
 
 def of_grains(kinds: dict[str, list[Row]], to: Path) -> None:
-    """Speeds at which the grain leaves, and how many others rise."""
-    figure, (left, right) = plt.subplots(1, 2, figsize=(9, 3.8), layout="constrained")
+    """Speeds at which the grain leaves, how many others rise, and the mean speeds on each kind of bed."""
+    figure, (left, right, last) = plt.subplots(1, 3, figsize=(12, 3.9), layout="constrained")
     base = kinds["basalt"]
     left.hist(speeds(base), bins=np.arange(0.0, 0.75, 0.04), color=INK[0], alpha=0.8, label="ours")
     left.axvspan(0.15, 0.25, color=MEASURED, alpha=0.25, lw=0, label="mean measured: about .20 (bar .15 to .25)")
@@ -120,5 +130,15 @@ def of_grains(kinds: dict[str, list[Row]], to: Path) -> None:
     right.axvline(10, color=MEASURED, label="fewer than 10 typically, measured")
     right.set(xlabel="grains ejected, at least", ylabel="share of impacts")
     right.legend(fontsize=8)
+    last.axvspan(0.15, 0.25, color=MEASURED, alpha=0.25, lw=0)
+    for shift, chosen, ink, text in ((0.1, speeds, INK[0], "all impacts"), (-0.1, leaving, INK[1], "those that leave")):
+        means = [mean_of(chosen(rows)) for rows in kinds.values()]
+        last.errorbar(
+            [mean.value for mean in means], [shift - k for k in range(len(kinds))], xerr=[mean.half for mean in means],
+            fmt="o", color=ink, capsize=3, label=text,
+        )  # fmt: skip
+    last.set(xlabel="mean speed out over speed in", xlim=(0.0, None))
+    last.set_yticks([-k for k in range(len(kinds))], [name.replace("_", " ") for name in kinds])
+    last.legend(fontsize=8)
     figure.savefig(to, dpi=110)
     plt.close(figure)

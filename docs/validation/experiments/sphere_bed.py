@@ -27,7 +27,7 @@ Row = dict[str, Any]
 
 POUR_STEPS = 18.0  # in the shortest contact while beads fall and settle
 DROP_STEPS = 15.0  # in the shortest contact while the ball comes down
-DAMPED, DAMPED_STEPS = 0.6, 24.0  # below such a restitution damping asks for more steps: 20.1 at .5
+DAMPED, DAMPED_STEPS = 0.6, 30.0  # below such a restitution damping asks for more steps: up to 25 at .5
 LOOKS = 12  # a time of free fall through the whole column
 PATIENCE = 40  # times of fall
 FOLLOWED = 1.05  # times the stopping time
