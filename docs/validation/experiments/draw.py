@@ -129,7 +129,7 @@ def of_grains(kinds: dict[str, list[Row]], to: Path) -> None:
                    label=f"rise > {rise} grain")  # fmt: skip
     right.axvline(10, color=MEASURED, label="fewer than 10 typically, measured")
     right.set(xlabel="grains ejected, at least", ylabel="share of impacts")
-    right.legend(fontsize=8)
+    right.legend(fontsize=8, loc="upper right")
     last.axvspan(0.15, 0.25, color=MEASURED, alpha=0.25, lw=0)
     for shift, chosen, ink, text in ((0.1, speeds, INK[0], "all impacts"), (-0.1, leaving, INK[1], "those that leave")):
         means = [mean_of(chosen(rows)) for rows in kinds.values()]
@@ -137,8 +137,8 @@ def of_grains(kinds: dict[str, list[Row]], to: Path) -> None:
             [mean.value for mean in means], [shift - k for k in range(len(kinds))], xerr=[mean.half for mean in means],
             fmt="o", color=ink, capsize=3, label=text,
         )  # fmt: skip
-    last.set(xlabel="mean speed out over speed in", xlim=(0.0, None))
+    last.set(xlabel="mean speed out over speed in", xlim=(0.0, None), ylim=(-len(kinds) - 0.3, 0.5))
     last.set_yticks([-k for k in range(len(kinds))], [name.replace("_", " ") for name in kinds])
-    last.legend(fontsize=8)
+    last.legend(fontsize=8, loc="lower left")
     figure.savefig(to, dpi=110)
     plt.close(figure)
