@@ -121,6 +121,7 @@ def of_grains(kinds: dict[str, list[Row]], to: Path) -> None:
     left.axvline(np.mean(speeds(base)), color=INK[1], label="our mean of all")
     left.axvline(np.mean(leaving(base)), color=INK[1], ls="--", label="of those that leave")
     left.set(xlabel="speed out over speed in", ylabel="impacts")
+    left.set_ylim(0.0, 1.4 * left.get_ylim()[1])
     left.legend(fontsize=8)
     counts = np.arange(0, 1 + int(column(base, "risen_0.1").max()))
     for rise, ink in (("0.1", INK[0]), ("0.5", INK[1]), ("1", INK[2])):
@@ -128,7 +129,7 @@ def of_grains(kinds: dict[str, list[Row]], to: Path) -> None:
         right.plot(counts, [(risen >= least).mean() for least in counts], color=ink, drawstyle="steps-post",
                    label=f"rise > {rise} grain")  # fmt: skip
     right.axvline(10, color=MEASURED, label="fewer than 10 typically, measured")
-    right.set(xlabel="grains ejected, at least", ylabel="share of impacts")
+    right.set(xlabel="grains ejected, at least", ylabel="share of impacts", ylim=(-0.05, 1.5))
     right.legend(fontsize=8, loc="upper right")
     last.axvspan(0.15, 0.25, color=MEASURED, alpha=0.25, lw=0)
     for shift, chosen, ink, text in ((0.1, speeds, INK[0], "all impacts"), (-0.1, leaving, INK[1], "those that leave")):

@@ -191,8 +191,10 @@ over the sizes in each drop ends at .57 and .55; it is a hint only, with one pla
 and takes the heaviest ball from .2 m deeper than our bed. In 3 mm the steepness comes from the
 heavy balls: between 2200 and 3800 kg/m3 it is .52 to .58 from the first touch, from 7800 to 15000
 .58 to .65, and the heaviest come 1.9 to 2.9 ball diameters deep, to 9 mm above the floor at
-worst. Stopping times go from 4.2 to 4.8 d/v for the lightest to 1.9 to 2.5 for the heaviest; only
-their mean is 3, which was measured with wooden balls. The deceleration of all but the heaviest is
+worst. The prefactor itself rises from .31 for the lightest to .38 to .42 for the heaviest: its
+mean is within the bar, the heaviest ball alone is 1.2 to 1.35 times as deep as the law has it.
+Stopping times go from 4.2 to 4.8 d/v for the lightest to 1.9 to 2.5 for the heaviest; only their
+mean is 3, which was measured with wooden balls. The deceleration of all but the heaviest is
 largest after 2 to 3 ms, as the ball has entered by about a bead, then falls but for bumps; the
 heaviest is slowed by 2 g for 25 ms and by little less from then on. The bed is .60 filled. The
 prefactor is held against our own slope of repose, 23.7 and 25.2 degrees in two heaps of these
