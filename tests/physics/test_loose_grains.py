@@ -59,3 +59,12 @@ def test_grains_that_pull_on_each_other_lie_looser(monkeypatch: pytest.MonkeyPat
         fraction[pull] = packing.solid_fraction(world, volumes, kind)
     assert 0.5 < fraction[0.0] < 0.63
     assert fraction[30.0] < fraction[0.0] - 0.03
+
+
+def test_what_has_a_row_is_not_run_again(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    import packing_and_cohesion as packing
+
+    monkeypatch.setattr(packing, "TABLE", tmp_path / "rows.csv")
+    (tmp_path / "rows.csv").write_text("kind,pull,seed\nglass,3,1\n")
+    asked = list(packing.missing(["glass", "coarse basalt"], [0.0, 3.0], [1]))
+    assert asked == [("glass", 0.0, 1), ("coarse basalt", 0.0, 1), ("coarse basalt", 3.0, 1)]

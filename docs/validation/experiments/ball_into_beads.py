@@ -62,16 +62,30 @@ def bed_of(size: float, width: float = 3.0 * BALL, depth: float = 0.085, **mater
     )  # fmt: skip
 
 
+def other_beds(size: float) -> dict[str, dict[str, Beads]]:
+    """Return the beds that differ from that of the drops in one respect, by series and name."""
+    return {
+        "box": {
+            "wider": bed_of(size, width=6.0 * BALL), "high": bed_of(size, depth=0.12), "low": bed_of(size, depth=0.05),
+            "wide": bed_of(size, width=4.0 * BALL), "narrow": bed_of(size, width=2.25 * BALL),
+        },
+        "grains": {
+            "poured_slowly": replace(bed_of(size), fall_speed=0.6),
+            **{f"friction_{mu:g}": bed_of(size, friction=mu) for mu in (0.1, 0.6)},
+            "restitution_0.5": bed_of(size, restitution=0.5),
+            **{f"modulus_{modulus:g}": bed_of(size, young_modulus=modulus) for modulus in (2.5e6, 7e7)},
+        },
+    }  # fmt: skip
+
+
 def series(size: float) -> dict[str, list[tuple[str, Row]]]:
     """Return the drops of each series by name: the keywords of drop_row."""
     bed = bed_of(size)
-    # Fine beads only at steps of their own: at a common one they cost four times as much.
-    own_steps = 0.0 if size > 0.004 else 20.0
     light = {"density": 2200.0, "fall": 0.1}
-    heavy = {"density": 15000.0, "fall": 0.2}
+    heavy = {"density": 15000.0, "fall": 0.1}
     found: dict[str, list[tuple[str, Row]]] = {
         "drops": [
-            (f"drop_{density:g}_{fall:g}", {"beads": bed, "density": density, "fall": fall, "local": own_steps})
+            (f"drop_{density:g}_{fall:g}", {"beads": bed, "density": density, "fall": fall})
             for fall in (0.1, 0.05, 0.2) for density in (2200.0, 15000.0, 7800.0, 3800.0)
         ],
         "places": [
@@ -79,21 +93,14 @@ def series(size: float) -> dict[str, list[tuple[str, Row]]]:
             for k, place in enumerate(((0.006, 0.0), (-0.006, 0.0), (0.0, 0.006), (0.0, -0.006)))
         ],
         "diameters": [(f"diameter_{d:g}", {"beads": bed, **light, "diameter": d}) for d in (0.0127, 0.018, 0.036)],
-        "box": [
-            ("narrow", {"beads": bed_of(size, width=2.25 * BALL), **light}),
-            ("wide", {"beads": bed_of(size, width=4.0 * BALL), **light}),
-            ("low", {"beads": bed_of(size, depth=0.05), **light}),
-            ("high", {"beads": bed_of(size, depth=0.12), **heavy}),
-        ],
-        "grains": [
-            *((f"friction_{mu:g}", {"beads": bed_of(size, friction=mu), **light}) for mu in (0.1, 0.6)),
-            ("restitution_0.5", {"beads": bed_of(size, restitution=0.5), **light}),
-            ("poured_slowly", {"beads": replace(bed, fall_speed=0.6), **light}),
-            ("modulus_2.5e6", {"beads": bed_of(size, young_modulus=2.5e6), **light}),
-            ("modulus_7e7", {"beads": bed_of(size, young_modulus=7e7), **light}),
-        ],
         "step": [("local_steps", {"beads": bed, **light, "local": 15.0})],
     }  # fmt: skip
+    for kind, beds in other_beds(size).items():
+        # A light and a heavy ball: what a bed changes of the exponent of density.
+        found[kind] = [
+            (name + end, {"beads": other, **ball})
+            for name, other in beds.items() for end, ball in (("", light), ("_heavy", heavy))
+        ]  # fmt: skip
     return {kind: [(f"{1e3 * size:g}mm_{name}", row) for name, row in rows] for kind, rows in found.items()}
 
 

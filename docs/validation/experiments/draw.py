@@ -7,25 +7,34 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
-from fits import Estimate, below_first_touch, below_mean_surface, column, leaving, scale, speeds
+from fits import (
+    Estimate,
+    below_first_touch,
+    below_mean_surface,
+    column,
+    drop_exponents,
+    leaving,
+    mean_of,
+    scale,
+    speeds,
+)
+from matplotlib.axes import Axes
 from sphere_bed import Row
 
 INK = ("#1b6ca8", "#d1495b", "#3a7d44", "#8d5fa8")
 MEASURED = "0.45"
 
 
-def of_drops(rows: list[Row], slope: Estimate, work: Path, to: Path) -> None:
-    """Depth against the experiment's law, stopping time, and deceleration in time of the drops from .1 m."""
-    figure, (left, middle, right) = plt.subplots(1, 3, figsize=(12, 3.9), layout="constrained")
-    law = 0.14 / slope.value * scale(rows)
-    reach = np.array([0.8 * law.min(), 1.2 * law.max()]) * 100
-    left.plot(reach, reach, color=MEASURED, label="law of the experiment")
-    left.fill_between(reach, 0.75 * reach, 1.25 * reach, color=MEASURED, alpha=0.2, lw=0, label="+-25 %")
+def of_drops(beds: list[list[Row]], slope: Estimate, work: Path, to: Path) -> None:
+    """Depth against the experiment's law, stopping time and deceleration in the finest beads, exponents over size.
+
+    beds: the drops into beads of each size, finest first.
+    """
+    rows = beds[0]
+    figure, ((left, middle), (right, last)) = plt.subplots(2, 2, figsize=(10, 7.6), layout="constrained")
+    draw_depths(left, rows, 0.14 / slope.value)
     for density, ink in zip(sorted({row["density"] for row in rows}), INK, strict=False):
         own = [row for row in rows if row["density"] == density]
-        left.plot(0.14 / slope.value * scale(own) * 100, below_mean_surface(own) * 100, "o", color=ink,
-                  label=f"ours, {density:g} kg/m$^3$")  # fmt: skip
-        left.plot(0.14 / slope.value * scale(own) * 100, below_first_touch(own) * 100, "o", color=ink, mfc="none")
         speed, depth = column(own, "impact_speed"), column(own, "deepest")
         middle.plot(depth / speed * 1e3, column(own, "stopping_time") * 1e3, "o", color=ink)
         path = work / f"path_{next((row['name'] for row in own if row['fall'] == 0.1), own[0]['name'])}.npy"
@@ -34,17 +43,50 @@ def of_drops(rows: list[Row], slope: Estimate, work: Path, to: Path) -> None:
             wide = np.ones(5) / 5
             smooth = np.convolve(deceleration, wide, mode="valid") / 9.81
             right.plot(time[2:-2] * 1e3, smooth, color=ink, lw=1.2)
-    left.set(xlabel=r"$(0.14/\mu)\,(\rho/\rho_b)^{1/2} D^{2/3} H^{1/3}$ [cm]", ylabel="depth [cm]")
-    left.plot([], [], "o", color="0.3", mfc="none", label="below the first touch")
-    left.legend(fontsize=8)
     far = np.array([0.0, middle.get_xlim()[1]])
     middle.plot(far, 3.0 * far, color=MEASURED, label="3 d/v, measured")
     middle.set(xlabel="depth over impact speed [ms]", ylabel="stopping time [ms]")
     middle.legend(fontsize=8)
-    right.set(xlabel="time since contact [ms]", ylabel="deceleration over g", title="fall .1 m; mean of 2.5 ms")
+    right.set(xlabel="time since contact [ms]", ylabel="deceleration over g")
+    right.set_title("fall .1 m; mean of 2.5 ms", fontsize=10)
     right.axhline(0.0, color="0.8", lw=0.8)
+    draw_exponents(last, beds)
     figure.savefig(to, dpi=110)
     plt.close(figure)
+
+
+def draw_depths(axis: Axes, rows: list[Row], prefactor: float) -> None:
+    """Depth, from either surface, against the experiment's law with a prefactor."""
+    law = prefactor * scale(rows)
+    reach = np.array([0.8 * law.min(), 1.2 * law.max()]) * 100
+    axis.plot(reach, reach, color=MEASURED, label="law of the experiment")
+    axis.fill_between(reach, 0.75 * reach, 1.25 * reach, color=MEASURED, alpha=0.2, lw=0, label="+-25 %")
+    for density, ink in zip(sorted({row["density"] for row in rows}), INK, strict=False):
+        own = [row for row in rows if row["density"] == density]
+        across = prefactor * scale(own) * 100
+        axis.plot(across, below_mean_surface(own) * 100, "o", color=ink, label=f"ours, {density:g} kg/m$^3$")
+        axis.plot(across, below_first_touch(own) * 100, "o", color=ink, mfc="none")
+    axis.plot([], [], "o", color="0.3", mfc="none", label="below the first touch")
+    axis.set(xlabel=r"$(0.14/\mu)\,(\rho/\rho_b)^{1/2} D^{2/3} H^{1/3}$ [cm]", ylabel="depth [cm]")
+    axis.set_title(f"beads of {1e3 * rows[0]['bead_size']:g} mm", fontsize=10)
+    axis.legend(fontsize=8)
+
+
+def draw_exponents(axis: Axes, beds: list[list[Row]]) -> None:
+    """Exponents of density and drop distance over the size of the beads, from either surface."""
+    for which, name, law, ink in ((0, "density", 0.5, INK[0]), (1, "drop distance", 1 / 3, INK[1])):
+        axis.axhspan(law - 0.05, law + 0.05, color=ink, alpha=0.15, lw=0)
+        for shift, depth_of, face, text in (
+            (-0.04, below_mean_surface, ink, name), (0.04, below_first_touch, "none", f"{name}, from the first touch"),
+        ):  # fmt: skip
+            found = [drop_exponents(rows, depth_of(rows))[which] for rows in beds]
+            axis.errorbar(
+                [1e3 * rows[0]["bead_size"] + shift for rows in beds], [one.value for one in found],
+                [one.half for one in found], fmt="o", color=ink, mfc=face, capsize=3, label=text,
+            )  # fmt: skip
+    axis.set(xlabel="size of the beads [mm]", ylabel="exponent", xlim=(0.0, None), ylim=(0.0, 1.0))
+    axis.set_title("bands: measured +- .05", fontsize=10)
+    axis.legend(fontsize=8)
 
 
 def of_gravities(rows: list[Row], diameter: float, to: Path) -> None:
@@ -71,14 +113,15 @@ def of_gravities(rows: list[Row], diameter: float, to: Path) -> None:
 
 
 def of_grains(kinds: dict[str, list[Row]], to: Path) -> None:
-    """Speeds at which the grain leaves, and how many others rise."""
-    figure, (left, right) = plt.subplots(1, 2, figsize=(9, 3.8), layout="constrained")
+    """Speeds at which the grain leaves, how many others rise, and the mean speeds on each kind of bed."""
+    figure, (left, right, last) = plt.subplots(1, 3, figsize=(12, 3.9), layout="constrained")
     base = kinds["basalt"]
     left.hist(speeds(base), bins=np.arange(0.0, 0.75, 0.04), color=INK[0], alpha=0.8, label="ours")
     left.axvspan(0.15, 0.25, color=MEASURED, alpha=0.25, lw=0, label="mean measured: about .20 (bar .15 to .25)")
     left.axvline(np.mean(speeds(base)), color=INK[1], label="our mean of all")
     left.axvline(np.mean(leaving(base)), color=INK[1], ls="--", label="of those that leave")
     left.set(xlabel="speed out over speed in", ylabel="impacts")
+    left.set_ylim(0.0, 1.4 * left.get_ylim()[1])
     left.legend(fontsize=8)
     counts = np.arange(0, 1 + int(column(base, "risen_0.1").max()))
     for rise, ink in (("0.1", INK[0]), ("0.5", INK[1]), ("1", INK[2])):
@@ -86,7 +129,17 @@ def of_grains(kinds: dict[str, list[Row]], to: Path) -> None:
         right.plot(counts, [(risen >= least).mean() for least in counts], color=ink, drawstyle="steps-post",
                    label=f"rise > {rise} grain")  # fmt: skip
     right.axvline(10, color=MEASURED, label="fewer than 10 typically, measured")
-    right.set(xlabel="grains ejected, at least", ylabel="share of impacts")
-    right.legend(fontsize=8)
+    right.set(xlabel="grains ejected, at least", ylabel="share of impacts", ylim=(-0.05, 1.5))
+    right.legend(fontsize=8, loc="upper right")
+    last.axvspan(0.15, 0.25, color=MEASURED, alpha=0.25, lw=0)
+    for shift, chosen, ink, text in ((0.1, speeds, INK[0], "all impacts"), (-0.1, leaving, INK[1], "those that leave")):
+        means = [mean_of(chosen(rows)) for rows in kinds.values()]
+        last.errorbar(
+            [mean.value for mean in means], [shift - k for k in range(len(kinds))], xerr=[mean.half for mean in means],
+            fmt="o", color=ink, capsize=3, label=text,
+        )  # fmt: skip
+    last.set(xlabel="mean speed out over speed in", xlim=(0.0, None), ylim=(-len(kinds) - 0.3, 0.5))
+    last.set_yticks([-k for k in range(len(kinds))], [name.replace("_", " ") for name in kinds])
+    last.legend(fontsize=8, loc="lower left")
     figure.savefig(to, dpi=110)
     plt.close(figure)

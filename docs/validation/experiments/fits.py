@@ -1,6 +1,7 @@
 """What the rows of the three experiments say: exponents, prefactor, times and shares, each with its 95 % interval."""
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -69,6 +70,28 @@ def drop_exponents(rows: list[Row], depth: Floats) -> list[Estimate]:
 def diameter_exponent(rows: list[Row], depth: Floats) -> Estimate:
     """Exponent of the diameter at one density and fall, that of the total drop distance held at 1/3."""
     return powers(depth / total_drop(rows) ** (1 / 3), column(rows, "diameter"))[0]
+
+
+def density_exponent(light: Row, heavy: Row, depth_of: Callable[[list[Row]], Floats]) -> float:
+    """Exponent of the density that two drops of one diameter give, that of the total drop distance held at 1/3."""
+    pair = [light, heavy]
+    low, high = depth_of(pair) / total_drop(pair) ** (1 / 3)
+    return math.log(high / low) / math.log(heavy["density"] / light["density"])
+
+
+def without_beads(beds: list[list[Row]], cell: tuple[str, ...]) -> list[Row]:
+    """Return drops as they would be in beads of no size: for each drop a straight line over the bead size, at 0.
+
+    beds: rows of the same drops in beds of several sizes of beads; cell: the columns that tell drops in a bed apart.
+    """
+    found = []
+    for row in beds[0]:
+        same = [other for bed in beds for other in bed if all(other[key] == row[key] for key in cell)]
+        lines = {
+            name: np.polyfit(column(same, "bead_size"), column(same, name), 1) for name in ("deepest", "touch_height")
+        }
+        found.append(row | {name: float(line[1]) for name, line in lines.items()} | {"bead_size": 0.0})
+    return found
 
 
 def scale(rows: list[Row]) -> Floats:

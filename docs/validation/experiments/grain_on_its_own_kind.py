@@ -14,7 +14,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from sphere_bed import Beads, Row, add_row, kept, note_origin, read_rows
+from sphere_bed import Beads, Row, add_row, kept, note_origin, read_rows, steps_for
 
 from lithobrake.dem import Material, Sphere, World
 
@@ -29,7 +29,7 @@ BED = Beads(
 )  # fmt: skip
 FOLLOWED, LOOK = 1.5e-3, 5e-5  # s
 REACH = 2.5  # grains from the middle within which a point is hit
-STEPS = 15.0  # in the shortest contact; 20 where restitution is lower, as damping then asks for smaller steps
+STEPS = 15.0  # in the shortest contact
 RISES = (0.1, 0.5, 1.0)  # grain diameters above where a grain lay
 
 
@@ -51,7 +51,7 @@ def shot(world: World, material: Material, point: tuple[float, float]) -> tuple[
     span = (0.5 * GRAIN + radius) ** 2 - (offset**2).sum(axis=1)
     height = float((world.position[:, 2] + np.sqrt(np.maximum(span, 0.0)))[span > 0.0].max()) + 0.02 * GRAIN
     body = world.add_body(Sphere(0.5 * GRAIN), material, (*point, height), velocity=(0.0, 0.0, -SPEED))
-    world.time_step = world.shortest_contact(SPEED) / (STEPS if material.restitution > 0.6 else 20.0)
+    world.time_step = world.shortest_contact(SPEED) / steps_for(material, STEPS)
     return body, world
 
 

@@ -1,6 +1,6 @@
 """How much looser grains that pull on each other lie: volumes settled under less gravity (X4).
 
-    python docs/validation/experiments/packing_and_cohesion.py
+    python docs/validation/experiments/packing_and_cohesion.py [--kinds glass ...] [--pulls 0 0.1 ...] [--seeds 1 2 ...]
 
 By similarity only the pull of a contact over a grain's weight tells beds of one kind apart, as long as they are stiff:
 so one curve of volume against that ratio stands for every gravity, and gives the pull that a measured volume asks for.
@@ -10,6 +10,7 @@ Source: [Keulen-2026].
 """
 
 import argparse
+import itertools
 import math
 import time
 from collections.abc import Iterator
@@ -130,20 +131,22 @@ def solid_fraction(world: World, volumes: Floats, kind: Kind) -> float:
     return float(volumes[inside].sum() / ((WIDTH * kind.mean) ** 2 * (high - low)))
 
 
-def missing() -> Iterator[tuple[str, float, int]]:
+def missing(kinds: list[str], pulls: list[float], seeds: list[int]) -> Iterator[tuple[str, float, int]]:
     """Yield kind, pull and seed of what has no row."""
     ran = {(row["kind"], row["pull"], row["seed"]) for row in read_rows(TABLE)}
-    for seed in SEEDS:
-        for name in KINDS:
-            for pull in PULLS:
-                if (name, pull, seed) not in ran:
-                    yield name, pull, seed
+    for seed, name, pull in itertools.product(seeds, kinds, pulls):
+        if (name, pull, seed) not in ran:
+            yield name, pull, seed
 
 
 def main() -> None:
     """Run what has no row yet."""
-    argparse.ArgumentParser(description=__doc__.splitlines()[0]).parse_args()
-    for name, pull, seed in missing():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--kinds", nargs="*", choices=KINDS, default=list(KINDS))
+    parser.add_argument("--pulls", type=float, nargs="*", default=PULLS, help="of a contact, over a grain's weight")
+    parser.add_argument("--seeds", type=int, nargs="*", default=SEEDS)
+    given = parser.parse_args()
+    for name, pull, seed in missing(given.kinds, given.pulls, given.seeds):
         start = time.process_time()
         world, volumes = filled(KINDS[name], pull, seed)
         row = {

@@ -25,8 +25,9 @@ from origin import origin
 Floats = NDArray[np.float64]
 Row = dict[str, Any]
 
-POUR_STEPS = 18.0  # in the shortest contact while beads fall and settle (16 where the restitution is above .6)
+POUR_STEPS = 18.0  # in the shortest contact while beads fall and settle
 DROP_STEPS = 15.0  # in the shortest contact while the ball comes down
+DAMPED, DAMPED_STEPS = 0.6, 30.0  # below such a restitution damping asks for more steps: up to 25 at .5
 LOOKS = 12  # a time of free fall through the whole column
 PATIENCE = 40  # times of fall
 FOLLOWED = 1.05  # times the stopping time
@@ -96,13 +97,19 @@ def poured(beads: Beads) -> World:
     return world
 
 
+def steps_for(material: Material, steps: float) -> float:
+    """Return steps in the shortest contact of a material, more where its damping asks for them."""
+    return steps if material.restitution >= DAMPED else max(steps, DAMPED_STEPS)
+
+
 def come_to_rest(world: World, beads: Beads) -> None:
     """Run a world under its drag until it is at rest, and on without drag until it is at rest.
 
     Raises ValueError where it is not at rest after its patience.
     """
     fall = math.sqrt(2.0 * float(world.position[:, 2].max()) / beads.gravity)
-    world.time_step = world.shortest_contact(2.0 * beads.gravity / world.drag) / POUR_STEPS
+    speed = 2.0 * beads.gravity / world.drag
+    world.time_step = world.shortest_contact(speed) / steps_for(beads.material, POUR_STEPS)
     for look in range(PATIENCE * LOOKS):
         world.run(duration=fall / LOOKS)
         ratio = settling.kinetic_ratio(world, beads.mean_diameter, beads.gravity)
@@ -200,7 +207,8 @@ def dropped(
         ball, material, (*place, start + radius), velocity=(0.0, 0.0, -speed), mass=mass, inertia=inertia
     )  # fmt: skip
     # Ball and beads are of about the same modulus: the lightest pair of beads has the shortest contact.
-    world.time_step = world.shortest_contact(max(speed, math.sqrt(gravity * radius))) / steps
+    fastest = max(speed, math.sqrt(gravity * radius))
+    world.time_step = world.shortest_contact(fastest) / steps_for(material, steps)
     pace = max(round(pace / world.time_step), 1) * world.time_step
     begun, path = world.time, []
     stopped = 0.0

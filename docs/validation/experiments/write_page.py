@@ -10,23 +10,9 @@ import textwrap
 from pathlib import Path
 
 import numpy as np
-from draw import of_drops, of_grains, of_gravities
-from fits import (
-    FALL,
-    LIGHT,
-    Estimate,
-    below_first_touch,
-    below_mean_surface,
-    column,
-    diameter_exponent,
-    drop_exponents,
-    gravity_exponents,
-    leaving,
-    mean_of,
-    scale,
-    speeds,
-    stopping,
-)  # fmt: skip
+from beads_part import beads_part
+from draw import of_grains, of_gravities
+from fits import Estimate, column, gravity_exponents, leaving, mean_of, speeds
 from low_gravity_parts import balls_part, mascot_part, packing_part, plate_part
 from page_text import TEXT, WHY
 from rebounds_part import rebounds_part
@@ -35,7 +21,6 @@ from sphere_bed import read_rows
 from table_lines import HERE, Lines, line, said
 
 PAGE = HERE.parent / "experiments.md"
-UNMEASURED = Estimate(0.42, 0.03, 0)  # of the slope of a heap, where none was measured: what glass beads have
 NOT_YET = "Too few rows yet: run the script."
 HEAD = "| quantity | measured | ours, 95 % | rows | ours over measured | agrees |\n|---|---|---|---|---|---|\n"
 
@@ -61,43 +46,6 @@ def came_from(name: str) -> str:
     told = json.loads(path.read_text())
     cost = f", {told['cpu_s_of_rows']:g} s of CPU time in its rows" if "cpu_s_of_rows" in told else ""
     return f"`{told['command']}`, {told['date']}, {told['machine']}{cost}."
-
-
-def beads_part(work: Path) -> tuple[Lines, str, dict[str, Estimate]]:
-    """Return rows, a table of influences and estimates of the ball dropped into beads."""
-    every = read_rows(HERE / "ball_into_beads.csv")
-    drops = [row for row in every if "_drop_" in row["name"]]
-    heaps = read_rows(HERE / "repose.csv")
-    slope = mean_of([math.tan(math.radians(row["angle_deg"])) for row in heaps]) if heaps else UNMEASURED
-    law = 0.14 / slope.value
-    plain = [row for row in drops if row["density"] == LIGHT and row["fall"] == FALL]
-    sized = plain + [row for row in every if "_diameter_" in row["name"]]
-    told = f"0.14 / {slope.value:.2f} = {law:.3f}, unverified"
-    rows = []
-    for where, depth_of in (("the mean surface", below_mean_surface), ("the first touch", below_first_touch)):
-        density, total = drop_exponents(drops, depth_of(drops))
-        prefactor = mean_of(list(depth_of(drops) / scale(drops)))
-        rows += [
-            line(f"depth below {where}: exponent of the ball's density", 0.5, density, 0.05, "1/2"),
-            line(f"depth below {where}: exponent of the total drop distance", 1 / 3, total, 0.05, "1/3"),
-            line(f"depth below {where}: prefactor", law, prefactor, 0.25 * law, told),
-        ]
-        if len(sized) > 2:
-            exponent = diameter_exponent(sized, depth_of(sized))
-            rows.append(line(f"depth below {where}: exponent of the ball's diameter", 2 / 3, exponent, 0.05, "2/3"))
-    rows.append(line("stopping time over depth / impact speed", 3.0, mean_of(stopping(drops)), 0.75, "3"))
-    of_drops(drops, slope, work, HERE / "ball_into_beads.png")
-    others = [
-        f"| {row['name']} | {int(row['beads'])} | {row['deepest'] * 100:.2f} | {touch * 100:.2f} | "
-        f"{row['bulk_density']:.0f} | {row['stopping_time'] * row['impact_speed'] / row['deepest']:.2f} |"
-        for row, touch in zip(every, below_first_touch(every), strict=True)
-    ]
-    table = (
-        "| drop | beads | depth [cm] | below first touch [cm] | bulk density [kg/m3] | stopping time v/d |\n"
-        "|---|---|---|---|---|---|\n"
-    )
-    density, total = drop_exponents(drops, below_mean_surface(drops))
-    return rows, table + "\n".join(others), {"slope": slope, "density": density, "total": total}
 
 
 def gravity_part() -> tuple[Lines, str]:
