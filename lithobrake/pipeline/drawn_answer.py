@@ -145,10 +145,11 @@ def _scatter(parts: Mapping[str, Any] | None) -> list[str]:
     """Where the scatter of the outgoing speed comes from."""
     if parts is None:
         return []
+    found = {words: parts[name] for name, words in PARTS.items() if parts[name] is not None}
+    # Shares are free of bias, and so may be a little outside of what a share can be.
+    shown = {words: min(max(part["share"], 0.0), 1.0) for words, part in found.items()}
     listed = [
-        f"{words} {_percent(max(parts[name]['share'], 0.0))} ({_span(parts[name]['lower'], parts[name]['upper'])})"
-        for name, words in PARTS.items()
-        if parts[name] is not None
+        f"{words} {_percent(shown[words])} ({_span(part['lower'], part['upper'])})" for words, part in found.items()
     ]
     return [f"The scatter of the outgoing speed comes from: {', '.join(listed)} (90 % intervals)."]
 
