@@ -15,8 +15,6 @@ sums; the last line printed says the ratio.
 import argparse
 import csv
 import json
-import os
-import subprocess
 import sys
 import time
 from dataclasses import asdict
@@ -63,29 +61,10 @@ def land_cases() -> None:
         print(json.dumps(row | {"cpu_s": time.process_time() - start}), flush=True)
 
 
-class Checkout:
-    """A process that lands with the package of one checkout."""
-
-    def __init__(self, folder: Path) -> None:
-        environment = os.environ | {"PYTHONPATH": str(folder.resolve()), "OMP_NUM_THREADS": "1"}
-        command = [sys.executable, str(Path(__file__).resolve()), "--landing"]
-        self.process = subprocess.Popen(
-            command, env=environment, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
-        )
-
-    def land(self, one: Row) -> Row:
-        """Land once."""
-        assert self.process.stdin is not None
-        assert self.process.stdout is not None
-        self.process.stdin.write(json.dumps(one) + "\n")
-        self.process.stdin.flush()
-        row: Row = json.loads(self.process.stdout.readline())
-        return row
-
-
 def main() -> None:
     """Land in turn, write, tell the ratio."""
     # The other checkout has other modules: what lands imports the public face alone.
+    from checkouts import Checkout
     from landing_ensembles import beds_of, drawn_study, draws
     from origin import origin
 
@@ -103,7 +82,9 @@ def main() -> None:
     given = parser.parse_args()
     study = drawn_study(given.study, given.bed_count, given.region)
     beds_of(study, given.beds)
-    checkouts = {"old": Checkout(given.old), "new": Checkout(given.new)}
+    checkouts = {
+        name: Checkout(folder, __file__, "--landing") for name, folder in (("old", given.old), ("new", given.new))
+    }
     sums, finished = dict.fromkeys(checkouts, 0.0), 0
     command = (
         f"benchmarks/landing_speed.py OLD . --study {given.study} --beds BED_FOLDER --bed-count {given.bed_count} "
@@ -120,8 +101,8 @@ def main() -> None:
                 one["landing"]["contact"] = contact | (given.contact if name == "new" else given.old_contact)
                 if number == 0:
                     # Compiles.
-                    checkout.land(one | {"landing": one["landing"] | {"time_limit": 1e-3}})
-                row = checkout.land(one)
+                    checkout.answer(one | {"landing": one["landing"] | {"time_limit": 1e-3}})
+                row = checkout.answer(one)
                 sums[name] += row["cpu_s"]
                 writer.writerow({"landing": number, "checkout": name, **row})
                 file.flush()

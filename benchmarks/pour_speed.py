@@ -12,8 +12,6 @@ import argparse
 import csv
 import json
 import math
-import os
-import subprocess
 import sys
 import time
 from dataclasses import asdict, replace
@@ -60,28 +58,9 @@ def pour_recipes() -> None:
         print(json.dumps(row | {"cpu_s": time.process_time() - start}), flush=True)
 
 
-class Checkout:
-    """A process that pours with the package of one checkout."""
-
-    def __init__(self, folder: Path) -> None:
-        environment = os.environ | {"PYTHONPATH": str(folder.resolve()), "OMP_NUM_THREADS": "1"}
-        command = [sys.executable, str(Path(__file__).resolve()), "--pouring"]
-        self.process = subprocess.Popen(
-            command, env=environment, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
-        )
-
-    def pour(self, recipe: Row) -> Row:
-        """Pour once."""
-        assert self.process.stdin is not None
-        assert self.process.stdout is not None
-        self.process.stdin.write(json.dumps(recipe) + "\n")
-        self.process.stdin.flush()
-        row: Row = json.loads(self.process.stdout.readline())
-        return row
-
-
 def main() -> None:
     """Pour in turn, write, tell the ratio."""
+    from checkouts import Checkout
     from origin import origin
 
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -91,7 +70,9 @@ def main() -> None:
     parser.add_argument("--pours", type=int, default=3)
     parser.add_argument("--out", type=Path, required=True)
     given = parser.parse_args()
-    checkouts = {"old": Checkout(given.old), "new": Checkout(given.new)}
+    checkouts = {
+        name: Checkout(folder, __file__, "--pouring") for name, folder in (("old", given.old), ("new", given.new))
+    }
     sums = dict.fromkeys(checkouts, 0.0)
     command = f"benchmarks/pour_speed.py OLD . --study {given.study} --pours {given.pours}"
     with given.out.with_suffix(".csv").open("w", newline="") as file:
@@ -104,8 +85,8 @@ def main() -> None:
                     small = [width * math.sqrt(COMPILED_BY / recipe["grain_count"]) for width in recipe["width"]]
                     least = 2.0 * recipe["sizes"]["upper"]
                     width = [max(value, least) for value in small]
-                    checkout.pour(recipe | {"grain_count": COMPILED_BY, "width": width})
-                row = checkout.pour(recipe)
+                    checkout.answer(recipe | {"grain_count": COMPILED_BY, "width": width})
+                row = checkout.answer(recipe)
                 sums[name] += row["cpu_s"]
                 writer.writerow({"seed": seed, "checkout": name, **row})
                 file.flush()
