@@ -13,14 +13,17 @@ from lithobrake.touchdown.grains import GrainSizes, make_grain, random_orientati
 from lithobrake.touchdown.surface import height_map
 
 Progress = Callable[[float, str], None]
-RAIN_ROOM = 1.05  # room of a grain in the rain, in its bounding radii
-RAIN_PLACES = 20  # tried for each grain
-FALL_STEPS = 8.0  # at most, in each contact: the bed does not remember how its grains bounced
+Vector = tuple[float, float, float]
+RAIN_PLACES = 100  # tried for each grain
+RAIN_DEPTH = 4.0  # of the largest bounding radius, below which no place is looked for at first
+FALL_STEPS = 6.0  # at most, in each contact: the bed does not remember how its grains bounced
 FALL_CHECKS = 40  # looks at the grains in the time that the highest falls
 FALLS_PATIENCE = 25  # after so many times of that the pour is given up
-FALLEN = 1e-3  # kinetic ratio below which the grains lie, and only have to settle
-FALLEN_CHECKS = 4  # in a row
-FALLEN_STEPS = 40.0  # at least, in a grain's small oscillation at its rest overlap under the pour gravity
+LYING = 1e-3  # kinetic ratio below which the grains lie, and only have to settle
+LYING_CHECKS = 4  # in a row
+LYING_STEPS = 40.0  # at least, in a grain's small oscillation at its rest overlap under the pour gravity
+# Of grains that settle: the dashpots of pairs that bounce less bound the step of a bed, and it comes to lie no sooner.
+SETTLING_RESTITUTION = 0.9
 PERIODS_LOOSENED = 10.0  # of a grain's small oscillation at its rest overlap under the local gravity
 TOPPLING_TIMES = 3.0  # sqrt(diameter / gravity), for which a bed must rest before its gravity is lowered
 # A bed in which a grain creeps on, at a hundredth of its weight against the drag, is poured anew, so often in all.
@@ -103,8 +106,20 @@ def _poured(recipe: BedRecipe, generator: np.random.Generator, tell: Progress) -
     down = (0.0, 0.0, -recipe.pour_gravity)
     world = boxed_world(grains, position, orientation, recipe.width, recipe.material, down, recipe.contact)
     recorder = Recorder(float(diameter.mean()))
+    settling_material = replace(recipe.material, restitution=max(SETTLING_RESTITUTION, recipe.material.restitution))
+
+    def at_rest(material: Material, gravity: Vector) -> World:
+        """Return the grains where they are, at rest, without a history."""
+        other = boxed_world(grains, world.position, world.orientation, recipe.width, material, gravity, recipe.contact)
+        other.time = world.time
+        return other
+
     fall(world, recorder, recipe, tell)
-    world = loosened(world, recorder, recipe, grains, tell)
+    world = at_rest(settling_material, down)
+    lie(world, recorder, recipe, tell)
+    world = at_rest(replace(settling_material, friction=0.0), recipe.gravity)
+    loosen(world, recorder, recipe, tell)
+    world = at_rest(settling_material, recipe.gravity)
     lower(world, recorder, recipe, lambda done: tell(0.7 + 0.15 * done, "letting loose grains fall"))
     settle(world, recorder, recipe, True, lambda done: tell(0.85 + 0.15 * done, "settling under the local gravity"))
     return finished(world, recorder, recipe, grains, diameter)
@@ -115,27 +130,35 @@ def rain(generator: np.random.Generator, grains: Sequence[Shape], width: tuple[f
 
     Each comes to lie as deep as its bounding sphere gets, over those before it, at the best of a few random places.
     """
-    reach = RAIN_ROOM * np.array([grain.bounding_radius for grain in grains])
+    reach = np.array([grain.bounding_radius for grain in grains])
+    largest = float(reach.max())
     position = np.zeros((len(grains), 3))
     for k, radius in enumerate(reach):
         slack = np.maximum(0.5 * np.array(width) - radius, 0.0)
         places = slack * generator.uniform(-1.0, 1.0, size=(RAIN_PLACES, 2))
-        touching = radius + reach[:k]
-        beside = ((places[:, None, :] - position[:k, :2]) ** 2).sum(axis=2)
-        over = np.sqrt(np.maximum(touching**2 - beside, 0.0))
-        heights = np.where(beside < touching**2, position[:k, 2] + over, radius).max(axis=1, initial=radius)
+        ground = position[:k, 2].max(initial=0.0) - RAIN_DEPTH * largest
+        upper = position[:k, 2] > ground
+        heights = lying_heights(places, radius, position[:k][upper], reach[:k][upper])
+        if heights.min() < ground + 2.0 * largest:
+            # So low that those below the ground might count.
+            heights = lying_heights(places, radius, position[:k], reach[:k])
         best = int(heights.argmin())
         position[k] = *places[best], heights[best]
     return position, np.array([random_orientation(generator) for _ in grains])
 
 
-def fall(world: World, recorder: Recorder, recipe: BedRecipe, tell: Progress) -> None:
-    """Let the grains fall, and then lie still as far as the pour gravity is concerned.
+def lying_heights(places: Floats, radius: float, position: Floats, reach: Floats) -> Floats:
+    """Return how high [m] a sphere comes to lie at places [count, 2], on the floor or on the first sphere below it."""
+    touching = radius + reach
+    beside = ((places[:, None, :] - position[:, :2]) ** 2).sum(axis=2)
+    over = np.sqrt(np.maximum(touching**2 - beside, 0.0))
+    heights: Floats = np.where(beside < touching**2, position[:, 2] + over, radius).max(axis=1, initial=radius)
+    return heights
 
-    In flight they take steps of their own; once most of them touch, common ones are larger.
-    """
-    fall_time = math.sqrt(2.0 * float(world.position[:, 2].max()) / recipe.pour_gravity)
-    chunk = fall_time / FALL_CHECKS
+
+def fall(world: World, recorder: Recorder, recipe: BedRecipe, tell: Progress) -> None:
+    """Let the grains fall, for as long as the highest takes to, each contact at steps of its own."""
+    chunk = math.sqrt(2.0 * float(world.position[:, 2].max()) / recipe.pour_gravity) / FALL_CHECKS
     steps = min(FALL_STEPS, recipe.contact.steps_per_contact)
     recorder.frame(world)
     for check in range(FALL_CHECKS):
@@ -144,15 +167,20 @@ def fall(world: World, recorder: Recorder, recipe: BedRecipe, tell: Progress) ->
         if check % 8 == 7:
             recorder.frame(world)
         tell(0.4 * check / FALL_CHECKS, "pouring grains")
+
+
+def lie(world: World, recorder: Recorder, recipe: BedRecipe, tell: Progress) -> None:
+    """Let grains that have fallen come to lie still as far as the pour gravity is concerned."""
+    fall_time = world.time
+    longest = settling.rest_period(recipe.material, recorder.diameter, recipe.pour_gravity) / LYING_STEPS
     world.drag = settling.free_fall_drag(recipe.pour_gravity, recorder.diameter)
-    longest = settling.rest_period(recipe.material, recorder.diameter, recipe.pour_gravity) / FALLEN_STEPS
     calm = 0
     for check in range((FALLS_PATIENCE - 1) * FALL_CHECKS):
-        settling.run_quietly(world, chunk, longest)
+        settling.run_quietly(world, fall_time / FALL_CHECKS, longest)
         recorder.note(world)
-        calm = calm + 1 if recorder.rows[-1][1] < FALLEN else 0
+        calm = calm + 1 if recorder.rows[-1][1] < LYING else 0
         tell(0.6 - 0.2 * math.exp(-check / FALL_CHECKS), "pouring grains")
-        if calm == FALLEN_CHECKS:
+        if calm == LYING_CHECKS:
             return
     raise ValueError(
         f"the poured grains were not calm after {FALLS_PATIENCE * fall_time:.3g} s: raise grain.friction or lower "
@@ -160,35 +188,22 @@ def fall(world: World, recorder: Recorder, recipe: BedRecipe, tell: Progress) ->
     )
 
 
-def loosened(
-    world: World, recorder: Recorder, recipe: BedRecipe, grains: list[ConvexHull], tell: Progress
-) -> World:  # fmt: skip
-    """Return the grains under the local gravity, rid of what the pour pressed into them.
+def loosen(world: World, recorder: Recorder, recipe: BedRecipe, tell: Progress) -> None:
+    """Rid grains under the local gravity, without friction, of what the pour pressed into them.
 
     A grain that friction wedges keeps the compression of the pour, and would throw up its neighbours when it slips: its
-    energy then counts by the local gravity. So the compression is let out at once, without friction, under a drag at
-    the frequency of a contact of the pour. Nothing moves on by more than about the overlap of that contact.
+    energy then counts by the local gravity. So the compression is let out at once, under a drag at the frequency of a
+    contact of the pour. Nothing moves on by more than about the overlap of that contact.
     """
-    slippery = replace(recipe.material, friction=0.0)
     pressed = settling.rest_period(recipe.material, recorder.diameter, recipe.pour_gravity)
     loose = settling.rest_period(recipe.material, recorder.diameter, float(np.linalg.norm(recipe.gravity)))
     start = world.time
-
-    def anew(material: Material) -> World:
-        other = boxed_world(
-            grains, world.position, world.orientation, recipe.width, material, recipe.gravity, recipe.contact
-        )
-        other.time = world.time
-        return other
-
-    world = anew(slippery)
     world.drag = 2.0 * math.pi / pressed
     while world.time < start + PERIODS_LOOSENED * loose:
         settling.run_quietly(world, loose / settling.CHECKS_PER_PERIOD)
         recorder.note(world)
         tell(0.6 + 0.1 * (world.time - start) / (PERIODS_LOOSENED * loose), "letting out the pressure")
     recorder.frame(world)
-    return anew(recipe.material)
 
 
 def lower(world: World, recorder: Recorder, recipe: BedRecipe, tell: Callable[[float], None]) -> None:

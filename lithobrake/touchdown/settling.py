@@ -13,7 +13,7 @@ Floats = NDArray[np.float64]
 CONTACT_DAMPING = 0.1  # damping ratio of a grain's small oscillation while a bed takes on another gravity or material
 FREE_FALL_DAMPING = 0.5  # drag while a bed comes to rest, in units of sqrt(gravity / diameter)
 RAMP_PERIODS = 2.0  # time constant of a ramp of gravity, in periods of a grain at rest under the gravity it ends at
-RAMP_STEPS = 40  # changes of gravity a time constant
+RAMP_STEPS = 20  # changes of gravity a time constant
 RAMP_LEFT = 1e-3  # of the gravity it ends at, where a ramp makes its last step
 KINETIC_RATIO = 1e-5  # of the energy that lifts every grain by its own diameter
 UNBALANCED_FORCE = 1e-2  # of the mean contact force
@@ -21,9 +21,9 @@ PERIODS_HELD = 10.0  # settled: both hold for so many periods of a grain's small
 PERIODS_RELAXED = 5.0
 PERIODS_PATIENCE = 1200.0  # after so many the bed is given up
 QUIET_FRACTION = 0.95  # of the largest safe step, while nothing collides
-QUIET_STEPS = 8  # between looks at what the largest safe step has become
+QUIET_STEPS = 16  # between looks at what the largest safe step has become
 TOO_LARGE = 2.0  # largest safe steps: one step so large changes the speed of a bounce by a few hundredths
-CHECKS_PER_PERIOD = 10
+CHECKS_PER_PERIOD = 5
 
 
 class CreepingBedError(ValueError):
