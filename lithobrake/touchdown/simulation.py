@@ -22,9 +22,9 @@ CHECKS_PER_CONTACT = 5  # looks at the lander in the time of the shortest contac
 # Where contacts step for themselves, looks are farther apart: until the lander moves by this part of its smallest edge,
 # and never farther than this part of the time limit.
 LOOK_WAY, LOOK_TIME = 0.05, 1e-3
-# A bed takes on another soil at once where its grains, if all that this frees set them in motion, would not reach this
-# part of the impact speed.
-RELEASED_SPEED = 1e-3
+# Motion of the grains that a landing does not feel, over its impact speed: a bed takes on another soil at once where
+# all that this frees would not set them in such motion, and is relaxed until they have less.
+CALM_SPEED = 1e-3
 
 
 def land(
@@ -49,7 +49,7 @@ def land(
         )
     world = bed.world(landing.grain, bed.gravity, landing.contact)
     locally = landing.contact.stepping == "local"
-    if locally and released_speed(bed, landing.grain) < RELEASED_SPEED * landing.speed:
+    if locally and released_speed(bed, landing.grain) < CALM_SPEED * landing.speed:
         world.gravity = np.array(landing.gravity)
     else:
         relax(world, bed, landing, lambda fraction: progress(fraction, "bed taking on the soil of the landing"))
@@ -104,10 +104,11 @@ def moving_reach(bed: Bed, lander: Lander, landing: Landing) -> float:
 def relax(
     world: World, bed: Bed, landing: Landing, tell: Callable[[float], None] = lambda fraction: None
 ) -> None:  # fmt: skip
-    """Let the stored bed find its rest under the landing's material and gravity, under damping that fades.
+    """Let the stored bed take on the landing's material and gravity, under damping that fades.
 
-    Where the site's acceleration vanishes or points outward nothing settles: the bed rests under the gravity it was
-    made with, and the site's acts from the touchdown on.
+    It ends once the motion that is left is small against the impact, and stays so for some periods of a grain. Where
+    the site's acceleration vanishes or points outward nothing settles: the bed rests under the gravity it was made
+    with, and the site's acts from the touchdown on.
     """
     gravity = np.array(landing.gravity)
     rests_under = gravity if gravity[2] < 0.0 else np.array(bed.gravity)
@@ -124,13 +125,18 @@ def relax(
         tell(1.0 - math.exp(-next(checks) / (settling.PERIODS_HELD * settling.CHECKS_PER_PERIOD)))
         world.drag = max(lasting, world.drag * math.exp(-1.0 / (RELAX_FADING * settling.CHECKS_PER_PERIOD)))
 
-    def at_rest() -> bool:
-        return settling.unbalanced_force(world) < settling.UNBALANCED_FORCE
+    def is_calm() -> bool:
+        return grain_speed(world) < CALM_SPEED * landing.speed
 
-    if not settling.rests(world, period, settling.PERIODS_RELAXED, at_rest, fade):
+    if not settling.rests(world, period, settling.PERIODS_RELAXED, is_calm, fade):
         raise ValueError(settling.restless(world))
     world.drag = 0.0
     world.gravity = gravity
+
+
+def grain_speed(world: World) -> float:
+    """Return the speed [m/s] at which all bodies would have the kinetic energy that they have."""
+    return math.sqrt(2.0 * float(world.kinetic_energy.sum()) / float(world.mass.sum()))
 
 
 def release(world: World, bed: Bed, lander: Lander, landing: Landing) -> int:
