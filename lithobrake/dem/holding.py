@@ -9,29 +9,78 @@ import numpy as np
 
 from lithobrake.compiled import kernel, large_kernel
 from lithobrake.dem.agenda import Agenda, put_on
-from lithobrake.dem.arrays import Bodies, Pairs
+from lithobrake.dem.arrays import Bodies, Pairs, Reactions
 from lithobrake.dem.contact_plans import Plans, replan, touches
-from lithobrake.dem.free_flight import Flight, Rules, spin_of, surface_speed
-from lithobrake.dem.vectors import dot, minus, put, row
+from lithobrake.dem.free_flight import Flight, Rules, surface_speed
+from lithobrake.dem.vectors import Vector, add, dot, minus, plus, put, row, scaled, times
 
 # A body is held when it is slower than this part of the speed at which it would be let go again.
 CALM = 0.5
 
 
 @kernel
-def book_motion(bodies: Bodies, body: int, sign: float) -> None:
-    """Book the energy of a body's motion as lost, or with sign -1 as gained. Writes to bodies."""
-    velocity = row(bodies.velocity, body)
-    turning = dot(row(bodies.angular_momentum, body), spin_of(bodies, body))
+def give_impulse(bodies: Bodies, flight: Flight, body: int, sign: float, impulse: Vector, moment: Vector) -> None:
+    """Add an impulse [N s] and a moment [N m s] to a body, or to what a held one will go on with.
+
+    Writes to bodies and flight.
+    """
+    if flight.held[body]:
+        add(flight.held_velocity, body, sign * bodies.inverse_mass[body], impulse)
+        add(flight.held_momentum, body, sign, moment)
+    else:
+        add(bodies.velocity, body, sign * bodies.inverse_mass[body], impulse)
+        add(bodies.angular_momentum, body, sign, moment)
+
+
+@kernel
+def kick_in_advance(plans: Plans, pair: int, now: float) -> float:
+    """Return the time [s] from now for which a contact's last kick has already given its force."""
+    return 0.5 * plans.interval[pair] - (now - plans.last[pair]) if plans.interval[pair] > 0.0 else 0.0
+
+
+@kernel
+def book_motion(
+    bodies: Bodies, pairs: Pairs, reactions: Reactions, flight: Flight, plans: Plans, body: int, now: float, sign: float
+) -> None:  # fmt: skip
+    """Book the energy of a body's motion as lost, or with sign -1 as gained, without what kicks gave in advance.
+
+    The work of that is done only as the body moves on. Writes to bodies.
+    """
+    velocity, momentum = row(bodies.velocity, body), row(bodies.angular_momentum, body)
+    entry = flight.head[body]
+    while entry >= 0:
+        pair, is_second = entry >> 1, entry & 1
+        time = kick_in_advance(plans, pair, now) * (-1.0 if is_second else 1.0)
+        torque = row(reactions.second_torque if is_second else reactions.first_torque, pair)
+        velocity = plus(velocity, scaled(time * bodies.inverse_mass[body], row(reactions.force, pair)))
+        momentum = plus(momentum, scaled(time, torque))
+        entry = plans.link[entry]
+    turning = dot(momentum, times(bodies.inverse_inertia, body, momentum))
     bodies.dragged[body] += sign * 0.5 * (bodies.mass[body] * dot(velocity, velocity) + turning)
 
 
 @kernel
+def suspend(
+    pair: int, bodies: Bodies, pairs: Pairs, reactions: Reactions, flight: Flight, plans: Plans, agenda: Agenda,
+    now: float,
+) -> None:  # fmt: skip
+    """Let a contact wait, and take back what its last kick gave in advance. Writes to bodies, flight, plans, agenda."""
+    first, second, time = pairs.first[pair], pairs.second[pair], -kick_in_advance(plans, pair, now)
+    impulse = scaled(time, row(reactions.force, pair))
+    give_impulse(bodies, flight, first, -1.0, impulse, scaled(time, row(reactions.first_torque, pair)))
+    if second >= 0:
+        give_impulse(bodies, flight, second, 1.0, impulse, scaled(time, row(reactions.second_torque, pair)))
+    plans.interval[pair] = 0.0
+    put_on(agenda, len(bodies.mass) + pair, np.inf)
+
+
+@kernel
 def hold(
-    bodies: Bodies, pairs: Pairs, flight: Flight, plans: Plans, agenda: Agenda, body: int, now: float, rules: Rules
-) -> None:
+    bodies: Bodies, pairs: Pairs, reactions: Reactions, flight: Flight, plans: Plans, agenda: Agenda, body: int,
+    now: float, rules: Rules,
+) -> None:  # fmt: skip
     """Hold a body; its contacts with planes and other held bodies wait. Writes to bodies, flight, plans and agenda."""
-    book_motion(bodies, body, 1.0)
+    book_motion(bodies, pairs, reactions, flight, plans, body, now, 1.0)
     put(flight.held_velocity, body, row(bodies.velocity, body))
     put(flight.held_momentum, body, row(bodies.angular_momentum, body))
     put(bodies.velocity, body, (0.0, 0.0, 0.0))
@@ -44,20 +93,20 @@ def hold(
         pair = entry >> 1
         other = pairs.second[pair] if pairs.first[pair] == body else pairs.first[pair]
         if other < 0 or flight.held[other]:
-            plans.interval[pair] = 0.0
-            put_on(agenda, len(bodies.mass) + pair, np.inf)
+            suspend(pair, bodies, pairs, reactions, flight, plans, agenda, now)
         entry = plans.link[entry]
 
 
 @kernel
 def let_go(
-    bodies: Bodies, pairs: Pairs, flight: Flight, plans: Plans, agenda: Agenda, body: int, now: float, rules: Rules
-) -> None:
+    bodies: Bodies, pairs: Pairs, reactions: Reactions, flight: Flight, plans: Plans, agenda: Agenda, body: int,
+    now: float, rules: Rules,
+) -> None:  # fmt: skip
     """Let a held body go on with the momentum it has by now. Writes to bodies, flight, plans and agenda."""
     flight.held[body] = False
     put(bodies.velocity, body, row(flight.held_velocity, body))
     put(bodies.angular_momentum, body, row(flight.held_momentum, body))
-    book_motion(bodies, body, -1.0)
+    book_motion(bodies, pairs, reactions, flight, plans, body, now, -1.0)
     entry = flight.head[body]
     while entry >= 0:
         pair, item = entry >> 1, len(bodies.mass) + (entry >> 1)
@@ -78,8 +127,8 @@ def is_stirred(bodies: Bodies, flight: Flight, body: int) -> bool:
 
 @large_kernel
 def hold_what_is_slow(
-    bodies: Bodies, pairs: Pairs, flight: Flight, plans: Plans, agenda: Agenda, watched: int, share: float,
-    reach: float, now: float, rules: Rules,
+    bodies: Bodies, pairs: Pairs, reactions: Reactions, flight: Flight, plans: Plans, agenda: Agenda, watched: int,
+    share: float, reach: float, now: float, rules: Rules,
 ) -> None:  # fmt: skip
     """Hold what touches something, is slow, and has its centroid beyond a reach [m] of the watched body's.
 
@@ -94,6 +143,6 @@ def hold_what_is_slow(
         if flight.held[body]:
             if not far or is_stirred(bodies, flight, body):
                 flight.time[body] = now
-                let_go(bodies, pairs, flight, plans, agenda, body, now, rules)
+                let_go(bodies, pairs, reactions, flight, plans, agenda, body, now, rules)
         elif far and surface_speed(bodies, flight, body) < CALM * limit and touches(pairs, flight, plans, body):
-            hold(bodies, pairs, flight, plans, agenda, body, now, rules)
+            hold(bodies, pairs, reactions, flight, plans, agenda, body, now, rules)

@@ -141,8 +141,8 @@ class LocalEngine:
         """Hold what is slower than a share of the watched body and beyond a reach [m] of it, and let go the rest."""
         if share > 0.0 or self.flight.held.any():
             hold_what_is_slow(
-                self.engine.bodies, self.pairs, self.flight, self.plans, self.agenda, self.setting.watched, share,
-                reach, self.time, self.rules,
+                self.engine.bodies, self.pairs, self.reactions, self.flight, self.plans, self.agenda,
+                self.setting.watched, share, reach, self.time, self.rules,
             )  # fmt: skip
 
     def give_back(self) -> None:

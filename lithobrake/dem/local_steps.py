@@ -27,11 +27,11 @@ from lithobrake.dem.contact_plans import (
 from lithobrake.dem.feature_list import ROUNDING_OF_RADIUS, STEPS_LISTED, renew_list, travelled
 from lithobrake.dem.force import add_wrench, contact_force
 from lithobrake.dem.free_flight import Flight, Rules, fly_to, spin_of
-from lithobrake.dem.holding import is_stirred, let_go
+from lithobrake.dem.holding import give_impulse, is_stirred, let_go
 from lithobrake.dem.neighbour_search import LISTED, search_neighbours
 from lithobrake.dem.scratch import Scratch
 from lithobrake.dem.stability import pair_step
-from lithobrake.dem.vectors import Vector, add, dot, minus, plus, put, row, scaled, times
+from lithobrake.dem.vectors import Vector, dot, minus, plus, put, row, scaled, times
 
 # Why a run stops: besides what neighbour_search.py says.
 NO_ROOM = 3
@@ -132,20 +132,6 @@ def force_after(
 
 
 @kernel
-def give_impulse(bodies: Bodies, flight: Flight, body: int, sign: float, impulse: Vector, moment: Vector) -> None:
-    """Add an impulse [N s] and a moment [N m s] to a body, or to what a held one will go on with.
-
-    Writes to bodies and flight.
-    """
-    if flight.held[body]:
-        add(flight.held_velocity, body, sign * bodies.inverse_mass[body], impulse)
-        add(flight.held_momentum, body, sign, moment)
-    else:
-        add(bodies.velocity, body, sign * bodies.inverse_mass[body], impulse)
-        add(bodies.angular_momentum, body, sign, moment)
-
-
-@kernel
 def next_step(
     pair: int, bodies: Bodies, planes: Planes, pairs: Pairs, laws: Laws, plans: Plans, planned: float, rate: float,
     rules: Rules,
@@ -236,7 +222,9 @@ def meet(
             continue
         if flight.held[member]:
             if is_stirred(bodies, flight, member):
-                let_go(bodies, pairs, flight, plans, agenda, member, now, rules)
+                let_go(bodies, pairs, reactions, flight, plans, agenda, member, now, rules)
+                # It turns from now on, as the next look at this pair has to know.
+                note_motion(pair, bodies, pairs, plans)
         elif (touched and interval == 0.0) or has_changed(bodies, flight, member):
             replan(bodies, pairs, flight, plans, agenda, member, now, rules)
     return True

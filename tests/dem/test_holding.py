@@ -1,5 +1,7 @@
 """What is slow beside the watched body and out of its reach stands still, and loses nothing."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -58,6 +60,22 @@ def test_the_ledger_closes_with_bodies_held() -> None:
     for _ in range(40):
         world.run_locally(0.25, 60.0, held_speed=0.05)
     assert world.energy()["total"] == pytest.approx(before, abs=1e-3 * impact)
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.5])
+def test_the_ledger_closes_as_oblique_blows_free_bodies(friction: float) -> None:
+    # A body that is let go at one kick does the work of that kick's second half as it moves.
+    material = replace(ROUGH, restitution=1.0, friction=friction)
+    for y, z in ((0.02, 0.01), (-0.04, 0.03), (0.05, -0.02), (0.0, 0.06)):
+        world = World()
+        world.add_body(Sphere(0.05), material, (-0.12, y, z), (0.2, 0.0, 0.0), spin=(0.5, -1.0, 0.7))
+        for x, beside in ((0.0, 0.0), (0.1, 0.0), (0.0, 0.1)):
+            world.add_body(Sphere(0.05), material, (x * (1.0 - 1e-7), beside * (1.0 - 1e-7), 0.0))
+        world.watch(0)
+        before = world.energy()["total"]
+        for _ in range(60):
+            world.run_locally(0.01, 100.0, held_speed=0.3)
+        assert world.energy()["total"] == pytest.approx(before, rel=1e-3)
 
 
 def test_what_is_far_and_at_rest_stands_still_until_the_watched_body_is_near() -> None:
