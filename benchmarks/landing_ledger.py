@@ -1,0 +1,73 @@
+"""How well the ledger of energy closes over whole landings, with grains held and without.
+
+    python benchmarks/landing_ledger.py BED_FOLDER --landings 16
+
+lands drawn landings of scenarios/mission.toml (soils, places, headings and attitudes) on two beds of GRAINS grains,
+which are poured into BED_FOLDER where they are not there yet, in each of WAYS, and sums the ledger from the touchdown
+to the end. landing_ledger.json gets a row a way: mean of what is missing over the energy of the impact, its error, and
+the largest.
+"""
+
+import argparse
+import json
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from landing_ensembles import beds_of, drawn_study, draws
+from origin import origin
+
+from lithobrake.touchdown import Bed, Lander, Landing
+from lithobrake.touchdown.outcome_judge import OutcomeJudge
+from lithobrake.touchdown.simulation import look_interval, moving_reach, release
+
+GRAINS, WIDTH, BEDS = 200, 1.8, 2
+# Steps a contact, and share of the lander's speed below which grains are held.
+WAYS = [(25.0, 0.0), (25.0, 0.1), (100.0, 0.0), (100.0, 0.1)]
+STUDY = Path(__file__).parents[1] / "scenarios" / "mission.toml"
+RESULTS = Path(__file__).with_suffix(".json")
+
+
+def missing(bed: Bed, lander: Lander, landing: Landing, steps: float, held: float) -> float:
+    """What the ledger lacks in the end, over the energy of the impact, on a bed that takes on its soil at once."""
+    world = bed.world(landing.grain, bed.gravity, landing.contact)
+    world.gravity = np.array(landing.gravity)
+    number = release(world, bed, lander, landing)
+    world.time_step = world.shortest_contact(landing.speed) / steps
+    world.watch(number)
+    judge, reach = OutcomeJudge(bed, lander, landing, world, number, 0), moving_reach(bed, lander, landing)
+    before = world.energy()["total"]
+    while judge.ended is None:
+        interval = look_interval(world, judge.motion, lander, landing)
+        world.run_locally(interval, steps, held_speed=held, reach=reach)
+        judge.look()
+    return (world.energy()["total"] - before) / (0.5 * lander.mass * landing.speed**2)
+
+
+def main() -> None:
+    """Land in all ways, tell, write."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("beds", type=Path)
+    parser.add_argument("--landings", type=int, default=16)
+    given = parser.parse_args()
+    study = drawn_study(STUDY, BEDS, 0.1)
+    small = study.bed.model_copy(update={"grain_count": GRAINS, "width": (WIDTH, WIDTH)})
+    study = study.model_copy(update={"bed": small})
+    beds, cases = beds_of(study, given.beds), list(draws(study, given.landings))
+    rows: list[dict[str, Any]] = []
+    for steps, held in WAYS:
+        start = time.process_time()
+        errors = np.array([missing(beds[bed], body, arrival, steps, held) for bed, body, arrival in cases])
+        rows.append({
+            "steps_per_contact": steps, "held_speed": held, "mean": float(errors.mean()),
+            "error_of_mean": float(errors.std(ddof=1) / len(errors) ** 0.5), "largest": float(abs(errors).max()),
+            "cpu_s": time.process_time() - start,
+        })  # fmt: skip
+        print(json.dumps(rows[-1]), flush=True)
+    command = f"benchmarks/landing_ledger.py BED_FOLDER --landings {given.landings}"
+    RESULTS.write_text(json.dumps({**origin(command), "landings": given.landings, "ways": rows}, indent=1) + "\n")
+
+
+if __name__ == "__main__":
+    main()
