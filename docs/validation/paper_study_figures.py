@@ -177,14 +177,15 @@ def fit_table() -> list[str]:
 
 
 def numerics_table() -> list[str]:
-    """Means of the drawn study with one number of the model changed after the other."""
-    found = entries("numerics")
-    heads = " | ".join(f"{SYMBOLS[output]} [{UNITS[output][1]}] | over the first" for output in OUTPUTS)
+    """Means of the drawn study with one number of the model changed after the other, over those before any change."""
+    heads = " | ".join(f"{SYMBOLS[output]} [{UNITS[output][1]}] | over as it is" for output in OUTPUTS)
     lines = [f"| study | outcomes | {heads} |", "|---" * (2 + 2 * len(OUTPUTS)) + "|"]
-    for one in found:
+    as_it_is: Entry = {}
+    for one in entries("numerics"):
+        as_it_is = one if one["name"].startswith("as it is") else as_it_is
         cells = []
         for output in OUTPUTS:
-            factor, mean, first = UNITS[output][0], one["outputs"][output]["mean"], found[0]["outputs"][output]["mean"]
+            factor, mean, first = UNITS[output][0], one["outputs"][output]["mean"], as_it_is["outputs"][output]["mean"]
             ends = f"{factor * mean['lower']:.3g} to {factor * mean['upper']:.3g}"
             cells += [f"{factor * mean['value']:.3g} ({ends})", f"{mean['value'] / first['value']:.2f}"]
         outcomes = ", ".join(f"{name} {count}" for name, count in one["outcomes"].items())
