@@ -102,7 +102,7 @@ def plan(
 @app.command(epilog="Example: lithobrake rare study.toml fast --landings 500")
 def rare(
     study: StudyPath,
-    name: Annotated[str, typer.Argument(metavar="NAME", help="A name of [limit_states].", show_default=False)],
+    name: Annotated[str, typer.Argument(metavar="NAME", help="A name of \\[limit_states].", show_default=False)],
     landings: Annotated[int, typer.Option("--landings", metavar="N", help="Landings of each level.")] = 500,
     out: OutPath = None,
     workers: Workers = None,
