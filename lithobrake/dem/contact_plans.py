@@ -37,11 +37,11 @@ class Plans(NamedTuple):
 
 
 @kernel
-def collision_step(pair: int, pairs: Pairs, plans: Plans, speed: float, rules: Rules) -> float:
-    """Return the step [s] of a contact that begins at a speed [m/s]; on a plane gravity adds to that."""
-    if pairs.second[pair] < 0:
-        # What gravity adds within a collision at the speed that it adds.
-        speed += (weight(rules) * plans.duration[pair]) ** (5.0 / 6.0)
+def collision_step(pair: int, pairs: Pairs, flight: Flight, plans: Plans, speed: float, rules: Rules) -> float:
+    """Return the step [s] of a contact that begins at a speed [m/s]; on what does not fall gravity adds to that."""
+    # What gravity adds within a collision at the speed that it adds.
+    acceleration = relative_weight(flight, pairs.first[pair], pairs.second[pair], rules)
+    speed += (acceleration * plans.duration[pair]) ** (5.0 / 6.0)
     return plans.duration[pair] * speed**-0.2 / rules.steps if speed > 0.0 else np.inf
 
 
@@ -89,7 +89,7 @@ def plan_approach(
     now: float, rules: Rules,
 ) -> None:  # fmt: skip
     """Make a pair due when its features could touch first, or a step of their contact later. Writes to agenda."""
-    wait = max(approach.time, collision_step(pair, pairs, plans, approach.speed, rules))
+    wait = max(approach.time, collision_step(pair, pairs, flight, plans, approach.speed, rules))
     put_on(agenda, len(bodies.mass) + pair, now + wait)
 
 

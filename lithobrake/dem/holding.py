@@ -40,8 +40,8 @@ def kick_in_advance(plans: Plans, pair: int, now: float) -> float:
 
 @kernel
 def book_motion(
-    bodies: Bodies, pairs: Pairs, reactions: Reactions, flight: Flight, plans: Plans, body: int, now: float, sign: float
-) -> None:  # fmt: skip
+    bodies: Bodies, reactions: Reactions, flight: Flight, plans: Plans, body: int, now: float, sign: float
+) -> None:
     """Book the energy of a body's motion as lost, or with sign -1 as gained, without what kicks gave in advance.
 
     The work of that is done only as the body moves on. Writes to bodies.
@@ -80,7 +80,7 @@ def hold(
     now: float, rules: Rules,
 ) -> None:  # fmt: skip
     """Hold a body; its contacts with planes and other held bodies wait. Writes to bodies, flight, plans and agenda."""
-    book_motion(bodies, pairs, reactions, flight, plans, body, now, 1.0)
+    book_motion(bodies, reactions, flight, plans, body, now, 1.0)
     put(flight.held_velocity, body, row(bodies.velocity, body))
     put(flight.held_momentum, body, row(bodies.angular_momentum, body))
     put(bodies.velocity, body, (0.0, 0.0, 0.0))
@@ -106,7 +106,7 @@ def let_go(
     flight.held[body] = False
     put(bodies.velocity, body, row(flight.held_velocity, body))
     put(bodies.angular_momentum, body, row(flight.held_momentum, body))
-    book_motion(bodies, pairs, reactions, flight, plans, body, now, -1.0)
+    book_motion(bodies, reactions, flight, plans, body, now, -1.0)
     entry = flight.head[body]
     while entry >= 0:
         pair, item = entry >> 1, len(bodies.mass) + (entry >> 1)
@@ -132,7 +132,8 @@ def hold_what_is_slow(
 ) -> None:  # fmt: skip
     """Hold what touches something, is slow, and has its centroid beyond a reach [m] of the watched body's.
 
-    Slow: its surface, below a share of the speed of the watched body's. The rest is let go; with a share of 0, all.
+    Slow: its surface, below CALM times a share of the speed of the watched body's. What comes near, or has momentum for
+    more than that share, is let go; with a share of 0, all.
     All must have been moved to now [s]. Writes to bodies, flight, plans and agenda.
     """
     limit = share * surface_speed(bodies, flight, watched) if share > 0.0 else 0.0

@@ -59,7 +59,7 @@ def list_features(
     if pairs.feature_count[pair] != 0 and travel < pairs.wake[pair]:
         return True
     speed = closing_speed(bodies, flight, first, second)
-    step = plans.interval[pair] if touching else collision_step(pair, pairs, plans, speed, rules)
+    step = plans.interval[pair] if touching else collision_step(pair, pairs, flight, plans, speed, rules)
     radius = bodies.contact_radius[first] + (bodies.contact_radius[second] if second >= 0 else 0.0)
     most = ROUNDING_OF_RADIUS * radius
     way = (STEPS_LISTED if touching else STEPS_NEAR) * speed * step if speed > 0.0 else 0.0

@@ -97,12 +97,10 @@ class WorldState:
         """Return the engine that moves each contact at its own steps, from an instant [s] on."""
         if self.local is None or self.local.setting != setting or self.local.time != time:
             self._step_together()
-            is_new = self.engine is None
             self.engine = self.engine or self._new_engine(self.motion, self.pairs, self.lost)
             self.local = LocalEngine(self.engine, self.bodies, setting, time)
-            if is_new:
-                # Nobody knows yet what touches: it finds neighbours and contacts by itself, before anybody is held.
-                self.local.run(0.0)
+            # It finds neighbours and contacts by itself, at its own reach, before anybody is held.
+            self.local.run(0.0)
         return self.local
 
     def _step_together(self) -> None:
