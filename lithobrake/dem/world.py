@@ -215,7 +215,8 @@ class World(Observables):
         What is slow or far from anything then costs little; a landing is 4 to 5 times as fast (docs/performance.md).
         Energy of a landing is kept to three thousandths of the impact's with 25 steps, to one with 100; three times
         less well with a tenth held. The time step plays no part. What touches something, is beyond a reach [m] of the
-        watched body and slower than half a share, held_speed, of it stands still until it has that share; 0: nothing does.
+        watched body and slower than half a share, held_speed, of it stands still until it has that share; with 0
+        nothing does.
         Raises ValueError for a duration below 0, less than 5 steps, or a share without a watched body,
         FloatingPointError where the motion diverged.
         """
