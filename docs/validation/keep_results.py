@@ -61,6 +61,9 @@ def keep(study: Path, out: Path, motion: bool) -> None:
     for name in KEPT:
         if (study / name).exists():
             shutil.copy(study / name, out / name)
+    # Where the study was made is of no use elsewhere.
+    summary = (out / "summary.json").read_text(encoding="utf-8")
+    (out / "summary.json").write_text(summary.replace(f'"{study.resolve()}"', f'"runs/{study.name}"'), encoding="utf-8")
     (out / "runs").mkdir(exist_ok=True)
     for table in (study / "designs").glob("*.csv"):
         shutil.copy(table, out / "runs" / table.name)
