@@ -26,7 +26,7 @@ from lithobrake.touchdown import Bed, land, pour_bed
 
 STUDIES = Path(__file__).parents[1] / "scenarios"
 RESULTS = Path(__file__).with_suffix(".json")
-HELD = (0.0, 0.1)
+HELD = (0.0, 0.03, 0.1)
 Made = TypeVar("Made")
 
 

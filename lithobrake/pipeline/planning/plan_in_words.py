@@ -5,7 +5,7 @@ from lithobrake.pipeline.planning.plan import Plan
 # One, and more.
 NAMES = {
     "beds": ("bed", "beds"),
-    "landings": ("landing to look at",) * 2,
+    "landings": ("landing to look at", "landings to look at"),
     "touchdowns": ("touchdown", "touchdowns"),
     "samples": ("sample", "samples"),
     "flights": ("flight", "flights"),
