@@ -81,7 +81,7 @@ def _main_input(main: MainInput) -> str:
         "" if noise is None else f"; {100 * noise:.0f} % of the variance of the runs is scatter that no input decides"
     )
     return (
-        f"{main.name} decides most of what the expansion explains of the outgoing speed: total Sobol index "
+        f"{main.name} counts most in what the screening explains of the outgoing speed: total Sobol index "
         f"{main.total:.2f} ({low:.2f} to {high:.2f}, 95 %) of that variance{rest}."
     )
 

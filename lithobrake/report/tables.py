@@ -42,7 +42,7 @@ def tiles(data: PaperResults) -> list[Tile]:
         Tile(
             f"{main.total:.2f}",
             "Sobol",
-            f"({low:.2f} to {high:.2f}, 95 %) {input_words(main.name)} decides most of what the expansion explains of "
+            f"({low:.2f} to {high:.2f}, 95 %) {input_words(main.name)} counts most in what the screening explains of "
             "the outgoing speed (total index)" + ("" if noise is None else f"; {percent(noise, 0)} of it is scatter"),
         ),
         Tile(
