@@ -33,7 +33,7 @@ def give_impulse(bodies: Bodies, flight: Flight, body: int, sign: float, impulse
 
 
 @kernel
-def kick_in_advance(plans: Plans, pair: int, now: float) -> float:
+def kick_in_advance(pair: int, plans: Plans, now: float) -> float:
     """Return the time [s] from now for which a contact's last kick has already given its force."""
     return 0.5 * plans.interval[pair] - (now - plans.last[pair]) if plans.interval[pair] > 0.0 else 0.0
 
@@ -50,7 +50,7 @@ def book_motion(
     entry = flight.head[body]
     while entry >= 0:
         pair, is_second = entry >> 1, entry & 1
-        time = kick_in_advance(plans, pair, now) * (-1.0 if is_second else 1.0)
+        time = kick_in_advance(pair, plans, now) * (-1.0 if is_second else 1.0)
         torque = row(reactions.second_torque if is_second else reactions.first_torque, pair)
         velocity = plus(velocity, scaled(time * bodies.inverse_mass[body], row(reactions.force, pair)))
         momentum = plus(momentum, scaled(time, torque))
@@ -65,7 +65,7 @@ def suspend(
     now: float,
 ) -> None:  # fmt: skip
     """Let a contact wait, and take back what its last kick gave in advance. Writes to bodies, flight, plans, agenda."""
-    first, second, time = pairs.first[pair], pairs.second[pair], -kick_in_advance(plans, pair, now)
+    first, second, time = pairs.first[pair], pairs.second[pair], -kick_in_advance(pair, plans, now)
     impulse = scaled(time, row(reactions.force, pair))
     give_impulse(bodies, flight, first, -1.0, impulse, scaled(time, row(reactions.first_torque, pair)))
     if second >= 0:
