@@ -102,7 +102,7 @@ def search_bed(world: World, count: int) -> tuple[int, float]:
 
     Returns the number of pairs and the CPU time of a search [us].
     """
-    engine = world._assembled()
+    engine = world._state.stepping_together(world._step(0.0))
     reach = engine.bodies.bounding_radius + 0.1 * engine.bodies.bounding_radius.min()
     apart = np.linalg.norm(world.position[:, None] - world.position, axis=2)
     first, second = np.nonzero(np.triu(apart < reach[:, None] + reach, 1))

@@ -24,7 +24,7 @@ from lithobrake.touchdown.simulation import look_interval, moving_reach, release
 
 GRAINS, WIDTH, BEDS = 200, 1.8, 2
 # Steps a contact, and share of the lander's speed below which grains are held.
-WAYS = [(25.0, 0.0), (25.0, 0.1), (100.0, 0.0), (100.0, 0.1)]
+WAYS = [(25.0, 0.0), (25.0, 0.03), (25.0, 0.1), (100.0, 0.0), (100.0, 0.03), (100.0, 0.1)]
 STUDY = Path(__file__).parents[1] / "scenarios" / "mission.toml"
 RESULTS = Path(__file__).with_suffix(".json")
 
@@ -36,7 +36,8 @@ def missing(bed: Bed, lander: Lander, landing: Landing, steps: float, held: floa
     number = release(world, bed, lander, landing)
     world.time_step = world.shortest_contact(landing.speed) / steps
     world.watch(number)
-    judge, reach = OutcomeJudge(bed, lander, landing, world, number, 0), moving_reach(bed, lander, landing)
+    judge = OutcomeJudge(bed, lander, landing, world, number, 0)
+    reach = moving_reach(bed.grain_diameter, lander, landing)
     before = world.energy()["total"]
     while judge.ended is None:
         interval = look_interval(world, judge.motion, lander, landing)

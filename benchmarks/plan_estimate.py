@@ -1,10 +1,10 @@
 """How right `lithobrake plan` is: CPU times of a bed and of landings, expected and as they come.
 
-    python benchmarks/plan_estimate.py quick mission bounces paper --landings 14
+    python benchmarks/plan_estimate.py quick mission bounces paper --beds 4 --landings 14
 
-pours the first bed of each study of scenarios/, makes so many of its landings, with slow grains held and without, and
-keeps what came beside what was expected in benchmarks/plan_estimate.json. The constants of expected_steps.py,
-expected_time.py and pace.py in lithobrake/pipeline/planning were taken from there.
+pours beds of each study of scenarios/, makes so many of its landings on the first, with slow grains held and without,
+and keeps the means of what came beside what was expected in benchmarks/plan_estimate.json. The constants of
+expected_steps.py, expected_time.py and pace.py in lithobrake/pipeline/planning were taken from there.
 """
 
 import argparse
@@ -27,6 +27,7 @@ from lithobrake.touchdown import Bed, land, pour_bed
 STUDIES = Path(__file__).parents[1] / "scenarios"
 RESULTS = Path(__file__).with_suffix(".json")
 HELD = (0.0, 0.03, 0.1)
+COMPILED_BY = 8  # grains
 Made = TypeVar("Made")
 
 
@@ -46,17 +47,20 @@ def landed(bed: Bed, soil: ExpectedSoil, held: float, count: int) -> dict[str, f
     return {"held_speed": held, "cpu_s": statistics.fmean(found[1:]), "expected_s": statistics.fmean(expected[1:])}
 
 
-def measure(name: str, count: int) -> dict[str, Any]:
-    """Pour the bed of a study and make so many of its landings."""
+def measure(name: str, bed_count: int, count: int) -> dict[str, Any]:
+    """Pour beds of a study and make so many of its landings on the first."""
     study = read_study(STUDIES / f"{name}.toml")
     soil = ExpectedSoil.of(study, len(study.touchdown_values()))
     paces = [probe() / REFERENCE]
-    bed, seconds = timed(lambda: pour_bed(soil.recipe))
+    pour_bed(replace(soil.recipe, grain_count=COMPILED_BY))
+    pours = [timed(lambda seed=seed: pour_bed(replace(soil.recipe, seed=seed))) for seed in range(bed_count)]
+    bed, seconds = pours[0][0], [seconds for _, seconds in pours]
     landings = [landed(bed, soil, held, count) for held in HELD]
     paces.append(probe() / REFERENCE)
-    pour = {"cpu_s": seconds, "expected_s": pour_time(soil), "depth_m": bed.surface_height}
+    pour = {"cpu_s": statistics.fmean(seconds), "each_cpu_s": seconds, "expected_s": pour_time(soil)}
+    pour |= {"depth_m": bed.surface_height, "expected_depth_m": soil.depth}
     return {
-        "grains": soil.recipe.grain_count, "paces": paces, "pour": pour | {"expected_depth_m": soil.depth},
+        "grains": soil.recipe.grain_count, "paces": paces, "pour": pour,
         "count": count, "landings": landings,
     }  # fmt: skip
 
@@ -65,12 +69,13 @@ def main() -> None:
     """Measure studies, one after the other."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("studies", nargs="+", choices=sorted(path.stem for path in STUDIES.glob("*.toml")))
+    parser.add_argument("--beds", type=int, default=4)
     parser.add_argument("--landings", type=int, default=14)
     given = parser.parse_args()
     known = json.loads(RESULTS.read_text()) if RESULTS.exists() else {}
     for name in given.studies:
-        command = f"benchmarks/plan_estimate.py {name} --landings {given.landings}"
-        known[name] = {"result": measure(name, given.landings), **origin(command)}
+        command = f"benchmarks/plan_estimate.py {name} --beds {given.beds} --landings {given.landings}"
+        known[name] = {"result": measure(name, given.beds, given.landings), **origin(command)}
         RESULTS.write_text(json.dumps(known, indent=1) + "\n")
         print(name, json.dumps(known[name]["result"]), flush=True)
 

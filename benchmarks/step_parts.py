@@ -44,7 +44,8 @@ def kinds_of(pairs: Pairs) -> np.ndarray:
 def parts(world: World) -> Iterator[tuple[str, float, float]]:
     """Return name, number a body and CPU time a body [ns] of the parts of a step."""
     world.run(steps=20)
-    engine, still, count = world._assembled(), world._step(0.0), len(world.bodies)
+    still, count = world._step(0.0), len(world.bodies)
+    engine = world._state.stepping_together(still)
     bodies, pairs = engine.bodies, engine.pairs
     held = (engine.cores, engine.planes)
 

@@ -58,7 +58,7 @@ def land(
     world.watch(number)
     judge = OutcomeJudge(bed, lander, landing, world, number, frame_count)
     chunk = max(1, int(landing.contact.steps_per_contact / CHECKS_PER_CONTACT))
-    reach = moving_reach(bed, lander, landing)
+    reach = moving_reach(bed.grain_diameter, lander, landing)
     while judge.ended is None:
         if locally:
             interval = look_interval(world, judge.motion, lander, landing)
@@ -96,9 +96,9 @@ def look_interval(world: World, motion: BodyMotion, lander: Lander, landing: Lan
     return max(shortest, min(way / speed, longest) if speed > 0.0 else longest)
 
 
-def moving_reach(bed: Bed, lander: Lander, landing: Landing) -> float:
-    """Return the distance [m] from the lander's centroid within which no grain is held."""
-    return lander.shape.bounding_radius + smallest_bed(lander, landing.grain, bed.grain_diameter, landing.speed)[1]
+def moving_reach(diameter: float, lander: Lander, landing: Landing) -> float:
+    """Return the distance [m] from the lander's centroid within which no grain is held, of grains of a diameter [m]."""
+    return lander.shape.bounding_radius + smallest_bed(lander, landing.grain, diameter, landing.speed)[1]
 
 
 def relax(

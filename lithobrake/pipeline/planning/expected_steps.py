@@ -106,6 +106,14 @@ class ExpectedSoil:
         lasting = min(self.touchdown_time(lander, landing), landing.time_limit)
         return lasting * landing.contact.steps_per_contact / self._shortest_contact(landing.speed, lander, landing)
 
+    def near_grains(self, lander: "Lander", landing: "Landing") -> float:
+        """Grains so near to a lander on the middle of the bed that none of them is ever held."""
+        from lithobrake.touchdown.simulation import moving_reach
+
+        reach = moving_reach(self.diameter, lander, landing)
+        beside = min(math.pi * reach**2 / math.prod(self.recipe.width), 1.0)
+        return self.recipe.grain_count * beside * min(reach / self.depth, 1.0)
+
     def touchdown_time(self, lander: "Lander", landing: "Landing") -> float:
         """Time [s] until the outcome of a touchdown is known, were there no limit."""
         from lithobrake.touchdown.outcome_judge import CAPTURED_APEX
