@@ -27,8 +27,8 @@ LANDING_STEP, LANDING_GRAIN = 3.5e-5, 5.0e-7
 SETTLING_STEP, SETTLING_GRAIN = 6.0e-5, 7.0e-7
 # Contacts at steps of their own: for each grain that moves and each duration of the shortest contact, at no steps a
 # contact and for each [s]. Where what is slower than a share of the lander is held, so many move for each grain that
-# is too near to be held, over the root of that share.
-LOCAL_GRAIN, LOCAL_LOOK, MOVING = 2.7e-6, 7.2e-8, 0.73
+# is too near to be held, over the share to the power of 2/3.
+LOCAL_GRAIN, LOCAL_LOOK, MOVING = 2.7e-6, 7.2e-8, 0.6
 COMPILING = 60.0  # s
 # Flights and journeys over a body of FACETS facets [s]: by the table, once it is built, and by the facets' sum.
 FACETS, TABLE, FLIGHT, EXACT_FLIGHT, JOURNEY, EXACT_JOURNEY = 1920, 10.0, 2.0e-4, 3.5e-3, 1.1e-3, 2.0e-2
@@ -145,7 +145,7 @@ def landing_time(soil: ExpectedSoil, lander: "Lander", landing: "Landing") -> fl
         return steps * (LANDING_STEP + LANDING_GRAIN * grains)
     moving = float(grains)
     if contact.held_speed > 0.0:
-        moving = min(moving, MOVING * soil.near_grains(lander, landing) / math.sqrt(contact.held_speed))
+        moving = min(moving, MOVING * soil.near_grains(lander, landing) * contact.held_speed ** (-2.0 / 3.0))
     return steps / contact.steps_per_contact * moving * (LOCAL_GRAIN + LOCAL_LOOK * contact.steps_per_contact)
 
 

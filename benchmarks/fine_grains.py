@@ -1,0 +1,124 @@
+"""One landing of a study's lander over ten thousand grains: what it costs, with grains held and with none.
+
+    python benchmarks/fine_grains.py scenarios/quick.toml --diameter .023 --grains 1200 --held .1 .03 \
+        --bed BED.h5 --out FILE
+
+So many grains are poured in a box of a third of the study's width. Eight mirror images of that bed stand round it, and
+all nine settle under the local gravity, by the criteria of every bed. The study's first drawn landing comes down on the
+middle. BED.h5 keeps the bed, which is not made again where it is there; FILE.json gets a row a share as it comes.
+"""
+
+import argparse
+import json
+import time
+import tomllib
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from landing_ensembles import draws
+from origin import origin
+
+from lithobrake.dem import ConvexHull, Material, World
+from lithobrake.pipeline.beds import bed_recipe
+from lithobrake.pipeline.site import with_site_gravity
+from lithobrake.study import Study, check_tables
+from lithobrake.touchdown import Bed, BedRecipe, land, pour_bed, settling
+from lithobrake.touchdown.bed import boxed_world
+
+Row = dict[str, Any]
+TILES = 3
+
+
+def study_of(path: Path, diameter: float, grain_count: int) -> Study:
+    """The study with finer grains, and every landing at the middle of its bed."""
+    tables = tomllib.loads(path.read_text())
+    sizes = {"distribution": "constant", "value": diameter}
+    tables["bed"] |= {"diameter": sizes, "grain_count": TILES**2 * grain_count, "bed_count": 1}
+    tables["impact"] |= {"place": {"x": 0.0, "y": 0.0}, "orientation": "random", "azimuth_deg": "random"}
+    return with_site_gravity(check_tables(tables, path.parent))
+
+
+def mirrored(bed: Bed) -> Iterator[tuple[list[ConvexHull], np.ndarray, np.ndarray]]:
+    """Grains, positions and orientations of nine images of a bed, each the mirror image of its neighbours."""
+    hulls = {}
+    for across in (False, True):
+        for along in (False, True):
+            mirror = np.array([-1.0 if across else 1.0, -1.0 if along else 1.0, 1.0])
+            hulls[across, along] = [ConvexHull(grain.vertices * mirror) for grain in bed.grains]
+    for i in range(-1, 2):
+        for j in range(-1, 2):
+            mirror = np.array([-1.0 if i else 1.0, -1.0 if j else 1.0, 1.0])
+            place = bed.position * mirror + np.array([i * bed.width[0], j * bed.width[1], 0.0])
+            turn = bed.orientation * np.array([1.0, mirror[1], mirror[0], mirror[0] * mirror[1]])
+            yield hulls[i != 0, j != 0], place, turn
+
+
+def settled(world: World, recipe: BedRecipe, diameter: float) -> bool:
+    """Let a world come to rest as a bed does; tell whether it did."""
+    strength = float(np.linalg.norm(world.gravity))
+    period = settling.rest_period(recipe.material, diameter, strength)
+    world.drag = settling.contact_drag(period)
+
+    def at_rest() -> bool:
+        still = settling.kinetic_ratio(world, diameter, strength) < settling.KINETIC_RATIO
+        return still and settling.unbalanced_force(world) < settling.UNBALANCED_FORCE
+
+    found = settling.rests(world, period, settling.PERIODS_HELD, at_rest)
+    world.drag = 0.0
+    return found
+
+
+def wide_bed(bed: Bed, recipe: BedRecipe) -> Bed:
+    """Nine images of a bed side by side, at rest together."""
+    images = list(mirrored(bed))
+    grains = [grain for hulls, _, _ in images for grain in hulls]
+    place = np.concatenate([place for _, place, _ in images])
+    turn = np.concatenate([turn for _, _, turn in images])
+    width = (TILES * bed.width[0], TILES * bed.width[1])
+    material: Material = replace(recipe.material, restitution=max(0.9, recipe.material.restitution))
+    world = boxed_world(grains, place, turn, width, material, recipe.gravity, recipe.contact)
+    if not settled(world, recipe, bed.grain_diameter):
+        raise ValueError("nine images of the bed did not come to rest: pour another")
+    return replace(
+        bed, grains=grains, position=world.position, orientation=world.orientation, diameter=np.tile(bed.diameter, 9),
+        width=width, frames={}, history={},
+    )  # fmt: skip
+
+
+def main() -> None:
+    """Pour, put together, land, write."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("study", type=Path)
+    parser.add_argument("--diameter", type=float, default=0.023)
+    parser.add_argument("--grains", type=int, default=1200)
+    parser.add_argument("--held", type=float, nargs="+", default=[])
+    parser.add_argument("--bed", type=Path, required=True)
+    parser.add_argument("--out", type=Path, required=True)
+    given = parser.parse_args()
+    study = study_of(given.study, given.diameter, given.grains)
+    whole = bed_recipe(study, 0)
+    recipe = replace(whole, grain_count=given.grains, width=(whole.width[0] / TILES, whole.width[1] / TILES))
+    command = f"benchmarks/fine_grains.py {given.study} --diameter {given.diameter} --grains {given.grains} --held "
+    command += " ".join(str(share) for share in given.held)
+    if not given.bed.exists():
+        wide_bed(pour_bed(recipe), recipe).save(given.bed)
+    bed = Bed.load(given.bed)
+    rows: list[Row] = []
+    _, lander, landing = next(draws(study, 1))
+    # Compiles, and finds the cores of the hulls, as the first landing of a process does.
+    land(bed, lander, replace(landing, time_limit=1e-3))
+    for share in given.held:
+        start = time.process_time()
+        outcome = land(bed, lander, replace(landing, contact=replace(landing.contact, held_speed=share)))
+        row = {"held_speed": share, "cpu_s": time.process_time() - start, "simulated_s": outcome.simulated_time}
+        rows.append(row | {"outcome": str(outcome.status), **outcome.outputs})
+        text = json.dumps({**origin(command), "grains": len(bed.grains), "landings": rows}, indent=1)
+        given.out.with_suffix(".json").write_text(text + "\n")
+        print(json.dumps(rows[-1]), flush=True)
+
+
+if __name__ == "__main__":
+    main()
