@@ -9,6 +9,7 @@ expected_steps.py, expected_time.py and pace.py in lithobrake/pipeline/planning 
 
 import argparse
 import json
+import math
 import statistics
 import time
 from collections.abc import Callable
@@ -52,7 +53,8 @@ def measure(name: str, bed_count: int, count: int) -> dict[str, Any]:
     study = read_study(STUDIES / f"{name}.toml")
     soil = ExpectedSoil.of(study, len(study.touchdown_values()))
     paces = [probe() / REFERENCE]
-    pour_bed(replace(soil.recipe, grain_count=COMPILED_BY))
+    small = max(math.sqrt(COMPILED_BY / soil.recipe.grain_count) * soil.recipe.width[0], 2.0 * soil.recipe.sizes.upper)
+    pour_bed(replace(soil.recipe, grain_count=COMPILED_BY, width=(small, small)))
     pours = [timed(lambda seed=seed: pour_bed(replace(soil.recipe, seed=seed))) for seed in range(bed_count)]
     bed, seconds = pours[0][0], [seconds for _, seconds in pours]
     landings = [landed(bed, soil, held, count) for held in HELD]

@@ -279,7 +279,7 @@ def test_a_half_width_that_is_asked_for_may_take_runs_and_beds_up_to_the_most(tm
     assert "Touchdowns: 144 to 400 drawn, until design.half_width is met;" in " ".join(plan_lines(plan))
 
 
-@pytest.mark.parametrize("name", ["quick", "mission", "bounces"])
+@pytest.mark.parametrize("name", ["quick", "mission", "bounces", "paper"])
 def test_beds_and_landings_are_expected_to_take_what_they_took(name: str) -> None:
     measured = json.loads((HERE / "benchmarks" / "plan_estimate.json").read_text())[name]["result"]
     pace = np.mean(measured["paces"])

@@ -28,7 +28,8 @@ LANDING_COUNT = 40
 RAIN_FRACTION = 0.31  # of the rain is bounding spheres
 SOLID_FRACTION = 0.6  # of a settled bed
 FALLS = 1.4  # until poured grains lie, in the time that the highest falls
-SETTLING = 7.0  # steps that a bed settles for, over the fewest that its criteria of rest ask for
+# Steps that a bed settles for, over the fewest that its criteria of rest ask for: and what each layer of grains adds.
+SETTLING, SETTLING_OF_LAYERS = 3.9, 0.84
 # Until a lander is clear, in the time in which it crosses itself and a grain at the speed of impact: the first, and
 # what the square of the depth over the lander's size adds, up to DEEP, since a floor gives back what grains do not.
 CROSSINGS, CROSSINGS_OF_DEPTH, DEEP = 2.0, 2.2, 2.0
@@ -83,7 +84,8 @@ class ExpectedSoil:
         steps = (
             math.sqrt(2.0 * height / recipe.pour_gravity) / contact * min(FALL_STEPS, recipe.contact.steps_per_contact)
         )
-        return FALLS * steps + SETTLING * STEPS_PER_PERIOD * self._settling_periods()
+        settling = SETTLING + SETTLING_OF_LAYERS * self.depth / self.diameter
+        return FALLS * steps + settling * STEPS_PER_PERIOD * self._settling_periods()
 
     def _settling_periods(self) -> float:
         """The fewest periods of a grain in which it can settle; touchdown/pouring.py has the parts."""

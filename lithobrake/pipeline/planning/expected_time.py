@@ -22,13 +22,14 @@ if TYPE_CHECKING:
 
 Span = tuple[float, float]
 
-# A common step of a landing, and of grains that settle, which are looked at more often: of the bed, of each grain [s].
+# A common step of a landing: of the bed, of each grain [s]; and of each grain of a bed that settles, which is looked at
+# more often.
 LANDING_STEP, LANDING_GRAIN = 3.5e-5, 5.0e-7
-SETTLING_STEP, SETTLING_GRAIN = 6.0e-5, 7.0e-7
+SETTLING_GRAIN = 8.0e-7
 # Contacts at steps of their own: for each grain that moves and each duration of the shortest contact, at no steps a
 # contact and for each [s]. Where what is slower than a share of the lander is held, so many move for each grain that
 # is too near to be held, over the share to the power of 2/3.
-LOCAL_GRAIN, LOCAL_LOOK, MOVING = 2.7e-6, 7.2e-8, 0.6
+LOCAL_GRAIN, LOCAL_LOOK, MOVING = 2.7e-6, 7.2e-8, 0.4
 COMPILING = 60.0  # s
 # Flights and journeys over a body of FACETS facets [s]: by the table, once it is built, and by the facets' sum.
 FACETS, TABLE, FLIGHT, EXACT_FLIGHT, JOURNEY, EXACT_JOURNEY = 1920, 10.0, 2.0e-4, 3.5e-3, 1.1e-3, 2.0e-2
@@ -107,7 +108,7 @@ def walls_of(ended: Sequence[Record]) -> list[float]:
 
 def pour_time(soil: ExpectedSoil) -> float:
     """Time [s] to pour a bed."""
-    return soil.pour_steps() * (SETTLING_STEP + SETTLING_GRAIN * soil.recipe.grain_count)
+    return soil.pour_steps() * SETTLING_GRAIN * soil.recipe.grain_count
 
 
 def _beds_time(one: float, beds: tuple[int, int], cores: int | None) -> Span | None:
