@@ -12,15 +12,13 @@ from lithobrake.dem.engine import Engine
 from lithobrake.dem.free_flight import Flight, Rules, fly_all_to
 from lithobrake.dem.holding import hold_what_is_slow
 from lithobrake.dem.local_steps import NO_ROOM, advance_locally, sum_forces
-from lithobrake.dem.neighbour_search import LISTED, NO_SLOT, enter_all
+from lithobrake.dem.neighbour_search import LISTED, NO_SLOT, enter_all, plan_all_searches
 from lithobrake.dem.neighbours import new_pairs, with_overflow_for_all, with_overflow_where_used
 from lithobrake.dem.rigid_body import RigidBody
 from lithobrake.dem.threads import new_reactions
 
-# Skin of the neighbour lists over the median bounding radius: costs or saves time.
-SKIN = 0.25
 # Slots for pairs at the start, for each body.
-SLOTS = 16
+SLOTS = 8
 # Fewer steps in a collision do not follow it.
 FEWEST_STEPS = 5.0
 
@@ -65,18 +63,17 @@ class LocalEngine:
         self.engine, self.setting, self.time = engine, setting, time
         self.flight = flight_of(engine, bodies, time)
         step = setting.step
-        skin = SKIN * float(np.median(engine.bodies.bounding_radius))
-        self.rules = Rules(step.gravity, step.drag, step.paper_mass, setting.steps_per_contact, skin)
-        self.cells = cells_of(engine.bodies, skin)
+        self.rules = Rules(step.gravity, step.drag, step.paper_mass, setting.steps_per_contact, engine.skin)
+        self.cells = cells_of(engine.bodies, engine.skin)
         self.record: Floats = np.array([0.0, -1.0, -1.0, 0.0])
         self.summed = True  # the forces on each body stand in the engine's arrays
         self.plans: Plans
         self.agenda: Agenda
+        engine.list_neighbours()
         count = len(engine.pairs.first)
-        engine.book()
         self._take(engine.pairs, max(SLOTS * len(bodies), 2 * count, 1))
-        # All neighbours are searched anew: the skin is another.
         self._enter(np.full(len(bodies) + count, time))
+        plan_all_searches(engine.bodies, self.flight, self.agenda, time, self.rules)
 
     @property
     def pairs(self) -> Pairs:

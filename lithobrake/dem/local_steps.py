@@ -270,7 +270,9 @@ def advance_locally(
         if not now <= end:
             break
         if item < n:
-            reason = search_neighbours(bodies, planes, pairs, laws, flight, plans, agenda, cells, item, now, rules)
+            reason = search_neighbours(
+                bodies, cores, planes, pairs, laws, scratch, flight, plans, agenda, cells, item, now, rules
+            )
             if reason != LISTED:
                 return reason
             continue

@@ -7,12 +7,14 @@ import numpy as np
 
 from lithobrake.compiled import kernel, large_kernel
 from lithobrake.dem.agenda import Agenda, put_on, take_off
-from lithobrake.dem.arrays import Bodies, Floats, Laws, Pairs, Planes
+from lithobrake.dem.arrays import Bodies, Cores, Floats, Laws, Pairs, Planes
 from lithobrake.dem.cells import Cells, gather_near, move_to_cell
 from lithobrake.dem.contact_plans import Plans, plan_search
-from lithobrake.dem.free_flight import Flight, Rules, fly_to, place_at
+from lithobrake.dem.free_flight import Flight, Rules, fly_to, place_at, spin_bound
+from lithobrake.dem.neighbours import are_near
+from lithobrake.dem.scratch import Scratch
 from lithobrake.dem.timestep import HERTZ_DURATION
-from lithobrake.dem.vectors import Vector, dot, minus, row
+from lithobrake.dem.vectors import dot, minus, row
 
 LISTED, NO_SLOT, LOST = 0, 1, 2
 
@@ -80,6 +82,13 @@ def enter_all(
         enter_pair(pair, bodies, planes, pairs, laws, flight, plans, agenda, due[n + pair])
 
 
+@large_kernel
+def plan_all_searches(bodies: Bodies, flight: Flight, agenda: Agenda, now: float, rules: Rules) -> None:
+    """Make all bodies due whose neighbours have just been listed, now [s]. Writes to agenda."""
+    for body in range(len(bodies.mass)):
+        plan_search(bodies, flight, agenda, body, now, rules)
+
+
 @kernel
 def add_pair(
     bodies: Bodies, planes: Planes, pairs: Pairs, laws: Laws, flight: Flight, plans: Plans, agenda: Agenda, one: int,
@@ -112,54 +121,66 @@ def forget_pair(
 
 
 @kernel
-def gap_to(
-    bodies: Bodies, planes: Planes, flight: Flight, here: Vector, other: int, now: float, rules: Rules
-) -> float:  # fmt: skip
-    """Return how far a place is from the bounding sphere of a body where it is now, or from a plane [m]."""
+def is_near(
+    bodies: Bodies, cores: Cores, planes: Planes, scratch: Scratch, flight: Flight, body: int, other: int, now: float,
+    rules: Rules,
+) -> bool:  # fmt: skip
+    """Tell whether a body that has been moved to now [s] may be less than the skin from another, or from a plane.
+
+    Writes to scratch.
+    """
+    here, reach = row(bodies.position, body), bodies.bounding_radius[body] + rules.skin
     if other < 0:
-        return dot(row(planes.normal, -1 - other), here) - planes.offset[-1 - other]
-    between = minus(place_at(bodies, flight, other, now, rules), here)
-    return dot(between, between) ** 0.5 - bodies.bounding_radius[other]
+        return dot(row(planes.normal, -1 - other), here) - planes.offset[-1 - other] < reach
+    apart = minus(place_at(bodies, flight, other, now, rules), here)
+    if dot(apart, apart) ** 0.5 - bodies.bounding_radius[other] >= reach:
+        return False
+    # The other has turned since it was last moved.
+    turned = 0.0
+    if not flight.held[other]:
+        turned = (now - flight.time[other]) * bodies.turning_radius[other] * spin_bound(bodies, flight, other)
+    return are_near(bodies, cores, scratch, body, other, apart, rules.skin + turned)
 
 
 @kernel
 def list_if_near(
-    bodies: Bodies, planes: Planes, pairs: Pairs, laws: Laws, flight: Flight, plans: Plans, agenda: Agenda, body: int,
-    other: int, now: float, rules: Rules,
+    bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, laws: Laws, scratch: Scratch, flight: Flight,
+    plans: Plans, agenda: Agenda, body: int, other: int, now: float, rules: Rules,
 ) -> bool:  # fmt: skip
     """List another as a neighbour of a body if it is near and not listed yet; tell whether there was a slot.
 
-    Writes to pairs, flight, plans and agenda.
+    Writes to pairs, scratch, flight, plans and agenda.
     """
     n = len(bodies.mass)
     if other == body or flight.stamp[other if other >= 0 else n - 1 - other] == body:
         return True
-    reach = bodies.bounding_radius[body] + rules.skin
-    if not gap_to(bodies, planes, flight, row(bodies.position, body), other, now, rules) < reach:
+    if not is_near(bodies, cores, planes, scratch, flight, body, other, now, rules):
         return True
     return add_pair(bodies, planes, pairs, laws, flight, plans, agenda, body, other, now)
 
 
 @large_kernel
 def search_neighbours(
-    bodies: Bodies, planes: Planes, pairs: Pairs, laws: Laws, flight: Flight, plans: Plans, agenda: Agenda,
-    cells: Cells, body: int, now: float, rules: Rules,
+    bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, laws: Laws, scratch: Scratch, flight: Flight,
+    plans: Plans, agenda: Agenda, cells: Cells, body: int, now: float, rules: Rules,
 ) -> int:  # fmt: skip
     """List the neighbours of a body anew; return LISTED, NO_SLOT where one more is needed, or LOST.
 
-    Writes to bodies, pairs, flight, plans, agenda and cells.
+    Writes to bodies, pairs, scratch, flight, plans, agenda and cells.
     """
     fly_to(bodies, flight, body, now, rules)
     if not np.isfinite(bodies.travel[body]):
         return LOST
     move_to_cell(bodies, cells, body)
     here, reach = row(bodies.position, body), bodies.bounding_radius[body] + rules.skin
-    drop_distant(bodies, planes, pairs, flight, plans, agenda, body, here, reach, now, rules)
+    drop_distant(bodies, cores, planes, pairs, scratch, flight, plans, agenda, body, now, rules)
     has_room = True
     for at in range(-len(planes.offset), gather_near(cells, here, reach)):
         other = at if at < 0 else cells.found[at]
         if other >= 0 or planes.meets[-1 - other, body]:
-            has_room &= list_if_near(bodies, planes, pairs, laws, flight, plans, agenda, body, other, now, rules)
+            has_room &= list_if_near(
+                bodies, cores, planes, pairs, laws, scratch, flight, plans, agenda, body, other, now, rules
+            )
     if not has_room:
         return NO_SLOT
     unstamp(pairs, flight, plans, body, len(bodies.mass))
@@ -181,18 +202,18 @@ def unstamp(pairs: Pairs, flight: Flight, plans: Plans, body: int, body_count: i
 
 @kernel
 def drop_distant(
-    bodies: Bodies, planes: Planes, pairs: Pairs, flight: Flight, plans: Plans, agenda: Agenda, body: int,
-    here: Vector, reach: float, now: float, rules: Rules,
+    bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, scratch: Scratch, flight: Flight, plans: Plans,
+    agenda: Agenda, body: int, now: float, rules: Rules,
 ) -> None:  # fmt: skip
     """Forget the pairs of a body that are no longer near it, and stamp the others.
 
-    Writes to pairs, flight, plans and agenda.
+    Writes to pairs, scratch, flight, plans and agenda.
     """
     entry, n = flight.head[body], len(bodies.mass)
     while entry >= 0:
         after, pair = plans.link[entry], entry >> 1
         other = pairs.second[pair] if pairs.first[pair] == body else pairs.first[pair]
-        if pairs.overlap[pair] == 0.0 and gap_to(bodies, planes, flight, here, other, now, rules) > reach:
+        if pairs.overlap[pair] == 0.0 and not is_near(bodies, cores, planes, scratch, flight, body, other, now, rules):
             forget_pair(pair, pairs, flight, plans, agenda, n)
         else:
             flight.stamp[other if other >= 0 else n - 1 - other] = body

@@ -8,7 +8,7 @@ from lithobrake.dem.closest_points import find_closest_points
 from lithobrake.dem.feature_id import INLINE_FEATURES
 from lithobrake.dem.gjk import APART
 from lithobrake.dem.scratch import Scratch
-from lithobrake.dem.vectors import minus, row
+from lithobrake.dem.vectors import Vector, minus, row
 
 
 @kernel
@@ -35,6 +35,23 @@ def sweep(order: Integers, low: Floats, position: Floats, reach: Floats, first: 
     return count
 
 
+@kernel
+def are_near(
+    bodies: Bodies, cores: Cores, scratch: Scratch, first: int, second: int, apart: Vector, way: float
+) -> bool:  # fmt: skip
+    """Tell whether two bodies, as they are turned now, are less than a way apart [m]; apart: from centroid to centroid.
+
+    Writes to scratch.
+    """
+    shapes = (bodies.shape[first], bodies.shape[second])
+    farthest = cores.rounding[shapes[0]] + cores.rounding[shapes[1]] + way
+    found, _, _ = find_closest_points(
+        cores, scratch.simplex, scratch.turned, scratch.relative, shapes, bodies.rotation, (first, second), apart,
+        farthest,
+    )  # fmt: skip
+    return found != APART
+
+
 @large_kernel
 def mark_near(
     bodies: Bodies, cores: Cores, scratch: Scratch, first: Integers, second: Integers, skin: float, near: Flags
@@ -44,14 +61,8 @@ def mark_near(
     Writes to scratch and near.
     """
     for pair in range(len(first)):
-        members = (first[pair], second[pair])
-        shapes = (bodies.shape[members[0]], bodies.shape[members[1]])
-        apart = minus(row(bodies.position, members[1]), row(bodies.position, members[0]))
-        farthest = cores.rounding[shapes[0]] + cores.rounding[shapes[1]] + skin
-        found, _, _ = find_closest_points(
-            cores, scratch.simplex, scratch.turned, scratch.relative, shapes, bodies.rotation, members, apart, farthest
-        )
-        near[pair] = found != APART
+        apart = minus(row(bodies.position, second[pair]), row(bodies.position, first[pair]))
+        near[pair] = are_near(bodies, cores, scratch, first[pair], second[pair], apart, skin)
 
 
 def neighbouring_pairs(
