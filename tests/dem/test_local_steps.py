@@ -133,6 +133,31 @@ def test_the_same_bits_each_time_and_with_slots_that_do_not_suffice(monkeypatch:
     assert np.frombuffer(tight[0]) == pytest.approx(np.frombuffer(first[0]), abs=0.05)
 
 
+def test_all_that_touch_are_listed_and_few_besides() -> None:
+    material, generator, shapes = rock(0.5, 0.5), np.random.default_rng(3), list[ConvexHull]()
+    world, listed, meeting = World(gravity=(0.0, 0.0, -0.5)), 0, 0
+    world.add_plane((0.0, 0.0, -0.3), (0.0, 0.0, 1.0), material)
+    for place in 0.16 * np.array([(i, j, k) for i in range(3) for j in range(3) for k in range(3)]):
+        shapes.append(ConvexHull(generator.uniform(0.3, 1.0, size=3) * 0.06 * generator.normal(size=(14, 3))))
+        turn, spin = generator.normal(size=4), 8.0 * generator.normal(size=3)
+        world.add_body(shapes[-1], material, place - 0.16, -2.0 * (place - 0.16), tuple(turn), tuple(spin))
+    for _ in range(25):
+        world.run_locally(0.05, 15.0)
+        local = world._state.local
+        assert local is not None
+        pairs = {(int(a), int(b)) for a, b in zip(local.pairs.first, local.pairs.second, strict=True) if a >= 0}
+        fresh = World()
+        for shape, place, turn in zip(shapes, world.position, world.orientation, strict=True):
+            fresh.add_body(shape, material, tuple(place), orientation=tuple(turn))
+        touching = {(int(one["body_a"]), int(one["body_b"])) for one in fresh.contacts()}
+        assert touching <= pairs
+        reach, between = [shape.bounding_radius for shape in shapes], world.position[:, None] - world.position
+        meeting += int((np.linalg.norm(between, axis=2) < np.add.outer(reach, reach)).sum() - len(shapes)) // 2
+        listed += sum(second >= 0 for _, second in pairs)
+    # Of those whose bounding spheres meet, most are farther apart than the skin.
+    assert listed < 0.4 * meeting
+
+
 def test_a_watched_body_tells_how_long_it_was_touched() -> None:
     world = World()
     world.add_body(Sphere(0.05), rock(1.0, 0.0), (0.0, 0.0, 0.0))
