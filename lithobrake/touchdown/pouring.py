@@ -248,7 +248,7 @@ def settle(
 
     world.drag = drag
     if not settling.rests(world, period, damped + undamped, at_rest, check):
-        raise (settling.CreepingBedError if last else ValueError)(settling.restless(world))
+        raise settling.CreepingBedError(settling.restless(world))
     recorder.frame(world)
     tell(1.0)
 

@@ -27,7 +27,7 @@ CHECKS_PER_PERIOD = 5
 
 
 class CreepingBedError(ValueError):
-    """A bed that rested under more than the local gravity does not rest under that."""
+    """A bed whose grains lie, and in which one creeps on: it does not come to rest."""
 
 
 def rest_period(material: Material, diameter: float, gravity: float) -> float:

@@ -137,16 +137,18 @@ def test_a_bed_in_which_a_grain_creeps_on_is_poured_anew(recipe, monkeypatch):
         pour_bed(few)
 
 
-def test_a_bed_that_rests_only_under_more_gravity_is_said_to_creep(recipe, monkeypatch):
+@pytest.mark.parametrize(("weaker", "strength"), [(1e-3, "0.0005"), (np.inf, "0.05")])
+def test_a_bed_that_does_not_rest_once_its_grains_lie_is_said_to_creep(recipe, monkeypatch, weaker, strength):
     rests = settling.rests
 
-    def never_at_last(world, period, periods_held, at_rest, each_check=lambda held: None):
-        local = np.linalg.norm(world.gravity) < 1e-3
-        return False if local else rests(world, period, periods_held, at_rest, each_check)
+    def never_below(world, period, periods_held, at_rest, each_check=lambda held: None):
+        below = np.linalg.norm(world.gravity) < weaker
+        return False if below else rests(world, period, periods_held, at_rest, each_check)
 
-    monkeypatch.setattr(settling, "rests", never_at_last)
+    monkeypatch.setattr(settling, "rests", never_below)
     monkeypatch.setattr(pouring, "POURS", 1)
-    with pytest.raises(settling.CreepingBedError, match="did not come to rest within 1200 periods"):
+    said = f"did not come to rest within 1200 periods of a grain's small oscillation under {strength} m/s2"
+    with pytest.raises(settling.CreepingBedError, match=said):
         pour_bed(recipe(grain_count=6, width=(0.24, 0.24)))
 
 
