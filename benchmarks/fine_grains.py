@@ -21,11 +21,11 @@ import numpy as np
 from landing_ensembles import draws
 from origin import origin
 
-from lithobrake.dem import ConvexHull, Material, World
+from lithobrake.dem import ConvexHull
 from lithobrake.pipeline.beds import bed_recipe
 from lithobrake.pipeline.site import with_site_gravity
 from lithobrake.study import Study, check_tables
-from lithobrake.touchdown import Bed, BedRecipe, land, pour_bed, settling
+from lithobrake.touchdown import Bed, BedRecipe, land, pour_bed, pouring
 from lithobrake.touchdown.bed import boxed_world
 
 Row = dict[str, Any]
@@ -56,21 +56,6 @@ def mirrored(bed: Bed) -> Iterator[tuple[list[ConvexHull], np.ndarray, np.ndarra
             yield hulls[i != 0, j != 0], place, turn
 
 
-def settled(world: World, recipe: BedRecipe, diameter: float) -> bool:
-    """Let a world come to rest as a bed does; tell whether it did."""
-    strength = float(np.linalg.norm(world.gravity))
-    period = settling.rest_period(recipe.material, diameter, strength)
-    world.drag = settling.contact_drag(period)
-
-    def at_rest() -> bool:
-        still = settling.kinetic_ratio(world, diameter, strength) < settling.KINETIC_RATIO
-        return still and settling.unbalanced_force(world) < settling.UNBALANCED_FORCE
-
-    found = settling.rests(world, period, settling.PERIODS_HELD, at_rest)
-    world.drag = 0.0
-    return found
-
-
 def wide_bed(bed: Bed, recipe: BedRecipe) -> Bed:
     """Nine images of a bed side by side, at rest together."""
     images = list(mirrored(bed))
@@ -78,14 +63,11 @@ def wide_bed(bed: Bed, recipe: BedRecipe) -> Bed:
     place = np.concatenate([place for _, place, _ in images])
     turn = np.concatenate([turn for _, _, turn in images])
     width = (TILES * bed.width[0], TILES * bed.width[1])
-    material: Material = replace(recipe.material, restitution=max(0.9, recipe.material.restitution))
+    material = replace(recipe.material, restitution=max(pouring.SETTLING_RESTITUTION, recipe.material.restitution))
     world = boxed_world(grains, place, turn, width, material, recipe.gravity, recipe.contact)
-    if not settled(world, recipe, bed.grain_diameter):
-        raise ValueError("nine images of the bed did not come to rest: pour another")
-    return replace(
-        bed, grains=grains, position=world.position, orientation=world.orientation, diameter=np.tile(bed.diameter, 9),
-        width=width, frames={}, history={},
-    )  # fmt: skip
+    recorder = pouring.Recorder(bed.grain_diameter)
+    pouring.settle(world, recorder, recipe, True, lambda done: None)
+    return pouring.finished(world, recorder, replace(recipe, width=width), grains, np.tile(bed.diameter, TILES**2))
 
 
 def main() -> None:
