@@ -24,7 +24,7 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 from lithobrake.emulator import Emulator
 from tests.emulator.conditional_errors import DrawnRuns, fitted, law_errors
 from tests.emulator.test_calibration import fresh_energy_score
-from tests.synthetic_landings import NO_SOIL, STRONG, WEAK, Truth, exact_share, random_soils, stays
+from tests.synthetic_landings import NO_SOIL, STRONG, WEAK, Truth, exact_share, random_soils, returns
 
 RESULTS = Path(__file__).parent / "results" / "emulator_calibration.csv"
 ERRORS = ("speed_w2", "joint_w2", "share_points", "marginal_w2")
@@ -63,10 +63,10 @@ def no_effect_row(run_count: int, studies: int) -> Row:
 
 
 def outputs_of(model: Emulator, count: int, seed: int) -> np.ndarray:
-    """Share that stays, and median and 95 % quantile of the speed, of so many draws over all soils [3]."""
+    """Share that returns, and median and 95 % quantile of the speed, of so many draws over all soils [3]."""
     draws = model.draw(random_soils(count, np.random.default_rng(seed)), 1, seed)
     outcome = np.array(model.outcome_names)[draws.outcome[:, 0]]
-    share = np.nanmean(stays(draws.y[:, 0], outcome))
+    share = np.nanmean(returns(draws.y[:, 0], outcome))
     return np.array([share, *np.nanquantile(draws.y[:, 0, 0], [0.5, 0.95])])
 
 

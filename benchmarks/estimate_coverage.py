@@ -24,7 +24,7 @@ from origin import origin
 from scipy import special, stats
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
-from synthetic_landings import INPUTS, Truth, exact_share, random_soils, stays
+from synthetic_landings import INPUTS, Truth, exact_share, random_soils, returns
 
 from lithobrake.analysis import (
     IntervalEstimate,
@@ -53,12 +53,12 @@ Row = dict[str, Any]
 
 @lru_cache
 def bed_means(truth: Truth) -> tuple[np.ndarray, np.ndarray]:
-    """Share that stays and mean speed [m/s] on beds of each effect [200], places and soils averaged over."""
+    """Share that returns and mean speed [m/s] on beds of each effect [200], places and soils averaged over."""
     rng = np.random.default_rng(11)
     table = []
     for effect in NODES:
         landings = truth.draw(random_soils(40_000, rng), np.full(40_000, effect), rng)
-        chance = stays(landings.left, landings.outcome)
+        chance = returns(landings.left, landings.outcome)
         table.append((chance.mean(), np.nanmean(landings.left[:, 0])))
     share, speed = np.array(table).T
     return np.interp(BED_EFFECTS, NODES, share), np.interp(BED_EFFECTS, NODES, speed)
@@ -91,7 +91,7 @@ def held(estimate: IntervalEstimate, exact: float) -> tuple[float, float, float]
 def one_study(truth: Truth, run_count: int, bed_count: int, seed: int) -> dict[str, tuple[float, float, float]]:
     """Held, error and half width of every estimate of a study, by quantity."""
     x, y, outcome, bed = truth.study(run_count, bed_count, seed)
-    found = share_estimate(stays(y, outcome), bed, terms=regression_terms(INPUTS, x))
+    found = share_estimate(returns(y, outcome), bed, terms=regression_terms(INPUTS, x))
     share, beds = exact_share(truth), bed_means(truth)[0]
     lower, upper = found.if_missing_interval
     result = {"share": held(IntervalEstimate(found.share, found.lower, found.upper), share)}
@@ -151,7 +151,7 @@ def pivot(components: BedComponents) -> float:
 def adjusted(truth: Truth, run_count: int, bed_count: int, seed: int) -> tuple[np.ndarray, np.ndarray]:
     """Shares of runs less what the inputs say of them, and the beds."""
     x, y, outcome, bed = truth.study(run_count, bed_count, seed)
-    h, (terms, indices) = stays(y, outcome), regression_terms(INPUTS, x)
+    h, (terms, indices) = returns(y, outcome), regression_terms(INPUTS, x)
     return h - control_variate(terms, indices.sum(axis=1), h, bed), bed
 
 
@@ -199,7 +199,7 @@ def exact_total(truth: Truth) -> float:
 def flights(truth: Truth, seed: int, systematic: bool) -> float:
     """Ratio of half widths with 210 and with 21 flights a run; headings in equal steps, or drawn one by one."""
     x, y, outcome, bed = truth.study(240, 24, seed)
-    h, terms, rng = stays(y, outcome), regression_terms(INPUTS, x), np.random.default_rng(seed)
+    h, terms, rng = returns(y, outcome), regression_terms(INPUTS, x), np.random.default_rng(seed)
     widths = []
     for count in (21, 210):
         flown = np.floor(count * h + rng.random(len(h))) if systematic else rng.binomial(count, h)

@@ -133,7 +133,7 @@ class Truth:
         return special.expit(8.0 * (_fast_and_flat(left) - _rim_offset(self)))
 
 
-def stays(y: np.ndarray, outcome: np.ndarray) -> np.ndarray:
+def returns(y: np.ndarray, outcome: np.ndarray) -> np.ndarray:
     """Chance of staying [n], smooth in speed and elevation y [n, 4]: 1 where captured, NaN where y is unknown."""
     chance = special.expit(1.0 - 21.0 * (y[:, 0] - 0.082) - 0.6 * (y[:, 1] - 0.6))
     return np.where(np.asarray(outcome) == "captured", 1.0, chance)
@@ -144,7 +144,7 @@ def exact_share(truth: Truth, count: int = 1_000_000, seed: int = 20_261_122) ->
     """Mean chance of staying over all soils, beds and places, rim or not, from so many draws."""
     rng = np.random.default_rng(seed)
     landings = truth.draw(random_soils(count, rng), rng.standard_normal(count), rng)
-    return float(stays(landings.left, landings.outcome).mean())
+    return float(returns(landings.left, landings.outcome).mean())
 
 
 def random_soils(count: int, rng: np.random.Generator) -> np.ndarray:

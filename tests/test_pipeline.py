@@ -13,7 +13,7 @@ from lithobrake.chaos import Uniform, fit, smolyak
 from lithobrake.outputs import ARC, OUTPUTS
 from lithobrake.pipeline import StudyFolder, rest, stage_keys, stages_of
 from lithobrake.pipeline.designs import design_inputs, kept_inputs, points
-from lithobrake.pipeline.dispersion_statistics import shares, stays
+from lithobrake.pipeline.dispersion_statistics import return_fraction, shares
 from lithobrake.pipeline.flights import COLUMNS, partner_time, starts
 from lithobrake.pipeline.samples import SAMPLE_OUTCOMES, Samples
 from lithobrake.pipeline.scope import scope
@@ -222,20 +222,20 @@ def test_shares_have_a_class_for_each_end_no_interval_and_no_sample_after_the_la
     assert table["sample_count"] == 6
     ends = ("captured", "left_sideways", "time_limit", "outside", "impact", "flying", "escaped", "partner")
     assert [table[name]["count"] for name in ends] == [1, 1, 1, 1, 1, 0, 1, 0]
-    assert (table["remains"]["count"], table["missing"]["count"]) == (2, 3)
-    assert (table["remains"]["lower"], table["remains"]["upper"]) == (None, None)
+    assert (table["returns"]["count"], table["missing"]["count"]) == (2, 3)
+    assert (table["returns"]["lower"], table["returns"]["upper"]) == (None, None)
     # Of 51 runs none left sideways or ran out of time: that allows 5.7 % (rule of three).
     assert table["left_sideways"]["upper_limit"] == pytest.approx(1.0 - 0.05 ** (1 / 51))
     assert "upper_limit" not in table["captured"]
     # What is captured where the site pushes outwards is lifted off again.
     away = shares(made_samples(*outcomes), flown, Counter(clear=50, captured=1), holds=False)
-    assert away["remains"]["count"] == 1
+    assert away["returns"]["count"] == 1
 
 
 def test_the_answer_says_over_what_it_holds_and_flights_do_not_narrow_it() -> None:
     study = changed(site={"latitude_deg": 75.0})
     table = shares(made_samples(*["clear"] * 3, "captured"), [{"sample": "0", "status": "impact"}] * 3, {}, holds=True)
-    found = stays(study, table, 40)
+    found = return_fraction(study, table, 40)
     assert (found["lower"], found["upper"], found["next_bed"], found["level"]) == (None, None, None, 0.9)
     assert found["why"] == scope(study).why
     assert found["from"] == "4 samples of an expansion of 40 landings on 1 bed"

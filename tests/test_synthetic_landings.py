@@ -17,7 +17,7 @@ from .synthetic_landings import (
     Truth,
     exact_share,
     random_soils,
-    stays,
+    returns,
 )
 
 COUNT = 40_000
@@ -70,7 +70,7 @@ def test_outputs_keep_their_bounds() -> None:
     assert 0.0 < elevation.min() < elevation.max() < ELEVATION_LIMIT
     assert np.abs(azimuth).max() <= np.pi
     assert spin.min() > 0.0
-    share = stays(landings.y, landings.outcome)
+    share = returns(landings.y, landings.outcome)
     assert 0.0 < share.min() < share.max() < 1.0
 
 
@@ -83,9 +83,9 @@ def test_one_branch_has_the_given_skewness() -> None:
 def test_the_exact_share_is_that_of_all_landings() -> None:
     _, _, landings = drawn(replace(WEAK, rim="fast_flat"))
     exact = exact_share(WEAK, 200_000)
-    assert abs(stays(landings.left, landings.outcome).mean() - exact) < 0.003
+    assert abs(returns(landings.left, landings.outcome).mean() - exact) < 0.003
     # Those who are seen to leave clear are not a fair sample where the fast and flat are lost.
-    assert np.nanmean(stays(landings.y, landings.outcome)) > exact + 0.02
+    assert np.nanmean(returns(landings.y, landings.outcome)) > exact + 0.02
 
 
 def test_a_study_has_beds_of_equal_counts_and_comes_again() -> None:

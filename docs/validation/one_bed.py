@@ -61,7 +61,7 @@ def told(results: lithobrake.StudyResults) -> dict[str, Any]:
     found = results.summary["results"]
     samples = found["monte_carlo"]["outputs"]
     entry = {
-        "stays": found["stays"], "variance_shares": found.get("variance_shares"), "headline": found["headline"],
+        "returns": found["returns"], "variance_shares": found.get("variance_shares"), "headline": found["headline"],
         "mean": {name: samples[name]["mean"] for name in (SPEED, ELEVATION)},
         "std": {name: samples[name]["std"] for name in (SPEED, ELEVATION)},
     }  # fmt: skip

@@ -22,7 +22,7 @@ from lithobrake.report.style import INK, INPUT_COLOURS, QUIET, STYLE, TEST, TRAI
 HERE = Path(__file__).parent
 Entry = dict[str, Any]
 PARTS = {"soil": "soil", "bed": "bed", "place_and_attitude": "place and attitude", "chaos": "chaos"}
-OUTPUTS = {"speed_out": "V+", "elevation_out": "theta+", "spin_out": "omega+", "stays": "share that stays"}
+OUTPUTS = {"speed_out": "V+", "elevation_out": "theta+", "spin_out": "omega+", "returns": "return fraction"}
 LANDER_EDGE = 0.1  # m, the short edges
 HEAD = """# One bed and many: the tables
 
@@ -62,13 +62,13 @@ def pairs(studies: list[Entry]) -> Iterator[tuple[Entry, Entry]]:
 
 def half_width(one: Entry) -> float:
     """Half the interval of the share; of one bed, what the flights leave, which is all that it can give."""
-    stays = one["stays"]
-    return 0.5 * (stays["upper"] - stays["lower"]) if stays["lower"] is not None else stays["flight_sampling"]
+    returns = one["returns"]
+    return 0.5 * (returns["upper"] - returns["lower"]) if returns["lower"] is not None else returns["flight_sampling"]
 
 
 def holds(first: Entry, second: Entry) -> bool:
     """Whether the interval of the difference of two independent shares holds 0."""
-    difference = first["stays"]["share"] - second["stays"]["share"]
+    difference = first["returns"]["share"] - second["returns"]["share"]
     return abs(difference) <= math.hypot(half_width(first), half_width(second))
 
 
@@ -82,9 +82,9 @@ def draw_seeds(studies: list[Entry]) -> None:
         ):
             found = of_kind(studies, kind)
             for one in found:
-                share = 100.0 * one["stays"]["share"]
+                share = 100.0 * one["returns"]["share"]
                 axis.errorbar(one["seed"], share, 100.0 * half_width(one), fmt="o", color=colour, capsize=3, ms=4.5)
-            shares = [100.0 * one["stays"]["share"] for one in found]
+            shares = [100.0 * one["returns"]["share"] for one in found]
             middle = sum(shares) / len(shares)
             axis.axhline(middle, color=QUIET, lw=0.8, zorder=0)
             held = [holds(*pair) for pair in pairs(found)]
@@ -125,10 +125,10 @@ def draw_grains(studies: list[Entry]) -> None:
 
 
 def _interval(one: Entry) -> str:
-    stays = one["stays"]
-    if stays["lower"] is None:
-        return f"{100 * stays['share']:.1f}"
-    return f"{100 * stays['share']:.1f} ({100 * stays['lower']:.1f} to {100 * stays['upper']:.1f})"
+    returns = one["returns"]
+    if returns["lower"] is None:
+        return f"{100 * returns['share']:.1f}"
+    return f"{100 * returns['share']:.1f} ({100 * returns['lower']:.1f} to {100 * returns['upper']:.1f})"
 
 
 def seed_table(studies: list[Entry]) -> list[str]:
@@ -165,7 +165,7 @@ def place_table(studies: list[Entry]) -> list[str]:
         speed = f"{100 * one['mean'][SPEED]:.1f} ± {100 * one['std'][SPEED]:.1f}"
         steep = f"{math.degrees(one['mean'][ELEVATION]):.0f} ± {math.degrees(one['std'][ELEVATION]):.0f}"
         lines.append(
-            f"| {one['seed']} | {100 * one['stays']['share']:.1f} ± {100 * one['stays']['flight_sampling']:.1f} | "
+            f"| {one['seed']} | {100 * one['returns']['share']:.1f} ± {100 * one['returns']['flight_sampling']:.1f} | "
             f"{speed} | {steep} | {name}, {share:.2f} | {one['q2']:.2f} |"
         )
     return lines

@@ -101,7 +101,7 @@ def grain_sizes() -> Iterator[tuple[str, Tables]]:
 
 def told(found: Tables) -> Tables:
     """What the tables and figures need of a study's results."""
-    entry = {name: found[name] for name in ("stays", "headline", "shares")} | {
+    entry = {name: found[name] for name in ("returns", "headline", "shares")} | {
         "samples": found["monte_carlo"]["outputs"],
         "outputs": found.get("outputs"),
         "variance_shares": found.get("variance_shares"),

@@ -52,11 +52,11 @@ def entries(kind: str) -> list[Entry]:
 
 def share(one: Entry) -> tuple[float, float, float]:
     """Share that comes down again [%] and its interval; of one bed, the sampling of flights alone."""
-    stays = one["stays"]
-    half = stays.get("flight_sampling") or 0.0
-    low = stays["share"] - half if stays.get("lower") is None else stays["lower"]
-    high = stays["share"] + half if stays.get("upper") is None else stays["upper"]
-    return 100.0 * stays["share"], 100.0 * low, 100.0 * high
+    returns = one["returns"]
+    half = returns.get("flight_sampling") or 0.0
+    low = returns["share"] - half if returns.get("lower") is None else returns["lower"]
+    high = returns["share"] + half if returns.get("upper") is None else returns["upper"]
+    return 100.0 * returns["share"], 100.0 * low, 100.0 * high
 
 
 def drivers(one: Entry) -> str:

@@ -4,7 +4,7 @@ import math
 
 from lithobrake.analysis.confidence import t_quantile
 
-# As measured on landings with drawn places: standard deviation of a run's share of flights that stay, and the
+# As measured on landings with drawn places: standard deviation of a run's share of flights that return, and the
 # correlation of two of them on one bed.
 SPREAD, CORRELATION = 0.14, 0.05
 

@@ -1,4 +1,4 @@
-"""The share of landers that stay, over the law of the inputs and over beds nobody has poured yet."""
+"""A share of the landers, over the law of the inputs and over beds nobody has poured yet."""
 
 import math
 from dataclasses import dataclass
@@ -77,7 +77,7 @@ class ShareEstimate:
 
 @one_thread()
 def share_estimate(
-    stays: ArrayLike,
+    returns: ArrayLike,
     bed: ArrayLike,
     *,
     terms: tuple[Array, Labels] | None = None,
@@ -87,15 +87,15 @@ def share_estimate(
     emulator: float | None = None,
     why: str | None = None,
 ) -> ShareEstimate:
-    """Estimate the mean of `stays` over the law of the inputs, with its interval from beds.
+    """Estimate the mean of `returns` over the law of the inputs, with its interval from beds.
 
-    stays [run_count]    share of its flights for which each run stays, 0 to 1; NaN where the run has no answer
+    returns [run_count]    share of its flights for which each run returns, 0 to 1; NaN where the run has no answer
     bed [run_count]      label of the bed of each run: the units of the interval
     terms                what `regression_terms` gives for the inputs of all runs; None: plain mean
     weights [run_count]  density of the law over that the runs were drawn from; None: drawn from the law
-    beds_differ          whether beds matter; where no run, or every run, stays this cannot be seen, and an interval
+    beds_differ          whether beds matter; where no run, or every run, returns this cannot be seen, and an interval
                          takes beds as its units where they do, runs where they do not
-    flight_count         flights behind each entry of stays, each of its own draw
+    flight_count         flights behind each entry of returns, each of its own draw
     why                  a reason why these runs give no interval, as one place or one attitude
 
     The mean of what is left when a regression on the inputs is taken off; its error is that of the beds' sums, never
@@ -103,16 +103,16 @@ def share_estimate(
     answer, for shares outside [0, 1] and for weights that are not above 0.
     Source: [Saerndal-1992], section 6.3 (difference estimator); [Cameron-2008] (errors from few clusters).
     """
-    h, w = _checked(stays, weights)
+    h, w = _checked(returns, weights)
     if terms is not None and len(terms[0]) != len(h):
-        raise ValueError(f"terms are of {len(terms[0])} runs and stays of {len(h)}; give those of the same runs")
+        raise ValueError(f"terms are of {len(terms[0])} runs and returns of {len(h)}; give those of the same runs")
     if flight_count is not None and flight_count < 1:
         raise ValueError(f"flight_count is {flight_count}; allowed: at least 1, or None where nothing flew")
     beds, answered = numbered_beds(bed, len(h)), np.isfinite(h)
     told = np.zeros(len(h)) if terms is None else control_variate(terms[0], terms[1].sum(axis=1), h, beds)
     share = _mean((h - told)[answered], w[answered])
     if not 0.0 < share < 1.0:
-        # Where hardly a run stays a regression may promise less than none.
+        # Where hardly a run returns a regression may promise less than none.
         told = np.zeros(len(h))
         share = _mean(h[answered], w[answered])
     own = numbered_beds(beds[answered], int(answered.sum()))
@@ -142,13 +142,13 @@ def standard_error(values: Array, bed: Labels) -> float:
     return math.sqrt(max(from_beds, float(values.var(ddof=1)) / len(values)))
 
 
-def _checked(stays: ArrayLike, weights: ArrayLike | None) -> tuple[Array, Array]:
-    h = np.asarray(stays, dtype=float)
+def _checked(returns: ArrayLike, weights: ArrayLike | None) -> tuple[Array, Array]:
+    h = np.asarray(returns, dtype=float)
     w = np.ones_like(h) if weights is None else np.asarray(weights, dtype=float)
     if h.ndim != 1 or not np.isfinite(h).any():
-        raise ValueError(f"stays has shape {h.shape} and no answer; give one share for each run, some of them known")
+        raise ValueError(f"returns has shape {h.shape} and no answer; give one share for each run, some of them known")
     if np.nanmin(h) < 0.0 or np.nanmax(h) > 1.0:
-        raise ValueError(f"stays reaches from {np.nanmin(h):g} to {np.nanmax(h):g}; each must lie between 0 and 1")
+        raise ValueError(f"returns reaches from {np.nanmin(h):g} to {np.nanmax(h):g}; each must lie between 0 and 1")
     if w.shape != h.shape or not np.all((w > 0.0) & np.isfinite(w)):
         raise ValueError(f"weights have shape {w.shape}; give one finite number above 0 for each of {len(h)} runs")
     return h, w
@@ -185,7 +185,7 @@ def _intervals(values: Array, bed: Labels) -> tuple[Bounds, Bounds | None]:
 def _if_missing(
     h: Array, told: Array, weights: Array, beds: Labels, share: float, bounds: Bounds | None
 ) -> tuple[Bounds, Bounds | None]:
-    """Share if none and if all without an answer stay, and the interval about both; both hold the share itself.
+    """Share if none and if all without an answer count, and the interval about both; both hold the share itself.
 
     Source: [Manski-2003] (bounds of a mean with missing data).
     """

@@ -1,7 +1,7 @@
 """What each run answers, and which bed it answers for: the two arrays that every estimate of a sequence stands on.
 
 The answer of a run is the share of its flights, over headings and all else that is uncertain of the site, in which it
-stays; one that is captured answers without flying, and one of which nobody knows where it went, not at all. A study
+returns; one that is captured answers without flying, and one of which nobody knows where it went, not at all. A study
 that asks for the half width of a limit state has the share of flights that meet it for an answer.
 """
 
@@ -25,7 +25,7 @@ ANSWERED_AFTER = "fly_runs"
 def answer_words(study: Study) -> str:
     """What the answers of a study's runs are a share of, in words."""
     asked = study.design.half_width_of
-    return "the share that stays" if asked is None else f"the probability of {asked}"
+    return "the return fraction" if asked is None else f"the probability of {asked}"
 
 
 def flown_shares(study: Study, folder: StudyFolder) -> dict[str, float]:
@@ -60,8 +60,8 @@ def _failing_shares(study: Study, folder: StudyFolder) -> dict[str, float]:
 
 def read_shares(folder: StudyFolder) -> dict[str, float]:
     """What a folder's table of the flights of runs says of them, by key."""
-    rows = read_rows(folder / FILE, ("design", "key", "stays"), AGAIN)
-    return {row["key"]: float(row["stays"] or "nan") for row in rows if row["design"] == "sequence"}
+    rows = read_rows(folder / FILE, ("design", "key", "returns"), AGAIN)
+    return {row["key"]: float(row["returns"] or "nan") for row in rows if row["design"] == "sequence"}
 
 
 def answers_of(

@@ -25,7 +25,7 @@ def dispersion_results(job: Job, samples: Samples, flights: Rows, run_outcomes: 
     holds = bool(effective_acceleration_at_site(study)[2] < 0.0)
     results: dict[str, Any] = {}
     results["shares"] = shares(samples, flights, run_outcomes, holds=holds) | {"why": scope(study).why}
-    results["stays"] = stays(study, results["shares"], sum(run_outcomes.values()))
+    results["returns"] = return_fraction(study, results["shares"], sum(run_outcomes.values()))
     results["flights"] = flight_numbers(flights) | job.folder.read_json("flights.json")
     results["ellipses"] = ellipses(study, flights, FlightStatus.IMPACT)
     results["without_scatter"] = None
@@ -44,7 +44,7 @@ def shares(samples: Samples, flights: Rows, run_outcomes: Mapping[str, int], *, 
     """What became of the samples, as shares of all that were looked at.
 
     When not all leaving samples flew, only the samples up to the last that flew are looked at: they are a random part
-    of all. `remains` = down again in time, or captured where the site `holds` what lies there; `missing` = left
+    of all. `returns` = down again in time, or captured where the site `holds` what lies there; `missing` = left
     sideways, in contact at the time limit, or outside, after which nobody knows where the lander is.
     upper_limit: of an outcome that none of the runs had, which its share of 0 does not say (95 %).
     """
@@ -58,7 +58,7 @@ def shares(samples: Samples, flights: Rows, run_outcomes: Mapping[str, int], *, 
     del counts[SampleOutcome.CLEAR]
     statuses = [row["status"] for row in flights]
     counts |= {status: statuses.count(status) for status in FLIGHTS}
-    counts["remains"] = counts[FlightStatus.IMPACT] + (counts[SampleOutcome.CAPTURED] if holds else 0)
+    counts["returns"] = counts[FlightStatus.IMPACT] + (counts[SampleOutcome.CAPTURED] if holds else 0)
     counts["missing"] = sum(counts[name] for name in MISSING)
     table: dict[str, Any] = {"sample_count": total, "flight_count": len(flights)}
     table |= {name: proportion(count, total) for name, count in counts.items()}
@@ -67,26 +67,26 @@ def shares(samples: Samples, flights: Rows, run_outcomes: Mapping[str, int], *, 
     return table
 
 
-def stays(study: Study, table: Mapping[str, Any], run_count: int) -> dict[str, Any]:
-    """The answer: the share that remains, without an interval, which runs on one bed or at one place do not give.
+def return_fraction(study: Study, table: Mapping[str, Any], run_count: int) -> dict[str, Any]:
+    """The return fraction, without an interval, which runs on one bed or at one place do not give.
 
     flight_sampling: half of the interval that the number of samples alone would give; more flights narrow it without
     knowing more.
     """
     from lithobrake.analysis import wilson_interval
 
-    total, remains = table["sample_count"], table["remains"]
-    lower, upper = wilson_interval(remains["count"], total, NORMAL_QUANTILE_90)
+    total, returning = table["sample_count"], table["returns"]
+    lower, upper = wilson_interval(returning["count"], total, NORMAL_QUANTILE_90)
     return {
-        "share": remains["share"],
+        "share": returning["share"],
         "lower": None,
         "upper": None,
         "level": 0.9,
         "from": f"{total} samples of an expansion of {run_count} landings {scope(study).landings}",
         "next_bed": None,
-        "if_missing": [remains["share"], remains["share"] + table["missing"]["share"]],
+        "if_missing": [returning["share"], returning["share"] + table["missing"]["share"]],
         "flight_sampling": 0.5 * (upper - lower),
-        "emulator": remains["share"],
+        "emulator": returning["share"],
         "why": scope(study).why,
     }
 

@@ -21,12 +21,12 @@ PARTS = {
 
 def drawn_answer(study: Study, results: Mapping[str, Any]) -> list[str]:
     """What becomes of the landers, over what that holds, what is missing, and what the site does to those that lie."""
-    stays, site, hours = results["stays"], results["site"], f"{study.flight.duration / 3600:.3g} h"
+    returns, site, hours = results["returns"], results["site"], f"{study.flight.duration / 3600:.3g} h"
     holds = site["effective_acceleration_outward"] < 0.0
     down = f"stay or come down again within {hours}" if holds else f"come down again within {hours}"
     return [
-        *_share(study, stays, down),
-        *_missing(results["runs"], stays),
+        *_share(study, returns, down),
+        *_missing(results["runs"], returns),
         _others(results["shares"], holds=holds),
         *(one["statement"] for one in results["limit_states"].values()),
         *([results["aim"]["statement"]] if results["aim"] else []),
@@ -77,22 +77,22 @@ def _digits(away: float) -> int:
     return max(0, 1 - math.floor(math.log10(100.0 * away)))
 
 
-def _share(study: Study, stays: Mapping[str, Any], down: str) -> list[str]:
-    share, level = _percent(stays["share"]), f"{100 * stays['level']:.0f} %"
-    if stays["lower"] is None:
-        return [f"{scope(study).where}: {share} of the landers {down}; from {stays['from']}.", stays["why"]]
+def _share(study: Study, returns: Mapping[str, Any], down: str) -> list[str]:
+    share, level = _percent(returns["share"]), f"{100 * returns['level']:.0f} %"
+    if returns["lower"] is None:
+        return [f"{scope(study).where}: {share} of the landers {down}; from {returns['from']}.", returns["why"]]
     attitudes = "beds, places and attitudes" if study.impact.orientation == "random" else "beds and places"
     sentences = [
-        f"{share} of the landers {down} ({level} interval {_span(stays['lower'], stays['upper'])}), over the laws of "
-        f"the study file, on {attitudes} that were not in the study; from {stays['from']}."
+        f"{share} of the landers {down} ({level} interval {_span(returns['lower'], returns['upper'])}), over the laws "
+        f"of the study file, on {attitudes} that were not in the study; from {returns['from']}."
     ]
-    if stays["next_bed"] is not None:
-        low, high = stays["next_bed"]
+    if returns["next_bed"] is not None:
+        low, high = returns["next_bed"]
         sentences.append(f"On one next bed the share lies between {_span(low, high, 'and')} ({level}).")
     return sentences
 
 
-def _missing(runs: Mapping[str, Any], stays: Mapping[str, Any]) -> list[str]:
+def _missing(runs: Mapping[str, Any], returns: Mapping[str, Any]) -> list[str]:
     """What it would change if landers stayed or flew of which nobody knows."""
     known = (TouchdownOutcome.CLEAR, TouchdownOutcome.CAPTURED)
     lost = {name: count for name, count in runs["outcomes"].items() if name not in known}
@@ -101,7 +101,7 @@ def _missing(runs: Mapping[str, Any], stays: Mapping[str, Any]) -> list[str]:
     labels = {str(one): one.label for one in TouchdownOutcome} | {"failed": "failed"}
     count = sum(lost.values())
     words = ", ".join(f"{number} {labels[name]}" for name, number in lost.items())
-    low, high = (f"{100 * bound:.1f} %" for bound in stays["if_missing"])
+    low, high = (f"{100 * bound:.1f} %" for bound in returns["if_missing"])
     return [
         f"Of {count} of {runs['count']} landings nobody knows where the lander went ({words}): {low} if none, {high} "
         "if all of them came down again."

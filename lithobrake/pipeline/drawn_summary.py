@@ -77,7 +77,7 @@ def _ended(estimates: dict[str, Any]) -> dict[str, int]:
 
 def _refits(estimates: dict[str, Any]) -> Refits:
     """What the emulator was fitted to."""
-    return Refits(estimates["runs"]["beds"], sum(_ended(estimates).values()), estimates["stays"]["why"])
+    return Refits(estimates["runs"]["beds"], sum(_ended(estimates).values()), estimates["returns"]["why"])
 
 
 def _dispersion(job: Job, estimates: dict[str, Any]) -> dict[str, Any]:
@@ -93,13 +93,13 @@ def _dispersion(job: Job, estimates: dict[str, Any]) -> dict[str, Any]:
     refits.put_intervals(table, np.arange(table["sample_count"]), fates)
     refits.widen_what_no_run_met(table, ended)
     known = table["sample_count"] - table["missing"]["count"]
-    stays = estimates["stays"] | {"emulator": table["remains"]["count"] / known if known else None}
+    returns = estimates["returns"] | {"emulator": table["returns"]["count"] / known if known else None}
     rest = rest_results(job)
     if rest["soil"] is not None:
         rows = [row for row in read_table(job.folder, "rest.csv") if row["ground"] == "soil"]
         refits.put_intervals(rest["soil"], np.array([int(row["sample"]) for row in rows]), journey_ends(rows))
     return {
-        "stays": stays,
+        "returns": returns,
         "shares": table,
         "monte_carlo": monte_carlo_results(samples),
         "flights": flight_numbers(flights) | job.folder.read_json("flights.json"),
@@ -127,16 +127,20 @@ def _emulator(job: Job, results: dict[str, Any]) -> dict[str, Any]:
         "follows_inputs": model.follows_inputs,
         "found_inputs": [name for name, found in model.found_inputs().items() if found],
         "scores": table,
-        "warning": _disagreement(results["stays"]),
+        "warning": _disagreement(results["returns"]),
     }
 
 
-def _disagreement(stays: dict[str, Any]) -> str | None:
+def _disagreement(returns: dict[str, Any]) -> str | None:
     """That runs and emulator disagree, in a sentence; None where they agree, or no interval says how far they may."""
-    if stays["lower"] is None or stays["emulator"] is None or stays["lower"] <= stays["emulator"] <= stays["upper"]:
+    if (
+        returns["lower"] is None
+        or returns["emulator"] is None
+        or returns["lower"] <= returns["emulator"] <= returns["upper"]
+    ):
         return None
     return (
-        f"The emulator gives a share of {100 * stays['emulator']:.1f} %, outside the interval of the runs "
-        f"({100 * stays['lower']:.1f} to {100 * stays['upper']:.1f} %): do not trust what rests on it (flights, "
+        f"The emulator gives a share of {100 * returns['emulator']:.1f} %, outside the interval of the runs "
+        f"({100 * returns['lower']:.1f} to {100 * returns['upper']:.1f} %): do not trust what rests on it (flights, "
         "ellipses, rest), and make more runs"
     )

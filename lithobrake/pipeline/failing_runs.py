@@ -6,8 +6,8 @@ from lithobrake.outcomes import FlightStatus, TouchdownOutcome
 from lithobrake.outputs import TOUCHDOWN
 from lithobrake.pipeline.design_runs import DesignRuns
 from lithobrake.pipeline.run_flights import FATES as RUN_FATES
-from lithobrake.pipeline.run_flights import STAYS as STAYING
-from lithobrake.study.limit_state import FATES, STAYS, LimitState
+from lithobrake.pipeline.run_flights import RETURNS as RETURNING
+from lithobrake.study.limit_state import FATES, RETURNS, LimitState
 
 CAPTURED = TouchdownOutcome.CAPTURED.value
 # Words of a run that its touchdown alone decides; all others take flights.
@@ -41,5 +41,5 @@ def values_of_runs(runs: DesignRuns) -> dict[str, np.ndarray]:
 
 def _words(fate: str, count: int) -> dict[str, np.ndarray]:
     """Whether each word of the grammar holds of flights that ended so, [count] each; `captured` is of the touchdown."""
-    held = {status.value: status == fate for status in FlightStatus} | {STAYS: fate in STAYING}
+    held = {status.value: status == fate for status in FlightStatus} | {RETURNS: fate in RETURNING}
     return {word: np.full(count, float(one)) for word, one in held.items()}

@@ -16,7 +16,7 @@ def answer(study: Study, results: dict[str, Any]) -> list[str]:
     shares, site, hours = results["shares"], results["site"], f"{study.flight.duration / 3600:.3g} h"
     holds = site["effective_acceleration_outward"] < 0.0
     down = f"are captured or come down again within {hours}" if holds else f"come down again within {hours}"
-    remains = _percent(shares["remains"]["share"])
+    returning = _percent(shares["returns"]["share"])
     ways = {FlightStatus.ESCAPED: "escape", FlightStatus.FLYING: "are still flying"}
     if shares[FlightStatus.PARTNER]["count"]:
         ways[FlightStatus.PARTNER] = "come down on the partner"
@@ -25,12 +25,12 @@ def answer(study: Study, results: dict[str, Any]) -> list[str]:
     if captured["count"] and not holds:
         beside.append(f"{_percent(captured['share'])} are captured and lifted again")
     sentences = [
-        f"{scope(study).where}: {remains} of the landers {down}; {', '.join(beside)}.",
+        f"{scope(study).where}: {returning} of the landers {down}; {', '.join(beside)}.",
         scope(study).why,
     ]
     if shares["missing"]["count"]:
         lost = [f"{_percent(shares[outcome]['share'])} {outcome.label}" for outcome in MISSING]
-        low, high = (_percent(bound) for bound in results["stays"]["if_missing"])
+        low, high = (_percent(bound) for bound in results["returns"]["if_missing"])
         sentences.append(
             f"Of {_percent(shares['missing']['share'])} of the samples nobody knows where they went ("
             f"{', '.join(lost)}): "

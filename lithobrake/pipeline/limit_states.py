@@ -17,7 +17,7 @@ from lithobrake.pipeline.samples import Samples
 from lithobrake.pipeline.scope import why_no_interval
 from lithobrake.pipeline.shares_over_refits import sample_fates
 from lithobrake.study import Study
-from lithobrake.study.limit_state import STAYS, LimitState
+from lithobrake.study.limit_state import RETURNS, LimitState
 
 
 def limit_state_results(study: Study, folder: StudyFolder, flights: Rows, *, holds: bool) -> dict[str, Any]:
@@ -76,10 +76,10 @@ def _one(
 
 def _values_of_samples(samples: Samples, met: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
     """What limit states may name, of the samples up to the last that was looked at, and which of them are known."""
-    total = len(met["remains"])
+    total = len(met["returns"])
     known = ~met["missing"]
     words = {status.value: met[status] for status in FlightStatus}
-    words |= {STAYS: met["remains"], CAPTURED: met[SampleOutcome.CAPTURED]}
+    words |= {RETURNS: met["returns"], CAPTURED: met[SampleOutcome.CAPTURED]}
     values = {name: samples.output(name)[:total] for name in samples.output_names}
     return values | {word: np.where(known, one.astype(float), np.nan) for word, one in words.items()}
 

@@ -28,34 +28,34 @@ from lithobrake.study import Study
 from lithobrake.touchdown_model import PLACE, SURFACE
 
 FILE = "estimates.json"
-STAYS = "stays"
-SPLIT = ("speed_out", "elevation_out", "spin_out", STAYS)
+RETURNS = "returns"
+SPLIT = ("speed_out", "elevation_out", "spin_out", RETURNS)
 # Numbers that say what the ground is, the lander's side of its contacts among them; all others say how it arrives.
 SOIL = ("grain.", "surface.", "solver.inputs.", *(f"lander.{name}" for name in SURFACE))
 
 
 def estimate(job: Job) -> None:
-    """Write what the runs say of the share that stays, of where scatter comes from, and of their outputs."""
+    """Write what the runs say of the return fraction, of where scatter comes from, and of their outputs."""
     study, runs = job.study, DesignRuns.load(job.folder, "sequence")
-    stays = RunFlights.load(job.folder, "sequence").stays
-    if not np.isfinite(stays).any():
+    returns = RunFlights.load(job.folder, "sequence").returns
+    if not np.isfinite(returns).any():
         raise ValueError(
             f"none of the {runs.run_count} runs left the surface or was captured (runs.sqlite has how each ended), so "
             "nothing can be said of the landers; mend what the runs say, or widen the bed"
         )
     inputs, bed, why = design_inputs(study), runs.inputs["bed"].astype(int), why_no_interval(study)
     found = share_estimate(
-        stays,
+        returns,
         bed,
         terms=regression_terms(inputs, runs.columns(list(inputs))),
         flight_count=FLIGHT_COUNT,
         why=why,
     )
-    values = {name: runs.output(name) for name in SPLIT if name != STAYS} | {STAYS: stays}
+    values = {name: runs.output(name) for name in SPLIT if name != RETURNS} | {RETURNS: returns}
     job.folder.write_json(
         FILE,
         {
-            "stays": found.summary(),
+            "returns": found.summary(),
             "variance_shares": {name: _split(job, runs, name, y) for name, y in values.items()},
             "outputs": {name: _spread(y, bed, why) for name, y in _outputs(runs).items()},
             "runs": _counts(job, runs, values),
@@ -110,10 +110,10 @@ def _split(job: Job, runs: DesignRuns, name: str, y: np.ndarray) -> dict[str, An
 
 def _differences(job: Job, design: str, name: str, y: np.ndarray) -> np.ndarray:
     """What an output differs by between the runs of a side design and theirs of the sequence, [pair_count]."""
-    if not job.study.design.side_runs or (name == STAYS and design != "twins"):
+    if not job.study.design.side_runs or (name == RETURNS and design != "twins"):
         return np.empty(0)
-    beside = DesignRuns.load(job.folder, design).output(name) if name != STAYS else None
-    other = RunFlights.load(job.folder, design).stays if beside is None else beside
+    beside = DesignRuns.load(job.folder, design).output(name) if name != RETURNS else None
+    other = RunFlights.load(job.folder, design).returns if beside is None else beside
     difference: np.ndarray = other - y[: len(other)]
     return difference
 

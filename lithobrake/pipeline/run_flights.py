@@ -1,4 +1,4 @@
-"""The flights of the runs themselves: each run's own velocity from many sites, and the share of them that stays."""
+"""The flights of the runs themselves: each run's own velocity from many sites, and the share of them that returns."""
 
 import math
 from collections.abc import Iterator
@@ -27,29 +27,29 @@ FATES = (
     *(FlightStatus.IMPACT, FlightStatus.FLYING, FlightStatus.ESCAPED, FlightStatus.PARTNER),
     *(JourneyStatus.SETTLED, JourneyStatus.LOFTED),
 )
-STAYS = (FlightStatus.IMPACT, JourneyStatus.SETTLED)
+RETURNS = (FlightStatus.IMPACT, JourneyStatus.SETTLED)
 # Numbers of a site in the order of their powers: those that matter most fill their plane best.
 FIRST = ("heading_deg", "partner_longitude_deg")
 LATTICE = (*FIRST, *(key for key in SITE_KEYS if key not in FIRST))
-COLUMNS = ("design", "run", "key", "outcome", "flight_count", *FATES, "stays")
+COLUMNS = ("design", "run", "key", "outcome", "flight_count", *FATES, "returns")
 
 
 @dataclass(frozen=True)
 class RunFlights:
-    """stays [run_count]: share of the flights of each run that come down again, NaN for a run without an answer.
+    """returns [run_count]: share of the flights of each run that come down again, NaN for a run without an answer.
 
     fates [run_count, len(FATES)]: how many of its flights ended so.
     """
 
-    stays: np.ndarray
+    returns: np.ndarray
     fates: np.ndarray
 
     @classmethod
     def load(cls, folder: StudyFolder, design: str) -> "RunFlights":
         """Those of the runs of a design, in its order. Raises DamagedFileError for another file."""
         rows = [row for row in read_rows(folder / FILE, COLUMNS, AGAIN) if row["design"] == design]
-        stays = np.array([float(row["stays"] or "nan") for row in rows])
-        return cls(stays, np.array([[int(row[fate]) for fate in FATES] for row in rows]).reshape(-1, len(FATES)))
+        returns = np.array([float(row["returns"] or "nan") for row in rows])
+        return cls(returns, np.array([[int(row[fate]) for fate in FATES] for row in rows]).reshape(-1, len(FATES)))
 
 
 def run_flight_reads(study: Study) -> dict[str, Any]:
@@ -58,7 +58,7 @@ def run_flight_reads(study: Study) -> dict[str, Any]:
 
 
 def fly_runs(job: Job) -> None:
-    """Fly every run that left, and its twin, from the same sites, and write which share of the flights stays."""
+    """Fly every run that left, and its twin, from the same sites, and write which share of the flights returns."""
     designs = ("sequence", *(("twins",) if job.study.design.side_runs else ()))
     rows: list[list[Any]] = []
     for design in designs:
@@ -128,8 +128,8 @@ def _held(study: Study, sites: dict[str, np.ndarray]) -> np.ndarray:
 
 
 def _rows(runs: DesignRuns, fates: np.ndarray) -> Iterator[list[Any]]:
-    stay = fates[:, [FATES.index(fate) for fate in STAYS]].sum(axis=1)
+    returning = fates[:, [FATES.index(fate) for fate in RETURNS]].sum(axis=1)
     for run, (key, outcome) in enumerate(zip(runs.keys, runs.outcomes, strict=True)):
         count = int(fates[run].sum())
-        share = float(stay[run]) / count if count else ""
+        share = float(returning[run]) / count if count else ""
         yield [run, key, outcome, count, *fates[run].tolist(), share]

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 _CAPTURED = {TouchdownOutcome.CAPTURED.value: 1.0, TouchdownOutcome.CLEAR.value: 0.0}
 # Of fewer runs no interval says anything.
 FEWEST_RUNS = 2
-NO_FLIGHTS = "The share that stays is not known yet: it counts those that come down again too, and that takes flights."
+NO_FLIGHTS = "The return fraction is not known yet: it takes flights."
 
 
 @dataclass(frozen=True)
@@ -25,12 +25,12 @@ class RunningEstimates:
 
     captured   share of the landers that are captured, of those that are captured or clear; None where none is either
     speed_out  mean speed [m/s] of those that are clear; None where they came down on less than two beds
-    stays      share of the landers that stay; None before the runs have flown
+    returns    the return fraction; None before the runs have flown
     """
 
     captured: "ShareEstimate | None"
     speed_out: "IntervalEstimate | None"
-    stays: "ShareEstimate | None" = None
+    returns: "ShareEstimate | None" = None
 
     def lines(self) -> list[str]:
         """The estimates in words."""
@@ -41,22 +41,22 @@ class RunningEstimates:
             value, lower, upper = self.speed_out.value, self.speed_out.lower, self.speed_out.upper
             level = f"{100 * self.speed_out.level:.0f} %"
             lines.append(f"  mean speed_out: {value:.4g} m/s ({level}: {lower:.4g} to {upper:.4g})")
-        return [*lines, f"  {NO_FLIGHTS}" if self.stays is None else f"  stay: {_share(self.stays)}"]
+        return [*lines, f"  {NO_FLIGHTS}" if self.returns is None else f"  return fraction: {_share(self.returns)}"]
 
     def to_json(self) -> dict[str, Any]:
         """All of it as JSON values."""
         return {
             TouchdownOutcome.CAPTURED.value: None if self.captured is None else self.captured.summary(),
             "speed_out": None if self.speed_out is None else asdict(self.speed_out),
-            "stays": None if self.stays is None else self.stays.summary(),
-            "why_no_stays": NO_FLIGHTS if self.stays is None else None,
+            "returns": None if self.returns is None else self.returns.summary(),
+            "why_no_returns": NO_FLIGHTS if self.returns is None else None,
         }
 
 
 def running_estimates(records: Sequence[Record], flown: Mapping[str, float]) -> RunningEstimates | None:
     """The estimates from runs of a sequence, of which those count that are done; None for too few.
 
-    flown: share of its flights in which a run stays, by key, of those that have flown.
+    flown: share of its flights in which a run returns, by key, of those that have flown.
     """
     done = [record for record in records if record.status == RunStatus.DONE]
     if len(done) < FEWEST_RUNS:
@@ -69,11 +69,11 @@ def running_estimates(records: Sequence[Record], flown: Mapping[str, float]) -> 
     bed = np.array([record.inputs["bed"] for record in done])
     captured = np.array([_CAPTURED.get(record.outcome or "", np.nan) for record in done])
     speed = np.array([record.outputs.get("speed_out", np.nan) for record in done])
-    stays = np.array([flown.get(record.key, np.nan) for record in done])
+    returns = np.array([flown.get(record.key, np.nan) for record in done])
     return RunningEstimates(
         captured=share_estimate(captured, bed) if np.isfinite(captured).any() else None,
         speed_out=mean_estimate(speed, bed) if len(np.unique(bed[np.isfinite(speed)])) > 1 else None,
-        stays=share_estimate(stays, bed) if np.isfinite(stays).any() else None,
+        returns=share_estimate(returns, bed) if np.isfinite(returns).any() else None,
     )
 
 

@@ -50,8 +50,8 @@ def sample_fates(samples: Samples, flights: Rows, *, holds: bool) -> dict[str, n
     for row in flights:
         words[int(row["sample"])] = row["status"]
     met = {str(name): words[:total] == name for name in (*SampleOutcome, *FlightStatus) if name != SampleOutcome.CLEAR}
-    remains = met[FlightStatus.IMPACT] | met[SampleOutcome.CAPTURED] if holds else met[FlightStatus.IMPACT]
-    return met | {"remains": remains, "missing": np.isin(words[:total], MISSING)}
+    returning = met[FlightStatus.IMPACT] | met[SampleOutcome.CAPTURED] if holds else met[FlightStatus.IMPACT]
+    return met | {"returns": returning, "missing": np.isin(words[:total], MISSING)}
 
 
 def journey_ends(rows: Sequence[Mapping[str, str]]) -> dict[str, np.ndarray]:

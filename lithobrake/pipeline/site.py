@@ -115,7 +115,7 @@ def site_warning(study: Study) -> str | None:
     if outward < -NEARLY_NONE * pull:
         return None
     where = f"At the site gravity ({pull:.2g} m/s2) and rotation together"
-    end = "a lander that comes down again within the time of flight is not one that stays."
+    end = "a lander that impacts again within the time of flight does not remain there."
     if outward > NEARLY_NONE * pull:
         return f"{where} push outwards by {outward:.2g} m/s2: what lies there is thrown off, so {end}"
     words = "push outwards" if outward > 0.0 else "hold"

@@ -182,7 +182,7 @@ def _runs(path: Path, notes: Notes, flown: dict[str, float]) -> RunsStatus:
 
 
 def _flown(path: Path, state: FolderState) -> dict[str, float]:
-    """Which share of its flights each run of a sequence stays in, by key; none before they have flown."""
+    """Which share of its flights each run of a sequence returns in, by key; none before they have flown."""
     if not any(stage.name == "fly_runs" and stage.is_current for stage in state.stages):
         return {}
     from lithobrake.pipeline.answers import read_shares

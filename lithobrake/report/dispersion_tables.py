@@ -14,11 +14,11 @@ OUTCOME_WORDS: dict[str, str] = {
     FlightStatus.ESCAPED: FlightStatus.ESCAPED.label,
     FlightStatus.PARTNER: "on the partner within {hours}",
     **{outcome: outcome.label for outcome in SampleOutcome if outcome != SampleOutcome.CLEAR},
-    "remains": "{remains}",
+    "returns": "{returning}",
     "missing": "nobody knows where (over the rim, time limit, drawn outside)",
 }
 # Each holds others of the table.
-SUMS = ("remains", "missing")
+SUMS = ("returns", "missing")
 JOURNEY_WORDS: dict[str, str] = {
     JourneyStatus.SETTLED: "at rest",
     JourneyStatus.LOFTED: "captured where the spin lifts it off again",
@@ -40,8 +40,8 @@ def outcome_words(data: Results) -> dict[str, str]:
     """What may become of a sample, in words; the partner is left out where there is none."""
     site, known = data.results.get("site", {}), data.results["shares"]
     holds = site.get("effective_acceleration_outward", 0.0) < 0.0
-    remains = "down again within {hours}, or captured" if holds else "down again within {hours}"
-    words = OUTCOME_WORDS | {"remains": remains}
+    returning = "down again within {hours}, or captured" if holds else "down again within {hours}"
+    words = OUTCOME_WORDS | {"returns": returning}
     absent = set() if site.get("partner") else {FlightStatus.PARTNER}
     return {key: text for key, text in words.items() if key in known and key not in absent}
 
@@ -67,13 +67,13 @@ def _outcomes(data: Results) -> PageTable:
     for key, words in outcome_words(data).items():
         row = [words.format(hours=limit), str(shares[key]["count"]), _share(shares[key])]
         rows.append(row + ([_share(alone["shares"][key])] if alone else []))
-    stays, level = data.results.get("stays", {}), percent(data.level, 0)
+    returns, level = data.results.get("returns", {}), percent(data.level, 0)
     note = f"Shares of {shares['sample_count']} samples; {shares['flight_count']} of them were flown."
-    note += f" {stays['why']}" if stays.get("why") else ""
+    note += f" {returns['why']}" if returns.get("why") else ""
     # The runs of a sequence have flights of their own, of which its answer speaks.
-    if isinstance(data, PaperResults) and stays.get("flight_sampling") is not None:
-        sampling = f"{100 * stays['flight_sampling']:.1f} points ({percent(stays['level'], 0)})"
-        note += f" The number of flights alone leaves +- {sampling} in what remains."
+    if isinstance(data, PaperResults) and returns.get("flight_sampling") is not None:
+        sampling = f"{100 * returns['flight_sampling']:.1f} points ({percent(returns['level'], 0)})"
+        note += f" The number of flights alone leaves +- {sampling} in the return fraction."
     if any(_is_unmet(shares[key]) for key in outcome_words(data)):
         note += f' "At most": no run ended so, which such a probability allows ({level}).'
     if any(shares[key].get("lower") is not None for key in outcome_words(data)):

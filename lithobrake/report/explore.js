@@ -1,5 +1,5 @@
 "use strict";
-// What the explorer shows of chosen inputs: distributions of the outputs, the share that stays, and where landers come
+// What the explorer shows of chosen inputs: distributions of the outputs, the return fraction, and where landers come
 // down, each over all refits and refit by refit.
 
 const BINS = 120;
@@ -91,7 +91,7 @@ class Explorer {
   at(ranges, points = POINTS) {
     const { law, flown, facts } = this, cells = MAP_COLUMNS * MAP_ROWS;
     const counts = new Float64Array(law.refits * law.outputs * BINS), map = new Float64Array(cells);
-    const [left, stays, known] = [0, 1, 2].map(() => new Float64Array(law.refits));
+    const [left, returns, known] = [0, 1, 2].map(() => new Float64Array(law.refits));
     const fates = new Float64Array(facts.fates.length);
     let draws = 0;
     this.eachDraw(ranges, points, (refit, row, uniform) => {
@@ -99,7 +99,7 @@ class Explorer {
       const isCaptured = row < 0 && facts.outcomeNames[-1 - row] === facts.capturedName;
       if (row < 0 || !this.canLeave()) {
         if (isCaptured || facts.ofAll) known[refit]++;
-        if (isCaptured && facts.holds) stays[refit]++;
+        if (isCaptured && facts.holds) returns[refit]++;
         return;
       }
       left[refit]++;
@@ -113,10 +113,10 @@ class Explorer {
       known[refit]++;
       fates[flown.status[flight]]++;
       if (flown.status[flight] !== facts.impact) return;
-      stays[refit]++;
+      returns[refit]++;
       map[flown.cells[flight]]++;
     });
-    return { counts, left, stays, known, map, fates, draws };
+    return { counts, left, returns, known, map, fates, draws };
   }
 }
 
@@ -134,10 +134,10 @@ function freedVariance(values, chance) {
 
 // Share and its bounds over beds that were not in the study, as lithobrake.analysis.refit_interval has them; a share of
 // 0 or 1 has no other bounds here.
-function refitInterval(stays, known, bedCount, reach) {
-  const shares = Array.from(stays, (one, refit) => one / known[refit]), total = meanOf(known) * known.length;
+function refitInterval(returns, known, bedCount, reach) {
+  const shares = Array.from(returns, (one, refit) => one / known[refit]), total = meanOf(known) * known.length;
   const chance = meanOf(shares.map((one, refit) => one * (1 - one) / (known[refit] - 1)));
-  const share = meanOf(stays) * stays.length / total, between = freedVariance(shares, chance)[1];
+  const share = meanOf(returns) * returns.length / total, between = freedVariance(shares, chance)[1];
   // Drawing B of B beds scatters by (B - 1) / B of what B beds scatter by.
   const half = reach * Math.sqrt(between * bedCount / (bedCount - 1) + share * (1 - share) / total);
   if (share >= 0.1 && share <= 0.9 || share === 0 || share === 1)

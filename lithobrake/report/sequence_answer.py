@@ -30,13 +30,13 @@ def action(data: Results) -> str:
 
 def has_interval(data: Results) -> bool:
     """Whether the runs tell how sure the share is."""
-    return data.table("stays").get("lower") is not None
+    return data.table("returns").get("lower") is not None
 
 
 def share_digits(data: SequenceResults) -> int:
     """Digits behind the point that a share in per cent deserves: none unless it is known to two points."""
-    stays = data.table("stays")
-    return 1 if has_interval(data) and stays["upper"] - stays["lower"] < 0.02 else 0
+    returns = data.table("returns")
+    return 1 if has_interval(data) and returns["upper"] - returns["lower"] < 0.02 else 0
 
 
 def bounds(ends: Sequence[float], digits: int) -> str:
@@ -47,30 +47,30 @@ def bounds(ends: Sequence[float], digits: int) -> str:
 
 def interval(data: SequenceResults) -> str:
     """The interval of the share, with its level: "90 %: 68 to 73 %"."""
-    stays = data.table("stays")
-    return f"{percent(data.level, 0)}: {bounds((stays['lower'], stays['upper']), share_digits(data))}"
+    returns = data.table("returns")
+    return f"{percent(data.level, 0)}: {bounds((returns['lower'], returns['upper']), share_digits(data))}"
 
 
 def _sentences(data: SequenceResults) -> list[str]:
     """The record of the share in words: what it holds over, the next bed, missing runs, and what the site does."""
-    stays, digits = data.table("stays"), share_digits(data)
-    if not stays:
-        return ["The summary has no share of landers that stay."]
-    share, source = percent(stays["share"], digits), stays.get("from")
+    returns, digits = data.table("returns"), share_digits(data)
+    if not returns:
+        return ["The summary has no return fraction."]
+    share, source = percent(returns["share"], digits), returns.get("from")
     warning = data.table("site").get("warning")
     said = [_with_interval(data) if has_interval(data) else f"{_where(data)}: {share} of landers {action(data)}"]
     said[0] += f"; from {source}." if source else "."
     if not has_interval(data):
-        said.append(as_sentence(stays.get("why") or ANOTHER))
-    elif stays.get("next_bed"):
+        said.append(as_sentence(returns.get("why") or ANOTHER))
+    elif returns.get("next_bed"):
         said.append(
-            f"On one next bed the share lies between {bounds(stays['next_bed'], digits).replace(' to ', ' and ')}."
+            f"On one next bed the share lies between {bounds(returns['next_bed'], digits).replace(' to ', ' and ')}."
         )
     return [*said, *_missing(data), *([warning] if warning else [])]
 
 
 def _with_interval(data: SequenceResults) -> str:
-    share = percent(data.table("stays")["share"], share_digits(data))
+    share = percent(data.table("returns")["share"], share_digits(data))
     return (
         f"{share} of landers {action(data)} ({interval(data).replace(':', ' interval')}), over the soils of the study "
         "file, on beds, places and attitudes that were not in the study"
@@ -122,20 +122,20 @@ def outcome_label(word: str) -> str:
 
 def _missing(data: SequenceResults) -> list[str]:
     """What the runs without an answer may hide, where that is much beside the interval."""
-    stays = data.table("stays")
-    low, high = stays.get("if_missing") or (0.0, 0.0)
-    width = stays["upper"] - stays["lower"] if has_interval(data) else 0.0
+    returns = data.table("returns")
+    low, high = returns.get("if_missing") or (0.0, 0.0)
+    width = returns["upper"] - returns["lower"] if has_interval(data) else 0.0
     return [missing_sentence(data)] if high - low > WIDE * width else []
 
 
 def missing_sentence(data: SequenceResults) -> str:
     """How many runs have no answer, and between which shares the truth then lies; empty where all have one."""
-    lost, stays = unanswered(data), data.table("stays")
-    if not lost or not stays.get("if_missing"):
+    lost, returns = unanswered(data), data.table("returns")
+    if not lost or not returns.get("if_missing"):
         return ""
     total, count = sum(data.results["runs"]["outcomes"].values()), sum(lost.values())
     kinds = listing([words if len(lost) == 1 else f"{number} {words}" for words, number in lost.items()])
-    ends = bounds(stays["if_missing"], 1).replace(" to ", " and ")
+    ends = bounds(returns["if_missing"], 1).replace(" to ", " and ")
     return (
         f"{count} of {total} landings ({percent(count / total, 0)}), {kinds}, have no answer: between {ends} of all "
         f"{action(data)}, if none or all of these do."
@@ -162,9 +162,9 @@ def emulator_outside(data: SequenceResults) -> str:
     """That the emulator contradicts the runs it was made from, if it does."""
     if data.table("emulator").get("warning"):
         return as_sentence(data.table("emulator")["warning"])
-    stays = data.table("stays")
-    by_emulator = stays.get("emulator")
-    if by_emulator is None or not has_interval(data) or stays["lower"] <= by_emulator <= stays["upper"]:
+    returns = data.table("returns")
+    by_emulator = returns.get("emulator")
+    if by_emulator is None or not has_interval(data) or returns["lower"] <= by_emulator <= returns["upper"]:
         return ""
     return (
         f"The emulator is off: by it {percent(by_emulator, share_digits(data))} {action(data)}, outside the interval "

@@ -13,7 +13,7 @@ from lithobrake.report.sequence_answer import action, drawn_things, emulator_out
 from lithobrake.report.style import output
 from lithobrake.report.variance_figure import SOIL, known_parts, part_words
 
-STAYS = "stays"
+RETURNS = "returns"
 # An input with more than this part of what the soil does is named.
 MAIN = 0.5
 
@@ -21,7 +21,7 @@ MAIN = 0.5
 def sign(name: str) -> str:
     """An output in a sentence."""
     shown = output(name)
-    return "the share that stays" if name == STAYS else shown.sign or shown.words
+    return "the return fraction" if name == RETURNS else shown.sign or shown.words
 
 
 def runs(data: SequenceResults) -> str:

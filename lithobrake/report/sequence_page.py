@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 # The titles of the rows of figure 4 that are no outputs.
-STAYS_ROW = {"stays": "share that stays"}
+RETURNS_ROW = {"returns": "return fraction"}
 
 
 def sequence_content(data: SequenceResults) -> Content:
@@ -84,7 +84,7 @@ def _runs(data: SequenceResults) -> "Figure | None":
 
 def _variance(data: SequenceResults) -> "Figure | None":
     shares = data.table("variance_shares")
-    return variance_figure(shares, STAYS_ROW) if any(shares.values()) else None
+    return variance_figure(shares, RETURNS_ROW) if any(shares.values()) else None
 
 
 def _calibration(data: SequenceResults) -> "Figure | None":

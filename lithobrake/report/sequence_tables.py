@@ -22,7 +22,7 @@ from lithobrake.report.sequence_answer import (
     outcome_label,
     share_digits,
 )
-from lithobrake.report.sequence_captions import STAYS, sign
+from lithobrake.report.sequence_captions import RETURNS, sign
 from lithobrake.report.style import output
 from lithobrake.report.tables import INPUT_COLUMNS, beds_table, input_cells, table_cell, touchdowns_table
 from lithobrake.report.variance_figure import PARTS, SOIL, part_words
@@ -31,11 +31,11 @@ LEVELS = {"0.05": "5 %", "0.5": "median", "0.95": "95 %"}
 
 
 def tiles(data: SequenceResults) -> list[Tile]:
-    """The share that stays, and the most telling numbers beside it, as far as the summary has them."""
-    stays = data.table("stays")
+    """The return fraction, and the most telling numbers beside it, as far as the summary has them."""
+    returns = data.table("returns")
     alone = "of these landings, without an interval: other beds, places or attitudes give another figure"
     sure = f"({interval(data)})" if has_interval(data) else alone
-    found = [Tile(f"{100 * stays['share']:.{share_digits(data)}f}", "%", f"{action(data)} {sure}")] if stays else []
+    found = [Tile(f"{100 * returns['share']:.{share_digits(data)}f}", "%", f"{action(data)} {sure}")] if returns else []
     median = data.table("outputs", "speed_out", "quantiles").get("0.5")
     if median:
         words = "outgoing speed V+, median over those that leave"
@@ -64,7 +64,7 @@ def tables(data: SequenceResults) -> list[PageTable]:
     """Those of what the summary has."""
     results = data.results
     made: dict[Callable[[SequenceResults], PageTable], str] = {
-        _answer: STAYS,
+        _answer: RETURNS,
         _inputs: "runs",
         _outputs: "outputs",
         _variance: "variance_shares",
@@ -79,20 +79,20 @@ def tables(data: SequenceResults) -> list[PageTable]:
 
 
 def _answer(data: SequenceResults) -> PageTable:
-    stays, digits = data.results[STAYS], share_digits(data)
-    rows = [[f"landers that {action(data)}", percent(stays["share"], digits)]]
+    returns, digits = data.results[RETURNS], share_digits(data)
+    rows = [[f"landers that {action(data)}", percent(returns["share"], digits)]]
     if has_interval(data):
-        rows.append([f"{percent(data.level, 0)} interval", bounds((stays["lower"], stays["upper"]), digits)])
+        rows.append([f"{percent(data.level, 0)} interval", bounds((returns["lower"], returns["upper"]), digits)])
     for key, words in (("next_bed", "on one next bed"), ("if_missing", "if none or all of those without an answer do")):
-        low, high = stays.get(key) or (0.0, 0.0)
+        low, high = returns.get(key) or (0.0, 0.0)
         if low < high:
             rows.append([words, bounds((low, high), 1)])
-    if stays.get("emulator") is not None:
-        rows.append(["the same by the emulator", percent(stays["emulator"])])
-    if stays.get("flight_sampling") is not None:
-        rows.append(["+- by the number of flights alone", f"{100 * stays['flight_sampling']:.1f} points"])
-    rows += [["from", stays["from"]]] if stays.get("from") else []
-    note = as_sentence(stays["why"]) if stays.get("why") else ""
+    if returns.get("emulator") is not None:
+        rows.append(["the same by the emulator", percent(returns["emulator"])])
+    if returns.get("flight_sampling") is not None:
+        rows.append(["+- by the number of flights alone", f"{100 * returns['flight_sampling']:.1f} points"])
+    rows += [["from", returns["from"]]] if returns.get("from") else []
+    note = as_sentence(returns["why"]) if returns.get("why") else ""
     return PageTable("The answer", ["quantity", "value"], rows, note)
 
 
@@ -100,8 +100,8 @@ def _outputs(data: SequenceResults) -> PageTable:
     """Mean and quantiles of the landings that left."""
     columns = ["output", "unit", "mean", "standard deviation", *LEVELS.values()]
     rows = []
-    # The share that stays is the answer, and has a better estimate there.
-    for name in (name for name in data.results["outputs"] if name != STAYS):
+    # The return fraction is the answer, and has a better estimate there.
+    for name in (name for name in data.results["outputs"] if name != RETURNS):
         table = data.table("outputs", name)
         shown, spread = output(name), table.get("standard_deviation")
         cells = [
@@ -150,7 +150,7 @@ def _variance(data: SequenceResults) -> PageTable:
     note = (
         "Shares of the whole variance in per cent, over the laws of the inputs, beds, places and attitudes; in "
         "brackets 90 % intervals. The parts (without those of single inputs) add up to 100. They are freed of scatter "
-        "and not cut, so one that is next to nothing may be below 0. The share that stays is a mean over headings "
+        "and not cut, so one that is next to nothing may be below 0. The return fraction is a mean over headings "
         "already: what headings do is in none of its parts."
     )
     columns = ["part", *(sign(name) for name in records)]
@@ -184,7 +184,7 @@ def _side_runs(data: SequenceResults) -> PageTable:
     effects, chaos = (data.table("runs", "side_runs", key) for key in ("soil_total_effect", "chaos_deviation"))
     for name in dict.fromkeys([*effects, *chaos]):
         shown = output(name)
-        row, unit, factor = (sign(name), "", 1.0) if name == STAYS else (shown.row, shown.unit, shown.factor)
+        row, unit, factor = (sign(name), "", 1.0) if name == RETURNS else (shown.row, shown.unit, shown.factor)
         rows.append([row, _part(effects, name), _estimate(chaos.get(name), factor), unit])
     columns = ["output", "total effect of the soil [%]", "standard deviation by chaos", "unit"]
     note = (

@@ -27,16 +27,16 @@ DESIGN_WORDS = {
 
 
 def tiles(data: PaperResults) -> list[Tile]:
-    """The share that remains, and the most telling numbers beside it."""
+    """The return fraction, and the most telling numbers beside it."""
     telling = TellingNumbers.of(data.results)
     main, score, speed = telling.main_input, telling.score, telling.speed
     low, high = main.interval
     noise = main.noise_share
     found = [
         Tile(
-            f"{100 * data.results['shares']['remains']['share']:.1f}",
+            f"{100 * data.results['shares']['returns']['share']:.1f}",
             "%",
-            f"{outcome_words(data)['remains'].format(hours=hours(data.study['flight']['duration']))}; {_scope(data)}",
+            f"{outcome_words(data)['returns'].format(hours=hours(data.study['flight']['duration']))}; {_scope(data)}",
         ),
         _touchdowns_tile(telling),
         Tile(

@@ -31,7 +31,7 @@ DRAWN_TABLES = (
         SUMMARY,
         ("results.variance_shares.*",),
         "Where the scatter of an output of a drawn study comes from (docs/estimates.md); null where the runs cannot "
-        "tell, and with design.method = paper. stays: of the share of its flights for which a run remains",
+        "tell, and with design.method = paper. returns: of the share of its flights for which a run returns",
         {
             "soil": "inputs of grains and surface, and of the lander's contacts: part",
             "soil_by_input.*": "one of them alone: part",
@@ -67,7 +67,7 @@ DRAWN_TABLES = (
             "upper": "upper bound likewise",
             "level": "probability that bounds of this table stand for",
             "source": "what answers: runs, or the emulator where it is so rare (or so sure) that runs do not",
-            "runs.*": "the same by the runs, whichever answers: keys of results.stays",
+            "runs.*": "the same by the runs, whichever answers: keys of results.returns",
             "emulator": "null where the emulator cannot tell",
             "emulator.*": "the same by the emulator",
             "tail_limit": "the most that a tail may have of which so many runs show nothing",

@@ -272,7 +272,7 @@ class StudyResults:
 
     @cached_property
     def run_flights(self) -> "Table":
-        """How the flights of each run of a drawn study ended, from many sites, and which share of them stays."""
+        """How the flights of each run of a drawn study ended, from many sites, and which share of them returns."""
         return self._table("run", self._rows("run_flights.csv", ("run", *_RUN)), ("run", *_RUN), RUN | FLIGHT)
 
     def _refuse_drawn(self, name: str, what: str) -> None:

@@ -175,7 +175,7 @@ SUMMARY_TABLES = (
     ),
     KeyTable(
         SUMMARY,
-        ("results.stays",),
+        ("results.returns",),
         "The answer as numbers: the share that remain, down again in time, or captured where the site holds",
         {
             "share": "over the laws of the study file: of runs that were drawn, or of samples of the expansion",
@@ -194,7 +194,7 @@ SUMMARY_TABLES = (
         SUMMARY,
         ("results.shares", "results.without_scatter.shares"),
         "What became of the samples up to the last that flew: captured, left_sideways, time_limit, outside (drawn with "
-        "an elevation or speed that there is not), impact, flying (at the end of the time), escaped, partner; remains "
+        "an elevation or speed that there is not), impact, flying (at the end of the time), escaped, partner; returns "
         "(impact, and captured where the site holds), missing (left_sideways, time_limit, outside)",
         {
             "sample_count": "samples looked at",

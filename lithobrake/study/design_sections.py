@@ -31,7 +31,7 @@ class DesignSection(Section):
     """sequence: half the interval that the answer is to have, as a share of 1; more runs than run_count are made, on
     more beds, until it has. Absent: run_count runs, whatever their interval."""
     half_width_of: StrictStr | None = None
-    """sequence: name of the limit state that half_width is asked of. Absent: of the share that stays."""
+    """sequence: name of the limit state that half_width is asked of. Absent: of the return fraction."""
     largest_run_count: PointCount = None
     """sequence: most runs that half_width may ask for. Absent: ten times run_count."""
     side_runs: StrictBool = False

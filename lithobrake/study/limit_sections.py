@@ -9,10 +9,10 @@ from lithobrake.study.section import Section
 
 
 class LimitStatesSection(Section):
-    """Conditions whose probability the study tells, by names of your own: fast = "speed_out > 0.1 and not stays".
+    """Conditions whose probability the study tells, by names of your own: fast = "speed_out > 0.1 and not returns".
 
-    Outputs of the touchdown [SI] stand in comparisons; stays, captured, impact, flying, escaped and partner are true or
-    false (docs/reliability.md). With design.method = "sequence" only."""
+    Outputs of the touchdown [SI] stand in comparisons; returns, captured, impact, flying, escaped and partner are true
+    or false (docs/reliability.md). With design.method = "sequence" only."""
 
     model_config = ConfigDict(extra="allow")
     __pydantic_extra__: dict[str, Annotated[str, LimitStateText()]] = Field(init=False)

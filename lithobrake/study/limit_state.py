@@ -19,9 +19,9 @@ if TYPE_CHECKING:
 
     Mask = NDArray[np.bool_]
 
-STAYS = "stays"
+RETURNS = "returns"
 # What becomes of a lander in the first flight, as a word that is true or false.
-FATES = (STAYS, TouchdownOutcome.CAPTURED.value, *(status.value for status in FlightStatus))
+FATES = (RETURNS, TouchdownOutcome.CAPTURED.value, *(status.value for status in FlightStatus))
 # Outputs that a lander has also if it is captured; all others are of its way out, which it does not have.
 ALSO_OF_CAPTURED = ("contact_duration", "penetration", "peak_acceleration", "energy_lost")
 # A condition that a person wrote; a longer one would overflow the parser.
@@ -54,7 +54,7 @@ class NoLimitStateError(ValueError):
 
 @dataclass(frozen=True)
 class LimitState:
-    """A condition such as `speed_out > 0.1 and not stays`; `of` reads one.
+    """A condition such as `speed_out > 0.1 and not returns`; `of` reads one.
 
     outputs, fates: the names that it uses, in their order.
     """
@@ -105,7 +105,7 @@ class LimitStateText:
     def read(self, value: object) -> str:
         """Give back the text; refuse what is no condition."""
         if not isinstance(value, str):
-            raise refuse(value, ALLOWED, 'write it in quotation marks, as in "speed_out > 0.1 and not stays"')
+            raise refuse(value, ALLOWED, 'write it in quotation marks, as in "speed_out > 0.1 and not returns"')
         try:
             LimitState.of(value)
         except NoLimitStateError as error:
@@ -120,7 +120,7 @@ def _parsed(text: str) -> ast.expr:
     try:
         return ast.parse(text.strip(), mode="eval").body
     except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
-        raise NoLimitStateError('it cannot be read: write it as in "speed_out > 0.1 and not stays"') from error
+        raise NoLimitStateError('it cannot be read: write it as in "speed_out > 0.1 and not returns"') from error
 
 
 def _check(node: ast.expr) -> None:
@@ -175,7 +175,7 @@ def _number(node: ast.expr) -> float | None:
 
 
 def _word_and_truth(node: ast.Compare) -> tuple[str, bool] | None:
-    """The word of a comparison such as `stays == false`, and whether it is to be so; None for another comparison."""
+    """The word of a comparison such as `returns == false`, and whether it is to be so; None for another comparison."""
     match node:
         case ast.Compare(left=ast.Name(id=word), ops=[ast.Eq() | ast.NotEq() as op], comparators=[other]):
             said = other.id if isinstance(other, ast.Name) else str(getattr(other, "value", ""))

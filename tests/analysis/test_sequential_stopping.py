@@ -12,7 +12,7 @@ from lithobrake.analysis import half_width_of, next_run_count, scatter_of, share
 from lithobrake.chaos import sobol_sequence
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
-from synthetic_landings import INPUTS, Truth, exact_share, stays
+from synthetic_landings import INPUTS, Truth, exact_share, returns
 
 STUDIES, FIRST, LARGEST = 60, 120, 1200
 Answers = Callable[[np.ndarray, np.ndarray], np.ndarray]
@@ -52,7 +52,7 @@ def test_runs_go_on_until_the_interval_is_narrow_enough_and_then_it_holds_the_tr
     truth, half_width = Truth(rho=rho), 0.015
     exact, held, counts = exact_share(truth), 0, []
     for seed in range(STUDIES):
-        values, bed = landings(truth, stays, seed)
+        values, bed = landings(truth, returns, seed)
         path = stop(values, bed, half_width)
         end = path[-1]
         assert (half_width_of(values[:end], bed[:end]) or 1.0) <= half_width
@@ -90,7 +90,7 @@ def test_no_event_so_far_is_no_certainty() -> None:
 
 
 def test_the_largest_count_ends_it_and_what_tells_nothing_doubles_the_runs() -> None:
-    values, bed = landings(Truth(), stays, 0)
+    values, bed = landings(Truth(), returns, 0)
     assert next_run_count(values[:120], bed[:120], 1e-4, 130, bed_count_of) == 130
     assert next_run_count(values[:120], bed[:120], 1e-4, 120, bed_count_of) is None
     for told, beds in ((np.full(30, np.nan), bed[:30]), (values[:30], np.zeros(30))):

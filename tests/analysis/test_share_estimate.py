@@ -179,8 +179,8 @@ def test_the_next_bed_of_a_share_near_one_is_a_share_and_is_held() -> None:
     for _ in range(200):
         # Beds of a beta law with mean .95 and deviation .05, ten landings on each of fifteen, all or nothing.
         of_beds = random.beta(17.1, 0.9, 16)
-        stays = random.random(150) < np.repeat(of_beds[:15], 10)
-        found = share_estimate(stays.astype(float), np.repeat(np.arange(15), 10))
+        returns = random.random(150) < np.repeat(of_beds[:15], 10)
+        found = share_estimate(returns.astype(float), np.repeat(np.arange(15), 10))
         if found.next_bed is None:
             continue
         lowest = min(lowest, found.next_bed[0])
@@ -192,7 +192,7 @@ def test_the_next_bed_of_a_share_near_one_is_a_share_and_is_held() -> None:
 @pytest.mark.parametrize(
     ("given", "words"),
     [
-        ({"terms": (np.zeros((3, 1)), np.zeros((1, 1), dtype=np.int64))}, "terms are of 3 runs and stays of 4"),
+        ({"terms": (np.zeros((3, 1)), np.zeros((1, 1), dtype=np.int64))}, "terms are of 3 runs and returns of 4"),
         ({"flight_count": 0}, "flight_count is 0; allowed: at least 1"),
     ],
 )

@@ -14,7 +14,7 @@ from ..synthetic_landings import (
     SPEED_LIMIT,
     Truth,
     random_soils,
-    stays,
+    returns,
 )
 
 LOWER = (0.0, 0.0, -np.inf, 0.0)
@@ -50,7 +50,7 @@ def law_errors(
     truth: Truth, model: emulator.Emulator | DrawnRuns, point_count: int = 30, draw_count: int = 1500
 ) -> np.ndarray:
     """Errors [4] at soils that were not run: of speed, mean W2**2 / variance; of all outputs, sliced, each by its
-    standard deviation; of the share that stays, root mean square [points]; of the marginal speed, W2 / deviation.
+    standard deviation; of the return fraction, root mean square [points]; of the marginal speed, W2 / deviation.
     """
     rng = np.random.default_rng(99)
     soils = random_soils(point_count, rng)
@@ -63,7 +63,7 @@ def law_errors(
         exact = truth.conditional(soil, draw_count, seed=k)
         # Captured landers have no outputs; twice as many draws leave enough.
         found = drawn[k][~np.isnan(drawn[k, :, 0])][:draw_count]
-        shares = [stays(y, np.full(draw_count, "clear")).mean() for y in (found, exact)]
+        shares = [returns(y, np.full(draw_count, "clear")).mean() for y in (found, exact)]
         first, second = _embedded(found) / spread, _embedded(exact) / spread
         sliced = _wasserstein(first @ DIRECTIONS.T, second @ DIRECTIONS.T).mean()
         errors.append([_wasserstein(first[:, 0], second[:, 0]), sliced, (shares[0] - shares[1]) ** 2])

@@ -173,9 +173,9 @@ def test_the_page_gives_no_interval_that_would_hold_for_these_runs_only(out: Pat
                if isinstance(value, dict) and "share" in value]  # fmt: skip
     assert len(shares) > 10
     assert all(share["lower"] is share["upper"] is None for share in shares)
-    assert results["shares"]["why"] == results["stays"]["why"]
+    assert results["shares"]["why"] == results["returns"]["why"]
     assert results["headline"][0].startswith("With the touchdowns of this study's own program: ")
-    assert results["headline"][1] == results["stays"]["why"]
+    assert results["headline"][1] == results["returns"]["why"]
     total, bounds = (results["screening"][key]["speed_out"] for key in ("sobol_total", "sobol_total_interval"))
     assert all(bounds[name][0] <= total[name] <= bounds[name][1] for name in total)
     assert all("q2_interval" in score for table in results["scores"].values() for score in table.values())

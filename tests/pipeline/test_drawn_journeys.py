@@ -57,8 +57,8 @@ def test_the_speed_of_samples_follows_that_of_the_arrival_and_never_passes_it(jo
 
 def test_a_captured_lander_stays_where_the_ground_holds_it(journeys: StudyResults) -> None:
     table = journeys.run_flights.where(journeys.run_flights["outcome"] == "captured")
-    assert len(table["stays"]) > 2
-    assert set(table["stays"]) == {1.0}
+    assert len(table["returns"]) > 2
+    assert set(table["returns"]) == {1.0}
 
 
 @pytest.mark.parametrize(
@@ -74,9 +74,9 @@ def test_one_bed_or_one_place_gives_no_interval_anywhere(
 ) -> None:
     results = made(tmp_path / "out", SyntheticLander(), **changes)
     found = results.summary["results"]
-    stays = found["stays"]
-    assert (stays["lower"], stays["upper"], stays["next_bed"]) == (None, None, None)
-    assert words in stays["why"]
+    returns = found["returns"]
+    assert (returns["lower"], returns["upper"], returns["next_bed"]) == (None, None, None)
+    assert words in returns["why"]
     assert "gives another figure; this study cannot say how different" in results.headline[1]
     assert "interval" not in results.headline[0]
     assert {entry["lower"] for entry in found["shares"].values() if isinstance(entry, dict)} == {None}
@@ -101,8 +101,8 @@ def test_landers_over_the_rim_never_count_as_staying(tmp_path: Path) -> None:
     found = results.summary["results"]
     lost = found["runs"]["outcomes"]["left_sideways"]
     assert lost > 0
-    low, high = found["stays"]["if_missing"]
-    assert low < found["stays"]["share"] < high
+    low, high = found["returns"]["if_missing"]
+    assert low < found["returns"]["share"] < high
     assert high - low == pytest.approx(lost / 48)
     assert any("nobody knows where the lander went" in sentence for sentence in results.headline)
     assert found["shares"]["missing"]["count"] >= found["shares"]["left_sideways"]["count"] > 0

@@ -45,13 +45,13 @@ def flown_share(count: int) -> float:
 
 
 def test_the_share_of_the_runs_and_that_of_the_emulator_hold_the_truth(results: StudyResults) -> None:
-    stays, truth = results.summary["results"]["stays"], flown_share(8000)
-    assert stays["lower"] < truth < stays["upper"]
-    assert 0.02 < stays["upper"] - stays["lower"] < 0.15
-    assert (stays["from"], stays["level"], stays["why"]) == ("150 landings on 15 beds", 0.9, None)
-    assert abs(stays["emulator"] - truth) < 0.05
-    remains = results.summary["results"]["shares"]["remains"]
-    assert remains["lower"] < truth < remains["upper"]
+    returns, truth = results.summary["results"]["returns"], flown_share(8000)
+    assert returns["lower"] < truth < returns["upper"]
+    assert 0.02 < returns["upper"] - returns["lower"] < 0.15
+    assert (returns["from"], returns["level"], returns["why"]) == ("150 landings on 15 beds", 0.9, None)
+    assert abs(returns["emulator"] - truth) < 0.05
+    returning = results.summary["results"]["shares"]["returns"]
+    assert returning["lower"] < truth < returning["upper"]
     assert results.summary["results"]["emulator"]["warning"] is None
     assert "90 % interval" in results.headline[0]
 
@@ -61,12 +61,12 @@ def test_the_share_of_the_explorer_over_the_whole_law_is_that_of_the_emulator(re
     program = """const { facts, law: packedLaw, flown: packedFlown } = given, starts = unpack(packedFlown);
       const flown = new Flown(starts.starts, starts.status), law = new Law(unpack(packedLaw), facts);
       flown.cells = new Uint16Array(starts.status.length);
-      const { stays, known } = new Explorer(law, flown, facts).whole;
+      const { returns, known } = new Explorer(law, flown, facts).whole;
       const sum = (list) => list.reduce((all, one) => all + one, 0);
-      return sum(stays) / sum(known);"""
+      return sum(returns) / sum(known);"""
     page = (results.folder / "report" / "index.html").read_text(encoding="utf-8")
     found = answer_of(("law.js", "flown.js", "explore.js"), program, explorer_data(page))
-    share, flown = results.summary["results"]["stays"]["emulator"], results.flights.row_count
+    share, flown = results.summary["results"]["returns"]["emulator"], results.flights.row_count
     # Both stand on the same flights; the study's share has the chance of so many drawn velocities beside.
     assert abs(found - share) < 3.0 * np.sqrt(share * (1.0 - share) / flown)
 
@@ -87,7 +87,7 @@ def test_the_ways_of_flights_lead_from_the_site_to_their_ends(results: StudyResu
 
 def test_parts_of_the_variance_add_up_and_side_runs_tell_theirs(results: StudyResults) -> None:
     found = results.summary["results"]
-    assert set(found["variance_shares"]) == {"speed_out", "elevation_out", "spin_out", "stays"}
+    assert set(found["variance_shares"]) == {"speed_out", "elevation_out", "spin_out", "returns"}
     parts = found["variance_shares"]["speed_out"]
     whole = ("soil", "bed", "place_and_attitude", "chaos")
     assert sum(parts[name]["share"] for name in whole) == pytest.approx(1.0)
@@ -141,4 +141,4 @@ def test_a_captured_run_stays_where_the_ground_holds_it(results: StudyResults) -
         captured = [row for row in csv.DictReader(file) if row["outcome"] == "captured"]
     # At the equator of Didymos nothing lies on the ground.
     assert captured
-    assert {(row["settled"], row["lofted"], float(row["stays"])) for row in captured} == {("0", "64", 0.0)}
+    assert {(row["settled"], row["lofted"], float(row["returns"])) for row in captured} == {("0", "64", 0.0)}

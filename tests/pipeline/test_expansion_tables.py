@@ -118,20 +118,20 @@ def test_the_whole_law_of_the_explorer_is_that_of_the_samples(results: StudyResu
     found = answer_of(ALL, """const { facts, law: packedLaw, flown: packedFlown } = given, starts = unpack(packedFlown);
       const flown = new Flown(starts.starts, starts.status), law = new Law(unpack(packedLaw), facts);
       flown.cells = new Uint16Array(starts.status.length);
-      const explorer = new Explorer(law, flown, facts), { stays, known, left } = explorer.whole;
+      const explorer = new Explorer(law, flown, facts), { returns, known, left } = explorer.whole;
       const sum = (list) => list.reduce((all, one) => all + one, 0);
       let speed = 0;
       explorer.eachDraw(facts.inputs.map(() => [0, 1]), POINTS, (refit, row) => {
         if (row >= 0 && explorer.canLeave()) speed += explorer.y[facts.speed];
       });
-      return [sum(stays) / sum(known), sum(left) / sum(known), speed / sum(left)];""", given)  # fmt: skip
+      return [sum(returns) / sum(known), sum(left) / sum(known), speed / sum(left)];""", given)  # fmt: skip
     share, samples = results.summary["results"]["shares"], results.samples
     left = samples["outcome"] == "clear"
     speed = samples["speed_out"][left]
     # The study has the chance of so many samples and flights; the refits of the page widen a share by less.
     flown = share["sample_count"]
     chance = [math.sqrt(0.25 / flown), math.sqrt(0.25 / len(left)), speed.std() / math.sqrt(left.sum())]
-    expected = np.array([share["remains"]["share"], left.mean(), speed.mean()])
+    expected = np.array([share["returns"]["share"], left.mean(), speed.mean()])
     assert np.all(np.abs(np.array(found) - expected) < 3.0 * np.array(chance) + 0.01 * expected)
 
 

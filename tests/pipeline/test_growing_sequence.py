@@ -74,7 +74,7 @@ def test_runs_are_made_until_the_half_width_is_met(narrow: tuple[Path, DesignRun
     # A quarter is captured: 1.7 sqrt(.1875 / N) is .06 at 150 runs; one stage more at the most.
     assert 110 <= runs.run_count <= 240
     assert len(set(bed)) == max(12, runs.run_count // 10)
-    steps = [sentence for sentence in said if sentence.startswith("the share that stays is known to +- ")]
+    steps = [sentence for sentence in said if sentence.startswith("the return fraction is known to +- ")]
     assert "from 24 runs on 12 beds, and design.half_width asks for +- 6: going on to 50 runs on 12" in steps[0]
     assert f"from {runs.run_count} runs on " in steps[-1]
     assert steps[-1].endswith("asks for +- 6: that is enough")

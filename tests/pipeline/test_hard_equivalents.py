@@ -63,7 +63,7 @@ def test_journeys_on_it_stand_beside_soil_and_hard_ground(results: StudyResults)
     rest = results.summary["results"]["rest"]
     assert rest["equivalent"]["sample_count"] == rest["soil"]["sample_count"] == 200
     assert rest["equivalent"]["outside"]["count"] == 0
-    # A fifth stays at the first impact.
+    # A fifth returns at the first impact.
     assert rest["equivalent"]["settled"]["share"] > 0.2
     for path in leaves(results.summary):
         assert words_of("summary.json", path)

@@ -18,9 +18,9 @@ FAST, FASTEST = 0.14, 0.21
 CONDITIONS = {
     "fast": f"speed_out > {FAST}",
     "fastest": f"speed_out > {FASTEST}",
-    "gone": "stays == false",
+    "gone": "returns == false",
     "caught": "captured",
-    "fast_and_back": f"speed_out > {FAST} and stays",
+    "fast_and_back": f"speed_out > {FAST} and returns",
 }
 
 
@@ -56,11 +56,11 @@ def test_a_common_limit_state_is_told_by_the_runs_and_a_rare_one_by_the_emulator
 
 
 def test_words_agree_with_the_shares_of_the_study(results: StudyResults, found: dict[str, Any]) -> None:
-    stays = results.summary["results"]["stays"]
+    returns = results.summary["results"]["returns"]
     gone = found["gone"]["runs"]
-    assert 1.0 - gone["share"] == pytest.approx(stays["share"], abs=1e-9)
-    assert [1.0 - gone["upper"], 1.0 - gone["lower"]] == pytest.approx([stays["lower"], stays["upper"]], abs=1e-9)
-    assert found["gone"]["emulator"]["share"] == pytest.approx(1.0 - stays["emulator"], abs=1e-9)
+    assert 1.0 - gone["share"] == pytest.approx(returns["share"], abs=1e-9)
+    assert [1.0 - gone["upper"], 1.0 - gone["lower"]] == pytest.approx([returns["lower"], returns["upper"]], abs=1e-9)
+    assert found["gone"]["emulator"]["share"] == pytest.approx(1.0 - returns["emulator"], abs=1e-9)
     captured = results.summary["results"]["runs"]["outcomes"]["captured"]
     assert found["caught"]["failing_runs"] == captured
     assert found["fast_and_back"]["failing_runs"] < found["fast"]["failing_runs"]

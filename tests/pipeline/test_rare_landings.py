@@ -28,7 +28,7 @@ LIMIT = MIDDLE * math.exp(SPREAD * stats.norm.isf(RARE))
 CONDITIONS = {
     "fast": f"speed_out > {LIMIT!r}",
     "never": "speed_out > 10",
-    "gone": "not stays",
+    "gone": "not returns",
     "hard": "peak_acceleration > 50",
 }
 
@@ -157,7 +157,7 @@ def test_what_never_happens_is_not_looked_for_without_end(tmp_path: Path) -> Non
     ("name", "count", "words"),
     [
         ("slow", 200, r"NAME is 'slow'; allowed: a name of \[limit_states\] \(fast, never, gone, hard\)"),
-        ("gone", 200, r"limit_states\.gone asks for stays, which is true or false"),
+        ("gone", 200, r"limit_states\.gone asks for returns, which is true or false"),
         ("hard", 20, r"limit_states\.hard asks for peak_acceleration, which no landing has"),
         ("fast", 25, r"--landings is 25; allowed: multiples of 10 from 20"),
     ],

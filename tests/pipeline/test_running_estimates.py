@@ -37,15 +37,15 @@ def test_estimates_are_those_of_the_runs_with_beds_as_units() -> None:
     assert first == "so far, from 60 landings on 6 beds:"
     assert share.startswith("  captured: 20.0 % (90 %: ")
     assert speed.startswith(f"  mean speed_out: {SPEEDS[~captured].mean():.4g} m/s (90 %: ")
-    assert "The share that stays is not known yet" in last
+    assert "The return fraction is not known yet" in last
     content = json.loads(json.dumps(found.to_json(), allow_nan=False))
     assert content["captured"]["from"] == "60 landings on 6 beds"
-    assert (content["stays"], content["speed_out"]["level"]) == (None, 0.9)
+    assert (content["returns"], content["speed_out"]["level"]) == (None, 0.9)
     shares = np.where(captured, 1.0, 0.25)
     flown = running_estimates([record(run) for run in range(60)], {f"run {run}": shares[run] for run in range(60)})
     assert flown is not None
-    assert flown.stays == share_estimate(shares, bed)
-    assert flown.lines()[-1].startswith("  stay: 40.0 % (90 %: ")
+    assert flown.returns == share_estimate(shares, bed)
+    assert flown.lines()[-1].startswith("  return fraction: 40.0 % (90 %: ")
 
 
 def test_runs_without_an_answer_widen_it_and_one_bed_has_no_interval() -> None:

@@ -54,7 +54,7 @@ def test_numbers_printed_with_six_digits_agree() -> None:
     outputs = {"velocity_out_x": 1.23456, "velocity_out_y": 0.100005, "velocity_out_z": 0.0100005, "spin_out": 0.0}
     speed, elevation = made(outputs)["outputs"]["speed_out"], made(outputs)["outputs"]["elevation_out"]
     printed = {**outputs, "speed_out": float(f"{speed:.6g}"), "elevation_out": float(f"{elevation:.6g}")}
-    # What is given stays as it was given.
+    # What is given returns as it was given.
     assert made(printed)["outputs"] == printed
 
 

@@ -129,7 +129,7 @@ def made_up_summary(scores: dict[str, dict[str, dict[str, object]]]) -> dict[str
     quantiles = {"quantile_0.05": 0.08, "quantile_0.5": 0.1, "quantile_0.95": 0.12}
     share = {"count": 200, "share": 0.5, "lower": None, "upper": None}
     ends_of_samples = (
-        "captured", "left_sideways", "time_limit", "outside", "impact", "flying", "escaped", "remains", "missing"
+        "captured", "left_sideways", "time_limit", "outside", "impact", "flying", "escaped", "returns", "missing"
     )  # fmt: skip
     fit = {"method": "ols", "term_count": 10, "condition_number": 5.3, "rmse_estimate": 0.01}
     fit |= {"noise_std": 0.005, "noise_share": 0.06}
@@ -245,7 +245,12 @@ def made_up_summary(scores: dict[str, dict[str, dict[str, object]]]) -> dict[str
                 **dict.fromkeys(ends_of_samples, share),
                 "captured": none | {"upper_limit": 0.03},
             },
-            "stays": {"share": 0.5, "why": "Another bed gives another figure.", "flight_sampling": 0.04, "level": 0.9},
+            "returns": {
+                "share": 0.5,
+                "why": "Another bed gives another figure.",
+                "flight_sampling": 0.04,
+                "level": 0.9,
+            },
             "answer": ["On this bed, at this place: 50.0 % come down again.", "Another bed gives another figure."],
             "flights": {"gravity_table_error": None, "jacobi_drift_largest_m2_s2": None, "time_s": quantiles},
             "ellipses": ellipses,

@@ -13,7 +13,7 @@ from lithobrake import emulator
 from lithobrake.analysis import mean_estimate, quantile_estimates, regression_terms, share_estimate, variance_shares
 from lithobrake.pipeline.explorer_tables import save_explorer, tables_of_refits
 
-from ..synthetic_landings import ELEVATION_LIMIT, INPUTS, OUTPUT_NAMES, SPEED_LIMIT, Truth, stays
+from ..synthetic_landings import ELEVATION_LIMIT, INPUTS, OUTPUT_NAMES, SPEED_LIMIT, Truth, returns
 
 KEYS = ("grain.friction", "grain.restitution", "grain.young_modulus", "grain.rolling_friction", "grain.density")
 SHOWN = ("speed_out", "elevation_out", "spin_out")
@@ -33,7 +33,7 @@ def write_sequence(
     """
     inputs = dict(zip(KEYS, INPUTS.values(), strict=True))
     x, y, outcome, bed = truth.study(run_count, bed_count, seed)
-    staying = stays(y, outcome)
+    staying = returns(y, outcome)
     model = emulator.fit(
         inputs, x, y, groups=bed if bed_count > 1 else None, outcome=outcome, lower=[0.0, 0.0, -np.inf, 0.0],
         upper=[SPEED_LIMIT, ELEVATION_LIMIT, np.inf, np.inf], riders=["azimuth_out"], output_names=list(OUTPUT_NAMES),
@@ -41,7 +41,7 @@ def write_sequence(
     write_runs(folder / "designs" / "sequence.csv", x, y, outcome, bed)
     by_emulator = write_samples_of(model, inputs, folder / "samples.h5")
     save_explorer(folder / "explorer.h5", tables_of_refits(model.refits(5, seed=1), BOUND))
-    columns = {name: y[:, OUTPUT_NAMES.index(name)] for name in SHOWN} | {"stays": staying}
+    columns = {name: y[:, OUTPUT_NAMES.index(name)] for name in SHOWN} | {"returns": staying}
     twins = 0.1 * np.random.default_rng(seed).standard_normal(12)
     terms = regression_terms(inputs, x)
     one_bed = "no region was set, so the place is one" if bed_count == 1 else None
@@ -57,7 +57,7 @@ def write_sequence(
         **any_study,
         "study": any_study["study"] | sequence_study(),
         "results": kept | {
-            "stays": share.summary(),
+            "returns": share.summary(),
             "variance_shares": {name: part and part.summary() for name, part in parts.items()},
             "outputs": {name: estimates(values, bed) for name, values in columns.items()},
             "runs": {"count": run_count, "beds": bed_count, "outcomes": counts, "over_rim": 3,
@@ -96,7 +96,7 @@ def write_runs(path: Path, x: np.ndarray, y: np.ndarray, outcome: np.ndarray, be
 
 
 def write_samples_of(model: emulator.Emulator, inputs: dict[str, Any], path: Path) -> float:
-    """Draw the emulator once at each of many soils; the share that stays by it."""
+    """Draw the emulator once at each of many soils; the return fraction by it."""
     random = np.random.default_rng(8)
     x = np.column_stack([law.ppf(random.random(SAMPLE_COUNT)) for law in inputs.values()])
     drawn = model.draw(x, 1, seed=4)
@@ -106,7 +106,7 @@ def write_samples_of(model: emulator.Emulator, inputs: dict[str, Any], path: Pat
         file["outcome"] = np.array([OUTCOMES.index(word) for word in words], dtype=np.uint8)
         file.attrs["input_names"], file.attrs["output_names"] = list(KEYS), list(OUTPUT_NAMES)
         file.attrs["outcomes"] = list(OUTCOMES)
-    return float(np.nanmean(stays(drawn.y[:, 0], words)))
+    return float(np.nanmean(returns(drawn.y[:, 0], words)))
 
 
 def side_runs() -> dict[str, Any]:

@@ -154,13 +154,13 @@ def test_an_interval_is_that_of_python(share: float) -> None:
     random = np.random.default_rng(6)
     known = random.integers(400, 500, 50)
     for spread in (0.0, 0.02):
-        stays = random.binomial(known, np.clip(share + spread * random.standard_normal(50), 0.0, 1.0))
+        returns = random.binomial(known, np.clip(share + spread * random.standard_normal(50), 0.0, 1.0))
         found = answer_of(
             ALL,
-            "return refitInterval(Float64Array.from(given.stays), Float64Array.from(given.known), 12, given.reach);",
-            {"stays": stays.tolist(), "known": known.tolist(), "reach": t_quantile(11)},
+            "return refitInterval(Float64Array.from(given.returns), Float64Array.from(given.known), 12, given.reach);",
+            {"returns": returns.tolist(), "known": known.tolist(), "reach": t_quantile(11)},
         )
-        known_to_python = refit_interval(stays, known, 12, 240)
+        known_to_python = refit_interval(returns, known, 12, 240)
         bounds = [known_to_python.value, known_to_python.lower, known_to_python.upper]
         assert found == pytest.approx(bounds, rel=EXACT)
 

@@ -58,10 +58,10 @@ def test_what_is_below_0_is_drawn_to_the_left_of_it() -> None:
 
 def test_every_part_has_its_interval_and_an_output_that_is_not_known_says_so() -> None:
     with figure_style():
-        figure = variance_figure({"speed_out": RECORD, "stays": None}, {"stays": "share that stays"})
+        figure = variance_figure({"speed_out": RECORD, "returns": None}, {"returns": "return fraction"})
     words = words_of(figure)
     assert "these runs cannot tell" in words
-    assert "share that stays" in words
+    assert "return fraction" in words
     for found in ("12.0 % (7 to 17)", "20.0 % (15 to 25)", "-4.0 % (0 to 1)", "72.0 % (67 to 77)"):
         assert found in words
     # On the left of its interval, and in the legend.

@@ -20,7 +20,7 @@ from lithobrake.report.sequence_answer import answer, warnings
 from lithobrake.report.sequence_page import sequence_content
 from lithobrake.results import open_study
 
-STAYS = {
+RETURNS = {
     "share": 0.71, "lower": 0.68, "upper": 0.73, "level": 0.9, "from": "244 landings on 6 beds",
     "next_bed": [0.64, 0.77], "if_missing": [0.685, 0.718], "flight_sampling": 0.003, "emulator": 0.71, "why": None,
 }  # fmt: skip
@@ -53,7 +53,7 @@ def told(data: SequenceResults, **tables: Any) -> SequenceResults:
 def holding(data: SequenceResults) -> SequenceResults:
     """The study of section 3.4 of the audit, at a site that holds what lies there."""
     site = data.results["site"] | {"effective_acceleration_outward": -1e-5}
-    return told(data, site=site, stays=STAYS, runs=RUNS)
+    return told(data, site=site, returns=RETURNS, runs=RUNS)
 
 
 def test_the_product_of_an_archive_stands_beside_the_body(data: SequenceResults) -> None:
@@ -83,15 +83,15 @@ def test_the_answer_says_over_what_it_holds(data: SequenceResults) -> None:
 
 
 def test_bounds_that_are_narrow_beside_the_interval_are_not_in_the_answer(data: SequenceResults) -> None:
-    assert "have no answer" not in answer(told(holding(data), stays=STAYS | {"if_missing": [0.705, 0.712]}))
+    assert "have no answer" not in answer(told(holding(data), returns=RETURNS | {"if_missing": [0.705, 0.712]}))
 
 
 def test_where_the_site_pushes_outward_landers_come_down_again_and_none_stay(data: SequenceResults) -> None:
-    assert "71 % of landers come down again within 12 h" in answer(told(data, stays=STAYS, runs=RUNS))
+    assert "71 % of landers come down again within 12 h" in answer(told(data, returns=RETURNS, runs=RUNS))
 
 
 def test_one_bed_gives_a_share_and_says_why_it_has_no_interval(data: SequenceResults) -> None:
-    words = answer(told(holding(data), stays=STAYS | ONE_BED, runs=RUNS | {"beds": 1}))
+    words = answer(told(holding(data), returns=RETURNS | ONE_BED, runs=RUNS | {"beds": 1}))
     assert "On this bed: 71 % of landers stay or come down again within 12 h; from" in words
     assert words.endswith("One bed was poured.")
     assert "interval" not in words
@@ -104,7 +104,7 @@ def test_sentences_of_the_summary_go_before_those_of_the_page(data: SequenceResu
 
 
 def test_warnings_name_few_beds_and_an_emulator_that_contradicts_the_runs(data: SequenceResults) -> None:
-    few, off = warnings(told(holding(data), stays=STAYS | {"emulator": 0.8}))
+    few, off = warnings(told(holding(data), returns=RETURNS | {"emulator": 0.8}))
     assert "6 beds" in few
     assert "bed.bed_count to 12 or more" in few
     assert "by it 80 % stay or come down again within 12 h, outside the interval of the runs (90 %: 68 to 73 %)" in off
@@ -114,7 +114,7 @@ def test_warnings_name_few_beds_and_an_emulator_that_contradicts_the_runs(data: 
 
 
 def test_first_screen_has_warnings_and_the_share_with_its_interval(sequence_folder: Path, tmp_path: Path) -> None:
-    text = write_changed(sequence_folder, tmp_path, lambda results: results["stays"].update(emulator=0.99))
+    text = write_changed(sequence_folder, tmp_path, lambda results: results["returns"].update(emulator=0.99))
     head = text[: text.index("<h2>Figures")]
     assert '<p class="warning">The emulator is off: by it 99' in head
     assert re.search(r"<b>\d\d(\.\d)? <small>%</small></b><span>come down again within 12 h \(90 %: \d", head)
@@ -251,8 +251,8 @@ def test_what_the_emulator_found_stands_beside_the_inputs(data: SequenceResults)
 
 
 KEYS = (
-    "beds", "ellipses", "emulator", "flights", "outputs", "outputs_of_runs", "rest", "runs", "shares", "site", "stays",
-    "variance_shares",
+    "beds", "ellipses", "emulator", "flights", "outputs", "outputs_of_runs", "rest", "runs", "shares", "site",
+    "returns", "variance_shares",
 )  # fmt: skip
 
 
@@ -279,7 +279,7 @@ def test_a_study_without_samples_and_flights_says_what_is_not_drawn(sequence_fol
 
 def test_one_bed_has_a_page_without_intervals(sequence_folder: Path, tmp_path: Path) -> None:
     def one_bed(results: dict[str, Any]) -> None:
-        results["stays"] |= ONE_BED
+        results["returns"] |= ONE_BED
         results["runs"]["beds"] = 1
         results["variance_shares"] = dict.fromkeys(results["variance_shares"])
         for table in results["outputs"].values():

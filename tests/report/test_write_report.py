@@ -52,7 +52,7 @@ def test_figures_stand_beside_the_page_as_files(study_folder: Path, report: str)
 def test_sentences_carry_the_numbers_of_the_summary(report: str) -> None:
     for words in (
         "On this bed, at this place: 50.0 % come down again. Another bed gives another figure.",
-        "+- 4.0 points (90 %) in what remains",
+        "+- 4.0 points (90 %) in the return fraction",
         "at most 3.0 %",
         "12 grains",
         "solid fraction of 0.58",
@@ -157,7 +157,7 @@ DAMAGED: list[tuple[str, Callable[[Path], object]]] = [
         "summary.json",
         lambda path: path.write_text(path.read_text().replace('"format_version": 2', '"format_version": 7')),
     ),
-    ("summary.json", lambda path: path.write_text(path.read_text().replace('"remains"', '"stays"'))),
+    ("summary.json", lambda path: path.write_text(path.read_text().replace('"returns"', '"return"'))),
     ("scores.json", lambda path: path.write_text('{"refined": 3}')),
     ("flights.csv", lambda path: path.write_text("")),
     ("flights.csv", lambda path: path.write_text(path.read_text()[:-9])),

@@ -33,8 +33,8 @@ def test_every_key_that_a_study_writes_is_described(name: str, folder: Path) -> 
 
 
 def test_a_key_that_nothing_is_said_of_is_named() -> None:
-    with pytest.raises(KeyError, match=r"results\.shares\.remains\.colour of summary\.json is described nowhere"):
-        words_of("summary.json", ("results", "shares", "remains", "colour"))
+    with pytest.raises(KeyError, match=r"results\.shares\.returns\.colour of summary\.json is described nowhere"):
+        words_of("summary.json", ("results", "shares", "returns", "colour"))
 
 
 def test_no_key_is_described_twice() -> None:

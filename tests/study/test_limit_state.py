@@ -18,7 +18,7 @@ LANDINGS = {
     "speed_out": [0.2, 0.05, NAN, NAN],
     "peak_acceleration": [30.0, 60.0, 70.0, NAN],
     "captured": [0.0, 0.0, 1.0, NAN],
-    "stays": [0.0, 1.0, 1.0, NAN],
+    "returns": [0.0, 1.0, 1.0, NAN],
     "escaped": [1.0, 0.0, 0.0, NAN],
 }
 MET: list[tuple[str, list[float]]] = [
@@ -27,12 +27,12 @@ MET: list[tuple[str, list[float]]] = [
     ("speed_out <= 0.1", [0, 1, 0, NAN]),
     ("not speed_out > 0.1", [0, 1, 1, NAN]),
     ("peak_acceleration > 50", [0, 1, 1, NAN]),
-    ("stays == false", [1, 0, 0, NAN]),
-    ("stays != true", [1, 0, 0, NAN]),
-    ("not stays", [1, 0, 0, NAN]),
+    ("returns == false", [1, 0, 0, NAN]),
+    ("returns != true", [1, 0, 0, NAN]),
+    ("not returns", [1, 0, 0, NAN]),
     ("captured or 0.01 < speed_out < 1e-1", [0, 1, 1, NAN]),
     ("(escaped or captured) and peak_acceleration > 50", [0, 0, 1, NAN]),
-    ("speed_out > -1 and not stays", [1, 0, 0, NAN]),
+    ("speed_out > -1 and not returns", [1, 0, 0, NAN]),
 ]
 # How far the same landings are from meeting conditions, speeds counted in .1 m/s and accelerations in 10 m/s2.
 SCALE = {"speed_out": 0.1, "peak_acceleration": 10.0}
@@ -47,8 +47,8 @@ MARGINS: list[tuple[str, list[float]]] = [
 REFUSED: list[tuple[str, str]] = [
     ("speed > 1", "speed is no output; did you mean speed_out?"),
     ("speed_out", "speed_out is a number: compare it"),
-    ("stays > 1", "stays is true or false, and no number"),
-    ("stay", "stay is no name here; did you mean stays?"),
+    ("returns > 1", "returns is true or false, and no number"),
+    ("retuns", "retuns is no name here; did you mean returns?"),
     ("speed_out == 0.1", "outputs are compared by <, <=, >, >="),
     ("1 < 2", "compares numbers alone"),
     ("speed_out > 1e999", "neither an output nor a finite number"),
@@ -57,8 +57,8 @@ REFUSED: list[tuple[str, str]] = [
     ("speed_out > true", "true is no output"),
     ("__import__('os').remove('x')", "is no condition"),
     ("(speed_out > 1", "it cannot be read"),
-    ("stays\0", "it cannot be read"),
-    (" and ".join(["stays"] * 100), "it has 995 characters"),
+    ("returns\0", "it cannot be read"),
+    (" and ".join(["returns"] * 100), "it has 1195 characters"),
 ]
 
 
@@ -85,9 +85,9 @@ def test_landings_meet_a_condition_or_not_or_nobody_knows(text: str, expected: l
 
 def test_what_is_known_decides_where_it_can() -> None:
     unknown = {name: np.array([NAN]) for name in FATES} | {"speed_out": np.array([0.2])}
-    assert LimitState.of("speed_out > 0.1 or stays").met(unknown).tolist() == [1.0]
-    assert LimitState.of("speed_out < 0.1 and stays").met(unknown).tolist() == [0.0]
-    assert np.isnan(LimitState.of("speed_out > 0.1 and stays").met(unknown)).all()
+    assert LimitState.of("speed_out > 0.1 or returns").met(unknown).tolist() == [1.0]
+    assert LimitState.of("speed_out < 0.1 and returns").met(unknown).tolist() == [0.0]
+    assert np.isnan(LimitState.of("speed_out > 0.1 and returns").met(unknown)).all()
 
 
 @pytest.mark.parametrize(("text", "words"), REFUSED)
@@ -101,16 +101,16 @@ def test_what_is_no_condition_is_refused_in_one_sentence(text: str, words: str) 
 def test_other_things_than_texts_under_names_are_refused() -> None:
     assert "limit_states.fast is 3; allowed: outputs (SI) compared" in refusal({"fast": 3})
     assert "limit_states is 3; allowed: a table" in refusal(3)
-    assert "limit_states.too fast is no name" in refusal({"too fast": "stays"})
+    assert "limit_states.too fast is no name" in refusal({"too fast": "returns"})
 
 
 def test_a_method_without_drawn_runs_is_refused() -> None:
-    said = refusal({"fast": "stays"}, design={"method": "paper"})
+    said = refusal({"fast": "returns"}, design={"method": "paper"})
     assert 'limit_states.fast goes with design.method = "sequence", and it is "paper"' in said
 
 
 def test_a_study_keeps_its_conditions_by_name() -> None:
-    conditions = {"fast": "speed_out > 0.1", "gone": "not stays"}
+    conditions = {"fast": "speed_out > 0.1", "gone": "not returns"}
     study = check_tables(TABLES | {"limit_states": conditions}, Path())
     assert study.limit_states.conditions() == conditions
     assert check_tables(TABLES, Path()).limit_states.conditions() == {}

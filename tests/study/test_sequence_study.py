@@ -56,7 +56,7 @@ REFUSED: list[tuple[dict[str, dict[str, Any]], list[str]]] = [
     ({"design": {"run_count": 20}, "bed": {"bed_count": 21}}, ["bed.bed_count is 21, and design.run_count 20"]),
     ({"design": {"half_width": 0.1, "half_width_of": "fast"}}, ['design.half_width_of is "fast"; allowed: a name of']),
     (
-        {"design": {"half_width_of": "fast"}, "limit_states": {"fast": "stays"}},
+        {"design": {"half_width_of": "fast"}, "limit_states": {"fast": "returns"}},
         ['design.half_width_of is "fast", and there is no design.half_width'],
     ),
     ({"design": {"half_width": 0.5}}, ["design.half_width is 0.5", "above 0 and below 0.5"]),

@@ -22,7 +22,7 @@ class ExpectedHalfWidth:
     """Half the interval of a share over so many runs on so many beds, as a share of 1.
 
     at_worst           of a share for which each run is all or nothing
-    typical            of one for which each run has a share of its own, as the share of headings that stay, with the
+    typical            of one for which each run has a share of its own, as the share of headings that return, with the
                        scatter of landings with drawn places
     spread             standard deviation of a run in the typical case
     correlation        of two runs on one bed, in both
@@ -47,7 +47,7 @@ class ExpectedHalfWidth:
         counts = f"{self.run_count} runs on {self.bed_count} beds"
         lines = [
             f"Half width to expect ({100 * self.level:.0f} % interval, {counts}): {_points(self.typical)} for the "
-            f"share that stays, at most {_points(self.at_worst)} for any share.",
+            f"return fraction, at most {_points(self.at_worst)} for any share.",
             f"  Assumed: a run scatters by {self.spread:g} (as landings with drawn places did), at most by "
             f"{YES_OR_NO:g}; runs on one bed are correlated by {self.correlation:g}.",
         ]
