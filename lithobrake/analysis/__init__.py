@@ -3,6 +3,7 @@
 from lithobrake.analysis.best_choice import BestChoice, best_choice, quantile_within
 from lithobrake.analysis.confidence import LEVEL, IntervalEstimate
 from lithobrake.analysis.control_variate import regression_terms
+from lithobrake.analysis.direction import DirectionEstimate, direction_estimate
 from lithobrake.analysis.ellipse import Ellipses, dispersion_ellipses
 from lithobrake.analysis.failure_inputs import FailureInput, failure_inputs
 from lithobrake.analysis.failure_probability import (
@@ -28,6 +29,7 @@ from lithobrake.analysis.variance_shares import VarianceShares, variance_shares
 __all__ = [
     "LEVEL",
     "BestChoice",
+    "DirectionEstimate",
     "Ellipses",
     "FailureInput",
     "FailureProbability",
@@ -42,6 +44,7 @@ __all__ = [
     "VarianceShares",
     "best_choice",
     "chaos_variance",
+    "direction_estimate",
     "dispersion_ellipses",
     "drawn_counts",
     "drawn_failures",

@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[np.float64]
 Labels = NDArray[np.int64]
+Bounds = tuple[float, float]
 
 # Probability with which every interval of an estimate holds the truth; results carry it, so that no reader has to ask.
 LEVEL = 0.9

@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lithobrake.analysis.confidence import LEVEL, Array, IntervalEstimate, Labels
+from lithobrake.analysis.confidence import LEVEL, Array, Bounds, IntervalEstimate, Labels
 from lithobrake.analysis.outcome_model import upper_limit
 from lithobrake.analysis.refit_interval import refit_interval
 from lithobrake.analysis.sampling import sample_inputs
-from lithobrake.analysis.share_estimate import Bounds, ShareEstimate, share_estimate
+from lithobrake.analysis.share_estimate import ShareEstimate, share_estimate
 
 if TYPE_CHECKING:
     from lithobrake.emulator import Draws, Emulator

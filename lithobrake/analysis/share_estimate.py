@@ -11,6 +11,7 @@ from lithobrake.analysis.bed_components import bed_components
 from lithobrake.analysis.confidence import (
     LEVEL,
     Array,
+    Bounds,
     Labels,
     normal_quantile,
     numbered_beds,
@@ -23,7 +24,6 @@ from lithobrake.analysis.next_bed import next_bed_deviation
 from lithobrake.analysis.outcome_model import upper_limit
 from lithobrake.chaos.threads import one_thread
 
-Bounds = tuple[float, float]
 ONE_BED = (
     "all runs came down on one bed; another bed gives another share, and these runs cannot say how different: set "
     "bed.bed_count to 12 or more"
