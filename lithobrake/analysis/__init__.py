@@ -15,7 +15,7 @@ from lithobrake.analysis.failure_probability import (
 from lithobrake.analysis.half_width import expected_half_width, runs_for_half_width
 from lithobrake.analysis.inference import LearntInput, Observation, Posterior, infer
 from lithobrake.analysis.observed_bounces import Identifiability, identifiability, predictive_p_value
-from lithobrake.analysis.outcome_model import OutcomeModel, upper_limit
+from lithobrake.analysis.outcome_model import OutcomeModel, unseen_limit, upper_limit
 from lithobrake.analysis.output_estimates import mean_estimate, quantile_estimates
 from lithobrake.analysis.proportion import wilson_interval
 from lithobrake.analysis.refit_interval import refit_interval
@@ -67,6 +67,7 @@ __all__ = [
     "share_estimate",
     "soil_total_effect",
     "subset_simulation",
+    "unseen_limit",
     "upper_limit",
     "variance_shares",
     "wilson_interval",

@@ -45,7 +45,7 @@ def write_sequence(
     twins = 0.1 * np.random.default_rng(seed).standard_normal(12)
     terms = regression_terms(inputs, x)
     one_bed = "no region was set, so the place is one" if bed_count == 1 else None
-    share = share_estimate(staying, bed, terms=terms, flight_count=64, emulator=by_emulator, why=one_bed)
+    share = share_estimate(staying, bed, terms=terms, emulator=by_emulator, why=one_bed)
     results = any_study["results"]
     kept = {key: results[key] for key in ("beds", "outputs_of_runs", "site", "ellipses", "flights")}
     counts = {word: int((outcome == word).sum()) for word in sorted(set(outcome.tolist()))}
