@@ -77,7 +77,7 @@ def test_the_answer_says_over_what_it_holds(data: SequenceResults) -> None:
         "Landing at latitude 0 deg, longitude 0 deg on Didymos. 71 % of landers stay or come down again within 12 h "
         "(90 % interval 68 to 73 %), over the soils of the study file, on beds, places and attitudes that were not in "
         "the study; from 244 landings on 6 beds. On one next bed the share lies between 64 and 77 %. 8 of 252 landings "
-        "(3 %), lost over the rim of the bed, have no answer: between 68.5 and 71.8 % of all stay or come down again "
+        "(3 %), left the bed laterally, have no answer: between 68.5 and 71.8 % of all stay or come down again "
         "within 12 h, if none or all of these do."
     )
 
