@@ -17,8 +17,8 @@ TAIL, FEWEST_BEDS_OF_TAIL = 0.1, 10
 def mean_estimate(y: ArrayLike, bed: ArrayLike) -> IntervalEstimate:
     """Mean of an output y [run_count], NaN where a run has none, with its interval from beds [run_count].
 
-    For an output with a heavy tail, as the contact time, read the quantiles: a few rare runs carry much of its mean, and
-    where a study has none of them the interval promises too much (0.73 to 0.93 at a tail index of 1.9). Raises
+    For an output with a heavy tail, as the contact time, read the quantiles: a few rare runs carry much of its mean,
+    and where a study has none of them the interval promises too much (0.73 to 0.93 at a tail index of 1.9). Raises
     ValueError for runs on one bed. Source: [Cameron-2008] (errors from few clusters).
     """
     values, beds = _known(y, bed)
