@@ -94,7 +94,9 @@ def _spread(name: str, y: np.ndarray, bed: np.ndarray, why: str | None) -> dict[
 
 
 def _with_ends(one: IntervalEstimate) -> dict[str, float | None]:
-    return {"value": one.value, "lower": one.lower, "upper": one.upper}
+    # Few beds give no interval of a tail.
+    lower, upper = (bound if np.isfinite(bound) else None for bound in (one.lower, one.upper))
+    return {"value": one.value, "lower": lower, "upper": upper}
 
 
 def _part(one: IntervalEstimate) -> dict[str, float]:
