@@ -84,7 +84,7 @@ def _digits(away: float) -> int:
 
 
 def _share(study: Study, results: Mapping[str, Any], *, holds: bool) -> list[str]:
-    """Who comes to rest, as far as that was asked, and the return fraction; why it has no interval, where it has none."""
+    """Who comes to rest, as far as that was asked, and the return fraction; why it has no interval, if so."""
     returns, rest = results["returns"], _at_rest(study, results["rest"], holds=holds)
     # The level of an interval is named once in a sentence.
     said = {key: value for key, value in returns.items() if key != "level" or "interval" not in rest}

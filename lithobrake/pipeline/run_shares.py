@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from lithobrake.analysis import LEVEL, quantile_estimates, regression_terms, share_estimate
+from lithobrake.analysis import LEVEL, IntervalEstimate, quantile_estimates, regression_terms, share_estimate
 from lithobrake.outcomes import FlightStatus, JourneyStatus, TouchdownOutcome
 from lithobrake.pipeline.design_runs import DesignRuns
 from lithobrake.pipeline.designs import design_inputs
@@ -65,11 +65,16 @@ def flight_estimates(impacts: RunImpacts, runs: DesignRuns, why: str | None) -> 
         ends: list[list[float] | None] = [None] * len(QUANTILES)
         if why is None and several:
             found = quantile_estimates(values, bed, QUANTILES)
-            points, ends = [one.value for one in found], [[one.lower, one.upper] for one in found]
+            points, ends = [one.value for one in found], [_bounds(one) for one in found]
         keys = [f"quantile_{level:g}" for level in QUANTILES]
         table[name] = dict(zip(keys, points, strict=True)) | {"intervals": dict(zip(keys, ends, strict=True))}
         table[name]["of"] = landings
     return table
+
+
+def _bounds(one: IntervalEstimate) -> list[float] | None:
+    """Bounds of a quantile; few beds give none of a tail."""
+    return [one.lower, one.upper] if np.isfinite([one.lower, one.upper]).all() else None
 
 
 def _events(fates: np.ndarray) -> dict[str, np.ndarray]:
