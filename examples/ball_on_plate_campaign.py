@@ -41,6 +41,6 @@ def main(folder: Path) -> None:
         print(f"{name:<20} {'  '.join(f'{share:>14.3f}' for share in shares)}")
 
 
-# Workers import this file, too: only the first process may start the campaign.
+# Workers import this file, as it defines the model: only the first process may start the campaign.
 if __name__ == "__main__":
     main(Path(sys.argv[1] if len(sys.argv) > 1 else "ball_on_plate"))

@@ -13,6 +13,7 @@ from lithobrake.campaign.ledger import Ledger
 from lithobrake.campaign.limited_calls import submit_limited
 from lithobrake.campaign.limits import Limits
 from lithobrake.campaign.local_executor import WorkerDiedError
+from lithobrake.campaign.main_module import MainModuleError
 from lithobrake.campaign.record import RunStatus
 from lithobrake.campaign.run_counts import Tally, common_reasons
 from lithobrake.campaign.single_run import Model, run_model
@@ -145,13 +146,15 @@ class Coordinator:
 def _result(future: "Future[Any]") -> Mapping[str, Any]:
     """How a run has ended.
 
-    Raises ConnectionError when the executor takes no more runs, or cannot bring this one to a worker: what a run itself
-    does wrong comes back as its result.
+    Raises MainModuleError for a model of a script that no process can import, ConnectionError when the executor takes
+    no more runs, or cannot bring this one to a worker: what a run itself does wrong comes back as its result.
     """
     error = CancelledError("it was cancelled") if future.cancelled() else future.exception()
     if error is None:
         answer: Mapping[str, Any] = future.result()
         return answer
+    if isinstance(error, MainModuleError):
+        raise error
     if isinstance(error, WorkerDiedError):
         return {"status": RunStatus.FAILED, "reason": str(error), "wall_s": error.wall_s, "host": error.host}
     raise ConnectionError(

@@ -14,6 +14,7 @@ from types import TracebackType
 from typing import Any, Self
 
 from lithobrake.atomic import locked
+from lithobrake.campaign.main_module import refuse_while_importing
 from lithobrake.campaign.record import (
     COLUMNS,
     ENDED,
@@ -59,6 +60,7 @@ class Ledger:
 
         Raises ValueError when another process has it open, when the file is no ledger, or when it cannot be written.
         """
+        refuse_while_importing()
         self.path = Path(path)
         self._open = ExitStack()
         refusal = f"another campaign is at work on {self.path}{{who}}; wait for it, or choose another ledger"

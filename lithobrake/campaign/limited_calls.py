@@ -1,6 +1,5 @@
 """Calls with limits on any executor: each in a process beside the worker's, which lives on when the call is ended."""
 
-import multiprocessing
 from collections.abc import Callable
 from concurrent.futures import Executor, Future
 from functools import cache
@@ -26,6 +25,4 @@ def limited(limits: Limits, function: Callable[..., Any], *args: Any) -> Any:
 
 @cache
 def _own_executor() -> LocalExecutor:
-    # Some executors start their workers as daemons, which may have no children; these end with their parent anyway.
-    multiprocessing.current_process().daemon = False
     return LocalExecutor(available_cores())

@@ -18,6 +18,7 @@ from multiprocessing.connection import Pipe, wait
 from typing import Any
 
 from lithobrake.campaign.limits import Limits, memory_by_session
+from lithobrake.campaign.main_module import refuse_unreachable
 from lithobrake.campaign.worker import BEGUN, Call, Worker
 
 # How often running calls are looked at when they have limits [s].
@@ -45,8 +46,8 @@ class WorkerDiedError(RuntimeError):
 class LocalExecutor(Executor):
     """A pool of processes, each with one thread; one that dies is replaced.
 
-    Processes are spawned, never forked: a fork of a process that has threads may hang. They end with this one, however
-    it ends.
+    Processes are interpreters of their own, never forks: a fork of a process that has threads may hang. They import the
+    script that is run here only where a call names something that it defines. They end with this one, however it ends.
     """
 
     def __init__(self, worker_count: int | None = None) -> None:
@@ -130,7 +131,7 @@ class LocalExecutor(Executor):
         except BaseException as error:
             self._give_up(error)
         for worker in self._workers:
-            worker.connection.close()
+            worker.end()
 
     def _hand_out(self) -> bool:
         """Give waiting calls to idle processes, starting processes as needed; False when all is done and closed."""
@@ -186,8 +187,7 @@ class LocalExecutor(Executor):
                 self._waiting.appendleft(worker.call)
         if self._stillborn_count >= _STILLBORN_LIMIT:
             raise BrokenExecutor(
-                f"processes end before they begin with a run ({worker.ended()}); in a script of your own, what starts "
-                'the campaign belongs under: if __name__ == "__main__":'
+                f"processes end before they begin with a run ({worker.ended()}); see what they wrote to standard error"
             )
 
     def _lose(self, worker: Worker, reason: str) -> None:
@@ -223,12 +223,14 @@ class LocalExecutor(Executor):
 
 def _pickled(*call: Any) -> bytes:
     try:
-        return pickle.dumps(call)
+        content = pickle.dumps(call)
     except (pickle.PicklingError, AttributeError, TypeError) as error:
         raise ValueError(
             f"a call cannot be sent to a process ({error}); a model may be a function of a file, outside of any other "
             "function, or an object whose attributes can be sent"
         ) from error
+    refuse_unreachable(content)
+    return content
 
 
 def available_cores() -> int:

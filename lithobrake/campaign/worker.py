@@ -1,18 +1,21 @@
 """One process that takes calls through a pipe: the coordinator's side of it, and its own."""
 
 import contextlib
+import io
 import multiprocessing
 import os
 import pickle
 import signal
+import subprocess
+import sys
 import threading
-from collections.abc import Iterator
 from concurrent.futures import Future
 from dataclasses import dataclass
-from multiprocessing.connection import Connection, wait
+from multiprocessing.connection import Connection, Pipe, wait
 from typing import Any
 
 from lithobrake.campaign.limits import Limits
+from lithobrake.campaign.main_module import MAIN, MainModule, Source, main_source, refuse_while_importing
 
 # One run fills one core; a numerical library that starts threads of its own would only slow the others down.
 _THREAD_COUNTS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
@@ -29,6 +32,18 @@ class Call:
     limits: Limits
 
 
+# What a process begins with: the modules that the coordinator finds, and then its calls. Nothing here imports the
+# coordinator's script, as the processes of the standard library do: it may be piped, or start a campaign unguarded.
+_START = """
+import sys
+from multiprocessing.connection import Connection
+calls, life = map(Connection, map(int, sys.argv[1:]))
+sys.path[:], sys.argv, main = calls.recv()
+from lithobrake.campaign.worker import serve
+serve(calls, life, main)
+"""
+
+
 class Worker:
     """A process, as its coordinator sees it.
 
@@ -37,17 +52,28 @@ class Worker:
 
     def __init__(self) -> None:
         """Start the process."""
-        context = multiprocessing.get_context("spawn")
-        self.connection, other_end = context.Pipe()
-        self._process = context.Process(target=serve, args=(other_end,), daemon=True)
-        # The process reads the variables while its interpreter starts.
-        with _environment(dict.fromkeys(_THREAD_COUNTS, "1")):
-            self._process.start()
+        refuse_while_importing()
+        self.connection, calls = Pipe()
+        # With the only other end in the coordinator, this one tells its end, however it ends.
+        life, self._life = Pipe(duplex=False)
+        ends = [calls.fileno(), life.fileno()]
+        # It leads a session of its own: Ctrl-C is the coordinator's, which keeps what is finished and then ends it.
+        self._process = subprocess.Popen(
+            [sys.executable, *_interpreter_options(), "-c", _START, *map(str, ends)],
+            stdin=subprocess.DEVNULL,
+            pass_fds=ends,
+            env=os.environ | dict.fromkeys(_THREAD_COUNTS, "1"),
+            start_new_session=True,
+        )
         # With the only other end in the process itself, the pipe closes when the process dies.
-        other_end.close()
-        self.number = int(self._process.pid or 0)
+        calls.close()
+        life.close()
+        self.number = self._process.pid
         self.call: Call | None = None
         self.begun: float | None = None
+        # One that has died already is found dead by its first call.
+        with contextlib.suppress(OSError):
+            self.connection.send((sys.path, sys.argv, main_source()))
 
     def take(self, call: Call) -> bool:
         """Send a call; False when the process is dead."""
@@ -60,41 +86,69 @@ class Worker:
 
     def kill(self) -> None:
         """End the process and all that it has started."""
-        if hasattr(os, "killpg"):
-            # It leads a group of its own from its first moment in `serve`; before that there is no such group.
-            with contextlib.suppress(ProcessLookupError):
-                os.killpg(self.number, signal.SIGKILL)
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(self.number, signal.SIGKILL)
         self._process.kill()
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            self._process.wait(timeout=5)
+
+    def end(self) -> None:
+        """Let an idle process end by itself, as what it has printed is written then."""
+        self.connection.close()
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            self._process.wait(timeout=5)
+        self.kill()
 
     def ended(self) -> str:
         """How the process ended, in words."""
-        self._process.join(timeout=5)
-        code = self._process.exitcode
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            self._process.wait(timeout=5)
+        code = self._process.returncode
         return f"signal {-code}" if code is not None and code < 0 else f"exit code {code}"
 
 
-def serve(connection: "Connection[Any, Any]") -> None:
-    """Take calls until the coordinator closes the pipe or ends."""
-    if hasattr(os, "setsid"):
-        # Ctrl-C is the coordinator's, which keeps what is finished and then ends its processes.
-        os.setsid()
-    threading.Thread(target=_end_with_the_coordinator, daemon=True).start()
+def _interpreter_options() -> list[str]:
+    """Options of this interpreter that a process of its own takes too, as for warnings."""
+    options: list[str] = subprocess._args_from_interpreter_flags()  # type: ignore[attr-defined]
+    return options
+
+
+def serve(connection: "Connection[Any, Any]", life: "Connection[Any, Any]", main: Source | None) -> None:
+    """Take calls until the coordinator closes the pipe or ends, which `life` tells; main: how its script is found."""
+    threading.Thread(target=_end_with_the_coordinator, args=(life,), daemon=True).start()
+    # A model that starts processes of its own does so beside the thread above, which no fork has.
+    multiprocessing.set_start_method("spawn")
+    script = MainModule(main)
     while True:
         try:
             call = connection.recv_bytes()
         except (EOFError, OSError):
             return
-        answer = _answer(call, connection)
+        answer = _answer(call, connection, script)
         try:
             connection.send_bytes(answer)
         except OSError:
             return
 
 
-def _answer(call: bytes, connection: "Connection[Any, Any]") -> bytes:
+class _CallUnpickler(pickle.Unpickler):
+    """Reads a call, and imports the coordinator's script where the call names something of it."""
+
+    def __init__(self, call: bytes, script: MainModule) -> None:
+        super().__init__(io.BytesIO(call))
+        self._script = script
+
+    def find_class(self, module_name: str, global_name: str) -> Any:
+        """What a name of a module stands for."""
+        if module_name == MAIN:
+            self._script.ensure()
+        return super().find_class(module_name, global_name)
+
+
+def _answer(call: bytes, connection: "Connection[Any, Any]", script: MainModule) -> bytes:
     """Make a call; whatever it raises is its answer."""
     try:
-        function, args, kwargs = pickle.loads(call)
+        function, args, kwargs = _CallUnpickler(call, script).load()
         connection.send_bytes(BEGUN)
         return pickle.dumps((True, function(*args, **kwargs)))
     except BaseException as error:
@@ -107,25 +161,6 @@ def _answer(call: bytes, connection: "Connection[Any, Any]") -> bytes:
         return answer
 
 
-def _end_with_the_coordinator() -> None:
-    parent = multiprocessing.parent_process()
-    if parent is None:
-        return
-    wait([parent.sentinel])
-    if hasattr(os, "killpg"):
-        os.killpg(os.getpid(), signal.SIGKILL)
-    os._exit(1)
-
-
-@contextlib.contextmanager
-def _environment(variables: dict[str, str]) -> Iterator[None]:
-    before = {name: os.environ.get(name) for name in variables}
-    os.environ.update(variables)
-    try:
-        yield
-    finally:
-        for name, value in before.items():
-            if value is None:
-                os.environ.pop(name, None)
-            else:
-                os.environ[name] = value
+def _end_with_the_coordinator(life: "Connection[Any, Any]") -> None:
+    wait([life])
+    os.killpg(os.getpid(), signal.SIGKILL)

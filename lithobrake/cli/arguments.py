@@ -7,6 +7,8 @@ import typer
 
 from lithobrake.cli.refusals import BAD_INPUT, leave
 
+# More processes than any machine runs at once.
+MOST_WORKERS = 10_000
 StudyPath = Annotated[Path, typer.Argument(metavar="STUDY.toml", help="The study file.", show_default=False)]
 OutPath = Annotated[
     str | None, typer.Option("--out", metavar="DIR", help="Folder of the study; the default is runs/<study name>.")
@@ -19,15 +21,22 @@ Scheduler = Annotated[
 ]
 Logs = Annotated[bool, typer.Option("--logs", help="Keep a log of each run in DIR/logs.")]
 Workers = Annotated[
-    int | None, typer.Option("--workers", min=1, metavar="N", help="Number of processes; the default is all cores.")
+    int | None,
+    typer.Option(
+        "--workers", min=1, max=MOST_WORKERS, metavar="N", help="Number of processes; the default is all cores."
+    ),
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print JSON, all numbers in SI.")]
 StudyDirectory = Annotated[Path, typer.Argument(metavar="DIR", help="The folder of a study.", show_default=False)]
 
 
 def study_folder(study: Path, out: str | None) -> Path:
-    """The folder of a study: the one that is given, or runs/<study name>."""
-    return Path("runs") / study.stem if out is None else given_folder(out)
+    """The folder of a study: the one that is given, or runs/<study name>; a file in its place is refused."""
+    folder = Path("runs") / study.stem if out is None else given_folder(out)
+    there = next((path for path in (folder, *folder.parents) if path.exists()), None)
+    if there is not None and not there.is_dir():
+        leave(f"{folder} cannot be written ({there} is a file); choose another folder with --out", BAD_INPUT)
+    return folder
 
 
 def given_folder(out: str) -> Path:

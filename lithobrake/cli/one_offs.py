@@ -1,5 +1,6 @@
 """Commands beside a study: one landing of it, a server of its models, and a look at the installation."""
 
+import sys
 from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -10,6 +11,7 @@ from lithobrake.cli.application import app
 from lithobrake.cli.arguments import Json, OutPath, StudyPath, study_folder
 from lithobrake.cli.refusals import one_sentence
 from lithobrake.cli.telling import tell, tell_json
+from lithobrake.plain import plain
 
 if TYPE_CHECKING:
     from lithobrake.pipeline import OneLanding
@@ -67,19 +69,31 @@ def serve(
         str, typer.Option("--host", metavar="ADDRESS", help="Address to listen on; others than this machine need one.")
     ] = "127.0.0.1",
     port: Annotated[int, typer.Option("--port", min=0, max=65535, help="Port; 0 takes a free one.")] = 4242,
+    time_limit: Annotated[
+        float | None,
+        typer.Option(
+            "--time-limit",
+            metavar="SECONDS",
+            help="Longest evaluation; the default is campaign.wall_limit, else 600.",
+        ),
+    ] = None,
 ) -> None:
     """Serve landing, emulator and flight of a study to clients of UM-Bridge, until Ctrl-C. Writes nothing."""
     folder = study_folder(study, out)
     with one_sentence():
-        from lithobrake.pipeline import served_models
-
-        models = served_models(study, folder)
+        # What follows brings NumPy and the compiler, and for some studies the shape of the body.
+        if sys.stderr.isatty():
+            print(f"Reading {plain(str(study))} and its files ...", file=sys.stderr, flush=True)
+        from lithobrake.pipeline import EvaluationProcess, ServedStudy
         from lithobrake.serve import model_server
 
-        server = model_server(models, host, port)
-    with server:
+        served = ServedStudy(study, folder)
+        models, evaluations = served.models(), EvaluationProcess(served, time_limit)
+        server = model_server(models, host, port, evaluations)
+    with server, evaluations:
         names = ", ".join(model.name for model in models)
-        tell([f"Serving {names} at http://{host}:{server.server_port}; Ctrl-C ends it."])
+        reach = "" if server.is_local else ", which any machine of the network can reach"
+        tell([f"Serving {names} at {server.address}{reach}; Ctrl-C ends it."])
         # That it was ended is no news to whoever ended it.
         with suppress(KeyboardInterrupt):
             server.serve_forever()

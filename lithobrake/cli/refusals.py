@@ -2,15 +2,16 @@
 
 import errno
 import shlex
+import shutil
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import NoReturn
+from typing import NoReturn, TextIO
 
 import typer
 
-from lithobrake.plain import plain
+from lithobrake.plain import plain, wrapped
 
 BAD_INPUT, INTERRUPTED = 2, 130
 
@@ -35,5 +36,10 @@ def command_line(*words: str | Path) -> str:
 
 
 def leave(sentence: str, code: int) -> NoReturn:
-    print(plain(sentence), file=sys.stderr)
+    print(fitted(plain(sentence), sys.stderr), file=sys.stderr)
     raise typer.Exit(code)
+
+
+def fitted(text: str, stream: TextIO) -> str:
+    """A text as wide as the terminal that a stream writes to; as it is for any other stream."""
+    return wrapped(text, shutil.get_terminal_size().columns) if stream.isatty() else text

@@ -7,22 +7,23 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from lithobrake.cli.refusals import one_sentence
+from lithobrake.cli.refusals import fitted, one_sentence
 from lithobrake.plain import plain
 
 
 def tell(lines: Iterable[str]) -> None:
-    """Print lines without escape sequences."""
+    """Print lines without escape sequences; those that a terminal would break within a word are broken at blanks."""
     with reader_may_leave():
         for line in lines:
-            print(plain(line))
+            print(fitted(plain(line), sys.stdout))
 
 
 def tell_json(content: Any) -> None:
     """Print JSON; it has no word for what is not a number, and neither has the content."""
     from json import dumps
 
-    tell([dumps(content, indent=2, allow_nan=False)])
+    with reader_may_leave():
+        print(plain(dumps(content, indent=2, allow_nan=False)))
 
 
 @contextmanager

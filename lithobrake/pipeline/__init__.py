@@ -12,17 +12,20 @@ if TYPE_CHECKING:
     from lithobrake.pipeline.planning.plan_in_words import plan_lines
     from lithobrake.pipeline.planning.planner import plan_study
     from lithobrake.pipeline.rare_landings import rare_failure
-    from lithobrake.pipeline.serving import served_models
+    from lithobrake.pipeline.serving import ServedStudy, served_models
+    from lithobrake.pipeline.serving_process import EvaluationProcess
     from lithobrake.pipeline.stages import Stage, make, stage_keys, stages_of
     from lithobrake.pipeline.state import report_page
     from lithobrake.pipeline.status import study_status
     from lithobrake.pipeline.study_run import run_study, write_report_again
 
 _HOME = {
+    "EvaluationProcess": "serving_process",
     "InferredStudy": "inferring",
     "Job": "job",
     "OneLanding": "one_landing",
     "Plan": "planning.plan",
+    "ServedStudy": "serving",
     "Stage": "stages",
     "StudyFolder": "folder",
     "infer_study": "inferring",
@@ -41,10 +44,12 @@ _HOME = {
     "write_report_again": "study_run",
 }
 __all__ = [
+    "EvaluationProcess",
     "InferredStudy",
     "Job",
     "OneLanding",
     "Plan",
+    "ServedStudy",
     "Stage",
     "StudyFolder",
     "infer_study",

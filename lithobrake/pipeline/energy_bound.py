@@ -1,10 +1,11 @@
 """The speed and spin that no lander leaves with: what energy allows."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from lithobrake.outcomes import TouchdownOutcome
 from lithobrake.pipeline.beds import bed_files
 from lithobrake.pipeline.folder import StudyFolder
 from lithobrake.study import Study
@@ -13,6 +14,11 @@ from lithobrake.touchdown_model import lander, medians, stored_bed
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from lithobrake.campaign import Record
+
+# More energy than that of the bound, by what time steps and printed digits are off.
+SLACK = 0.01
+LEAVES = {"speed_out", "spin_out"}
 SPIN = ("impact.spin_x", "impact.spin_y", "impact.spin_z")
 
 
@@ -73,6 +79,30 @@ def bound_numbers(study: Study, bed_height: float) -> dict[str, float]:
         "diameter_power": 2.0 if is_ball and not has_inertia else 0.0,
         **{name: float(known[name]) for name in names if name in known},
     }
+
+
+def energy_warning(study: Study, records: "Sequence[Record]", bed_height: float) -> str | None:
+    """What it means that runs left with more energy than they came with and gravity may have given; None without any.
+
+    A model of the user's own may have a source of energy, a spring or a thruster, so nothing is refused. bed_height: of
+    the highest bed [m]; 0 where a program of the user's own has a ground of its own.
+    """
+    left = [one for one in records if one.outcome == TouchdownOutcome.CLEAR and not LEAVES.difference(one.outputs)]
+    if not left:
+        return None
+    inputs = {name: np.array([one.inputs[name] for one in left]) for name in medians(study)}
+    bound = energy_bound(study, bed_height, inputs, len(left))
+    speed, spin = (np.array([one.outputs[name] for one in left]) for name in ("speed_out", "spin_out"))
+    ratio = (speed**2 + (bound.gyration * spin) ** 2) / np.maximum(bound.speed**2, np.finfo(float).tiny)
+    over = ratio > 1.0 + SLACK
+    if not over.any():
+        return None
+    worst = int(np.argmax(ratio))
+    return (
+        f"{int(over.sum())} of {len(left)} landers that left have more energy than impact and gravity give them, the "
+        f"worst {ratio[worst]:.3g} times as much ({speed[worst]:.3g} m/s after {inputs['impact.speed'][worst]:.3g} m/s): is "
+        "there a source of energy, or a unit wrong?"
+    )
 
 
 def height_of_beds(study: Study, folder: StudyFolder) -> float:

@@ -33,6 +33,8 @@ class FileState(StrEnum):
     EARLIER = "of an earlier setting or version"
     CHANGED = "changed after it was made"
     FOREIGN = "not made by this study"
+    # Of the stage at work, whose files are noted when all are there.
+    NEW = "made by the stage at work"
 
 
 def file_state(folder: Path, notes: Notes, name: str, key: str) -> FileState:

@@ -7,6 +7,7 @@ import numpy as np
 from lithobrake.campaign import Runs, missing
 from lithobrake.pipeline.design_runs import DesignRuns
 from lithobrake.pipeline.designs import design_inputs, points, replicate_count
+from lithobrake.pipeline.energy_bound import energy_warning, height_of_beds
 from lithobrake.pipeline.expansions import screened_inputs
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.sequence import SIDE_DESIGNS, inputs_of, sequence_rows, side_rows
@@ -64,7 +65,11 @@ def _make_rows(job: Job, design: str, rows: Sequence[Sequence[Mapping[str, float
     made = [touchdowns(job, rows[replicate], words, replicate) for replicate, words in enumerate(titles)]
     runs = Runs([record for one in made for record in one.records], sum(one.reused_count for one in made))
     inputs = tuple(design_inputs(job.study))
-    _account(job, design, runs, inputs_of([row for one in rows for row in one], inputs), inputs)
+    every = [row for one in rows for row in one]
+    _account(job, design, runs, inputs_of(every, inputs), inputs)
+    gained = energy_warning(job.study, runs.records, height_of_beds(job.study, job.folder))
+    if gained:
+        job.say(f"{title}: {gained}")
     DesignRuns.of(runs).save(job.folder, design)
 
 

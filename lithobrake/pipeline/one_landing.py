@@ -1,8 +1,8 @@
 """One landing of a study file, made at once: to look at, or to see what one number changes."""
 
 import math
-import tomllib
-from collections.abc import Callable, Iterable
+import re
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -10,8 +10,10 @@ from typing import TYPE_CHECKING, Any
 
 from lithobrake.outputs import TOUCHDOWN
 from lithobrake.pipeline.beds import bed_recipe
-from lithobrake.pipeline.sequence import sequence_rows
-from lithobrake.study import Study
+from lithobrake.pipeline.sequence import sequence_row
+from lithobrake.pipeline.site import with_site_gravity
+from lithobrake.study import Study, StudyError, fixed_study
+from lithobrake.study.refusals import closest
 from lithobrake.touchdown_model import draw, in_words_of_the_study, lander, landing, medians
 
 if TYPE_CHECKING:
@@ -19,6 +21,10 @@ if TYPE_CHECKING:
     from lithobrake.touchdown import Bed, Lander, Landing, Outcome
 
 FRAMES = 120
+# A number of TOML, and nothing else of it: no truth values, no comments, no second line.
+_NUMBER = re.compile(r"[-+]?(inf|nan|\d+(_\d+)*(\.\d+(_\d+)*)?([eE][-+]?\d+)?)", re.ASCII)
+# Seeds of pours are told apart by the number of the bed in so many bits.
+LAST_BED = 2**32 - 1
 
 
 @dataclass(frozen=True)
@@ -67,18 +73,17 @@ def landing_inputs(study: Study, changes: Iterable[str] = (), number: int = 1) -
     """What the run of a number reads, counted from 1, but for changes such as "grain.friction=0.4".
 
     By dotted key, in the units of the study file. A study in two stages lands at the medians, whatever the
-    number. Raises ValueError for a change of what a landing does not read, a study without soil, or a number below 1.
+    number. Raises ValueError for a change of what a landing does not read or the study file may not have, a study
+    without soil, or a number that no run of it has.
     """
     if not study.has_soil:
         raise ValueError("the study has a solver of its own and no soil to land on: ask that solver for its motion")
-    if number < 1:
-        raise ValueError(f"the number of a run is {number}; allowed: a whole number of at least 1")
+    study = with_site_gravity(study)
     values = _values(study, number)
-    for change in changes:
-        key, value = _changed(change, values)
-        values[key] = value
-    with in_words_of_the_study():
-        lander(study, values), landing(study, values)
+    changed = dict(_changed(change, values) for change in changes)
+    if changed:
+        values |= changed
+        _refuse(study, values)
     return values
 
 
@@ -93,6 +98,7 @@ def land_one(
     from lithobrake.touchdown import land, pour_bed, stored_or_poured
     from lithobrake.touchdown.bed import Bed
 
+    study = with_site_gravity(study)
     with in_words_of_the_study(), TemporaryDirectory(prefix="lithobrake-") as folder:
         recipe, path = bed_recipe(study, round(values["bed"])), Path(folder) / "bed.h5"
         stored_or_poured(recipe, path, lambda: pour_bed(recipe, progress=progress))
@@ -105,7 +111,18 @@ def _values(study: Study, number: int) -> dict[str, float]:
     """What the run of a number reads."""
     if study.design.method == "paper":
         return draw(study, medians(study), study.seed)
-    return sequence_rows(study, number)[-1]
+    last = study.design.most_runs
+    if not 1 <= number <= last:
+        raise ValueError(f"the number of a run is {number}; allowed: 1 to {last}, the runs of the study")
+    return sequence_row(study, number - 1)
+
+
+def _refuse(study: Study, values: Mapping[str, float]) -> None:
+    """Raise ValueError for numbers that the study file may not have."""
+    try:
+        fixed_study(study, {key: value for key, value in values.items() if key != "bed"})
+    except StudyError as error:
+        raise ValueError(f"--set: {'; '.join(error.problems)}") from error
 
 
 def _changed(change: str, values: dict[str, float]) -> tuple[str, float]:
@@ -114,13 +131,13 @@ def _changed(change: str, values: dict[str, float]) -> tuple[str, float]:
     if not sign:
         raise ValueError(f"--set is {change!r}; allowed: KEY=VALUE, say grain.friction=0.4")
     if key not in values:
-        raise ValueError(f"--set names {key!r}, which no landing of this study reads; it reads {', '.join(values)}")
-    try:
-        value = float(tomllib.loads(f"x = {text}")["x"])
-    except (tomllib.TOMLDecodeError, TypeError, ValueError):
-        raise ValueError(f"--set {key} is {text!r}; allowed: a number, in the unit of the study file") from None
+        known = f"{closest(key, values)}; it reads {', '.join(values)}"
+        raise ValueError(f"--set names {key!r}, which no landing of this study reads{known}")
+    if not _NUMBER.fullmatch(text):
+        raise ValueError(f"--set {key} is {text!r}; allowed: a number, in the unit of the study file")
+    value = float(text)
     if not math.isfinite(value):
-        raise ValueError(f"--set {key} is {text}; allowed: a finite number")
-    if key == "bed" and (value < 0.0 or value != round(value)):
-        raise ValueError(f"--set {key} is {text}; allowed: a whole number from 0 on")
+        raise ValueError(f"--set {key} is {value:g}; allowed: a finite number")
+    if key == "bed" and not (value == round(value) and 0.0 <= value <= LAST_BED):
+        raise ValueError(f"--set {key} is {value:g}; allowed: a whole number from 0 to {LAST_BED}")
     return key, value

@@ -44,6 +44,14 @@ def sequence_rows(study: Study, count: int | None = None) -> list[dict[str, floa
     return rows_at(study, beds_of_runs(study, count), x)
 
 
+def sequence_row(study: Study, run: int) -> dict[str, float]:
+    """All inputs of one run of the sequence, counted from 0: row `run` of sequence_rows, without the rows before it."""
+    from lithobrake.chaos import sobol_sequence
+
+    x = sobol_sequence(coordinates(study), 1, hashed_seed(study.seed, "sequence"), skip=run)
+    return rows_at(study, beds_of_runs(study, run + 1)[-1:], x)[0]
+
+
 def coordinates(study: Study) -> "dict[str, Distribution]":
     """What a run takes from its point, but for its bed: the uncertain inputs, then what it draws, with their laws."""
     from lithobrake.chaos import Uniform

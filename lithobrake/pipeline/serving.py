@@ -1,6 +1,6 @@
 """The models of a study as a server gives them: a landing, the emulator, a flight."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -20,9 +20,13 @@ from lithobrake.pipeline.site import SITE_KEYS, frames, site_body, site_medians,
 from lithobrake.pipeline.solver import LANDING
 from lithobrake.pipeline.touchdown_runs import model_of
 from lithobrake.serve import ServedModel
-from lithobrake.study import StudySource
+from lithobrake.study import Study, StudyError, StudySource, fixed_study
+from lithobrake.study.quantity import is_number
+from lithobrake.study.refusals import closest, show
 from lithobrake.touchdown_model import draw, medians
 
+# What a campaign that is solved by a server says of each run; the setting is that of the study which is served.
+RUN_KEYS = ("seed", "inputs", "setting")
 FLIGHT = ("status", "time_s", "latitude_deg", "longitude_deg", "impact_speed", "impact_incidence_deg")
 
 
@@ -58,15 +62,22 @@ class ServedStudy:
         return model_of(self.study, self.folder.path.absolute(), None)
 
     def landing(self, point: list[float], config: Mapping[str, Any]) -> list[float]:
-        """Land once. config: seed, of what the landing draws; or inputs, all numbers of a run by dotted key."""
-        seed = _seed(config)
-        values = medians(self.study) | dict(zip(self.inputs, point, strict=True))
-        if "inputs" in config:
-            values |= {str(name): float(value) for name, value in config["inputs"].items()}
-        else:
-            values = draw(self.study, values, seed)
-        answer = self._touchdown(values, seed)
+        """Land once. config: seed, of what the landing draws; inputs, numbers of the run in their place by dotted key.
+
+        Raises ValueError for keys that a landing does not read, and numbers that the study file may not have.
+        """
+        seed, given = _seed(config), _inputs(config)
+        values = draw(self.study, medians(self.study) | dict(zip(self.inputs, point, strict=True)), seed) | given
+        self._refuse_bed(values["bed"])
+        _refuse(self.study, {name: value for name, value in values.items() if name != "bed"})
+        answer = self._touchdown({name: float(value) for name, value in values.items()}, seed)
         return landing_vector(answer["outcome"], answer["outputs"])
+
+    def _refuse_bed(self, number: Any) -> None:
+        """Raise ValueError for the number of a bed that there is not; a program of the study's own has any."""
+        last = self.study.bed_count - 1 if self.study.has_soil else 2**53
+        if not is_number(number) or number != int(number) or not 0 <= number <= last:
+            raise ValueError(f"config.inputs: bed is {show(number)}; allowed: a whole number from 0 to {last}")
 
     @cached_property
     def _emulator(self) -> Any:
@@ -75,10 +86,22 @@ class ServedStudy:
         return load(self.folder / "emulator.json")
 
     def emulated(self, point: list[float], config: Mapping[str, Any]) -> list[float]:
-        """Draw a landing from the emulator. config: seed of the draw."""
+        """Draw a landing from the emulator. config: seed of the draw; inputs must be what the emulator was made for.
+
+        Raises ValueError for other inputs, and numbers that the study file may not have.
+        """
+        seed, given = _seed(config), _inputs(config)
+        values = medians(self.study) | dict(zip(self.inputs, point, strict=True))
+        _refuse(self.study, values)
+        for name in values.keys() & given.keys():
+            if given[name] != values[name]:
+                raise ValueError(
+                    f"config.inputs: {name} is {show(given[name])}, and the emulator has it at {show(values[name])}; "
+                    "leave it out, or serve the study that has it"
+                )
         x = np.array([point])
         bound = energy_bound(self.study, self._bed_height, dict(zip(self.inputs, x.T, strict=True)), 1)
-        drawn = DrawnLandings.of(self._emulator, x, bound, _seed(config))
+        drawn = DrawnLandings.of(self._emulator, x, bound, seed)
         outcome = tuple(TouchdownOutcome)[int(drawn.outcome[0])]
         return landing_vector(outcome, {name: float(values[0]) for name, values in drawn.table().items()})
 
@@ -87,14 +110,17 @@ class ServedStudy:
         return height_of_beds(self.study, self.folder)
 
     def flight(self, point: list[float], config: Mapping[str, Any]) -> list[float]:
-        """Fly from the site to the next impact. config: numbers of the site by their keys, in place of the medians."""
-        unknown = [key for key in config if key not in SITE_KEYS]
-        if unknown:
-            raise ValueError(f"config has {', '.join(unknown)}; allowed: {', '.join(SITE_KEYS)}")
+        """Fly from the site to the next impact. config: numbers of the site by their keys, in place of the medians.
+
+        Raises ValueError for other keys, and numbers that the study file may not have.
+        """
+        _refuse_keys(config, SITE_KEYS)
         from lithobrake.smallbody import fly
 
-        body, numbers = site_body(self.study), site_medians(self.study) | {k: float(v) for k, v in config.items()}
-        site = {key: np.array([value]) for key, value in numbers.items()}
+        body, numbers = site_body(self.study), site_medians(self.study) | config
+        if config:
+            _refuse(self.study, {f"site.{key}": value for key, value in numbers.items()})
+        site = {key: np.array([float(value)]) for key, value in numbers.items()}
         origin, axes = frames(body, site)
         flown = fly(
             *(body, origin, np.einsum("nij,ni->nj", axes, [point]), self.study.flight.duration),
@@ -115,6 +141,29 @@ def landing_vector(outcome: str, outputs: Mapping[str, float]) -> list[float]:
     left = outcome == TouchdownOutcome.CLEAR
     place = tuple(TouchdownOutcome).index(TouchdownOutcome(outcome))
     return [float(place), *(float(outputs[name]) if left else 0.0 for name in OUTPUTS)]
+
+
+def _refuse(study: Study, values: Mapping[str, Any]) -> None:
+    """Raise ValueError, on one line, for numbers that the study file may not have."""
+    try:
+        fixed_study(study, values)
+    except StudyError as error:
+        raise ValueError("; ".join(error.problems)) from error
+
+
+def _refuse_keys(config: Mapping[str, Any], allowed: Sequence[str]) -> None:
+    for key in config:
+        if key not in allowed:
+            raise ValueError(f"config has {key}{closest(key, allowed)}; allowed: {', '.join(allowed)}")
+
+
+def _inputs(config: Mapping[str, Any]) -> Mapping[str, Any]:
+    """The inputs of a configuration of RUN_KEYS."""
+    _refuse_keys(config, RUN_KEYS)
+    given = config.get("inputs", {})
+    if not isinstance(given, Mapping):
+        raise ValueError(f"config.inputs is {show(given)}; allowed: numbers by the dotted keys of the study file")
+    return given
 
 
 def _seed(config: Mapping[str, Any]) -> int:

@@ -11,6 +11,7 @@ from typing import Any
 
 from lithobrake import __version__
 from lithobrake.campaign import Command, ModelServer
+from lithobrake.campaign.main_module import refuse_unreachable
 from lithobrake.hashing import content_hash
 from lithobrake.outcomes import TouchdownOutcome
 from lithobrake.outputs import ORIENTATION_OUT, OUTPUTS, SPIN_OUT
@@ -89,12 +90,14 @@ def function_identity(function: Model) -> str:
     Raises ValueError for a function that cannot be sent to a worker process.
     """
     try:
-        return hashlib.sha256(pickle.dumps(function)).hexdigest()[:16]
+        content = pickle.dumps(function)
     except (pickle.PicklingError, AttributeError, TypeError) as error:
         raise ValueError(
             f"the model cannot be sent to a process ({error}); give a function of a file, outside of any other "
             "function, or an object whose attributes can be sent"
         ) from error
+    refuse_unreachable(content)
+    return hashlib.sha256(content).hexdigest()[:16]
 
 
 def checked(what: str, answer: Mapping[str, Any]) -> dict[str, Any]:

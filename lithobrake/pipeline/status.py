@@ -2,17 +2,17 @@
 
 import math
 from collections import Counter
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from lithobrake.atomic import lock_holder
 from lithobrake.campaign import RunStatus, Tally, campaign_began, ledger_tally
 from lithobrake.outputs import OUTPUTS
-from lithobrake.pipeline.folder import LOCK, StudyFolder
+from lithobrake.pipeline.folder import LOCK, FileState, StudyFolder
 from lithobrake.pipeline.notes import NAME, Notes
 from lithobrake.pipeline.running_estimates import RunningEstimates, running_estimates
-from lithobrake.pipeline.state import STUDY_FILE, FolderState, grouped, read_state
+from lithobrake.pipeline.state import STUDY_FILE, FolderState, StageState, grouped, read_state
 from lithobrake.results import open_study
 
 
@@ -96,7 +96,7 @@ class StudyStatus:
     def to_json(self) -> dict[str, Any]:
         """All of it as JSON values."""
         state = self.state
-        stages = [] if state is None else [stage for stage in state.stages if stage.number]
+        stages = [] if state is None else [_at_work(stage, self.at_work) for stage in state.stages if stage.number]
         return {
             "folder": str(self.folder),
             "at_work": self.at_work,
@@ -127,6 +127,14 @@ def study_status(path: Path) -> StudyStatus:
     return StudyStatus(
         path, holder, None, state, _runs(path, state.notes, _flown(path, state)) if ledger.is_file() else None
     )
+
+
+def _at_work(stage: StageState, holder: dict[str, Any] | None) -> StageState:
+    """A stage as it is while a process is at it: files that nothing is noted of yet are its own."""
+    if holder is None or holder.get("number") != stage.number:
+        return stage
+    own = {name: FileState.NEW if state is FileState.FOREIGN else state for name, state in stage.files.items()}
+    return replace(stage, files=own)
 
 
 def _work(path: Path, holder: dict[str, Any] | None, state: FolderState) -> str:

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from lithobrake.campaign import DaskExecutor, LocalExecutor
+from lithobrake.campaign.main_module import refuse_while_importing
 from lithobrake.campaign.model_server import PREFIX
 from lithobrake.chaos.threads import one_thread
 from lithobrake.pipeline.answers import ANSWERED_AFTER
@@ -38,7 +39,8 @@ def run(
 
     study: path of a study file, or its tables as a dict, in which relative paths count from the current folder.
     out: folder of the study; None: runs/NAME, after the name of the file; tables need one.
-    workers: number of processes; None: one a core. A script must start them under `if __name__ == "__main__":`.
+    workers: number of processes; None: one a core. They import the script that calls this only where it defines the
+    model: such a script calls it under `if __name__ == "__main__":`.
     model: a callable that can be pickled, `(inputs, seed) -> {"outcome": ..., "outputs": {...}}`, which makes the
     touchdowns in place of the soil, under the contract of docs/own_solver.md (outcomes clear, captured, left_sideways,
     time_limit). No bed is poured for it. Its inputs are all numbers of the study by dotted key and what the run drew.
@@ -48,6 +50,7 @@ def run(
     progress: shows the stages as they run, as lithobrake.progress.study_progress() does; None: silence.
     Raises ValueError for a study or folder that is refused, too few runs with outputs, a model that cannot be pickled.
     """
+    refuse_while_importing()
     lacking = [name for name in ("begin", "say", "progress") if progress and not hasattr(progress, name)]
     if lacking:
         raise ValueError(

@@ -4,37 +4,27 @@ Source: [Seelinger-2023]
 """
 
 import json
-import math
-import threading
 from collections.abc import Mapping, Sequence
-from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from http.server import BaseHTTPRequestHandler
 from typing import Any
 
+from lithobrake.serve.answers import Evaluate, RequestError, answer, evaluate_here
+from lithobrake.serve.clients import ClientGoneError, ClientServer, has_left
 from lithobrake.serve.served_model import ServedModel
 
 PORT = 4242
 PROTOCOL = 1.0
 # Of a request [bytes]: vectors here have tens of numbers.
 LARGEST = 1 << 20
-FEATURES = ("Evaluate", "Gradient", "ApplyJacobian", "ApplyHessian")
 
 
-class RequestError(Exception):
-    """What a client is answered in place of a result: a kind of error, a sentence, a status of HTTP."""
-
-    def __init__(self, kind: str, message: str, status: int = 400) -> None:
-        super().__init__(message)
-        self.kind, self.status = kind, status
-
-
-class _Server(ThreadingHTTPServer):
+class _Server(ClientServer):
     """Listens, and keeps the models by their names."""
 
-    def __init__(self, models: Sequence[ServedModel], host: str, port: int) -> None:
-        super().__init__((host, port), _Handler)
+    def __init__(self, models: Sequence[ServedModel], host: str, port: int, evaluate: Evaluate) -> None:
+        super().__init__(host, port, _Handler)
         self.models = {model.name: model for model in models}
-        # The models share compiled kernels and files that are made once.
-        self.alone = threading.Lock()
+        self.evaluate = evaluate
 
 
 class _Handler(BaseHTTPRequestHandler):
@@ -52,16 +42,31 @@ class _Handler(BaseHTTPRequestHandler):
     def do_POST(self) -> None:
         """Answer a request for a model."""
         try:
-            self._answer(200, answer(self.server.models, self.path, self._request(), self.server.alone))
+            request = self._request()
+            self.server.has_asked(self.connection)
+            self._answer(200, answer(self.server.models, self.path, request, self._evaluate))
         except RequestError as error:
             self._answer(error.status, _error(error.kind, str(error)))
 
+    def _evaluate(self, model: ServedModel, point: list[float], config: Mapping[str, Any]) -> list[float]:
+        """Evaluate when no other evaluation is under way; a client that leaves does not hold up those behind it."""
+
+        def gone() -> bool:
+            return has_left(self.connection)
+
+        with self.server.turn(gone):
+            return self.server.evaluate(model, point, config, gone)
+
     def _request(self) -> dict[str, Any]:
         length = self.headers.get("Content-Length", "")
-        if not length.isdecimal() or int(length) > LARGEST:
+        # Python reads no whole number of thousands of digits.
+        if not (length.isdecimal() and len(length) <= len(str(LARGEST)) and int(length) <= LARGEST):
             raise RequestError("InvalidInput", f"a request has its length, at most {LARGEST} bytes", 413)
+        body = self.rfile.read(int(length))
+        if len(body) < int(length):
+            raise ClientGoneError
         try:
-            content = json.loads(self.rfile.read(int(length)))
+            content = json.loads(body)
         except (ValueError, RecursionError) as error:
             raise RequestError("InvalidInput", f"the request is not JSON ({error})") from error
         if not isinstance(content, dict) or not isinstance(content.get("config", {}), dict):
@@ -80,59 +85,16 @@ class _Handler(BaseHTTPRequestHandler):
         """Say nothing: a campaign asks thousands of times."""
 
 
-def model_server(models: Sequence[ServedModel], host: str, port: int) -> ThreadingHTTPServer:
+def model_server(
+    models: Sequence[ServedModel], host: str, port: int, evaluate: Evaluate = evaluate_here
+) -> ClientServer:
     """A server that is bound and not yet at work: `serve_forever()` answers, one evaluation at a time.
 
-    port 0 takes a free one. Raises OSError where the address is not to be had.
+    host: name or address of this machine, IPv4 or IPv6; port: 0 takes a free one. `address` is then where it listens.
+    evaluate: makes the evaluations; by default in this process, for as long as they take.
+    Raises ValueError for an empty host, OSError where the address is not to be had.
     """
-    return _Server(models, host, port)
-
-
-def answer(
-    models: Mapping[str, ServedModel], path: str, request: Mapping[str, Any], alone: threading.Lock
-) -> dict[str, Any]:
-    """What a request for a model is answered. Raises RequestError."""
-    name = request.get("name")
-    model = models.get(name) if isinstance(name, str) else None
-    if model is None:
-        raise RequestError("ModelNotFound", f"model {name!r} is not served; there are: {', '.join(models)}")
-    if path == "/ModelInfo":
-        # The names are more than the protocol asks for: its vectors have none.
-        names = {"inputs": list(model.inputs), "outputs": list(model.outputs)}
-        return {"support": {feature: feature == "Evaluate" for feature in FEATURES}, **names}
-    if path == "/InputSizes":
-        return {"inputSizes": [len(model.inputs)]}
-    if path == "/OutputSizes":
-        return {"outputSizes": [len(model.outputs)]}
-    if path != "/Evaluate":
-        raise RequestError("UnsupportedFeature", f"{path} is not supported; model {name} supports /Evaluate alone")
-    point = _point(model, request.get("input"))
-    try:
-        with alone:
-            outputs = [float(value) for value in model.evaluate(point, request.get("config", {}))]
-    except (ValueError, TypeError, OverflowError) as error:
-        raise RequestError("InvalidInput", str(error)) from error
-    # Whatever else a model raises is its own failure, and the server goes on.
-    except Exception as error:
-        raise RequestError("InvalidOutput", f"{type(error).__name__}: {error}", 500) from error
-    if len(outputs) != len(model.outputs) or not all(map(math.isfinite, outputs)):
-        raise RequestError("InvalidOutput", f"model {name} gave {outputs}, not {len(model.outputs)} numbers", 500)
-    return {"output": [outputs]}
-
-
-def _point(model: ServedModel, given: Any) -> list[float]:
-    """The inputs of a request."""
-    fits = isinstance(given, list) and len(given) == 1 and isinstance(given[0], list)
-    if not fits or len(given[0]) != len(model.inputs):
-        raise RequestError(
-            "InvalidInput",
-            f"input of model {model.name} is a list of one list of {len(model.inputs)} numbers: "
-            f"{', '.join(model.inputs)}",
-        )
-    numbers = given[0]
-    if not all(isinstance(one, int | float) and not isinstance(one, bool) and abs(one) < 1e300 for one in numbers):
-        raise RequestError("InvalidInput", f"input of model {model.name} is {numbers}; allowed: finite numbers")
-    return [float(number) for number in numbers]
+    return _Server(models, host, port, evaluate)
 
 
 def _error(kind: str, message: str) -> dict[str, Any]:

@@ -14,13 +14,14 @@ from lithobrake.smallbody.attraction import Gravity
 from lithobrake.smallbody.body import GRAVITATIONAL_CONSTANT, Body
 from lithobrake.smallbody.flight_results import ESCAPE_ORBITS, ESCAPE_RADII, STATUSES, Flights, StartStates
 from lithobrake.smallbody.impact_search import ALOFT, ON_SURFACE, Ground
-from lithobrake.smallbody.integration import FAILED, FlightEnds, integrate_flights
+from lithobrake.smallbody.integration import FAILED, MOST_STEPS, FlightEnds, integrate_flights
 from lithobrake.smallbody.orbit import Orbit
 from lithobrake.smallbody.shape import Shape
 from lithobrake.smallbody.signed_distance import near_heights
 
 CHUNK = 1024  # flights that a thread takes at a time
 FARTHEST = 1e20  # of a start, in m and in m/s
+SPEED_OF_LIGHT = 299_792_458.0  # m/s
 
 
 def fly(
@@ -58,7 +59,9 @@ def fly(
     A start on the surface (within a millionth of the radius, at most 1 mm) is no impact; the first meeting with the
     ground after the flight has left it is. A flight that starts on the surface and moves into it at once has its impact
     at time 0. The body's partner, if it has one, attracts and may be hit. Results are body-fixed whatever the frame of
-    the starts. Raises ValueError for starts below the surface and for values that are not finite or out of range.
+    the starts. Raises ValueError for starts below the surface and for values that are not finite or out of range (a
+    mass or a spin for which speeds at the surface reach that of light), FloatingPointError for a flight of more than
+    a million steps, some 40 000 circuits near the surface at the default tolerance.
     """
     starts = _starts(position, velocity)
     begin = _one_each("start_time", start_time, len(starts))
@@ -116,8 +119,9 @@ def _dynamics(body: Body, mass: NDArray[np.float64], spin_period: NDArray[np.flo
     """What differs between flights."""
     if not ((mass > 0.0).all() and (spin_period > 0.0).all()):
         raise ValueError("mass and spin_period must be above 0 in every flight.")
-    radius, parameter = body.shape.radius, GRAVITATIONAL_CONSTANT * mass
-    spin_rate = 2.0 * np.pi / spin_period
+    radius = body.shape.radius
+    _refuse_relativistic(radius, mass, spin_period)
+    parameter, spin_rate = GRAVITATIONAL_CONSTANT * mass, 2.0 * np.pi / spin_period
     orbit = body.orbit_with(parameter, spin_rate)
     dynamical_time = np.sqrt(radius**3 / parameter)
     other = None if body.partner is None else body.partner.body
@@ -132,6 +136,24 @@ def _dynamics(body: Body, mass: NDArray[np.float64], spin_period: NDArray[np.flo
         speed_tolerance=tolerance * radius / dynamical_time,
         orbit=Orbit(*(np.array(np.broadcast_to(entry, len(mass))) for entry in orbit)),
     )
+
+
+def _refuse_relativistic(radius: float, mass: NDArray[np.float64], spin_period: NDArray[np.float64]) -> None:
+    """Raise ValueError for a body that nothing slower than light escapes, or whose surface turns as fast as light.
+
+    radius [m], masses [kg] and periods [s]. Newton's laws hold for neither, and squares of such speeds may be infinite.
+    """
+    heaviest = 0.5 * SPEED_OF_LIGHT**2 * radius / GRAVITATIONAL_CONSTANT
+    shortest = 2.0 * np.pi * radius / SPEED_OF_LIGHT
+    for name, number, unit, fine, allowed in (
+        ("mass", mass.max(initial=0.0), "kg", "below", heaviest),
+        ("spin_period", spin_period.min(initial=np.inf), "s", "above", shortest),
+    ):
+        if not (number < allowed if fine == "below" else number > allowed):
+            raise ValueError(
+                f"{name} is {number:g} {unit}; it must be {fine} {allowed:.3g} {unit}, where speeds on a body of "
+                f"{radius:.4g} m radius reach that of light."
+            )
 
 
 def _one_each(
@@ -162,12 +184,19 @@ def _into_turning_frame(
 def _refuse_failed(starts: NDArray[np.float64], ends: FlightEnds, tolerance: float) -> None:
     """Raise FloatingPointError for the first flight whose integration came to a halt."""
     failed = np.flatnonzero(ends.status == FAILED)
-    if len(failed):
-        flight = int(failed[0])
+    if not len(failed):
+        return
+    flight = int(failed[0])
+    which = f"flight {flight} from {starts[flight, :3]} m at {starts[flight, 3:]} m/s"
+    if ends.step_count[flight] >= MOST_STEPS:
         raise FloatingPointError(
-            f"flight {flight} from {starts[flight, :3]} m at {starts[flight, 3:]} m/s: the step size fell below the "
-            f"resolution of time at {ends.time[flight]} s; loosen tolerance ({tolerance})."
+            f"{which}: it took {MOST_STEPS} steps in {ends.time[flight]:.6g} s, the most of a flight; shorten duration "
+            f"or loosen tolerance ({tolerance})."
         )
+    raise FloatingPointError(
+        f"{which}: the step size fell below the resolution of time at {ends.time[flight]} s; loosen tolerance "
+        f"({tolerance})."
+    )
 
 
 def _starts(position: ArrayLike, velocity: ArrayLike) -> NDArray[np.float64]:

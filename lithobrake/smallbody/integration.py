@@ -27,7 +27,8 @@ from lithobrake.smallbody.polyhedron_gravity import ROWS
 from lithobrake.smallbody.simd import LANES
 
 FLYING, IMPACT, ESCAPED, PARTNER, FAILED = range(5)  # the first four in the order of FlightStatus
-MOST_STEPS = 1_000_000  # of a flight whose steps are refused
+# Of a flight: some 40 000 circuits near the surface at the default tolerance, years about a body of a kilometre.
+MOST_STEPS = 1_000_000
 
 
 class Lanes(NamedTuple):
@@ -207,7 +208,9 @@ def _finish_step(
     clock[j] = duration[f] if last else clock[j] + taken
     step[j] = min(step[j], duration[f] - clock[j])
     if ends.status[f] == FLYING and not last:
-        return False
+        if ends.step_count[f] < MOST_STEPS:
+            return False
+        ends.status[f] = FAILED
     _write_end(lanes, j, room.curve, fraction, taken, ends)
     return True
 

@@ -28,20 +28,34 @@ BED_WIDTH_PER_GRAIN = 3.0
 
 def problems(study: Study) -> Iterator[str]:
     """One sentence for each thing that is wrong between keys that are each right in themselves."""
-    yield from _shape_problems(study)
-    yield from inertia_problems(study)
-    yield from _grain_problems(study)
-    yield from _place_problems(study)
+    yield from _arrival_problems(study)
     yield from design_problems(study)
     yield from _solver_problems(study)
     yield from _limit_state_problems(study)
     yield from aim_problems(study)
+    yield from _touchdown_problems(study)
+    yield from body_problems(study)
+
+
+def landing_problems(study: Study) -> Iterator[str]:
+    """The same for a single landing: lander, bed, place, contact and gravity."""
+    yield from _arrival_problems(study)
+    yield from _touchdown_problems(study)
+
+
+def _arrival_problems(study: Study) -> Iterator[str]:
+    yield from _shape_problems(study)
+    yield from inertia_problems(study)
+    yield from _grain_problems(study)
+    yield from _place_problems(study)
+
+
+def _touchdown_problems(study: Study) -> Iterator[str]:
     if study.has_soil:
         yield from contact_problems(study)
     gravity = study.surface.gravity
     if not isinstance(gravity, str):
         yield from settling_problems(study, reach(gravity)[0])
-    yield from body_problems(study)
 
 
 def settling_problems(study: Study, gravity: float) -> Iterator[str]:

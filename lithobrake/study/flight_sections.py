@@ -14,8 +14,8 @@ class SiteSection(Section):
     """Where on which body the lander touches down. Uncertain values here vary in the Monte Carlo only."""
 
     body: str = "didymos"
-    """"didymos" or "dimorphos" (built in), or a closed mesh (OBJ, STL, PDS plates, ICQ or a shape kernel of SPICE)
-    around the body's centre; the path counts from the study file."""
+    """"didymos" or "dimorphos" (built in, in any case), or a closed mesh (OBJ, STL, PDS plates, ICQ or a shape kernel
+    of SPICE) around the body's centre; the path counts from the study file."""
     unit: LengthUnit | None = None
     """Unit of the lengths in the mesh: "m", "km", "cm" or "mm"; absent: what its header or label says, else metres."""
     gravity_facets: Annotated[int, Whole("", at_least=100)] | None = None

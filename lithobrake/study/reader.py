@@ -106,8 +106,11 @@ def _absolute(tables: Mapping[str, Any], folder: Path) -> dict[str, Any]:
     result = {key: dict(value) if isinstance(value, Mapping) else value for key, value in tables.items()}
     for section, key in (("lander", "file"), ("site", "body")):
         table = result.get(section)
-        if isinstance(table, dict) and isinstance(table.get(key), str) and table[key] not in BUILT_IN_BODIES:
-            table[key] = str(folder / table[key])
+        if not isinstance(table, dict) or not isinstance(table.get(key), str):
+            continue
+        # A proper name may begin with a capital.
+        is_built_in = key == "body" and table[key].lower() in BUILT_IN_BODIES
+        table[key] = table[key].lower() if is_built_in else str(folder / table[key])
     for section, key in (("solver", "templates"), ("site", "kernels")):
         table = result.get(section)
         if isinstance(table, dict) and isinstance(table.get(key), list):

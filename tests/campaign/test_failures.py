@@ -220,7 +220,7 @@ def test_a_script_that_its_workers_would_start_again_is_told_so_and_fails_no_run
     said = subprocess.run([sys.executable, "unguarded.py"], cwd=tmp_path, capture_output=True, text=True, check=False)
     assert said.returncode == 1
     last = said.stderr.strip().splitlines()[-1]
-    assert "processes end before they begin with a run (exit code 1)" in last
+    assert "worker processes import this script, because it defines the model" in last
     assert 'belongs under: if __name__ == "__main__":' in last
     assert {entry.status for entry in read_records(tmp_path / "runs.sqlite")} <= {"queued", "running"}
 

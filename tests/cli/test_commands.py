@@ -217,3 +217,19 @@ def test_an_executor_that_does_not_exist_is_refused(options: list[str], said: st
 @pytest.mark.parametrize("command", ["status", "runs"])
 def test_a_folder_that_is_no_study_is_one_sentence(command: str, tmp_path: Path) -> None:
     assert str(tmp_path) in refused([command, str(tmp_path)])
+
+
+@pytest.mark.parametrize("out", ["study.toml", "study.toml/out"])
+def test_a_plan_refuses_a_file_in_place_of_the_folder(
+    out: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    RUNNER.invoke(app, ["new", "study"])
+    assert f"{out} cannot be written (study.toml is a file)" in refused(["plan", "study.toml", "--out", out])
+
+
+def test_more_workers_than_any_machine_has_are_refused() -> None:
+    for command in ("plan", "run"):
+        shown = RUNNER.invoke(app, [command, "study.toml", "--workers", "999999999999999999999999"])
+        assert shown.exit_code == 2
+        assert "10000" in shown.stderr

@@ -59,3 +59,17 @@ def test_what_is_no_terminal_gets_no_escape_sequence(code: str) -> None:
     shown = subprocess.run([sys.executable, "-c", code], capture_output=True, check=False, env=environment)
     assert shown.stdout + shown.stderr
     assert b"\x1b" not in shown.stdout + shown.stderr
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        "from lithobrake.cli.telling import tell; tell(['  a study of ' + 'words ' * 30])",
+        "from lithobrake.cli import app; app(['status', 'a study of ' + 'words ' * 30])",
+    ],
+)
+def test_a_terminal_gets_whole_words(code: str) -> None:
+    lines = on_a_terminal(code, COLUMNS="43").decode().splitlines()
+    assert max(map(len, lines)) <= 43
+    assert {word for line in lines for word in line.split()} >= {"a", "study", "of", "words"}
+    assert " ".join(lines).split().count("words") == 30

@@ -6,8 +6,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from lithobrake.pipeline.energy_bound import energy_bound
+from lithobrake.campaign import Record
+from lithobrake.pipeline.energy_bound import energy_bound, energy_warning
 from lithobrake.study import Study, check_tables
+from lithobrake.touchdown_model import medians
 
 from .synthetic_lander import synthetic_tables
 
@@ -52,3 +54,29 @@ def test_what_the_speed_takes_is_not_left_for_the_spin() -> None:
     assert box.spin()[0] == pytest.approx(0.4 / np.sqrt((0.1**2 + 0.1**2) / 12))
     known = energy_bound(study(lander={"inertia": [1e-3, 2e-3, 2e-3], "mass": 2.0}), NO_BED, {}, 1)
     assert known.spin()[0] == pytest.approx(0.4 / np.sqrt(0.5e-3))
+
+
+def landed(speed_out: float, spin_out: float, speed: float = 0.2, outcome: str = "clear") -> Record:
+    """A run of a ball of 0.1 m, whose radius of gyration squared is 1e-3 m2."""
+    inputs = medians(study()) | {"impact.speed": speed}
+    unknown = dict.fromkeys(Record.__dataclass_fields__)
+    outputs = {"speed_out": speed_out, "spin_out": spin_out}
+    return Record(**{**unknown, "outcome": outcome, "inputs": inputs, "outputs": outputs})
+
+
+@pytest.mark.parametrize(
+    ("records", "said"),
+    [
+        ([], None),
+        ([landed(0.19, 0.0), landed(0.2, 0.0), landed(0.0, 6.3)], None),
+        ([landed(50.0, 0.0, outcome="captured")], None),
+        (
+            [landed(0.19, 0.0), landed(50.0, 0.0)],
+            "1 of 2 landers that left have more energy than impact and gravity give them, the worst 6.25e+04 times as",
+        ),
+        ([landed(0.15, 6.0)], "1 of 1 landers that left have more energy"),
+    ],
+)
+def test_landers_that_gain_energy_are_told(records: list[Record], said: str | None) -> None:
+    found = energy_warning(study(impact={"speed": 0.2}), records, NO_BED)
+    assert found is None if said is None else found is not None and found.startswith(said)

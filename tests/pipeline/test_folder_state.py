@@ -8,6 +8,7 @@ import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import h5py
 import pytest
@@ -15,6 +16,10 @@ from typer.testing import CliRunner
 
 from lithobrake.atomic import locked
 from lithobrake.cli import app
+from lithobrake.pipeline.folder import FileState
+from lithobrake.pipeline.notes import Notes
+from lithobrake.pipeline.state import FolderState, StageState
+from lithobrake.pipeline.status import StudyStatus
 from lithobrake.results import open_study
 
 from .ball_studies import FEW_RUNS, FEW_SAMPLES, edit, write_ball
@@ -275,6 +280,19 @@ def test_no_report_is_written_where_nothing_may_be(home: Path) -> None:
         assert "no report can be written there" in said_by("report", home, code=2)
     finally:
         (home / "out").chmod(0o755)
+
+
+def test_files_of_the_stage_at_work_are_its_own_before_they_are_noted() -> None:
+    new, missing = FileState.FOREIGN, FileState.MISSING
+    stage = StageState(2, "bed", "beds", {"beds/bed_0.h5": new, "beds/bed_1.h5": missing})
+    state = FolderState(Notes(), [stage], "", "", None)
+
+    def told(number: int | None) -> Any:
+        holder = None if number is None else {"number": number, "stage": "beds", "count": 9, "process": 1, "host": "h"}
+        return StudyStatus(Path("out"), holder, None, state, None).to_json()["stages"][0]["files"]
+
+    assert told(2) == {"beds/bed_0.h5": "made by the stage at work", "beds/bed_1.h5": "not there"}
+    assert told(1) == told(None) == {"beds/bed_0.h5": "not made by this study", "beds/bed_1.h5": "not there"}
 
 
 def test_looking_at_a_study_loads_nothing_heavy() -> None:

@@ -20,6 +20,7 @@ from lithobrake.pipeline import Plan, StudyFolder, plan_lines, plan_study, stage
 from lithobrake.pipeline.beds import pour_seed
 from lithobrake.pipeline.designs import design_inputs
 from lithobrake.pipeline.job import Silent
+from lithobrake.pipeline.planning import expected_time
 from lithobrake.pipeline.planning.expected_disk import expected_bytes
 from lithobrake.pipeline.planning.expected_losses import expected_loss
 from lithobrake.pipeline.planning.expected_steps import ExpectedSoil
@@ -48,6 +49,12 @@ FEW = FEW_RUNS | {
     "refined_level = 3": "refined_level = 2",
     "test_count = 10": "test_count = 3",
 }
+
+
+@pytest.fixture(autouse=True)
+def idle_cores(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Other tests at work count for nothing."""
+    monkeypatch.setattr(expected_time, "_load", lambda: 0.0)
 
 
 def soft(**changes: dict[str, Any]) -> Study:
@@ -346,6 +353,20 @@ def test_a_bed_is_expected_as_deep_as_its_grains_fill_it() -> None:
 def record(wall_s: float) -> Record:
     empty: dict[str, float] = {}
     return Record("", RunStatus.DONE, "clear", empty, empty, {}, 0, 0, 1, None, wall_s, wall_s, None, "", None, None)
+
+
+def test_other_work_on_the_cores_raises_the_upper_ends_by_its_factor(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder, cores = StudyFolder.only_read(tmp_path / "out"), available_cores()
+    idle = plan_of(soft(), "quick", folder, 1)
+    monkeypatch.setattr(expected_time, "_load", lambda: 3.0 * cores)
+    busy = plan_of(soft(), "quick", folder, 1)
+    for what, span in idle.seconds.items():
+        assert span is not None
+        assert busy.seconds[what] == pytest.approx((span[0], 4.0 * span[1]))
+    assert "all takes up to 4.0 times as long" in busy.basis
+    assert "Other work" not in idle.basis
 
 
 def test_runs_that_have_ended_tell_how_long_the_others_take() -> None:

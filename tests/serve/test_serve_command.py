@@ -7,6 +7,7 @@ import sys
 import urllib.request
 from pathlib import Path
 
+import pytest
 from typer.testing import CliRunner
 
 from lithobrake.cli import app
@@ -38,4 +39,21 @@ def test_a_server_says_where_it_is_and_ends_with_an_interrupt(tmp_path: Path) ->
 def test_an_address_that_is_not_to_be_had_is_told(tmp_path: Path) -> None:
     found = CliRunner().invoke(app, ["serve", str(BALL), "--out", str(tmp_path / "out"), "--host", "203.0.113.1"])
     assert found.exit_code == 2
+    assert len(found.stderr.splitlines()) == 1
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (["--host", ""], "host is '' (an unset variable?) and would open the server to every network"),
+        (["--host", " \t"], "host is ' \\t' (an unset variable?)"),
+        (["--host", "a" * 70], "is no address of this machine"),
+        (["--time-limit", "0"], "the time limit is 0 s; allowed: above 0"),
+        (["--time-limit", "nan"], "the time limit is nan s; allowed: above 0"),
+    ],
+)
+def test_what_cannot_be_served_is_one_sentence(options: list[str], said: str, tmp_path: Path) -> None:
+    found = CliRunner().invoke(app, ["serve", str(BALL), "--out", str(tmp_path / "out"), "--port", "0", *options])
+    assert found.exit_code == 2
+    assert said in found.stderr
     assert len(found.stderr.splitlines()) == 1

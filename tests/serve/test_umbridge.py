@@ -14,9 +14,10 @@ import pytest
 import lithobrake
 from lithobrake.campaign import ModelServer
 from lithobrake.outputs import OUTPUTS
-from lithobrake.pipeline.serving import FLIGHT, served_models
+from lithobrake.pipeline.serving import FLIGHT, ServedStudy, served_models
+from lithobrake.pipeline.serving_process import EvaluationProcess
 from lithobrake.pipeline.solver import LANDING
-from lithobrake.serve import ServedModel, model_server
+from lithobrake.serve import ClientGoneError, ServedModel, model_server
 
 umbridge = pytest.importorskip("umbridge")
 
@@ -117,8 +118,78 @@ def test_a_study_serves_its_landing_and_its_flight(study_address: str) -> None:
     )
     assert (east[0], west[0], len(east)) == (1.0, 1.0, len(FLIGHT))
     assert east[3] > west[3]
-    with pytest.raises(Exception, match="allowed: latitude_deg"):
-        flight([[0.0, 0.0, 0.02]], {"lattitude_deg": 3.0})
+
+
+@pytest.mark.parametrize(
+    ("config", "said"),
+    [
+        ({"lattitude_deg": 3.0}, "config has lattitude_deg; did you mean latitude_deg\\?; allowed: latitude_deg"),
+        ({"north_error": 1e9}, "site.north_error reaches 1e.09 m; allowed: at most 590"),
+        ({"spin_period": 1e-9}, "site.spin_period reaches down to 1e-09 s; allowed: at least 1 s"),
+        ({"mass": 1e20}, "a bulk density of .* kg/m3; allowed: 300 to 8000 kg/m3"),
+        ({"mass": "5e11"}, 'site.mass is "5e11"; allowed: above 0 .kg.; write a finite number without quotes'),
+        ({"latitude_deg": 91}, "site.latitude_deg is 91; allowed: at least -90 and at most 90 .deg."),
+        ({"heading_deg": True}, "site.heading_deg is true; allowed"),
+        ({"heading_deg": {"distribution": "uniform", "lower": 0, "upper": 9}}, "allowed: one number"),
+    ],
+)
+def test_a_flight_takes_what_the_study_file_does(config: dict[str, Any], said: str, tmp_path: Path) -> None:
+    flight = served_models(BALL, tmp_path / "out")[0]
+    with pytest.raises(ValueError, match=said):
+        flight.evaluate([0.0, 0.0, 0.02], config)
+
+
+@pytest.mark.parametrize(
+    ("config", "said"),
+    [
+        ({"sed": 4}, "config has sed; did you mean seed\\?; allowed: seed, inputs, setting"),
+        ({"inputs": {"lander.fricton": 0.9}}, "lander.fricton is not a known key; did you mean friction"),
+        ({"inputs": {"lander.friction": -0.1}}, "lander.friction is -0.1; allowed: at least 0"),
+        ({"inputs": {"lander.mass": "1"}}, 'lander.mass is "1"; allowed: above 0 .kg.'),
+        ({"inputs": {"impact.incidence_deg": 100}}, "impact.incidence_deg is 100; allowed: at least 0 and below 90"),
+        ({"inputs": {"impact.place.x": 5.0}}, "impact.place.x reaches from 5 to 5 m; allowed: -0.3 to 0.3 m"),
+        ({"inputs": {"impact.place.x": None}}, "impact.place.x is None; allowed"),
+        ({"inputs": {"solver.inputs.tilt": 1.0}}, "solver.inputs.tilt is not read here; did you mean solver.inputs.pl"),
+        ({"inputs": {"contact.held_speed": 0.1}}, "contact.held_speed is not read here"),
+        ({"inputs": {"bed": 0.5}}, "bed is 0.5; allowed: a whole number"),
+        ({"inputs": [1.0]}, r"config.inputs is \[1\]; allowed: numbers by the dotted keys"),
+        ({"inputs": None}, "config.inputs is None; allowed: numbers by the dotted keys"),
+    ],
+)
+def test_a_landing_takes_what_the_study_file_does(config: dict[str, Any], said: str, tmp_path: Path) -> None:
+    landing = served_models(BALL, tmp_path / "out")[1]
+    with pytest.raises(ValueError, match=said):
+        landing.evaluate([0.6, 0.2, 35.0, 0.0], config)
+
+
+def test_a_point_that_the_study_file_may_not_have_is_refused(tmp_path: Path) -> None:
+    landing = served_models(BALL, tmp_path / "out")[1]
+    with pytest.raises(ValueError, match=r"lander.restitution is 1.5; allowed: above 0 and at most 1"):
+        landing.evaluate([1.5, 0.2, 35.0, 0.0], {})
+
+
+def test_some_inputs_may_stand_in_place_of_the_drawn_ones(tmp_path: Path) -> None:
+    landing = served_models(BALL, tmp_path / "out")[1]
+    plain, other = (landing.evaluate([0.6, 0.2, 35.0, 0.0], {"inputs": given}) for given in ({}, {"impact.speed": 0.3}))
+    assert other[1] > plain[1]
+    assert other == landing.evaluate([0.6, 0.2, 35.0, 0.0], {"inputs": {"impact.speed": 0.3, "impact.place.x": 0.1}})
+
+
+def test_an_evaluation_that_takes_too_long_is_ended_and_the_next_is_made(tmp_path: Path) -> None:
+    study = ServedStudy(BALL, tmp_path / "out")
+    landing = study.models()[1]
+    point = [0.6, 0.2, 35.0, 0.0]
+    with EvaluationProcess(study) as evaluations:
+        assert evaluations.time_limit == study.study.campaign.wall_limit
+        with pytest.raises(ClientGoneError):
+            evaluations(landing, point, {}, lambda: True)
+        evaluations.time_limit = 1e-9
+        with pytest.raises(TimeoutError, match="took more than 1e-09 s and was ended"):
+            evaluations(landing, point, {}, lambda: False)
+        evaluations.time_limit = 100.0
+        assert evaluations(landing, point, {"seed": 3}, lambda: False) == landing.evaluate(point, {"seed": 3})
+        with pytest.raises(ValueError, match="did you mean seed"):
+            evaluations(landing, point, {"sed": 3}, lambda: False)
 
 
 def test_a_study_solved_by_a_server_is_that_of_its_program(study_address: str, tmp_path: Path) -> None:

@@ -8,6 +8,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from lithobrake.smallbody import Body, Shape, didymos, fly
+from lithobrake.smallbody.integration import MOST_STEPS, FlightEnds
 
 from .meshes import sphere_mesh
 
@@ -201,6 +202,8 @@ def test_wrong_calls_are_refused(ball):
         ({"gravity": "guess"}, "gravity is 'guess'"),
         ({"tolerance": 1.0}, "tolerance is 1"),
         ({"threads": 0}, "threads is 0"),
+        ({"mass": 1e300}, r"mass is 1e\+300 kg; it must be below 6.73e\+28 kg, where speeds on a body of 100 m radius"),
+        ({"spin_period": 1e-9}, r"spin_period is 1e-09 s; it must be above 2.1e-06 s, where speeds on a body of 100 m"),
         ({"frame": "rotating"}, "frame is 'rotating'"),
         ({"start_time": math.inf}, "start_time is inf"),
         ({"start_time": [0.0, 1.0]}, "start_time has shape"),
@@ -241,3 +244,22 @@ def test_a_mass_and_a_spin_for_each_flight(top):
     assert np.abs(together.jacobi_drift).max() < 3e-6
     with pytest.raises(ValueError, match="above 0"):
         fly(top, position, velocity, 10.0, mass=-1.0)
+
+
+def test_a_flight_of_too_many_steps_comes_to_an_end(ball, monkeypatch):
+    """Of an orbiter that would go on for ages; the count begins near its end here."""
+
+    def nearly_spent(count: int) -> FlightEnds:
+        ends = of_count(count)
+        ends.step_count[:] = MOST_STEPS - 3
+        return ends
+
+    of_count = FlightEnds.of_count
+    start, rate = [[400.0, 0.0, 0.0]] * 2, [[0.0, 0.05, 0.0]] * 2
+    short = fly(ball, start, rate, [1.0, 2.0])
+    monkeypatch.setattr(FlightEnds, "of_count", nearly_spent)
+    # One that ends before is as it was.
+    again = fly(ball, start, rate, [1.0, 2.0])
+    assert (again.position == short.position).all()
+    with pytest.raises(FloatingPointError, match=r"flight 1 from .* it took 1000000 steps in .* s, the most"):
+        fly(ball, start, rate, [1.0, 1e12])

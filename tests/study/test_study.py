@@ -105,7 +105,7 @@ REFUSED = [
     ("grain.friction", table("exponential", rate=2.0), ["grain.friction is exponential, which has no end"]),
     ("impact.spin_x", table("normal", mean=0.0, std=0.1), ["impact.spin_x is normal, which has no end"]),
     ("site.body", "no_such.obj", ["no such file"]),
-    ("site.body", "Didymos", ["no such file; did you mean didymos?"]),
+    ("site.body", "Didymoss", ["no such file; did you mean didymos?"]),
     ("site.body", "a" * 5000, ["no such file"]),
     ("site.unit", "km", ["site.unit is", "leave it out"]),
     ("lander.unit", "mm", ["there is no lander.file"]),
@@ -334,3 +334,9 @@ def test_held_grains_ask_for_steps_of_their_own() -> None:
         'study.toml: contact.held_speed is 0.1 with contact.stepping = "global"; allowed above 0: "local" only; change '
         "either"
     ]
+
+
+@pytest.mark.parametrize("name", ["dimorphos", "Dimorphos", "DIMORPHOS"])
+def test_the_name_of_a_body_may_have_capitals(name: str) -> None:
+    tables = deepcopy(TABLES) | {"site": {"body": name}}
+    assert check_tables(tables, Path()).site.body == "dimorphos"

@@ -68,7 +68,9 @@ def expected_seconds(
     flying += journeys_time(study) if made["journeys"][1] else 0.0
     if flying:
         found["flights and bounces"] = spread(pace * flying / cores)
-    return found | {"fits, samples and report": spread(pace * REPORT)}
+    found["fits, samples and report"] = spread(pace * REPORT)
+    slower = busy_factor()
+    return {what: span and (span[0], span[1] * slower) for what, span in found.items()}
 
 
 def basis(made: Mapping[str, tuple[int, int]], soil: ExpectedSoil | None, ended: Sequence[Record]) -> str:
@@ -86,10 +88,26 @@ def basis(made: Mapping[str, tuple[int, int]], soil: ExpectedSoil | None, ended:
         said += ", at the pace of the reference machine"
     else:
         said += f"; a step takes {pace:.2g} times as long here as on the reference machine"
-    load = os.getloadavg()[0] if hasattr(os, "getloadavg") else 0.0
-    if load > BUSY * available_cores():
-        said += f". Other work is on these cores (load {load:.1f} on {available_cores()}), which makes it longer"
+    slower = busy_factor()
+    if slower > 1.0:
+        said += (
+            f". Other work is on these cores (load {_load():.1f} on {available_cores()}): while it lasts, all takes up "
+            f"to {slower:.1f} times as long, which the upper ends include"
+        )
     return f"{said}."
+
+
+def busy_factor() -> float:
+    """How many times as long work takes here as on idle cores, where other work is on them; else 1.
+
+    As many processes as cores share these with `load` others, each of which has the same right to them.
+    """
+    cores, load = available_cores(), _load()
+    return 1.0 + load / cores if load > BUSY * cores else 1.0
+
+
+def _load() -> float:
+    return os.getloadavg()[0] if hasattr(os, "getloadavg") else 0.0
 
 
 def _pace(made: Mapping[str, tuple[int, int]], soil: ExpectedSoil | None) -> float | None:

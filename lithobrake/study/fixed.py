@@ -1,0 +1,86 @@
+"""A study at given numbers: these are checked as if they stood in the study file."""
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from pydantic import BaseModel, ValidationError
+
+from lithobrake.study.body_checks import body_problems
+from lithobrake.study.checks import landing_problems
+from lithobrake.study.quantity import is_number
+from lithobrake.study.reader import StudyError, known_keys
+from lithobrake.study.refusals import closest, sentences, show
+from lithobrake.study.study import Study
+
+# An attitude stands in the study file as one list.
+ATTITUDE = tuple(f"impact.orientation.{part}" for part in "wxyz")
+INPUTS, SITE = "solver.inputs.", "site."
+
+
+def fixed_study(study: Study, values: Mapping[str, Any]) -> Study:
+    """The study with these numbers in place of what its file has, uncertain or not.
+
+    values: by dotted key, in the units of the study file, those that a landing or a flight reads: place and attitude of
+    a run included, its bed left out. A flight gives all numbers of the site, for which kernels may stand otherwise.
+    Raises StudyError where the study file would be refused with one of them, or none of them would be read.
+    """
+    tables: dict[str, Any] = {name: _table(getattr(study, name)) for name in type(study).model_fields}
+    unread = [key for key in values if key.startswith(INPUTS) and key.removeprefix(INPUTS) not in study.solver.inputs]
+    if unread:
+        raise StudyError([_unread(key, [f"{INPUTS}{name}" for name in study.solver.inputs]) for key in unread])
+    for key, value in values.items():
+        _put(tables, key, value)
+    try:
+        fixed = Study.model_validate(tables).with_function(study.function)
+    except ValidationError as error:
+        raise StudyError(sentences(error.errors(), known_keys())) from error
+    loose = [f"{key} is {show(value)}; allowed: one number" for key, value in values.items() if not is_number(value)]
+    if loose:
+        raise StudyError(loose)
+    # Kernels are read for what a flight asks of them alone, and its numbers stand in their place.
+    of_site = fixed.site_values() if any(key.startswith(SITE) for key in values) else ()
+    read = [*fixed.touchdown_values(), *of_site, *ATTITUDE]
+    found = [_unread(key, read) for key in values if key not in read] or list(_problems(fixed, values))
+    if found:
+        raise StudyError(found)
+    return fixed
+
+
+def _table(section: Any) -> Any:
+    if not isinstance(section, BaseModel):
+        return section
+    return {name: getattr(section, name) for name in type(section).model_fields}
+
+
+def _put(tables: dict[str, Any], key: str, value: Any) -> None:
+    """Put a number where the study file has it."""
+    section, _, name = key.partition(".")
+    table = tables.setdefault(section, {})
+    if not isinstance(table, dict):
+        raise StudyError([_unread(key, [])])
+    if key in ATTITUDE:
+        given = table["orientation"]
+        attitude = [1.0, 0.0, 0.0, 0.0] if isinstance(given, str) else list(given)
+        attitude[ATTITUDE.index(key)] = value
+        # What is given is the attitude that was drawn with the error.
+        table |= {"orientation": attitude, "pointing_error_deg": None}
+    elif name.startswith("place."):
+        table |= {"place": {**(_table(table["place"]) or {}), name.removeprefix("place."): value}, "region": None}
+    elif key.startswith(INPUTS):
+        table["inputs"] = {**table["inputs"], key.removeprefix(INPUTS): value}
+    elif section == "site":
+        table |= {name: value, "kernels": [], "kernel_body": None, "epoch": None}
+    else:
+        table[name] = value
+
+
+def _problems(study: Study, values: Mapping[str, Any]) -> Iterator[str]:
+    """What is wrong between the numbers, as far as they take part."""
+    if any(not key.startswith(SITE) for key in values):
+        yield from landing_problems(study)
+    if any(key.startswith(SITE) for key in values):
+        yield from body_problems(study)
+
+
+def _unread(key: str, read: list[str]) -> str:
+    return f"{key} is not read here{closest(key, read)}; allowed: the numbers of a run by the keys of the study file"
