@@ -23,7 +23,7 @@ UNREADABLE = (OSError, ValueError, TypeError, LookupError, AttributeError, Arith
 TITLE = re.compile(r"\s*(.*?)\s*(?:\[([^\[\]]*)\])?\s*", re.DOTALL)
 
 
-class Table(NamedTuple):
+class CsvTable(NamedTuple):
     """A CSV file: the units that its columns state, by name, and its rows, each an entry by the name of its column."""
 
     units: dict[str, str]
@@ -71,7 +71,7 @@ def read_rows(path: str | PathLike[str], columns: Iterable[str], remedy: str) ->
     return read_table(path, columns, remedy).rows
 
 
-def read_table(path: str | PathLike[str], columns: Iterable[str], remedy: str) -> Table:
+def read_table(path: str | PathLike[str], columns: Iterable[str], remedy: str) -> CsvTable:
     """The same with the units of the columns."""
     with reading(path, remedy), open(path, newline="", encoding="utf-8-sig") as file:
         table = csv.DictReader(file, restkey="", strict=True)
@@ -87,7 +87,7 @@ def read_table(path: str | PathLike[str], columns: Iterable[str], remedy: str) -
         for number, row in enumerate(rows, start=1):
             if None in row.values() or "" in row:
                 raise ValueError(f"row {number} has another number of entries than the first line")
-        return Table({title[1]: title[2] for title in titles if title and title[2] is not None}, rows)
+        return CsvTable({title[1]: title[2] for title in titles if title and title[2] is not None}, rows)
 
 
 def check(value: Any, form: Form, where: str = "") -> None:

@@ -180,6 +180,23 @@ def test_kernels_that_are_no_single_shape_are_refused(tmp_path: Path) -> None:
         read_mesh(tmp_path / "text.bds")
 
 
+def test_a_damaged_shape_kernel_is_refused_and_ends_no_process(tmp_path: Path) -> None:
+    """SPICE aborts the process that reads one of zeros."""
+    spice = pytest.importorskip("spiceypy")
+    write_kernel(spice, tmp_path / "rock.bds", 1)
+    whole = (tmp_path / "rock.bds").read_bytes()
+    random = np.random.default_rng(1)
+    flipped = bytearray(whole)
+    for place in random.integers(8, 4000, 300):
+        flipped[place] = random.integers(256)
+    damaged = [b"DAS/DSK " + bytes(4000), whole[:1500], whole[:3000], bytes(flipped)]
+    for number, content in enumerate(damaged):
+        path = tmp_path / f"damaged{number}.bds"
+        path.write_bytes(content)
+        with pytest.raises(ValueError, match=f"{path}: (not a kernel that SPICE|a kernel without plates|.* cannot be)"):
+            read_mesh(path)
+
+
 def write_kernel(spice: object, path: Path, segments: int) -> None:
     """An octahedron with corners at 1 km, in so many segments."""
     vertices = np.array([[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]], dtype=float)
