@@ -58,6 +58,13 @@ REFUSED: list[tuple[str, str]] = [
     ("__import__('os').remove('x')", "is no condition"),
     ("(speed_out > 1", "it cannot be read"),
     ("stays\0", "it cannot be read"),
+    ("speed_out > 0.1 # and not stays", "it has a comment (#) or a line break: write a condition on one line"),
+    ("# stays", "it has a comment (#)"),
+    ("(speed_out > 0.1\nand stays)", "it has a comment (#) or a line break"),
+    ("(speed_out > 0.1\u2028and stays)", "or a line break"),
+    ("-" * 400 + "1 > speed_out", f"{'-' * 400}1 is neither an output nor a finite number"),
+    ("-" * 400 + "speed_out", "-speed_out is no condition"),
+    ("~" * 400 + "stays and stays", "~stays is no condition"),
     (" and ".join(["stays"] * 100), "it has 995 characters"),
 ]
 
