@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from lithobrake.study.aim_checks import aim_problems
+from lithobrake.study.bed_section import Bell, Between, Constant, PowerLaw
 from lithobrake.study.body_checks import body_problems
 from lithobrake.study.contact_checks import contact_problems, inertia_problems
 from lithobrake.study.design_checks import design_problems
@@ -58,6 +59,7 @@ def _grain_problems(study: Study) -> Iterator[str]:
     largest = sizes["upper"] if "upper" in sizes else sizes["value"]
     if sizes.get("lower", 0) >= largest:
         yield f"bed.diameter reaches from {sizes['lower']:g} to {largest:g} m; allowed: lower below upper; swap them"
+    yield from _distribution_problems(study.bed.diameter)
     limit = min(study.bed.width) / BED_WIDTH_PER_GRAIN
     # A grain of exactly a third may not fail by the rounding of the division.
     if largest > limit * (1 + 1e-12):
@@ -65,6 +67,32 @@ def _grain_problems(study: Study) -> Iterator[str]:
             f"bed.diameter reaches to {largest:g} m; allowed: at most {limit:.3g} m, a third of bed.width; "
             "widen the bed or take smaller grains"
         )
+
+
+def _distribution_problems(sizes: Constant | Between | Bell | PowerLaw) -> Iterator[str]:
+    """Exponents of a power law that are none, or turn it over, and a bell without grains between its limits."""
+    if isinstance(sizes, PowerLaw):
+        given = {key: getattr(sizes, key) for key in ("exponent", "cumulative_exponent")}
+        given = {key: value for key, value in given.items() if value is not None}
+        if len(given) != 1:
+            yield (
+                "bed.diameter takes exponent or cumulative_exponent, and "
+                f"{'both are' if given else 'neither is'} given; keep one: the number of grains per diameter D falls "
+                "with D**-exponent, that of grains larger than D with D**-cumulative_exponent"
+            )
+        for key, value in given.items():
+            if value < 0.0:
+                yield (
+                    f"bed.diameter.{key} is {value:g}; allowed: at least 0, as the number of grains falls with "
+                    f"D**-{key}; write the size of the slope, without its sign"
+                )
+    elif isinstance(sizes, Bell) and sizes.lower < sizes.upper:
+        from lithobrake.chaos import TruncatedNormal
+
+        try:
+            TruncatedNormal(sizes.mean, sizes.std, sizes.lower, sizes.upper)
+        except ValueError as error:
+            yield f"bed.diameter is refused: {error}"
 
 
 def _limit_state_problems(study: Study) -> Iterator[str]:

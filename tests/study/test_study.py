@@ -82,6 +82,45 @@ REFUSED = [
     ("bed.width", [0.3, 0.3], ["bed.width is 0.3 m", "at least 0.535 m"]),
     ("bed.diameter", table("uniform", lower=0.1), ["bed.diameter.upper is missing"]),
     ("bed.diameter", table("uniform", lower=0.2, upper=0.1), ["bed.diameter reaches from 0.2 to 0.1 m"]),
+    (
+        "bed.diameter",
+        table("power_law", lower=0.05, upper=0.1, exponent=-2.5),
+        [
+            "bed.diameter.exponent is -2.5; allowed: at least 0, as the number of grains falls with D**-exponent",
+        ],
+    ),
+    (
+        "bed.diameter",
+        table("power_law", lower=0.05, upper=0.1, cumulative_exponent=-2.5),
+        [
+            "bed.diameter.cumulative_exponent is -2.5; allowed: at least 0",
+        ],
+    ),
+    (
+        "bed.diameter",
+        table("power_law", lower=0.05, upper=0.1, exponent=3.5, cumulative_exponent=2.5),
+        [
+            "bed.diameter takes exponent or cumulative_exponent, and both are given",
+        ],
+    ),
+    ("bed.diameter", table("power_law", lower=0.05, upper=0.1), ["and neither is given; keep one"]),
+    (
+        "bed.diameter",
+        table("normal", mean=1e300, std=0.01, lower=0.05, upper=0.1),
+        [
+            "bed.diameter is refused: TruncatedNormal.mean is 1e+300",
+        ],
+    ),
+    ("grain.young_modulus", table("gamma", shape=1e-5, scale=1e6), ["its samples (least, median, largest: 0, 0"]),
+    ("grain.young_modulus", table("log_normal", mean=10.0, std=250.0), ["largest: 0, 2.2e+04, inf) leave that range"]),
+    (
+        "grain.friction",
+        table("truncated_normal", mean=1e300, std=1.0, lower=0.1, upper=0.9),
+        [
+            "grain.friction is { distribution",
+            "TruncatedNormal.mean is 1e+300",
+        ],
+    ),
     ("bed.diameter", table("constant", value=0.6), ["bed.diameter reaches to 0.6 m", "0.183 m"]),
     ("bed.diameter", table("constant", value=0.1, upper=3.0), ["bed.diameter.upper is not a known key"]),
     ("contact.pair_rule", "smalest", ["did you mean smaller?"]),

@@ -19,6 +19,7 @@ from lithobrake.pipeline.planning.expected_width import expected_width
 from lithobrake.pipeline.planning.plan import Plan
 from lithobrake.pipeline.planning.plan_in_words import bytes_in_words
 from lithobrake.pipeline.planning.planned_beds import PlannedBeds, planned_beds
+from lithobrake.pipeline.planning.planned_grains import planned_grains
 from lithobrake.pipeline.planning.planned_runs import PlannedRuns, known_runs, possible_runs
 from lithobrake.pipeline.planning.study_warnings import study_warnings
 from lithobrake.pipeline.site import with_site_gravity
@@ -92,6 +93,7 @@ def plan_of(
         bytes=sizes,
         free_bytes=free,
         warnings=(*room, *study_warnings(study, soil)),
+        grains=planned_grains(study),
     )
 
 
