@@ -11,7 +11,7 @@ from pathlib import Path
 from lithobrake.study.aim_checks import aim_problems
 from lithobrake.study.bed_section import Bell, Between, Constant, PowerLaw
 from lithobrake.study.body_checks import body_problems
-from lithobrake.study.contact_checks import contact_problems, inertia_problems
+from lithobrake.study.contact_checks import contact_problems, inertia_problems, size_problems
 from lithobrake.study.design_checks import design_problems
 from lithobrake.study.quantity import reach
 from lithobrake.study.refusals import show
@@ -127,6 +127,7 @@ def _shape_problems(study: Study) -> Iterator[str]:
     except (ValueError, OSError) as error:
         yield f"lander.file: {error}"
         return
+    yield from size_problems(study, radius)
     width, unit = min(study.bed.width), f', or name the unit of lander.file (lander.unit is "{lander.unit}")'
     if width < BED_WIDTH_PER_LANDER * 2 * radius:
         yield (
