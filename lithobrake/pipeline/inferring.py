@@ -42,7 +42,7 @@ POSTERIOR, PICTURE = "posterior.json", "posterior.png"
 # Points of the posterior that the file keeps and the picture draws.
 DRAWN = 2000
 # What a bounce has of its own, whether known of it or not; all else is the soil and the lander of all bounces.
-OWN, ERROR = "impact.", "error:"
+OWN, ERROR, OUTCOME = "impact.", "error:", "outcome"
 
 
 @dataclass(frozen=True)
@@ -187,7 +187,10 @@ def read_bounces(path: str | os.PathLike[str]) -> list[Observation]:
 
 def _factor(path: str | os.PathLike[str], name: str, unit: str) -> float:
     """What the numbers of a column are multiplied by, to be in the unit of the study."""
-    own = run_units().get(name.removeprefix(ERROR), PURE)
+    own = (run_units() | {OUTCOME: PURE}).get(name.removeprefix(ERROR))
+    if own is None:
+        # The emulator refuses the name.
+        return 1.0
     try:
         return conversion(unit, own)
     except ValueError as error:
@@ -199,14 +202,14 @@ def _bounce(
 ) -> Observation:
     given: dict[str, float] = {}
     for name, text in row.items():
-        if name != "outcome" and text.strip():
+        if name != OUTCOME and text.strip():
             try:
                 given[name] = float(text) * factors.get(name, 1.0)
             except ValueError as error:
                 raise DamagedFileError(
                     f'{path} has "{text}" for {name} in row {number}; write a number, or nothing'
                 ) from error
-    outcome = (row.get("outcome") or "").strip() or None
+    outcome = (row.get(OUTCOME) or "").strip() or None
     if outcome not in (None, *TouchdownOutcome):
         raise ValueError(f'{path} has the outcome "{outcome}" in row {number}; allowed: {", ".join(TouchdownOutcome)}')
     errors = {name.removeprefix(ERROR): value for name, value in given.items() if name.startswith(ERROR)}

@@ -36,7 +36,8 @@ def run(
 ) -> StudyResults:
     """Run a study to its end and return its results; reuse what its folder already has.
 
-    study: path of a study file, or its tables as a dict, in which relative paths count from the current folder.
+    study: path of a study file, or its tables as a dict, in which relative paths count from the current folder
+    and numbers may be NumPy's.
     out: folder of the study; None: runs/NAME, after the name of the file; tables need one.
     workers: number of processes; None: one a core. A script must start them under `if __name__ == "__main__":`.
     model: a callable that can be pickled, `(inputs, seed) -> {"outcome": ..., "outputs": {...}}`, which makes the
