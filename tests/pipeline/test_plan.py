@@ -265,6 +265,7 @@ def test_the_beds_of_the_folder_and_of_the_library_are_not_to_be_poured(
     plans.append(plan_of(study, "quick", folder, 2))
     assert [(plan.beds[0].total, plan.beds[0].new) for plan in plans] == [(15, 15), (15, 9)]
     assert "Beds: 15; 1 in the folder, 5 in the library of beds, 9 to pour." in plan_lines(plans[1])
+    assert f"Site: the ground slopes by {plans[1].site_slope_deg:.0f} deg" in " ".join(plan_lines(plans[1]))
     assert plans[1].made["beds"] == (9, 9)
     assert plans[1].to_json()["beds"] == [{"total": 15, "in_folder": 1, "in_library": 5, "new": 9}]
     # Two at once: eight rounds, then five.

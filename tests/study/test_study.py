@@ -151,6 +151,7 @@ REFUSED = [
     ),
     ("grain.friction", table("exponential", rate=2.0), ["grain.friction is exponential, which has no end"]),
     ("impact.spin_x", table("normal", mean=0.0, std=0.1), ["impact.spin_x is normal, which has no end"]),
+    ("site.name", "Rock", ['site.name is "Rock", and site.body is built in and has one; leave it out']),
     ("site.body", "no_such.obj", ["no such file"]),
     ("site.body", "Didymos", ["no such file; did you mean didymos?"]),
     ("site.body", "a" * 5000, ["no such file"]),
@@ -293,6 +294,7 @@ def rock(folder: Path, text: str, **changes: Any) -> list[str]:
 
 def test_mesh_paths_count_from_the_study_file(tmp_path: Path) -> None:
     assert rock(tmp_path, octahedron(100.0)) == []
+    assert rock(tmp_path, octahedron(100.0), name="2001 SN-263") == []
     tables = {**TABLES, "site": {"body": "rock.obj", "mass": 3e9, "spin_period": 8000.0}}
     assert Path(check_tables(tables, tmp_path).site.body) == tmp_path / "rock.obj"
 
@@ -319,6 +321,9 @@ def test_a_mesh_in_another_unit_is_refused_with_the_unit_that_was_meant_and_read
         (octahedron(100.0, middle=200.0), {}, "the origin, about which the body turns, lies outside"),
         (octahedron(100.0), {"mass": None}, "site.mass is missing"),
         (octahedron(100.0), {"east_error": 120.0}, "at most 107"),
+        (octahedron(100.0), {"name": "<b>"}, 'site.name is "<b>"; allowed: 1 to 40 letters'),
+        (octahedron(100.0), {"name": ""}, 'site.name is ""; allowed'),
+        (octahedron(100.0), {"name": "a" * 41}, "site.name is"),
     ],
 )
 def test_a_body_that_cannot_be_used_is_refused_before_anything_runs(

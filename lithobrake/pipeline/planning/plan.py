@@ -32,6 +32,7 @@ class Plan:
     free_bytes      where the folder is
     warnings        in sentences, the most important first
     grains          of the beds; None where all have one size
+    site_slope_deg  of the ground at the site, against gravity and rotation together
     inference       what observed bounces would say of the inputs; None where that is not asked
     """
 
@@ -48,6 +49,7 @@ class Plan:
     bytes: Mapping[str, int]
     free_bytes: int
     warnings: tuple[str, ...]
+    site_slope_deg: float
     grains: PlannedGrains | None = None
     inference: ExpectedInference | None = None
 

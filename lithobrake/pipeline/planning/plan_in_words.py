@@ -24,6 +24,7 @@ def plan_lines(plan: Plan) -> list[str]:
         lines += [f"Touchdowns: {_designs(plan)}.", f"Time: {_time(plan)}."]
         lines += [f"  {what}: {_seconds(*part)}" for what, part in plan.seconds.items() if part is not None]
         lines += [f"  {plan.basis}"]
+    lines += [f"Site: the ground slopes by {plan.site_slope_deg:.0f} deg against gravity and rotation together."]
     lines += [plan.grains.line()] if plan.grains else []
     size, free = bytes_in_words(sum(plan.bytes.values())), bytes_in_words(plan.free_bytes)
     lines += [f"Disk: about {size} when finished; {free} are free."]
