@@ -25,6 +25,8 @@ LONGEST_QUATERNION = 1e3
 NAME = r"[\w-]+"
 # Fewer grains across are no bed.
 BED_WIDTH_PER_GRAIN = 3.0
+# The largest grain of a bed over its smallest.
+WIDEST_SIZES = 1000.0
 
 
 def problems(study: Study) -> Iterator[str]:
@@ -59,6 +61,11 @@ def _grain_problems(study: Study) -> Iterator[str]:
     largest = sizes["upper"] if "upper" in sizes else sizes["value"]
     if sizes.get("lower", 0) >= largest:
         yield f"bed.diameter reaches from {sizes['lower']:g} to {largest:g} m; allowed: lower below upper; swap them"
+    elif sizes.get("lower", largest) < largest / WIDEST_SIZES:
+        yield (
+            f"bed.diameter reaches from {sizes['lower']:g} to {largest:g} m; allowed: lower at least "
+            f"{1 / WIDEST_SIZES:g} of upper, as no bed of so unlike grains is settled; raise lower"
+        )
     yield from _distribution_problems(study.bed.diameter)
     limit = min(study.bed.width) / BED_WIDTH_PER_GRAIN
     # A grain of exactly a third may not fail by the rounding of the division.

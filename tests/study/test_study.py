@@ -92,6 +92,11 @@ REFUSED = [
     ("bed.diameter", table("uniform", lower=0.2, upper=0.1), ["bed.diameter reaches from 0.2 to 0.1 m"]),
     (
         "bed.diameter",
+        table("uniform", lower=1e-310, upper=0.1),
+        ["bed.diameter reaches from 1e-310 to 0.1 m", "raise lower"],
+    ),
+    (
+        "bed.diameter",
         table("power_law", lower=0.05, upper=0.1, exponent=-2.5),
         [
             "bed.diameter.exponent is -2.5; allowed: at least 0, as the number of grains falls with D**-exponent",
