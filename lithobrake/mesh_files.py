@@ -96,7 +96,7 @@ def _read_plates(path: Path) -> Mesh:
 
     One has lines `v x y z` and `f i j k` as OBJ has. The other has the number of vertices (perhaps also of plates) on
     its first line, then a line a vertex, the number of plates if it was not given, and a line a plate with vertices
-    counted from 1; each of these lines may begin with its own number.
+    counted from 1; each of these lines may begin with its own number, by which they are then ordered.
     """
     rows = [line.replace(",", " ").split() for line in path.read_text(encoding="ascii", errors="replace").splitlines()]
     rows = [row for row in rows if row]
@@ -108,12 +108,12 @@ def _read_plates(path: Path) -> Mesh:
     layout = "give the number of vertices, a line a vertex, the number of plates, a line a plate"
     try:
         counts = [int(word) for word in rows[0]]
-        vertices = np.array([row[-3:] for row in rows[1 : counts[0] + 1]], dtype=np.float64)
+        vertices = np.array(_in_order(rows[1 : counts[0] + 1], "vertices"), dtype=np.float64)
         next_row = counts[0] + 1
         if len(counts) == 1:
             counts.append(int(rows[next_row][0]))
             next_row += 1
-        plates = np.array([row[-3:] for row in rows[next_row : next_row + counts[1]]], dtype=np.int64) - 1
+        plates = np.array(_in_order(rows[next_row : next_row + counts[1]], "plates"), dtype=np.int64) - 1
     except IndexError as error:
         raise ValueError(f"{path}: not a plate model, it ends after {len(rows)} lines; {layout}.") from error
     except (ValueError, OverflowError) as error:
@@ -121,6 +121,25 @@ def _read_plates(path: Path) -> Mesh:
     if (len(vertices), len(plates)) != tuple(counts[:2]) or len(rows) != next_row + counts[1]:
         raise ValueError(f"{path}: {len(rows)} lines do not fit {counts[0]} vertices and {counts[1]} plates.")
     return vertices.reshape(-1, 3), plates.reshape(-1, 3)
+
+
+def _in_order(rows: list[list[str]], what: str) -> list[list[str]]:
+    """The last three entries of rows, by the numbers from 1 on that all of them begin with, or none.
+
+    Raises ValueError for rows of other lengths, and numbers of which one is missing or there twice.
+    """
+    lengths = {len(row) for row in rows}
+    if lengths != {4}:
+        if lengths - {3}:
+            raise ValueError(f"lines of {what} have {', '.join(map(str, sorted(lengths)))} entries, not 3, or 4 each")
+        return rows
+    numbered = {int(row[0]): row[1:] for row in rows}
+    lacking = next((number for number in range(1, len(rows) + 1) if number not in numbered), None)
+    if lacking is not None:
+        raise ValueError(
+            f"the {len(rows)} lines of {what} are not numbered from 1 to {len(rows)}: {lacking} is missing"
+        )
+    return [numbered[number] for number in range(1, len(rows) + 1)]
 
 
 def _quadrilaterals(path: Path, size: int, rows: list[list[str]]) -> Mesh:

@@ -6,34 +6,62 @@ from pathlib import Path
 UNITS = {"m": 1.0, "km": 1e3, "cm": 1e-2, "mm": 1e-3}
 # Formats that fix their unit.
 FIXED = {".bds": "km", ".dsk": "km"}
+# Lengths by the words that name them, in small letters; those that UNITS lacks are recognised to be refused.
 _WORDS = {
     **dict.fromkeys(("km", "kilometer", "kilometers", "kilometre", "kilometres"), "km"),
     **dict.fromkeys(("m", "meter", "meters", "metre", "metres"), "m"),
     **dict.fromkeys(("cm", "centimeter", "centimeters", "centimetre", "centimetres"), "cm"),
     **dict.fromkeys(("mm", "millimeter", "millimeters", "millimetre", "millimetres"), "mm"),
+    **dict.fromkeys(("feet", "foot", "ft"), "feet"),
+    **dict.fromkeys(("inches", "inch"), "inches"),
+    **dict.fromkeys(("yards", "yard", "yd"), "yards"),
+    **dict.fromkeys(("miles", "mile", "mi"), "miles"),
+    **dict.fromkeys(("furlongs", "furlong"), "furlongs"),
+    **dict.fromkeys(("au", "astronomical unit", "astronomical units"), "au"),
+    **dict.fromkeys(("parsecs", "parsec", "pc"), "parsecs"),
+    **dict.fromkeys(("dm", "decimeter", "decimeters", "decimetre", "decimetres"), "dm"),
+    **dict.fromkeys(("um", "µm", "micrometer", "micrometers", "micrometre", "micrometres", "microns"), "um"),
+    **dict.fromkeys(("nm", "nanometer", "nanometers", "nanometre", "nanometres"), "nm"),
+    **dict.fromkeys(("megameter", "megameters", "megametre", "megametres"), "Mm"),
 }
 _NAMED = "|".join(sorted(_WORDS, key=len, reverse=True))
-# "units: km", "UNIT = KILOMETER", "the units are kilometers", "vertices in km".
+_LENGTHS = r"(?:vertices|vertex coordinates|coordinates|positions|lengths|distances|dimensions)"
+# "units: km", "UNIT = KILOMETER", "the units are kilometers", "vertices in km", "all lengths are in km", "x [km]".
 _STATED = re.compile(
-    rf"(?:\bunits?\b\W*(?:(?:are|is|in|of|length|vertices|coordinates)\W+){{0,3}}|\b(?:vertices|coordinates) in )"
+    rf"(?:\bunits?\b\W*(?:1(?:\.0*)?\s+)?(?:(?:are|is|in|of|length|vertices|coordinates)\W+){{0,3}}"
+    rf"|\b{_LENGTHS}\s+(?:(?:are|given)\s+)*in\s+|\b[xyz]\s*[\[(]\s*)"
     rf"({_NAMED})(?![\w/^*])",
     flags=re.IGNORECASE,
+)
+# Whatever a header names as the unit: "units: parasangs", "the unit is 0.3 m".
+_ANY_STATED = re.compile(
+    r"\bunits?[ \t]*(?:[:=]|(?:are|is|in)\b)[ \t]*(?:(?:are|is|in|of|length)[ \t]+)*([^\s,;]+)", flags=re.IGNORECASE
 )
 # Labels of PDS4 name the unit of each field; those of PDS3 are found by the pattern above.
 _FIELD = re.compile(rf"<unit>\s*({_NAMED})\s*</unit>", flags=re.IGNORECASE)
 # Archives describe what they keep by keywords: "# GSD = 0.25", "# PRODUCT_VERSION: 3".
 _KEYWORD = re.compile(r"^#\s*[A-Z][A-Z0-9_]+\s*[:=]", flags=re.MULTILINE)
+# A line of a vertex, or of how many there are.
+_VERTEX = re.compile(rb"\s*(?:[vV]\s|[-+.\d])")
+TITLE_LENGTH = 80  # of a binary STL file
 
 
 def mesh_unit(path: Path, unit: str | None) -> str:
     """The unit of a mesh: the one that is given, else what its header or label states, else metres.
 
-    Raises ValueError for an unknown unit, for one that the file contradicts, and where none is given and the file comes
-    from an archive, by its label or by the keywords of its header, that does not state one: nothing is guessed then.
+    Raises ValueError for an unknown unit, given or stated, for one that the file contradicts, and where none is given
+    and the file comes from an archive, by its label or by the keywords of its header, that does not state one: nothing
+    is guessed then.
     """
     if unit is not None and unit not in UNITS:
         raise ValueError(f"unit is {unit!r}; allowed are {', '.join(UNITS)}.")
     stated, archived = _stated(path)
+    strange = sorted(stated - set(UNITS))
+    if strange and unit not in stated:
+        raise ValueError(
+            f"{path}: its header or label gives lengths in {' and '.join(strange)}; allowed are {', '.join(UNITS)}: "
+            "convert the mesh, or correct what is said of it."
+        )
     if unit is not None and stated and unit not in stated:
         words = " and ".join(sorted(stated))
         raise ValueError(f"{path}: its header or label says {words}, and unit is {unit!r}; give what it says, or none.")
@@ -47,14 +75,23 @@ def mesh_unit(path: Path, unit: str | None) -> str:
 
 
 def _stated(path: Path) -> tuple[set[str], bool]:
-    """The units that header and label state, and whether there is a label, or a header with keywords."""
+    """What header and label state as the unit, and whether there is a label, or a header with keywords.
+
+    Where neither names a length, what else the header calls its unit.
+    """
     if path.suffix.lower() in FIXED:
         return {FIXED[path.suffix.lower()]}, True
     labels = [place for place in _labels(path) if place.is_file()]
     header = _header(path)
     texts = [header, *(label.read_text(encoding="utf-8", errors="replace") for label in labels)]
-    found = {_WORDS[word.lower()] for text in texts for word in (*_STATED.findall(text), *_FIELD.findall(text))}
-    return found, bool(labels) or _KEYWORD.search(header) is not None
+    found = {_length(word) for text in texts for word in (*_STATED.findall(text), *_FIELD.findall(text))}
+    others = {word.strip("'\"()[]<>.") or "nothing" for word in _ANY_STATED.findall(header)}
+    return found or others, bool(labels) or _KEYWORD.search(header) is not None
+
+
+def _length(word: str) -> str:
+    """The unit that a word names. Capitals make no difference but to Mm, which is no millimetre."""
+    return word if word == "Mm" else _WORDS[word.lower()]
 
 
 def _labels(path: Path) -> list[Path]:
@@ -63,11 +100,14 @@ def _labels(path: Path) -> list[Path]:
 
 
 def _header(path: Path) -> str:
-    """The lines that begin with # before the first that does not; "" for a file that is no text."""
-    lines = []
+    """The lines that begin with # before the first vertex; of an STL file, which has none, its title."""
     with path.open("rb") as file:
+        if path.suffix.lower() == ".stl":
+            return file.read(TITLE_LENGTH).partition(b"\n")[0].decode("utf-8", errors="replace")
+        lines = []
         for line in file:
-            if not line.lstrip().startswith(b"#") and line.strip():
+            if _VERTEX.match(line):
                 break
-            lines.append(line.decode("utf-8", errors="replace"))
+            if line.lstrip().startswith(b"#"):
+                lines.append(line.decode("utf-8", errors="replace"))
     return "".join(lines)

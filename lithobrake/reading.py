@@ -3,12 +3,13 @@
 import csv
 import json
 import math
+import re
 import reprlib
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from os import PathLike
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 # What a form may be: a type; {"key": form}, an object with at least these keys; {str: form}, an object with any keys;
 # [form], a list.
@@ -16,6 +17,17 @@ Form = Any
 NUMBER = int | float
 # What readers of text, JSON, CSV and HDF5 raise over a file that is not what they expect.
 UNREADABLE = (OSError, ValueError, TypeError, LookupError, AttributeError, ArithmeticError, RuntimeError, csv.Error)
+
+
+# The title of a column: its name, and its unit in brackets where it has one.
+TITLE = re.compile(r"\s*(.*?)\s*(?:\[([^\[\]]*)\])?\s*", re.DOTALL)
+
+
+class CsvTable(NamedTuple):
+    """A CSV file: the units that its columns state, by name, and its rows, each an entry by the name of its column."""
+
+    units: dict[str, str]
+    rows: list[dict[str, str]]
 
 
 class DamagedFileError(ValueError):
@@ -54,19 +66,28 @@ def parsed(text: str | bytes, form: Form) -> Any:
 def read_rows(path: str | PathLike[str], columns: Iterable[str], remedy: str) -> list[dict[str, str]]:
     """The rows of a CSV file by column, whose name ends before its unit in brackets.
 
-    Raises DamagedFileError when the file lacks one of these columns, or half a row.
+    Raises DamagedFileError when the file lacks one of these columns, has two of one name, or half a row.
     """
-    with reading(path, remedy), open(path, newline="", encoding="utf-8") as file:
+    return read_table(path, columns, remedy).rows
+
+
+def read_table(path: str | PathLike[str], columns: Iterable[str], remedy: str) -> CsvTable:
+    """The same with the units of the columns."""
+    with reading(path, remedy), open(path, newline="", encoding="utf-8-sig") as file:
         table = csv.DictReader(file, restkey="", strict=True)
-        table.fieldnames = [title.partition(" [")[0] for title in table.fieldnames or ()]
-        lacking = [name for name in columns if name not in table.fieldnames]
+        titles = [TITLE.fullmatch(title) for title in table.fieldnames or ()]
+        table.fieldnames = names = [title[1] if title else "" for title in titles]
+        lacking = [name for name in columns if name not in names]
         if lacking:
             raise ValueError(f"it lacks the columns {', '.join(lacking)}")
+        twice = sorted({name for name in names if names.count(name) > 1})
+        if twice:
+            raise ValueError(f"it has {names.count(twice[0])} columns {twice[0] or 'without a name'}")
         rows = list(table)
         for number, row in enumerate(rows, start=1):
             if None in row.values() or "" in row:
                 raise ValueError(f"row {number} has another number of entries than the first line")
-        return rows
+        return CsvTable({title[1]: title[2] for title in titles if title and title[2] is not None}, rows)
 
 
 def check(value: Any, form: Form, where: str = "") -> None:

@@ -14,6 +14,7 @@ from lithobrake import __version__
 from lithobrake.attitude import pointed
 from lithobrake.hashing import source_hash
 from lithobrake.study import Study
+from lithobrake.study.bed_section import Constant, PowerLaw
 from lithobrake.study.quantity import median
 
 if TYPE_CHECKING:
@@ -189,10 +190,13 @@ def grain_sizes(study: Study) -> "GrainSizes":
     """The sizes of the grains."""
     from lithobrake.touchdown import GrainSizes
 
-    sizes = study.bed.diameter.model_dump()
-    if sizes["distribution"] == "constant":
-        sizes = {"distribution": "constant", "lower": sizes["value"], "upper": sizes["value"]}
-    return GrainSizes(**sizes)
+    sizes = study.bed.diameter
+    if isinstance(sizes, Constant):
+        return GrainSizes(distribution="constant", lower=sizes.value, upper=sizes.value)
+    if isinstance(sizes, PowerLaw):
+        exponent = sizes.differential_exponent
+        return GrainSizes(distribution="power_law", lower=sizes.lower, upper=sizes.upper, exponent=exponent)
+    return GrainSizes(**sizes.model_dump())
 
 
 def grain(values: Values) -> "Material":

@@ -18,6 +18,8 @@ LEAVES = {
         "mesh_labels",
         "mesh_units",
         "shape_kernel",
+        "body_kernels",
+        "kernel_process",
         "outputs",
         "outcomes",
         "plain",

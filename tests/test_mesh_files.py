@@ -38,6 +38,11 @@ def mesh(folder: Path, header: str = "", label: str = "", ending: str = ".xml") 
         ("# PRODUCT_VERSION = 3\n#\n# The units are kilometers.\n", "", "", 1e3),
         ("# vertices in meters\n", "", "", 1.0),
         ("# File units = millimetres\n", "", "", 1e-3),
+        ("# UNITS: MM\n", "", "", 1e-3),
+        ("# 1 unit = 1 km\n", "", "", 1e3),
+        ("# all lengths are in km\n", "", "", 1e3),
+        ("# x [km] y [km] z [km]\n", "", "", 1e3),
+        ("mtllib rock.mtl\n\n# units: km\n", "", "", 1e3),
         ("# GSD = 0.25\n", PDS4_LABEL, ".xml", 1e3),
         ("", PDS3_LABEL, ".lbl", 1e3),
     ],
@@ -57,6 +62,19 @@ def test_the_unit_is_what_header_or_label_state(
         ("# Units: km\n", "", "m", "says km, and unit is 'm'"),
         ("# Units: km\n", "<unit>m</unit>", None, "name km, m"),
         ("", "", "inch", "allowed are m, km, cm, mm"),
+        ("# Units: feet\n", "", None, "gives lengths in feet; allowed are m, km, cm, mm"),
+        ("# the units are Feet\n", "", "m", "gives lengths in feet"),
+        ("# units = inches\n", "", None, "gives lengths in inches"),
+        ("# units: in\n", "", "m", "gives lengths in in;"),
+        ("# unit: mi\n", "", None, "gives lengths in miles"),
+        ("# vertices in furlongs\n", "", None, "gives lengths in furlongs"),
+        ("# UNIT: AU\n", "", "km", "gives lengths in au"),
+        ("# unit: au\n", "", None, "gives lengths in au"),
+        ("# units: Mm\n", "", None, "gives lengths in Mm"),
+        ("# units: parasangs\n", "", None, "gives lengths in parasangs"),
+        ("# units: 0.3 m\n", "", None, "gives lengths in 0.3"),
+        ("# units: km/s\n", "", "km", "gives lengths in km/s"),
+        ("", "<unit>AU</unit>", None, "gives lengths in au"),
     ],
 )
 def test_a_unit_is_never_guessed(tmp_path: Path, header: str, label: str, unit: str | None, words: str) -> None:
@@ -66,6 +84,51 @@ def test_a_unit_is_never_guessed(tmp_path: Path, header: str, label: str, unit: 
 
 def test_a_unit_that_is_given_answers_a_silent_header(tmp_path: Path) -> None:
     assert read_mesh(mesh(tmp_path, "# GSD = TBD\n"), "km")[0].max() == 1e3
+
+
+def test_a_unit_in_the_title_of_an_stl_file_is_read(tmp_path: Path) -> None:
+    (tmp_path / "rock.stl").write_text("solid rock UNITS=feet\nfacet\nvertex 0 0 0\n")
+    with pytest.raises(ValueError, match="gives lengths in feet"):
+        read_mesh(tmp_path / "rock.stl", "m")
+
+
+def plate_table(vertices: list[str], plates: list[str]) -> str:
+    return "\n".join([str(len(vertices)), *vertices, str(len(plates)), *plates]) + "\n"
+
+
+NUMBERED = [[f"{number} {line[2:]}" for number, line in enumerate(
+    (line for line in OCTAHEDRON.splitlines() if line[0] == kind), 1)] for kind in "vf"]  # fmt: skip
+
+
+def test_the_vertices_of_a_plate_table_have_their_numbers(tmp_path: Path) -> None:
+    vertices, plates = NUMBERED
+    path = tmp_path / "rock.tab"
+    path.write_text(plate_table(vertices, plates))
+    wanted = read_mesh(path)
+    assert volume_of(*wanted) == pytest.approx(4.0 / 3.0)
+    for order in ([1, 0, 2, 3, 4, 5], [5, 3, 1, 0, 2, 4]):
+        path.write_text(plate_table([vertices[i] for i in order], plates[::-1]))
+        assert all(np.array_equal(found, expected) for found, expected in zip(read_mesh(path), wanted, strict=True))
+    path.write_text(plate_table([line[2:] for line in vertices], [line[2:] for line in plates]))
+    assert np.array_equal(read_mesh(path)[0], wanted[0])
+
+
+@pytest.mark.parametrize(
+    ("line", "words"),
+    [
+        ("5 0 0 -1", "vertices are not numbered from 1 to 6: 6 is missing"),
+        ("7 0 0 -1", "vertices are not numbered from 1 to 6: 6 is missing"),
+        ("0 0 0 -1", "6 is missing"),
+        ("0 0 -1", "lines of vertices have 3, 4 entries"),
+        ("6 0 0 -1 1", "lines of vertices have 4, 5 entries"),
+        ("six 0 0 -1", "invalid literal"),
+    ],
+)
+def test_a_plate_table_with_gaps_between_its_numbers_is_refused(tmp_path: Path, line: str, words: str) -> None:
+    vertices, plates = NUMBERED
+    (tmp_path / "rock.tab").write_text(plate_table([*vertices[:-1], line], plates))
+    with pytest.raises(ValueError, match=words):
+        read_mesh(tmp_path / "rock.tab")
 
 
 def gaskell_cube(size: int) -> np.ndarray:
@@ -115,6 +178,23 @@ def test_kernels_that_are_no_single_shape_are_refused(tmp_path: Path) -> None:
     (tmp_path / "text.bds").write_text("no kernel\n" * 200)
     with pytest.raises(ValueError, match="not a kernel that SPICE opens"):
         read_mesh(tmp_path / "text.bds")
+
+
+def test_a_damaged_shape_kernel_is_refused_and_ends_no_process(tmp_path: Path) -> None:
+    """SPICE aborts the process that reads one of zeros."""
+    spice = pytest.importorskip("spiceypy")
+    write_kernel(spice, tmp_path / "rock.bds", 1)
+    whole = (tmp_path / "rock.bds").read_bytes()
+    random = np.random.default_rng(1)
+    flipped = bytearray(whole)
+    for place in random.integers(8, 4000, 300):
+        flipped[place] = random.integers(256)
+    damaged = [b"DAS/DSK " + bytes(4000), whole[:1500], whole[:3000], bytes(flipped)]
+    for number, content in enumerate(damaged):
+        path = tmp_path / f"damaged{number}.bds"
+        path.write_bytes(content)
+        with pytest.raises(ValueError, match=f"{path}: (not a kernel that SPICE|a kernel without plates|.* cannot be)"):
+            read_mesh(path)
 
 
 def write_kernel(spice: object, path: Path, segments: int) -> None:

@@ -15,6 +15,9 @@ from lithobrake.chaos.polynomials import Array, Recurrence, discretised
 NEGLIGIBLE_LOG_DENSITY = 350.0
 # Weights of one long Gauss rule lose digits near its ends; panels of a short rule do not.
 PANEL_NODES, PANELS = 40, 20
+# A mean so many standard deviations beyond the limits leaves no digits of a normal between them, but an exponential; a
+# standard deviation of so many times the way between them leaves a uniform.
+FARTHEST_MEAN, WIDEST = 100.0, 1e6
 # Samples that a fine rule keeps for each node asked for.
 SAMPLES_PER_NODE = 10
 # Polynomials of samples are made up to this degree, or to where rounding spoils their orthonormality by this much: at
@@ -39,6 +42,27 @@ class TruncatedNormal(Distribution):
         self._number("mean")
         self._number("std", above=0.0)
         self._ordered(self._number("lower", finite=False), self._number("upper", finite=False))
+        self._normal_between_limits()
+
+    def _normal_between_limits(self) -> None:
+        """Raise ValueError where the limits leave nothing of a normal that numbers could hold."""
+        low, high = self._standardised
+        finite = [z for z, limit in ((low, self.lower), (high, self.upper)) if np.isfinite(limit)]
+        if not np.all(np.isfinite(finite)) or low > FARTHEST_MEAN or high < -FARTHEST_MEAN:
+            raise ValueError(
+                f"TruncatedNormal.mean is {self.mean:g} with std {self.std:g}, but must be within {FARTHEST_MEAN:g} "
+                f"std of the limits {self.lower:g} and {self.upper:g}: move it"
+            )
+        if high - low < 1.0 / WIDEST:
+            raise ValueError(
+                f"TruncatedNormal.std is {self.std:g}, but must be at most {WIDEST:g} times the way from lower "
+                f"{self.lower:g} to upper {self.upper:g}: write uniform"
+            )
+
+    @property
+    def _standardised(self) -> tuple[float, float]:
+        """The limits as they are, counted from the mean in standard deviations."""
+        return (self.lower - self.mean) / self.std, (self.upper - self.mean) / self.std
 
     @property
     def support(self) -> Support:
@@ -47,7 +71,7 @@ class TruncatedNormal(Distribution):
     @cached_property
     def _limits(self) -> tuple[float, float]:
         """Standardised limits beyond which the density is zero or negligible."""
-        low, high = (self.lower - self.mean) / self.std, (self.upper - self.mean) / self.std
+        low, high = self._standardised
         mode = min(max(0.0, low), high)
         reach = float(np.sqrt(mode * mode + 2.0 * NEGLIGIBLE_LOG_DENSITY))
         return max(low, -reach), min(high, reach)
@@ -70,7 +94,7 @@ class TruncatedNormal(Distribution):
 
     def ppf(self, u: ArrayLike) -> Array:
         probability = np.asarray(u, dtype=float)
-        low, high = (self.lower - self.mean) / self.std, (self.upper - self.mean) / self.std
+        low, high = self._standardised
         # In the right tail the mirrored problem keeps all digits; logarithms keep the far tail from underflow.
         sign = -1.0 if low + high > 0.0 else 1.0
         if sign < 0.0:
@@ -83,14 +107,16 @@ class TruncatedNormal(Distribution):
         return self._clip(self.mean + self.std * sign * special.ndtri_exp(logarithm))
 
     def cdf(self, x: Array) -> Array:
-        low, high = (self.lower - self.mean) / self.std, (self.upper - self.mean) / self.std
+        low, high = self._standardised
         z, sign = (np.asarray(x) - self.mean) / self.std, 1.0
         # Differences of tails keep their digits only on the left side of the normal.
         if low + high > 0.0:
             low, high, z, sign = -high, -low, -z, -1.0
-        start, end = special.log_ndtr(low), special.log_ndtr(high)
-        probability = np.expm1(special.log_ndtr(z) - start) / np.expm1(end - start) if np.isfinite(start) else None
-        probability = np.exp(special.log_ndtr(z) - end) if probability is None else probability
+        start, end, here = special.log_ndtr(low), special.log_ndtr(high), special.log_ndtr(z)
+        # Exponents at most 0, so that nothing overflows; at a lower limit of -infinity start - here is -infinity.
+        with np.errstate(invalid="ignore"):
+            below = np.where(here > start, start - here, 0.0)
+        probability = np.exp(here - end) * np.expm1(below) / np.expm1(start - end) + 0.0
         return probability if sign > 0.0 else 1.0 - probability
 
     def germ_derivative(self, x: Array) -> Array:

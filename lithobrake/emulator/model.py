@@ -26,6 +26,8 @@ from lithobrake.html_table import html_table
 
 # Draws that are made at once: bounds the memory, and belongs to what a seed gives.
 _BLOCK = 1 << 18
+# Of an observation: the squares of larger ones overflow, and these say nothing either.
+LARGEST_ERROR = 1e100
 
 
 @dataclass(frozen=True)
@@ -233,8 +235,11 @@ class Emulator(Parts):
             if name not in modelled or not np.isfinite(value):
                 raise ValueError(f"{name} is observed as {value}; allowed: finite numbers of {', '.join(modelled)}")
         for name, error in errors.items():
-            if name not in observed or not (np.isfinite(error) and error >= 0.0):
-                raise ValueError(f"the error of {name} is {error}; allowed: 0 or more, of what was observed")
+            if name not in observed or not 0.0 <= error <= LARGEST_ERROR:
+                raise ValueError(
+                    f"the error of {name} is {error}; allowed: 0 to {LARGEST_ERROR:g}, of what was observed; leave out "
+                    "what was not"
+                )
         if outcome is None:
             return self.runs.output_outcome
         if outcome not in self.outcome_names:

@@ -174,4 +174,5 @@ def study_body(results: StudyResults, mass: float, spin_period: float) -> Body:
 
 def body_name(results: StudyResults) -> str:
     """The name of the body as other programs take it: capitals, digits and underscores."""
-    return re.sub(r"\W+", "_", Path(results.study["site"]["body"]).stem, flags=re.ASCII).upper()
+    site = results.study["site"]
+    return re.sub(r"\W+", "_", site.get("name") or Path(site["body"]).stem, flags=re.ASCII).upper()

@@ -20,6 +20,7 @@ from lithobrake.analysis import (
 )
 from lithobrake.atomic import atomic_path
 from lithobrake.outcomes import TouchdownOutcome
+from lithobrake.outputs import PURE
 from lithobrake.pipeline.beds import bed_files
 from lithobrake.pipeline.designs import design_inputs
 from lithobrake.pipeline.energy_bound import energy_bound, height_of_beds
@@ -29,9 +30,10 @@ from lithobrake.pipeline.fitted_emulator import SPEED, SPIN
 from lithobrake.pipeline.folder import StudyFolder
 from lithobrake.pipeline.notes import REMEDY
 from lithobrake.pipeline.site import with_site_gravity
-from lithobrake.reading import DamagedFileError, read_json, read_rows
+from lithobrake.reading import DamagedFileError, read_json, read_table
 from lithobrake.study import Study, StudySource
-from lithobrake.study.units import input_units
+from lithobrake.study.unit_factors import conversion
+from lithobrake.study.units import input_units, run_units
 
 if TYPE_CHECKING:
     from lithobrake.emulator import Emulator
@@ -40,7 +42,7 @@ POSTERIOR, PICTURE = "posterior.json", "posterior.png"
 # Points of the posterior that the file keeps and the picture draws.
 DRAWN = 2000
 # What a bounce has of its own, whether known of it or not; all else is the soil and the lander of all bounces.
-OWN, ERROR = "impact.", "error:"
+OWN, ERROR, OUTCOME = "impact.", "error:", "outcome"
 
 
 @dataclass(frozen=True)
@@ -170,27 +172,44 @@ def infer_study(folder: Path, bounces: Path) -> dict[str, Any]:
 def read_bounces(path: str | os.PathLike[str]) -> list[Observation]:
     """Read bounces, one a row, from a CSV file; an empty cell was not observed.
 
-    Columns: outputs of the touchdown [SI], `error:` and the name of one for its standard deviation, uncertain numbers
-    of [impact] by dotted key where they are known, and outcome. Raises ValueError for what is no number, and no bounce.
+    Columns: outputs of the touchdown, `error:` and the name of one for its standard deviation, uncertain numbers of
+    [impact] by dotted key where they are known, and outcome. A unit in brackets behind a name is turned into that of
+    the study; without one numbers are in that unit. Raises ValueError for what is no number, a unit of another
+    quantity, two columns of one name, and no bounce.
     """
-    rows = read_rows(path, (), "write a line of names, and a line for each bounce")
-    found = [_bounce(path, number, row) for number, row in enumerate(rows, start=1)]
+    table = read_table(path, (), "write a line of names, and a line for each bounce")
+    factors = {name: _factor(path, name, unit) for name, unit in table.units.items()}
+    found = [_bounce(path, number, row, factors) for number, row in enumerate(table.rows, start=1)]
     if not found:
         raise ValueError(f"{path} has no bounce; write one a line below the line of names")
     return found
 
 
-def _bounce(path: str | os.PathLike[str], number: int, row: Mapping[str, str]) -> Observation:
+def _factor(path: str | os.PathLike[str], name: str, unit: str) -> float:
+    """What the numbers of a column are multiplied by, to be in the unit of the study."""
+    own = (run_units() | {OUTCOME: PURE}).get(name.removeprefix(ERROR))
+    if own is None:
+        # The emulator refuses the name.
+        return 1.0
+    try:
+        return conversion(unit, own)
+    except ValueError as error:
+        raise ValueError(f"{path} has {name} in the {error}; convert the column") from error
+
+
+def _bounce(
+    path: str | os.PathLike[str], number: int, row: Mapping[str, str], factors: Mapping[str, float]
+) -> Observation:
     given: dict[str, float] = {}
     for name, text in row.items():
-        if name != "outcome" and text.strip():
+        if name != OUTCOME and text.strip():
             try:
-                given[name] = float(text)
+                given[name] = float(text) * factors.get(name, 1.0)
             except ValueError as error:
                 raise DamagedFileError(
                     f'{path} has "{text}" for {name} in row {number}; write a number, or nothing'
                 ) from error
-    outcome = (row.get("outcome") or "").strip() or None
+    outcome = (row.get(OUTCOME) or "").strip() or None
     if outcome not in (None, *TouchdownOutcome):
         raise ValueError(f'{path} has the outcome "{outcome}" in row {number}; allowed: {", ".join(TouchdownOutcome)}')
     errors = {name.removeprefix(ERROR): value for name, value in given.items() if name.startswith(ERROR)}

@@ -107,6 +107,12 @@ def effective_acceleration_at_site(study: Study) -> np.ndarray:
     return felt
 
 
+def site_slope_deg(study: Study) -> float:
+    """Slope of the ground at the site against the plumb line of gravity and rotation together, at medians [deg]."""
+    values = site_medians(study)
+    return math.degrees(float(site_body(study).slope(values["latitude_deg"], values["longitude_deg"])))
+
+
 def site_warning(study: Study) -> str | None:
     """What it means that the ground at the site does not hold what lies on it, or hardly; None where it does."""
     body, values = site_body(study), site_medians(study)

@@ -10,6 +10,7 @@ from lithobrake.report.results import PaperResults, Results
 from lithobrake.report.scatter_figure import DRAWN_COUNT
 from lithobrake.report.style import PAPER_OUTPUTS, output
 
+BODIES = {"didymos": "Didymos", "dimorphos": "Dimorphos"}
 FIELD_WORDS = {"young_modulus": "Young's modulus", "poisson_ratio": "Poisson's ratio"}
 POINT_WORDS = {
     "smolyak": "on the Smolyak grid",
@@ -61,7 +62,8 @@ def place_words(data: Results) -> list[str]:
 
 def body_name(data: Results) -> str:
     """The body in words."""
-    return "Didymos" if data.study["site"]["body"] == "didymos" else "the body"
+    site = data.study["site"]
+    return site.get("name") or BODIES.get(site["body"], "the body")
 
 
 def facts(data: Results) -> str:

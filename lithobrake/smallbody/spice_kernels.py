@@ -1,21 +1,12 @@
 """How a body turns and where its partner stands, from kernels of SPICE: text constants (PCK) and ephemerides (SPK)."""
 
-import math
 import os
-import warnings
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Sequence
+from functools import lru_cache
 from typing import Any, NamedTuple
 
-import numpy as np
-
-from lithobrake.shape_kernel import spice
-
-# Bodies that SPICE's own table of names may lack.
-NUMBERS = {"didymos": 920065803, "dimorphos": 120065803}
-# What others, older kernels among them, call the same two bodies.
-OLD_NUMBERS = {2065803: 920065803, 20065803: 920065803}
-DAY = 86_400.0  # [s]
+from lithobrake import body_kernels
+from lithobrake.kernel_process import Reply, read_apart
 
 
 class SpinState(NamedTuple):
@@ -43,21 +34,7 @@ def read_spin(kernels: Sequence[str | os.PathLike[str]], body: str | int) -> Spi
     body: a name that the kernels or SPICE know, or its number.
     Raises ValueError where the kernels say nothing of it, or that it turns clockwise or not at all.
     """
-    with _loaded(kernels) as loaded:
-        number = _number(loaded, body)
-        right_ascension, declination, meridian = (
-            _constants(loaded, number, name) for name in ("POLE_RA", "POLE_DEC", "PM")
-        )
-        moving = [*right_ascension[1:], *declination[1:], *meridian[2:]]
-        if any(moving) or loaded.bodfnd(number, "NUT_PREC_PM"):
-            warnings.warn(f"body {number}: precession, nutation and change of its spin are left out", stacklevel=2)
-    rate = meridian[1] if len(meridian) > 1 else 0.0
-    if rate <= 0.0:
-        raise ValueError(
-            f"body {number}: BODY{number}_PM turns by {rate} degrees a day; allowed: above 0, as the pole of a small "
-            "body is the one about which it turns counter-clockwise"
-        )
-    return SpinState(360.0 / rate * DAY, float(right_ascension[0]), float(declination[0]), float(meridian[0]))
+    return SpinState(*_numbers(body_kernels.spin, kernels, body))
 
 
 def read_partner(
@@ -68,46 +45,29 @@ def read_partner(
     kernels: an ephemeris (SPK) of both, constants (PCK) of the body, and leap seconds (LSK).
     Raises ValueError where these lack what is asked for.
     """
-    with _loaded(kernels) as loaded:
-        number, other = _number(loaded, body), _number(loaded, partner)
-        time = loaded.str2et(epoch)
-        state = 1e3 * np.array(loaded.spkgeo(other, time, "J2000", number)[0])
-        fixed = np.array(loaded.tipbod("J2000", number, time)) @ state[:3]
-    distance = float(np.linalg.norm(state[:3]))
-    rate = float(np.linalg.norm(np.cross(state[:3], state[3:]))) / distance**2
-    latitude = math.degrees(math.asin(fixed[2] / distance))
-    return PartnerPlace(distance, latitude, math.degrees(math.atan2(fixed[1], fixed[0])), 2.0 * math.pi / rate)
+    return PartnerPlace(*_numbers(body_kernels.partner, kernels, body, partner, epoch))
 
 
-@contextmanager
-def _loaded(kernels: Sequence[str | os.PathLike[str]]) -> Iterator[Any]:
-    """SPICE with these kernels, as long as this lasts; what it refuses becomes a ValueError."""
-    loaded = spice()
-    done: list[str] = []
+def _numbers(
+    function: Callable[..., Any], kernels: Sequence[str | os.PathLike[str]], *arguments: str | int
+) -> list[float]:
+    paths = tuple(os.fspath(kernel) for kernel in kernels)
+    reply = _reply(function, paths, tuple(_stamp(path) for path in paths), *arguments)
+    return [float(value) for value in reply.unpacked(stacklevel=3)]
+
+
+# A study asks for the same numbers many times, and each time another process would start.
+@lru_cache(maxsize=32)
+def _reply(
+    function: Callable[..., Any], paths: tuple[str, ...], _stamps: tuple[Any, ...], *arguments: str | int
+) -> Reply:
+    return read_apart(function, paths, *arguments, kernels=paths)
+
+
+def _stamp(path: str) -> tuple[int, int, int] | None:
+    """What of a file changes when its content does; None where there is none."""
     try:
-        for kernel in kernels:
-            loaded.furnsh(os.fspath(kernel))
-            done.append(os.fspath(kernel))
-        yield loaded
-    except (loaded.exceptions.SpiceyError, loaded.exceptions.NotFoundError) as error:
-        names = ", ".join(os.fspath(kernel) for kernel in kernels)
-        words = " ".join(str(getattr(error, "long", "") or error).split())
-        raise ValueError(f"kernels {names}: {words}; add the kernel that has it") from error
-    finally:
-        for kernel in done:
-            loaded.unload(kernel)
-
-
-def _number(loaded: Any, body: str | int) -> int:
-    number = body if isinstance(body, int) else NUMBERS.get(body.lower()) or int(loaded.bods2c(body))
-    if number in OLD_NUMBERS:
-        warnings.warn(
-            f"body {number} is not Didymos in the kernels of DART and Hera, but {OLD_NUMBERS[number]}", stacklevel=3
-        )
-    return number
-
-
-def _constants(loaded: Any, number: int, name: str) -> list[float]:
-    if not loaded.bodfnd(number, name):
-        raise ValueError(f"the kernels have no BODY{number}_{name}; add the constants (PCK) of the body")
-    return [float(value) for value in loaded.bodvcd(number, name, 10)[1]]
+        found = os.stat(path)
+    except OSError:
+        return None
+    return found.st_ino, found.st_size, found.st_mtime_ns

@@ -36,12 +36,22 @@ class Bell(Section):
 
 
 class PowerLaw(Section):
-    """Number of grains falling with size as diameter**-exponent, between two limits."""
+    """Number of grains that falls with the diameter D to a power, between two limits, by one of two exponents.
+
+    exponent: differential, the number per diameter goes with D**-exponent. cumulative_exponent: the number of grains
+    larger than D goes with D**-cumulative_exponent, before it is cut at the limits; it is 1 less than the other.
+    """
 
     distribution: Literal["power_law"]
-    exponent: Annotated[float, Number("")]
+    exponent: Annotated[float, Number("")] | None = None
+    cumulative_exponent: Annotated[float, Number("")] | None = None
     lower: Metres
     upper: Metres
+
+    @property
+    def differential_exponent(self) -> float:
+        """The exponent of the number per diameter, whichever of the two is given."""
+        return self.exponent if self.exponent is not None else 1.0 + (self.cumulative_exponent or 0.0)
 
 
 class BedSection(Section):
@@ -55,7 +65,8 @@ class BedSection(Section):
         examples=['{ distribution = "constant", value = 0.08 }']
     )
     """Diameter of the sphere of equal volume: constant (value), uniform (lower, upper), normal (mean, std, lower,
-    upper) or power_law (exponent, lower, upper)."""
+    upper) or power_law (exponent or cumulative_exponent, lower, upper): the number of grains per diameter D falls with
+    D**-exponent, and that of grains larger than D with D**-cumulative_exponent, 1 less. Both are written positive."""
     bed_count: Annotated[int, Whole("", at_least=1, at_most=1000)] | None = None
     """How many beds; with more than one, each run draws its bed. Absent: one; with design.method = "sequence", on whose
     beds land equally many runs, a tenth of these (rounded up), at least 12 and at most 60."""

@@ -2,6 +2,7 @@
 
 import math
 import os
+import re
 import warnings
 from collections.abc import Iterator
 from pathlib import Path
@@ -19,6 +20,8 @@ LIGHTEST, HEAVIEST = 300.0, 8000.0
 SMALLEST, LARGEST = 1.0, 1e6
 # Spin period [s]: the shortest known is that of 2020 HS7, 3.0 s (Beniyama et al. 2022, PASJ 74, 877).
 FASTEST = 1.0
+# Of a body, as other programs take it too.
+NAME = r"[A-Za-z0-9][\w -]{0,39}"
 
 
 def body_problems(study: Study) -> Iterator[str]:
@@ -28,6 +31,7 @@ def body_problems(study: Study) -> Iterator[str]:
         yield from unread
         return
     yield from _spin_problems(study)
+    yield from _name_problems(study)
     if site.body in BUILT_IN_BODIES:
         yield from _unit_problems(study)
         # Loading a built-in shape takes a second: only where the study changes what is known to be right.
@@ -53,6 +57,16 @@ def _unit_problems(study: Study) -> Iterator[str]:
             f"site.gravity_facets is {study.site.gravity_facets}, and site.body is built in, with few facets; a mesh "
             "may be thinned: leave it out"
         )
+
+
+def _name_problems(study: Study) -> Iterator[str]:
+    name = study.site.name
+    if name is None:
+        return
+    if study.site.body in BUILT_IN_BODIES:
+        yield f"site.name is {show(name)}, and site.body is built in and has one; leave it out"
+    elif not re.fullmatch(NAME, name, flags=re.ASCII):
+        yield f"site.name is {show(name)}; allowed: 1 to 40 letters, digits, blanks, _ and -; write such a name"
 
 
 def _spin_problems(study: Study) -> Iterator[str]:

@@ -9,8 +9,9 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from lithobrake.study.aim_checks import aim_problems
+from lithobrake.study.bed_section import Bell, Between, Constant, PowerLaw
 from lithobrake.study.body_checks import body_problems
-from lithobrake.study.contact_checks import contact_problems, inertia_problems
+from lithobrake.study.contact_checks import contact_problems, inertia_problems, size_problems
 from lithobrake.study.design_checks import design_problems
 from lithobrake.study.quantity import reach
 from lithobrake.study.refusals import show
@@ -24,6 +25,8 @@ LONGEST_QUATERNION = 1e3
 NAME = r"[\w-]+"
 # Fewer grains across are no bed.
 BED_WIDTH_PER_GRAIN = 3.0
+# The largest grain of a bed over its smallest.
+WIDEST_SIZES = 1000.0
 
 
 def problems(study: Study) -> Iterator[str]:
@@ -72,6 +75,12 @@ def _grain_problems(study: Study) -> Iterator[str]:
     largest = sizes["upper"] if "upper" in sizes else sizes["value"]
     if sizes.get("lower", 0) >= largest:
         yield f"bed.diameter reaches from {sizes['lower']:g} to {largest:g} m; allowed: lower below upper; swap them"
+    elif sizes.get("lower", largest) < largest / WIDEST_SIZES:
+        yield (
+            f"bed.diameter reaches from {sizes['lower']:g} to {largest:g} m; allowed: lower at least "
+            f"{1 / WIDEST_SIZES:g} of upper, as no bed of so unlike grains is settled; raise lower"
+        )
+    yield from _distribution_problems(study.bed.diameter)
     limit = min(study.bed.width) / BED_WIDTH_PER_GRAIN
     # A grain of exactly a third may not fail by the rounding of the division.
     if largest > limit * (1 + 1e-12):
@@ -79,6 +88,32 @@ def _grain_problems(study: Study) -> Iterator[str]:
             f"bed.diameter reaches to {largest:g} m; allowed: at most {limit:.3g} m, a third of bed.width; "
             "widen the bed or take smaller grains"
         )
+
+
+def _distribution_problems(sizes: Constant | Between | Bell | PowerLaw) -> Iterator[str]:
+    """Exponents of a power law that are none, or turn it over, and a bell without grains between its limits."""
+    if isinstance(sizes, PowerLaw):
+        given = {key: getattr(sizes, key) for key in ("exponent", "cumulative_exponent")}
+        given = {key: value for key, value in given.items() if value is not None}
+        if len(given) != 1:
+            yield (
+                "bed.diameter takes exponent or cumulative_exponent, and "
+                f"{'both are' if given else 'neither is'} given; keep one: the number of grains per diameter D falls "
+                "with D**-exponent, that of grains larger than D with D**-cumulative_exponent"
+            )
+        for key, value in given.items():
+            if value < 0.0:
+                yield (
+                    f"bed.diameter.{key} is {value:g}; allowed: at least 0, as the number of grains falls with "
+                    f"D**-{key}; write the size of the slope, without its sign"
+                )
+    elif isinstance(sizes, Bell) and sizes.lower < sizes.upper:
+        from lithobrake.chaos import TruncatedNormal
+
+        try:
+            TruncatedNormal(sizes.mean, sizes.std, sizes.lower, sizes.upper)
+        except ValueError as error:
+            yield f"bed.diameter is refused: {error}"
 
 
 def _limit_state_problems(study: Study) -> Iterator[str]:
@@ -113,6 +148,7 @@ def _shape_problems(study: Study) -> Iterator[str]:
     except (ValueError, OSError) as error:
         yield f"lander.file: {error}"
         return
+    yield from size_problems(study, radius)
     width, unit = min(study.bed.width), f', or name the unit of lander.file (lander.unit is "{lander.unit}")'
     if width < BED_WIDTH_PER_LANDER * 2 * radius:
         yield (

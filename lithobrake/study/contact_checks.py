@@ -12,6 +12,12 @@ from lithobrake.study.study import Study
 GRAINS_PER_LANDER = 1e6
 # Mass anywhere adds at most as much to one moment of inertia as to the other two; a plate may miss that by rounding.
 ROUNDING = 1e-9
+# Thinner boxes, and mass that is nearer to one point or farther out than so many times mass x radius^2, are slips, and
+# no equation of motion can be solved for them. Booms and panels that the shape leaves out may reach far.
+THINNEST = 1e-3
+INERTIAS = (1e-6, 1e2)
+# A lander that is smaller than so much of a grain is a slip, too.
+SMALLEST_LANDER = 1e-4
 
 
 def inertia_problems(study: Study) -> Iterator[str]:
@@ -25,6 +31,31 @@ def inertia_problems(study: Study) -> Iterator[str]:
         )
 
 
+def size_problems(study: Study, radius: float) -> Iterator[str]:
+    """A lander too thin or too small, or with inertia that its mass cannot have; radius [m]: of its farthest point."""
+    lander = study.lander
+    if lander.edges is not None and min(lander.edges) < THINNEST * max(lander.edges):
+        shown = ", ".join(f"{edge:g}" for edge in lander.edges)
+        yield (
+            f"lander.edges is [{shown}] m; allowed: the shortest at least {THINNEST:g} of the longest, "
+            f"{THINNEST * max(lander.edges):g} m; thicken the box"
+        )
+    smallest = _grain_sizes(study)[0]
+    if study.has_soil and radius < SMALLEST_LANDER * smallest:
+        yield (
+            f"the lander reaches {radius:.3g} m from its centre; allowed: at least {SMALLEST_LANDER * smallest:.3g} m, "
+            f"{SMALLEST_LANDER:g} of the smallest grain; mend lander.edges, lander.diameter or lander.unit"
+        )
+    if lander.inertia is not None:
+        low, high = (factor * mass * radius**2 for factor, mass in zip(INERTIAS, usual_reach(lander.mass), strict=True))
+        if min(lander.inertia) < low or max(lander.inertia) > high:
+            shown = ", ".join(f"{moment:g}" for moment in lander.inertia)
+            yield (
+                f"lander.inertia is [{shown}] kg m2; allowed: {low:.3g} to {high:.3g} kg m2, a millionth to a hundred "
+                "times mass x radius^2; mend it, or leave it out for a homogeneous lander"
+            )
+
+
 def contact_problems(study: Study) -> Iterator[str]:
     """Landers and speeds at which the contact of the lander with a grain means nothing; for this program's own soil."""
     if study.contact.held_speed > 0.0 and study.contact.stepping != "local":
@@ -32,8 +63,7 @@ def contact_problems(study: Study) -> Iterator[str]:
             f'contact.held_speed is {study.contact.held_speed:g} with contact.stepping = "{study.contact.stepping}"; '
             'allowed above 0: "local" only; change either'
         )
-    sizes = study.bed.diameter
-    smallest, largest = (sizes.value,) * 2 if isinstance(sizes, Constant) else (sizes.lower, sizes.upper)
+    smallest, largest = _grain_sizes(study)
     thin, dense = usual_reach(study.grain.density)
     grain = _ball_mass(dense, largest)
     least, most = _ball_mass(thin, smallest) / GRAINS_PER_LANDER, grain * GRAINS_PER_LANDER
@@ -54,6 +84,12 @@ def contact_problems(study: Study) -> Iterator[str]:
             f"contact with a grain is {depth:.3g} m deep; allowed: at most the radius of a grain, {radius:.3g} m; "
             "lower the speed or raise Young's modulus"
         )
+
+
+def _grain_sizes(study: Study) -> tuple[float, float]:
+    """Diameters of the smallest and the largest grain [m]."""
+    sizes = study.bed.diameter
+    return (sizes.value,) * 2 if isinstance(sizes, Constant) else (sizes.lower, sizes.upper)
 
 
 def _first_overlap(study: Study, mass: float, radius: float) -> float:

@@ -69,7 +69,7 @@ class LimitState:
     def of(cls, text: str) -> "LimitState":
         """Read a condition. Raises NoLimitStateError for a text that is none."""
         tree = _parsed(text)
-        _check(tree)
+        _check(tree, text.strip())
         names = dict.fromkeys(node.id for node in ast.walk(tree) if isinstance(node, ast.Name))
         return cls(text, tuple(n for n in names if n in TOUCHDOWN), tuple(n for n in names if n in FATES))
 
@@ -119,20 +119,23 @@ def _parsed(text: str) -> ast.expr:
     """The tree of a text in the grammar of Python, of which a condition is a small part."""
     if len(text) > LONGEST:
         raise NoLimitStateError(f"it has {len(text)} characters: write a condition of {LONGEST} at most")
+    # The parser of Python passes over what stands behind the one, and over the other within brackets.
+    if "#" in text or len(text.strip().splitlines()) > 1:
+        raise NoLimitStateError("it has a comment (#) or a line break: write a condition on one line, without #")
     try:
         return ast.parse(text.strip(), mode="eval").body
     except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
         raise NoLimitStateError('it cannot be read: write it as in "speed_out > 0.1 and not returns"') from error
 
 
-def _check(node: ast.expr) -> None:
-    """Raise NoLimitStateError for whatever is no condition."""
+def _check(node: ast.expr, text: str) -> None:
+    """Raise NoLimitStateError for whatever is no condition; text: the whole one."""
     match node:
         case ast.BoolOp(values=values):
             for value in values:
-                _check(value)
+                _check(value, text)
         case ast.UnaryOp(op=ast.Not(), operand=operand):
-            _check(operand)
+            _check(operand, text)
         case ast.Compare() if _word_and_truth(node) is not None:
             return
         case ast.Compare(left=left, ops=ops, comparators=others):
@@ -142,26 +145,27 @@ def _check(node: ast.expr) -> None:
                 )
             sides = [left, *others]
             for side in sides:
-                _check_side(side)
+                _check_side(side, text)
             if not any(isinstance(side, ast.Name) for side in sides):
-                raise NoLimitStateError(f"{ast.unparse(node)} compares numbers alone: name an output")
+                raise NoLimitStateError(f"{ast.get_source_segment(text, node)} compares numbers alone: name an output")
         case ast.Name(id=name):
             if name in TOUCHDOWN:
                 raise NoLimitStateError(f"{name} is a number: compare it, as in {name} > 0.1")
             if name not in FATES:
                 raise NoLimitStateError(f"{name} is no name here{closest(name, (*FATES, *TOUCHDOWN))}")
         case _:
-            raise NoLimitStateError(f"{ast.unparse(node)} is no condition: compare an output, or name what may happen")
+            words = ast.get_source_segment(text, node)
+            raise NoLimitStateError(f"{words} is no condition: compare an output, or name what may happen")
 
 
-def _check_side(node: ast.expr) -> None:
+def _check_side(node: ast.expr, text: str) -> None:
     """Raise NoLimitStateError for a side of a comparison that is neither an output nor a finite number."""
     if isinstance(node, ast.Name) and node.id not in TOUCHDOWN:
         if node.id in FATES:
             raise NoLimitStateError(f"{node.id} is true or false, and no number: write {node.id}, or not {node.id}")
         raise NoLimitStateError(f"{node.id} is no output{closest(node.id, TOUCHDOWN)}: {', '.join(TOUCHDOWN)}")
     if not isinstance(node, ast.Name) and _number(node) is None:
-        raise NoLimitStateError(f"{ast.unparse(node)} is neither an output nor a finite number")
+        raise NoLimitStateError(f"{ast.get_source_segment(text, node)} is neither an output nor a finite number")
 
 
 def _number(node: ast.expr) -> float | None:

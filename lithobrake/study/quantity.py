@@ -29,7 +29,11 @@ DISTRIBUTIONS: dict[str, tuple[str, ...]] = {
     "gamma": ("shape", "scale"),
     "exponential": ("rate",),
 }
+# Whatever parameters these have in their range, their samples lie in it.
+ALWAYS_SAMPLED = ("uniform", "log_uniform")
 RARE = 1e-3
+# Probability as near to 0, or to 1, as a sample comes.
+LEAST = 2.0**-53
 _POSITIVE_PARAMETERS = ("std", "alpha", "beta", "shape", "scale", "rate")
 
 
@@ -190,7 +194,22 @@ class MaybeUncertain(Number):
         if not self.allow(lower, upper, ends=math.isfinite(upper)):
             allowed = f"{self}, and it reaches from {lower:g} to {upper:g}"
             raise refuse(table, allowed, "bound it within the range (uniform, log_uniform, beta, truncated_normal)")
+        if kind not in ALWAYS_SAMPLED:
+            self._refuse_extreme(table, uncertain)
         return uncertain
+
+    def _refuse_extreme(self, table: dict[str, Any], uncertain: Uncertain) -> None:
+        """Refuse a law that no arithmetic can sample: its tails underflow to 0 or overflow, or it is no law at all."""
+        import numpy as np
+
+        try:
+            with np.errstate(all="ignore"):
+                ends = [float(uncertain.to_chaos().ppf(u)) for u in (LEAST, 0.5, 1.0 - LEAST)]
+        except ValueError as error:
+            raise refuse(table, self, str(error)) from error
+        if not all(math.isfinite(end) and self.allow(end, end) for end in ends):
+            words = ", ".join(f"{end:.3g}" for end in ends)
+            raise refuse(table, self, f"its samples (least, median, largest: {words}) leave that range; narrow it")
 
 
 def is_number(value: object) -> bool:

@@ -37,13 +37,18 @@ def _text(value: object, levels: int = 4) -> str:
     if isinstance(value, list | tuple):
         return "[" + ", ".join(_text(entry, levels - 1) for entry in value) + "]"
     if isinstance(value, str):
-        return f'"{value}"'
+        return f'"{"".join(map(_visible, value))}"'
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, int) and abs(value) >= 1e21:
         # Python refuses to write out very long ones.
         return f"about {'-' * (value < 0)}1e{value.bit_length() * math.log10(2.0):.0f}"
     return f"{value:g}" if isinstance(value, float) else str(value)
+
+
+def _visible(character: str) -> str:
+    """A character as it is, or by its escape sequence where it is a line break or shows nothing."""
+    return character if character.isprintable() else character.encode("unicode_escape").decode("ascii")
 
 
 def sentences(errors: Sequence[Mapping[str, Any]], known_keys: Mapping[str, tuple[str, ...]]) -> list[str]:

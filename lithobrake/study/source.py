@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from lithobrake.study.given_tables import plain_tables
 from lithobrake.study.reader import check_tables, parse_tables, read_bytes
 from lithobrake.study.study import Study
 
@@ -33,11 +34,15 @@ class StudySource:
 
     @classmethod
     def of_tables(cls, tables: Mapping[str, Any], function: str | None = None) -> "StudySource":
-        """Check the tables of a study; relative paths in them count from the current folder. Raises StudyError."""
+        """Check the tables of a study; relative paths in them count from the current folder.
+
+        Values may also be paths, and scalars and arrays of NumPy. Raises StudyError.
+        """
         import tomli_w
 
-        study = check_tables(tables, Path.cwd(), function=function)
-        return cls(study, tables, tomli_w.dumps(dict(tables)).encode(), None)
+        plain = plain_tables(tables, f"{TABLES}.toml")
+        study = check_tables(plain, Path.cwd(), function=function)
+        return cls(study, plain, tomli_w.dumps(plain).encode(), None)
 
     @property
     def name(self) -> str:

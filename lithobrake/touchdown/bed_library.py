@@ -20,6 +20,7 @@ from lithobrake.touchdown.bed import Bed
 from lithobrake.touchdown.pouring import BedRecipe
 
 SIZE_VARIABLE, DEFAULT_GIGABYTES = "LITHOBRAKE_BED_LIBRARY_GB", "2"
+MOST_GIGABYTES = 1e9
 # Their releases may round otherwise: drawing, hulls, and the compiler of the engine.
 _LIBRARIES = ("numpy", "scipy", "numba")
 
@@ -82,8 +83,8 @@ def _library(gigabytes: str) -> DiskCache | None:
         limit = float(gigabytes)
     except ValueError:
         limit = math.nan
-    if not 0.0 <= limit < math.inf:
+    if not 0.0 <= limit <= MOST_GIGABYTES:
         raise ValueError(
-            f"{SIZE_VARIABLE} is {gigabytes!r}; allowed: a number of gigabytes, at least 0; write 0 to keep no beds"
+            f"{SIZE_VARIABLE} is {gigabytes!r}; allowed: {MOST_GIGABYTES:g} gigabytes at most; write 0 to keep none"
         )
     return DiskCache("beds", "beds", int(1e9 * limit)) if limit > 0.0 else None

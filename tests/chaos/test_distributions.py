@@ -24,6 +24,7 @@ PAIRS = [
     (LogNormal(1.0, 0.3), stats.lognorm(0.3, scale=np.exp(1.0))),
     (TruncatedNormal(1.0, 2.0, 0.0, 9.0), stats.truncnorm(-0.5, 4.0, 1.0, 2.0)),
     (TruncatedNormal(0.0, 1.0, 8.0, np.inf), stats.truncnorm(8.0, np.inf)),
+    (TruncatedNormal(0.0, 1.0, -np.inf, -8.0), stats.truncnorm(-np.inf, -8.0)),
     (Beta(2.0, 5.0, -1.0, 3.0), stats.beta(2.0, 5.0, -1.0, 4.0)),
     (Gamma(3.0, 0.2), stats.gamma(3.0, scale=0.2)),
     (Exponential(4.0), stats.expon(scale=0.25)),
@@ -36,6 +37,17 @@ def test_quantiles_match_scipy(entry, oracle):
     assert np.allclose(entry.ppf(U), oracle.ppf(U), rtol=1e-9, atol=1e-12)
     assert entry.median == pytest.approx(oracle.median(), rel=1e-9)
     assert np.array_equal(entry.sample(U), entry.ppf(U))
+
+
+@pytest.mark.parametrize(
+    ("mean", "lower", "upper"),
+    [(0.5, 0.1, 0.9), (1.8, 0.1, 0.9), (-0.8, 0.1, 0.9), (0.9, 0.1, np.inf), (0.2, 0.1, 0.9)],
+)
+def test_probabilities_of_a_truncated_normal_are_those_of_its_quantiles(mean, lower, upper):
+    """Also where the mean is 90 standard deviations beyond a limit, and at its limits."""
+    entry = TruncatedNormal(mean, 0.01, lower, upper)
+    assert np.allclose(entry.cdf(entry.ppf(U)), U, rtol=1e-6, atol=1e-9)
+    assert entry.cdf(np.array([lower, upper])).tolist() == [0.0, 1.0]
 
 
 @pytest.mark.parametrize("entry", [pair[0] for pair in PAIRS], ids=lambda one: one.kind)
@@ -78,6 +90,11 @@ def test_empirical_quantiles_are_its_samples():
         lambda: LogNormal(0.0, 0.0),
         lambda: TruncatedNormal(0.0, 1.0, 2.0, 1.0),
         lambda: TruncatedNormal(0.0, -1.0, 0.0, 1.0),
+        lambda: TruncatedNormal(1e300, 1.0, 0.1, 0.9),
+        lambda: TruncatedNormal(50.0, 0.01, 0.1, 0.9),
+        lambda: TruncatedNormal(0.5, 5e-324, 0.1, 0.9),
+        lambda: TruncatedNormal(0.5, 1e300, 0.1, 0.9),
+        lambda: TruncatedNormal(0.5, 0.1, -1e308, 1e308),
         lambda: Beta(0.0, 1.0, 0.0, 1.0),
         lambda: Gamma(-1.0, 1.0),
         lambda: Gamma(1.0, 0.0),

@@ -32,6 +32,7 @@ from lithobrake.pipeline.planning.expected_time import (
     run_time,
 )
 from lithobrake.pipeline.planning.plan_in_words import brief_lines
+from lithobrake.pipeline.planning.planned_grains import planned_grains
 from lithobrake.pipeline.planning.planned_runs import PlannedRuns
 from lithobrake.pipeline.planning.planner import plan_of
 from lithobrake.pipeline.planning.study_warnings import study_warnings
@@ -90,6 +91,24 @@ def test_the_runs_that_are_counted_are_those_that_are_made(tmp_path: Path) -> No
     # One more test run in each set, and all others as before.
     more = write_ball(tmp_path / "study.toml", FEW | {"test_count = 10": "test_count = 4"})
     assert plan_study(more, out).made["touchdowns"] == (2, 2)
+
+
+def test_the_plan_says_how_many_and_how_large_the_grains_of_a_size_law_are() -> None:
+    """The number per diameter falls with D^-3 between 0.05 and 0.1 m, by either exponent."""
+    found = []
+    for key, exponent in (("exponent", 3.0), ("cumulative_exponent", 2.0)):
+        sizes = {"distribution": "power_law", key: exponent, "lower": 0.05, "upper": 0.1}
+        found.append(planned_grains(soft(bed={"diameter": sizes, "grain_count": 200, "width": [0.8, 1.0]})))
+    assert found[0] == found[1]
+    assert found[0] is not None
+    assert found[0].mean == pytest.approx(2.0 / 30.0, rel=1e-6)
+    assert (found[0].smallest, found[0].largest, found[0].count_per_m2) == (0.05, 0.1, 250.0)
+    # N(>D) = (D^-2 - 100) / (400 - 100) is 0.1 at D^-2 = 130.
+    assert found[0].large == pytest.approx(130.0**-0.5, rel=1e-12)
+    assert found[0].line() == (
+        "Grains: 0.05 to 0.1 m in diameter, mean 0.0667 m; 250 per m2 of bed, of which 25 are larger than 0.0877 m."
+    )
+    assert planned_grains(soft()) is None
 
 
 def test_planning_makes_and_changes_nothing(tmp_path: Path) -> None:
@@ -268,6 +287,9 @@ def test_the_beds_of_the_folder_and_of_the_library_are_not_to_be_poured(
     plans.append(plan_of(study, "quick", folder, 2))
     assert [(plan.beds[0].total, plan.beds[0].new) for plan in plans] == [(15, 15), (15, 9)]
     assert "Beds: 15; 1 in the folder, 5 in the library of beds, 9 to pour." in plan_lines(plans[1])
+    assert "Site: gravity and rotation together throw off what lies on the ground." in plan_lines(plans[1])
+    level = "Site: the ground slopes by 12 deg against gravity and rotation together."
+    assert level in plan_lines(replace(plans[1], site_slope_deg=12.3))
     assert plans[1].made["beds"] == (9, 9)
     assert plans[1].to_json()["beds"] == [{"total": 15, "in_folder": 1, "in_library": 5, "new": 9}]
     # Two at once: eight rounds, then five.

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from lithobrake.pipeline.flights import flight_reads
-from lithobrake.pipeline.site import escape_speed, frames, gravity_warning, site_body
+from lithobrake.pipeline.site import escape_speed, frames, gravity_warning, site_body, site_slope_deg
 from lithobrake.pipeline.site_summary import site_results
 from lithobrake.pipeline.summary import summary_reads
 from lithobrake.smallbody import Body
@@ -44,6 +44,14 @@ def test_an_error_goes_over_the_ground_by_its_length_however_long(latitude: floa
     assert aim @ there / radius / np.linalg.norm(there) == pytest.approx(math.cos(length / radius), abs=1e-12)
     # The frame is that of a facet, of which a corner is two thirds of 180 / 31 degrees off the normal, .068 rad.
     assert ahead[:2] == pytest.approx(np.array([north, -east]) / length * math.sin(length / radius), abs=0.07)
+
+
+def test_the_slope_at_a_site_of_a_mesh_is_known_before_a_run(tmp_path: Path) -> None:
+    """The middle of a facet of an octahedron lies plumb under its normal; a corner is acos(1 / sqrt 3) off."""
+    body = {"body": str(mesh(tmp_path, "# Units: km\n")), "mass": 3e12, "spin_period": 1e9, "longitude_deg": 45.0}
+    middle = math.degrees(math.asin(1.0 / math.sqrt(3.0)))
+    assert site_slope_deg(changed(site=body | {"latitude_deg": middle})) == pytest.approx(0.0, abs=1e-3)
+    assert 20.0 < site_slope_deg(changed(site=body | {"latitude_deg": 85.0})) < 55.0
 
 
 def test_unlike_accelerations_of_touchdown_and_site_are_told() -> None:

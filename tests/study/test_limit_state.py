@@ -58,6 +58,13 @@ REFUSED: list[tuple[str, str]] = [
     ("__import__('os').remove('x')", "is no condition"),
     ("(speed_out > 1", "it cannot be read"),
     ("returns\0", "it cannot be read"),
+    ("speed_out > 0.1 # and not returns", "it has a comment (#) or a line break: write a condition on one line"),
+    ("# returns", "it has a comment (#)"),
+    ("(speed_out > 0.1\nand returns)", "it has a comment (#) or a line break"),
+    ("(speed_out > 0.1\u2028and returns)", "or a line break"),
+    ("-" * 400 + "1 > speed_out", f"{'-' * 400}1 is neither an output nor a finite number"),
+    ("-" * 400 + "speed_out", "-speed_out is no condition"),
+    ("~" * 400 + "returns and returns", "~returns is no condition"),
     (" and ".join(["returns"] * 100), "it has 1195 characters"),
 ]
 

@@ -102,6 +102,13 @@ def test_what_kernels_do_not_tell_is_refused_in_one_sentence(folder: Path, site:
     assert len(str(refused.value).splitlines()) == 1
 
 
+def test_a_kernel_of_zeros_is_refused_and_ends_no_process(folder: Path) -> None:
+    """SPICE aborts the process that loads it."""
+    (folder / "zeros.ek").write_bytes(b"DAS/EK  " + bytes(4000))
+    with pytest.raises(ValueError, match=r"site.kernels: .*zeros.ek: not a kernel that SPICE can read"):
+        study(folder, kernels=["zeros.ek"])
+
+
 def test_without_the_library_the_study_is_refused_with_how_to_install_it(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -79,9 +79,61 @@ REFUSED = [
     ("impact.orientation", [1, 0, 0], ["4 numbers"]),
     ("impact.place", {"x": 0.9}, ["impact.place.x reaches from 0.9 to 0.9 m", "-0.275 to 0.275"]),
     ("bed.grain_count", 12.5, ["whole number"]),
+    (
+        "lander.inertia",
+        [5e-324, 5e-324, 5e-324],
+        ["lander.inertia is [4.94066e-324,", "4.65e-08 to 4.65 kg m2"],
+    ),
+    ("lander.inertia", [1e9, 1e9, 1e9], ["lander.inertia is [1e+09,", "mend it, or leave it out"]),
+    ("lander.edges", [1e-9, 1e-9, 0.2], ["lander.edges is [1e-09, 1e-09, 0.2] m", "at least 0.001 of the longest"]),
+    ("lander.edges", [1e-100, 1e-100, 1e-100], ["the lander reaches 8.66e-101 m from its centre; allowed: at least"]),
     ("bed.width", [0.3, 0.3], ["bed.width is 0.3 m", "at least 0.535 m"]),
     ("bed.diameter", table("uniform", lower=0.1), ["bed.diameter.upper is missing"]),
     ("bed.diameter", table("uniform", lower=0.2, upper=0.1), ["bed.diameter reaches from 0.2 to 0.1 m"]),
+    (
+        "bed.diameter",
+        table("uniform", lower=1e-310, upper=0.1),
+        ["bed.diameter reaches from 1e-310 to 0.1 m", "raise lower"],
+    ),
+    (
+        "bed.diameter",
+        table("power_law", lower=0.05, upper=0.1, exponent=-2.5),
+        [
+            "bed.diameter.exponent is -2.5; allowed: at least 0, as the number of grains falls with D**-exponent",
+        ],
+    ),
+    (
+        "bed.diameter",
+        table("power_law", lower=0.05, upper=0.1, cumulative_exponent=-2.5),
+        [
+            "bed.diameter.cumulative_exponent is -2.5; allowed: at least 0",
+        ],
+    ),
+    (
+        "bed.diameter",
+        table("power_law", lower=0.05, upper=0.1, exponent=3.5, cumulative_exponent=2.5),
+        [
+            "bed.diameter takes exponent or cumulative_exponent, and both are given",
+        ],
+    ),
+    ("bed.diameter", table("power_law", lower=0.05, upper=0.1), ["and neither is given; keep one"]),
+    (
+        "bed.diameter",
+        table("normal", mean=1e300, std=0.01, lower=0.05, upper=0.1),
+        [
+            "bed.diameter is refused: TruncatedNormal.mean is 1e+300",
+        ],
+    ),
+    ("grain.young_modulus", table("gamma", shape=1e-5, scale=1e6), ["its samples (least, median, largest: 0, 0"]),
+    ("grain.young_modulus", table("log_normal", mean=10.0, std=250.0), ["largest: 0, 2.2e+04, inf) leave that range"]),
+    (
+        "grain.friction",
+        table("truncated_normal", mean=1e300, std=1.0, lower=0.1, upper=0.9),
+        [
+            "grain.friction is { distribution",
+            "TruncatedNormal.mean is 1e+300",
+        ],
+    ),
     ("bed.diameter", table("constant", value=0.6), ["bed.diameter reaches to 0.6 m", "0.183 m"]),
     ("bed.diameter", table("constant", value=0.1, upper=3.0), ["bed.diameter.upper is not a known key"]),
     ("contact.pair_rule", "smalest", ["did you mean smaller?"]),
@@ -104,6 +156,7 @@ REFUSED = [
     ),
     ("grain.friction", table("exponential", rate=2.0), ["grain.friction is exponential, which has no end"]),
     ("impact.spin_x", table("normal", mean=0.0, std=0.1), ["impact.spin_x is normal, which has no end"]),
+    ("site.name", "Rock", ['site.name is "Rock", and site.body is built in and has one; leave it out']),
     ("site.body", "no_such.obj", ["no such file"]),
     ("site.body", "Didymoss", ["no such file; did you mean didymos?"]),
     ("site.body", "a" * 5000, ["no such file"]),
@@ -246,6 +299,7 @@ def rock(folder: Path, text: str, **changes: Any) -> list[str]:
 
 def test_mesh_paths_count_from_the_study_file(tmp_path: Path) -> None:
     assert rock(tmp_path, octahedron(100.0)) == []
+    assert rock(tmp_path, octahedron(100.0), name="2001 SN-263") == []
     tables = {**TABLES, "site": {"body": "rock.obj", "mass": 3e9, "spin_period": 8000.0}}
     assert Path(check_tables(tables, tmp_path).site.body) == tmp_path / "rock.obj"
 
@@ -272,6 +326,9 @@ def test_a_mesh_in_another_unit_is_refused_with_the_unit_that_was_meant_and_read
         (octahedron(100.0, middle=200.0), {}, "the origin, about which the body turns, lies outside"),
         (octahedron(100.0), {"mass": None}, "site.mass is missing"),
         (octahedron(100.0), {"east_error": 120.0}, "at most 107"),
+        (octahedron(100.0), {"name": "<b>"}, 'site.name is "<b>"; allowed: 1 to 40 letters'),
+        (octahedron(100.0), {"name": ""}, 'site.name is ""; allowed'),
+        (octahedron(100.0), {"name": "a" * 41}, "site.name is"),
     ],
 )
 def test_a_body_that_cannot_be_used_is_refused_before_anything_runs(

@@ -1,5 +1,7 @@
 """Grains, pouring, settling, and the file of a bed."""
 
+from decimal import Decimal, localcontext
+
 import numpy as np
 import pytest
 
@@ -23,6 +25,28 @@ def test_sizes_follow_their_distribution():
     assert np.all(GrainSizes(distribution="constant", lower=0.1, upper=0.1).draw(uniforms) == 0.1)
 
 
+@pytest.mark.parametrize("exponent", [0.0, 0.5, 1.0 - 1e-9, 1.0, 1.000000000000001, 1.0 + 1e-9, 2.5, 30.0, 1e3, 1e300])
+def test_power_laws_keep_their_digits_at_every_exponent(exponent):
+    """N(<d) = (d^p - lower^p) / (upper^p - lower^p) with p = 1 - exponent, in digits enough for any of them."""
+    uniforms = np.array([0.0, 0.1, 0.5, 0.9, 1.0 - 1e-12])
+    found = GrainSizes(distribution="power_law", lower=0.01, upper=0.1, exponent=exponent).draw(uniforms)
+    with localcontext(prec=60):
+        # 0.01 and 0.1 as floats hold them.
+        low, high = (Decimal.from_float(diameter) for diameter in (0.01, 0.1))
+        power, ratio = 1 - Decimal.from_float(exponent), high / low
+        parts = [Decimal(u) for u in uniforms.tolist()]
+        wanted = [float(low * (ratio**u if power == 0 else (1 + u * (ratio**power - 1)) ** (1 / power))) for u in parts]
+    assert found == pytest.approx(wanted, rel=1e-14)
+
+
+def test_the_mean_diameter_is_that_of_the_law():
+    # Mean of d^-3 between 1 and 2: 2 (1 - 1/2) / (1 - 1/4).
+    assert GrainSizes(distribution="power_law", lower=1.0, upper=2.0, exponent=3.0).mean_diameter == pytest.approx(
+        4.0 / 3.0, rel=1e-6
+    )
+    assert GrainSizes(distribution="constant", lower=0.1, upper=0.1).mean_diameter == pytest.approx(0.1, rel=1e-12)
+
+
 @pytest.mark.parametrize(
     "wrong",
     [
@@ -31,6 +55,12 @@ def test_sizes_follow_their_distribution():
         {"distribution": "uniform", "lower": 0.2, "upper": 0.1},
         {"distribution": "normal", "lower": 0.1, "upper": 0.2},
         {"distribution": "power_law", "lower": 0.1, "upper": 0.2},
+        {"distribution": "power_law", "lower": 0.1, "upper": 0.2, "exponent": -2.5},
+        {"distribution": "power_law", "lower": 0.1, "upper": 0.2, "exponent": -500.0},
+        {"distribution": "power_law", "lower": 0.1, "upper": 0.2, "exponent": float("nan")},
+        {"distribution": "normal", "lower": 0.1, "upper": 0.2, "mean": float("nan"), "std": 0.1},
+        {"distribution": "normal", "lower": 0.1, "upper": 0.2, "mean": 1e300, "std": 0.1},
+        {"distribution": "normal", "lower": 0.1, "upper": 0.2, "mean": 0.15, "std": float("nan")},
     ],
 )
 def test_wrong_sizes_are_refused(wrong):

@@ -8,6 +8,7 @@ from lithobrake.pipeline.expected_inference import ExpectedInference
 from lithobrake.pipeline.planning.expected_time import Span
 from lithobrake.pipeline.planning.expected_width import ExpectedHalfWidth
 from lithobrake.pipeline.planning.planned_beds import PlannedBeds
+from lithobrake.pipeline.planning.planned_grains import PlannedGrains
 from lithobrake.pipeline.planning.planned_runs import PlannedRuns
 
 
@@ -30,6 +31,8 @@ class Plan:
     bytes           of all files when finished, by what they hold
     free_bytes      where the folder is
     warnings        in sentences, the most important first
+    grains          of the beds; None where all have one size
+    site_slope_deg  of the ground at the site, against gravity and rotation together
     inference       what observed bounces would say of the inputs; None where that is not asked
     """
 
@@ -46,6 +49,8 @@ class Plan:
     bytes: Mapping[str, int]
     free_bytes: int
     warnings: tuple[str, ...]
+    site_slope_deg: float
+    grains: PlannedGrains | None = None
     inference: ExpectedInference | None = None
 
     @property

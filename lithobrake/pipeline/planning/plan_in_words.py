@@ -24,6 +24,8 @@ def plan_lines(plan: Plan) -> list[str]:
         lines += [f"Touchdowns: {_designs(plan)}.", f"Time: {_time(plan)}."]
         lines += [f"  {what}: {_seconds(*part)}" for what, part in plan.seconds.items() if part is not None]
         lines += [f"  {plan.basis}"]
+    lines += [_site(plan.site_slope_deg)]
+    lines += [plan.grains.line()] if plan.grains else []
     size, free = bytes_in_words(sum(plan.bytes.values())), bytes_in_words(plan.free_bytes)
     lines += [f"Disk: about {size} when finished; {free} are free."]
     lines += plan.half_width.lines() if plan.half_width else []
@@ -54,6 +56,13 @@ def _beds(plan: Plan) -> str:
     fewest, most = plan.beds[0], plan.beds[-1]
     there = f"{most.in_folder} in the folder, {most.in_library} in the library of beds"
     return f"{_range(fewest.total, most.total)}; {there}, {_range(fewest.new, most.new)} to pour"
+
+
+def _site(slope_deg: float) -> str:
+    """How the ground at the site lies."""
+    if slope_deg > 90.0:
+        return "Site: gravity and rotation together throw off what lies on the ground."
+    return f"Site: the ground slopes by {slope_deg:.0f} deg against gravity and rotation together."
 
 
 def _designs(plan: Plan) -> str:

@@ -19,9 +19,10 @@ from lithobrake.pipeline.planning.expected_width import expected_width
 from lithobrake.pipeline.planning.plan import Plan
 from lithobrake.pipeline.planning.plan_in_words import bytes_in_words
 from lithobrake.pipeline.planning.planned_beds import PlannedBeds, planned_beds
+from lithobrake.pipeline.planning.planned_grains import planned_grains
 from lithobrake.pipeline.planning.planned_runs import PlannedRuns, known_runs, possible_runs
 from lithobrake.pipeline.planning.study_warnings import study_warnings
-from lithobrake.pipeline.site import with_site_gravity
+from lithobrake.pipeline.site import site_slope_deg, with_site_gravity
 from lithobrake.pipeline.stages import stage_keys, stages_of
 from lithobrake.study import Study, StudySource
 
@@ -92,6 +93,8 @@ def plan_of(
         bytes=sizes,
         free_bytes=free,
         warnings=(*room, *study_warnings(study, soil)),
+        site_slope_deg=site_slope_deg(study),
+        grains=planned_grains(study),
     )
 
 
