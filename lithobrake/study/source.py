@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from lithobrake.study.given_tables import plain_tables
 from lithobrake.study.reader import check_tables, parse_tables, read_bytes
 from lithobrake.study.study import Study
 
@@ -39,6 +38,9 @@ class StudySource:
         Values may also be paths, and scalars and arrays of NumPy. Raises StudyError.
         """
         import tomli_w
+
+        # It takes NumPy, and a study file is refused without a wait for that.
+        from lithobrake.study.given_tables import plain_tables
 
         plain = plain_tables(tables, f"{TABLES}.toml")
         study = check_tables(plain, Path.cwd(), function=function)
