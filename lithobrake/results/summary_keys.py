@@ -205,7 +205,7 @@ SUMMARY_TABLES = (
         "add up to 1 in a drawn study; returns (impact, and captured where the site holds), settled and lofted "
         "(captured where the ground holds, or lifts off), missing (left_sideways, time_limit, failed). A drawn study "
         "takes them from flights of its runs, by the estimator of results.returns; design.method = paper from samples "
-        "up to the last that flew, of which outside (sampled with an elevation or speed that there is not) are missing too",
+        "up to the last that flew, of which outside (with an elevation or speed that cannot be) are missing too",
         {
             "sample_count": "flights of all landings, 64 each, whether they could be made or not; or samples",
             "flight_count": "of those, flights that were made",
