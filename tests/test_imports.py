@@ -22,6 +22,7 @@ LEAVES = {
         "outcomes",
         "plain",
         "reading",
+        "given_numbers",
         "hashing",
         "html_table",
         "attitude",

@@ -17,6 +17,7 @@ from lithobrake.analysis.outcome_model import upper_limit
 from lithobrake.analysis.refit_interval import refit_interval
 from lithobrake.analysis.sampling import sample_inputs
 from lithobrake.analysis.share_estimate import Bounds, ShareEstimate, share_estimate
+from lithobrake.given_numbers import numbers_or_nan
 
 if TYPE_CHECKING:
     from lithobrake.emulator import Draws, Emulator
@@ -93,7 +94,7 @@ def failure_probability(
     Raises ValueError as `share_estimate` and `refit_interval` do.
     """
     runs = share_estimate(failing, bed, terms=terms, flight_count=flight_count, why=why)
-    answered = np.isfinite(np.asarray(failing, dtype=float))
+    answered = np.isfinite(numbers_or_nan("failing", failing))
     run_count, limit = int(answered.sum()), upper_limit(int(answered.sum()), LEVEL)
     if drawn is None or runs.why is not None:
         return FailureProbability(runs.share, runs.lower, runs.upper, RUNS, runs, None, limit)
@@ -129,7 +130,7 @@ def drawn_counts(met: ArrayLike, refit: ArrayLike, refit_count: int) -> tuple[La
 
     met [draw_count]: 1, 0, or NaN where nobody knows; refit [draw_count]: place of the refit that each is of.
     """
-    found, of = np.asarray(met, dtype=float), np.asarray(refit)
+    found, of = numbers_or_nan("met", met), np.asarray(refit)
     known = np.isfinite(found)
     counts = np.bincount(of[known], weights=found[known], minlength=refit_count)
     return counts.astype(np.int64), np.bincount(of[known], minlength=refit_count)

@@ -12,6 +12,7 @@ from scipy.special import logsumexp, ndtr, ndtri
 from lithobrake.analysis.confidence import LEVEL, Array, IntervalEstimate
 from lithobrake.analysis.ensemble_walk import ENDLESS, INSTALL, WALKER_COUNT, can_walk, walk
 from lithobrake.analysis.sampling import sample_inputs
+from lithobrake.given_numbers import random_numbers
 
 if TYPE_CHECKING:
     from lithobrake.chaos import Distribution
@@ -86,7 +87,7 @@ class Posterior:
 
     def sample(self, count: int, seed: int = 0) -> Array:
         """Draw points with replacement, [count, input_count]."""
-        random = np.random.default_rng(seed)
+        random = random_numbers(seed)
         drawn: Array = self.points[random.choice(len(self.points), count, p=self.weights)]
         return drawn
 
@@ -200,7 +201,7 @@ def _walked(found: Posterior, logarithm: Likelihood, seed: int) -> Posterior:
         return replace(found, remedy=INSTALL)
     shares = [law.cdf(values) for law, values in zip(found.inputs.values(), found.points.T, strict=True)]
     scores = ndtri(np.clip(np.column_stack(shares), LEAST, 1.0 - LEAST))
-    random, middle = np.random.default_rng(seed), found.weights @ scores
+    random, middle = random_numbers(seed), found.weights @ scores
     spread = np.sqrt(found.weights @ (scores - middle) ** 2) + NARROWEST
     start = scores[random.choice(len(scores), WALKER_COUNT, p=found.weights)]
     # Walkers that all begin at one point would never leave it.

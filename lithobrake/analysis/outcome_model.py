@@ -5,6 +5,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from lithobrake.given_numbers import finite_number, whole_number
+
 if TYPE_CHECKING:
     from lithobrake.chaos import Distribution
 
@@ -84,8 +86,11 @@ class OutcomeModel:
 def upper_limit(run_count: int, level: float = 0.95) -> float:
     """Largest probability that an event may have, at a level of confidence, which none of so many runs has met.
 
+    Raises ValueError for a count below 0, and for a level outside 0 to 1.
     Source: [Clopper-1934], at a count of 0; about 3 / run_count for .95.
     """
-    if run_count < 1:
+    finite_number("level", level, above=0.0, below=1.0)
+    # Without any run the event may have every probability.
+    if whole_number("run_count", run_count, 0) == 0:
         return 1.0
     return float(1.0 - (1.0 - level) ** (1.0 / run_count))

@@ -22,6 +22,7 @@ from lithobrake.analysis.control_variate import control_variate
 from lithobrake.analysis.next_bed import next_bed_deviation
 from lithobrake.analysis.outcome_model import upper_limit
 from lithobrake.chaos.threads import one_thread
+from lithobrake.given_numbers import numbers, numbers_or_nan
 
 Bounds = tuple[float, float]
 ONE_BED = (
@@ -143,8 +144,8 @@ def standard_error(values: Array, bed: Labels) -> float:
 
 
 def _checked(stays: ArrayLike, weights: ArrayLike | None) -> tuple[Array, Array]:
-    h = np.asarray(stays, dtype=float)
-    w = np.ones_like(h) if weights is None else np.asarray(weights, dtype=float)
+    h = numbers_or_nan("stays", stays)
+    w = np.ones_like(h) if weights is None else numbers("weights", weights)
     if h.ndim != 1 or not np.isfinite(h).any():
         raise ValueError(f"stays has shape {h.shape} and no answer; give one share for each run, some of them known")
     if np.nanmin(h) < 0.0 or np.nanmax(h) > 1.0:

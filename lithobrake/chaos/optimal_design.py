@@ -12,6 +12,7 @@ from lithobrake.chaos.design import checked_count
 from lithobrake.chaos.multi_index import Indices, multi_index_set
 from lithobrake.chaos.polynomials import Array
 from lithobrake.chaos.threads import one_thread
+from lithobrake.given_numbers import random_numbers
 
 # Gauss nodes that stand for the density of one input when points are drawn from it times a squared polynomial.
 RULE_NODES = 200
@@ -34,7 +35,7 @@ def christoffel(inputs: Mapping[str, Distribution], count: int, seed: int = 0, *
     Source: [Cohen-2017], section 5.
     """
     distributions = checked_inputs(inputs)
-    size, generator = checked_count(count), np.random.default_rng(seed)
+    size, generator = checked_count(count, len(distributions)), random_numbers(seed)
     indices = multi_index_set(len(distributions), degree)
     powers = indices[generator.integers(len(indices), size=size)]
     uniforms = generator.random((size, len(distributions)))

@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lithobrake.chaos.basis import checked_points
-from lithobrake.chaos.counts import whole_number
 from lithobrake.chaos.polynomials import Array
 from lithobrake.chaos.storage import read, write
 from lithobrake.chaos.threads import one_thread
@@ -22,6 +21,7 @@ from lithobrake.emulator.outcome_classes import fit_classes
 from lithobrake.emulator.residual_rows import drawn_rows, row_weights, smoothed, smoothing
 from lithobrake.emulator.significance import found_inputs
 from lithobrake.emulator.storage import FORMAT, Parts, content_of, parts_of
+from lithobrake.given_numbers import random_numbers, whole_number
 from lithobrake.html_table import html_table
 
 # Draws that are made at once: bounds the memory, and belongs to what a seed gives.
@@ -124,7 +124,7 @@ class Emulator(Parts):
         whole_number("count", count, 1)
         matrix = self._matrix(x)
         low, high = self.runs.bounds_at(lower, upper, len(matrix))
-        random = np.random.default_rng(seed)
+        random = random_numbers(seed)
         parts = []
         step = max(1, _BLOCK // max(count, len(self.runs.y)))
         for start in range(0, len(matrix), step):
@@ -189,7 +189,7 @@ class Emulator(Parts):
     @one_thread()
     def reweighted(self, weights: ArrayLike) -> "Emulator":
         """Fit anew with each run counted as often as weights say [run_count]."""
-        counted = np.asarray(weights, dtype=float)
+        counted = self.runs.checked_weights(weights)
         matrix = self._run_matrix
         law = fit_law(
             self.terms.indices,

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from lithobrake.given_numbers import numbers
 from lithobrake.smallbody import attraction
 from lithobrake.smallbody.gravity_gradient import gradient
 from lithobrake.smallbody.orbit import Entry, Orbit
@@ -74,7 +75,7 @@ class Body:
         return 2.0 * math.pi / self.spin_period
 
     def _checked(self, points: ArrayLike) -> NDArray[np.float64]:
-        p = np.asarray(points, dtype=np.float64)
+        p = numbers("points", points)
         if p.shape[-1:] != (3,):
             raise ValueError(f"{self.name}: points have shape {p.shape}; the last axis must hold x, y, z.")
         return p
@@ -114,9 +115,10 @@ class Body:
 
         mass [kg] and spin_period [s], of shape [...], stand in place of the body's own.
         """
-        p = np.asarray(points, dtype=np.float64)
-        ratio = np.asarray(self.mass if mass is None else mass)[..., None] / self.mass
-        spin_rate = self.spin_rate if spin_period is None else 2.0 * math.pi / np.asarray(spin_period)[..., None]
+        p = self._checked(points)
+        ratio = numbers("mass", self.mass if mass is None else mass)[..., None] / self.mass
+        periods = numbers("spin_period", self.spin_period if spin_period is None else spin_period)
+        spin_rate = 2.0 * math.pi / periods[..., None]
         return self.acceleration(p) * ratio + spin_rate**2 * p * np.array([1.0, 1.0, 0.0])
 
     def slope(self, latitude_deg: ArrayLike, longitude_deg: ArrayLike) -> NDArray[np.float64]:
@@ -135,7 +137,7 @@ class Body:
 
         It is v**2 / 2 - (spin_rate**2 (x**2 + y**2)) / 2 - potential, kept in a flight.
         """
-        p, v = np.asarray(position, dtype=np.float64), np.asarray(velocity, dtype=np.float64)
+        p, v = self._checked(position), numbers("velocity", velocity)
         turning = self.spin_rate**2 * (p[..., 0] ** 2 + p[..., 1] ** 2)
         constant: NDArray[np.float64] = 0.5 * ((v * v).sum(axis=-1) - turning) - self.potential(p)
         return constant

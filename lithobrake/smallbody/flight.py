@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from lithobrake.given_numbers import numbers
 from lithobrake.smallbody.acceleration import Dynamics, Forces
 from lithobrake.smallbody.arrays import Floats
 from lithobrake.smallbody.attraction import Gravity
@@ -138,12 +139,12 @@ def _one_each(
     name: str, given: ArrayLike, count: int, unit: str = "s", *, infinite: bool = False
 ) -> NDArray[np.float64]:
     """A number a flight. Raises ValueError where there is another count of them, or one is not finite."""
-    numbers = np.asarray(given, dtype=np.float64)
-    if numbers.shape not in ((), (1,), (count,)):
-        raise ValueError(f"{name} has shape {numbers.shape} for {count} flights; give one number, or one a flight.")
-    if not (~np.isnan(numbers) if infinite else np.isfinite(numbers)).all():
+    values = numbers(name, given)
+    if values.shape not in ((), (1,), (count,)):
+        raise ValueError(f"{name} has shape {values.shape} for {count} flights; give one number, or one a flight.")
+    if not (~np.isnan(values) if infinite else np.isfinite(values)).all():
         raise ValueError(f"{name} is {given!r} {unit}; it must be finite.")
-    return np.array(np.broadcast_to(numbers, count))
+    return np.array(np.broadcast_to(values, count))
 
 
 def _into_turning_frame(
@@ -172,7 +173,7 @@ def _refuse_failed(starts: NDArray[np.float64], ends: FlightEnds, tolerance: flo
 
 def _starts(position: ArrayLike, velocity: ArrayLike) -> NDArray[np.float64]:
     """Start states, shape [count, 6]."""
-    where, rate = (np.atleast_2d(np.asarray(given, dtype=np.float64)) for given in (position, velocity))
+    where, rate = (np.atleast_2d(one) for one in (numbers("position", position), numbers("velocity", velocity)))
     if where.shape != rate.shape or where.ndim != 2 or where.shape[1] != 3:
         raise ValueError(f"position has shape {where.shape} and velocity {rate.shape}; both must be [count, 3].")
     starts = np.concatenate([where, rate], axis=1)
