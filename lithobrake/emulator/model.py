@@ -18,7 +18,7 @@ from lithobrake.emulator.density import kernels_of, log_density
 from lithobrake.emulator.law import fit_law
 from lithobrake.emulator.mean_law import MeanLaw, mean_law
 from lithobrake.emulator.outcome_classes import fit_classes
-from lithobrake.emulator.residual_rows import drawn_rows, row_weights, smoothed, smoothing
+from lithobrake.emulator.residual_rows import BANDWIDTHS, drawn_rows, row_weights, smoothed, smoothing
 from lithobrake.emulator.significance import found_inputs
 from lithobrake.emulator.storage import FORMAT, Parts, content_of, parts_of
 from lithobrake.given_numbers import random_numbers, whole_number
@@ -58,6 +58,10 @@ class Emulator(Parts):
         """Whether draws depend on the inputs; else each is one of the runs."""
         return self.choices.follows_inputs
 
+    def __repr__(self) -> str:
+        """Say what it draws at which inputs, and what these are worth."""
+        return f"Emulator of {', '.join(self.output_names)} at {', '.join(self.runs.inputs)}. {self.statement}"
+
     def _repr_html_(self) -> str:
         """What it makes of the inputs, the outcomes and the outputs, for a notebook."""
         ended = np.asarray(self.runs.outcome)
@@ -80,14 +84,15 @@ class Emulator(Parts):
         count, number = len(self.runs.y), len(np.unique(self.runs.group))
         if not self.follows_inputs:
             return (
-                f"The inputs do not change the outputs noticeably: no law of them did better on {groups} left out than "
-                f"drawing one of the {count} runs with outputs ({number} {groups}), so draws are runs alone."
+                f"Knowing the inputs would hardly narrow the forecast: on {groups} left out no law of them did better, "
+                f"by more than a standard error, than drawing one of the {count} runs with outputs ({number} "
+                f"{groups}), so draws are runs alone."
             )
         share = self.scores.gain / self.scores.energy_of_rows
         return (
             f"On {groups} left out the inputs make the energy score {100 * share:.1f} % better "
-            f"(standard error {100 * self.scores.gain_error / self.scores.energy_of_rows:.1f}) than drawing one of the "
-            f"{count} runs with outputs ({number} {groups})."
+            f"(standard error {100 * self.scores.gain_error / self.scores.energy_of_rows:.1f}; the best of "
+            f"{len(BANDWIDTHS)} kernel widths) than drawing one of the {count} runs with outputs ({number} {groups})."
         )
 
     def outcome_probability(self, x: ArrayLike) -> Array:
@@ -212,9 +217,10 @@ class Emulator(Parts):
         return mean_law(self.terms, self._run_matrix[there], target, self.choices.location, self.weights[there])
 
     def found_inputs(self, level: float = 0.9, seed: int = 0) -> dict[str, bool]:
-        """Say which inputs change the mean of any output, at one level for all inputs and outputs together.
+        """Say which inputs change the mean of any output: one test for all inputs and outputs together.
 
-        If none does, none is found with probability `level`.
+        If none does, none is found with probability `level`. An input counts with its products with others, so that one
+        which is found may have next to no variance of an output of its own; which output it changes is not said.
         """
         there = self.runs.has_outputs
         found = found_inputs(self.terms, self._run_matrix[there], self.runs.coordinates, level, seed)

@@ -49,6 +49,13 @@ class StochasticExpansion:
     held_out: float
     weights: Array
 
+    def __repr__(self) -> str:
+        """Say of what it is the law, at which inputs, and from how many runs."""
+        return (
+            f"StochasticExpansion of {self.runs.output_names[0]} at {', '.join(self.runs.inputs)}: degree "
+            f"{self.degree}, latent variable {self.latent}, from {len(self.runs.y)} runs."
+        )
+
     @property
     def degree(self) -> int:
         """Total degree of the terms of the inputs; 0 where the inputs did no good on groups left out."""

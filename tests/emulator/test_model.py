@@ -99,6 +99,22 @@ def test_without_a_law_draws_are_runs() -> None:
     assert abs(drawn.std() - y.std()) < 0.02
 
 
+def test_a_gain_within_its_standard_error_is_no_law() -> None:
+    """The best of several laws is better by less than a standard error here, and 5.1 +- 3.5 % on the other runs."""
+    models = []
+    for seed in (7, 4):
+        rng = np.random.default_rng(seed)
+        x = rng.random((60, 2))
+        y = 0.35 * x[:, 0] + 0.5 * rng.standard_normal(60)
+        models.append(emulator.fit(INPUTS, x, y, groups=np.arange(60) // 5))
+    luck, law = models
+    assert (luck.follows_inputs, luck.scores.gain, luck.scores.gain_error) == (False, 0.0, 0.0)
+    assert "Knowing the inputs would hardly narrow the forecast" in luck.statement_on("beds")
+    assert law.follows_inputs
+    assert law.scores.gain > law.scores.gain_error > 0.0
+    assert "standard error 3.5; the best of 3 kernel widths" in law.statement
+
+
 def test_refits_differ_by_whole_groups() -> None:
     refits = MODEL.refits(30, seed=2)
     for refit in refits:
