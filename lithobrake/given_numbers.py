@@ -10,6 +10,8 @@ if TYPE_CHECKING:
 
 # Squares of larger numbers, and sums of these, are infinite.
 LARGEST = 1e100
+# Numbers of one array that are made for a caller: of 8 bytes each, so 8.6 GB.
+MOST_NUMBERS = 2**30
 
 
 def whole_number(name: str, value: object, at_least: int, at_most: int | None = None) -> int:
@@ -19,6 +21,11 @@ def whole_number(name: str, value: object, at_least: int, at_most: int | None = 
         allowed = f"of at least {at_least}" if at_most is None else f"from {at_least} to {at_most}"
         raise ValueError(f"{name} is {value!r}, but must be a whole number {allowed}")
     return int(value)  # type: ignore[call-overload]
+
+
+def sample_count(name: str, value: object, numbers_each: int, at_least: int = 1) -> int:
+    """Check how many samples are asked for, of so many numbers each; raises ValueError for more than memory holds."""
+    return whole_number(name, value, at_least, MOST_NUMBERS // max(numbers_each, 1))
 
 
 def finite_number(

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lithobrake.analysis.confidence import Array, IntervalEstimate, t_quantile
-from lithobrake.given_numbers import finite_number, numbers
+from lithobrake.given_numbers import finite_number, numbers, whole_number
 
 
 @dataclass(frozen=True)
@@ -34,7 +34,12 @@ def best_choice(met: ArrayLike, bed_count: int, allowed: ArrayLike) -> BestChoic
     Source: [Sun-2011] (variance between, freed of that within).
     """
     values, open_to = numbers("met", met), np.flatnonzero(np.asarray(allowed, dtype=bool))
-    if values.ndim != 3 or min(values.shape[1:]) < 2 or bed_count < 2 or not len(open_to):
+    if values.ndim != 3 or np.shape(allowed) != values.shape[:1] or not np.isfinite(values).all():
+        raise ValueError(
+            f"met has shape {values.shape} and allowed {np.shape(allowed)}, but must be finite numbers [choice_count, "
+            "refit_count, draw_count], and whether each choice is allowed [choice_count]"
+        )
+    if min(values.shape[1:]) < 2 or whole_number("bed_count", bed_count, 0) < 2 or not len(open_to):
         raise ValueError(
             f"draws have shape {values.shape} on {bed_count} beds, and {len(open_to)} choices are allowed; give at "
             "least two refits, two draws of each and two beds, and allow one choice"

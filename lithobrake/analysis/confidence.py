@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lithobrake.given_numbers import labels, numbers_or_nan
+from lithobrake.given_numbers import LARGEST, labels, numbers_or_nan
 
 Array = NDArray[np.float64]
 Labels = NDArray[np.int64]
@@ -82,9 +82,10 @@ def numbered_beds(bed: ArrayLike, run_count: int) -> Labels:
 def answers(name: str, values: ArrayLike) -> Array:
     """Values of runs [run_count], NaN where a run has none or it is masked; raises ValueError for infinite ones."""
     known = numbers_or_nan(name, values)
-    if known.ndim != 1 or np.isinf(known).any():
+    beyond = int((np.abs(known) > LARGEST).sum())
+    if known.ndim != 1 or beyond:
         raise ValueError(
-            f"{name} has shape {known.shape} and {int(np.isinf(known).sum())} infinite values, but must be a number "
+            f"{name} has shape {known.shape} and {beyond} infinite values or beyond {LARGEST:g}, but must be a number "
             "for each run: NaN where a run has none"
         )
     return known

@@ -58,6 +58,8 @@ def failure_inputs(
     """
     of_all = answers("failing", failing)
     known = np.isfinite(of_all)
+    if not ((of_all[known] >= 0.0) & (of_all[known] <= 1.0)).all():
+        raise ValueError("failing must lie between 0 and 1, or be NaN where nobody knows")
     weights, beds = of_all[known], numbered_beds(numbered_beds(bed, len(of_all))[known], int(known.sum()))
     points = checked_points(inputs, x)[known]
     if not weights.sum() > 0.0:

@@ -17,7 +17,7 @@ from lithobrake.analysis.outcome_model import upper_limit
 from lithobrake.analysis.refit_interval import refit_interval
 from lithobrake.analysis.sampling import sample_inputs
 from lithobrake.analysis.share_estimate import Bounds, ShareEstimate, share_estimate
-from lithobrake.given_numbers import numbers_or_nan
+from lithobrake.given_numbers import numbers_or_nan, whole_number
 
 if TYPE_CHECKING:
     from lithobrake.emulator import Draws, Emulator
@@ -117,7 +117,8 @@ def drawn_failures(
     failing: whether each of some draws does, [point_count, 1] or [point_count]; NaN where that is not known, which
     does not count. Inputs are drawn from their laws, one draw at each point.
     """
-    points, met = -(-sample_count // refit_count), []
+    whole_number("refit_count", refit_count, 1)
+    points, met = -(-whole_number("sample_count", sample_count, 1) // refit_count), []
     for number, one in enumerate(model.refits(refit_count, seed)):
         own = int(np.random.SeedSequence([seed, number]).generate_state(1)[0])
         x = sample_inputs(model.runs.inputs, points, own)
@@ -132,6 +133,12 @@ def drawn_counts(met: ArrayLike, refit: ArrayLike, refit_count: int) -> tuple[La
     """
     found, of = numbers_or_nan("met", met), np.asarray(refit)
     known = np.isfinite(found)
+    places = np.isin(of, range(refit_count)).all()
+    if of.shape != found.shape or not places or not np.isin(found[known], (0.0, 1.0)).all():
+        raise ValueError(
+            f"met has shape {found.shape} and refit {of.shape}, but both must be [draw_count]: 1, 0 or NaN, and a "
+            f"place from 0 to {refit_count - 1}"
+        )
     counts = np.bincount(of[known], weights=found[known], minlength=refit_count)
     return counts.astype(np.int64), np.bincount(of[known], minlength=refit_count)
 

@@ -10,7 +10,7 @@ from scipy.special import logsumexp
 from lithobrake.analysis.confidence import Array
 from lithobrake.analysis.inference import Bounds, Observation, Posterior, posterior_of
 from lithobrake.analysis.sampling import sample_inputs
-from lithobrake.given_numbers import random_numbers
+from lithobrake.given_numbers import random_numbers, whole_number
 
 if TYPE_CHECKING:
     from lithobrake.emulator import Emulator
@@ -89,6 +89,10 @@ def identifiability(
     from lithobrake.chaos import sobol_sequence
 
     inputs, random = model.runs.inputs, random_numbers(seed)
+    whole_number("truths", truths, 1)
+    modelled = [model.output_names[column] for column in model.runs.modelled]
+    if isinstance(outputs, str) or not set(outputs) <= set(modelled):
+        raise ValueError(f"outputs are {outputs!r}; allowed: some of {', '.join(modelled)}")
     counts = [1 << power for power in range(MOST_BOUNCES.bit_length())]
     shared = {name: law for name, law in inputs.items() if name not in own}
     points = sobol_sequence(shared, PRIOR_POINTS, seed=seed)

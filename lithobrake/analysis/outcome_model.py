@@ -36,6 +36,7 @@ class OutcomeModel:
         if unknown:
             raise ValueError(f"the outcomes hold {unknown[0]}; allowed: {', '.join(names)}")
         self._inputs, self.names = dict(inputs), tuple(names)
+        x = self._points(x)
         self._met = sorted({self.names.index(outcome) for outcome in outcomes})
         if len(self._met) > 1:
             from sklearn.linear_model import LogisticRegression
@@ -49,6 +50,7 @@ class OutcomeModel:
 
     def probability(self, x: np.ndarray) -> np.ndarray:
         """Probabilities at x [point_count, input_count], in physical units; shape [point_count, len(names)]."""
+        x = self._points(x)
         table = np.zeros((len(x), len(self.names)))
         if len(self._met) == 1:
             table[:, self._met] = 1.0
@@ -63,6 +65,7 @@ class OutcomeModel:
 
         They are quadratic in the germs; minus infinity for an outcome that no run had.
         """
+        x = self._points(x)
         table = np.full((len(x), len(self.names)), -np.inf)
         table[:, self._met] = 0.0
         if len(self._met) > 1:
@@ -77,6 +80,11 @@ class OutcomeModel:
         ends = np.cumsum(self.probability(x), axis=1)[:, :-1]
         drawn: np.ndarray = (random.random(len(x))[:, None] >= ends).sum(axis=1)
         return drawn
+
+    def _points(self, x: np.ndarray) -> np.ndarray:
+        from lithobrake.chaos.basis import checked_points
+
+        return checked_points(self._inputs, x)
 
     def _scaled(self, x: np.ndarray) -> np.ndarray:
         columns = [distribution.germ(x[:, index]) for index, distribution in enumerate(self._inputs.values())]

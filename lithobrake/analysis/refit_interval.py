@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 
 from lithobrake.analysis.confidence import LEVEL, IntervalEstimate, share_interval, t_quantile
 from lithobrake.analysis.outcome_model import upper_limit
-from lithobrake.given_numbers import numbers
+from lithobrake.given_numbers import numbers, whole_number
 
 
 def refit_interval(counts: ArrayLike, totals: ArrayLike, bed_count: int, run_count: int) -> IntervalEstimate:
@@ -21,7 +21,7 @@ def refit_interval(counts: ArrayLike, totals: ArrayLike, bed_count: int, run_cou
     Source: [Sun-2011] (variance between, freed of that within); [Field-2007] (groups drawn whole).
     """
     met, drawn = numbers("counts", counts), numbers("totals", totals)
-    if met.shape != drawn.shape or len(met) < 2 or bed_count < 2 or drawn.min() < 2:
+    if met.shape != drawn.shape or len(met) < 2 or whole_number("bed_count", bed_count, 0) < 2 or drawn.min() < 2:
         raise ValueError(
             f"{len(met)} refits to {bed_count} beds, the least with {drawn.min(initial=0):g} draws; give at least two "
             "of each"

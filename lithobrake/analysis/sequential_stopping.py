@@ -59,6 +59,7 @@ def next_run_count(
     finite_number("half_width", half_width, above=0.0)
     whole_number("largest", largest, 1)
     now, count = half_width_of(values, bed), len(answers("values", values))
+    whole_number("how many runs values hold", count, 1)
     if count >= largest or (now is not None and now <= half_width):
         return None
     fewest, most = (RUNS_A_STEP * -(-round(count * step) // RUNS_A_STEP) for step in (SMALLEST_STEP, LARGEST_STEP))

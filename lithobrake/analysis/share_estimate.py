@@ -22,7 +22,7 @@ from lithobrake.analysis.control_variate import control_variate
 from lithobrake.analysis.next_bed import next_bed_deviation
 from lithobrake.analysis.outcome_model import upper_limit
 from lithobrake.chaos.threads import one_thread
-from lithobrake.given_numbers import numbers, numbers_or_nan
+from lithobrake.given_numbers import numbers, numbers_or_nan, whole_number
 
 Bounds = tuple[float, float]
 ONE_BED = (
@@ -107,8 +107,8 @@ def share_estimate(
     h, w = _checked(stays, weights)
     if terms is not None and len(terms[0]) != len(h):
         raise ValueError(f"terms are of {len(terms[0])} runs and stays of {len(h)}; give those of the same runs")
-    if flight_count is not None and flight_count < 1:
-        raise ValueError(f"flight_count is {flight_count}; allowed: at least 1, or None where nothing flew")
+    if flight_count is not None:
+        whole_number("flight_count", flight_count, 1)
     beds, answered = numbered_beds(bed, len(h)), np.isfinite(h)
     told = np.zeros(len(h)) if terms is None else control_variate(terms[0], terms[1].sum(axis=1), h, beds)
     share = _mean((h - told)[answered], w[answered])

@@ -18,7 +18,7 @@ from lithobrake.chaos.scores import absolute_percentage_error
 from lithobrake.chaos.surrogate import Surrogate
 from lithobrake.chaos.threads import one_thread
 from lithobrake.chaos.training import Training, checked_training
-from lithobrake.given_numbers import finite_number, random_numbers, whole_number
+from lithobrake.given_numbers import finite_number, random_numbers, sample_count, whole_number
 
 # With more terms for each point than this the residuals say too little about the error.
 TERMS_PER_POINT = 0.7
@@ -66,6 +66,7 @@ def sobol_estimates(
     """
     _check_resampling(count, level)
     training = checked_training(surrogate.inputs, x, y, output_names=surrogate.output_names)
+    sample_count("count", count, training.count)
     rows = random_numbers(seed).integers(training.count, size=(count, training.count))
     own, found = _own_indices(surrogate), []
     for output in range(len(surrogate.output_names)):
@@ -90,7 +91,7 @@ def coefficient_changes(
     fits its draws; 0 for an output that does not vary.
     """
     training = checked_training(surrogate.inputs, x, y, output_names=surrogate.output_names)
-    whole_number("count", count, 1)
+    sample_count("count", count, training.count)
     rows = random_numbers(seed).integers(training.count, size=(count, training.count))
     varying = np.flatnonzero(np.ptp(training.y, axis=0) > 0.0).tolist()
     refits = {output: _refit_of(surrogate, training, output) for output in varying}
@@ -264,6 +265,7 @@ def score_intervals(
     """
     _check_resampling(count, level)
     training = checked_training(surrogate.inputs, x, y, output_names=surrogate.output_names)
+    sample_count("count", count, training.count)
     predicted = np.asarray(surrogate(training.x)).reshape(training.y.shape)
     rows = random_numbers(seed).integers(training.count, size=(count, training.count))
     result: dict[str, dict[str, tuple[float, float]]] = {}

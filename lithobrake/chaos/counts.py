@@ -7,12 +7,14 @@ from lithobrake.given_numbers import whole_number
 
 def term_count(input_count: int, degree: int) -> int:
     """Number of terms of total degree up to `degree`, C(n + d, d). Source: [Landings-PCE], below Eq 14."""
-    return comb(input_count + degree, degree)
+    whole_number("degree", degree, 0)
+    return comb(whole_number("input_count", input_count, 1) + int(degree), int(degree))
 
 
 def smolyak_count(input_count: int, level: int) -> int:
     """Number of distinct nodes of the sparse grid, by the nodes that each level adds. Source: [Smolyak-1963]."""
     check_level(level)
+    whole_number("input_count", input_count, 1)
     # The number of nodes with k inputs away from the middle, summed over ways to share the levels among them.
     total = 0
     ways = {0: 1}

@@ -8,20 +8,20 @@ import numpy as np
 
 from lithobrake.chaos.abstract_distribution import Distribution, checked_inputs
 from lithobrake.chaos.polynomials import Array
-from lithobrake.given_numbers import random_numbers, whole_number
+from lithobrake.given_numbers import random_numbers, sample_count, whole_number
 
-# Numbers of one design, 8 bytes each; and points of one scrambled Sobol sequence, whose digits have no more places.
-MOST_NUMBERS = MOST_SOBOL = 2**30
+# Points of one scrambled Sobol sequence: its digits have no more places.
+MOST_SOBOL = 2**30
 
 
 def checked_count(count: int, input_count: int = 1) -> int:
     """Check a number of points, which memory must hold with all their inputs."""
-    return whole_number("count", count, 1, MOST_NUMBERS // input_count)
+    return sample_count("count", count, input_count)
 
 
 def tensor_count(input_count: int, level: int) -> int:
     """Number of nodes of the full tensor grid, (level + 1)**input_count. Source: [Landings-PCE], Fig 3."""
-    return (int(level) + 1) ** input_count
+    return (whole_number("level", level, 0) + 1) ** whole_number("input_count", input_count, 1)
 
 
 def tensor_grid(inputs: Mapping[str, Distribution], level: int | Sequence[int]) -> Array:

@@ -21,7 +21,7 @@ from lithobrake.emulator.outcome_classes import fit_classes
 from lithobrake.emulator.residual_rows import BANDWIDTHS, drawn_rows, row_weights, smoothed, smoothing
 from lithobrake.emulator.significance import found_inputs
 from lithobrake.emulator.storage import FORMAT, Parts, content_of, parts_of
-from lithobrake.given_numbers import random_numbers, whole_number
+from lithobrake.given_numbers import LARGEST, finite_number, random_numbers, sample_count
 from lithobrake.html_table import html_table
 
 # Draws that are made at once: bounds the memory, and belongs to what a seed gives.
@@ -126,8 +126,8 @@ class Emulator(Parts):
         upper: ArrayLike | None = None,
     ) -> Draws:
         """Draw as `sample` does, and say with which outcome and from which run."""
-        whole_number("count", count, 1)
         matrix = self._matrix(x)
+        count = sample_count("count", count, len(matrix) * len(self.output_names))
         low, high = self.runs.bounds_at(lower, upper, len(matrix))
         random = random_numbers(seed)
         parts = []
@@ -235,12 +235,16 @@ class Emulator(Parts):
     ) -> int:
         """Place of the outcome of an observation. Raises ValueError for names and values that cannot be."""
         modelled = [self.output_names[column] for column in self.runs.modelled]
+        if not (isinstance(observed, Mapping) and isinstance(errors, Mapping)):
+            raise ValueError(f"outputs and errors must be dicts by name; outputs that may be observed: {modelled}")
         for name, value in observed.items():
-            if name not in modelled or not np.isfinite(value):
+            if name not in modelled:
                 raise ValueError(f"{name} is observed as {value}; allowed: finite numbers of {', '.join(modelled)}")
+            finite_number(f"observed {name}", value)
         for name, error in errors.items():
-            if name not in observed or not (np.isfinite(error) and error >= 0.0):
+            if name not in observed:
                 raise ValueError(f"the error of {name} is {error}; allowed: 0 or more, of what was observed")
+            finite_number(f"the error of {name}", error, at_least=0.0, at_most=LARGEST)
         if outcome is None:
             return self.runs.output_outcome
         if outcome not in self.outcome_names:

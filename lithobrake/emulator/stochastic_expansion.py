@@ -23,7 +23,7 @@ from lithobrake.emulator.latent_likelihood import LatentProblem, branches, probl
 from lithobrake.emulator.latent_terms import LATENT_DEGREE, LATENTS, LatentTerms
 from lithobrake.emulator.storage import column_from_json, runs_from_json, runs_to_json
 from lithobrake.emulator.training import TrainingRuns
-from lithobrake.given_numbers import numbers, random_numbers, whole_number
+from lithobrake.given_numbers import numbers, random_numbers, sample_count
 
 FORMAT = "lithobrake stochastic expansion"
 # Halvings after which an interval of quantiles is no wider than rounding.
@@ -79,7 +79,7 @@ class StochasticExpansion:
     ) -> Array:
         """Draw `count` outputs at each x [point_count, input_count], shape [point_count, count]."""
         by_power = self._branches(x)
-        shape = len(by_power), whole_number("count", count, 1)
+        shape = len(by_power), sample_count("count", count, len(by_power))
         random = random_numbers(seed)
         polynomials = self.terms.drawn(shape[0] * shape[1], random).reshape(-1, *shape)
         coordinates = np.einsum("pk,kpc->pc", by_power, polynomials) + self.noise * random.standard_normal(shape)

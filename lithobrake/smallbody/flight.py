@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lithobrake.given_numbers import numbers
+from lithobrake.given_numbers import finite_number, numbers, whole_number
 from lithobrake.smallbody.acceleration import Dynamics, Forces
 from lithobrake.smallbody.arrays import Floats
 from lithobrake.smallbody.attraction import Gravity
@@ -96,9 +96,7 @@ def _checked_choices(frame: str, gravity: str, tolerance: float | None) -> float
         raise ValueError(f"gravity is {gravity!r}; allowed are 'exact' and 'table'.")
     if tolerance is None:
         return 3e-7 if gravity == "exact" else 3e-6
-    if not 1e-13 <= tolerance <= 1e-3:
-        raise ValueError(f"tolerance is {tolerance}; it must lie in 1e-13 to 1e-3.")
-    return tolerance
+    return finite_number("tolerance", tolerance, at_least=1e-13, at_most=1e-3)
 
 
 def _sources(body: Body, gravity: str) -> tuple[Gravity, Gravity]:
@@ -232,9 +230,7 @@ def _run(
     part: Callable[[int], None], count: int, threads: int | None, progress: Callable[[float], None] | None
 ) -> None:
     """Do all parts, each of CHUNK flights, on threads."""
-    workers = threads if threads is not None else os.cpu_count() or 1
-    if workers < 1:
-        raise ValueError(f"threads is {threads}; it must be 1 or more.")
+    workers = os.cpu_count() or 1 if threads is None else whole_number("threads", threads, 1)
     firsts = range(0, count, CHUNK)
     if min(workers, len(firsts)) <= 1:
         for number, first in enumerate(firsts, 1):

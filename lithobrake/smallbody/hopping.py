@@ -160,6 +160,8 @@ class _State:
     @classmethod
     def of(cls, body: Body, launch: Launch, duration: float, friction: ArrayLike, rolls: bool) -> "_State":
         """The landers at the start."""
+        if not (numbers("friction", friction) >= 0.0).all():
+            raise ValueError(f"friction is {friction!r}; it must be at least 0 (infinite: a lander rests where it is).")
         position = np.array(np.atleast_2d(numbers("launch: position", launch.position)))
         count = len(position)
 

@@ -6,9 +6,11 @@ import numpy as np
 import pytest
 
 from lithobrake import analysis
+from lithobrake.chaos import Uniform
 
 NAN, INF = float("nan"), float("inf")
 PLACES = np.random.default_rng(0).normal(10.0, 2.0, (2, 20))
+INPUTS = {"a": Uniform(0.0, 1.0)}
 ANSWERS, BEDS = [0.0, 1.0, 1.0, 0.0, 0.5], [0, 1, 2, 3, 4]
 
 
@@ -51,6 +53,18 @@ REFUSED: dict[str, tuple[Callable[[], object], str]] = {
     "a bed of NaN": (lambda: analysis.mean_estimate([1.0, 2.0, 3.0], [0.0, NAN, 1.0]), "bed hold NaN"),
     "more met than drawn": (lambda: analysis.refit_interval([5, 9], [6, 6], 4, 40), "counts must lie between 0"),
     "refits of NaN": (lambda: analysis.refit_interval([5, 4], [6, NAN], 4, 40), "counts must lie between 0"),
+    "a choice of NaN": (lambda: analysis.best_choice(np.full((2, 3, 3), NAN), 3, [True, True]), "must be finite"),
+    "a third choice": (lambda: analysis.best_choice(np.ones((2, 3, 3)), 3, [True] * 3), "whether each choice"),
+    "beds of NaN": (lambda: analysis.refit_interval([1, 2], [5, 5], NAN, 10), "bed_count is nan"),  # type: ignore[arg-type]
+    "half a flight": (lambda: analysis.share_estimate(ANSWERS, BEDS, flight_count=1.5), "flight_count is 1.5"),  # type: ignore[arg-type]
+    "squares that overflow": (lambda: analysis.mean_estimate([1e200, 2e200], [0, 1]), "2 infinite values or beyond"),
+    "no runs": (lambda: analysis.next_run_count([], [], 0.02, 100, lambda count: count), "how many runs"),
+    "a fifth refit": (lambda: analysis.drawn_counts([1, 0], [0, 5], 2), "a place from 0 to 1"),
+    "met twice": (lambda: analysis.drawn_counts([1, 2], [0, 1], 2), "1, 0 or NaN"),
+    "failing thrice": (lambda: analysis.failure_inputs(INPUTS, [[0.5]], [3.0], [0]), "failing must lie between"),
+    "points outside": (lambda: analysis.failure_inputs(INPUTS, [[5.0]], [1.0], [0]), "a is 5, but its support"),
+    "a sample below 0": (lambda: analysis.sample_inputs(INPUTS, -1, 0), "count is -1"),
+    "outcomes nowhere": (lambda: analysis.OutcomeModel(INPUTS, np.array([[NAN]]), ["a"], ["a"]), "a is nan"),
 }
 
 
@@ -59,6 +73,14 @@ def test_what_cannot_be_is_refused(what: str) -> None:
     call, words = REFUSED[what]
     with pytest.raises(ValueError, match=words):
         call()
+
+
+def test_several_bounces_carry_a_warning_and_one_does_not() -> None:
+    one = analysis.Observation({"speed_out": 0.2})
+    assert analysis.shared_bed_warning([one]) is None
+    warning = analysis.shared_bed_warning([one] * 3)
+    assert warning is not None
+    assert warning.startswith("The 3 bounces count as on beds of their own; those of one landing share their bed")
 
 
 def test_what_is_at_the_edge_is_taken() -> None:

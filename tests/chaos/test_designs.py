@@ -153,6 +153,11 @@ def test_what_no_memory_holds_and_what_is_no_seed_are_refused(design):
         design(cube(2), 4, "x")
 
 
+def test_a_grid_that_no_memory_holds_is_refused():
+    with pytest.raises(ValueError, match=r"level is 20, of which a Smolyak grid in 10 inputs has \d+ nodes"):
+        smolyak(cube(10), 20)
+
+
 def test_a_sequence_is_not_longer_than_its_digits():
     with pytest.raises(ValueError, match=r"skip is 1000000000000, .* from 0 to 1073741816"):
         sobol_sequence(cube(2), 8, skip=10**12)
