@@ -38,19 +38,16 @@ print(f"{np.nanmedian(flights['time_s']) / 60:.0f} min to the next impact")
 # %% [markdown]
 # ## The emulator
 #
-# It is the law of what comes out, at inputs that nobody has run: here at two frictions, all else in the middle.
+# It gives samples of landings at any inputs, by their names and in the units of the study file: here at two frictions,
+# all else in the middle.
 
 # %%
 emulator = results.emulator
-names = list(emulator.runs.inputs)
-middle = np.median(emulator.runs.x, axis=0)
-points = np.tile(middle, (2, 1))
-points[:, names.index("lander.friction")] = [0.1, 0.35]
-draws = emulator.sample(points, 500, seed=1)
-speed = draws[:, :, emulator.output_names.index("speed_out")]
-for point, values in zip(points, speed, strict=True):
-    low, high = np.nanquantile(values, [0.05, 0.95])
-    print(f"friction {point[names.index('lander.friction')]:.2f}: speed out {low:.3f} to {high:.3f} m/s")
+middle = {name: np.median(results.runs[name]) for name in emulator.inputs}
+for friction in (0.1, 0.35):
+    table = emulator.sample(middle | {"lander.friction": friction}, 500, seed=1)
+    low, high = np.nanquantile(table["speed_out"], [0.05, 0.95])
+    print(f"friction {friction:.2f}: speed out {low:.3f} to {high:.3f} m/s")
 
 # %%
 emulator

@@ -24,6 +24,7 @@ LEAVES = {
         "outcomes",
         "plain",
         "reading",
+        "given_numbers",
         "hashing",
         "html_table",
         "attitude",

@@ -13,7 +13,7 @@ from lithobrake.analysis.failure_probability import (
     failure_probability,
 )
 from lithobrake.analysis.half_width import expected_half_width, expected_half_widths, runs_for_half_width
-from lithobrake.analysis.inference import LearntInput, Observation, Posterior, infer
+from lithobrake.analysis.inference import LearntInput, Observation, Posterior, infer, shared_bed_warning
 from lithobrake.analysis.observed_bounces import Identifiability, identifiability, predictive_p_value
 from lithobrake.analysis.outcome_model import OutcomeModel, unseen_limit, upper_limit
 from lithobrake.analysis.output_estimates import mean_estimate, quantile_estimates
@@ -66,6 +66,7 @@ __all__ = [
     "sample_inputs",
     "scatter_of",
     "share_estimate",
+    "shared_bed_warning",
     "soil_total_effect",
     "subset_simulation",
     "unseen_limit",

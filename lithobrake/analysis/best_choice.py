@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lithobrake.analysis.confidence import LEVEL, Array, IntervalEstimate, t_quantile
+from lithobrake.given_numbers import finite_number, numbers, whole_number
 
 
 @dataclass(frozen=True)
@@ -40,8 +41,13 @@ def best_choice(met: ArrayLike, bed_count: int, allowed: ArrayLike) -> BestChoic
     Source: [Sun-2011] (variance between, freed of that within); [Efron-1983] (what selection adds); [Hsu-1981] (all
     that cannot be told from the best).
     """
-    values, open_to = np.asarray(met, dtype=float), np.flatnonzero(np.asarray(allowed, dtype=bool))
-    if values.ndim != 3 or min(values.shape[1:]) < 2 or bed_count < 2 or not len(open_to):
+    values, open_to = numbers("met", met), np.flatnonzero(np.asarray(allowed, dtype=bool))
+    if values.ndim != 3 or np.shape(allowed) != values.shape[:1] or not np.isfinite(values).all():
+        raise ValueError(
+            f"met has shape {values.shape} and allowed {np.shape(allowed)}, but must be finite numbers [choice_count, "
+            "refit_count, draw_count], and whether each choice is allowed [choice_count]"
+        )
+    if min(values.shape[1:]) < 2 or whole_number("bed_count", bed_count, 0) < 2 or not len(open_to):
         raise ValueError(
             f"draws have shape {values.shape} on {bed_count} beds, and {len(open_to)} choices are allowed; give at "
             "least two refits, two draws of each and two beds, and allow one choice"
@@ -66,13 +72,21 @@ def best_choice(met: ArrayLike, bed_count: int, allowed: ArrayLike) -> BestChoic
 def quantile_within(values: ArrayLike, probability: float, levels: tuple[float, float]) -> tuple[float, float, float]:
     """Quantile of values [count] and its bounds, those at the levels that the share below it may have.
 
-    A bound beyond the outermost value is minus or plus infinity: so few values do not tell it.
+    A bound beyond the outermost value is minus or plus infinity: so few values do not tell it. Raises ValueError for no
+    value, one that is not finite, and a probability or levels outside 0 to 1.
     Source: [Woodruff-1952]; [Hyndman-1996], definition 5.
     """
-    ordered = np.sort(np.asarray(values, dtype=float))
+    finite_number("probability", probability, at_least=0.0, at_most=1.0)
+    first, second = (finite_number("levels", one, at_least=0.0, at_most=1.0) for one in levels)
+    ordered = np.sort(numbers("values", values))
+    if ordered.ndim != 1 or not len(ordered) or not np.isfinite(ordered).all() or first > second:
+        raise ValueError(
+            f"values have shape {ordered.shape}, levels are {first} and {second}; give at least one value, all of them "
+            "finite, and the lower level first"
+        )
     places = (np.arange(len(ordered)) + 0.5) / len(ordered)
-    lower, middle, upper = np.interp([levels[0], probability, levels[1]], places, ordered).tolist()
-    return middle, lower if levels[0] >= places[0] else -math.inf, upper if levels[1] <= places[-1] else math.inf
+    lower, middle, upper = np.interp([first, probability, second], places, ordered).tolist()
+    return middle, lower if first >= places[0] else -math.inf, upper if second <= places[-1] else math.inf
 
 
 def _own(values: Array, best: int, allowed: NDArray[np.intp], bed_count: int) -> IntervalEstimate:

@@ -6,6 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from lithobrake.given_numbers import LARGEST, labels, numbers_or_nan
+
 Array = NDArray[np.float64]
 Labels = NDArray[np.int64]
 Bounds = tuple[float, float]
@@ -94,15 +96,25 @@ def share_spread(share: float, deviation: float) -> tuple[float, float]:
 
 def numbered_beds(bed: ArrayLike, run_count: int) -> Labels:
     """Beds of the runs, [run_count], of any labels, renumbered from 0; raises ValueError for another shape."""
-    labels = np.asarray(bed)
-    if labels.shape != (run_count,):
-        raise ValueError(f"bed has shape {labels.shape}; it must name the bed of each of the {run_count} runs")
-    return np.unique(labels, return_inverse=True)[1].astype(np.int64)
+    beds = labels("bed", bed, run_count, "each run")
+    return np.unique(beds, return_inverse=True)[1].astype(np.int64)
+
+
+def answers(name: str, values: ArrayLike) -> Array:
+    """Values of runs [run_count], NaN where a run has none or it is masked; raises ValueError for infinite ones."""
+    known = numbers_or_nan(name, values)
+    beyond = int((np.abs(known) > LARGEST).sum())
+    if known.ndim != 1 or beyond:
+        raise ValueError(
+            f"{name} has shape {known.shape} and {beyond} infinite values or beyond {LARGEST:g}, but must be a number "
+            "for each run: NaN where a run has none"
+        )
+    return known
 
 
 def answered_runs(values: ArrayLike, bed: ArrayLike) -> tuple[Array, Labels]:
     """Values of the runs that have one, of values [run_count] with NaN, and their beds numbered from 0, [count]."""
-    of_all = np.asarray(values, dtype=float)
+    of_all = answers("values", values)
     known = np.isfinite(of_all)
     beds = numbered_beds(bed, len(of_all))[known]
     return of_all[known], numbered_beds(beds, len(beds))

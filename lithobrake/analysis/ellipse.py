@@ -6,6 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from lithobrake.given_numbers import numbers
+
 # Places whose directions cancel more than this have no middle that means anything.
 SMALLEST_RESULTANT = 0.7
 SMALLEST_COUNT = 10
@@ -36,12 +38,12 @@ def dispersion_ellipses(
 
     The places are laid flat about their mean direction, keeping distance and direction from it (azimuthal equidistant);
     the axes are those of their second moments, and each ellipse is as large as it takes to hold its share of them: no
-    law is assumed. Raises ValueError for shares outside 0 to 1.
+    law is assumed. Raises ValueError for shares outside 0 to 1, for places that are not finite or of other latitudes.
     Source: [Mardia-2000], section 9.2 (mean direction, resultant length).
     """
     if not all(0.0 < share < 1.0 for share in shares):
         raise ValueError(f"shares are {shares}; each must lie between 0 and 1")
-    latitude, longitude = np.radians(latitude_deg), np.radians(longitude_deg)
+    latitude, longitude = _angles(latitude_deg, longitude_deg)
     if latitude.size < SMALLEST_COUNT:
         return None
     across = np.cos(latitude)
@@ -67,6 +69,23 @@ def dispersion_ellipses(
             if k * sizes[1] <= 0.5 * math.pi
         },
     )
+
+
+def _angles(latitude_deg: ArrayLike, longitude_deg: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Latitudes and longitudes [rad], both [count]; raises ValueError for what is no place on a sphere."""
+    latitude, longitude = numbers("latitude_deg", latitude_deg), numbers("longitude_deg", longitude_deg)
+    if latitude.ndim != 1 or latitude.shape != longitude.shape:
+        raise ValueError(
+            f"latitude_deg has shape {latitude.shape} and longitude_deg {longitude.shape}, but both must be [count]"
+        )
+    wrong = ~((np.abs(latitude) <= 90.0) & (np.abs(longitude) <= 360.0))
+    if wrong.any():
+        place = int(np.flatnonzero(wrong)[0])
+        raise ValueError(
+            f"place {place} has latitude_deg {latitude[place]:g} and longitude_deg {longitude[place]:g}, but they must "
+            "lie in -90 to 90 and -360 to 360: leave out places that are not known"
+        )
+    return np.radians(latitude), np.radians(longitude)
 
 
 def _laid_flat(

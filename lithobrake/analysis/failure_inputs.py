@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lithobrake.analysis.confidence import LEVEL, Array, numbered_beds
+from lithobrake.analysis.confidence import LEVEL, Array, answers, numbered_beds
+from lithobrake.chaos.basis import checked_points
+from lithobrake.given_numbers import random_numbers
 
 if TYPE_CHECKING:
     from lithobrake.chaos import Distribution
@@ -54,13 +56,15 @@ def failure_inputs(
     Source: [Spear-1980] (distribution functions of failing and other points compared); [Field-2007] (groups drawn
     whole).
     """
-    of_all = np.asarray(failing, dtype=float)
+    of_all = answers("failing", failing)
     known = np.isfinite(of_all)
-    weights, beds = of_all[known], numbered_beds(np.asarray(bed)[known], int(known.sum()))
-    points = np.asarray(x, dtype=float)[known]
+    if not ((of_all[known] >= 0.0) & (of_all[known] <= 1.0)).all():
+        raise ValueError("failing must lie between 0 and 1, or be NaN where nobody knows")
+    weights, beds = of_all[known], numbered_beds(numbered_beds(bed, len(of_all))[known], int(known.sum()))
+    points = checked_points(inputs, x)[known]
     if not weights.sum() > 0.0:
         return {}
-    random = np.random.default_rng(seed)
+    random = random_numbers(seed)
     # Luck deals out what the runs have: shares of flights, or ones and noughts.
     dealt = np.array([random.permutation(weights) for _ in range(DRAW_COUNT)])
     drawn = weights * _counts_of_beds(beds, random)[:, beds]

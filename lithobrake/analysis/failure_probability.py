@@ -17,6 +17,7 @@ from lithobrake.analysis.outcome_model import unseen_limit
 from lithobrake.analysis.refit_interval import refit_interval
 from lithobrake.analysis.sampling import sample_inputs
 from lithobrake.analysis.share_estimate import ShareEstimate, share_estimate
+from lithobrake.given_numbers import numbers_or_nan, whole_number
 
 if TYPE_CHECKING:
     from lithobrake.emulator import Draws, Emulator
@@ -96,7 +97,7 @@ def failure_probability(
     Raises ValueError as `share_estimate` and `refit_interval` do.
     """
     runs = share_estimate(failing, bed, terms=terms, like_missing=like_missing, why=why)
-    beds = np.asarray(bed)[np.isfinite(np.asarray(failing, dtype=float))]
+    beds = np.asarray(bed)[np.isfinite(numbers_or_nan("failing", failing))]
     limit = unseen_limit(beds)
     by_runs = FailureProbability(runs.share, runs.lower, runs.upper, RUNS, runs, None, limit)
     if drawn is None or runs.lower is None or runs.upper is None:
@@ -127,7 +128,8 @@ def drawn_failures(
     failing: whether each of some draws does, [point_count, 1] or [point_count]; NaN where that is not known, which
     does not count. Inputs are drawn from their laws, one draw at each point.
     """
-    points, met = -(-sample_count // refit_count), []
+    whole_number("refit_count", refit_count, 1)
+    points, met = -(-whole_number("sample_count", sample_count, 1) // refit_count), []
     for number, one in enumerate(model.refits(refit_count, seed)):
         own = int(np.random.SeedSequence([seed, number]).generate_state(1)[0])
         x = sample_inputs(model.runs.inputs, points, own)
@@ -140,7 +142,13 @@ def drawn_counts(met: ArrayLike, refit: ArrayLike, refit_count: int) -> tuple[La
 
     met [draw_count]: 1, 0, or NaN where nobody knows; refit [draw_count]: place of the refit that each is of.
     """
-    found, of = np.asarray(met, dtype=float), np.asarray(refit)
+    found, of = numbers_or_nan("met", met), np.asarray(refit)
     known = np.isfinite(found)
+    places = np.isin(of, range(refit_count)).all()
+    if of.shape != found.shape or not places or not np.isin(found[known], (0.0, 1.0)).all():
+        raise ValueError(
+            f"met has shape {found.shape} and refit {of.shape}, but both must be [draw_count]: 1, 0 or NaN, and a "
+            f"place from 0 to {refit_count - 1}"
+        )
     counts = np.bincount(of[known], weights=found[known], minlength=refit_count)
     return counts.astype(np.int64), np.bincount(of[known], minlength=refit_count)

@@ -3,6 +3,7 @@
 import math
 
 from lithobrake.analysis.confidence import t_quantile
+from lithobrake.given_numbers import LARGEST, finite_number, whole_number
 
 # Standard deviation of a run's share of flights that return, as measured on three studies with randomised impact points
 # (0.148, 0.211, 0.212): the range, and the larger one, which promises no more than a study keeps.
@@ -10,6 +11,8 @@ SPREAD_RANGE = (0.15, 0.21)
 SPREAD = SPREAD_RANGE[1]
 # Correlation of two runs on one bed.
 CORRELATION = 0.05
+# Narrower intervals than this part of the spread would take a million million runs.
+NARROWEST = 1e-6
 
 
 def expected_half_width(
@@ -20,10 +23,8 @@ def expected_half_width(
     spread: standard deviation of a run at what the inputs leave open; correlation of two runs on one bed, 0 to 1.
     Raises ValueError for counts or numbers that cannot be. Source: [Cochran-1977], section 10.3 (two stages).
     """
-    if not 1 <= bed_count <= run_count:
-        raise ValueError(f"{run_count} runs on {bed_count} beds; give at least one bed, and a run for each")
-    if spread < 0.0 or not 0.0 <= correlation <= 1.0:
-        raise ValueError(f"spread is {spread} and correlation {correlation}; allowed: from 0, and 0 to 1")
+    whole_number("bed_count", bed_count, 1, whole_number("run_count", run_count, 1))
+    _check_scatter(spread, correlation)
     if bed_count == 1:
         return None
     variance = spread**2 * (correlation / bed_count + (1.0 - correlation) / run_count)
@@ -46,10 +47,11 @@ def runs_for_half_width(
 ) -> int:
     """Fewest runs, a whole number of beds of so many, whose expected half width is at most this one.
 
-    Raises ValueError for a half width that is not above 0.
+    Raises ValueError for a half width below a millionth of the spread, and for numbers that cannot be.
     """
-    if not half_width > 0.0:
-        raise ValueError(f"half_width is {half_width}; it must be above 0")
+    _check_scatter(spread, correlation)
+    finite_number("half_width", half_width, above=0.0, at_least=NARROWEST * spread)
+    whole_number("runs_per_bed", runs_per_bed, 1)
 
     def width(bed_count: int) -> float:
         found = expected_half_width(bed_count * runs_per_bed, bed_count, spread=spread, correlation=correlation)
@@ -64,3 +66,9 @@ def runs_for_half_width(
         middle = (lower + upper) // 2
         lower, upper = (middle, upper) if width(middle) > half_width else (lower, middle)
     return upper * runs_per_bed
+
+
+def _check_scatter(spread: float, correlation: float) -> None:
+    """Refuse a spread below 0, and a correlation outside 0 to 1, with a ValueError."""
+    finite_number("spread", spread, at_least=0.0, at_most=LARGEST)
+    finite_number("correlation", correlation, at_least=0.0, at_most=1.0)

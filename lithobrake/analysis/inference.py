@@ -12,6 +12,7 @@ from scipy.special import logsumexp, ndtr, ndtri
 from lithobrake.analysis.confidence import LEVEL, Array, IntervalEstimate
 from lithobrake.analysis.ensemble_walk import ENDLESS, INSTALL, WALKER_COUNT, can_walk, walk
 from lithobrake.analysis.sampling import sample_inputs
+from lithobrake.given_numbers import random_numbers, sample_count, whole_number
 
 if TYPE_CHECKING:
     from lithobrake.chaos import Distribution
@@ -86,8 +87,8 @@ class Posterior:
 
     def sample(self, count: int, seed: int = 0) -> Array:
         """Draw points with replacement, [count, input_count]."""
-        random = np.random.default_rng(seed)
-        drawn: Array = self.points[random.choice(len(self.points), count, p=self.weights)]
+        size = sample_count("count", count, len(self.inputs), at_least=0)
+        drawn: Array = self.points[random_numbers(seed).choice(len(self.points), size, p=self.weights)]
         return drawn
 
     def learnt(self) -> dict[str, LearntInput]:
@@ -159,10 +160,11 @@ def infer(
     refit_count: fits to groups drawn with replacement, over which the likelihood is averaged; 0: the emulator alone.
     point_count: points that are looked at, of the prior first, then near those that carry weight until 400 do. Where
     these rounds end with fewer the walkers of emcee follow, if it is installed.
-    Bounces on one terrain share its bed, which is not followed: they count as of beds of their own.
+    Each bounce counts as on a bed of its own. Bounces of one landing share their bed, so intervals from several are too
+    narrow: `shared_bed_warning` says by how much.
     Raises ValueError for no observation, and for names and values that cannot be.
     """
-    shared = _checked(model, observations, own)
+    shared, seed = _checked(model, observations, own), whole_number("seed", seed, 0)
     models = model.refits(refit_count, seed) if refit_count else [model]
     laws = {name: model.runs.inputs[name] for name in shared}
 
@@ -171,6 +173,20 @@ def infer(
 
     found = _drawn(laws, logarithm, point_count, seed)
     return found if found.is_reliable else _walked(found, logarithm, seed)
+
+
+def shared_bed_warning(observations: Sequence[Observation]) -> str | None:
+    """What to make of a posterior from several bounces, in a sentence; None for one.
+
+    The figure: ten of sixteen 90 % intervals held the input, five bounces on one bed of a fifth of the variance.
+    """
+    if len(observations) < 2:
+        return None
+    return (
+        f"The {len(observations)} bounces count as on beds of their own; those of one landing share their bed and are "
+        "more alike, so intervals from them are too narrow: with 5 on one bed that has a fifth of the variance, 62 % "
+        "of 90 % intervals held the truth."
+    )
 
 
 def _drawn(laws: "Mapping[str, Distribution]", logarithm: Likelihood, point_count: int, seed: int) -> Posterior:
@@ -200,7 +216,7 @@ def _walked(found: Posterior, logarithm: Likelihood, seed: int) -> Posterior:
         return replace(found, remedy=INSTALL)
     shares = [law.cdf(values) for law, values in zip(found.inputs.values(), found.points.T, strict=True)]
     scores = ndtri(np.clip(np.column_stack(shares), LEAST, 1.0 - LEAST))
-    random, middle = np.random.default_rng(seed), found.weights @ scores
+    random, middle = random_numbers(seed), found.weights @ scores
     spread = np.sqrt(found.weights @ (scores - middle) ** 2) + NARROWEST
     start = scores[random.choice(len(scores), WALKER_COUNT, p=found.weights)]
     # Walkers that all begin at one point would never leave it.

@@ -10,6 +10,7 @@ from scipy.special import logsumexp
 from lithobrake.analysis.confidence import Array
 from lithobrake.analysis.inference import Bounds, Observation, Posterior, posterior_of
 from lithobrake.analysis.sampling import sample_inputs
+from lithobrake.given_numbers import random_numbers, whole_number
 
 if TYPE_CHECKING:
     from lithobrake.emulator import Emulator
@@ -37,7 +38,7 @@ def predictive_p_value(
     """
     if not observation.outputs:
         raise ValueError("the observation has no outputs; give one that has, as an outcome alone is never surprising")
-    random, names = np.random.default_rng(seed), list(observation.outputs)
+    random, names = random_numbers(seed), list(observation.outputs)
     x = _points(model, posterior, observation, POSTERIOR_POINTS, seed)
     low, high = bounds(x) if bounds else (None, None)
     drawn = model.draw(x, max(1, REPLICATES // POSTERIOR_POINTS) * 2, seed, lower=low, upper=high)
@@ -87,7 +88,11 @@ def identifiability(
     """
     from lithobrake.chaos import sobol_sequence
 
-    inputs, random = model.runs.inputs, np.random.default_rng(seed)
+    inputs, random = model.runs.inputs, random_numbers(seed)
+    whole_number("truths", truths, 1)
+    modelled = [model.output_names[column] for column in model.runs.modelled]
+    if isinstance(outputs, str) or not set(outputs) <= set(modelled):
+        raise ValueError(f"outputs are {outputs!r}; allowed: some of {', '.join(modelled)}")
     counts = [1 << power for power in range(MOST_BOUNCES.bit_length())]
     shared = {name: law for name, law in inputs.items() if name not in own}
     points = sobol_sequence(shared, PRIOR_POINTS, seed=seed)

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from lithobrake.analysis.confidence import LEVEL
+from lithobrake.given_numbers import finite_number, whole_number
 
 if TYPE_CHECKING:
     from lithobrake.chaos import Distribution
@@ -37,6 +38,7 @@ class OutcomeModel:
         if unknown:
             raise ValueError(f"the outcomes hold {unknown[0]}; allowed: {', '.join(names)}")
         self._inputs, self.names = dict(inputs), tuple(names)
+        x = self._points(x)
         self._met = sorted({self.names.index(outcome) for outcome in outcomes})
         if len(self._met) > 1:
             from sklearn.linear_model import LogisticRegression
@@ -50,6 +52,7 @@ class OutcomeModel:
 
     def probability(self, x: np.ndarray) -> np.ndarray:
         """Probabilities at x [point_count, input_count], in physical units; shape [point_count, len(names)]."""
+        x = self._points(x)
         table = np.zeros((len(x), len(self.names)))
         if len(self._met) == 1:
             table[:, self._met] = 1.0
@@ -64,6 +67,7 @@ class OutcomeModel:
 
         They are quadratic in the germs; minus infinity for an outcome that no run had.
         """
+        x = self._points(x)
         table = np.full((len(x), len(self.names)), -np.inf)
         table[:, self._met] = 0.0
         if len(self._met) > 1:
@@ -79,6 +83,11 @@ class OutcomeModel:
         drawn: np.ndarray = (random.random(len(x))[:, None] >= ends).sum(axis=1)
         return drawn
 
+    def _points(self, x: np.ndarray) -> np.ndarray:
+        from lithobrake.chaos.basis import checked_points
+
+        return checked_points(self._inputs, x)
+
     def _scaled(self, x: np.ndarray) -> np.ndarray:
         columns = [distribution.germ(x[:, index]) for index, distribution in enumerate(self._inputs.values())]
         return np.column_stack(columns)
@@ -88,9 +97,12 @@ def upper_limit(unit_count: int, level: float = 0.95) -> float:
     """Largest probability that an event may have, at a level of confidence, which none of so many units has met.
 
     Units are independent: beds, not the runs on them (`unseen_limit`).
+    Raises ValueError for a count below 0, and for a level outside 0 to 1.
     Source: [Clopper-1934], at a count of 0; about 3 / unit_count for 0.95.
     """
-    if unit_count < 1:
+    finite_number("level", level, above=0.0, below=1.0)
+    # Without any unit the event may have every probability.
+    if whole_number("unit_count", unit_count, 0) == 0:
         return 1.0
     return float(1.0 - (1.0 - level) ** (1.0 / unit_count))
 

@@ -2,18 +2,23 @@
 
 import math
 
+from lithobrake.given_numbers import finite_number, whole_number
+
 NORMAL_QUANTILE_95 = 1.959963984540054
+# Probabilities beyond this quantile are below the smallest float.
+MOST_QUANTILE = 40.0
 
 
 def wilson_interval(count: int, total: int, quantile: float = NORMAL_QUANTILE_95) -> tuple[float, float]:
     """Interval of the true share when `count` of `total` independent draws have a property.
 
     quantile: of the standard normal distribution (1.96: 95 %). The interval stays within [0, 1] and holds near 0 and
-    1, where the usual plus-minus does not. Raises ValueError for counts that cannot be.
+    1, where the usual plus-minus does not. Raises ValueError for counts that cannot be, and for
+    a quantile below 0.
     Source: [Wilson-1927].
     """
-    if total < 1 or not 0 <= count <= total:
-        raise ValueError(f"{count} of {total} is no share; the count must lie between 0 and a total of at least 1")
+    count = whole_number("count", count, 0, whole_number("total", total, 1))
+    finite_number("quantile", quantile, at_least=0.0, at_most=MOST_QUANTILE)
     share = count / total
     spread = quantile**2 / total
     middle = (share + spread / 2) / (1 + spread)

@@ -7,6 +7,7 @@ from numpy.typing import ArrayLike
 
 from lithobrake.analysis.confidence import LEVEL, IntervalEstimate, share_interval, t_quantile
 from lithobrake.analysis.outcome_model import upper_limit
+from lithobrake.given_numbers import numbers, whole_number
 
 
 def refit_interval(counts: ArrayLike, totals: ArrayLike, bed_count: int) -> IntervalEstimate:
@@ -16,15 +17,18 @@ def refit_interval(counts: ArrayLike, totals: ArrayLike, bed_count: int) -> Inte
     beds that the emulator was fitted to. The scatter of the refits' shares, less what finite draws add, is the error of
     the fit. An event that no draw or every draw has met is bounded by what so many beds can say (`unseen_limit`), and
     one that few have met has no wider bounds than that, or than its error on the plain scale.
-    Raises ValueError for fewer than two refits or beds, and for a refit with fewer than two draws.
+    Raises ValueError for fewer than two refits or beds, for a refit with fewer than two draws, and for counts that are
+    no part of their totals.
     Source: [Sun-2011] (variance between, freed of that within); [Field-2007] (groups drawn whole).
     """
-    met, drawn = np.asarray(counts, dtype=float), np.asarray(totals, dtype=float)
-    if met.shape != drawn.shape or len(met) < 2 or bed_count < 2 or drawn.min() < 2:
+    met, drawn = numbers("counts", counts), numbers("totals", totals)
+    if met.shape != drawn.shape or len(met) < 2 or whole_number("bed_count", bed_count, 0) < 2 or drawn.min() < 2:
         raise ValueError(
             f"{len(met)} refits to {bed_count} beds, the least with {drawn.min(initial=0):g} draws; give at least two "
             "of each"
         )
+    if not ((met >= 0.0) & (met <= drawn)).all():
+        raise ValueError("counts must lie between 0 and totals in every refit: draws that have met the event, of all")
     share, total = float(met.sum() / drawn.sum()), float(drawn.sum())
     limit = upper_limit(bed_count, LEVEL)
     if share in (0.0, 1.0):

@@ -5,6 +5,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from lithobrake.given_numbers import sample_count, whole_number
+
 if TYPE_CHECKING:
     from lithobrake.chaos import Distribution
 
@@ -14,6 +16,7 @@ def sample_inputs(inputs: Mapping[str, "Distribution"], count: int, seed: int) -
 
     Each input has a random stream of its own, so neither another input nor a larger count changes earlier draws.
     """
+    count, seed = sample_count("count", count, len(inputs), at_least=0), whole_number("seed", seed, 0)
     columns = [
         distribution.ppf(open_uniforms(np.random.Generator(np.random.PCG64([seed, *name.encode()])), count))
         for name, distribution in inputs.items()

@@ -9,9 +9,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from lithobrake.analysis.bed_components import bed_components
-from lithobrake.analysis.confidence import answered_runs
+from lithobrake.analysis.confidence import answered_runs, answers
 from lithobrake.analysis.half_width import expected_half_width
 from lithobrake.analysis.share_estimate import share_estimate
+from lithobrake.given_numbers import finite_number, whole_number
 
 # Each look at the runs is a chance to stop by luck, so looks are a tenth of the runs apart; and what the first runs say
 # of their scatter is rough, so no look asks for more than twice the runs.
@@ -26,7 +27,7 @@ def half_width_of(values: ArrayLike, bed: ArrayLike) -> float | None:
     Runs without an answer are NaN and left out: what they hide no number of runs narrows, and the interval of
     `share_estimate` adds it. None where the runs give no interval: no answer, or all on one bed.
     """
-    known, beds = answered_runs(values, bed)
+    known, beds = answered_runs(answers("values", values), bed)
     if len(known) == 0:
         return None
     found = share_estimate(known, beds)
@@ -54,9 +55,13 @@ def next_run_count(
 
     values, bed [run_count]: answer of each run, 0 to 1 or NaN, and its bed. It is enough when half the interval is at
     most half_width, or with the largest count. bed_count_of: beds on which so many runs come down. The next count is
-    the first whose half width is expected to do, by the scatter of the runs within and between beds.
+    the first whose half width is expected to do, by the scatter of the runs within and between beds. Raises ValueError
+    for a half width that is not above 0, and for a largest count below 1.
     """
-    now, count = half_width_of(values, bed), len(np.asarray(values))
+    finite_number("half_width", half_width, above=0.0)
+    whole_number("largest", largest, 1)
+    now, count = half_width_of(values, bed), len(answers("values", values))
+    whole_number("how many runs values hold", count, 1)
     if count >= largest or (now is not None and now <= half_width):
         return None
     fewest, most = (RUNS_A_STEP * -(-round(count * step) // RUNS_A_STEP) for step in (SMALLEST_STEP, LARGEST_STEP))
@@ -65,7 +70,7 @@ def next_run_count(
         # Nothing has shown yet how far runs scatter.
         return min(counts[-1], largest)
     ratio = half_width / now
-    known = np.isfinite(np.asarray(values, dtype=float)).sum()
+    known = np.isfinite(answers("values", values)).sum()
 
     def expected(run_count: int) -> float:
         # Of runs to come as many will have an answer as of those that are there.

@@ -23,6 +23,7 @@ from lithobrake.analysis.control_variate import control_variate
 from lithobrake.analysis.next_bed import next_bed_deviation
 from lithobrake.analysis.outcome_model import upper_limit
 from lithobrake.chaos.threads import one_thread
+from lithobrake.given_numbers import numbers, numbers_or_nan
 
 ONE_BED = (
     "all runs came down on one bed; another bed gives another share, and these runs cannot say how different: set "
@@ -162,8 +163,8 @@ def standard_error(values: Array, bed: Labels) -> float:
 def _checked(
     shares: ArrayLike, weights: ArrayLike | None, like_missing: ArrayLike | None
 ) -> tuple[Array, Array, NDArray[np.bool_]]:
-    h = np.asarray(shares, dtype=float)
-    w = np.ones_like(h) if weights is None else np.asarray(weights, dtype=float)
+    h = numbers_or_nan("shares", shares)
+    w = np.ones_like(h) if weights is None else numbers("weights", weights)
     like = np.zeros(h.shape, dtype=bool) if like_missing is None else np.asarray(like_missing, dtype=bool)
     if h.ndim != 1 or not np.isfinite(h).any():
         raise ValueError(f"shares has shape {h.shape} and no outcome; give one for each run, some of them known")

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lithobrake.analysis.confidence import LEVEL, Array, IntervalEstimate
+from lithobrake.analysis.confidence import LEVEL, Array, IntervalEstimate, answers
 
 # So few squares miss the rare large ones, which carry much of the effect: their own scatter says too little of it.
 # Measured on normal, Ishigami's and synthetic landings: bounds hold .83 to .93 with it, .76 to .86 without.
@@ -14,7 +14,8 @@ def chaos_variance(differences: ArrayLike) -> IntervalEstimate:
     """Variance that chaos alone gives an output, from differences [pair_count] of twins [unit of the output].
 
     Twins differ in nothing that anyone could know, so half the mean square of their difference is the variance.
-    Raises ValueError where no difference is known. Source: [Searle-1992], section 3.5 (chi-square interval).
+    NaN: not known. Raises ValueError where no difference is known, or one is infinite.
+    Source: [Searle-1992], section 3.5 (chi-square interval).
     """
     from scipy import special
 
@@ -36,7 +37,7 @@ def soil_total_effect(differences: ArrayLike, y: ArrayLike) -> IntervalEstimate:
     """
     from scipy import special
 
-    halves, known = 0.5 * _squares(differences), np.asarray(y, dtype=float)
+    halves, known = 0.5 * _squares(differences), answers("y", y)
     known = known[np.isfinite(known)]
     if len(halves) < 2 or len(known) < 2 or np.ptp(known) == 0.0:
         raise ValueError(f"{len(halves)} pairs and {len(known)} runs, or runs all alike; give two or more that differ")
@@ -51,7 +52,7 @@ def soil_total_effect(differences: ArrayLike, y: ArrayLike) -> IntervalEstimate:
 
 
 def _squares(differences: ArrayLike) -> Array:
-    known = np.asarray(differences, dtype=float)
+    known = answers("differences", differences)
     known = known[np.isfinite(known)]
     if len(known) == 0:
         raise ValueError("no difference is known; give those of at least one pair in which both runs have the output")

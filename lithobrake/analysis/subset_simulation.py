@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lithobrake.analysis.confidence import LEVEL, Array, Labels, t_quantile
+from lithobrake.given_numbers import labels, numbers, random_numbers, whole_number
 
 # Share of the points of a level that make the next one.
 LEVEL_SHARE = 0.1
@@ -70,8 +71,11 @@ def subset_simulation(
     ten, 20 at least. most_levels: after which a failure that no point has shown is not looked for further.
     Raises ValueError for other counts, and for margins that are no numbers.
     """
-    chain_count = _checked(dimension, points_per_level, kept)
-    random = np.random.default_rng(seed)
+    dimension, points_per_level = whole_number("dimension", dimension, 1), _points_per_level(points_per_level)
+    chain_count, most_levels = round(LEVEL_SHARE * points_per_level), whole_number("most_levels", most_levels, 1)
+    if not set(kept) < set(range(dimension)):
+        raise ValueError(f"kept is {list(kept)} of {dimension} inputs; allowed: some of them, counted from 0, not all")
+    random = random_numbers(seed)
     points = random.standard_normal((points_per_level, dimension))
     values = _margins(margin, points)
     moved = np.setdiff1d(np.arange(dimension), np.asarray(kept, dtype=int))
@@ -175,13 +179,14 @@ def _groups(groups: Callable[[Array], ArrayLike] | None, points: Array) -> Label
     alone = np.arange(len(points))
     if groups is None:
         return alone
-    labels = np.unique(np.asarray(groups(points)), return_inverse=True)[1].astype(np.int64)
-    return labels if labels.max() > 0 else alone
+    given = labels("groups", groups(points), len(points), "each point")
+    numbered = np.unique(given, return_inverse=True)[1].astype(np.int64)
+    return numbered if numbered.max() > 0 else alone
 
 
 def _margins(margin: Margin, points: Array) -> Array:
     """Margins of points [count, dimension]. Raises ValueError for other shapes and for what is no number."""
-    values = np.asarray(margin(points), dtype=float)
+    values = numbers("margin", margin(points))
     if values.shape != (len(points),) or np.isnan(values).any():
         raise ValueError(
             f"margin gave shape {values.shape} with {int(np.isnan(values).sum())} NaN for {len(points)} points; it "
@@ -190,13 +195,9 @@ def _margins(margin: Margin, points: Array) -> Array:
     return values
 
 
-def _checked(dimension: int, points_per_level: int, kept: Sequence[int]) -> int:
-    """How many chains a level has. Raises ValueError for counts and inputs that cannot be."""
+def _points_per_level(count: int) -> int:
+    """Check how many points a level has; raises ValueError for what does not make whole chains."""
     length = round(1.0 / LEVEL_SHARE)
-    if points_per_level < 2 * length or points_per_level % length:
-        raise ValueError(
-            f"points_per_level is {points_per_level}; allowed: multiples of {length} from {2 * length}; take 1000"
-        )
-    if dimension < 1 or not set(kept) < set(range(dimension)):
-        raise ValueError(f"kept is {list(kept)} of {dimension} inputs; allowed: some of them, counted from 0, not all")
-    return points_per_level // length
+    if whole_number("points_per_level", count, 2 * length) % length:
+        raise ValueError(f"points_per_level is {count}; allowed: multiples of {length} from {2 * length}; take 1000")
+    return int(count)

@@ -8,7 +8,16 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from lithobrake.analysis.bed_components import BedComponents, bed_components
-from lithobrake.analysis.confidence import LEVEL, Array, Bounds, IntervalEstimate, Labels, numbered_beds, t_quantile
+from lithobrake.analysis.confidence import (
+    LEVEL,
+    Array,
+    Bounds,
+    IntervalEstimate,
+    Labels,
+    answers,
+    numbered_beds,
+    t_quantile,
+)
 from lithobrake.analysis.control_variate import regression_terms
 from lithobrake.analysis.side_runs import chaos_variance
 from lithobrake.chaos.threads import one_thread
@@ -113,11 +122,11 @@ def variance_shares(
     leaving out one bed after another, of the bed by F, of chaos by chi-square, of the rest from those of the others.
     Source: [Searle-1992], section 3.6 (analysis of variance); [Sudret-2008], Eq 36 (squares of coefficients).
     """
-    of_all = np.asarray(y, dtype=float)
+    of_all = answers("y", y)
     points = _checked_points(inputs, x, of_all, soil)
     known = np.isfinite(of_all)
     points, values = points[known], of_all[known]
-    beds = numbered_beds(np.asarray(bed)[known], len(values))
+    beds = numbered_beds(numbered_beds(bed, len(of_all))[known], len(values))
     if len(values) < 2 or beds.max() == 0 or np.ptp(values) == 0.0:
         return None
     terms, indices = regression_terms(inputs, points)

@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike
 from lithobrake.chaos.abstract_distribution import Distribution
 from lithobrake.chaos.multi_index import Indices, multi_index_set
 from lithobrake.chaos.polynomials import Array, Recurrence
+from lithobrake.given_numbers import numbers
 
 # Limits computed by a user in another order of operations may differ from ours in the last digits.
 ROUNDING = 1e-12
@@ -15,7 +16,7 @@ ROUNDING = 1e-12
 
 def points_of(inputs: Mapping[str, Distribution], x: ArrayLike) -> Array:
     """Bring points to shape [count, input_count]; one-dimensional x is many points of a single input."""
-    points = np.asarray(x, dtype=float)
+    points = numbers("x", x)
     if points.ndim == 1 and len(inputs) == 1:
         points = points[:, None]
     if points.ndim != 2 or points.shape[1] != len(inputs):
@@ -51,6 +52,14 @@ def checked_points(inputs: Mapping[str, Distribution], x: ArrayLike) -> Array:
     if count:
         raise ValueError(f"x has {count} of {len(points)} points outside the inputs: {sentence}")
     return points
+
+
+def checked_weights(weights: ArrayLike, count: int) -> Array:
+    """Weights of points [count]; raises ValueError unless they are finite and above 0."""
+    values = numbers("weights", weights)
+    if values.shape != (count,) or not np.all(np.isfinite(values)) or not np.all(values > 0.0):
+        raise ValueError(f"weights must be {count} finite numbers above 0, one for each point")
+    return values
 
 
 def germs_of(inputs: Mapping[str, Distribution], points: Array) -> Array:
@@ -93,7 +102,7 @@ def condition_number(
     terms = indices if isinstance(indices, np.ndarray) else multi_index_set(len(inputs), indices)
     matrix = basis_matrix(inputs, terms, points_of(inputs, x))
     if weights is not None:
-        matrix = matrix * np.sqrt(np.asarray(weights, dtype=float))[:, None]
+        matrix = matrix * np.sqrt(checked_weights(weights, len(matrix)))[:, None]
     if matrix.shape[0] < matrix.shape[1]:
         return float("inf")
     values = np.linalg.svd(matrix, compute_uv=False)

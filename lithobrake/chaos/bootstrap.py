@@ -18,6 +18,7 @@ from lithobrake.chaos.scores import absolute_percentage_error
 from lithobrake.chaos.surrogate import Surrogate
 from lithobrake.chaos.threads import one_thread
 from lithobrake.chaos.training import Training, checked_training
+from lithobrake.given_numbers import finite_number, random_numbers, sample_count, whole_number
 
 # With more terms for each point than this the residuals say too little about the error.
 TERMS_PER_POINT = 0.7
@@ -65,7 +66,8 @@ def sobol_estimates(
     """
     _check_resampling(count, level)
     training = checked_training(surrogate.inputs, x, y, output_names=surrogate.output_names)
-    rows = np.random.default_rng(seed).integers(training.count, size=(count, training.count))
+    sample_count("count", count, training.count)
+    rows = random_numbers(seed).integers(training.count, size=(count, training.count))
     own, found = _own_indices(surrogate), []
     for output in range(len(surrogate.output_names)):
         if np.ptp(training.y[:, output]) == 0.0:
@@ -89,7 +91,8 @@ def coefficient_changes(
     fits its draws; 0 for an output that does not vary.
     """
     training = checked_training(surrogate.inputs, x, y, output_names=surrogate.output_names)
-    rows = np.random.default_rng(seed).integers(training.count, size=(count, training.count))
+    sample_count("count", count, training.count)
+    rows = random_numbers(seed).integers(training.count, size=(count, training.count))
     varying = np.flatnonzero(np.ptp(training.y, axis=0) > 0.0).tolist()
     refits = {output: _refit_of(surrogate, training, output) for output in varying}
     indices = np.unique(np.concatenate([surrogate.multi_indices, *(one.indices for one in refits.values())]), axis=0)
@@ -171,10 +174,9 @@ def _indices_of(indices: Indices, coefficients: Array) -> Array:
 
 def _check_resampling(count: int, level: float) -> None:
     """Check a number of resamplings and a level of confidence; raises ValueError."""
-    if count < 20:
-        raise ValueError(f"count is {count}, but at least 20 resamplings are needed for an interval")
-    if not 0.0 < level < 1.0:
-        raise ValueError(f"level is {level}, but must be between 0 and 1, for instance 0.95")
+    # Of fewer resamplings an interval has no ends.
+    whole_number("count", count, 20)
+    finite_number("level", level, above=0.0, below=1.0)
 
 
 def _refit_of(surrogate: Surrogate, training: Training, output: int) -> Refit:
@@ -263,8 +265,9 @@ def score_intervals(
     """
     _check_resampling(count, level)
     training = checked_training(surrogate.inputs, x, y, output_names=surrogate.output_names)
+    sample_count("count", count, training.count)
     predicted = np.asarray(surrogate(training.x)).reshape(training.y.shape)
-    rows = np.random.default_rng(seed).integers(training.count, size=(count, training.count))
+    rows = random_numbers(seed).integers(training.count, size=(count, training.count))
     result: dict[str, dict[str, tuple[float, float]]] = {}
     for k, name in enumerate(surrogate.output_names):
         low, high = _studentised(predicted[:, k], training.y[:, k], rows, level)

@@ -1,26 +1,20 @@
 """How many nodes a sparse grid and how many terms an expansion has, counted without making them."""
 
 from math import comb
-from numbers import Real
 
-
-def whole_number(name: str, value: object, at_least: int, at_most: int | None = None) -> int:
-    """Check a whole number and give it back; raises ValueError for anything else, with its name and range."""
-    whole = isinstance(value, Real) and not isinstance(value, bool) and value % 1 == 0
-    if not whole or value < at_least or (at_most is not None and value > at_most):  # type: ignore[operator]
-        allowed = f"of at least {at_least}" if at_most is None else f"from {at_least} to {at_most}"
-        raise ValueError(f"{name} is {value!r}, but must be a whole number {allowed}")
-    return int(value)  # type: ignore[call-overload]
+from lithobrake.given_numbers import whole_number
 
 
 def term_count(input_count: int, degree: int) -> int:
     """Number of terms of total degree up to `degree`, C(n + d, d). Source: [Landings-PCE], below Eq 14."""
-    return comb(input_count + degree, degree)
+    whole_number("degree", degree, 0)
+    return comb(whole_number("input_count", input_count, 1) + int(degree), int(degree))
 
 
 def smolyak_count(input_count: int, level: int) -> int:
     """Number of distinct nodes of the sparse grid, by the nodes that each level adds. Source: [Smolyak-1963]."""
     check_level(level)
+    whole_number("input_count", input_count, 1)
     # The number of nodes with k inputs away from the middle, summed over ways to share the levels among them.
     total = 0
     ways = {0: 1}

@@ -7,18 +7,21 @@ from itertools import product
 import numpy as np
 
 from lithobrake.chaos.abstract_distribution import Distribution, checked_inputs
-from lithobrake.chaos.counts import whole_number
 from lithobrake.chaos.polynomials import Array
+from lithobrake.given_numbers import random_numbers, sample_count, whole_number
+
+# Points of one scrambled Sobol sequence: its digits have no more places.
+MOST_SOBOL = 2**30
 
 
-def checked_count(count: int) -> int:
-    """Check a number of points."""
-    return whole_number("count", count, 1)
+def checked_count(count: int, input_count: int = 1) -> int:
+    """Check a number of points, which memory must hold with all their inputs."""
+    return sample_count("count", count, input_count)
 
 
 def tensor_count(input_count: int, level: int) -> int:
     """Number of nodes of the full tensor grid, (level + 1)**input_count. Source: [Landings-PCE], Fig 3."""
-    return (int(level) + 1) ** input_count
+    return (whole_number("level", level, 0) + 1) ** whole_number("input_count", input_count, 1)
 
 
 def tensor_grid(inputs: Mapping[str, Distribution], level: int | Sequence[int]) -> Array:
@@ -44,25 +47,28 @@ def sobol_sequence(inputs: Mapping[str, Distribution], count: int, seed: int = 0
     """First `count` points of a scrambled Sobol sequence after `skip`, physical units, [count, input_count].
 
     With the same seed a longer sequence starts with the shorter one, so a design can be extended.
+    Raises ValueError for more than 2**30 points or numbers.
     Source: [Owen-1998], as in scipy.stats.qmc.
     """
     from scipy.stats import qmc
 
     distributions = checked_inputs(inputs)
-    engine = qmc.Sobol(len(distributions), scramble=True, rng=np.random.default_rng(seed))
-    if whole_number("skip", skip, 0):
-        engine.fast_forward(skip)
+    size = checked_count(count, len(distributions))
+    passed = whole_number("skip", skip, 0, MOST_SOBOL - size)
+    engine = qmc.Sobol(len(distributions), scramble=True, rng=random_numbers(seed))
+    if passed:
+        engine.fast_forward(passed)
     # Powers of two are advised for quadrature; a regression design needs no balance, so no warning either.
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", message="The balance properties of Sobol")
-        uniforms = engine.random(checked_count(count))
+        uniforms = engine.random(size)
     return _physical(distributions, uniforms)
 
 
 def latin_hypercube(inputs: Mapping[str, Distribution], count: int, seed: int = 0) -> Array:
     """Latin hypercube in probability, physical units, shape [count, input_count]. Source: [McKay-1979]."""
     distributions = checked_inputs(inputs)
-    generator, size = np.random.default_rng(seed), checked_count(count)
+    generator, size = random_numbers(seed), checked_count(count, len(distributions))
     columns = [(generator.permutation(size) + generator.random(size)) / size for _ in distributions]
     return _physical(distributions, np.column_stack(columns))
 

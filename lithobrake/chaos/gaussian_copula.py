@@ -17,6 +17,7 @@ from lithobrake.chaos.storage import inputs_from_json, inputs_to_json, read, wri
 from lithobrake.chaos.surrogate import Surrogate
 from lithobrake.chaos.threads import one_thread
 from lithobrake.chaos.unbounded_distributions import Normal
+from lithobrake.given_numbers import numbers
 
 FORMAT = "lithobrake expansion of dependent inputs"
 
@@ -30,7 +31,7 @@ class GaussianCopula:
 
     def __init__(self, inputs: Mapping[str, Distribution], rank_correlation: ArrayLike) -> None:
         self.inputs = checked_inputs(inputs)
-        matrix = np.asarray(rank_correlation, dtype=float)
+        matrix = numbers("rank_correlation", rank_correlation)
         size = len(self.inputs)
         if matrix.shape != (size, size) or not np.allclose(matrix, matrix.T, rtol=0.0, atol=1e-12):
             raise ValueError(f"rank_correlation has shape {matrix.shape}, but must be symmetric, [{size}, {size}]")
@@ -55,7 +56,7 @@ class GaussianCopula:
     @one_thread()
     def physical(self, germs: ArrayLike) -> Array:
         """Inputs in physical units of independent germs [count, input_count]; result [count, input_count]."""
-        uniforms = special.ndtr(np.asarray(germs, dtype=float) @ self._factor.T)
+        uniforms = special.ndtr(numbers("germs", germs) @ self._factor.T)
         return np.column_stack([entry.ppf(uniforms[:, k]) for k, entry in enumerate(self.inputs.values())])
 
     @one_thread()

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lithobrake.chaos.polynomials import Array
+from lithobrake.given_numbers import finite_number
 
 
 @dataclass(frozen=True)
@@ -85,8 +86,7 @@ def runs_needed(report: dict[str, Any], target: float) -> dict[str, dict[str, An
     runs: so it does where scatter is its cause; a smooth output needs fewer.
     Raises ValueError unless target is above 0, and for a report without error estimates.
     """
-    if not target > 0.0:
-        raise ValueError(f"target is {target}, but must be above 0: it is an error relative to the spread")
+    finite_number("target", target, above=0.0)
     answers = {}
     for name, entry in report.get("outputs", {}).items():
         now = entry["rrmse_estimate"]

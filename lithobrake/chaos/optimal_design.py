@@ -6,12 +6,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from lithobrake.chaos.abstract_distribution import Distribution, checked_inputs
-from lithobrake.chaos.basis import basis_matrix, points_of
+from lithobrake.chaos.basis import basis_matrix, checked_points
 from lithobrake.chaos.counts import term_count
 from lithobrake.chaos.design import checked_count
 from lithobrake.chaos.multi_index import Indices, multi_index_set
 from lithobrake.chaos.polynomials import Array
 from lithobrake.chaos.threads import one_thread
+from lithobrake.given_numbers import random_numbers
 
 # Gauss nodes that stand for the density of one input when points are drawn from it times a squared polynomial.
 RULE_NODES = 200
@@ -23,7 +24,7 @@ def christoffel_weights(inputs: Mapping[str, Distribution], x: Array, indices: I
 
     Source: [Narayan-2017], Eq 9.
     """
-    matrix = basis_matrix(inputs, indices, points_of(inputs, x))
+    matrix = basis_matrix(inputs, indices, checked_points(inputs, x))
     return len(indices) / np.einsum("ij,ij->i", matrix, matrix)
 
 
@@ -34,7 +35,7 @@ def christoffel(inputs: Mapping[str, Distribution], count: int, seed: int = 0, *
     Source: [Cohen-2017], section 5.
     """
     distributions = checked_inputs(inputs)
-    size, generator = checked_count(count), np.random.default_rng(seed)
+    size, generator = checked_count(count, len(distributions)), random_numbers(seed)
     indices = multi_index_set(len(distributions), degree)
     powers = indices[generator.integers(len(indices), size=size)]
     uniforms = generator.random((size, len(distributions)))
@@ -130,14 +131,14 @@ def d_optimal(
         size = CANDIDATES_PER_TERM * max(len(indices), wanted)
         pool = christoffel(distributions, size, degree=max(degree, 1), seed=seed)
     else:
-        pool = points_of(distributions, candidates)
+        pool = checked_points(distributions, candidates)
     if len(pool) < wanted:
         raise ValueError(f"{wanted} points are wanted, but there are only {len(pool)} candidates: give more")
     rows = basis_matrix(distributions, indices, pool)
     # A faint prior makes the first choices well defined before the basis is determined.
     inverse = 1e8 * np.eye(len(indices))
     if existing is not None:
-        old = basis_matrix(distributions, indices, points_of(distributions, existing))
+        old = basis_matrix(distributions, indices, checked_points(distributions, existing))
         inverse = np.asarray(np.linalg.inv(1e-8 * np.eye(len(indices)) + old.T @ old), dtype=np.float64)
     return pool[_greedy_choice(rows, inverse, wanted)]
 

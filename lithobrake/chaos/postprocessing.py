@@ -12,6 +12,7 @@ from lithobrake.chaos.moments import SAMPLE_COUNT, skewness_and_kurtosis
 from lithobrake.chaos.polynomials import Array
 from lithobrake.chaos.surrogate import Surrogate
 from lithobrake.chaos.threads import one_thread
+from lithobrake.given_numbers import numbers, random_numbers, whole_number
 
 
 def shape_moments(surrogate: Surrogate, *, count: int = SAMPLE_COUNT, seed: int = 0) -> dict[str, Any]:
@@ -63,7 +64,7 @@ def main_effect(surrogate: Surrogate, name: str, points: ArrayLike | int = 50) -
     if isinstance(points, int | np.integer):
         values = np.asarray(entry.ppf(np.linspace(0.005, 0.995, checked_count(int(points)))))
     else:
-        values = np.asarray(points, dtype=float)
+        values = numbers("points", points)
     return values, marginal(surrogate, [name])(values[:, None])
 
 
@@ -91,15 +92,18 @@ def gradient(surrogate: Surrogate, x: ArrayLike) -> Array:
 
 def sampled_outputs(surrogate: Surrogate, count: int = 100_000, *, seed: int = 0) -> Array:
     """Outputs at random inputs, [count, output_count] or [count]."""
-    generator = np.random.default_rng(seed)
-    uniforms = generator.random((checked_count(count), len(surrogate.inputs)))
+    shape = checked_count(count, len(surrogate.inputs)), len(surrogate.inputs)
+    uniforms = random_numbers(seed).random(shape)
     columns = [entry.sample(uniforms[:, k]) for k, entry in enumerate(surrogate.inputs.values())]
     return surrogate(np.column_stack(columns))
 
 
 def quantiles(surrogate: Surrogate, probabilities: ArrayLike, *, count: int = 100_000, seed: int = 0) -> Array:
     """Quantiles of the outputs by sampling, [probability_count, output_count] or [probability_count]."""
-    return np.quantile(sampled_outputs(surrogate, count, seed=seed), np.asarray(probabilities, dtype=float), axis=0)
+    wanted = numbers("probabilities", probabilities)
+    if not ((wanted >= 0.0) & (wanted <= 1.0)).all():
+        raise ValueError(f"probabilities are {wanted.tolist()}, but each must lie from 0 to 1")
+    return np.quantile(sampled_outputs(surrogate, count, seed=seed), wanted, axis=0)
 
 
 def density(
@@ -109,6 +113,7 @@ def density(
 
     output: its name, None is the first. Source: [Silverman-1986], Eq 3.31 (width of the kernel).
     """
+    whole_number("point_count", point_count, 2)
     names = surrogate.output_names
     if output is not None and output not in names:
         raise ValueError(f"output is {output!r}, but must be one of {', '.join(names)}")

@@ -6,8 +6,10 @@ from itertools import product
 import numpy as np
 
 from lithobrake.chaos.abstract_distribution import Distribution, checked_inputs
-from lithobrake.chaos.counts import check_level
+from lithobrake.chaos.counts import check_level, smolyak_count
 from lithobrake.chaos.polynomials import Array
+
+MOST_NODES = 10_000_000
 
 
 def new_nodes(level: int) -> Array:
@@ -36,7 +38,8 @@ def smolyak(inputs: Mapping[str, Distribution], level: int) -> Array:
     """Sparse-grid nodes in physical units, shape [node_count, input_count].
 
     The order is by total level, so the nodes of a lower level are the first rows, bit for bit, of a higher one.
-    Raises ValueError for an unbounded input (limit it, or choose another design) and for a level out of range.
+    Raises ValueError for an unbounded input (limit it, or choose another design), for a level out of range, and
+    for more than ten million nodes.
     Source: [Smolyak-1963]; [Landings-PCE], "Polynomial chaos expansion" and Fig 3.
     """
     check_level(level)
@@ -47,6 +50,12 @@ def smolyak(inputs: Mapping[str, Distribution], level: int) -> Array:
                 f"input {name!r} is {entry.kind} with support {entry.support}, but a Smolyak grid needs finite limits: "
                 "use TruncatedNormal, Uniform or Beta, or the designs sobol_sequence, latin_hypercube, fekete"
             )
+    count = smolyak_count(len(distributions), int(level))
+    if count > MOST_NODES:
+        raise ValueError(
+            f"level is {level}, of which a Smolyak grid in {len(distributions)} inputs has {count} nodes, but at most "
+            f"{MOST_NODES} are made: lower it"
+        )
     germ_rows: list[Array] = []
     for total in range(int(level) + 1):
         for levels in _levels_of(len(distributions), total):

@@ -17,8 +17,9 @@ from lithobrake.chaos.polynomials import Array
 from lithobrake.chaos.storage import numbers_from_json, read, write
 from lithobrake.chaos.surrogate import Surrogate
 from lithobrake.chaos.training import checked_training
+from lithobrake.given_numbers import random_numbers
 
-FORMAT = "lithobrake stochastic expansion"
+FORMAT = "lithobrake stochastic surrogate"
 
 
 @dataclass(frozen=True)
@@ -46,7 +47,7 @@ class StochasticSurrogate:
         mean, std = np.asarray(self.mean(x)), self.scatter_std(x)
         values, vectors = np.linalg.eigh(self.correlation)
         root = vectors * np.sqrt(np.maximum(values, 0.0))
-        draws = np.random.default_rng(seed).normal(size=(len(mean), len(root))) @ root.T
+        draws = random_numbers(seed).normal(size=(len(mean), len(root))) @ root.T
         return mean + std * draws.reshape(mean.shape)
 
 

@@ -77,7 +77,9 @@ def read(kind: str, build: Callable[[dict[str, Any]], Kept], path: str | os.Path
     except (json.JSONDecodeError, UnicodeDecodeError, RecursionError) as error:
         raise ValueError(f"{name} is not JSON ({error}): give a file that save wrote") from None
     if not isinstance(content, dict) or content.get("format") != kind:
-        raise ValueError(f"{name} is not a {kind}: give a file that save wrote")
+        other = content.get("format") if isinstance(content, dict) else None
+        what = f", but a {other[:80]}" if isinstance(other, str) else ""
+        raise ValueError(f"{name} is not a {kind}{what}: give a file that save wrote")
     version = content.get("format_version")
     if type(version) is not int or not 1 <= version <= FORMAT_VERSION:
         author = content.get("written_by", "an unknown version")

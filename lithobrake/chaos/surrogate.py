@@ -26,6 +26,7 @@ from lithobrake.chaos.storage import (
     write,
 )
 from lithobrake.chaos.threads import one_thread
+from lithobrake.given_numbers import numbers
 
 FORMAT = "lithobrake expansion"
 
@@ -181,7 +182,7 @@ class Surrogate:
 
         Raises ValueError for NaN in y. Source: [Landings-PCE], Eq 24; `score_of` has the definitions.
         """
-        truth, count = np.asarray(y, dtype=float), len(points_of(self.inputs, x))
+        truth, count = numbers("y", y), len(points_of(self.inputs, x))
         if truth.ndim == 1 and len(self.output_names) == 1:
             truth = truth[:, None]
         if truth.shape != (count, len(self.output_names)) or count == 0:

@@ -8,9 +8,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lithobrake.chaos.abstract_distribution import Distribution, checked_inputs
-from lithobrake.chaos.basis import outside_count, points_of
+from lithobrake.chaos.basis import checked_weights, outside_count, points_of
 from lithobrake.chaos.noise import equal_rows
 from lithobrake.chaos.polynomials import Array
+from lithobrake.given_numbers import LARGEST, numbers_or_nan
 
 
 @dataclass(frozen=True)
@@ -53,12 +54,12 @@ def checked_training(
     output_names: Sequence[str] | None = None,
     weights: ArrayLike | None = None,
 ) -> Training:
-    """Check the data of a fit. A row of y that is all NaN is a missing run: dropped and counted.
+    """Check the data of a fit. A row of y that is all NaN, or masked, is a missing run: dropped and counted.
 
     Raises ValueError for wrong shapes, points outside the support, any other non-finite value, wrong weights.
     """
     distributions = checked_inputs(inputs)
-    points, outputs = points_of(distributions, x), np.asarray(y, dtype=float)
+    points, outputs = points_of(distributions, x), numbers_or_nan("y", y)
     one_dimensional = outputs.ndim == 1
     table = outputs[:, None] if one_dimensional else outputs
     if table.ndim != 2 or len(table) != len(points) or table.shape[1] == 0:
@@ -71,6 +72,7 @@ def checked_training(
             f"{wrong} rows of y hold NaN or infinity in some outputs: a missing run must be NaN in all outputs, "
             "so set the whole row to NaN or leave it out"
         )
+    check_magnitude("y", kept)
     if not len(kept):
         raise ValueError(f"none of the {len(points)} rows of y holds outputs: at least one run is needed")
     _check_points(distributions, rows)
@@ -85,6 +87,19 @@ def checked_training(
     )
 
 
+def check_magnitude(name: str, values: Array) -> None:
+    """Refuse outputs [count, output_count] whose squares, or those of their spread, are no numbers."""
+    most = float(np.abs(values).max(initial=0.0))
+    if most > LARGEST:
+        raise ValueError(f"{name} reaches {most:g} in size, but must stay within {LARGEST:g}: give it in a larger unit")
+    spread = np.ptp(values, axis=0) if len(values) else np.zeros(1)
+    if ((spread > 0.0) & (spread < 1.0 / LARGEST)).any():
+        raise ValueError(
+            f"{name} varies by {spread[spread > 0.0].min():g}, but must vary by at least {1.0 / LARGEST:g}, or not at "
+            "all: give it in a smaller unit"
+        )
+
+
 def _check_points(distributions: dict[str, Distribution], rows: Array) -> None:
     if not np.all(np.isfinite(rows)):
         raise ValueError("x holds values that are not finite: remove these points")
@@ -96,9 +111,7 @@ def _check_points(distributions: dict[str, Distribution], rows: Array) -> None:
 def _checked_weights(weights: ArrayLike | None, missing: NDArray[np.bool_]) -> Array | None:
     if weights is None:
         return None
-    values = np.asarray(weights, dtype=float)
-    if values.shape != missing.shape or not np.all(np.isfinite(values)) or not np.all(values > 0.0):
-        raise ValueError(f"weights must be {len(missing)} finite numbers above 0, one for each point")
+    values = checked_weights(weights, len(missing))
     return values[~missing] / values[~missing].mean()
 
 

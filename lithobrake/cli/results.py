@@ -181,7 +181,8 @@ def infer(
         found = None if bounce is None else infer_study(folder, bounce)
     tell(plan)
     if found is not None:
-        tell([found["statement"], f"Posterior: {folder / 'posterior.json'}, {folder / 'posterior.png'}"])
+        written = f"Posterior: {folder / 'posterior.json'}, {folder / 'posterior.png'}"
+        tell([line for line in (found["statement"], found["warning"], written) if line])
 
 
 def _landing(

@@ -46,7 +46,7 @@ def fit(
     Raises ValueError for shapes, values and labels that do not fit together.
     """
     runs = checked_runs(inputs, x, y, groups, outcome, outcomes, lower, upper, riders, output_names)
-    terms = terms_up_to(runs.inputs, highest_degree(len(runs.y)))
+    terms = terms_up_to(runs.inputs, highest_degree(len(runs.y), len(runs.inputs)))
     matrix = terms.matrix(runs.x)
     of_outputs = matrix[runs.has_outputs]
     choices, scores = choices_by_groups(runs, terms.indices, of_outputs)

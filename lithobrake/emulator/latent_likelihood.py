@@ -92,16 +92,8 @@ class LatentProblem:
 
 
 def problem_of(runs: TrainingRuns, terms: LatentTerms, weights: Array) -> LatentProblem:
-    """The runs with outputs as a problem of likelihood; weights: how often each run counts [run_count].
-
-    Raises ValueError for weights of another shape, below zero, or all zero.
-    """
+    """The runs with outputs as a problem of likelihood; weights: how often each run counts [run_count]."""
     there = runs.has_outputs
-    if weights.shape != there.shape or not (weights >= 0.0).all() or not 0.0 < weights[there].sum() < np.inf:
-        raise ValueError(
-            f"weights have shape {weights.shape}, but must be [{len(there)}], how often each run counts: none below "
-            "zero, and one with an output above"
-        )
     return LatentProblem(terms, terms.factors(runs.x[there]), runs.coordinates[:, 0], weights[there])
 
 

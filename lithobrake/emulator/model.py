@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lithobrake.chaos.basis import checked_points
-from lithobrake.chaos.counts import whole_number
 from lithobrake.chaos.polynomials import Array
 from lithobrake.chaos.storage import read, write
 from lithobrake.chaos.threads import one_thread
@@ -19,9 +18,10 @@ from lithobrake.emulator.density import kernels_of, log_density
 from lithobrake.emulator.law import fit_law
 from lithobrake.emulator.mean_law import MeanLaw, mean_law
 from lithobrake.emulator.outcome_classes import fit_classes
-from lithobrake.emulator.residual_rows import drawn_rows, row_weights, smoothed, smoothing
+from lithobrake.emulator.residual_rows import BANDWIDTHS, drawn_rows, row_weights, smoothed, smoothing
 from lithobrake.emulator.significance import found_inputs
 from lithobrake.emulator.storage import FORMAT, Parts, content_of, parts_of
+from lithobrake.given_numbers import finite_number, random_numbers, sample_count
 from lithobrake.html_table import html_table
 
 # Draws that are made at once: bounds the memory, and belongs to what a seed gives.
@@ -60,6 +60,10 @@ class Emulator(Parts):
         """Whether draws depend on the inputs; else each is one of the runs."""
         return self.choices.follows_inputs
 
+    def __repr__(self) -> str:
+        """Say what it draws at which inputs, and what these are worth."""
+        return f"Emulator of {', '.join(self.output_names)} at {', '.join(self.runs.inputs)}. {self.statement}"
+
     def _repr_html_(self) -> str:
         """What it makes of the inputs, the outcomes and the outputs, for a notebook."""
         ended = np.asarray(self.runs.outcome)
@@ -82,14 +86,15 @@ class Emulator(Parts):
         count, number = len(self.runs.y), len(np.unique(self.runs.group))
         if not self.follows_inputs:
             return (
-                f"The inputs do not change the outputs noticeably: no law of them did better on {groups} left out than "
-                f"drawing one of the {count} runs with outputs ({number} {groups}), so draws are runs alone."
+                f"Knowing the inputs would hardly narrow the forecast: on {groups} left out no law of them did better, "
+                f"by more than a standard error, than drawing one of the {count} runs with outputs ({number} "
+                f"{groups}), so draws are runs alone."
             )
         share = self.scores.gain / self.scores.energy_of_rows
         return (
             f"On {groups} left out the inputs make the energy score {100 * share:.1f} % better "
-            f"(standard error {100 * self.scores.gain_error / self.scores.energy_of_rows:.1f}) than drawing one of the "
-            f"{count} runs with outputs ({number} {groups})."
+            f"(standard error {100 * self.scores.gain_error / self.scores.energy_of_rows:.1f}; the best of "
+            f"{len(BANDWIDTHS)} kernel widths) than drawing one of the {count} runs with outputs ({number} {groups})."
         )
 
     def outcome_probability(self, x: ArrayLike) -> Array:
@@ -123,10 +128,10 @@ class Emulator(Parts):
         upper: ArrayLike | None = None,
     ) -> Draws:
         """Draw as `sample` does, and say with which outcome and from which run."""
-        whole_number("count", count, 1)
         matrix = self._matrix(x)
+        count = sample_count("count", count, len(matrix) * len(self.output_names))
         low, high = self.runs.bounds_at(lower, upper, len(matrix))
-        random = np.random.default_rng(seed)
+        random = random_numbers(seed)
         parts = []
         step = max(1, _BLOCK // max(count, len(self.runs.y)))
         for start in range(0, len(matrix), step):
@@ -191,7 +196,7 @@ class Emulator(Parts):
     @one_thread()
     def reweighted(self, weights: ArrayLike) -> "Emulator":
         """Fit anew with each run counted as often as weights say [run_count]."""
-        counted = np.asarray(weights, dtype=float)
+        counted = self.runs.checked_weights(weights)
         matrix = self._run_matrix
         law = fit_law(
             self.terms.indices,
@@ -214,9 +219,10 @@ class Emulator(Parts):
         return mean_law(self.terms, self._run_matrix[there], target, self.choices.location, self.weights[there])
 
     def found_inputs(self, level: float = 0.9, seed: int = 0) -> dict[str, bool]:
-        """Say which inputs change the mean of any output, at one level for all inputs and outputs together.
+        """Say which inputs change the mean of any output: one test for all inputs and outputs together.
 
-        If none does, none is found with probability `level`.
+        If none does, none is found with probability `level`. An input counts with its products with others, so that one
+        which is found may have next to no variance of an output of its own; which output it changes is not said.
         """
         there = self.runs.has_outputs
         found = found_inputs(self.terms, self._run_matrix[there], self.runs.coordinates, level, seed)
@@ -231,15 +237,16 @@ class Emulator(Parts):
     ) -> int:
         """Place of the outcome of an observation. Raises ValueError for names and values that cannot be."""
         modelled = [self.output_names[column] for column in self.runs.modelled]
+        if not (isinstance(observed, Mapping) and isinstance(errors, Mapping)):
+            raise ValueError(f"outputs and errors must be dicts by name; outputs that may be observed: {modelled}")
         for name, value in observed.items():
-            if name not in modelled or not np.isfinite(value):
+            if name not in modelled:
                 raise ValueError(f"{name} is observed as {value}; allowed: finite numbers of {', '.join(modelled)}")
+            finite_number(f"observed {name}", value)
         for name, error in errors.items():
-            if name not in observed or not 0.0 <= error <= LARGEST_ERROR:
-                raise ValueError(
-                    f"the error of {name} is {error}; allowed: 0 to {LARGEST_ERROR:g}, of what was observed; leave out "
-                    "what was not"
-                )
+            if name not in observed:
+                raise ValueError(f"the error of {name} is {error}; allowed: 0 or more, of what was observed")
+            finite_number(f"the error of {name}", error, at_least=0.0, at_most=LARGEST_ERROR)
         if outcome is None:
             return self.runs.output_outcome
         if outcome not in self.outcome_names:

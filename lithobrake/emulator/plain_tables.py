@@ -20,8 +20,10 @@ def law_tables(models: Sequence[Emulator]) -> dict[str, Array]:
     multi_indices [term_count, input_count], without the constant; bandwidth, infinite where rows are drawn alike;
     row_inputs [row_count, input_count], standardised; location, log_scale, rows, row_weights and classes as in Law and
     OutcomeClasses; smoothing_size [model_count] and smoothing_root [model_count, coordinate_count, coordinate_count];
-    lower, upper [coordinate_count] of the first run.
+    lower, upper [coordinate_count] of the first run. Raises ValueError for no emulator.
     """
+    if not models:
+        raise ValueError("models are none, but must be at least one emulator: give those of refits")
     first, columns = models[0], list(models[0].runs.modelled)
     linear = first.terms.matrix(first.runs.x)[first.runs.has_outputs, : len(first.runs.inputs)]
     smooth = [smoothing(model.law.rows, model.law.weights) for model in models]

@@ -20,6 +20,9 @@ SECOND_FACTORS = (0.0, 0.4)
 THIRD_FACTORS = (0.0, 0.15)
 # Cubic terms of five inputs are 35: with fewer runs than this they are mostly noise.
 CUBIC_FROM = 500
+# With more inputs than this a ridge has no products and squares, and no ladder cubes: of thirty inputs there are 465,
+# for each of as many sets of inputs, which takes minutes and tells more than any runs do.
+MOST_OF_SECOND_DEGREE = 12
 # Penalties in units of the number of runs: of a term of an orthonormal basis 1 / (1 + penalty) is left.
 PENALTIES = (1e-5, 1e-4, 1e-3, 1e-2, 3e-2, 0.1, 0.3, 1.0)
 # Rungs of less weight are left out of the average.
@@ -47,9 +50,9 @@ class Rung:
 Ladder = tuple[Rung, ...]
 
 
-def highest_degree(run_count: int) -> int:
+def highest_degree(run_count: int, input_count: int) -> int:
     """Total degree of the terms that a ladder looks at."""
-    return 3 if run_count > CUBIC_FROM else 2
+    return 3 if run_count > CUBIC_FROM and input_count <= MOST_OF_SECOND_DEGREE else 2
 
 
 def best_ladder(indices: Indices, matrix: Array, target: Array) -> Ladder:
@@ -80,7 +83,7 @@ def _rungs(
     indices: Indices, inputs: tuple[int, ...], gram: Array, moments: Array, total: float, count: int
 ) -> Iterator[tuple[float, Rung]]:
     """Rungs on these inputs with their evidence, the logarithm of their marginal likelihood over that of no inputs."""
-    degree = int(indices.sum(axis=1).max())
+    degree = int(indices.sum(axis=1).max()) if len(inputs) <= MOST_OF_SECOND_DEGREE else 1
     seconds, thirds = SECOND_FACTORS if degree > 1 else (0.0,), THIRD_FACTORS if degree > 2 else (0.0,)
     for second, third in product(seconds, thirds):
         factors = Rung(inputs, second, third, 0.0).factors(indices)

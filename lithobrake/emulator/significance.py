@@ -12,6 +12,7 @@ from scipy import stats
 from lithobrake.chaos.polynomials import Array
 from lithobrake.emulator.mean_law import RUNS_PER_TERM
 from lithobrake.emulator.terms import Terms
+from lithobrake.given_numbers import finite_number, random_numbers
 
 PERMUTATIONS = 399
 
@@ -21,9 +22,8 @@ def found_inputs(terms: Terms, matrix: Array, targets: Array, level: float, seed
 
     matrix: terms [run_count, term_count]. level: chance that no input is found where none has an effect.
     """
-    if not 0.0 < level < 1.0:
-        raise ValueError(f"level is {level}, but must lie between 0 and 1, for instance .9")
-    random = np.random.default_rng(seed)
+    finite_number("level", level, above=0.0, below=1.0)
+    random = random_numbers(seed)
     varying = targets[:, np.ptp(targets, axis=0) > 0.0]
     if varying.shape[1] == 0:
         return np.zeros(len(terms.inputs), dtype=bool)

@@ -15,7 +15,6 @@ from numpy.typing import ArrayLike
 from scipy import special
 
 from lithobrake.chaos.basis import checked_points
-from lithobrake.chaos.counts import whole_number
 from lithobrake.chaos.polynomials import Array, hermite
 from lithobrake.chaos.storage import indices_from_json, read, write
 from lithobrake.chaos.threads import one_thread
@@ -24,6 +23,7 @@ from lithobrake.emulator.latent_likelihood import LatentProblem, branches, probl
 from lithobrake.emulator.latent_terms import LATENT_DEGREE, LATENTS, LatentTerms
 from lithobrake.emulator.storage import column_from_json, runs_from_json, runs_to_json
 from lithobrake.emulator.training import TrainingRuns
+from lithobrake.given_numbers import numbers, random_numbers, sample_count
 
 FORMAT = "lithobrake stochastic expansion"
 # Halvings after which an interval of quantiles is no wider than rounding.
@@ -49,6 +49,13 @@ class StochasticExpansion:
     held_out: float
     weights: Array
 
+    def __repr__(self) -> str:
+        """Say of what it is the law, at which inputs, and from how many runs."""
+        return (
+            f"StochasticExpansion of {self.runs.output_names[0]} at {', '.join(self.runs.inputs)}: degree "
+            f"{self.degree}, latent variable {self.latent}, from {len(self.runs.y)} runs."
+        )
+
     @property
     def degree(self) -> int:
         """Total degree of the terms of the inputs; 0 where the inputs did no good on groups left out."""
@@ -72,8 +79,8 @@ class StochasticExpansion:
     ) -> Array:
         """Draw `count` outputs at each x [point_count, input_count], shape [point_count, count]."""
         by_power = self._branches(x)
-        shape = len(by_power), whole_number("count", count, 1)
-        random = np.random.default_rng(seed)
+        shape = len(by_power), sample_count("count", count, len(by_power))
+        random = random_numbers(seed)
         polynomials = self.terms.drawn(shape[0] * shape[1], random).reshape(-1, *shape)
         coordinates = np.einsum("pk,kpc->pc", by_power, polynomials) + self.noise * random.standard_normal(shape)
         return from_coordinate(coordinates, *self.runs.bounds_at(lower, upper, shape[0]))
@@ -102,7 +109,7 @@ class StochasticExpansion:
 
         Raises ValueError for levels outside 0 to 1, and for 0 and 1 themselves.
         """
-        wanted = np.atleast_1d(np.asarray(levels, dtype=float))
+        wanted = np.atleast_1d(numbers("levels", levels))
         if wanted.ndim != 1 or not ((wanted > 0.0) & (wanted < 1.0)).all():
             raise ValueError(f"levels are {wanted.tolist()}, but must be a list of numbers above 0 and below 1")
         means = self._means(x)
@@ -127,7 +134,7 @@ class StochasticExpansion:
     @one_thread()
     def reweighted(self, weights: ArrayLike) -> "StochasticExpansion":
         """Fit the coefficients anew with each run counted as often as weights say [run_count]; choices are kept."""
-        counted = np.asarray(weights, dtype=float)
+        counted = self.runs.checked_weights(weights)
         coefficients = problem_of(self.runs, self.terms, counted).climbed(self.coefficients, self.noise)
         return replace(self, coefficients=coefficients, weights=counted)
 
@@ -163,7 +170,7 @@ class StochasticExpansion:
         self, x: ArrayLike, y: ArrayLike, lower: ArrayLike | None, upper: ArrayLike | None
     ) -> tuple[Array, Array, Array]:
         """The expansion at x, and coordinates of y with their slopes [point_count, value_count]."""
-        means, values = self._means(x), np.atleast_1d(np.asarray(y, dtype=float))
+        means, values = self._means(x), np.atleast_1d(numbers("y", y))
         if values.ndim > 2 or (values.ndim == 2 and len(values) != len(means)) or np.isnan(values).any():
             raise ValueError(
                 f"y has shape {values.shape}, but must be [value_count] or [{len(means)}, value_count], without NaN"

@@ -11,13 +11,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lithobrake.chaos.abstract_distribution import Distribution
-from lithobrake.chaos.counts import whole_number
 from lithobrake.chaos.threads import one_thread
 from lithobrake.emulator.latent_likelihood import LatentProblem, problem_of
 from lithobrake.emulator.latent_terms import LATENTS, LatentTerms, latent_terms
 from lithobrake.emulator.stochastic_expansion import StochasticExpansion
 from lithobrake.emulator.training import TrainingRuns, checked_runs
 from lithobrake.emulator.validation import folds_of
+from lithobrake.given_numbers import whole_number
 
 HIGHEST_DEGREE = 3
 # With fewer runs to a term, likelihood would follow single runs: such degrees are not looked at.

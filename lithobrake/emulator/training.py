@@ -9,13 +9,16 @@ from numpy.typing import ArrayLike, NDArray
 
 from lithobrake.chaos.abstract_distribution import Distribution, checked_inputs
 from lithobrake.chaos.basis import checked_points
-from lithobrake.chaos.counts import whole_number
 from lithobrake.chaos.polynomials import Array
-from lithobrake.emulator.coordinates import to_coordinate
+from lithobrake.chaos.training import check_magnitude
+from lithobrake.emulator.coordinates import from_coordinate, to_coordinate
+from lithobrake.given_numbers import LARGEST, labels, numbers, numbers_or_nan, random_numbers, whole_number
 
 WITH_OUTPUTS, WITHOUT_OUTPUTS = "with_outputs", "without_outputs"
 # Fewer residuals than this are no distribution to draw from.
 FEWEST = 8
+# What a coordinate may lose of the range of its output.
+ROUNDING = 1e-4
 
 
 @dataclass(frozen=True)
@@ -67,9 +70,25 @@ class TrainingRuns:
                 raise ValueError(f"{name} must be finite for the same outputs as in the runs: give it as fit was given")
         return tables
 
+    def checked_weights(self, weights: ArrayLike) -> Array:
+        """How often each run counts [run_count]; raises ValueError for what is no such weights."""
+        counted, count = numbers("weights", weights), len(self.x)
+        if counted.shape != (count,) or not ((counted >= 0.0) & (counted <= LARGEST)).all():
+            raise ValueError(
+                f"weights have shape {counted.shape}, but must be [{count}]: one finite number of at least 0 for each "
+                f"run, {LARGEST:g} at most"
+            )
+        used = counted[self.has_outputs]
+        if (used > 0.0).sum() < 2 or used.sum() < 2.0:
+            raise ValueError(
+                f"weights count {used.sum():g} runs, {(used > 0.0).sum()} of them different ones with outputs, but a "
+                "law needs two: give how often each run counts, 1 for as often as it is there"
+            )
+        return counted
+
     def weights_of_refits(self, count: int, seed: int) -> list[Array]:
         """How often each run counts [run_count] where groups are drawn with replacement, `count` times."""
-        random = np.random.default_rng(seed)
+        random = random_numbers(seed)
         group_count = int(self.group.max()) + 1
         draws: list[Array] = []
         while len(draws) < whole_number("count", count, 1):
@@ -85,7 +104,7 @@ def checked_bounds(lower: ArrayLike | None, upper: ArrayLike | None, shape: tupl
     """Bounds as tables of a shape [count, output_count]; None is no bound. Raises ValueError for other shapes."""
     tables = []
     for name, given, none in (("lower", lower, -np.inf), ("upper", upper, np.inf)):
-        table = np.asarray(none if given is None else given, dtype=float)
+        table = numbers(name, none if given is None else given)
         try:
             tables.append(np.array(np.broadcast_to(table, shape)))
         except ValueError:
@@ -113,32 +132,57 @@ def checked_runs(
     """Check what `fit` was given; raises ValueError for shapes, values and labels that do not fit together."""
     distributions = checked_inputs(inputs)
     points = checked_points(distributions, x)
-    table = np.atleast_2d(np.asarray(y, dtype=float).T).T
+    table = np.atleast_2d(numbers_or_nan("y", y).T).T
     if table.ndim != 2 or len(table) != len(points) or table.shape[1] == 0:
         raise ValueError(f"y has shape {table.shape}, but must be [{len(points)}, output_count]: one row for each run")
     names = tuple(output_names) if output_names is not None else tuple(f"y{k}" for k in range(table.shape[1]))
     if len(names) != table.shape[1] or len(set(names)) < len(names):
         raise ValueError(f"output_names are {names}, but must be {table.shape[1]} different names")
-    labels, outcome_names, output_outcome = _checked_outcome(table, outcome, outcomes)
-    there = labels == output_outcome
+    ended, outcome_names, output_outcome = _checked_outcome(table, outcome, outcomes)
+    there = ended == output_outcome
+    check_magnitude("y", table[there])
     low, high = (bound[there] for bound in checked_bounds(lower, upper, (len(table), table.shape[1])))
     carried = _checked_riders(riders, names)
-    for bound in (low, high):
+    group, values = _checked_groups(groups, len(points), there), table[there]
+    runs = TrainingRuns(
+        distributions, points, ended, outcome_names, output_outcome, group, values, low, high, names, carried
+    )
+    _check_inside(runs)
+    _check_resolution(runs)
+    return runs
+
+
+def _check_inside(runs: TrainingRuns) -> None:
+    """Raise ValueError for outputs that do not lie between their bounds."""
+    for bound in (runs.lower, runs.upper):
         # NaN marks no bound alike in all runs, so that a column has one kind of coordinate.
         if (np.isfinite(bound).any(axis=0) != np.isfinite(bound).all(axis=0)).any():
             raise ValueError("a bound must be finite in all runs of an output or in none")
-    wrong = ~((low < table[there]) & (table[there] < high))
-    wrong[:, list(carried)] = False
+    wrong = ~((runs.lower < runs.y) & (runs.y < runs.upper))
+    wrong[:, list(runs.riders)] = False
     if wrong.any():
         run, k = np.argwhere(wrong)[0]
         raise ValueError(
-            f"{names[k]} is {table[there][run, k]:g}, but must lie between its bounds {low[run, k]:g} and "
-            f"{high[run, k]:g}, and on neither: widen the bounds"
+            f"{runs.output_names[k]} is {runs.y[run, k]:g}, but must lie between its bounds {runs.lower[run, k]:g} and "
+            f"{runs.upper[run, k]:g}, and on neither: widen the bounds"
         )
-    group, values = _checked_groups(groups, len(points), there), table[there]
-    return TrainingRuns(
-        distributions, points, labels, outcome_names, output_outcome, group, values, low, high, names, carried
-    )
+
+
+def _check_resolution(runs: TrainingRuns) -> None:
+    """Raise ValueError for bounds so far from the outputs that their coordinates no longer tell these apart."""
+    columns = list(runs.modelled)
+    y, low, high = (table[:, columns] for table in (runs.y, runs.lower, runs.upper))
+    with np.errstate(over="ignore", invalid="ignore"):
+        back = from_coordinate(runs.coordinates, low, high)
+        lost = ~(np.abs(back - y).max(axis=0) <= ROUNDING * np.ptp(y, axis=0))
+    lost &= np.ptp(y, axis=0) > 0.0
+    if lost.any():
+        k = int(np.flatnonzero(lost)[0])
+        raise ValueError(
+            f"the bounds of {runs.output_names[columns[k]]}, {low[0, k]:g} and {high[0, k]:g}, are so far from its "
+            f"values ({y[:, k].min():g} to {y[:, k].max():g}) that rounding takes these together: give -inf or inf "
+            "where there is no bound"
+        )
 
 
 def _checked_outcome(
@@ -148,9 +192,8 @@ def _checked_outcome(
     there = np.isfinite(y).all(axis=1)
     if (np.isnan(y).any(axis=1) & ~np.isnan(y).all(axis=1)).any() or np.isinf(y).any():
         raise ValueError("each row of y must be all numbers, or all NaN where its outcome has no outputs")
-    given = np.where(there, WITH_OUTPUTS, WITHOUT_OUTPUTS) if outcome is None else np.asarray(outcome).astype(str)
-    if given.shape != (len(y),):
-        raise ValueError(f"outcome has shape {given.shape}, but must be [{len(y)}]: one label for each run")
+    told = np.where(there, WITH_OUTPUTS, WITHOUT_OUTPUTS) if outcome is None else outcome
+    given = labels("outcome", told, len(y), "each run").astype(str)
     names = tuple(dict.fromkeys([*(outcomes or ()), *sorted(set(given.tolist()))]))
     if outcomes is not None and len(names) > len(outcomes):
         raise ValueError(f"outcome holds {names[len(outcomes)]!r}, but outcomes are {', '.join(outcomes)}")
@@ -182,14 +225,9 @@ def _checked_groups(groups: ArrayLike | None, count: int, there: NDArray[np.bool
     """Groups as numbers from 0 [count]; each run is its own where none are given."""
     if groups is None:
         return np.arange(count)
-    given = np.asarray(groups)
-    if given.shape != (count,):
-        raise ValueError(f"groups has shape {given.shape}, but must be [{count}]: one label for each run")
-    if given.dtype.kind == "f" and not np.isfinite(given).all():
-        raise ValueError("groups hold NaN or infinity, but must be one label for each run: number them")
-    numbers = np.unique(given, return_inverse=True)[1].astype(np.int64)
-    if np.ptp(numbers[there]) == 0:
+    numbered = np.unique(labels("groups", groups, count, "each run"), return_inverse=True)[1].astype(np.int64)
+    if np.ptp(numbered[there]) == 0:
         raise ValueError(
             "groups hold one group with outputs, but leaving one out needs two: leave groups out to score run by run"
         )
-    return numbers
+    return numbered

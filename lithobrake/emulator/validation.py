@@ -25,9 +25,9 @@ class Scores:
     """Of runs in groups left out, coordinates in units of their spread; the smaller a score, the better.
 
     energy, energy_of_rows: mean energy scores of the law and of drawing rows alone. gain: their mean difference, and
-    gain_error its standard error over groups. crps_skill: 1 - CRPS / CRPS of rows alone, for each modelled output.
-    band_90: share of runs inside the middle 90 % of what was foretold [modelled_count]. pit: where in its foretold
-    distribution each run lay [output_run_count, modelled_count].
+    gain_error its standard error over groups; both are 0 where rows alone were chosen. crps_skill: 1 - CRPS / CRPS of
+    rows alone, for each modelled output. band_90: share of runs inside the middle 90 % of what was foretold
+    [modelled_count]. pit: where in its foretold distribution each run lay [output_run_count, modelled_count].
     """
 
     energy: float
@@ -58,7 +58,8 @@ def folds_of(group: NDArray[np.int64], most: int) -> NDArray[np.int64]:
 def choices_by_groups(runs: TrainingRuns, indices: Indices, matrix: Array) -> tuple[Choices, Scores]:
     """Choose law and width of the kernel, leaving groups out; matrix [output_run_count, term_count].
 
-    Where the law does no better than rows alone, rows alone are chosen.
+    Where the law is not better than rows alone by more than a standard error, rows alone are chosen: the best of
+    several widths may be better by luck.
     """
     group, outputs = runs.group[runs.has_outputs], runs.coordinates.shape[1]
     folds = _folds(runs, indices, matrix, folds_of(group, MOST_FOLDS))
@@ -69,7 +70,7 @@ def choices_by_groups(runs: TrainingRuns, indices: Indices, matrix: Array) -> tu
     best = int(np.argmin(energy.mean(axis=1)))
     gain, error = _mean_by_groups(energy_of_rows - energy[best], group)
     choices = best_choices(indices, matrix, runs.coordinates, BANDWIDTHS[best])
-    if gain <= 0.0:
+    if gain <= error:
         choices, energy[best], gain, error = rows_alone(outputs), energy_of_rows, 0.0, 0.0
     skill, held, places = _calibration(runs, matrix, folds, choices)
     return choices, Scores(float(energy[best].mean()), float(energy_of_rows.mean()), gain, error, skill, held, places)

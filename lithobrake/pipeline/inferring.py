@@ -17,6 +17,7 @@ from lithobrake.analysis import (
     identifiability,
     infer,
     predictive_p_value,
+    shared_bed_warning,
 )
 from lithobrake.atomic import atomic_path
 from lithobrake.outcomes import TouchdownOutcome
@@ -125,6 +126,7 @@ class InferredStudy:
                 {"outputs": dict(one.outputs), "known": dict(one.known), "outcome": one.outcome} for one in seen
             ],
             "statement": found.statement(),
+            "warning": shared_bed_warning(seen),
             "level": LEVEL,
             "effective_count": found.effective_count,
             "is_reliable": found.is_reliable,

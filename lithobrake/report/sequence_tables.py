@@ -227,7 +227,8 @@ def _inputs(data: SequenceResults) -> PageTable:
     if found is not None:
         names = [input_words(name) for name in found]
         note = (
-            "Found: it changes the mean of an output (where none does, nine of ten studies find none)."
+            "Found: it changes the mean of an output, alone or by products with other inputs: one test for all inputs "
+            "and outputs (where none does, nine of ten studies find none), which does not say by how much."
             if names
             else "No input was found to change the mean of any output (where none does, nine of ten studies find none)."
         )

@@ -8,12 +8,14 @@ from lithobrake.results.study_results import StudyResults, open_study
 if TYPE_CHECKING:
     from lithobrake.results.explorer_tables import ExplorerTables
     from lithobrake.results.moving_bodies import MovingBodies
+    from lithobrake.results.named_emulator import NamedEmulator
     from lithobrake.results.table import Column, Table
 
 _HOME = {
-    "Column": "table", "ExplorerTables": "explorer_tables", "MovingBodies": "moving_bodies", "Table": "table"
+    "Column": "table", "ExplorerTables": "explorer_tables", "MovingBodies": "moving_bodies",
+    "NamedEmulator": "named_emulator", "Table": "table",
 }  # fmt: skip
-__all__ = ["Column", "ExplorerTables", "MovingBodies", "StudyResults", "Table", "open_study"]
+__all__ = ["Column", "ExplorerTables", "MovingBodies", "NamedEmulator", "StudyResults", "Table", "open_study"]
 
 
 def __getattr__(name: str) -> Any:

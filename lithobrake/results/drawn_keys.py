@@ -171,7 +171,7 @@ DRAWN_TABLES = (
             "of": OF,
             "statement": "what it makes of the inputs, in a sentence",
             "follows_inputs": "whether draws depend on the inputs; else each is one of the runs",
-            "found_inputs": "inputs that change the mean of an output, at one level of 90 % for all",
+            "found_inputs": "inputs that change a mean, alone or by products: one test of 90 % for all",
             "scores.joint.energy_skill": "1 - energy score over that of drawing runs, all outputs together",
             "scores.*.crps_skill": "1 - CRPS over that of drawing runs, whatever the inputs",
             "scores.*.band_90": "share of runs inside the middle 90 % of what was foretold",

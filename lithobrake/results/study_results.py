@@ -16,9 +16,9 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from lithobrake.campaign import Record
-    from lithobrake.emulator import Emulator
     from lithobrake.results.explorer_tables import ExplorerTables
     from lithobrake.results.moving_bodies import MovingBodies
+    from lithobrake.results.named_emulator import NamedEmulator
     from lithobrake.results.named_surrogate import NamedSurrogate
     from lithobrake.results.table import Table
     from lithobrake.touchdown import Outcome
@@ -44,7 +44,7 @@ _ASKED = {
     "flights": ("flights.csv", "flights of the samples to their next impact"),
     "rest": ("rest.csv", "where samples end after all bounces"),
     "arcs": ("arcs.csv", "each flight of the first samples between bounces"),
-    "emulator": ("emulator.json", "the law of what comes out, at any inputs"),
+    "emulator": ("emulator.json", "samples of landings, at any inputs by their names"),
     "surrogate": ("refined.json", "the refined expansion, by the names of its inputs"),
     "median_landing": ("landing.h5", "a landing with its frames"),
     "bed_bodies()": ("beds/bed_0.h5", "the grains of a bed, and how they settled"),
@@ -117,7 +117,7 @@ class StudyResults:
     def scores(self) -> dict[str, dict[str, dict[str, Any]]]:
         """Errors of the expansions by set of runs and output (docs/summary.md), with those of single runs in "ape".
 
-        A drawn study has those of its emulator in `emulator.scores`.
+        A drawn study has those of its emulator in `emulator.model.scores`.
         """
         self._refuse_drawn("scores", "errors of expansions")
         content: dict[str, Any] = read_json(self.folder / "scores.json", {str: {str: _SCORE}}, self.remedy)
@@ -256,12 +256,13 @@ class StudyResults:
             return NamedSurrogate.read(self.folder / "refined.json")
 
     @cached_property
-    def emulator(self) -> "Emulator":
-        """The emulator of a study whose runs were drawn: the law of what comes out, at inputs that nobody has run."""
+    def emulator(self) -> "NamedEmulator":
+        """The emulator of a drawn study, sampled by the names of its inputs, also at values that were not simulated."""
         from lithobrake.emulator import load
+        from lithobrake.results.named_emulator import NamedEmulator
 
         with reading(self.folder / "emulator.json", self.remedy):
-            return load(self.folder / "emulator.json")
+            return NamedEmulator(load(self.folder / "emulator.json"), self._units, lambda: self.explorer.bound)
 
     @cached_property
     def explorer(self) -> "ExplorerTables":

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from lithobrake.given_numbers import finite_number, numbers
 from lithobrake.smallbody import attraction
 from lithobrake.smallbody.gravity_gradient import gradient
 from lithobrake.smallbody.orbit import Entry, Orbit
@@ -33,9 +34,8 @@ class Body:
     partner: "Partner | None" = None
 
     def __post_init__(self) -> None:
-        if not (math.isfinite(self.mass) and self.mass > 0.0):
-            raise ValueError(f"{self.name}: mass is {self.mass} kg; it must be finite and above 0.")
-        if not self.spin_period > 0.0:
+        finite_number(f"{self.name}: mass", self.mass, above=0.0)
+        if not numbers(f"{self.name}: spin_period", self.spin_period) > 0.0:
             raise ValueError(
                 f"{self.name}: spin_period is {self.spin_period} s; it must be above 0 (infinite: no spin)."
             )
@@ -74,7 +74,7 @@ class Body:
         return 2.0 * math.pi / self.spin_period
 
     def _checked(self, points: ArrayLike) -> NDArray[np.float64]:
-        p = np.asarray(points, dtype=np.float64)
+        p = numbers("points", points)
         if p.shape[-1:] != (3,):
             raise ValueError(f"{self.name}: points have shape {p.shape}; the last axis must hold x, y, z.")
         return p
@@ -114,9 +114,12 @@ class Body:
 
         mass [kg] and spin_period [s], of shape [...], stand in place of the body's own.
         """
-        p = np.asarray(points, dtype=np.float64)
-        ratio = np.asarray(self.mass if mass is None else mass)[..., None] / self.mass
-        spin_rate = self.spin_rate if spin_period is None else 2.0 * math.pi / np.asarray(spin_period)[..., None]
+        p = self._checked(points)
+        ratio = numbers("mass", self.mass if mass is None else mass)[..., None] / self.mass
+        periods = numbers("spin_period", self.spin_period if spin_period is None else spin_period)
+        if not ((ratio > 0.0).all() and (periods > 0.0).all()):
+            raise ValueError(f"mass is {mass!r} kg and spin_period {spin_period!r} s; both must be above 0.")
+        spin_rate = 2.0 * math.pi / periods[..., None]
         return self.acceleration(p) * ratio + spin_rate**2 * p * np.array([1.0, 1.0, 0.0])
 
     def slope(self, latitude_deg: ArrayLike, longitude_deg: ArrayLike) -> NDArray[np.float64]:
@@ -135,7 +138,7 @@ class Body:
 
         It is v**2 / 2 - (spin_rate**2 (x**2 + y**2)) / 2 - potential, kept in a flight.
         """
-        p, v = np.asarray(position, dtype=np.float64), np.asarray(velocity, dtype=np.float64)
+        p, v = self._checked(position), self._checked(velocity)
         turning = self.spin_rate**2 * (p[..., 0] ** 2 + p[..., 1] ** 2)
         constant: NDArray[np.float64] = 0.5 * ((v * v).sum(axis=-1) - turning) - self.potential(p)
         return constant
@@ -149,6 +152,8 @@ class Body:
         as on a compass (90 is east), and y = z cross x. North is the direction of growing latitude laid into the facet,
         at a pole along the meridian of longitude_deg.
         """
+        if not np.isfinite(numbers("heading_deg", heading_deg)).all():
+            raise ValueError(f"heading_deg is {heading_deg!r}; it must be finite.")
         degrees = np.broadcast_arrays(latitude_deg, longitude_deg, heading_deg)
         points, facets = self.shape.locate(degrees[0], degrees[1])
         up = self.shape.normals[facets]

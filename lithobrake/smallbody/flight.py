@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from lithobrake.given_numbers import finite_number, numbers, whole_number
 from lithobrake.smallbody.acceleration import Dynamics, Forces
 from lithobrake.smallbody.arrays import Floats
 from lithobrake.smallbody.attraction import Gravity
@@ -98,9 +99,7 @@ def _checked_choices(frame: str, gravity: str, tolerance: float | None) -> float
         raise ValueError(f"gravity is {gravity!r}; allowed are 'exact' and 'table'.")
     if tolerance is None:
         return 3e-7 if gravity == "exact" else 3e-6
-    if not 1e-13 <= tolerance <= 1e-3:
-        raise ValueError(f"tolerance is {tolerance}; it must lie in 1e-13 to 1e-3.")
-    return tolerance
+    return finite_number("tolerance", tolerance, at_least=1e-13, at_most=1e-3)
 
 
 def _sources(body: Body, gravity: str) -> tuple[Gravity, Gravity]:
@@ -160,12 +159,12 @@ def _one_each(
     name: str, given: ArrayLike, count: int, unit: str = "s", *, infinite: bool = False
 ) -> NDArray[np.float64]:
     """A number a flight. Raises ValueError where there is another count of them, or one is not finite."""
-    numbers = np.asarray(given, dtype=np.float64)
-    if numbers.shape not in ((), (1,), (count,)):
-        raise ValueError(f"{name} has shape {numbers.shape} for {count} flights; give one number, or one a flight.")
-    if not (~np.isnan(numbers) if infinite else np.isfinite(numbers)).all():
+    values = numbers(name, given)
+    if values.shape not in ((), (1,), (count,)):
+        raise ValueError(f"{name} has shape {values.shape} for {count} flights; give one number, or one a flight.")
+    if not (~np.isnan(values) if infinite else np.isfinite(values)).all():
         raise ValueError(f"{name} is {given!r} {unit}; it must be finite.")
-    return np.array(np.broadcast_to(numbers, count))
+    return np.array(np.broadcast_to(values, count))
 
 
 def _into_turning_frame(
@@ -201,7 +200,7 @@ def _refuse_failed(starts: NDArray[np.float64], ends: FlightEnds, tolerance: flo
 
 def _starts(position: ArrayLike, velocity: ArrayLike) -> NDArray[np.float64]:
     """Start states, shape [count, 6]."""
-    where, rate = (np.atleast_2d(np.asarray(given, dtype=np.float64)) for given in (position, velocity))
+    where, rate = (np.atleast_2d(one) for one in (numbers("position", position), numbers("velocity", velocity)))
     if where.shape != rate.shape or where.ndim != 2 or where.shape[1] != 3:
         raise ValueError(f"position has shape {where.shape} and velocity {rate.shape}; both must be [count, 3].")
     starts = np.concatenate([where, rate], axis=1)
@@ -260,9 +259,7 @@ def _run(
     part: Callable[[int], None], count: int, threads: int | None, progress: Callable[[float], None] | None
 ) -> None:
     """Do all parts, each of CHUNK flights, on threads."""
-    workers = threads if threads is not None else os.cpu_count() or 1
-    if workers < 1:
-        raise ValueError(f"threads is {threads}; it must be 1 or more.")
+    workers = os.cpu_count() or 1 if threads is None else whole_number("threads", threads, 1)
     firsts = range(0, count, CHUNK)
     if min(workers, len(firsts)) <= 1:
         for number, first in enumerate(firsts, 1):

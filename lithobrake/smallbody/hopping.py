@@ -7,6 +7,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from lithobrake.given_numbers import numbers, whole_number
 from lithobrake.outcomes import FlightStatus, JourneyStatus
 from lithobrake.smallbody.arcs import Arcs
 from lithobrake.smallbody.body import Body
@@ -106,6 +107,7 @@ def hop(
     seed       of the generator: the same call gives the same result
     progress   called with the fraction of landers that have ended
     """
+    seed, bounce_limit = whole_number("seed", seed, 0), whole_number("bounce_limit", bounce_limit, 0)
     state, parts = _State.of(body, launch, duration, friction, rolls), []
     going = state.first_flights(launch.captured)
     for number in range(bounce_limit + 1):
@@ -158,11 +160,13 @@ class _State:
     @classmethod
     def of(cls, body: Body, launch: Launch, duration: float, friction: ArrayLike, rolls: bool) -> "_State":
         """The landers at the start."""
-        position = np.array(np.atleast_2d(np.asarray(launch.position, dtype=np.float64)))
+        if not (numbers("friction", friction) >= 0.0).all():
+            raise ValueError(f"friction is {friction!r}; it must be at least 0 (infinite: a lander rests where it is).")
+        position = np.array(np.atleast_2d(numbers("launch: position", launch.position)))
         count = len(position)
 
         def each(name: str, given: ArrayLike, *shape: int) -> NDArray[np.float64]:
-            array = np.asarray(given, dtype=np.float64)
+            array = numbers(f"launch: {name}", given)
             if array.shape not in (shape, (count, *shape)):
                 raise ValueError(
                     f"launch: {name} has shape {array.shape} for {count} landers; it must be {shape}, for all of them, "

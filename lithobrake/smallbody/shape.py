@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from lithobrake.given_numbers import numbers
 from lithobrake.mesh import closed_faces, mass_properties
 from lithobrake.mesh_files import read_mesh
 from lithobrake.mesh_labels import labelled_mesh
@@ -46,7 +47,7 @@ class Shape:
         if gravity_facets is not None and gravity_facets < FEWEST_FACETS:
             raise ValueError(f"{name}: gravity_facets is {gravity_facets}; it must be {FEWEST_FACETS} or more.")
         self.name, self.gravity_facets = name, gravity_facets
-        self.vertices = np.ascontiguousarray(vertices, dtype=np.float64)
+        self.vertices = np.ascontiguousarray(numbers(f"{name}: vertices", vertices))
         given = np.asarray(faces)
         if not np.issubdtype(given.dtype, np.integer):
             raise ValueError(f"{name}: faces have the type {given.dtype}; give vertex indices as integers.")
@@ -155,6 +156,12 @@ class Shape:
         """The facets sorted into cells."""
         return Grid.of(self.vertices, self.faces)
 
+    def _checked(self, points: ArrayLike) -> NDArray[np.float64]:
+        p = numbers("points", points)
+        if p.shape[-1:] != (3,):
+            raise ValueError(f"{self.name}: points have shape {p.shape}; the last axis must hold x, y, z.")
+        return p
+
     @property
     def radius(self) -> float:
         """Distance of the farthest vertex from the origin [m]."""
@@ -162,7 +169,7 @@ class Shape:
 
     def latitude_longitude(self, points: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Planetocentric latitude and east longitude in (-180, 180] [deg] of body-fixed points [m], shape [..., 3]."""
-        p = np.asarray(points, dtype=np.float64)
+        p = self._checked(points)
         latitude = np.degrees(np.arctan2(p[..., 2], np.hypot(p[..., 0], p[..., 1])))
         longitude = np.degrees(np.arctan2(p[..., 1], p[..., 0]))
         return latitude, np.where(longitude == -180.0, 180.0, longitude)
@@ -187,7 +194,10 @@ class Shape:
         Raises ValueError where the direction does not meet the surface (the origin lies outside the body).
         """
         ground = self.locate(latitude_deg, longitude_deg)[0]
-        ratio = np.asarray(height, dtype=np.float64) / np.linalg.norm(ground, axis=-1)
+        above = numbers("height", height)
+        if not np.isfinite(above).all():
+            raise ValueError(f"height is {height!r} m; it must be finite.")
+        ratio = above / np.linalg.norm(ground, axis=-1)
         return ground + np.asarray(ratio)[..., None] * ground
 
     def locate(
@@ -223,13 +233,13 @@ class Shape:
 
     def nearest(self, points: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
         """Signed distance to the surface [m] and nearest facet of body-fixed points [m], shape [..., 3]."""
-        p = np.ascontiguousarray(points, dtype=np.float64)
+        p = np.ascontiguousarray(self._checked(points))
         height, facet = np.empty(p.size // 3), np.empty(p.size // 3, dtype=np.int64)
         heights(self.corners, self.pseudonormals, p.reshape(-1, 3), height, facet)
         return height.reshape(p.shape[:-1]), facet.reshape(p.shape[:-1])
 
     def contains(self, points: ArrayLike) -> NDArray[np.bool_]:
         """Whether body-fixed points [m], shape [..., 3], lie inside, by the solid angle that the surface fills."""
-        p = np.asarray(points, dtype=np.float64)
+        p = self._checked(points)
         inside: NDArray[np.bool_] = self.polyhedron.field(p.reshape(-1, 3))[:, 4] > 2.0 * np.pi
         return inside.reshape(p.shape[:-1])

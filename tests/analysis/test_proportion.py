@@ -32,6 +32,9 @@ def test_it_covers_the_truth_as_often_as_it_says() -> None:
 
 
 def test_impossible_counts_are_refused() -> None:
-    for count, total in ((1, 0), (-1, 5), (6, 5)):
-        with pytest.raises(ValueError, match="is no share"):
-            wilson_interval(count, total)
+    for count, total in ((1, 0), (-1, 5), (6, 5), (1.5, 2), (1, float("nan"))):
+        with pytest.raises(ValueError, match=r"(count|total) is .* whole number"):
+            wilson_interval(count, total)  # type: ignore[arg-type]
+    for quantile in (-5.0, float("nan"), float("inf")):
+        with pytest.raises(ValueError, match=r"quantile is .* of at least 0 and of at most 40"):
+            wilson_interval(1, 2, quantile)

@@ -113,12 +113,23 @@ def test_the_same_seed_gives_the_same_bits() -> None:
     [
         ({"points_per_level": 25}, "points_per_level is 25; allowed: multiples of 10 from 20"),
         ({"points_per_level": 10}, "points_per_level is 10"),
+        ({"most_levels": 0}, "most_levels is 0, but must be a whole number of at least 1"),
+        ({"most_levels": -1}, "most_levels is -1"),
+        ({"groups": lambda points: points[:, 1] * np.nan}, "groups hold NaN"),
+        ({"groups": lambda points: points[:3, 1]}, "groups has shape"),
+        ({"seed": "x"}, "seed is 'x'"),
         ({"kept": [0, 1]}, r"kept is \[0, 1\] of 2 inputs"),
     ],
 )
 def test_counts_that_cannot_be_are_refused(arguments: dict[str, object], words: str) -> None:
     with pytest.raises(ValueError, match=words):
         subset_simulation(lambda points: points[:, 0], 2, **arguments)
+
+
+def test_a_count_may_be_a_whole_float() -> None:
+    margin, dimension, _ = LIMIT_STATES["linear, 2 inputs"]
+    of_float, of_int = (subset_simulation(margin, dimension, points_per_level=count) for count in (100.0, 100))
+    assert of_float.probability == of_int.probability
 
 
 def test_margins_that_are_no_numbers_are_refused() -> None:

@@ -1,5 +1,7 @@
 """Node counts and nesting of the sparse grid, ranks of least squares on it, and the other designs."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 
@@ -10,6 +12,7 @@ from lithobrake.chaos import (
     LogUniform,
     Normal,
     Uniform,
+    christoffel,
     condition_number,
     fekete,
     fit,
@@ -140,3 +143,21 @@ def test_counts_are_refused():
     for wrong in (0, -1, 2.5):
         with pytest.raises(ValueError, match="count"):
             sobol_sequence(cube(2), wrong)
+
+
+@pytest.mark.parametrize("design", [sobol_sequence, latin_hypercube, partial(christoffel, degree=2)])
+def test_what_no_memory_holds_and_what_is_no_seed_are_refused(design):
+    with pytest.raises(ValueError, match=r"count is 1000000000000, but must be a whole number from 1 to 536870912"):
+        design(cube(2), 10**12)
+    with pytest.raises(ValueError, match=r"seed is 'x'"):
+        design(cube(2), 4, "x")
+
+
+def test_a_grid_that_no_memory_holds_is_refused():
+    with pytest.raises(ValueError, match=r"level is 20, of which a Smolyak grid in 10 inputs has \d+ nodes"):
+        smolyak(cube(10), 20)
+
+
+def test_a_sequence_is_not_longer_than_its_digits():
+    with pytest.raises(ValueError, match=r"skip is 1000000000000, .* from 0 to 1073741816"):
+        sobol_sequence(cube(2), 8, skip=10**12)

@@ -151,6 +151,28 @@ def test_missing_runs_are_dropped_and_counted_other_nan_refused():
         fit(ISHIGAMI, x, np.full(len(x), np.nan), degree=1)
 
 
+def test_masked_outputs_are_missing_runs_and_masked_inputs_are_refused():
+    x = smolyak(ISHIGAMI, 3)
+    y, hidden = ishigami(x), np.arange(len(x)) < 5
+    masked = np.ma.masked_array(np.where(hidden, 1e3, y), mask=hidden)
+    surrogate = fit(ISHIGAMI, x, masked, degree=2)
+    assert surrogate.dropped_count == 5
+    assert np.array_equal(surrogate.coefficients, fit(ISHIGAMI, x[5:], y[5:], degree=2).coefficients)
+    with pytest.raises(ValueError, match="x has 1 masked values"):
+        fit(ISHIGAMI, np.ma.masked_array(x, mask=np.arange(x.size).reshape(x.shape) == 4), y, degree=2)
+    with pytest.raises(ValueError, match="weights has 5 masked values"):
+        fit(ISHIGAMI, x, y, degree=2, weights=np.ma.masked_array(np.ones(len(x)), mask=hidden))
+
+
+@pytest.mark.parametrize(
+    ("factor", "words"), [(1e307, "larger unit"), (1e120, "larger unit"), (1e-200, "smaller unit")]
+)
+def test_outputs_whose_squares_are_no_numbers_are_refused(factor, words):
+    x = smolyak(ISHIGAMI, 3)
+    with pytest.raises(ValueError, match=words):
+        fit(ISHIGAMI, x, x[:, 0] * factor, degree=2)
+
+
 @pytest.mark.parametrize(
     ("keywords", "match"),
     [

@@ -16,6 +16,7 @@ from lithobrake.chaos import (
     multi_index_set,
     sobol_sequence,
 )
+from lithobrake.emulator import load_stochastic_expansion
 
 INPUTS = {"a": Uniform(0.0, 1.0), "b": Uniform(0.0, 1.0)}
 
@@ -41,7 +42,13 @@ def test_mean_scatter_and_joint_samples(tmp_path):
     drawn = model.sample(many, seed=3)
     assert np.allclose(drawn.std(axis=0), model.scatter_std(test[:1])[0], rtol=0.03)
     assert np.corrcoef(drawn.T)[0, 1] == pytest.approx(model.correlation[0, 1], abs=0.02)
+    with pytest.raises(ValueError, match="seed is 'x'"):
+        model.sample(test, seed="x")
     model.save(tmp_path / "model.json")
+    with pytest.raises(
+        ValueError, match="not a lithobrake stochastic expansion, but a lithobrake stochastic surrogate"
+    ):
+        load_stochastic_expansion(tmp_path / "model.json")
     assert np.array_equal(load_stochastic(tmp_path / "model.json").sample(test, seed=8), model.sample(test, seed=8))
 
 

@@ -72,7 +72,7 @@ def test_an_outcome_alone_has_its_chance_and_what_lies_beyond_a_bound_none(model
     ("arguments", "words"),
     [
         ({"observed": {"place": 0.5}}, "place is observed as 0.5; allowed: finite numbers of share, height"),
-        ({"observed": {"share": np.nan}}, "share is observed as nan"),
+        ({"observed": {"share": np.nan}}, "observed share is nan"),
         ({"observed": {"share": 0.5}, "errors": {"height": 0.1}}, "the error of height is 0.1"),
         ({"observed": {"share": 0.5}, "errors": {"share": -0.1}}, "the error of share is -0.1"),
         (

@@ -99,6 +99,22 @@ def test_without_a_law_draws_are_runs() -> None:
     assert abs(drawn.std() - y.std()) < 0.02
 
 
+def test_a_gain_within_its_standard_error_is_no_law() -> None:
+    """The best of several laws is better by less than a standard error here, and 5.1 +- 3.5 % on the other runs."""
+    models = []
+    for seed in (7, 4):
+        rng = np.random.default_rng(seed)
+        x = rng.random((60, 2))
+        y = 0.35 * x[:, 0] + 0.5 * rng.standard_normal(60)
+        models.append(emulator.fit(INPUTS, x, y, groups=np.arange(60) // 5))
+    luck, law = models
+    assert (luck.follows_inputs, luck.scores.gain, luck.scores.gain_error) == (False, 0.0, 0.0)
+    assert "Knowing the inputs would hardly narrow the forecast" in luck.statement_on("beds")
+    assert law.follows_inputs
+    assert law.scores.gain > law.scores.gain_error > 0.0
+    assert "standard error 3.5; the best of 3 kernel widths" in law.statement
+
+
 def test_refits_differ_by_whole_groups() -> None:
     refits = MODEL.refits(30, seed=2)
     for refit in refits:
@@ -123,8 +139,56 @@ def test_an_output_that_is_always_the_same_stays_so() -> None:
 
 
 @pytest.mark.parametrize(
+    ("weights", "words"),
+    [
+        (-np.ones(COUNT), "at least 0"),
+        (np.full(COUNT, np.nan), "finite"),
+        (np.ones(3), r"weights have shape \(3,\), but must be \[120\]"),
+        (np.zeros(COUNT), "weights count 0 runs"),
+        (np.full(COUNT, 1.0 / COUNT), "how often each run counts"),
+        (np.ma.masked_array(np.ones(COUNT), mask=np.arange(COUNT) < 3), "3 masked values"),
+        (["a"] * COUNT, "array of real numbers"),
+    ],
+)
+def test_weights_that_count_no_runs_are_refused(weights: Any, words: str) -> None:
+    with pytest.raises(ValueError, match=words):
+        MODEL.reweighted(weights)
+
+
+def test_a_seed_that_is_none_is_refused() -> None:
+    for call in (MODEL.refits, lambda count, seed: MODEL.sample(X, count, seed, upper=UPPER)):
+        with pytest.raises(ValueError, match="seed is 'x', but must be a whole number"):
+            call(2, "x")  # type: ignore[arg-type]
+
+
+def test_masked_outputs_are_runs_without_outputs() -> None:
+    x, y, hidden = runs()["x"], np.linspace(0.0, 1.0, COUNT), np.arange(COUNT) % 6 == 0
+    masked = np.ma.masked_array(np.where(hidden, 1e3, y), mask=hidden)
+    model = emulator.fit(INPUTS, x, masked)
+    assert model.runs.has_outputs.tolist() == (~hidden).tolist()
+    assert np.nanmax(model.sample(X, 50)) < 5.0
+
+
+@pytest.mark.parametrize("bounds", [(-1e308, 1e308), (-1e90, 1e90), (-1e20, np.inf)])
+def test_bounds_that_swallow_the_outputs_are_refused(bounds: tuple[float, float]) -> None:
+    with pytest.raises(ValueError, match="so far from its values"):
+        emulator.fit(INPUTS, runs()["x"], np.linspace(0.0, 1.0, COUNT), lower=bounds[0], upper=bounds[1])
+
+
+@pytest.mark.parametrize(("factor", "words"), [(1e300, "larger unit"), (1e-200, "smaller unit")])
+def test_outputs_whose_squares_are_no_numbers_are_refused(factor: float, words: str) -> None:
+    with pytest.raises(ValueError, match=words):
+        emulator.fit(INPUTS, runs()["x"], np.linspace(0.0, factor, COUNT))
+
+
+@pytest.mark.parametrize(
     ("change", "words"),
     [
+        ({"x": np.ma.masked_array(runs()["x"], mask=runs()["x"] > 0.99)}, "x has .* masked values"),
+        (
+            {"groups": np.ma.masked_array(np.arange(COUNT), mask=np.arange(COUNT) < 2)},
+            "groups hold NaN or infinity, or",
+        ),
         ({"groups": np.zeros(COUNT)}, "groups hold one group"),
         ({"groups": np.full(COUNT, np.nan)}, "groups hold NaN or infinity"),
         ({"groups": np.zeros(3)}, "groups has shape"),

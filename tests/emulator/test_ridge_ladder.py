@@ -4,7 +4,15 @@ import numpy as np
 import pytest
 
 from lithobrake.chaos import Uniform, sobol_sequence
-from lithobrake.emulator.ridge_ladder import Rung, averaged_ridge, best_ladder, degree_of
+from lithobrake.emulator.ridge_ladder import (
+    SECOND_FACTORS,
+    Rung,
+    _rungs,
+    averaged_ridge,
+    best_ladder,
+    degree_of,
+    highest_degree,
+)
 from lithobrake.emulator.terms import terms_up_to
 
 INPUTS = {"a": Uniform(0.0, 1.0), "b": Uniform(0.0, 1.0), "c": Uniform(0.0, 1.0)}
@@ -83,3 +91,22 @@ def test_noise_leaves_hardly_a_law() -> None:
 
 def test_a_constant_has_no_rungs() -> None:
     assert best_ladder(TERMS.indices, MATRIX, np.full(COUNT, 7.0)) == ()
+
+
+def test_a_ridge_on_many_inputs_is_linear() -> None:
+    """Of thirty inputs there are 465 terms of two degrees, for each of as many sets of inputs: a fit had no end."""
+    rng = np.random.default_rng(0)
+    inputs = {f"input {k}": Uniform(0.0, 1.0) for k in range(14)}
+    terms = terms_up_to(inputs, highest_degree(600, len(inputs)))
+    assert terms.degrees.max() == 2
+    matrix = terms.matrix(rng.random((30, 14)))
+    seconds = {}
+    for count in (12, 13):
+        rungs = _rungs(terms.indices, tuple(range(count)), matrix.T @ matrix, matrix.T @ matrix[:, 0], 30.0, 30)
+        seconds[count] = {rung.second for _, rung in rungs}
+    assert seconds == {12: set(SECOND_FACTORS), 13: {0.0}}
+
+
+@pytest.mark.parametrize(("runs", "inputs", "degree"), [(600, 12, 3), (600, 13, 2), (500, 3, 2)])
+def test_cubes_are_for_many_runs_of_few_inputs(runs: int, inputs: int, degree: int) -> None:
+    assert highest_degree(runs, inputs) == degree

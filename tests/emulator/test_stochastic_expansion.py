@@ -239,7 +239,7 @@ def test_questions_that_have_no_answer_are_refused() -> None:
     with pytest.raises(ValueError, match="1 of 1 points outside"):
         LINE.mean([[2.0]])
     for weights in (np.ones(3), np.zeros(RUNS), np.full(RUNS, -1.0), np.full(RUNS, np.nan)):
-        with pytest.raises(ValueError, match="weights have shape"):
+        with pytest.raises(ValueError, match=r"weights (have shape|count 0 runs)"):
             LINE.reweighted(weights)
     with pytest.raises(ValueError, match="count is 0"):
         LINE.sample([[0.0]], 0)

@@ -132,10 +132,15 @@ def test_samples_leave_outwards_with_the_speed_that_was_drawn_and_energy_allows(
 
 
 def test_the_emulator_opens_and_every_key_of_the_summary_is_described(results: StudyResults) -> None:
-    model = results.emulator
-    soil = [[law.median for law in model.runs.inputs.values()]]
-    drawn = model.sample(soil, 50, upper=np.tile(model.runs.upper[0], (1, 1)))
-    assert drawn.shape == (1, 50, len(model.output_names))
+    model = results.emulator.model
+    soil = {name: law.median for name, law in model.runs.inputs.items()}
+    drawn = results.emulator.sample(soil, 50)
+    assert (drawn.row_count, drawn.columns["speed_out"].units) == (50, "m/s")
+    assert drawn.columns["grain.young_modulus"].units == "Pa"
+    left = drawn["outcome"] == "clear"
+    assert np.isnan(drawn["speed_out"][~left]).all()
+    velocity = np.column_stack([drawn[name] for name in VELOCITY])[left]
+    assert np.linalg.norm(velocity, axis=1) == pytest.approx(drawn["speed_out"][left], rel=1e-12)
     for path in leaves(json.loads((results.folder / "summary.json").read_text())):
         assert words_of("summary.json", path)
     scores = results.summary["results"]["emulator"]["scores"]

@@ -127,6 +127,7 @@ def test_the_command_says_first_what_bounces_can_say(folder: Path, tmp_path: Pat
     lines = " ".join(said.output.split())
     assert lines.index("Of bounces whose speed_out, elevation_out, spin_out are seen") < lines.index("Posterior:")
     assert "grain.friction: one leaves" in lines
+    assert "The 2 bounces count as on beds of their own" in lines
     assert InferredStudy.open(folder).of_each_bounce == []
 
 

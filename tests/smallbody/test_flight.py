@@ -210,6 +210,10 @@ def test_wrong_calls_are_refused(ball):
         ({"position": [math.nan, 0.0, 0.0]}, "must be finite"),
         ({"velocity": [1e300, 0.0, 0.0]}, r"must be finite, and below 1e\+20 m and m/s"),
         ({"position": [1.0, 2.0]}, "must be"),
+        ({"position": np.ma.masked_array(start, mask=[True, False, False])}, "position has 1 masked values"),
+        ({"velocity": np.ma.masked_array(rate, mask=True)}, "velocity has 3 masked values"),
+        ({"duration": np.ma.masked_array([10.0], mask=[True])}, "duration has 1 masked values"),
+        ({"mass": ["heavy"]}, "mass must be an array of real numbers"),
     ]:
         arguments = {"position": start, "velocity": rate, "duration": 10.0} | change
         with pytest.raises(ValueError, match=said):

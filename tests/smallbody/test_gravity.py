@@ -251,3 +251,19 @@ def test_bad_bodies_are_refused(cube):
         Body(cube, mass=1.0, spin_period=0.0)
     with pytest.raises(ValueError, match="last axis"):
         Body(cube, mass=1.0, spin_period=1.0).acceleration([1.0, 2.0])
+
+
+def test_numbers_that_no_body_has_are_refused(cube):
+    body, far = Body(cube, mass=1e10, spin_period=1e4), [1e4, 0.0, 0.0]
+    for call, said in [
+        (lambda: Body(body.shape, "heavy", 1e4), "mass is 'heavy'"),
+        (lambda: body.effective_acceleration(far, mass=-1.0), "mass is -1.0 kg"),
+        (lambda: body.effective_acceleration(far, spin_period=0.0), "spin_period 0.0 s"),
+        (lambda: body.jacobi(far, [0.0, 0.0]), r"shape \(2,\); the last axis must hold x, y, z"),
+        (lambda: body.local_frame(0.0, 0.0, np.nan), "heading_deg is nan"),
+        (lambda: body.shape.surface_point(0.0, 0.0, np.nan), "height is nan"),
+        (lambda: body.shape.contains([1.0, 2.0]), "the last axis must hold x, y, z"),
+        (lambda: body.shape.latitude_longitude(np.ma.masked_array([far], mask=[[True, False, False]])), "1 masked"),
+    ]:
+        with pytest.raises(ValueError, match=said):
+            call()

@@ -172,3 +172,9 @@ def test_between_flights_a_lander_may_slide():
     gaps = end.arcs.begin[1:] - end.arcs.end[:-1]
     assert (gaps >= 0.0).all()
     assert gaps.sum() + end.arcs.begin[0] == pytest.approx(end.slid_time[0])
+
+
+@pytest.mark.parametrize("friction", [-1.0, math.nan])
+def test_a_friction_below_0_is_refused(plain, friction):
+    with pytest.raises(ValueError, match="friction is .* at least 0"):
+        hop(plain, Launch([0.0, 0.0, 1.0], [0.0, 0.0, 0.0]), HardSurface(1.0), 1.0, friction=friction)

@@ -1,0 +1,153 @@
+"""The emulator of a study, sampled by the names of its inputs."""
+
+import math
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from lithobrake.given_numbers import numbers, whole_number
+from lithobrake.html_table import html_table
+from lithobrake.outputs import OUTPUTS, RUN, SPIN_OUT, TOUCHDOWN, Quantity, quantity
+from lithobrake.results.table import Table
+
+if TYPE_CHECKING:
+    from lithobrake.emulator import Emulator
+
+    Value = float | np.ndarray
+
+SPEED, ELEVATION, AZIMUTH, SPIN = "speed_out", "elevation_out", "azimuth_out", "spin_out"
+VELOCITY = ("velocity_out_x", "velocity_out_y", "velocity_out_z")
+
+
+class NamedEmulator:
+    """The emulator of a study; `model` is the object of lithobrake.emulator behind it, which has its scores."""
+
+    def __init__(
+        self, model: "Emulator", units: Mapping[str, str], bound: Callable[[], Mapping[str, float]] = dict
+    ) -> None:
+        """Take over an emulator; units: of inputs by dotted key; bound: gives `ExplorerTables.bound` of its study."""
+        self.model, self._units, self._bound = model, dict(units), bound
+
+    @property
+    def inputs(self) -> dict[str, str]:
+        """Names of the inputs in their order, each with its unit in the study file ("" for a pure number)."""
+        return {name: self._quantity(name).units for name in self.model.runs.inputs}
+
+    def sample(self, inputs: "Mapping[str, Value]", count: int, seed: int = 0) -> Table:
+        """Sample `count` landings at inputs by dotted key, in the study file's units: numbers, or arrays of one length.
+
+        Result: a table with a row for each sample, those of one point one after the other: the inputs, the outcome, and
+        outputs [SI], NaN where the lander does not leave the surface.
+        Raises ValueError for names that are not those of the emulator, and for values outside their distributions.
+        """
+        whole_number("count", count, 1)
+        x = self._points(inputs)
+        upper = self._upper(x)
+        drawn = self.model.draw(x, count, seed, lower=self.model.runs.lower[0], upper=upper)
+        rows, uppers = np.repeat(x, count, axis=0), np.repeat(upper, count, axis=0)
+        columns: dict[str, np.ndarray] = dict(zip(self.model.runs.inputs, rows.T, strict=True))
+        columns["outcome"] = np.array(self.model.outcome_names)[drawn.outcome.ravel()]
+        columns |= self._outputs(drawn.y.reshape(len(rows), -1), uppers)
+        return Table.of("sample", {name: (self._quantity(name), values) for name, values in columns.items()})
+
+    def __call__(self, inputs: "Mapping[str, Value]", count: int, seed: int = 0) -> Table:
+        """Sample landings; see `sample`."""
+        return self.sample(inputs, count, seed)
+
+    def __repr__(self) -> str:
+        """Say what it takes and gives, and what the inputs are worth."""
+        return (
+            f"NamedEmulator of {', '.join(self._modelled)} at {self._shown(self.inputs)}. "
+            f"{self.model.statement_on('beds')} Sample it with .sample({{name: value, ...}}, count)."
+        )
+
+    def _repr_html_(self) -> str:
+        """The inputs with their distributions, and what the emulator makes of them, for a notebook."""
+        rows = [
+            (name, unit or "-", *(float(law.ppf(share)) for share in (0.05, 0.5, 0.95)))
+            for (name, unit), law in zip(self.inputs.items(), self.model.runs.inputs.values(), strict=True)
+        ]
+        heads = ("input", "unit", "5 % quantile", "median", "95 % quantile")
+        return html_table("Inputs of the emulator", heads, rows) + self.model._repr_html_()
+
+    @property
+    def _modelled(self) -> list[str]:
+        return [self.model.output_names[column] for column in self.model.runs.modelled]
+
+    def _quantity(self, name: str) -> Quantity:
+        return quantity(name, RUN | TOUCHDOWN, self._units)
+
+    def _shown(self, inputs: Mapping[str, str]) -> str:
+        return ", ".join(f"{name} [{unit}]" if unit else name for name, unit in inputs.items())
+
+    def _points(self, inputs: "Mapping[str, Value]") -> np.ndarray:
+        """Inputs as points [point_count, input_count]. Raises ValueError for other names, and for no one length."""
+        from lithobrake.study.refusals import closest
+
+        if not isinstance(inputs, Mapping):
+            raise ValueError(
+                f"inputs are of the type {type(inputs).__name__}, but must be a dict by name; {self._all()}"
+            )
+        known = self.inputs
+        for name in inputs:
+            if name not in known:
+                raise ValueError(f"{name!r} is no input of the emulator{closest(name, known)}; {self._all()}")
+        if absent := {name: unit for name, unit in known.items() if name not in inputs}:
+            raise ValueError(f"inputs lack {self._shown(absent)}; {self._all()}")
+        columns = [numbers(name, inputs[name]) for name in known]
+        lengths = {column.shape for column in columns} - {()}
+        if len(lengths) > 1 or any(len(shape) > 1 for shape in lengths):
+            raise ValueError(f"inputs have the shapes {sorted(lengths)}, but must be numbers, or arrays of one length")
+        return np.column_stack(np.broadcast_arrays(*(np.atleast_1d(column) for column in columns)))
+
+    def _all(self) -> str:
+        return f"give all of: {self._shown(self.inputs)}"
+
+    def _upper(self, x: np.ndarray) -> np.ndarray:
+        """Upper bounds [point_count, output_count]: what energy allows, where the runs' bounds differ with it."""
+        runs = self.model.runs
+        upper = np.tile(runs.upper[0], (len(x), 1))
+        if (runs.upper != runs.upper[0]).any():
+            columns = [self.model.output_names.index(name) for name in (SPEED, SPIN)]
+            upper[:, columns] = self._energy_bound(x)
+        return upper
+
+    def _energy_bound(self, x: np.ndarray) -> np.ndarray:
+        """Largest speed [m/s] and spin [rad/s] of landers that leave, [point_count, 2].
+
+        As in the explorer of the report: energy of the impact, and what gravity adds over the bed and across it.
+        """
+        bound = self._bound()
+        known = {name: np.full(len(x), value) for name, value in bound.items()}
+        known |= dict(zip(self.model.runs.inputs, x.T, strict=True))
+
+        def ratio(name: str) -> np.ndarray:
+            return known[name] / bound[name] if bound.get(name) else np.ones(len(x))
+
+        power = ratio("lander.mass") ** bound["mass_power"] * ratio("lander.diameter") ** bound["diameter_power"]
+        spin = sum(known[f"impact.spin_{axis}"] ** 2 for axis in "xyz")
+        fall = bound["height"] + bound["across"] * np.sin(np.radians(known["surface.slope_deg"]))
+        square = known["impact.speed"] ** 2 + bound["largest"] * power * spin
+        square = square + 2.0 * np.abs(known["surface.gravity"]) * fall
+        return np.column_stack([np.sqrt(square), np.sqrt(square / (bound["smallest"] * power))])
+
+    def _outputs(self, y: np.ndarray, upper: np.ndarray) -> dict[str, np.ndarray]:
+        """Outputs by name [row_count] of samples [row_count, output_count] below bounds; velocity and spin follow."""
+        found = dict(zip(self.model.output_names, y.T, strict=True))
+        if not {SPEED, ELEVATION, AZIMUTH, SPIN} <= set(found):
+            return found
+        speed, spin = (upper[:, self.model.output_names.index(name)] for name in (SPEED, SPIN))
+        if np.isfinite(speed).all():
+            # What the speed has taken of the energy is not there for the spin.
+            found[SPIN] = np.minimum(found[SPIN], np.sqrt(np.maximum(speed**2 - found[SPEED] ** 2, 0.0)) * spin / speed)
+        level = found[SPEED] * np.cos(found[ELEVATION])
+        parts = level * np.cos(found[AZIMUTH]), level * np.sin(found[AZIMUTH]), found[SPEED] * np.sin(found[ELEVATION])
+        found |= dict(zip(VELOCITY, parts, strict=True))
+        if SPIN_OUT[0] in found:
+            # The axis is that of the run that was drawn, the rate the emulator's.
+            axis = np.column_stack([found[name] for name in SPIN_OUT])
+            length = np.linalg.norm(axis, axis=1)
+            axis *= (found[SPIN] / np.where(length > 0.0, length, math.inf))[:, None]
+            found |= dict(zip(SPIN_OUT, axis.T, strict=True))
+        return {name: found[name] for name in dict.fromkeys((*OUTPUTS, *found))}
