@@ -45,18 +45,17 @@ REFUSED: dict[str, tuple[Callable[[], object], str]] = {
         "latitude_deg 500 .* -90 to 90",
     ),
     "few longitudes": (lambda: analysis.dispersion_ellipses(PLACES[0], PLACES[1, :5]), r"both must be \[count\]"),
-    "no run below 0": (lambda: analysis.upper_limit(-3), "run_count is -3"),
-    "half a run": (lambda: analysis.upper_limit(2.5), "run_count is 2.5"),  # type: ignore[arg-type]
+    "no run below 0": (lambda: analysis.upper_limit(-3), "unit_count is -3"),
+    "half a run": (lambda: analysis.upper_limit(2.5), "unit_count is 2.5"),  # type: ignore[arg-type]
     "a level of 95": (lambda: analysis.upper_limit(10, 95.0), "level is 95.0"),
     "an infinite difference": (lambda: analysis.chaos_variance([INF, 1.0]), "differences .* 1 infinite"),
     "an infinite output": (lambda: analysis.mean_estimate([INF, 1.0, 2.0], [0, 1, 2]), "values .* 1 infinite"),
     "a bed of NaN": (lambda: analysis.mean_estimate([1.0, 2.0, 3.0], [0.0, NAN, 1.0]), "bed hold NaN"),
-    "more met than drawn": (lambda: analysis.refit_interval([5, 9], [6, 6], 4, 40), "counts must lie between 0"),
-    "refits of NaN": (lambda: analysis.refit_interval([5, 4], [6, NAN], 4, 40), "counts must lie between 0"),
+    "more met than drawn": (lambda: analysis.refit_interval([5, 9], [6, 6], 4), "counts must lie between 0"),
+    "refits of NaN": (lambda: analysis.refit_interval([5, 4], [6, NAN], 4), "counts must lie between 0"),
     "a choice of NaN": (lambda: analysis.best_choice(np.full((2, 3, 3), NAN), 3, [True, True]), "must be finite"),
     "a third choice": (lambda: analysis.best_choice(np.ones((2, 3, 3)), 3, [True] * 3), "whether each choice"),
-    "beds of NaN": (lambda: analysis.refit_interval([1, 2], [5, 5], NAN, 10), "bed_count is nan"),  # type: ignore[arg-type]
-    "half a flight": (lambda: analysis.share_estimate(ANSWERS, BEDS, flight_count=1.5), "flight_count is 1.5"),  # type: ignore[arg-type]
+    "beds of NaN": (lambda: analysis.refit_interval([1, 2], [5, 5], NAN), "bed_count is nan"),  # type: ignore[arg-type]
     "squares that overflow": (lambda: analysis.mean_estimate([1e200, 2e200], [0, 1]), "2 infinite values or beyond"),
     "no runs": (lambda: analysis.next_run_count([], [], 0.02, 100, lambda count: count), "how many runs"),
     "a fifth refit": (lambda: analysis.drawn_counts([1, 0], [0, 5], 2), "a place from 0 to 1"),

@@ -207,7 +207,7 @@ def test_what_cannot_be_is_refused() -> None:
         share_estimate(np.full(3, np.nan), [0, 0, 1])
     with pytest.raises(ValueError, match=r"reaches from .* to 1\.2"):
         share_estimate(np.append(h, 1.2), np.append(bed, 0))
-    with pytest.raises(ValueError, match="each of the 120 runs"):
+    with pytest.raises(ValueError, match="one label for each run"):
         share_estimate(h, bed[1:])
     with pytest.raises(ValueError, match="above 0"):
         share_estimate(h, bed, weights=np.zeros(120))
@@ -228,7 +228,7 @@ def test_half_widths_are_foreseen() -> None:
     spread = math.hypot(0.03, 0.1 / math.sqrt(3.0))
     expected = expected_half_width(240, 24, spread=spread, correlation=(0.03 / spread) ** 2)
     assert np.mean([0.5 * (one.upper - one.lower) for one in widths]) == pytest.approx(expected, rel=0.05)
-    with pytest.raises(ValueError, match="a run for each"):
+    with pytest.raises(ValueError, match="a whole number from 1 to 5"):
         expected_half_width(5, 6)
     with pytest.raises(ValueError, match="half_width is 0"):
         runs_for_half_width(0.0)
