@@ -131,13 +131,17 @@ def variance_shares(
     explained = float(found.squares.sum())
     total = explained + components.bed_variance + components.within
     of_terms = _left_out(terms, values, beds, np.array(list(groups.values())), found, total)
-    parts = dict(zip(groups, of_terms, strict=True))
-    by_input = {name: parts.pop(name).estimate() for name in inputs if name in soil}
-    parts["bed"] = _of_beds(components, 1.0 - explained / total)
+    parts = dict(zip(groups, of_terms, strict=True)) | {"bed": _of_beds(components, 1.0 - explained / total)}
     if twins is not None:
         chaos = chaos_variance(twins)
         bounds = chaos.lower / total, chaos.upper / total
         parts["chaos"] = _Part(chaos.value / total, *bounds, bounds)
+    return _printed(total, parts, [name for name in inputs if name in soil])
+
+
+def _printed(total: float, parts: dict[str, _Part], soil: Collection[str]) -> VarianceShares:
+    """Parts by name, those of single soil inputs among them, as they are printed, with what they leave."""
+    by_input = {name: parts.pop(name).estimate() for name in soil}
     printed = {name: part.estimate() for name, part in parts.items()}
     rest = _remainder(list(parts.values()))
     return VarianceShares(
