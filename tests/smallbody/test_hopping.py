@@ -176,5 +176,5 @@ def test_between_flights_a_lander_may_slide():
 
 @pytest.mark.parametrize("friction", [-1.0, math.nan])
 def test_a_friction_below_0_is_refused(plain, friction):
-    with pytest.raises(ValueError, match="friction is .* at least 0"):
+    with pytest.raises(ValueError, match=r"friction is .* at least 0"):
         hop(plain, Launch([0.0, 0.0, 1.0], [0.0, 0.0, 0.0]), HardSurface(1.0), 1.0, friction=friction)
