@@ -42,7 +42,7 @@ def finite_number(
     above, below: limits that it may not reach; at_least, at_most: limits that it may.
     """
     # A whole number beyond all floats would overflow; none of the ranges reaches so far.
-    real = isinstance(value, Real) and not isinstance(value, bool) and abs(value) < 1e308
+    real = isinstance(value, Real) and not isinstance(value, bool) and bool(abs(value) < 1e308)  # type: ignore[operator]
     number = float(value) if real else math.nan  # type: ignore[arg-type]
     low_enough = (below is None or number < below) and (at_most is None or number <= at_most)
     high_enough = (above is None or number > above) and (at_least is None or number >= at_least)

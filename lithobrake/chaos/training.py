@@ -64,7 +64,7 @@ def checked_training(
     table = outputs[:, None] if one_dimensional else outputs
     if table.ndim != 2 or len(table) != len(points) or table.shape[1] == 0:
         raise ValueError(f"y has shape {outputs.shape}, but must be [{len(points)}] or [{len(points)}, output_count]")
-    missing = np.isnan(table).all(axis=1)
+    missing: NDArray[np.bool_] = np.all(np.isnan(table), axis=1)
     kept, rows = table[~missing], points[~missing]
     if not np.all(np.isfinite(kept)):
         wrong = int((~np.isfinite(kept)).any(axis=1).sum())
