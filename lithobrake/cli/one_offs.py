@@ -81,6 +81,9 @@ def serve(
     """Serve landing, emulator and flight of a study to clients of UM-Bridge, until Ctrl-C. Writes nothing."""
     folder = study_folder(study, out)
     with one_sentence():
+        from lithobrake.serve.clients import refuse_empty_host
+
+        refuse_empty_host(host)
         # What follows brings NumPy and the compiler, and for some studies the shape of the body.
         if sys.stderr.isatty():
             print(f"Reading {plain(str(study))} and its files ...", file=sys.stderr, flush=True)

@@ -98,10 +98,10 @@ def energy_warning(study: Study, records: "Sequence[Record]", bed_height: float)
     if not over.any():
         return None
     worst = int(np.argmax(ratio))
+    speeds = f"{speed[worst]:.3g} m/s after {inputs['impact.speed'][worst]:.3g} m/s"
     return (
         f"{int(over.sum())} of {len(left)} landers that left have more energy than impact and gravity give them, the "
-        f"worst {ratio[worst]:.3g} times as much ({speed[worst]:.3g} m/s after {inputs['impact.speed'][worst]:.3g} "
-        "m/s): is there a source of energy, or a unit wrong?"
+        f"worst {ratio[worst]:.3g} times as much ({speeds}): is there a source of energy, or a unit wrong?"
     )
 
 

@@ -78,7 +78,7 @@ def landing_inputs(study: Study, changes: Iterable[str] = (), number: int = 1) -
     """
     if not study.has_soil:
         raise ValueError("the study has a solver of its own and no soil to land on: ask that solver for its motion")
-    study = with_site_gravity(study)
+    study = with_site_gravity(study, "the study")
     values = _values(study, number)
     changed = dict(_changed(change, values) for change in changes)
     if changed:
@@ -98,7 +98,7 @@ def land_one(
     from lithobrake.touchdown import land, pour_bed, stored_or_poured
     from lithobrake.touchdown.bed import Bed
 
-    study = with_site_gravity(study)
+    study = with_site_gravity(study, "the study")
     with in_words_of_the_study(), TemporaryDirectory(prefix="lithobrake-") as folder:
         recipe, path = bed_recipe(study, round(values["bed"])), Path(folder) / "bed.h5"
         stored_or_poured(recipe, path, lambda: pour_bed(recipe, progress=progress))

@@ -67,7 +67,7 @@ class ServedStudy:
         Raises ValueError for keys that a landing does not read, and numbers that the study file may not have.
         """
         seed, given = _seed(config), _inputs(config)
-        values = draw(self.study, medians(self.study) | dict(zip(self.inputs, point, strict=True)), seed) | given
+        values = draw(self.study, medians(self.study) | dict(zip(self.inputs, point, strict=True)), seed) | dict(given)
         self._refuse_bed(values["bed"])
         _refuse(self.study, {name: value for name, value in values.items() if name != "bed"})
         answer = self._touchdown({name: float(value) for name, value in values.items()}, seed)
@@ -117,7 +117,7 @@ class ServedStudy:
         _refuse_keys(config, SITE_KEYS)
         from lithobrake.smallbody import fly
 
-        body, numbers = site_body(self.study), site_medians(self.study) | config
+        body, numbers = site_body(self.study), site_medians(self.study) | dict(config)
         if config:
             _refuse(self.study, {f"site.{key}": value for key, value in numbers.items()})
         site = {key: np.array([float(value)]) for key, value in numbers.items()}
@@ -154,7 +154,7 @@ def _refuse(study: Study, values: Mapping[str, Any]) -> None:
 def _refuse_keys(config: Mapping[str, Any], allowed: Sequence[str]) -> None:
     for key in config:
         if key not in allowed:
-            raise ValueError(f"config has {key}{closest(key, allowed)}; allowed: {', '.join(allowed)}")
+            raise ValueError(f"config has {show(key)}{closest(key, allowed)}; allowed: {', '.join(allowed)}")
 
 
 def _inputs(config: Mapping[str, Any]) -> Mapping[str, Any]:

@@ -133,7 +133,9 @@ def _at_work(stage: StageState, holder: dict[str, Any] | None) -> StageState:
     """A stage as it is while a process is at it: files that nothing is noted of yet are its own."""
     if holder is None or holder.get("number") != stage.number:
         return stage
-    own = {name: FileState.NEW if state is FileState.FOREIGN else state for name, state in stage.files.items()}
+    own: dict[str, FileState] = {
+        name: FileState.NEW if state is FileState.FOREIGN else state for name, state in stage.files.items()
+    }
     return replace(stage, files=own)
 
 

@@ -43,7 +43,7 @@ class ClientServer(ThreadingHTTPServer):
         self._room = threading.BoundedSemaphore(MOST_CLIENTS)
         self._asking: dict[socket.socket, float] = {}
         try:
-            super().__init__(address, handler)  # type: ignore[arg-type]
+            super().__init__(address, handler)
         except OSError as error:
             raise OSError(
                 f"host {host}, port {port} cannot be listened on ({error.strerror}); name an address of this machine, "
@@ -127,13 +127,18 @@ def has_left(client: socket.socket) -> bool:
         return True
 
 
-def _resolved(host: str, port: int) -> tuple[socket.AddressFamily, tuple[Any, ...]]:
-    """The family of a host's address, and what to bind to; IPv4 where it has both kinds."""
+def refuse_empty_host(host: str) -> None:
+    """Raise ValueError for a host that would mean every network of this machine without saying so."""
     if not host.strip():
         raise ValueError(
             f"host is {host!r} (an unset variable?) and would open the server to every network of this machine; name "
             "an address: 127.0.0.1 for this machine alone"
         )
+
+
+def _resolved(host: str, port: int) -> tuple[socket.AddressFamily, tuple[Any, ...]]:
+    """The family of a host's address, and what to bind to; IPv4 where it has both kinds."""
+    refuse_empty_host(host)
     if not 0 <= port <= 65535:
         raise ValueError(f"port is {port}; allowed: 0 (a free one) to 65535")
     try:

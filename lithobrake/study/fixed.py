@@ -1,6 +1,6 @@
 """A study at given numbers: these are checked as if they stood in the study file."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 from pydantic import BaseModel, ValidationError
@@ -20,8 +20,8 @@ INPUTS, SITE = "solver.inputs.", "site."
 def fixed_study(study: Study, values: Mapping[str, Any]) -> Study:
     """The study with these numbers in place of what its file has, uncertain or not.
 
-    values: by dotted key, in the units of the study file, those that a landing or a flight reads: place and attitude of
-    a run included, its bed left out. A flight gives all numbers of the site, for which kernels may stand otherwise.
+    values: by dotted key, in the units of the study file: all that a landing reads, with place and attitude of the run
+    and without its bed; or all numbers of the site that a flight reads, for which kernels may stand otherwise.
     Raises StudyError where the study file would be refused with one of them, or none of them would be read.
     """
     tables: dict[str, Any] = {name: _table(getattr(study, name)) for name in type(study).model_fields}
@@ -37,10 +37,11 @@ def fixed_study(study: Study, values: Mapping[str, Any]) -> Study:
     loose = [f"{key} is {show(value)}; allowed: one number" for key, value in values.items() if not is_number(value)]
     if loose:
         raise StudyError(loose)
-    # Kernels are read for what a flight asks of them alone, and its numbers stand in their place.
-    of_site = fixed.site_values() if any(key.startswith(SITE) for key in values) else ()
-    read = [*fixed.touchdown_values(), *of_site, *ATTITUDE]
-    found = [_unread(key, read) for key in values if key not in read] or list(_problems(fixed, values))
+    # A landing reads nothing of the site, and a flight nothing else.
+    of_site = all(key.startswith(SITE) for key in values)
+    read = list(fixed.site_values()) if of_site else [*fixed.touchdown_values(), *ATTITUDE]
+    between = body_problems if of_site else landing_problems
+    found = [_unread(key, read) for key in values if key not in read] or list(between(fixed))
     if found:
         raise StudyError(found)
     return fixed
@@ -72,14 +73,6 @@ def _put(tables: dict[str, Any], key: str, value: Any) -> None:
         table |= {name: value, "kernels": [], "kernel_body": None, "epoch": None}
     else:
         table[name] = value
-
-
-def _problems(study: Study, values: Mapping[str, Any]) -> Iterator[str]:
-    """What is wrong between the numbers, as far as they take part."""
-    if any(not key.startswith(SITE) for key in values):
-        yield from landing_problems(study)
-    if any(key.startswith(SITE) for key in values):
-        yield from body_problems(study)
 
 
 def _unread(key: str, read: list[str]) -> str:

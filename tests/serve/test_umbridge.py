@@ -123,7 +123,7 @@ def test_a_study_serves_its_landing_and_its_flight(study_address: str) -> None:
 @pytest.mark.parametrize(
     ("config", "said"),
     [
-        ({"lattitude_deg": 3.0}, "config has lattitude_deg; did you mean latitude_deg\\?; allowed: latitude_deg"),
+        ({"lattitude_deg": 3.0}, "config has .lattitude_deg.; did you mean latitude_deg\\?; allowed: latitude_deg"),
         ({"north_error": 1e9}, "site.north_error reaches 1e.09 m; allowed: at most 590"),
         ({"spin_period": 1e-9}, "site.spin_period reaches down to 1e-09 s; allowed: at least 1 s"),
         ({"mass": 1e20}, "a bulk density of .* kg/m3; allowed: 300 to 8000 kg/m3"),
@@ -142,7 +142,7 @@ def test_a_flight_takes_what_the_study_file_does(config: dict[str, Any], said: s
 @pytest.mark.parametrize(
     ("config", "said"),
     [
-        ({"sed": 4}, "config has sed; did you mean seed\\?; allowed: seed, inputs, setting"),
+        ({"sed": 4}, "config has .sed.; did you mean seed\\?; allowed: seed, inputs, setting"),
         ({"inputs": {"lander.fricton": 0.9}}, "lander.fricton is not a known key; did you mean friction"),
         ({"inputs": {"lander.friction": -0.1}}, "lander.friction is -0.1; allowed: at least 0"),
         ({"inputs": {"lander.mass": "1"}}, 'lander.mass is "1"; allowed: above 0 .kg.'),
@@ -151,6 +151,8 @@ def test_a_flight_takes_what_the_study_file_does(config: dict[str, Any], said: s
         ({"inputs": {"impact.place.x": None}}, "impact.place.x is None; allowed"),
         ({"inputs": {"solver.inputs.tilt": 1.0}}, "solver.inputs.tilt is not read here; did you mean solver.inputs.pl"),
         ({"inputs": {"contact.held_speed": 0.1}}, "contact.held_speed is not read here"),
+        ({"inputs": {"site.mass": 5e11}}, "site.mass is not read here"),
+        ({"inputs": {"impact.azimuth_deg": "random"}}, 'impact.azimuth_deg is "random"; allowed: one number'),
         ({"inputs": {"bed": 0.5}}, "bed is 0.5; allowed: a whole number"),
         ({"inputs": [1.0]}, r"config.inputs is \[1\]; allowed: numbers by the dotted keys"),
         ({"inputs": None}, "config.inputs is None; allowed: numbers by the dotted keys"),
