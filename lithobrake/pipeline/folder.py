@@ -13,6 +13,7 @@ from contextlib import AbstractContextManager
 from dataclasses import replace
 from enum import StrEnum
 from pathlib import Path
+from tempfile import TemporaryFile
 from typing import Any
 
 from lithobrake.atomic import atomic_path, locked
@@ -54,9 +55,9 @@ class StudyFolder:
         self.path = path
         try:
             path.mkdir(parents=True, exist_ok=True)
-            probe = path / ".writable"
-            probe.touch()
-            probe.unlink()
+            # Of a name that nothing else has, if it gets one at all.
+            with TemporaryFile(dir=path):
+                pass
         except OSError as error:
             raise ValueError(f"{path} cannot be written ({error}); {remedy}") from error
 
