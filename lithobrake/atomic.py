@@ -21,8 +21,13 @@ _NOTE_LENGTH, _NOTE = 1024, {"process": int, "host": str}
 
 @contextmanager
 def atomic_path(path: str | os.PathLike[str]) -> Iterator[Path]:
-    """Give a temporary path beside `path`; on success it is flushed to disk and renamed onto `path`, else removed."""
+    """Give a temporary path beside `path`; on success it is flushed to disk and renamed onto `path`, else removed.
+
+    Raises ValueError where `path` is a folder.
+    """
     final = Path(path)
+    if final.is_dir():
+        raise ValueError(f"{final} is a folder; name a file")
     draft = final.with_name(f".{final.name}.{os.getpid()}.part")
     try:
         yield draft

@@ -16,8 +16,10 @@ from typing import Any, BinaryIO
 # [form], a list.
 Form = Any
 NUMBER = int | float
-# What readers of text, JSON, CSV and HDF5 raise over a file that is not what they expect.
-UNREADABLE = (OSError, ValueError, TypeError, LookupError, AttributeError, ArithmeticError, RuntimeError, csv.Error)
+# What readers of text, JSON, CSV and HDF5 raise over a file that is not what they expect, or claims to be huge.
+UNREADABLE = (
+    OSError, ValueError, TypeError, LookupError, AttributeError, ArithmeticError, RuntimeError, MemoryError, csv.Error,
+)  # fmt: skip
 
 
 class DamagedFileError(ValueError):

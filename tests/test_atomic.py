@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from lithobrake.atomic import lock_holder, locked
+from lithobrake.atomic import atomic_path, lock_holder, locked
 
 
 def as_notes(path: Path, victim: Path) -> None:
@@ -71,3 +71,9 @@ def test_a_lock_that_was_left_behind_is_taken(tmp_path, content):
         assert (holder["process"], holder["stage"]) == (os.getpid(), "bed")
         assert len(path.read_bytes()) == 1024
     assert lock_holder(path) is None
+
+
+def test_a_folder_is_no_name_for_a_file(tmp_path):
+    with pytest.raises(ValueError, match="is a folder; name a file"), atomic_path(tmp_path) as draft:
+        draft.write_text("never written")
+    assert list(tmp_path.parent.glob(f".{tmp_path.name}*")) == []

@@ -20,8 +20,8 @@ from lithobrake.atomic import atomic_path, locked
 from lithobrake.hashing import content_hash
 from lithobrake.pipeline.notes import Notes
 from lithobrake.reading import DamagedFileError, read_json
+from lithobrake.results.intact import LOCK
 
-LOCK = ".lock"
 # Files are looked at before they are read, so this is said where one changed within the moment between.
 AGAIN = "give the same command again, and it is made anew"
 
