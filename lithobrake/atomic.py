@@ -6,7 +6,7 @@ import os
 import platform
 import stat
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from io import FileIO
 from pathlib import Path
@@ -36,6 +36,14 @@ def atomic_path(path: str | os.PathLike[str]) -> Iterator[Path]:
         os.replace(draft, final)
     finally:
         draft.unlink(missing_ok=True)
+
+
+def refuse_existing(paths: Iterable[Path], remedy: str) -> None:
+    """Raise ValueError, with the remedy, where files of these names are there: they may be anyone's."""
+    there = [path for path in paths if os.path.lexists(path)]
+    if there:
+        more = f" and {len(there) - 1} more of what would be written" if len(there) > 1 else ""
+        raise ValueError(f"{there[0]} exists{more}; {remedy}")
 
 
 @contextmanager

@@ -22,6 +22,7 @@ Workers = Annotated[
     int | None, typer.Option("--workers", min=1, metavar="N", help="Number of processes; the default is all cores.")
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print JSON, all numbers in SI.")]
+Force = Annotated[bool, typer.Option("--force", help="Replace files that exist.")]
 StudyDirectory = Annotated[Path, typer.Argument(metavar="DIR", help="The folder of a study.", show_default=False)]
 
 
@@ -39,3 +40,10 @@ def given_folder(out: str) -> Path:
             BAD_INPUT,
         )
     return Path(out)
+
+
+def refuse_written(path: Path, force: bool) -> None:
+    """Raise ValueError for a file that exists, unless it may be replaced."""
+    from lithobrake.atomic import refuse_existing
+
+    refuse_existing(() if force else (path,), "choose another name with --out, or replace it with --force")

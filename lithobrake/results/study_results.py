@@ -296,12 +296,18 @@ class StudyResults:
     def _designs(self) -> dict[str, str]:
         """The files of the study's designs, by their names; a folder may also have those of an earlier method."""
         found = {design: f"designs/{design}.csv" for design in (*DESIGNS, *SEQUENCE_DESIGNS)}
-        if (self.folder / KEYS).is_file():
-            # An early format notes no stages, and knows of one method only.
-            noted = read_json(self.folder / KEYS, dict, self.remedy).get("stages", {})
-            asked = {file for stage in noted.values() for file in stage["files"]}
-            found = {design: name for design, name in found.items() if name in asked or not noted}
+        # An early format notes no stages, and knows of one method only.
+        asked = self._noted_files()
+        found = {design: name for design, name in found.items() if name in asked or not asked}
         return {design: name for design, name in found.items() if (self.folder / name).is_file()}
+
+    def _noted_files(self) -> set[str]:
+        """The files that the stages of the study make; none where the folder does not note them."""
+        if not (self.folder / KEYS).is_file():
+            return set()
+        noted = read_json(self.folder / KEYS, dict, self.remedy)
+        with reading(self.folder / KEYS, self.remedy):
+            return {file for stage in noted.get("stages", {}).values() for file in stage["files"]}
 
     def _key(self, run: str | int) -> str:
         """The key of a run of the study. Raises ValueError where it has none, or several that begin like that."""
@@ -321,7 +327,16 @@ class StudyResults:
     def _bodies(self, name: str) -> "MovingBodies":
         from lithobrake.results.moving_bodies import MovingBodies
 
-        return MovingBodies.read(self._file(name), self.remedy)
+        path, made = self._file(name), self._noted_files()
+        if made and name not in made and not path.exists():
+            beds = sum(file.startswith("beds/") for file in made)
+            reason = (
+                f"its beds have the numbers 0 to {beds - 1}"
+                if beds
+                else "a program or function of its own makes its touchdowns; ask that program for its frames"
+            )
+            raise ValueError(f"{path} is not there, and no stage of this study makes it: {reason}")
+        return MovingBodies.read(path, self.remedy)
 
     def _rows(self, name: str, columns: Sequence[str]) -> list[dict[str, Any]]:
         """The rows of a CSV file, numbers as numbers; columns: that it has to have."""
