@@ -1,13 +1,15 @@
 """What has been computed once for this machine and user, kept on disk: compiled kernels, gravity tables and beds.
 
 A kernel is kept as a pickle, which runs as code when it is read. So a file counts only where nobody but this user can
-have written it: file and folder are this user's, and closed to writers. It ends with a hash of its name and content,
-and one that is damaged is as good as none.
+have written it: file and folders are this user's, and closed to writers, and it ends with a signature of its name and
+content that only this user's key makes. One that is damaged is as good as none.
 """
 
-import hashlib
+import hmac
 import logging
 import os
+import re
+import stat
 import threading
 import time
 from collections.abc import Iterator
@@ -16,12 +18,15 @@ from functools import cached_property
 from pathlib import Path
 
 from lithobrake.atomic import atomic_path
+from lithobrake.cache_key import user_key
 
 log = logging.getLogger(__name__)
 
-_DIGEST_LENGTH = 32
+_SIGNATURE_LENGTH = 32
 _LOCK = "lock"
 _WRITABLE_BY_OTHERS = 0o022
+# What is kept within a limit is named by hashes, and a draft of it as `atomic_path` names that.
+_REMOVABLE = re.compile(r"[0-9a-f]{64}|\.[0-9a-f]{64}\.\d+\.part")
 _REMEDY = "set LITHOBRAKE_CACHE to a folder that is yours alone"
 # A draft that is older [s] was left behind by a process that was killed while it wrote.
 _ABANDONED = 86_400.0
@@ -39,26 +44,32 @@ class DiskCache:
         """Take the folder of this name, which is made when it is first needed.
 
         holds: in words. limit: most bytes that are kept, those of the files that were last read or written; None: all.
+        With a limit the names of files are SHA-256 in hexadecimal digits: nothing else is counted or removed.
         """
         self._holds, self._limit = holds, limit
-        root = os.environ.get("LITHOBRAKE_CACHE") or os.environ.get("XDG_CACHE_HOME") or "~/.cache"
-        self._path = Path(root) / "lithobrake" / name
+        self._name, self._key = name, b""
         self._told, self._waited, self._thread = False, False, threading.Lock()
 
     @cached_property
     def folder(self) -> Path | None:
         """The folder, or None where there is none to be trusted."""
         try:
-            folder = self._path.expanduser()
-            folder.parent.parent.mkdir(parents=True, exist_ok=True)
-            for path in (folder.parent, folder):
+            root = _root()
+            root.mkdir(mode=0o700, parents=True, exist_ok=True)
+            folder = root / "lithobrake" / self._name
+            for path in (root, folder.parent, folder):
                 path.mkdir(mode=0o700, exist_ok=True)
-            if not _is_ours(folder.stat()):
-                self._do_without(f"{folder} belongs to another user or can be written by others")
-                return None
+                if not (_is_ours if path == folder else _is_held)(path.stat()):
+                    self._do_without(f"{path} belongs to another user or can be written by others")
+                    return None
         # A RuntimeError where this user has no home.
-        except (OSError, RuntimeError) as error:
+        except (OSError, RuntimeError, ValueError) as error:
             self._do_without(f"no folder for a cache can be made ({error})")
+            return None
+        try:
+            self._key = user_key()
+        except (OSError, RuntimeError, ValueError) as error:
+            self._do_without(f"there is no key to sign files with ({error})", "set HOME to a folder that is yours")
             return None
         return folder
 
@@ -81,11 +92,12 @@ class DiskCache:
         except OSError as error:
             log.warning("%s cannot be read (%s): it is made again.", path, error.strerror)
             return None
-        content, digest = whole[:-_DIGEST_LENGTH], whole[-_DIGEST_LENGTH:]
-        if ours and digest == _digest(name, content):
+        content, signature = whole[:-_SIGNATURE_LENGTH], whole[-_SIGNATURE_LENGTH:]
+        if ours and hmac.compare_digest(signature, self._signature(name, content)):
             self._note_use(path)
             return content
-        log.warning("%s %s: it is made again.", path, "is damaged" if ours else "may be another user's work")
+        reason = "is damaged, or was not written with this user's key" if ours else "may be another user's work"
+        log.warning("%s %s: it is made again.", path, reason)
         return None
 
     def write(self, name: str, content: bytes) -> None:
@@ -96,7 +108,7 @@ class DiskCache:
             self._do_without(f"{self.folder} cannot be written")
             return
         # What does not fit would drive all else out, and then go itself.
-        if self._limit is not None and len(content) + _DIGEST_LENGTH > self._limit:
+        if self._limit is not None and len(content) + _SIGNATURE_LENGTH > self._limit:
             return
         try:
             with (
@@ -104,7 +116,7 @@ class DiskCache:
                 open(draft, "wb", opener=lambda path, flags: os.open(path, flags, mode=0o600)) as file,
             ):
                 file.write(content)
-                file.write(_digest(name, content))
+                file.write(self._signature(name, content))
             self._make_room()
         except OSError as error:
             self.keeps = False
@@ -127,11 +139,14 @@ class DiskCache:
             return
         found, now = [], time.time()
         for path in self.folder.iterdir():
+            # The folder may be one of the user's that happens to have this name.
+            if not _REMOVABLE.fullmatch(path.name):
+                continue
             # Another process may make room at the same time.
             with suppress(FileNotFoundError):
-                status = path.stat()
+                status = path.lstat()
                 drafted = path.name.startswith(".") and now - status.st_mtime < _ABANDONED
-                if not drafted and not path.name.startswith(_LOCK):
+                if not drafted and stat.S_ISREG(status.st_mode):
                     found.append((status.st_mtime_ns, status.st_size, path))
         total = sum(size for _, size, _ in found)
         for _, size, path in sorted(found):
@@ -168,11 +183,30 @@ class DiskCache:
                 log.info("%s cannot be locked (%s)", self.folder, error)
             yield
 
-    def _do_without(self, reason: str) -> None:
+    def _signature(self, name: str, content: bytes) -> bytes:
+        # With its name: a whole file in the place of another is wrong too.
+        return hmac.digest(self._key, name.encode() + b"\0" + content, "sha256")
+
+    def _do_without(self, reason: str, remedy: str = _REMEDY) -> None:
         """Say once that nothing is kept, and why."""
         if not self._told:
             self._told = True
-            log.warning("%s, so %s are made anew each time; %s.", reason, self._holds, _REMEDY)
+            log.warning("%s, so %s are made anew each time; %s.", reason, self._holds, remedy)
+
+
+def _root() -> Path:
+    """The folder below which caches lie. Raises ValueError for one that is counted from the current folder.
+
+    A folder that was unpacked or cloned could bring a cache of its own.
+    """
+    given = os.environ.get("LITHOBRAKE_CACHE")
+    if given and not Path(given).expanduser().is_absolute():
+        raise ValueError(f"LITHOBRAKE_CACHE is {given!r}; allowed: an absolute path")
+    # The XDG base directory specification: a relative path is to be ignored.
+    for path in filter(None, (given, os.environ.get("XDG_CACHE_HOME"), "~/.cache")):
+        if (root := Path(path).expanduser()).is_absolute():
+            return root
+    raise ValueError(f"HOME is {os.environ.get('HOME')!r}; allowed: an absolute path")
 
 
 def _is_ours(status: os.stat_result) -> bool:
@@ -180,6 +214,10 @@ def _is_ours(status: os.stat_result) -> bool:
     return os.name != "posix" or (status.st_uid == os.geteuid() and not status.st_mode & _WRITABLE_BY_OTHERS)
 
 
-def _digest(name: str, content: bytes) -> bytes:
-    # With its name: a whole file in the place of another is wrong too.
-    return hashlib.sha256(name.encode() + b"\0" + content).digest()
+def _is_held(status: os.stat_result) -> bool:
+    """Whether nobody but this user and root can put another folder in the place of one of this user's in a folder."""
+    if os.name != "posix":
+        return True
+    # In a sticky folder, as /tmp is, each may remove only what is theirs.
+    closed = not status.st_mode & _WRITABLE_BY_OTHERS or status.st_mode & stat.S_ISVTX
+    return status.st_uid in (os.geteuid(), 0) and bool(closed)

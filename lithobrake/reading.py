@@ -3,20 +3,24 @@
 import csv
 import json
 import math
+import os
 import re
 import reprlib
+import stat
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from os import PathLike
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, BinaryIO, NamedTuple
 
 # What a form may be: a type; {"key": form}, an object with at least these keys; {str: form}, an object with any keys;
 # [form], a list.
 Form = Any
 NUMBER = int | float
-# What readers of text, JSON, CSV and HDF5 raise over a file that is not what they expect.
-UNREADABLE = (OSError, ValueError, TypeError, LookupError, AttributeError, ArithmeticError, RuntimeError, csv.Error)
+# What readers of text, JSON, CSV and HDF5 raise over a file that is not what they expect, or claims to be huge.
+UNREADABLE = (
+    OSError, ValueError, TypeError, LookupError, AttributeError, ArithmeticError, RuntimeError, MemoryError, csv.Error,
+)  # fmt: skip
 
 
 # The title of a column: its name, and its unit in brackets where it has one.
@@ -39,6 +43,9 @@ def reading(path: str | PathLike[str], remedy: str, *also: type[Exception]) -> I
     """Turn whatever a damaged file makes its reader raise into DamagedFileError; also: what else the reader raises."""
     kinds: tuple[type[Exception], ...] = (*UNREADABLE, *also)
     try:
+        # Reading a pipe waits for whoever writes to it, and some devices have no end.
+        if os.path.exists(path) and not os.path.isfile(path):
+            raise DamagedFileError(f"{path} cannot be read (it is no regular file); {remedy}")
         yield
     except DamagedFileError:
         raise
@@ -48,6 +55,15 @@ def reading(path: str | PathLike[str], remedy: str, *also: type[Exception]) -> I
         said = f"it lacks {said}" if type(error) is KeyError and " " not in said else said
         words = " ".join(said.split()) or type(error).__name__
         raise DamagedFileError(f"{path} cannot be read ({words}); {remedy}") from error
+
+
+@contextmanager
+def open_regular(path: str | PathLike[str]) -> Iterator[BinaryIO]:
+    """Open a file to read its bytes. Raises ValueError at once for a pipe or a device, OSError as `open` does."""
+    with open(path, "rb", opener=lambda path, flags: os.open(path, flags | getattr(os, "O_NONBLOCK", 0))) as file:
+        if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
+            raise ValueError(f"{path} is no regular file")
+        yield file
 
 
 def read_json(path: str | PathLike[str], form: Form, remedy: str) -> Any:

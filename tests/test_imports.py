@@ -12,6 +12,7 @@ LEAVES = {
     *(
         "compiled",
         "disk_cache",
+        "cache_key",
         "atomic",
         "mesh",
         "mesh_files",

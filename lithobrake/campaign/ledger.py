@@ -16,21 +16,24 @@ from typing import Any, Self
 from lithobrake.atomic import locked
 from lithobrake.campaign.main_module import refuse_while_importing
 from lithobrake.campaign.record import (
+    CHECKSUM,
     COLUMNS,
     ENDED,
+    HASHED,
     LEFT,
     OF_FIRST,
     UNENDED,
     Record,
     RunStatus,
+    intact_records,
     lock_path,
     reading_ledger,
-    record_from_row,
+    row_hash,
     utc_now,
 )
 from lithobrake.plain import one_line
 
-FORMAT_VERSION = 2
+FORMAT_VERSION = 3
 # Characters of a reason, of a word for an outcome: more would be the whole log of a program.
 _REASON_LENGTH, _OUTCOME_LENGTH = 1000, 100
 
@@ -38,18 +41,27 @@ _REASON_LENGTH, _OUTCOME_LENGTH = 1000, 100
 # outcome   how the run ended, in the model's own words; inputs, outputs and draws are JSON objects (draws = what the
 #           run drew by chance); an output that has no value is absent
 # version   of the code that made the run; started, ended: UTC
+# sha256    of the rest of the row of an ended run, attempts left out: a row that was edited is known by it
 _SCHEMA = """
 CREATE TABLE IF NOT EXISTS runs (
     key TEXT PRIMARY KEY, status TEXT NOT NULL, outcome TEXT, inputs TEXT NOT NULL, draws TEXT, outputs TEXT,
     seed INTEGER NOT NULL, replicate INTEGER NOT NULL, reason TEXT, wall_s REAL, cpu_s REAL, host TEXT,
-    version TEXT NOT NULL, ended TEXT, attempts INTEGER NOT NULL DEFAULT 0, started TEXT
+    version TEXT NOT NULL, ended TEXT, attempts INTEGER NOT NULL DEFAULT 0, started TEXT,
+    sha256 TEXT
 ) WITHOUT ROWID
 """
-# What format 2 has more than format 1; the runs of an older ledger were each tried once.
-_FROM_FIRST = (
-    "ALTER TABLE runs ADD COLUMN attempts INTEGER NOT NULL DEFAULT 1",
-    "ALTER TABLE runs ADD COLUMN started TEXT",
-)
+_SIGN = f"UPDATE runs SET {CHECKSUM} = row_hash({', '.join(HASHED)})"
+# What an earlier format lacks; the runs of the first were each tried once, and hashes are of the rows as they stand.
+_HASHES = (f"ALTER TABLE runs ADD COLUMN {CHECKSUM} TEXT", _SIGN)
+_STEPS = {
+    0: (_SCHEMA,),
+    1: (
+        "ALTER TABLE runs ADD COLUMN attempts INTEGER NOT NULL DEFAULT 1",
+        "ALTER TABLE runs ADD COLUMN started TEXT",
+        *_HASHES,
+    ),
+    2: _HASHES,
+}
 
 
 class Ledger:
@@ -68,6 +80,7 @@ class Ledger:
             self._note = self._open.enter_context(locked(lock_path(self.path), refusal))
             self._database = sqlite3.connect(self.path, isolation_level=None)
             self._open.callback(self._database.close)
+            self._database.create_function("row_hash", len(HASHED), row_hash, deterministic=True)
             # Nothing is written before the file has been found to be a ledger.
             self._prepare(self._format())
         except (sqlite3.Error, OSError) as error:
@@ -82,14 +95,15 @@ class Ledger:
     def _format(self) -> int:
         """The format of the ledger, 0 for a new one. Raises ValueError for a file that is no ledger."""
         version: int = self._database.execute("PRAGMA user_version").fetchone()[0]
-        if version not in (0, 1, FORMAT_VERSION):
+        if not 0 <= version <= FORMAT_VERSION:
             raise ValueError(
                 f"{self.path} has ledger format {version}; this version reads 1 to {FORMAT_VERSION}: "
                 "move the file away, or use the version of lithobrake that wrote it"
             )
         tables = self._database.execute("SELECT name FROM sqlite_master WHERE type = 'table'").fetchall()
         columns = {row[1] for row in self._database.execute("PRAGMA table_info(runs)")}
-        lacking = sorted(set(COLUMNS) - columns - (set(OF_FIRST) if version == 1 else set()))
+        absent = {1: {*OF_FIRST, CHECKSUM}, 2: {CHECKSUM}}.get(version, set())
+        lacking = sorted({*COLUMNS, CHECKSUM} - columns - absent)
         if lacking and (version or tables):
             raise ValueError(f"{self.path} cannot be used as a ledger (it lacks {', '.join(lacking)}); {LEFT}")
         return version
@@ -102,7 +116,7 @@ class Ledger:
             return
         with self._database:
             self._database.execute("BEGIN IMMEDIATE")
-            for statement in _FROM_FIRST if version == 1 else (_SCHEMA,):
+            for statement in _STEPS[version]:
                 self._database.execute(statement)
             self._database.execute(f"PRAGMA user_version = {FORMAT_VERSION}")
 
@@ -120,7 +134,8 @@ class Ledger:
             self._database.execute("DELETE FROM runs WHERE status IN (?, ?)", UNENDED)
             self._database.executemany(
                 "INSERT INTO runs (key, status, inputs, seed, replicate, version) VALUES (?, ?, ?, ?, ?, ?) "
-                "ON CONFLICT (key) DO UPDATE SET status = excluded.status",
+                "ON CONFLICT (key) DO UPDATE SET status = excluded.status, inputs = excluded.inputs, "
+                "seed = excluded.seed, replicate = excluded.replicate, version = excluded.version",
                 rows,
             )
 
@@ -150,6 +165,7 @@ class Ledger:
                 "host = ?, started = coalesce(?, started), attempts = ?, ended = ? WHERE key = ?",
                 (result["status"], texts["outputs"], texts["draws"], *plain, result.get("attempts", 1), utc_now(), key),
             )
+            self._database.execute(f"{_SIGN} WHERE key = ?", (key,))
 
     def forget_tries(self, keys: Iterable[str]) -> None:
         """Count failed runs as never tried, so that the next campaign tries them whatever its retry_count."""
@@ -157,11 +173,11 @@ class Ledger:
             self._database.executemany("UPDATE runs SET attempts = 0 WHERE key = ?", [(key,) for key in keys])
 
     def find(self, keys: Iterable[str]) -> dict[str, Record]:
-        """The runs with these keys that have ended, by key."""
-        wanted = set(keys)
+        """The runs with these keys that have ended, by key; a warning names those whose row was changed since."""
+        wanted, columns = set(keys), ", ".join((*COLUMNS, CHECKSUM))
         with reading_ledger(self.path):
-            rows = self._database.execute(f"SELECT {', '.join(COLUMNS)} FROM runs WHERE status IN (?, ?)", ENDED)
-            return {row[0]: record_from_row(row) for row in rows if row[0] in wanted}
+            rows = self._database.execute(f"SELECT {columns} FROM runs WHERE status IN (?, ?)", ENDED)
+            return {record.key: record for record in intact_records(self.path, (r for r in rows if r[0] in wanted))}
 
     @contextmanager
     def _transaction(self) -> Iterator[None]:

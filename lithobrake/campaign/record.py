@@ -1,6 +1,10 @@
 """One run as the ledger keeps it, and the ledger as another process reads it."""
 
+import hashlib
+import json
+import logging
 import sqlite3
+from collections.abc import Iterable, Iterator
 from contextlib import AbstractContextManager, closing
 from dataclasses import dataclass
 from datetime import UTC, datetime
@@ -11,6 +15,8 @@ from typing import Any
 
 from lithobrake.atomic import lock_holder
 from lithobrake.reading import NUMBER, check, parsed, reading
+
+log = logging.getLogger(__name__)
 
 
 class RunStatus(StrEnum):
@@ -49,8 +55,13 @@ class Record:
 
 
 COLUMNS = tuple(Record.__dataclass_fields__)
+# What the hash of a row, in the column CHECKSUM, is of; how often a failed run was tried may be reset.
+CHECKSUM = "sha256"
+HASHED = tuple(name for name in COLUMNS if name != "attempts")
 # What stands for the columns that a ledger of the first format lacks: its runs were each tried once.
 OF_FIRST = {"attempts": "1", "started": "NULL"}
+# Ledgers of earlier formats have no hashes: their rows are taken as they stand.
+FIRST_HASHED = 3
 # Runs may have taken days: no damage is a reason to write over them.
 LEFT = "it is left as it is: put a copy of it back, or move it away to have all its runs made again"
 OBJECTS = ("inputs", "outputs", "draws")
@@ -64,6 +75,32 @@ _FORM = {
 def reading_ledger(path: Path) -> AbstractContextManager[None]:
     """Turn whatever a damaged ledger makes its reader raise into DamagedFileError."""
     return reading(path, LEFT, sqlite3.Error)
+
+
+def row_hash(*values: Any) -> str:
+    """Hash of the values of a row as SQLite gives them, in the order of HASHED."""
+    return hashlib.sha256(json.dumps(values, default=repr).encode()).hexdigest()
+
+
+def intact_records(path: Path, rows: Iterable[tuple[Any, ...]]) -> Iterator[Record]:
+    """The rows of a ledger, in the order of COLUMNS and then CHECKSUM, as records.
+
+    Ended runs that were changed since are left out, and a warning says so. Raises ValueError for what no campaign
+    wrote.
+    """
+    columns, changed = [COLUMNS.index(name) for name in HASHED], []
+    for row in rows:
+        if row[COLUMNS.index("status")] not in UNENDED and row[-1] != row_hash(*(row[column] for column in columns)):
+            changed.append(str(row[0]))
+        else:
+            yield record_from_row(row[:-1])
+    if changed:
+        log.warning(
+            "%s has %d %s that changed after the run was made (key %s): left out here, and made again by the next "
+            "command that needs them.",
+            *(path, len(changed), "rows" if len(changed) > 1 else "row"),
+            ", ".join(changed[:3]) + (", ..." if len(changed) > 3 else ""),
+        )
 
 
 def record_from_row(row: tuple[Any, ...]) -> Record:
@@ -84,7 +121,8 @@ def utc_now() -> str:
 def read_records(path: str | PathLike[str]) -> list[Record]:
     """Read all runs of a ledger in the order in which they ended, unended ones last; a campaign may be writing to it.
 
-    Raises ValueError when the path holds no ledger, or a damaged one.
+    Ended runs whose row was changed since are left out, and a warning says so. Raises ValueError when the path holds no
+    ledger, or a damaged one.
     """
     path = Path(path)
     if not path.is_file():
@@ -96,11 +134,13 @@ def read_records(path: str | PathLike[str]) -> list[Record]:
         reading_ledger(path),
         closing(sqlite3.connect(f"{path.absolute().as_uri()}?mode=ro{whole}", uri=True)) as database,
     ):
-        first = database.execute("PRAGMA user_version").fetchone()[0] == 1
-        columns = ", ".join(OF_FIRST.get(name, name) if first else name for name in COLUMNS)
-        return [
-            record_from_row(row) for row in database.execute(f"SELECT {columns} FROM runs ORDER BY {order}", UNENDED)
-        ]
+        version = database.execute("PRAGMA user_version").fetchone()[0]
+        columns = ", ".join(OF_FIRST.get(name, name) if version == 1 else name for name in COLUMNS)
+        if version < FIRST_HASHED:
+            rows = database.execute(f"SELECT {columns} FROM runs ORDER BY {order}", UNENDED)
+            return [record_from_row(row) for row in rows]
+        rows = database.execute(f"SELECT {columns}, {CHECKSUM} FROM runs ORDER BY {order}", UNENDED)
+        return list(intact_records(path, rows))
 
 
 def lock_path(path: Path) -> Path:

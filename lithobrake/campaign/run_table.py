@@ -2,6 +2,7 @@
 
 import csv
 from collections.abc import Mapping, Sequence
+from textwrap import wrap
 from typing import Any, TextIO
 
 from lithobrake.campaign.record import COLUMNS, OBJECTS, Record
@@ -39,19 +40,33 @@ def _shown(value: Any) -> Any:
     return value if isinstance(value, int | float) else plain(str(value))
 
 
-def run_lines(records: Sequence[Record], units: Mapping[str, str], width: int | None) -> list[str]:
+def run_lines(
+    records: Sequence[Record],
+    units: Mapping[str, str],
+    width: int | None,
+    first: Mapping[str, tuple[str, str]] | None = None,
+) -> list[str]:
     """Return runs as lines under a header: key, status, wall time, inputs that differ, outcome or reason.
 
-    units: of inputs by name. width: of the terminal; inputs that do not fit in are named below, and a reason that does
-    not is cut and marked by three dots. None: all of both.
+    units: of inputs and outputs by name. width: of the terminal; inputs that do not fit in are named below, and a
+    reason that does not is cut and marked by three dots. None: all of both. first: two words for the head of outputs,
+    and of inputs that differ, by their names, which stand before all others.
     """
     columns = [
         _column(["", "", "key"], [entry.key[:_KEY_LENGTH] for entry in records]),
         _column(["", "", "status"], [entry.status for entry in records]),
         _column(["", "wall", "[s]"], [_number(entry.wall_s) for entry in records]),
     ]
-    differing = _differing(records)
-    shown = [_column(_head(name, units), [_number(entry.inputs.get(name)) for entry in records]) for name in differing]
+    heads, inputs = first or {}, _differing(records)
+    leading = [name for name in heads if name in inputs or any(name in entry.outputs for entry in records)]
+    differing = leading + [name for name in inputs if name not in leading]
+    shown = [
+        _column(
+            [*heads[name], *(_unit(name, units) or [""])] if name in heads else _head(name, units),
+            [_number(entry.outputs.get(name, entry.inputs.get(name))) for entry in records],
+        )
+        for name in differing
+    ]
     reasons = [entry.outcome or entry.reason or "" for entry in records]
     reason_width = min(max(map(len, [_LAST, *reasons])), _REASON_WIDTH)
     room = None if width is None else width - _width(columns) - reason_width
@@ -64,7 +79,8 @@ def run_lines(records: Sequence[Record], units: Mapping[str, str], width: int | 
     lines = [(_GAP.join(row) + _GAP + reason).rstrip() for *row, reason in zip(*columns, last, strict=True)]
     left_out = differing[len(shown) :]
     if left_out:
-        lines.append(f"{len(left_out)} more inputs differ: {', '.join(left_out)} (--csv has every column)")
+        words = f"{len(left_out)} more inputs differ: {', '.join(left_out)} (--csv has every column)"
+        lines += [words] if width is None else wrap(words, width, break_on_hyphens=False)
     # No input stands in the first line where none is shown.
     return lines if lines[0] else lines[1:]
 

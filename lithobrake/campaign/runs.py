@@ -105,6 +105,8 @@ def run(
     with _given_or_own(executor) as workers:
         Coordinator(ledger, workers, pending, state, limits or Limits(), options.retry_count, show).compute()
     records = ledger.find(keys)
+    if lost := [key for key in keys if key not in records]:
+        raise ValueError(f"{ledger.path} lost run {lost[0]} while it was open; give the same command again")
     return Runs([records[key] for key in keys], reused_count=len(known))
 
 

@@ -72,6 +72,9 @@ def _readable(content: dict[str, Any]) -> str:
 def read(kind: str, build: Callable[[dict[str, Any]], Kept], path: str | os.PathLike[str]) -> Kept:
     """Read a file that `write` wrote under the same heading, and build what it holds."""
     name = Path(path)
+    # A pipe would be waited for, and a folder has no text.
+    if name.exists() and not name.is_file():
+        raise ValueError(f"{name} is no regular file: give a file that save wrote")
     try:
         content = json.loads(name.read_text(encoding="utf-8"))
     except (json.JSONDecodeError, UnicodeDecodeError, RecursionError) as error:

@@ -27,6 +27,7 @@ Workers = Annotated[
     ),
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print JSON, all numbers in SI.")]
+Force = Annotated[bool, typer.Option("--force", help="Replace files that exist.")]
 StudyDirectory = Annotated[Path, typer.Argument(metavar="DIR", help="The folder of a study.", show_default=False)]
 
 
@@ -48,3 +49,10 @@ def given_folder(out: str) -> Path:
             BAD_INPUT,
         )
     return Path(out)
+
+
+def refuse_written(path: Path, force: bool) -> None:
+    """Raise ValueError for a file that exists, unless it may be replaced."""
+    from lithobrake.atomic import refuse_existing
+
+    refuse_existing(() if force else (path,), "choose another name with --out, or replace it with --force")

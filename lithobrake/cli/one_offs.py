@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from lithobrake.cli.application import app
-from lithobrake.cli.arguments import Json, OutPath, StudyPath, study_folder
+from lithobrake.cli.arguments import Force, Json, OutPath, StudyPath, refuse_written, study_folder
 from lithobrake.cli.refusals import one_sentence
 from lithobrake.cli.telling import tell, tell_json
 from lithobrake.plain import plain
@@ -36,6 +36,7 @@ def land(
         ),
     ] = None,
     show: Annotated[bool, typer.Option("--show", help="Open a window on the motion.")] = False,
+    force: Force = False,
     json: Json = False,
 ) -> None:
     """Make one landing of a study and tell what came out. Nothing of the study's folder is read or written."""
@@ -47,10 +48,12 @@ def land(
         from lithobrake.progress import study_progress
 
         values = landing_inputs(checked, change or (), number)
-        if out is not None and out.suffix != ".h5":
+        if out is not None:
             from lithobrake.view import refuse_other_kinds
 
-            refuse_other_kinds(out)
+            if out.suffix != ".h5":
+                refuse_other_kinds(out)
+            refuse_written(out, force)
         with study_progress() as shown:
             shown.begin("landing", 1, 1)
             found = land_one(checked, values, lambda done, what: shown.progress(done, 1.0, what))

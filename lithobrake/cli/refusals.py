@@ -1,6 +1,7 @@
 """How a command ends early: one sentence on standard error, and an exit code."""
 
 import errno
+import os
 import shlex
 import shutil
 import sys
@@ -24,10 +25,19 @@ def one_sentence() -> Iterator[None]:
     except (ValueError, FloatingPointError, ImportError, OSError) as error:
         full = isinstance(error, OSError) and error.errno in (errno.ENOSPC, errno.EDQUOT)
         remedy = "; all finished work is kept: make room on the disk and run the same command again"
+        if isinstance(error, FileNotFoundError) and not _has_current_folder():
+            leave("the current folder was removed; change to one that exists", BAD_INPUT)
         leave(f"{error}{remedy if full else ''}", BAD_INPUT)
     except KeyboardInterrupt:
         command = command_line(*sys.argv[1:])
         leave(f"Stopped. Every finished run is kept; to continue, run the same command: {command}", INTERRUPTED)
+
+
+def _has_current_folder() -> bool:
+    try:
+        return bool(os.getcwd())
+    except FileNotFoundError:
+        return False
 
 
 def command_line(*words: str | Path) -> str:

@@ -11,13 +11,22 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from lithobrake.cli.application import app
-from lithobrake.cli.arguments import Json, StudyDirectory, given_folder
+from lithobrake.cli.arguments import Force, Json, StudyDirectory, given_folder, refuse_written
 from lithobrake.cli.refusals import BAD_INPUT, leave, one_sentence
 from lithobrake.cli.telling import reader_may_leave, study_headline, tell, tell_json
 
 if TYPE_CHECKING:
     from lithobrake.results.moving_bodies import MovingBodies
     from lithobrake.results.study_results import StudyResults
+
+# What `runs` lists first, in columns with these heads, and the most characters of a line.
+TOLD = {
+    "speed_out": ("rebound", "speed"),
+    "bed": ("", "bed"),
+    "impact.place.x": ("impact", "x"),
+    "impact.place.y": ("impact", "y"),
+}
+LISTED = 100
 
 
 @app.command(epilog="Example: lithobrake report runs/study")
@@ -36,7 +45,7 @@ def runs(
     csv: Annotated[bool, typer.Option("--csv", help="Print every column as CSV.")] = False,
     json: Json = False,
 ) -> None:
-    """List the runs of a study with the inputs that vary."""
+    """List the runs of a study: how each ended, how fast the lander left, and where on which bed it came down."""
     with one_sentence():
         from lithobrake.campaign import run_lines, write_csv
         from lithobrake.results import open_study
@@ -57,8 +66,8 @@ def runs(
         with reader_may_leave():
             write_csv(records, sys.stdout, units)
         return
-    width = shutil.get_terminal_size().columns if sys.stdout.isatty() else None
-    tell(run_lines(records, units, width))
+    width = min(shutil.get_terminal_size().columns, LISTED) if sys.stdout.isatty() else LISTED
+    tell(run_lines(records, units, width, TOLD))
 
 
 @app.command(epilog="Example: lithobrake view runs/study")
@@ -68,6 +77,10 @@ def view(
     run: Annotated[str | None, typer.Option("--run", metavar="ID", help="Which run --3d shows.")] = None,
 ) -> None:
     """Open the report of a study in the browser."""
+    if run is not None and not solid:
+        leave(
+            f"--run {run} is given without --3d, and the report shows no single run; add --3d or omit --run", BAD_INPUT
+        )
     if solid:
         with one_sentence():
             from lithobrake.results import open_study
@@ -99,6 +112,7 @@ def film(
         ),
     ] = None,
     seconds: Annotated[float, typer.Option("--seconds", metavar="S", help="How long the film lasts.")] = 8.0,
+    force: Force = False,
 ) -> None:
     """Make a landing of a study again, and show it as a film."""
     path = out or folder / "landing.mp4"
@@ -107,7 +121,8 @@ def film(
         from lithobrake.view import refuse_other_kinds, write_motion
 
         refuse_other_kinds(path)
-        with _landing_progress() as progress:
+        refuse_written(path, force)
+        with _shown_progress("landing") as progress:
             bodies = _landing(open_study(folder), run, progress)
             write_motion(bodies, path, seconds, lambda done: progress(done, "drawing"))
     tell([f"Film: {path.resolve()}"])
@@ -144,6 +159,7 @@ def export(
     step: Step = None,
     resolution: Resolution = 1.0,
     run: Again = None,
+    force: Force = False,
     out: Annotated[str | None, typer.Option("--out", metavar="FOLDER", help="The default is DIR/export.")] = None,
     json: Json = False,
 ) -> None:
@@ -156,8 +172,9 @@ def export(
         results = open_study(folder)
         from lithobrake.export import ExportOptions, export_study
 
-        with _landing_progress() as progress:
-            choices = ExportOptions(flight or (), frame, epoch, step, resolution, run and _run_of(run), progress)
+        with _shown_progress("export") as progress:
+            again = None if run is None else _run_of(run)
+            choices = ExportOptions(flight or (), frame, epoch, step, resolution, again, force, progress)
             written = export_study(results, place, to, choices)
     if json:
         tell_json({"files": [str(path.resolve()) for path in written]})
@@ -177,8 +194,12 @@ def infer(
     with one_sentence():
         from lithobrake.pipeline import InferredStudy, infer_study
 
-        plan = InferredStudy.open(folder).plan().lines()
-        found = None if bounce is None else infer_study(folder, bounce)
+        with _shown_progress("inference") as progress:
+            progress(0.0, "what bounces can say")
+            plan = InferredStudy.open(folder).plan().lines()
+            if bounce is not None:
+                progress(0.5, "what these bounces say")
+            found = None if bounce is None else infer_study(folder, bounce)
     tell(plan)
     if found is not None:
         written = f"Posterior: {folder / 'posterior.json'}, {folder / 'posterior.png'}"
@@ -196,12 +217,12 @@ def _landing(
 
 def _run_of(text: str) -> str | int:
     """A row among the runs, or the key of one or how that begins, from what was written for either."""
-    return int(text) if text.isdigit() and len(text) < 6 else text
+    return int(text) if text.isascii() and text.isdigit() and len(text) < 6 else text
 
 
 @contextmanager
-def _landing_progress() -> Iterator[Callable[[float, str], None]]:
-    """How far a landing is that is made again; nothing is shown where none is."""
+def _shown_progress(title: str) -> Iterator[Callable[[float, str], None]]:
+    """How far something is that takes its time, as a landing made again; nothing is shown before it begins."""
     from lithobrake.progress import study_progress
 
     with study_progress() as shown:
@@ -210,7 +231,7 @@ def _landing_progress() -> Iterator[Callable[[float, str], None]]:
         def tell_progress(done: float, what: str) -> None:
             nonlocal begun
             if not begun:
-                shown.begin("landing", 1, 1)
+                shown.begin(title, 1, 1)
             begun = True
             shown.progress(done, 1.0, what)
 

@@ -42,7 +42,7 @@ def new(name: Annotated[str, typer.Argument(metavar="NAME", help="Name of the st
             raise ValueError(
                 f"{path} cannot be written ({reason}); choose another name or an existing folder"
             ) from error
-        print(f"Wrote {path}. Edit it, then: {command_line('run', path)}")
+    tell([f"Wrote {path}. Edit it, then: {command_line('run', path)}"])
 
 
 def _study_command(name: str, what: str, until: str | None = None) -> None:

@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from lithobrake.cli.refusals import fitted, one_sentence
+from lithobrake.cli.refusals import BAD_INPUT, fitted, leave, one_sentence
 from lithobrake.plain import plain
 
 
@@ -28,13 +28,18 @@ def tell_json(content: Any) -> None:
 
 @contextmanager
 def reader_may_leave() -> Iterator[None]:
-    """Write to standard output for as long as it is read; a reader that stops early (`| head`) is no error."""
+    """Write to standard output for as long as it is read; a reader that stops early (`| head`) is no error.
+
+    Ends the command with a sentence where standard output takes nothing, as a file on a full disk.
+    """
     try:
         yield
         print(end="", flush=True)
-    except BrokenPipeError:
+    except OSError as error:
         # What is still buffered would be tried again at the end, and fail again.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        if not isinstance(error, BrokenPipeError):
+            leave(f"standard output cannot be written ({error.strerror}); make room, or write elsewhere", BAD_INPUT)
 
 
 def study_headline(folder: Path) -> list[str]:

@@ -3,7 +3,7 @@
 from lithobrake.export.ephemerides import write_ephemerides
 from lithobrake.export.facet_table import write_facet_csv, write_facet_fits
 from lithobrake.export.files import KINDS, ExportOptions, export_study
-from lithobrake.export.geojson import write_geojson
+from lithobrake.export.geojson import write_geojson, write_rest_geojson
 from lithobrake.export.geotiff import write_geotiff
 from lithobrake.export.plate_text import write_plates
 
@@ -17,4 +17,5 @@ __all__ = [
     "write_geojson",
     "write_geotiff",
     "write_plates",
+    "write_rest_geojson",
 ]

@@ -1,7 +1,8 @@
 """Flights of a study as Orbit Ephemeris Messages: those of chosen samples, and the mean of the cloud of first ones."""
 
+import logging
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -11,12 +12,16 @@ from lithobrake.export.flown import Flown, body_name
 from lithobrake.export.oem import Segment, parsed_epoch, write_oem
 from lithobrake.results import StudyResults
 
+log = logging.getLogger(__name__)
+
 FRAMES = ("inertial", "fixed")
 # An epoch that nobody takes for that of a landing.
 NO_EPOCH = "2000-01-01T12:00:00"
 # Fewer flights have a covariance without full rank.
 FEWEST = 7
 STEPS = 100
+# A line of text with a time and six numbers of 16 digits; six lines with the 21 of a covariance, and one with a time.
+BYTES_OF_STATE, BYTES_OF_COVARIANCE, LARGE = 170.0, 540.0, 1e8
 # The file has times in whole microseconds.
 RESOLUTION = 1e-6
 
@@ -29,6 +34,7 @@ def write_ephemerides(
     frame: str = "inertial",
     epoch: str | None = None,
     step: float | None = None,
+    progress: Callable[[float, str], None] = lambda fraction, what: None,
 ) -> list[Path]:
     """Write flight_mean.oem, of all first flights, and a file for each chosen sample; give their paths.
 
@@ -38,8 +44,9 @@ def write_ephemerides(
     frame     "inertial": axes that do not turn and are the body's at the epoch; "fixed": body-fixed axes
     epoch     at which all flights start [UTC]; absent: one that stands for no date, and the file says so
     step      between states [s]; absent: a hundredth of the longest flight
-    Raises ValueError for a frame, an epoch, a step or a sample that there is not, and where too few flights make a
-    cloud.
+    progress  told the fraction that is done of what is being done
+    A warning says so where the files get larger than 100 MB. Raises ValueError for a frame, an epoch, a step or a
+    sample that there is not, and where too few flights make a cloud.
     """
     if frame not in FRAMES:
         raise ValueError(f"frame is {frame!r}; allowed: {', '.join(FRAMES)}")
@@ -54,23 +61,44 @@ def write_ephemerides(
         "All touchdowns are at the epoch of the frame"
         + (", which stands for no date: none was given." if epoch is None else "."),
     ]
-    files = {"flight_mean": [_cloud(flown, name, frame, step)]}
-    for sample, segment in _paths(chosen, name, frame, step):
+    _warn_of_size(flown, chosen, step)
+    files = {"flight_mean": [_cloud(flown, name, frame, step, progress)]}
+    for sample, segment in _paths(chosen, name, frame, step, progress):
         files.setdefault(f"flight_{sample}", []).append(segment)
-    written = [folder / f"{file}.oem" for file in files]
-    for path, segments in zip(written, files.values(), strict=True):
-        write_oem(path, segments, start, comments)
-    return written
+    written = {file: folder / f"{file}.oem" for file in flight_names(samples)}
+    for file, path in written.items():
+        progress(1.0, f"writing {path.name}")
+        write_oem(path, files[file], start, comments)
+    return list(written.values())
 
 
-def _paths(chosen: Flown, name: str, frame: str, step: float) -> Iterator[tuple[int, Segment]]:
+def flight_names(samples: Sequence[int]) -> list[str]:
+    """Names of the files for chosen samples, without their ending."""
+    return ["flight_mean", *(f"flight_{sample}" for sample in dict.fromkeys(samples))]
+
+
+def _warn_of_size(flown: Flown, chosen: Flown, step: float) -> None:
+    """Say so where the files get large: lines of states, and for each mean the six of a covariance."""
+    means, states = float(flown.end_time.max()) / step, float(chosen.end_time.sum()) / step
+    size = means * (BYTES_OF_STATE + BYTES_OF_COVARIANCE) + states * BYTES_OF_STATE
+    if size > LARGE:
+        log.warning(
+            "The files will have some %.2g states and %.2g MB; a longer --step makes fewer.",
+            means + states,
+            1e-6 * size,
+        )
+
+
+def _paths(
+    chosen: Flown, name: str, frame: str, step: float, progress: Callable[[float, str], None]
+) -> Iterator[tuple[int, Segment]]:
     """The sample and the segment of each flight, from its beginning to its end, those of a sample in order."""
     keys = _keys(chosen)
     ends = _states(chosen, chosen.end_time, *chosen.ends(), frame) if keys else np.empty((0, 6))
     last = dict(zip(keys, chosen.end_time.tolist(), strict=True))
     times: dict[tuple[int, int], list[float]] = {key: [] for key in keys}
     states: dict[tuple[int, int], list[NDArray[np.float64]]] = {key: [] for key in keys}
-    for aloft in _epochs(chosen, step, fewest=1):
+    for aloft in _epochs(chosen, step, 1, progress, "flights of the chosen samples"):
         for key, state in zip(_keys(aloft), _here(aloft, frame), strict=True):
             # The end is a state of its own, which must not stand twice.
             if last[key] - aloft.time > RESOLUTION:
@@ -102,14 +130,14 @@ def _path_sentence(sample: int, arc: int, count: int) -> str:
     return f"Flight {arc + 1} of {count} that are known of sample {sample}; its last state is its end{words}."
 
 
-def _cloud(flown: Flown, name: str, frame: str, step: float) -> Segment:
+def _cloud(flown: Flown, name: str, frame: str, step: float, progress: Callable[[float, str], None]) -> Segment:
     """Mean and covariance of the flights that last, as long as there are enough of them."""
     if len(flown.sample) < FEWEST:
         raise ValueError(
             f"{len(flown.sample)} samples of the study fly; their covariance needs {FEWEST}: raise flight.flight_count"
         )
     times, means, covariances, counts = [], [], [], []
-    for aloft in _epochs(flown, step, FEWEST):
+    for aloft in _epochs(flown, step, FEWEST, progress, "mean of all flights"):
         state = _here(aloft, frame)
         times.append(aloft.time)
         means.append(state.mean(axis=0))
@@ -126,10 +154,14 @@ def _cloud(flown: Flown, name: str, frame: str, step: float) -> Segment:
     )
 
 
-def _epochs(flown: Flown, step: float, fewest: int) -> Iterator[Flown]:
+def _epochs(
+    flown: Flown, step: float, fewest: int, progress: Callable[[float, str], None], what: str
+) -> Iterator[Flown]:
     """The flights that last at each step [s], as long as there are enough of them."""
-    number = 0
+    number, ends = 0, np.sort(flown.end_time)
+    last = float(ends[-fewest]) if len(ends) >= fewest else 0.0
     while len(flown.sample) >= fewest:
+        progress(min(flown.time / last, 1.0) if last > 0.0 else 1.0, what)
         yield flown
         number += 1
         flown = flown.at(number * step)

@@ -4,13 +4,15 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from lithobrake.export.ephemerides import write_ephemerides
+from lithobrake.atomic import refuse_existing
+from lithobrake.export.ephemerides import flight_names, write_ephemerides
 from lithobrake.export.facet_table import write_facet_csv, write_facet_fits
-from lithobrake.export.geojson import write_geojson
+from lithobrake.export.geojson import write_geojson, write_rest_geojson
 from lithobrake.export.geotiff import RESOLUTION_DEG, write_geotiff
-from lithobrake.export.motions import named_landing, write_motions, write_sheet
+from lithobrake.export.motions import named_landing
 from lithobrake.export.plate_text import write_plates
 from lithobrake.results import StudyResults
+from lithobrake.view import contact_sheet, write_vtkhdf
 
 
 @dataclass(frozen=True)
@@ -18,7 +20,8 @@ class ExportOptions:
     """What a user may choose of the files; the defaults are those of the functions that write them.
 
     run: whose landing is made again, by its row in `runs`, its key, or how that begins; None: the one that the study
-    keeps. progress: told the fraction that is done of such a landing, and what is being done.
+    keeps. replaces: write over files that exist. progress: told the fraction that is done of such a landing, or of the
+    flights, and what is being done.
     """
 
     samples: Sequence[int] = ()
@@ -27,51 +30,74 @@ class ExportOptions:
     step: float | None = None
     resolution_deg: float = RESOLUTION_DEG
     run: str | int | None = None
+    replaces: bool = False
     progress: Callable[[float, str], None] = lambda fraction, what: None
 
 
-def _oem(results: StudyResults, folder: Path, chosen: ExportOptions) -> list[Path]:
-    return write_ephemerides(results, folder, chosen.samples, frame=chosen.frame, epoch=chosen.epoch, step=chosen.step)
+@dataclass(frozen=True)
+class Kind:
+    """A kind of export: the names of its files, in order, and what writes them at paths of these names."""
+
+    names: Callable[[StudyResults, ExportOptions], list[str]]
+    write: Callable[[StudyResults, Path, ExportOptions], None]
 
 
-def _plates(results: StudyResults, folder: Path, chosen: ExportOptions) -> list[Path]:
-    write_plates(results, folder / "body.plates.txt")
-    return [folder / "body.plates.txt"]
+def _oem(results: StudyResults, folder: Path, chosen: ExportOptions) -> None:
+    write_ephemerides(
+        *(results, folder, chosen.samples),
+        frame=chosen.frame,
+        epoch=chosen.epoch,
+        step=chosen.step,
+        progress=chosen.progress,
+    )
 
 
-def _facets(results: StudyResults, folder: Path, chosen: ExportOptions) -> list[Path]:
+def _facets(results: StudyResults, folder: Path, chosen: ExportOptions) -> None:
     write_facet_csv(results, folder / "facets.csv")
     write_facet_fits(results, folder / "facets.fits")
-    return [folder / "facets.csv", folder / "facets.fits"]
 
 
-def _geotiff(results: StudyResults, folder: Path, chosen: ExportOptions) -> list[Path]:
-    write_geotiff(results, folder / "impacts.tif", resolution_deg=chosen.resolution_deg)
-    return [folder / "impacts.tif"]
+def _geojson(results: StudyResults, folder: Path, chosen: ExportOptions) -> None:
+    write_geojson(results, folder / IMPACTS)
+    if _has_rest(results):
+        write_rest_geojson(results, folder / REST)
 
 
-def _geojson(results: StudyResults, folder: Path, chosen: ExportOptions) -> list[Path]:
-    write_geojson(results, folder / "impacts.geojson")
-    return [folder / "impacts.geojson"]
+def _has_rest(results: StudyResults) -> bool:
+    return (results.folder / "rest.csv").is_file()
 
 
-def _vtkhdf(results: StudyResults, folder: Path, chosen: ExportOptions) -> list[Path]:
-    landing, name = named_landing(results, chosen.run, chosen.progress)
-    return write_motions(results, folder, landing, name)
+def _landing_name(chosen: ExportOptions) -> str:
+    return "landing" if chosen.run is None else f"landing_{chosen.run}"
 
 
-def _sheet(results: StudyResults, folder: Path, chosen: ExportOptions) -> list[Path]:
-    return [write_sheet(folder, *named_landing(results, chosen.run, chosen.progress))]
+def _vtkhdf(results: StudyResults, folder: Path, chosen: ExportOptions) -> None:
+    # Of the other beds a study keeps no pictures.
+    write_vtkhdf(named_landing(results, chosen.run, chosen.progress), folder / f"{_landing_name(chosen)}.vtkhdf")
+    write_vtkhdf(results.bed_bodies(0), folder / "bed_0.vtkhdf")
 
 
-KINDS: dict[str, Callable[[StudyResults, Path, ExportOptions], list[Path]]] = {
-    "oem": _oem,
-    "plates": _plates,
-    "facets": _facets,
-    "geotiff": _geotiff,
-    "geojson": _geojson,
-    "vtkhdf": _vtkhdf,
-    "sheet": _sheet,
+def _sheet(results: StudyResults, folder: Path, chosen: ExportOptions) -> None:
+    contact_sheet(named_landing(results, chosen.run, chosen.progress), folder / f"{_landing_name(chosen)}.png")
+
+
+IMPACTS, REST = "impacts.geojson", "rest.geojson"
+KINDS = {
+    "oem": Kind(lambda results, chosen: [f"{name}.oem" for name in flight_names(chosen.samples)], _oem),
+    "plates": Kind(
+        lambda results, chosen: ["body.plates.txt"],
+        lambda results, folder, chosen: write_plates(results, folder / "body.plates.txt"),
+    ),
+    "facets": Kind(lambda results, chosen: ["facets.csv", "facets.fits"], _facets),
+    "geotiff": Kind(
+        lambda results, chosen: ["impacts.tif"],
+        lambda results, folder, chosen: write_geotiff(
+            results, folder / "impacts.tif", resolution_deg=chosen.resolution_deg
+        ),
+    ),
+    "geojson": Kind(lambda results, chosen: [IMPACTS, *([REST] if _has_rest(results) else [])], _geojson),
+    "vtkhdf": Kind(lambda results, chosen: [f"{_landing_name(chosen)}.vtkhdf", "bed_0.vtkhdf"], _vtkhdf),
+    "sheet": Kind(lambda results, chosen: [f"{_landing_name(chosen)}.png"], _sheet),
 }
 
 
@@ -80,11 +106,20 @@ def export_study(
 ) -> list[Path]:
     """Write files of these kinds into a folder, which is made where there is none, and give their paths.
 
-    Raises ValueError for a kind that there is not, and for what the writer of a file refuses.
+    Raises ValueError for a kind that there is not, for a file that exists, unless the choices say that it is replaced,
+    and for what the writer of a file refuses.
     """
     unknown = [kind for kind in kinds if kind not in KINDS]
     if unknown or not kinds:
         raise ValueError(f"to is {', '.join(unknown) or 'not given'}; allowed: {', '.join(KINDS)}; give one or more")
-    folder.mkdir(parents=True, exist_ok=True)
-    chosen = choices or ExportOptions()
-    return [path for kind in dict.fromkeys(kinds) for path in KINDS[kind](results, folder, chosen)]
+    chosen, asked = choices or ExportOptions(), [KINDS[kind] for kind in dict.fromkeys(kinds)]
+    paths = [folder / name for kind in asked for name in kind.names(results, chosen)]
+    if not chosen.replaces:
+        refuse_existing(paths, "choose another folder with --out, or replace what exists with --force")
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise ValueError(f"{folder} is no folder and cannot become one ({error.strerror}); choose another") from error
+    for kind in asked:
+        kind.write(results, folder, chosen)
+    return paths

@@ -19,20 +19,26 @@ if TYPE_CHECKING:
 # Tags of the file.
 PIXEL_SCALE, TIE_POINT, KEYS, DOUBLES, TEXTS, GDAL_METADATA = 33550, 33922, 34735, 34736, 34737, 42112
 USER_DEFINED, GEOGRAPHIC, PIXEL_IS_AREA, DEGREE = 32767, 2, 1, 9102
-RESOLUTION_DEG = 1.0
+GDAL_NODATA = 42113
+# Finer cells than the second would take gigabytes of memory, and are smaller than what any study knows of a place.
+RESOLUTION_DEG, FINEST_DEG = 1.0, 0.05
+BAND, BAND_UNIT = "impact density", "1/m2"
 
 
 def write_geotiff(results: StudyResults, path: Path, *, resolution_deg: float = RESOLUTION_DEG) -> None:
     """Write which share of all flights ends in each cell of latitude and longitude, over the cell's area [1/m2].
 
-    resolution_deg   edge of a cell; it has to divide 180
+    resolution_deg   edge of a cell, at least 0.05 (26 million cells, a file of 104 MB); it has to divide 180
     The sum of values times areas of the cells, on the sphere of the file, is the share of flights that end on the body.
     """
     from PIL import Image
 
-    cells = round(180.0 / resolution_deg) if resolution_deg > 0.0 else 0
-    if not (1 <= cells <= 18_000 and abs(cells * resolution_deg - 180.0) < 1e-9):
-        raise ValueError(f"resolution_deg is {resolution_deg}; allowed: 0.01 to 180, a whole part of 180")
+    # What is far too fine has more cells than there are numbers.
+    cells = round(180.0 / resolution_deg) if resolution_deg > 0.5 * FINEST_DEG else 0
+    if not (1 <= cells <= round(180.0 / FINEST_DEG) and abs(cells * resolution_deg - 180.0) < 1e-9):
+        raise ValueError(
+            f"resolution is {resolution_deg} deg; allowed: {FINEST_DEG} to 180 deg, a whole part of 180 deg"
+        )
     frame = MapFrame.of(results)
     image = Image.fromarray(impact_density(results, frame.radius, cells).astype(np.float32))
     with atomic_path(path) as draft:
@@ -65,8 +71,13 @@ def _tags(frame: MapFrame, resolution_deg: float) -> "ImageFileDirectory_v2":
         (2049, TEXTS, len(citation), 0), (2050, 0, 1, USER_DEFINED), (2051, 0, 1, USER_DEFINED), (2054, 0, 1, DEGREE),
         (2056, 0, 1, USER_DEFINED), (2057, DOUBLES, 1, 0), (2058, DOUBLES, 1, 1), (2061, DOUBLES, 1, 2),
     ]  # fmt: skip
-    items = {"QUANTITY": "share of all flights that end in the cell, over its area", "UNIT": "1/m2", "FRAME": WORDS}
+    quantity = "share of all flights that end in the cell, over its area"
+    items = {"QUANTITY": quantity, "UNIT": BAND_UNIT, "FRAME": WORDS}
     metadata = "".join(f'<Item name="{name}">{words}</Item>' for name, words in items.items())
+    of_band = {"DESCRIPTION": BAND, "UNITTYPE": BAND_UNIT}
+    metadata += "".join(
+        f'<Item name="{name}" sample="0" role="{name.lower()}">{words}</Item>' for name, words in of_band.items()
+    )
     tags = ImageFileDirectory_v2()
     values = {
         PIXEL_SCALE: (12, (resolution_deg, resolution_deg, 0.0)),
@@ -75,6 +86,8 @@ def _tags(frame: MapFrame, resolution_deg: float) -> "ImageFileDirectory_v2":
         DOUBLES: (12, doubles),
         TEXTS: (2, citation),
         GDAL_METADATA: (2, f"<GDALMetadata>{metadata}</GDALMetadata>"),
+        # Every cell has a value, 0 where no flight ends.
+        GDAL_NODATA: (2, "nan"),
     }
     for tag, (kind, value) in values.items():
         tags.tagtype[tag] = kind

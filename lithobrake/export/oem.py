@@ -17,6 +17,8 @@ from lithobrake.atomic import atomic_path
 VERSION = "2.0"
 # Of a line; the standard allows 254 characters.
 LINE = 100
+# Of an epoch.
+YEARS = (1900, 2999)
 
 
 @dataclass(frozen=True)
@@ -41,11 +43,15 @@ class Segment:
 
 
 def parsed_epoch(text: str) -> datetime:
-    """The epoch [UTC] of a text like 2026-11-22T12:00:00. Raises ValueError for another."""
+    """The epoch [UTC] of a text like 2026-11-22T12:00:00. Raises ValueError for another, or another time of history."""
+    allowed = f"allowed: a UTC date and time of the years {YEARS[0]} to {YEARS[1]} such as 2026-11-22T12:00:00"
     try:
         found = datetime.fromisoformat(text)
     except ValueError as error:
-        raise ValueError(f"epoch is {text!r}; allowed: a UTC date and time such as 2026-11-22T12:00:00") from error
+        raise ValueError(f"epoch is {text!r}; {allowed}") from error
+    # Before it is moved to UTC, or a flight is added: neither has room at the ends of the calendar.
+    if not YEARS[0] <= found.year <= YEARS[1]:
+        raise ValueError(f"epoch is {text!r}; {allowed}")
     return found.replace(tzinfo=None) if found.tzinfo is None else found.astimezone(UTC).replace(tzinfo=None)
 
 

@@ -13,14 +13,15 @@ from contextlib import AbstractContextManager
 from dataclasses import replace
 from enum import StrEnum
 from pathlib import Path
+from tempfile import TemporaryFile
 from typing import Any
 
 from lithobrake.atomic import atomic_path, locked
 from lithobrake.hashing import content_hash
 from lithobrake.pipeline.notes import Notes
 from lithobrake.reading import DamagedFileError, read_json
+from lithobrake.results.intact import LOCK
 
-LOCK = ".lock"
 # Files are looked at before they are read, so this is said where one changed within the moment between.
 AGAIN = "give the same command again, and it is made anew"
 
@@ -56,9 +57,9 @@ class StudyFolder:
         self.path = path
         try:
             path.mkdir(parents=True, exist_ok=True)
-            probe = path / ".writable"
-            probe.touch()
-            probe.unlink()
+            # Of a name that nothing else has, if it gets one at all.
+            with TemporaryFile(dir=path):
+                pass
         except OSError as error:
             raise ValueError(f"{path} cannot be written ({error}); {remedy}") from error
 

@@ -32,6 +32,7 @@ from lithobrake.pipeline.folder import StudyFolder
 from lithobrake.pipeline.notes import REMEDY
 from lithobrake.pipeline.site import with_site_gravity
 from lithobrake.reading import DamagedFileError, read_json, read_table
+from lithobrake.results.intact import STUDY_FILE, intact_file
 from lithobrake.study import Study, StudySource
 from lithobrake.study.unit_factors import conversion
 from lithobrake.study.units import input_units, run_units
@@ -56,18 +57,18 @@ class InferredStudy:
 
     @classmethod
     def open(cls, path: Path) -> "InferredStudy":
-        """Read a study's folder. Raises ValueError where it has no emulator."""
+        """Read a study's folder. Raises ValueError where it has no emulator, and for a file that was edited since."""
         from lithobrake.emulator import load
 
         folder = StudyFolder.only_read(path)
         if not (folder / EMULATOR).is_file():
             raise ValueError(f"{path} has no {EMULATOR}; run a drawn study there first (design.method = sequence)")
-        source = StudySource.read(folder / "study.toml")
+        source = StudySource.read(intact_file(path, STUDY_FILE, REMEDY))
         study = with_site_gravity(source.study, source.name)
         # The file does not say that a Python function made the touchdowns; then there are no beds.
-        if not all((folder / name).is_file() for name in bed_files(study)):
+        if not all(intact_file(path, name, REMEDY).is_file() for name in bed_files(study)):
             study = study.with_function("of the folder's runs")
-        model = load(folder / EMULATOR)
+        model = load(intact_file(path, EMULATOR, REMEDY))
         _refuse_unbounded(folder / EMULATOR, model)
         return cls(study, folder, model)
 

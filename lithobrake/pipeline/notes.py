@@ -16,8 +16,9 @@ from typing import Any
 
 from lithobrake.atomic import atomic_path
 from lithobrake.reading import NUMBER, check, read_json, reading
+from lithobrake.results.intact import KEYS
 
-NAME = "keys.json"
+NAME = KEYS
 FORMAT_VERSION = 2
 REMEDY = "have the files of this folder made again with: lithobrake run STUDY.toml --out DIR"
 _FORM = {

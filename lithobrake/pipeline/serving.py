@@ -15,10 +15,12 @@ from lithobrake.pipeline.drawn_landings import DrawnLandings
 from lithobrake.pipeline.energy_bound import energy_bound, height_of_beds
 from lithobrake.pipeline.flights import partner_time
 from lithobrake.pipeline.folder import StudyFolder
+from lithobrake.pipeline.notes import REMEDY
 from lithobrake.pipeline.outgoing import VELOCITY
 from lithobrake.pipeline.site import SITE_KEYS, frames, site_body, site_medians, with_site_gravity
 from lithobrake.pipeline.solver import LANDING
 from lithobrake.pipeline.touchdown_runs import model_of
+from lithobrake.results.intact import intact_file
 from lithobrake.serve import ServedModel
 from lithobrake.study import Study, StudyError, StudySource, fixed_study
 from lithobrake.study.quantity import is_number
@@ -83,7 +85,7 @@ class ServedStudy:
     def _emulator(self) -> Any:
         from lithobrake.emulator import load
 
-        return load(self.folder / "emulator.json")
+        return load(intact_file(self.folder.path, "emulator.json", REMEDY))
 
     def emulated(self, point: list[float], config: Mapping[str, Any]) -> list[float]:
         """Draw a landing from the emulator. config: seed of the draw; inputs must be what the emulator was made for.

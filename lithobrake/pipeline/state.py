@@ -9,9 +9,7 @@ from pathlib import Path
 from lithobrake.hashing import content_hash
 from lithobrake.pipeline.folder import FileState, file_state
 from lithobrake.pipeline.notes import NAME, Notes
-
-# The copy of the study file is a file of no stage, and counts as one of its own.
-STUDY_FILE = "study.toml"
+from lithobrake.results.intact import STUDY_FILE
 
 
 @dataclass(frozen=True)
@@ -98,10 +96,10 @@ def _state_of_copy(path: Path, sha256: str) -> FileState:
 
 
 def _differs(file: Path, sha256: str) -> bool:
-    """Tell whether a file has other bytes; one that cannot be read does not tell."""
+    """Tell whether a file has other bytes; one that cannot be read, or has no end, does not tell."""
     # Whoever may look at a folder may not be allowed to see the study file, or be on another machine.
     with suppress(OSError):
-        return content_hash(file) != sha256
+        return file.is_file() and content_hash(file) != sha256
     return False
 
 

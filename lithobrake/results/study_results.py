@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from lithobrake.outputs import ARC, BEDS, DESIGNS, FLIGHT, RUN, SEQUENCE_DESIGNS, TOUCHDOWN, Quantity, quantity
 from lithobrake.reading import NUMBER, DamagedFileError, read_json, read_rows, reading
+from lithobrake.results.intact import KEYS, STUDY_FILE, intact_file
 
 if TYPE_CHECKING:
     import numpy as np
@@ -55,8 +56,8 @@ class StudyResults:
     """What came out of a study; every table says of its columns what they are.
 
     Nothing is written: it works on a folder that may only be read, on an archived copy, and beside a study that runs,
-    as far as that has come. Whatever is asked for raises ValueError, with what to do, where its file is damaged or not
-    there yet.
+    as far as that has come. Whatever is asked for raises ValueError, with what to do, where its file is damaged, was
+    edited after it was made, or is not there yet.
     """
 
     # What is light here stays light: a second terminal looks at a running study every few seconds.
@@ -64,14 +65,14 @@ class StudyResults:
     def __init__(self, folder: str | os.PathLike[str]) -> None:
         """Look at a study's folder. Raises ValueError when it is none."""
         self.folder = Path(folder)
-        if not any((self.folder / name).is_file() for name in ("summary.json", "keys.json", "runs.sqlite")):
+        if not any((self.folder / name).is_file() for name in ("summary.json", KEYS, "runs.sqlite")):
             raise ValueError(f"{self.folder} holds no results of a study; name the folder of one that ran")
         self.remedy = f"make it again with: lithobrake run STUDY.toml --out {shlex.quote(str(self.folder))}"
 
     @cached_property
     def summary(self) -> dict[str, Any]:
         """summary.json: the tables "study", "results" and "provenance" (docs/summary.md has every key)."""
-        path, tables = self.folder / "summary.json", dict.fromkeys(("study", "results", "provenance"), dict)
+        path, tables = self._file("summary.json"), dict.fromkeys(("study", "results", "provenance"), dict)
         content: dict[str, Any] = read_json(path, {"format_version": int, **tables}, self.remedy)
         if content["format_version"] != SUMMARY_FORMAT:
             raise DamagedFileError(
@@ -88,8 +89,9 @@ class StudyResults:
     @cached_property
     def study_text(self) -> str:
         """The study file as it was written."""
-        with reading(self.folder / "study.toml", self.remedy):
-            return (self.folder / "study.toml").read_text(encoding="utf-8")
+        path = self._file(STUDY_FILE)
+        with reading(path, self.remedy):
+            return path.read_text(encoding="utf-8")
 
     @property
     def headline(self) -> list[str]:
@@ -120,7 +122,7 @@ class StudyResults:
         A drawn study has those of its emulator in `emulator.model.scores`.
         """
         self._refuse_drawn("scores", "errors of expansions")
-        content: dict[str, Any] = read_json(self.folder / "scores.json", {str: {str: _SCORE}}, self.remedy)
+        content: dict[str, Any] = read_json(self._file("scores.json"), {str: {str: _SCORE}}, self.remedy)
         return content
 
     @cached_property
@@ -128,7 +130,9 @@ class StudyResults:
         """What `lithobrake rare` found of each limit state it was asked for, by name (docs/reliability.md)."""
         files = sorted(self.folder.glob("rare_*.json"))
         return {
-            path.stem.removeprefix("rare_"): read_json(path, _RARE, "make it again with: lithobrake rare")
+            path.stem.removeprefix("rare_"): read_json(
+                self._file(path.name), _RARE, "make it again with: lithobrake rare"
+            )
             for path in files
         }
 
@@ -138,7 +142,7 @@ class StudyResults:
         import h5py
         import numpy as np
 
-        path = self.folder / "samples.h5"
+        path = self._file("samples.h5")
         with reading(path, self.remedy), h5py.File(path, "r") as file:
             names = [str(name) for name in file.attrs["outcomes"]]
             outcome = np.array(names)[file["outcome"][:]]
@@ -159,7 +163,7 @@ class StudyResults:
         """Places on the first flights' ways [m], shape [path_count, place_count, 3], body-fixed; how each ended."""
         import h5py
 
-        path = self.folder / "flight_paths.h5"
+        path = self._file("flight_paths.h5")
         with reading(path, self.remedy), h5py.File(path, "r") as file:
             return file["position"][:], tuple(map(str, file.attrs["status"]))
 
@@ -238,8 +242,9 @@ class StudyResults:
         """Vertices of the body [m], shape [vertex_count, 3], body-fixed, and its faces, from 0, [face_count, 3]."""
         import numpy as np
 
-        with reading(self.folder / "body.obj", self.remedy):
-            lines = [line.split() for line in (self.folder / "body.obj").read_text(encoding="utf-8").splitlines()]
+        path = self._file("body.obj")
+        with reading(path, self.remedy):
+            lines = [words for line in path.read_text(encoding="utf-8").splitlines() if (words := line.split())]
             vertices = np.array([[float(word) for word in words[1:4]] for words in lines if words[0] == "v"])
             faces = np.array([[int(word) - 1 for word in words[1:4]] for words in lines if words[0] == "f"])
             if vertices.ndim != 2 or faces.ndim != 2 or not 0 <= faces.min() <= faces.max() < len(vertices):
@@ -252,8 +257,9 @@ class StudyResults:
         from lithobrake.results.named_surrogate import NamedSurrogate
 
         self._refuse_drawn("surrogate", "an expansion")
-        with reading(self.folder / "refined.json", self.remedy):
-            return NamedSurrogate.read(self.folder / "refined.json")
+        path = self._file("refined.json")
+        with reading(path, self.remedy):
+            return NamedSurrogate.read(path)
 
     @cached_property
     def emulator(self) -> "NamedEmulator":
@@ -261,15 +267,16 @@ class StudyResults:
         from lithobrake.emulator import load
         from lithobrake.results.named_emulator import NamedEmulator
 
-        with reading(self.folder / "emulator.json", self.remedy):
-            return NamedEmulator(load(self.folder / "emulator.json"), self._units, lambda: self.explorer.bound)
+        path = self._file("emulator.json")
+        with reading(path, self.remedy):
+            return NamedEmulator(load(path), self._units, lambda: self.explorer.bound)
 
     @cached_property
     def explorer(self) -> "ExplorerTables":
         """The refits of the emulator or expansion as plain tables, for programs in other languages."""
         from lithobrake.results.explorer_tables import ExplorerTables
 
-        return ExplorerTables.read(self.folder / "explorer.h5", self.remedy)
+        return ExplorerTables.read(self._file("explorer.h5"), self.remedy)
 
     @cached_property
     def run_flights(self) -> "Table":
@@ -290,12 +297,18 @@ class StudyResults:
     def _designs(self) -> dict[str, str]:
         """The files of the study's designs, by their names; a folder may also have those of an earlier method."""
         found = {design: f"designs/{design}.csv" for design in (*DESIGNS, *SEQUENCE_DESIGNS)}
-        if (self.folder / "keys.json").is_file():
-            # An early format notes no stages, and knows of one method only.
-            noted = read_json(self.folder / "keys.json", dict, self.remedy).get("stages", {})
-            asked = {file for stage in noted.values() for file in stage["files"]}
-            found = {design: name for design, name in found.items() if name in asked or not noted}
+        # An early format notes no stages, and knows of one method only.
+        asked = self._noted_files()
+        found = {design: name for design, name in found.items() if name in asked or not asked}
         return {design: name for design, name in found.items() if (self.folder / name).is_file()}
+
+    def _noted_files(self) -> set[str]:
+        """The files that the stages of the study make; none where the folder does not note them."""
+        if not (self.folder / KEYS).is_file():
+            return set()
+        noted = read_json(self.folder / KEYS, dict, self.remedy)
+        with reading(self.folder / KEYS, self.remedy):
+            return {file for stage in noted.get("stages", {}).values() for file in stage["files"]}
 
     def _key(self, run: str | int) -> str:
         """The key of a run of the study. Raises ValueError where it has none, or several that begin like that."""
@@ -308,14 +321,27 @@ class StudyResults:
             )
         return found[0]
 
+    def _file(self, name: str) -> Path:
+        """The path of a file of the folder, there or not. Raises ValueError for one that changed after it was made."""
+        return intact_file(self.folder, name, self.remedy)
+
     def _bodies(self, name: str) -> "MovingBodies":
         from lithobrake.results.moving_bodies import MovingBodies
 
-        return MovingBodies.read(self.folder / name, self.remedy)
+        path, made = self._file(name), self._noted_files()
+        if made and name not in made and not path.exists():
+            beds = sum(file.startswith("beds/") for file in made)
+            reason = (
+                f"its beds have the numbers 0 to {beds - 1}"
+                if beds
+                else "a program or function of its own makes its touchdowns; ask that program for its frames"
+            )
+            raise ValueError(f"{path} is not there, and no stage of this study makes it: {reason}")
+        return MovingBodies.read(path, self.remedy)
 
     def _rows(self, name: str, columns: Sequence[str]) -> list[dict[str, Any]]:
         """The rows of a CSV file, numbers as numbers; columns: that it has to have."""
-        path = self.folder / name
+        path = self._file(name)
         with reading(path, self.remedy):
             return [
                 {title: cell if title in _WORDS else float(cell or "nan") for title, cell in row.items()}
@@ -338,7 +364,12 @@ class StudyResults:
 
     def __repr__(self) -> str:
         """Say where they are, and the answer."""
-        answer = self.summary["results"]["answer"][0] if (self.folder / "summary.json").is_file() else "not at its end"
+        answer = "not at its end"
+        if (self.folder / "summary.json").is_file():
+            # A notebook shows this unasked, whatever has become of the summary.
+            given = self.summary.get("results")
+            sentences = given.get("answer") if isinstance(given, dict) else None
+            answer = sentences[0] if isinstance(sentences, list) and sentences else "no answer in the summary"
         return f"StudyResults of {self.folder}: {answer}"
 
     def _repr_html_(self) -> str:

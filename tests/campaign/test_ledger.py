@@ -25,6 +25,8 @@ from lithobrake.campaign import (
 )
 from lithobrake.campaign.record import lock_path
 
+from ..ledger_rows import edit_rows
+
 X = np.array([[1.0, 0.5], [2.0, 0.5], [3.0, 0.5]])
 
 
@@ -88,11 +90,62 @@ def test_what_was_queued_and_never_ended_is_forgotten_by_the_next_campaign(tmp_p
     assert {entry.inputs["a"] for entry in read_records(path)} == {1.0, 2.0, 3.0}
 
 
+@pytest.mark.parametrize(
+    "change",
+    [
+        "outputs = json_set(outputs, '$.height', 9.0)", "inputs = json_set(inputs, '$.a', 9.0)", "outcome = 'captured'",
+        "status = 'failed'", "status = 'lost'", "seed = seed + 1", "outputs = '{'", "outputs = x'00'", "sha256 = NULL",
+        "wall_s = 9.0",
+    ],
+)  # fmt: skip
+def test_an_edited_row_is_named_left_out_and_made_again(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture, change: str
+) -> None:
+    path = tmp_path / "runs.sqlite"
+    fill(path, models.parabola)
+    before = {entry.key: entry for entry in read_records(path)}
+    (key,) = [entry.key for entry in before.values() if entry.inputs["a"] == 2.0]
+    with sqlite3.connect(path) as database:
+        database.execute(f"UPDATE runs SET {change} WHERE key = ?", [key])
+    database.close()
+    assert [entry.inputs["a"] for entry in read_records(path)] == [1.0, 3.0]
+    words = f"{path} has 1 row that changed after the run was made (key {key}): left out here, and made again"
+    assert caplog.messages[0].startswith(words)
+    with Ledger(path) as ledger, LocalExecutor(1) as executor:
+        runs = run(models.parabola, X, names=("a", "b"), ledger=ledger, executor=executor, context={"version": "7"})
+    assert runs.reused_count == 2
+    after = {entry.key: entry for entry in read_records(path)}
+    assert {one.key: (one.inputs, one.outputs, one.seed, one.outcome) for one in after.values()} == {
+        one.key: (one.inputs, one.outputs, one.seed, one.outcome) for one in before.values()
+    }
+
+
+def test_a_ledger_without_hashes_is_taken_as_it_stands_and_gets_them(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    path = tmp_path / "runs.sqlite"
+    fill(path, models.parabola)
+    before = read_records(path)
+    with sqlite3.connect(path) as database:
+        database.execute("ALTER TABLE runs DROP COLUMN sha256")
+        database.execute("PRAGMA user_version = 2")
+    database.close()
+    assert read_records(path) == before
+    Ledger(path).close()
+    assert read_records(path) == before
+    assert caplog.messages == []
+    with sqlite3.connect(path) as database:
+        assert database.execute("PRAGMA user_version").fetchone() == (3,)
+        database.execute("UPDATE runs SET outcome = 'captured'")
+    database.close()
+    assert read_records(path) == []
+
+
 def test_a_ledger_of_the_first_format_keeps_its_runs(tmp_path: Path) -> None:
     path = tmp_path / "runs.sqlite"
     fill(path)
     with sqlite3.connect(path) as database:
-        for column in ("attempts", "started"):
+        for column in ("attempts", "started", "sha256"):
             database.execute(f"ALTER TABLE runs DROP COLUMN {column}")
         database.execute("PRAGMA user_version = 1")
     database.close()
@@ -109,9 +162,7 @@ def test_a_row_has_one_of_four_statuses(tmp_path: Path) -> None:
     path = tmp_path / "runs.sqlite"
     fill(path)
     assert all(entry.status is RunStatus.DONE for entry in read_records(path))
-    with sqlite3.connect(path) as database:
-        database.execute("UPDATE runs SET status = 'lost' WHERE json_extract(inputs, '$.a') = 2.0")
-    database.close()
+    edit_rows(path, "status = 'lost' WHERE json_extract(inputs, '$.a') = 2.0")
     with pytest.raises(ValueError, match=r"status is 'lost'; allowed: queued, running, done, failed"):
         read_records(path)
 

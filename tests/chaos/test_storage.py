@@ -160,3 +160,10 @@ def test_parts_of_a_file_that_do_not_belong_together_are_refused(tmp_path):
     path.write_text(json.dumps(whole))
     with pytest.raises(ValueError, match="not the germs"):
         load_dependent(path)
+
+
+def test_a_folder_is_refused_in_one_sentence(tmp_path):
+    with pytest.raises(ValueError, match="is no regular file: give a file that save wrote"):
+        load(tmp_path)
+    with pytest.raises(ValueError, match="is a folder; name a file"):
+        load(VERSION_1).save(tmp_path)

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from lithobrake.export import write_ephemerides
+from lithobrake.export import ephemerides, write_ephemerides
 from lithobrake.export.flown import Flown
 from lithobrake.results import StudyResults
 
@@ -121,6 +121,8 @@ def test_a_file_without_an_epoch_says_so(results: StudyResults, tmp_path: Path) 
         ({"samples": [10**6]}, "sample 1000000 has no flight"),
         ({"frame": "icrf"}, "allowed: inertial, fixed"),
         ({"epoch": "noon"}, "such as 2026-11-22T12:00:00"),
+        ({"epoch": "9999-12-31T23:59:59"}, "of the years 1900 to 2999"),
+        ({"epoch": "0001-01-01T00:00:00+05:00"}, "of the years 1900 to 2999"),
         ({"step": 0.0}, "the longest flight"),
     ],
 )
@@ -130,3 +132,26 @@ def test_what_cannot_be_written_is_refused(
     with pytest.raises(ValueError, match=words):
         write_ephemerides(results, tmp_path, **wrong)  # type: ignore[arg-type]
     assert not list(tmp_path.iterdir())
+
+
+def test_progress_reaches_its_end_and_large_files_are_announced(
+    results: StudyResults, tmp_path: Path, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    sample = int(results.flights["sample"][0])
+    told: list[tuple[float, str]] = []
+    write_ephemerides(results, tmp_path, [sample], progress=lambda done, what: told.append((done, what)))
+    assert list(dict.fromkeys(what for _, what in told)) == [
+        "mean of all flights",
+        "flights of the chosen samples",
+        "writing flight_mean.oem",
+        f"writing flight_{sample}.oem",
+    ]
+    assert all(0.0 <= done <= 1.0 for done, _ in told)
+    assert caplog.messages == []
+    monkeypatch.setattr(ephemerides, "LARGE", 1000.0)
+    write_ephemerides(results, tmp_path, [sample])
+    (said,) = caplog.messages
+    assert said.endswith("a longer --step makes fewer.")
+    size, expected = sum(path.stat().st_size for path in tmp_path.iterdir()), float(said.split()[-7])
+    # Flights end one after the other, and the mean ends before the last of them does.
+    assert 0.4 * expected < 1e-6 * size < 1.2 * expected

@@ -3,6 +3,7 @@
 import json
 from pathlib import Path
 
+import pytest
 from typer.testing import CliRunner
 
 from lithobrake.cli import app
@@ -20,26 +21,66 @@ def test_each_kind_is_written_once(results: StudyResults, tmp_path: Path) -> Non
     found = RUNNER.invoke(app, ["export", str(results.folder), *kinds, "--flight", str(sample), "--out", str(tmp_path)])
     assert found.exit_code == 0, found.output
     written = ["flight_mean.oem", f"flight_{sample}.oem", "body.plates.txt", "facets.csv", "facets.fits"]
-    written += ["impacts.tif", "impacts.geojson"]
+    written += ["impacts.tif", "impacts.geojson", "rest.geojson"]
     assert sorted(path.name for path in tmp_path.iterdir()) == sorted(written)
-    assert found.output.splitlines() == [f"Wrote {tmp_path / name}" for name in written]
+    assert found.stdout.splitlines() == [f"Wrote {tmp_path / name}" for name in written]
 
 
 def test_the_files_stand_in_the_folder_of_the_study_unless_told_otherwise(results: StudyResults) -> None:
-    found = RUNNER.invoke(app, ["export", str(results.folder), "--to", "plates"])
+    found = RUNNER.invoke(app, ["export", str(results.folder), "--to", "plates", "--force"])
     assert found.exit_code == 0
     assert (results.folder / "export/body.plates.txt").is_file()
 
 
+@pytest.mark.parametrize(
+    ("kind", "name"),
+    [
+        ("oem", "flight_mean.oem"),
+        ("plates", "body.plates.txt"),
+        ("facets", "facets.fits"),
+        ("geotiff", "impacts.tif"),
+        ("geojson", "rest.geojson"),
+        ("vtkhdf", "bed_0.vtkhdf"),
+        ("sheet", "landing.png"),
+    ],
+)
+def test_a_file_of_the_user_is_replaced_only_when_told_to(
+    results: StudyResults, tmp_path: Path, kind: str, name: str
+) -> None:
+    (tmp_path / name).write_text("mine")
+    words = ["export", str(results.folder), "--to", "plates", "--to", kind, "--out", str(tmp_path)]
+    found = RUNNER.invoke(app, words)
+    assert (found.exit_code, found.stdout) == (2, "")
+    assert found.stderr.startswith(f"{tmp_path / name} exists; choose another folder with --out, or replace")
+    assert [path.name for path in tmp_path.iterdir()] == [name]
+    assert (tmp_path / name).read_text() == "mine"
+    if kind not in ("vtkhdf", "sheet"):
+        assert RUNNER.invoke(app, [*words, "--force"]).exit_code == 0
+        assert (tmp_path / name).read_bytes() != b"mine"
+
+
 def test_what_is_wrong_is_said_in_one_sentence(results: StudyResults, tmp_path: Path) -> None:
+    taken, film = tmp_path / "a file", tmp_path / "taken.mp4"
+    for path in (taken, film):
+        path.write_text("mine")
     for words, said in (
         (["export", str(results.folder), "--to", "kml"], "allowed: oem, plates, facets, geotiff, geojson"),
         (["export", str(tmp_path), "--to", "oem"], "holds no results of a study"),
+        (
+            ["export", str(results.folder), "--to", "oem", "--out", str(taken)],
+            f"{taken} is no folder and cannot become",
+        ),
+        (["export", str(results.folder), "--to", "vtkhdf", "--out", str(tmp_path)], "a program or function of its own"),
+        (["film", str(results.folder), "--out", str(tmp_path / "a.mp4")], "ask that program for its frames"),
+        (["film", str(results.folder), "--run", "²", "--out", str(tmp_path / "a.mp4")], "run is '²', which none of"),
+        (["film", str(results.folder), "--out", str(film)], f"{film} exists; choose another name with --out"),
+        (["view", str(results.folder), "--run", "5"], "--run 5 is given without --3d"),
     ):
         found = RUNNER.invoke(app, words)
         assert found.exit_code == 2
         assert said in found.stderr
         assert len(found.stderr.splitlines()) == 1
+        assert [path.read_text() for path in (taken, film)] == ["mine", "mine"]
 
 
 def test_a_program_is_told_of_runs_and_files_as_json(results: StudyResults, tmp_path: Path) -> None:

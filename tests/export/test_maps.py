@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from lithobrake.export import write_geojson, write_geotiff
+from lithobrake.export import write_geojson, write_geotiff, write_rest_geojson
 from lithobrake.export.map_frame import MapFrame
 from lithobrake.results import StudyResults
 
@@ -18,6 +18,8 @@ def test_cells_hold_the_share_of_the_flights_that_end_in_them(results: StudyResu
         density, crs, tags = file.read(1), file.crs, file.tags()
         assert tuple(file.bounds) == (-180.0, -90.0, 180.0, 90.0)
         assert file.tags()["AREA_OR_POINT"] == "Area"
+        assert (file.descriptions, file.units) == (("impact density",), ("1/m2",))
+        assert np.isnan(file.nodata)
         latitude, longitude = results.flights["latitude_deg"], results.flights["longitude_deg"]
         cells = {file.index(east, north) for north, east in zip(latitude, longitude, strict=True)}
     assert {tuple(cell) for cell in np.argwhere(density > 0.0).tolist()} == cells
@@ -54,7 +56,19 @@ def test_points_carry_what_the_flights_have_and_the_frame_of_the_body(results: S
     assert crs.to_dict()["R"] == pytest.approx(MapFrame.of(results).radius)
 
 
-@pytest.mark.parametrize("resolution", [0.0, -1.0, 0.7, float("nan")])
+def test_places_of_rest_are_those_of_the_journeys_that_settle(results: StudyResults, tmp_path: Path) -> None:
+    write_rest_geojson(results, tmp_path / "rest.geojson")
+    found = json.loads((tmp_path / "rest.geojson").read_text())
+    assert found["name"] == "places of rest on DIMORPHOS"
+    rows = [row for row, status in enumerate(results.rest["status"]) if status == "settled"]
+    assert [point["properties"]["sample"] for point in found["features"]] == results.rest["sample"][rows].tolist()
+    for row, point in zip(rows, found["features"], strict=True):
+        place = [results.rest["longitude_deg"][row], results.rest["latitude_deg"][row]]
+        assert point["geometry"]["coordinates"] == place
+        assert set(point["properties"]) == {"sample", "ground", "time_s", "rebounds", "path_length"}
+
+
+@pytest.mark.parametrize("resolution", [0.0, -1.0, 0.7, 1e-320, 0.01, float("nan")])
 def test_cells_that_do_not_fit_the_globe_are_refused(results: StudyResults, tmp_path: Path, resolution: float) -> None:
     with pytest.raises(ValueError, match="a whole part of 180"):
         write_geotiff(results, tmp_path / "map.tif", resolution_deg=resolution)

@@ -22,6 +22,7 @@ from lithobrake.pipeline.state import FolderState, StageState
 from lithobrake.pipeline.status import StudyStatus
 from lithobrake.results import open_study
 
+from ..ledger_rows import edit_rows
 from .ball_studies import FEW_RUNS, FEW_SAMPLES, edit, write_ball
 
 SMALL = (
@@ -149,9 +150,7 @@ def damage_hdf5(path: Path) -> None:
 
 
 def damage_cell(path: Path, cell: str) -> None:
-    with sqlite3.connect(path) as database:
-        database.execute("UPDATE runs SET outputs = ? WHERE key = (SELECT min(key) FROM runs)", [cell])
-    database.close()
+    edit_rows(path, "outputs = ? WHERE key = (SELECT min(key) FROM runs)", (cell,))
 
 
 FILES: dict[str, tuple[str, Callable[[Path], object]]] = {
@@ -222,6 +221,22 @@ def test_a_damaged_ledger_is_one_sentence(damage: Callable[[Path], object], home
         said = said_by(command, home, code=2)
         assert said.startswith(f"{home / 'out' / 'runs.sqlite'} cannot be read (")
         assert "put a copy of it back, or move it away" in said
+
+
+def test_edited_rows_of_the_ledger_are_left_out_and_made_again(home: Path, caplog: pytest.LogCaptureFixture) -> None:
+    ledger, designs = home / "out" / "runs.sqlite", home / "out" / "designs"
+    before, tables = open_study(home / "out").ledger, {path: path.read_bytes() for path in designs.iterdir()}
+    with sqlite3.connect(ledger) as database:
+        speed = "json_set(outputs, '$.speed_out', 0.5 * json_extract(outputs, '$.speed_out'))"
+        database.execute(f"UPDATE runs SET outputs = {speed} WHERE outcome = 'clear'")
+    database.close()
+    shutil.rmtree(designs)
+    said_by("status", home)
+    assert "left out here, and made again" in caplog.messages[0]
+    run(home)
+    assert {path: path.read_bytes() for path in designs.iterdir()} == tables
+    after = {record.key: record for record in open_study(home / "out").ledger}
+    assert {key: record.outputs for key, record in after.items()} == {one.key: one.outputs for one in before}
 
 
 @pytest.mark.parametrize("name", [name for name in LEDGERS if name != "empty"])

@@ -112,7 +112,15 @@ def test_an_emulator_of_before_the_spin_had_a_bound_is_refused_by_its_name_and_v
     for row in content["upper"]:
         row[speed], row[spin] = 1.0, None
     (old / "emulator.json").write_text(json.dumps(content), encoding="utf-8")
-    said = CliRunner().invoke(app, ["infer", str(old), "--bounce", str(bounces(tmp_path, SEEN))])
+    command = ["infer", str(old), "--bounce", str(bounces(tmp_path, SEEN))]
+    edited = CliRunner().invoke(app, command)
+    assert edited.exit_code == 2
+    assert edited.stderr.startswith(
+        f"{old / 'emulator.json'} changed after it was made, as its hash in keys.json tells"
+    )
+    # As in an archive, whose files nobody has noted.
+    (old / "keys.json").unlink()
+    said = CliRunner().invoke(app, command)
     assert (said.exit_code, said.stdout) == (2, "")
     assert said.stderr.startswith(
         f"{old / 'emulator.json'} has an emulator of an earlier version (format 1, lithobrake "

@@ -1,7 +1,6 @@
 """A touchdown of a study made once more, for its frames: the numbers of the ledger, bit for bit, or a refusal."""
 
 import shutil
-import sqlite3
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +11,7 @@ from lithobrake.results import StudyResults, open_study
 from lithobrake.study import StudySource
 
 from ..few_grains import few_grains
+from ..ledger_rows import edit_rows
 
 STUDY = (
     few_grains(30, width=0.45, lander_diameter=0.12, friction="0.7")
@@ -43,9 +43,7 @@ def copied(folder: Path, tmp_path: Path) -> Path:
 
 def set_runs(folder: Path, column: str, value: str) -> StudyResults:
     """Another value in a column of all runs of a ledger."""
-    with sqlite3.connect(folder / "runs.sqlite") as database:
-        database.execute(f"UPDATE runs SET {column} = ?", [value])
-    database.close()
+    edit_rows(folder / "runs.sqlite", f"{column} = ?", (value,))
     return open_study(folder)
 
 
@@ -85,9 +83,7 @@ def test_a_run_of_an_own_program_is_refused(copied: Path) -> None:
 
 def test_a_run_that_failed_is_refused_with_its_reason(copied: Path) -> None:
     set_runs(copied, "reason", "ValueError: through the floor")
-    with sqlite3.connect(copied / "runs.sqlite") as database:
-        database.execute("UPDATE runs SET status = 'failed', outcome = NULL")
-    database.close()
+    edit_rows(copied / "runs.sqlite", "status = 'failed', outcome = NULL")
     with pytest.raises(ValueError, match=r"has no outcome \(ValueError: through the floor\); choose a run that has"):
         open_study(copied).landing(0)
 

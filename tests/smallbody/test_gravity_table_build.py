@@ -52,7 +52,7 @@ def test_damaged_table_is_made_again(cube, folder, caplog, spoil: Callable[[byte
     file.write_bytes(spoil(whole))
     caplog.clear()
     again, error_again = built(cube)
-    assert caplog.messages == [f"{file} is damaged: it is made again."]
+    assert caplog.messages == [f"{file} is damaged, or was not written with this user's key: it is made again."]
     assert again.tobytes() == values.tobytes()
     assert error_again == error
     assert file.read_bytes() == whole
