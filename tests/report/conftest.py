@@ -162,7 +162,7 @@ def made_up_summary(scores: dict[str, dict[str, dict[str, object]]]) -> dict[str
     # A symmetric study: across, there is nothing but rounding.
     outputs["velocity_out_y"] = {key: -2.2e-14 * value for key, value in outputs["velocity_out_y"].items()}
     return {
-        "format_version": 2,
+        "format_version": 3,
         "study": {
             "title": "A made-up study",
             "seed": 7,

@@ -155,7 +155,7 @@ DAMAGED: list[tuple[str, Callable[[Path], object]]] = [
     ("summary.json", lambda path: path.write_text("[" * 3000)),
     (
         "summary.json",
-        lambda path: path.write_text(path.read_text().replace('"format_version": 2', '"format_version": 7')),
+        lambda path: path.write_text(path.read_text().replace('"format_version": 3', '"format_version": 7')),
     ),
     ("summary.json", lambda path: path.write_text(path.read_text().replace('"returns"', '"return"'))),
     ("scores.json", lambda path: path.write_text('{"refined": 3}')),
