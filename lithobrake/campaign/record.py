@@ -62,6 +62,8 @@ HASHED = tuple(name for name in COLUMNS if name != "attempts")
 OF_FIRST = {"attempts": "1", "started": "NULL"}
 # Ledgers of earlier formats have no hashes: their rows are taken as they stand.
 FIRST_HASHED = 3
+# Characters of a key that are shown; two runs of a campaign that share them are not met.
+KEY_LENGTH = 12
 # Runs may have taken days: no damage is a reason to write over them.
 LEFT = "it is left as it is: put a copy of it back, or move it away to have all its runs made again"
 OBJECTS = ("inputs", "outputs", "draws")
@@ -91,13 +93,13 @@ def intact_records(path: Path, rows: Iterable[tuple[Any, ...]]) -> Iterator[Reco
     columns, changed = [COLUMNS.index(name) for name in HASHED], []
     for row in rows:
         if row[COLUMNS.index("status")] not in UNENDED and row[-1] != row_hash(*(row[column] for column in columns)):
-            changed.append(str(row[0]))
+            changed.append(str(row[0])[:KEY_LENGTH])
         else:
             yield record_from_row(row[:-1])
     if changed:
         log.warning(
-            "%s has %d %s that changed after the run was made (key %s): left out here, and made again by the next "
-            "command that needs them.",
+            "%s has %d %s edited after the run was made (key %s), left out here and made again by the next command "
+            "that needs them.",
             *(path, len(changed), "rows" if len(changed) > 1 else "row"),
             ", ".join(changed[:3]) + (", ..." if len(changed) > 3 else ""),
         )

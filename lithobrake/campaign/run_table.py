@@ -5,11 +5,9 @@ from collections.abc import Mapping, Sequence
 from textwrap import wrap
 from typing import Any, TextIO
 
-from lithobrake.campaign.record import COLUMNS, OBJECTS, Record
+from lithobrake.campaign.record import COLUMNS, KEY_LENGTH, OBJECTS, Record
 from lithobrake.plain import plain
 
-# Characters of a key that are shown; two runs of a campaign that share them are not met.
-_KEY_LENGTH = 12
 # What a terminal is left with for the outcome or the reason at least.
 _REASON_WIDTH = 24
 _GAP, _LAST = "  ", "outcome or reason"
@@ -53,7 +51,7 @@ def run_lines(
     and of inputs that differ, by their names, which stand before all others.
     """
     columns = [
-        _column(["", "", "key"], [entry.key[:_KEY_LENGTH] for entry in records]),
+        _column(["", "", "key"], [entry.key[:KEY_LENGTH] for entry in records]),
         _column(["", "", "status"], [entry.status for entry in records]),
         _column(["", "wall", "[s]"], [_number(entry.wall_s) for entry in records]),
     ]

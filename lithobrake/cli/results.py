@@ -194,9 +194,10 @@ def infer(
     with one_sentence():
         from lithobrake.pipeline import InferredStudy, infer_study
 
+        study = InferredStudy.open(folder)
         with _shown_progress("inference") as progress:
             progress(0.0, "what bounces can say")
-            plan = InferredStudy.open(folder).plan().lines()
+            plan = study.plan().lines()
             if bounce is not None:
                 progress(0.5, "what these bounces say")
             found = None if bounce is None else infer_study(folder, bounce)

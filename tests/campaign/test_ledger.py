@@ -109,7 +109,7 @@ def test_an_edited_row_is_named_left_out_and_made_again(
         database.execute(f"UPDATE runs SET {change} WHERE key = ?", [key])
     database.close()
     assert [entry.inputs["a"] for entry in read_records(path)] == [1.0, 3.0]
-    words = f"{path} has 1 row that changed after the run was made (key {key}): left out here, and made again"
+    words = f"{path} has 1 row edited after the run was made (key {key[:12]}), left out here and made again"
     assert caplog.messages[0].startswith(words)
     with Ledger(path) as ledger, LocalExecutor(1) as executor:
         runs = run(models.parabola, X, names=("a", "b"), ledger=ledger, executor=executor, context={"version": "7"})

@@ -232,7 +232,7 @@ def test_edited_rows_of_the_ledger_are_left_out_and_made_again(home: Path, caplo
     database.close()
     shutil.rmtree(designs)
     said_by("status", home)
-    assert "left out here, and made again" in caplog.messages[0]
+    assert "left out here and made again" in caplog.messages[0]
     run(home)
     assert {path: path.read_bytes() for path in designs.iterdir()} == tables
     after = {record.key: record for record in open_study(home / "out").ledger}
