@@ -75,7 +75,7 @@ def workers(coordinator: int) -> list[int]:
     for path in Path("/proc").glob("[0-9]*"):
         try:
             parent = int((path / "stat").read_text().rpartition(")")[2].split()[1])
-            if parent == coordinator and "spawn_main" in (path / "cmdline").read_text():
+            if parent == coordinator and "lithobrake.campaign.worker" in (path / "cmdline").read_text():
                 found.append(int(path.name))
         except (FileNotFoundError, ProcessLookupError):
             continue
