@@ -57,9 +57,9 @@ def draw_map(data: Results) -> "Figure":
         if key not in SUMS
     ]
     where = (site["latitude_deg"], site["longitude_deg"])
-    sampled = data.results.get("monte_carlo", table)["sample_count"]
-    whole, vertices = _samples(table["sample_count"], sampled), data.body_vertices if len(data.body_vertices) else None
-    return map_figure(data.latitude, data.longitude, where, shares, vertices, data.results.get("ellipses"), whole)
+    sampled = data.results["monte_carlo"]["sample_count"]
+    whole, ellipses = _samples(table["sample_count"], sampled), data.results["ellipses"]
+    return map_figure(data.latitude, data.longitude, where, shares, data.body_vertices, ellipses, whole)
 
 
 def _share(words: str, entry: Mapping[str, Any], level: float) -> Share:
@@ -75,29 +75,20 @@ def _samples(looked_at: int, count: int) -> str:
     return f"all {words}" if looked_at == count else f"the {words} up to the last that was flown"
 
 
-def draw_body(data: Results) -> "Figure | None":
-    if not len(data.facet):
-        return None
+def draw_body(data: Results) -> "Figure":
     return body_figure(data.body_vertices, data.body_faces, data.facet, np.array(data.results["site"]["place_m"]))
 
 
-def draw_rest(data: Results) -> "Figure | None":
+def draw_rest(data: Results) -> "Figure":
     found, site, limit = followed(data), data.results["site"], hours(data.study["rest"]["duration"])
-    if not found:
-        return None
     # The same statuses on both sides, so that rows and colours match.
-    met = {
-        key: words
-        for key, words in SHORT_JOURNEY_WORDS.items()
-        if any(one.get(key, {}).get("count") for one in found.values())
-    }
+    met = {key: words for key, words in SHORT_JOURNEY_WORDS.items() if any(one[key]["count"] for one in found.values())}
     maps = []
     for ground, (latitude, longitude) in data.rest.items():
         table = found.get(ground)
         shares = [_share(words.format(hours=limit), table[key], data.level) for key, words in met.items() if table]
-        absent = None if table else f"Not asked: {data.results['rest'].get('why_no_soil')}."
-        ellipses = table.get("ellipses") if table else None
+        absent = None if table else f"Not asked: {data.results['rest']['why_no_soil']}."
+        ellipses = table["ellipses"] if table else None
         whole = f"the {table['sample_count']} followed" if table else ""
         maps.append(RestMap(f"On {GROUND_WORDS[ground]}", latitude, longitude, ellipses, shares, absent, whole))
-    vertices = data.body_vertices if len(data.body_vertices) else None
-    return rest_figure(maps, (site["latitude_deg"], site["longitude_deg"]), vertices)
+    return rest_figure(maps, (site["latitude_deg"], site["longitude_deg"]), data.body_vertices)

@@ -52,7 +52,7 @@ def calibration_figure(scores: Mapping[str, Mapping[str, Any]]) -> Figure:
     for axes, (name, counts) in zip(grid, found.items(), strict=False):
         _histogram(axes, name, counts)
     grid[0].set_ylabel("runs")
-    _bands(grid[-1], {name: scores[name] for name in found if scores[name].get("band_90") is not None})
+    _bands(grid[-1], {name: scores[name] for name in found})
     return figure
 
 

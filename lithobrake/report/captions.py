@@ -49,13 +49,11 @@ def answer(data: PaperResults) -> str:
 
 
 def place_words(data: Results) -> list[str]:
-    """Where the study lands, in a sentence; none where the summary has no site."""
-    site = data.results.get("site")
-    if not site:
-        return []
+    """Where the study lands, in a sentence."""
+    site = data.results["site"]
     place = f"latitude {site['latitude_deg']:g} deg, longitude {site['longitude_deg']:g} deg on {body_name(data)}"
     # A product of an archive tells which shape "the body" is.
-    product = f" ({site['product_id']})" if site.get("product_id") else ""
+    product = f" ({site['product_id']})" if site["product_id"] else ""
     return [f"Landing at {place}{product}."]
 
 
@@ -66,29 +64,23 @@ def body_name(data: Results) -> str:
 
 def facts(data: Results) -> str:
     """When the study was made, and what the body's gravity is known by."""
-    found = []
-    if "date" in data.provenance:
-        found.append(f"Study of {data.provenance['date'][:16].replace('T', ', ')} UTC.")
-    known = gravity_words(data)
-    if known:
-        found.append(f"{known[0].upper()}{known[1:]}.")
-    return " ".join(found)
+    known, date = gravity_words(data), data.provenance["date"][:16].replace("T", ", ")
+    return f"Study of {date} UTC. {known[0].upper()}{known[1:]}."
 
 
 def gravity_words(data: Results) -> str:
-    """Escape speed at the site and bulk density of the body, where the summary has them."""
-    words = {
-        "escape_speed_m_s": "escape speed at the site {} m/s",
-        "bulk_density_kg_m3": "bulk density of the body {} kg/m3",
-    }
-    site = data.results.get("site", {})
-    return ", ".join(text.format(number(site[key])) for key, text in words.items() if site.get(key) is not None)
+    """Escape speed at the site and bulk density of the body."""
+    site = data.results["site"]
+    return (
+        f"escape speed at the site {number(site['escape_speed_m_s'])} m/s, bulk density of the body "
+        f"{number(site['bulk_density_kg_m3'])} kg/m3"
+    )
 
 
 def bed(data: Results) -> str:
     """Figure 1."""
     if data.bed is None:
-        program = data.study.get("solver", {}).get("command")
+        program = data.study["solver"]["command"]
         return "The touchdowns were made by a " + (
             f"program of the study's author: {program}" if program else "function."
         )
@@ -110,7 +102,7 @@ def bed(data: Results) -> str:
 def landing(data: Results) -> str:
     """Figure 2."""
     if data.landing is None:
-        return "The pictures of a touchdown are that program's own."
+        return ""
     attributes, time = data.landing.moving.attributes, data.landing.moving.time
     ended = TouchdownOutcome(str(attributes["status"])).sentence.rstrip(".")
     return (
@@ -217,23 +209,22 @@ def impact_map(data: Results) -> str:
     extents = " x ".join(f"{length:.0f}" for length in site["extents_m"])
     outward = site["effective_acceleration_outward"]
     direction = "outward" if outward > 0 else "inward"
-    known = gravity_words(data)
     down = percent(shares[FlightStatus.IMPACT]["share"])
     return (
         f"Of {thousands(shares['sample_count'])} samples, of which {thousands(shares['flight_count'])} were flown, "
         f"{down} come down again within {hours(data.study['flight']['duration'])}, "
         f"where the map shows (body: {number(site['mass_kg'])} kg, {extents} m, one turn in "
         f"{site['spin_period_s'] / 3600:.4g} h; at the site gravity and spin together pull "
-        f"{number(abs(outward), 2)} m/s2 {direction}{known and f'; {known}'})."
+        f"{number(abs(outward), 2)} m/s2 {direction}; {gravity_words(data)})."
     )
 
 
 def body(data: Results) -> str:
     """Figure 8."""
     if not len(data.facet):
-        return "No flight comes down on the body, so there is nothing to show on it."
+        return ""
     shared = f"{thousands(len(data.facet))} impacts on the shape that the flights used"
-    ellipse = data.results.get("ellipses") or {}
+    ellipse = data.table("ellipses")
     large = [entry["semi_axes_m"] for entry in ellipse.get("shares", ()) if entry["share"] > 0.9]
     if not large:
         return f"{shared}; they lie too far around the body, or are too few, for an ellipse that holds 95 % of them."
@@ -250,7 +241,7 @@ def rest(data: Results) -> str:
     table = data.results["rest"]
     soil, hard = table["soil"], table["hard"]
     if hard is None:
-        return "No sample was followed beyond its next impact (rest.count is 0)."
+        return ""
     limit = hours(data.study["rest"]["duration"])
     settled = percent(hard[JourneyStatus.SETTLED]["share"])
     words = f"Followed from bounce to bounce for up to {limit}, on hard ground {settled} come to rest"

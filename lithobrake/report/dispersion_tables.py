@@ -38,38 +38,31 @@ ACCELERATIONS = ("effective_acceleration_outward", "effective_acceleration_along
 
 def outcome_words(data: Results) -> dict[str, str]:
     """What may become of a sample, in words; the partner is left out where there is none."""
-    site, known = data.results.get("site", {}), data.results["shares"]
-    holds = site.get("effective_acceleration_outward", 0.0) < 0.0
+    site, known = data.results["site"], data.results["shares"]
+    holds = site["effective_acceleration_outward"] < 0.0
     returning = "down again within {hours}, or captured" if holds else "down again within {hours}"
     words = OUTCOME_WORDS | {"returns": returning}
-    absent = set() if site.get("partner") else {FlightStatus.PARTNER}
+    absent = set() if site["partner"] else {FlightStatus.PARTNER}
     return {key: text for key, text in words.items() if key in known and key not in absent}
 
 
 def dispersion_tables(data: Results) -> list[PageTable]:
-    """Those of what the summary has, in the order of the journey."""
-    made = {
-        _outcomes: "shares",
-        _flights: "flights",
-        _statuses: "rest",
-        _journeys: "rest",
-        _ellipses: "flights",
-        _site: "site",
-    }
-    return [table(data) for table, key in made.items() if data.results.get(key)]
+    """In the order of the journey, those that have a row."""
+    made = (_outcomes, _flights, _statuses, _journeys, _ellipses, _site)
+    return [table for table in (make(data) for make in made) if table.rows]
 
 
 def _outcomes(data: Results) -> PageTable:
     shares, limit = data.results["shares"], hours(data.study["flight"]["duration"])
-    alone = data.results.get("without_scatter")
+    alone = data.results["without_scatter"]
     columns = ["what became of the sample", "samples", "share", *(["without scatter"] if alone else [])]
     rows = []
     for key, words in outcome_words(data).items():
         row = [words.format(hours=limit), str(shares[key]["count"]), _share(shares[key])]
         rows.append(row + ([_share(alone["shares"][key])] if alone else []))
-    returns, level = data.results.get("returns", {}), percent(data.level, 0)
+    returns, level = data.results["returns"], percent(data.level, 0)
     note = f"Shares of {shares['sample_count']} samples; {shares['flight_count']} of them were flown."
-    note += f" {returns['why']}" if returns.get("why") else ""
+    note += f" {returns['why']}" if returns["why"] else ""
     # The runs of a sequence have flights of their own, of which its answer speaks.
     if isinstance(data, PaperResults) and returns.get("flight_sampling") is not None:
         sampling = f"{100 * returns['flight_sampling']:.1f} points ({percent(returns['level'], 0)})"
@@ -124,25 +117,23 @@ def _flights(data: Results) -> PageTable:
 
 def followed(data: Results) -> dict[str, Mapping[str, Any]]:
     """The grounds on which samples were followed, with what became of them."""
-    rest = data.results.get("rest") or {}
-    return {ground: rest[ground] for ground in GROUND_WORDS if rest.get(ground)}
+    rest = data.results["rest"]
+    return {ground: rest[ground] for ground in GROUND_WORDS if rest[ground]}
 
 
 def _statuses(data: Results) -> PageTable:
     found, limit = followed(data), hours(data.study["rest"]["duration"])
-    columns = ["after all bounces"]
-    for ground in found:
-        columns += [GROUND_WORDS[ground]]
+    columns = ["after all bounces", *(GROUND_WORDS[ground] for ground in found)]
     rows = []
     for key, words in JOURNEY_WORDS.items():
-        if any(table.get(key, {}).get("count") for table in found.values()):
+        if any(table[key]["count"] for table in found.values()):
             rows.append(
                 [words.format(hours=limit, model=data.model), *(_share(table[key]) for table in found.values())]
             )
     counts = {table["sample_count"] for table in found.values()}
-    note = f"Shares of {counts.pop()} samples, followed from the first impact." if counts else "No sample was followed."
-    why = data.results["rest"].get("why_no_soil")
-    note += f" The soil could not be asked: {why}." if why and found else ""
+    note = f"Shares of {', '.join(map(str, counts))} samples, followed from the first impact."
+    why = data.results["rest"]["why_no_soil"]
+    note += f" The soil could not be asked: {why}." if why else ""
     return PageTable("From bounce to bounce", columns, rows, note, frozenset(columns[1:]))
 
 
@@ -170,29 +161,26 @@ def _journeys(data: Results) -> PageTable:
 
 def _sliding(rest: Mapping[str, Any]) -> str:
     """The law by which a captured lander moves on, in words."""
-    if rest.get("rolling_friction") is not None:
+    if rest["rolling_friction"] is not None:
         return f"rolls on like a ball against a resistance of {rest['rolling_friction']:g} of what presses it down,"
     return "slides on by Coulomb friction, on soil that of hull and grain,"
 
 
 def _ellipses(data: Results) -> PageTable:
     columns = ["places", "share inside", "latitude [deg]", "longitude [deg]", "semi-axes [m]", "heading [deg]"]
-    sets = {"next impact": data.results.get("ellipses")}
-    if data.results.get("without_scatter"):
+    sets = {"next impact": data.results["ellipses"]}
+    if data.results["without_scatter"]:
         sets["next impact, without scatter"] = data.results["without_scatter"]["ellipses"]
-    sets |= {f"at rest, {GROUND_WORDS[ground]}": table.get("ellipses") for ground, table in followed(data).items()}
+    sets |= {f"at rest, {GROUND_WORDS[ground]}": table["ellipses"] for ground, table in followed(data).items()}
     rows = []
     for name, found in sets.items():
-        if not found or not found["shares"]:
-            rows.append([name, "none", "", "", "", ""])
-            continue
-        for entry in found["shares"]:
+        for entry in found["shares"] if found else ():
             axes = " x ".join(number(axis) for axis in entry["semi_axes_m"])
             middle = [fixed(found[key]) for key in ("latitude_deg", "longitude_deg")]
             rows.append([name, percent(entry["share"], 0), *middle, axes, f"{found['heading_deg']:.1f}"])
     note = (
         "Each holds that share of the places, which need follow no law; the heading is that of the longer axis, from "
-        "north toward east. None: fewer than ten places, or places too far around the body to have a middle."
+        "north toward east. None is given of fewer than ten places, or of places all around the body."
     )
     return PageTable("Landing ellipses", columns, rows, note, frozenset(columns[1:]))
 

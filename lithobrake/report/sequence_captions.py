@@ -9,7 +9,7 @@ from lithobrake.report.captions import input_words, listing, percent, thousands
 from lithobrake.report.page import fixed, number
 from lithobrake.report.results import SequenceResults
 from lithobrake.report.scatter_figure import DRAWN_COUNT
-from lithobrake.report.sequence_answer import action, drawn_things, emulator_outside, left_out, missing_sentence
+from lithobrake.report.sequence_answer import drawn_things, emulator_outside, left_out, missing_sentence
 from lithobrake.report.style import output
 from lithobrake.report.variance_figure import SOIL, known_parts, part_words
 
@@ -26,26 +26,24 @@ def sign(name: str) -> str:
 
 def runs(data: SequenceResults) -> str:
     """Figure 3."""
-    table = data.table("runs")
-    if not len(data.runs["key"]):
-        return "The folder has no table of runs (designs/sequence.csv), so there is nothing to draw."
-    beds, outcomes = table.get("beds"), data.table("runs", "outcomes")
+    table = data.results["runs"]
+    beds, outcomes = table["beds"], table["outcomes"]
     own = listing(["soil", *drawn_things(data)])
     clear, captured = (outcomes.get(word, 0) for word in (TouchdownOutcome.CLEAR, TouchdownOutcome.CAPTURED))
     said = [
         f"Every dot is a landing with {own} of its own"
-        + ("" if not beds else ", all on one bed" if beds == 1 else f", on one of {beds} beds")
-        + f": of {table.get('count', len(data.runs['key']))} landers {clear} left the surface and {captured} "
+        + (", all on one bed" if beds == 1 else f", on one of {beds} beds")
+        + f": of {table['count']} landers {clear} left the surface and {captured} "
         f"{'was' if captured == 1 else 'were'} captured."
     ]
     quantiles = _quantiles(data)
     if quantiles:
         said.append(f"{quantiles}.")
-    if table.get("over_rim"):
+    if table["over_rim"]:
         said.append(f"{table['over_rim']} left over the rim of the bed (rings).")
     said.append(missing_sentence(data))
-    record = data.table("variance_shares", "speed_out")
-    if record.get("bed"):
+    record = data.results["variance_shares"]["speed_out"]
+    if record:
         said.append(
             f"Right: the same speeds bed by bed, which differ by bed in {_part(record['bed'])} of their variance."
         )
@@ -77,7 +75,7 @@ def _ends(entry: Mapping[str, Any], factor: float) -> str:
 
 def variance(data: SequenceResults) -> str:
     """Figure 4."""
-    records = {name: record for name, record in data.table("variance_shares").items() if record}
+    records = {name: record for name, record in data.results["variance_shares"].items() if record}
     if not records:
         return (
             "The runs cannot tell where the scatter comes from: they lie on one bed, or are too few for their inputs."
@@ -142,12 +140,10 @@ def _percent(share: float) -> str:
 
 def calibration(data: SequenceResults) -> str:
     """Figure 5."""
-    emulator = data.table("emulator")
-    scores = data.table("emulator", "scores")
+    emulator = data.results["emulator"]
+    scores = emulator["scores"]
     found = histograms(scores)
-    if not found:
-        return "The emulator was not tried on what it had not seen, so there is nothing to draw."
-    held = {name: scores[name]["band_90"] for name in found if scores[name].get("band_90") is not None}
+    held = {name: scores[name]["band_90"] for name in found}
     bins = [is_beyond for counts in found.values() for is_beyond in unlucky(counts)]
     shares = [f"{percent(share, 0)} of {sign(name)}" for name, share in held.items()]
     said = [
@@ -165,33 +161,28 @@ def calibration(data: SequenceResults) -> str:
     ):
         if off:
             said.append(f"The bands of {listing(off)} are {words} for luck alone.")
-    return " ".join(filter(None, [*said, str(emulator.get("statement") or "")]))
+    return " ".join([*said, emulator["statement"]])
 
 
 def samples(data: SequenceResults, colour_name: str | None) -> str:
     """Figure 6."""
-    if data.samples is None or colour_name is None:
-        return "The emulator was not sampled, so there is nothing to draw."
+    if colour_name is None:
+        return ""
     outcome = data.samples["outcome"]
     total, leaving = len(outcome), int((outcome == TouchdownOutcome.CLEAR).sum())
     if not leaving:
         return f"None of the {thousands(total)} samples leaves the surface, so there is nothing to draw."
     first = f" (the first {thousands(DRAWN_COUNT)} are drawn)" if leaving > DRAWN_COUNT else ""
     colour = f"the colour is the {input_words(colour_name)}"
-    if data.table("emulator").get("follows_inputs") is False:
+    if not data.results["emulator"]["follows_inputs"]:
         colour += ", and says nothing: the emulator draws runs whatever the inputs"
     count = f"Of {thousands(total)} samples of the emulator {thousands(leaving)} leave the surface"
     return " ".join(filter(None, [f"{count}{first}; {colour}.", emulator_outside(data)]))
 
 
-def impacts_absent(data: SequenceResults) -> str:
-    """Figures 7 and 8, where nothing was flown."""
-    return f"The folder has no flights of samples, so where those landers come down that {action(data)} is not drawn."
-
-
 def aims(data: SequenceResults) -> str:
     """The figure of the aims."""
-    table = data.table("aim")
+    table = data.results["aim"]
     crossed = " Aims that the limits rule out are crossed." if table["within"] else ""
     return (
         f"{thousands(table['lander_count'])} landers at each aim, followed until they rest; below each number its 90 % "

@@ -32,21 +32,20 @@ LEVELS = {"0.05": "5 %", "0.5": "median", "0.95": "95 %"}
 
 def tiles(data: SequenceResults) -> list[Tile]:
     """The return fraction, and the most telling numbers beside it, as far as the summary has them."""
-    returns = data.table("returns")
+    returns = data.results["returns"]
     alone = "of these landings, without an interval: other beds, places or attitudes give another figure"
     sure = f"({interval(data)})" if has_interval(data) else alone
-    found = [Tile(f"{100 * returns['share']:.{share_digits(data)}f}", "%", f"{action(data)} {sure}")] if returns else []
+    found = [Tile(f"{100 * returns['share']:.{share_digits(data)}f}", "%", f"{action(data)} {sure}")]
     median = data.table("outputs", "speed_out", "quantiles").get("0.5")
     if median:
         words = "outgoing speed V+, median over those that leave"
         if median.get("lower") is not None:
             words += f" (90 %: {number(median['lower'])} to {number(median['upper'])})"
         found.append(Tile(number(median["value"]), "m/s", words))
-    runs = data.table("runs")
-    if runs:
-        left = runs["outcomes"].get(TouchdownOutcome.CLEAR, 0)
-        beds = f", on {runs['beds']} beds" if runs.get("beds", 1) > 1 else ", all on one bed"
-        found.append(Tile(str(left), f"of {runs['count']}", f"landings left the surface{beds}"))
+    runs = data.results["runs"]
+    left = runs["outcomes"].get(TouchdownOutcome.CLEAR, 0)
+    beds = f", on {runs['beds']} beds" if runs["beds"] > 1 else ", all on one bed"
+    found.append(Tile(str(left), f"of {runs['count']}", f"landings left the surface{beds}"))
     soil = data.table("variance_shares", "speed_out").get(SOIL)
     if soil:
         ends = f"90 %: {bounds((soil['lower'], soil['upper']), 0)}"
@@ -61,20 +60,12 @@ def tiles(data: SequenceResults) -> list[Tile]:
 
 
 def tables(data: SequenceResults) -> list[PageTable]:
-    """Those of what the summary has."""
-    results = data.results
-    made: dict[Callable[[SequenceResults], PageTable], str] = {
-        _answer: RETURNS,
-        _inputs: "runs",
-        _outputs: "outputs",
-        _variance: "variance_shares",
-        _runs: "runs",
-        _emulator: "emulator",
-        beds_table: "beds",
-        touchdowns_table: "outputs_of_runs",
-    }
-    found = [table(data) for table, key in made.items() if results.get(key)]
-    side = [_side_runs(data)] if data.table("runs", "side_runs", "chaos_deviation") else []
+    """Those that have a row."""
+    made: tuple[Callable[[SequenceResults], PageTable], ...] = (
+        _answer, _inputs, _outputs, _variance, _runs, _emulator, beds_table, touchdowns_table
+    )  # fmt: skip
+    found = [table for table in (make(data) for make in made) if table.rows]
+    side = [_side_runs(data)] if data.results["runs"]["side_runs"] else []
     return [*found, *side, *limit_state_tables(data), *rare_tables(data.rare), *dispersion_tables(data)]
 
 
@@ -84,15 +75,15 @@ def _answer(data: SequenceResults) -> PageTable:
     if has_interval(data):
         rows.append([f"{percent(data.level, 0)} interval", bounds((returns["lower"], returns["upper"]), digits)])
     for key, words in (("next_bed", "on one next bed"), ("if_missing", "if none or all of those without an answer do")):
-        low, high = returns.get(key) or (0.0, 0.0)
+        low, high = returns[key] or (0.0, 0.0)
         if low < high:
             rows.append([words, bounds((low, high), 1)])
-    if returns.get("emulator") is not None:
+    if returns["emulator"] is not None:
         rows.append(["the same by the emulator", percent(returns["emulator"])])
     if returns.get("flight_sampling") is not None:
         rows.append(["+- by the number of flights alone", f"{100 * returns['flight_sampling']:.1f} points"])
-    rows += [["from", returns["from"]]] if returns.get("from") else []
-    note = as_sentence(returns["why"]) if returns.get("why") else ""
+    rows += [["from", returns["from"]]]
+    note = as_sentence(returns["why"]) if returns["why"] else ""
     return PageTable("The answer", ["quantity", "value"], rows, note)
 
 
@@ -102,13 +93,9 @@ def _outputs(data: SequenceResults) -> PageTable:
     rows = []
     # The return fraction is the answer, and has a better estimate there.
     for name in (name for name in data.results["outputs"] if name != RETURNS):
-        table = data.table("outputs", name)
-        shown, spread = output(name), table.get("standard_deviation")
-        cells = [
-            _estimate(table.get("mean"), shown.factor),
-            "" if spread is None else table_cell(spread * shown.factor),
-        ]
-        cells += [_estimate(data.table("outputs", name, "quantiles").get(level), shown.factor) for level in LEVELS]
+        table, shown = data.results["outputs"][name], output(name)
+        cells = [_estimate(table["mean"], shown.factor), table_cell(table["standard_deviation"] * shown.factor)]
+        cells += [_estimate(table["quantiles"][level], shown.factor) for level in LEVELS]
         rows.append([shown.row.replace("_", " "), shown.unit, *cells])
     note = (
         "Of the landings that left, over soils, beds, places and attitudes that were not in the study. In brackets "
@@ -170,11 +157,8 @@ def _runs(data: SequenceResults) -> PageTable:
     runs = data.results["runs"]
     total = max(sum(runs["outcomes"].values()), 1)
     rows = [[outcome_label(word), str(count), percent(count / total)] for word, count in runs["outcomes"].items()]
-    if runs.get("over_rim") is not None:
-        rows.append(
-            ["left over the rim of the bed, in flight", str(runs["over_rim"]), percent(runs["over_rim"] / total)]
-        )
-    note = " ".join(filter(None, [f"On {runs['beds']} beds." if runs.get("beds") else "", missing_sentence(data)]))
+    rows.append(["left over the rim of the bed, in flight", str(runs["over_rim"]), percent(runs["over_rim"] / total)])
+    note = " ".join(filter(None, [f"On {runs['beds']} beds.", missing_sentence(data)]))
     return PageTable("Outcomes of the runs", ["outcome", "runs", "share"], rows, note, frozenset({"runs", "share"}))
 
 
@@ -188,8 +172,8 @@ def _side_runs(data: SequenceResults) -> PageTable:
         rows.append([row, _part(effects, name), _estimate(chaos.get(name), factor), unit])
     columns = ["output", "total effect of the soil [%]", "standard deviation by chaos", "unit"]
     note = (
-        f"{side.get('soil_pairs', 'No')} runs were made again on a second soil, {side.get('twins', 'no')} at a place "
-        f"{number(1e3 * side.get('twin_shift', 0.0))} mm beside. Total effect: the share of the variance that goes "
+        f"{side['soil_pairs']} runs were made again on a second soil, {side['twins']} at a place "
+        f"{number(1e3 * side['twin_shift'])} mm beside. Total effect: the share of the variance that goes "
         "with the soil at one bed, place and attitude, whatever these are. In brackets 90 % intervals."
     )
     return PageTable("Side runs", columns, rows, note, frozenset(columns[1:3]))
@@ -200,37 +184,32 @@ def _emulator(data: SequenceResults) -> PageTable:
     emulator = data.results["emulator"]
     columns = ["output", "skill", "held by the 90 % band"]
     rows = []
-    for name, score in data.table("emulator", "scores").items():
+    for name, score in emulator["scores"].items():
         skill, band = score.get("crps_skill", score.get("energy_skill")), score.get("band_90")
         shown = "all together" if name == "joint" else output(name).row
         rows.append([shown, *("" if one is None else percent(one) for one in (skill, band))])
     note = (
-        f"{emulator.get('statement') or ''} Skill: how much smaller the score (CRPS; of all together the energy score) "
+        f"{emulator['statement']} Skill: how much smaller the score (CRPS; of all together the energy score) "
         f"is than that of drawing one of the runs, on {left_out(data)}; 0 is no better."
     )
-    return PageTable(f"The emulator on {left_out(data)}", columns, rows, note.strip(), frozenset(columns[1:]))
+    return PageTable(f"The emulator on {left_out(data)}", columns, rows, note, frozenset(columns[1:]))
 
 
 def _inputs(data: SequenceResults) -> PageTable:
     """What every run draws for itself, and which of the uncertain inputs the emulator found to matter."""
-    emulator = data.table("emulator")
-    found = emulator.get("found_inputs")
-    rows = []
+    found, rows = data.results["emulator"]["found_inputs"], []
     # Sizes of grains vary within a bed, and the site from flight to flight: neither is an input of a run.
     for name, law in ((name, law) for name, law in _uncertain(data.study) if name in data.runs):
-        rows.append([*input_cells(name, law), "" if found is None else "yes" if name in found else "no"])
+        rows.append([*input_cells(name, law), "yes" if name in found else "no"])
     keys = {"place": "impact.region", "azimuth": "impact.azimuth_deg", "attitude": "impact.orientation"}
     named = {row[1] for row in rows}
     drawn = [words for words in drawn_things(data) if not (words == "place" and "impact.place.x" in named)]
     rows += [[f"{words} at impact", keys[words], "uniform", "drawn anew for each run", ""] for words in drawn]
-    note = ""
-    if found is not None:
-        names = [input_words(name) for name in found]
-        note = (
-            "Found: it changes the mean of an output (where none does, nine of ten studies find none)."
-            if names
-            else "No input was found to change the mean of any output (where none does, nine of ten studies find none)."
-        )
+    note = (
+        "Found: it changes the mean of an output (where none does, nine of ten studies find none)."
+        if found
+        else "No input was found to change the mean of any output (where none does, nine of ten studies find none)."
+    )
     return PageTable("Inputs that the runs draw", [*INPUT_COLUMNS, "found"], rows, note)
 
 
@@ -245,8 +224,6 @@ def _uncertain(tables: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[st
 
 def colour_input(data: SequenceResults) -> str | None:
     """The input that figures of the samples are coloured by: the one that V+ varies most with, of those sampled."""
-    if data.samples is None:
-        return None
     sampled = [name for name, _ in _uncertain(data.study) if name in data.samples]
     parts = data.table("variance_shares", "speed_out", "soil_by_input")
     alone = {name: part["share"] for name, part in parts.items() if name in sampled}

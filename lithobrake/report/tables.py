@@ -89,14 +89,14 @@ def tables(data: PaperResults) -> list[PageTable]:
         _scores(data),
         _sobol(data),
         _outputs(data),
-        touchdowns_table(data),
+        *([touchdowns_table(data)] if data.results["outputs_of_runs"] else []),
         *dispersion_tables(data),
     ]
 
 
 def provenance(data: Results) -> list[PageTable]:
     """Where the numbers come from: seed, times, versions."""
-    rows = [("seed", show(data.study.get("seed"))), *flat(data.provenance)]
+    rows = [("seed", show(data.study["seed"])), *flat(data.provenance)]
     return [
         PageTable(
             "Execution",

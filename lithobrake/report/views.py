@@ -40,7 +40,7 @@ def view_sections(data: Results) -> list[LiveSection]:
     found = []
     if data.landing is not None and len(data.landing.moving.time) > 1:
         found.append(_landing(data.landing, data.shown_landing))
-    if len(data.facet) and data.results.get("site"):
+    if len(data.facet):
         found.append(_body(data))
     return found
 
@@ -116,7 +116,7 @@ def _continuous(orientation: Array) -> Array:
 
 
 def _body(data: Results) -> LiveSection:
-    """The body, facets coloured as in its figure, and the paths of some flights where the folder has them."""
+    """The body, facets coloured as in its figure, and the paths of some flights."""
     vertices, faces = data.body_vertices, data.body_faces
     density = facet_density(vertices[faces], data.facet)
     low, high = colour_ends(density)
@@ -132,7 +132,7 @@ def _body(data: Results) -> LiveSection:
     words = (
         f"Impacts per hectare as in the figure of the body, from {number(low, 2)} (dark) to {number(high, 2)} (yellow)."
     )
-    if data.paths is not None and len(data.paths[0]):
+    if len(data.paths[0]):
         # The ways reach farther out than the body.
         facts["orbit"]["distance"] *= 1.5
         arrays |= _paths(*data.paths)

@@ -1,7 +1,5 @@
 """Each figure is made from plain arrays and shows what it is given."""
 
-import io
-
 import matplotlib
 import numpy as np
 import pytest
@@ -30,12 +28,6 @@ ELLIPSES = {
 }
 TETRAHEDRON = np.array([(1.0, 1.0, 1.0), (1.0, -1.0, -1.0), (-1.0, 1.0, -1.0), (-1.0, -1.0, 1.0)])
 FACES = np.array([(0, 1, 2), (0, 3, 1), (0, 2, 3), (1, 3, 2)])
-
-
-def picture(figure: Figure) -> bytes:
-    memory = io.BytesIO()
-    figure.savefig(memory, format="png", dpi=40)
-    return memory.getvalue()
 
 
 def texts(figure: Figure) -> str:
@@ -69,7 +61,6 @@ def test_bed_figure_shows_three_moments_with_their_times() -> None:
     assert "random cloud" in words
     assert "falling\n$t$ = 0.5 s" in words
     assert "settled" in words
-    assert picture(figure)
 
 
 def test_three_moments_of_a_bed_with_one_frame() -> None:
@@ -94,7 +85,6 @@ def test_landing_figure_has_one_picture_an_instant() -> None:
     with figure_style():
         figure = landing_figure(bodies, time, position, orientation, (0.6, 0.6))
     assert len(figure.axes) == 6
-    assert picture(figure)
 
 
 def test_count_figure_names_the_designs_with_their_runs() -> None:
@@ -102,7 +92,6 @@ def test_count_figure_names_the_designs_with_their_runs() -> None:
     with figure_style():
         figure = count_figure([1, 2, 3], [1, 2], smolyak**2, smolyak, [Design("screening", 3, 2, 25)])
     assert "screening: 3 inputs, level 2, 25 runs" in texts(figure)
-    assert picture(figure)
 
 
 def test_sobol_figure_gives_the_rest_to_interactions() -> None:
@@ -114,7 +103,6 @@ def test_sobol_figure_gives_the_rest_to_interactions() -> None:
     assert words.count("50 %") == 3
     assert words.count("30 %") == 3
     assert "interactions" in words
-    assert picture(figure)
 
 
 def test_sobol_figure_says_what_is_scatter_and_where_no_input_was_found() -> None:
@@ -126,7 +114,6 @@ def test_sobol_figure_says_what_is_scatter_and_where_no_input_was_found() -> Non
     assert words.count("100 %") == 2
     assert words.count("no input found\nthat decides it") == 1
     assert words.count("scatter: 70 % of\nthe runs' variance") == 3
-    assert picture(figure)
 
 
 def test_error_figure_puts_q2_rmse_and_spread_beside_every_mape() -> None:
@@ -137,7 +124,6 @@ def test_error_figure_puts_q2_rmse_and_spread_beside_every_mape() -> None:
     words = texts(figure)
     assert words.count("MAPE") == words.count("$Q^2$ 0.75") == words.count("at a spread of") == 9
     assert "RMSE 0.57 at a spread of 1.1 deg" in words
-    assert picture(figure)
 
 
 def test_error_figure_says_how_many_errors_lie_beyond_the_axis() -> None:
@@ -160,7 +146,6 @@ def test_scatter_figure_leaves_out_samples_that_stay() -> None:
     with figure_style():
         figure = scatter_figure(outputs, ("restitution", np.linspace(0.3, 0.8, 20)), leaves)
     assert [len(axes.collections[0].get_offsets()) for axes in figure.axes[:3]] == [15, 15, 15]
-    assert picture(figure)
 
 
 def test_an_outcome_that_no_run_had_shows_its_upper_limit_in_place_of_nothing() -> None:
@@ -183,13 +168,13 @@ def test_map_figure_shows_shares_with_intervals(with_relief: bool) -> None:
     words = texts(figure)
     assert "60.00 %   [55.00, 65.00]" in words
     assert "landing site" in words
-    assert picture(figure)
 
 
 def test_map_figure_without_any_impact_is_still_a_map() -> None:
     with figure_style():
         figure = map_figure(np.zeros(0), np.zeros(0), (0.0, 0.0), [Share("escaped", 1.0, 0.9, 1.0)])
-    assert picture(figure)
+    assert "no impact among the flights" in texts(figure)
+    assert len(figure.axes) == 2
 
 
 def test_map_figure_shows_impacts_near_the_site_in_a_close_view() -> None:
@@ -202,7 +187,10 @@ def test_map_figure_shows_impacts_near_the_site_in_a_close_view() -> None:
     assert window.half < 5.0
     with figure_style():
         figure = map_figure(latitude, longitude, (30.0, 179.0), [Share("impact", 1.0, 0.98, 1.0)], None, ELLIPSES)
-    assert picture(figure)
+    ends = (window.latitude - window.half, window.latitude + window.half)
+    (view,) = figure.axes[0].child_axes
+    assert view.get_ylim() == pytest.approx(ends)
+    assert len(view.collections[0].get_offsets()) == 200
 
 
 def test_ellipses_are_named_beside_the_map_and_not_on_it() -> None:
@@ -299,7 +287,6 @@ def test_density_on_the_body_counts_each_impact_over_the_area_around_it() -> Non
     with figure_style():
         figure = body_figure(1e3 * TETRAHEDRON, FACES, np.array([2, 2, 2, 0]), np.array([300.0, 300.0, 300.0]))
     assert "from the south" in texts(figure)
-    assert picture(figure)
 
 
 def test_rest_figure_shows_both_grounds_over_one_window_or_says_why_not() -> None:
@@ -316,8 +303,6 @@ def test_rest_figure_shows_both_grounds_over_one_window_or_says_why_not() -> Non
     assert maps[0].get_ylim() == maps[1].get_ylim()
     assert "50.00 %   [40.00, 60.00]" in texts(figure)
     assert "not asked" in texts(silent)
-    assert picture(figure)
-    assert picture(silent)
 
 
 def test_no_impact_is_lost_on_the_map_of_the_whole_body() -> None:
