@@ -40,6 +40,7 @@ from lithobrake.analysis.bed_components import BedComponents, bed_components
 from lithobrake.analysis.confidence import t_quantile
 from lithobrake.analysis.control_variate import control_variate
 from lithobrake.analysis.share_estimate import standard_error
+from lithobrake.chaos import sobol_sequence
 
 DESIGNS = ((144, 12), (240, 24))
 CORRELATIONS = (0.0, 0.05, 0.2)
@@ -93,11 +94,9 @@ def one_study(truth: Truth, run_count: int, bed_count: int, seed: int) -> dict[s
     x, y, outcome, bed = truth.study(run_count, bed_count, seed)
     found = share_estimate(returns(y, outcome), bed, terms=regression_terms(INPUTS, x))
     share, beds = exact_share(truth), bed_means(truth)[0]
-    lower, upper = found.if_missing_interval
     result = {"share": held(IntervalEstimate(found.share, found.lower, found.upper), share)}
     on_beds = np.mean((found.next_bed[0] <= beds) & (beds <= found.next_bed[1]))
     result["next bed"] = (float(on_beds), 0.0, 0.5 * (found.next_bed[1] - found.next_bed[0]))
-    result["if missing"] = (float(lower <= share <= upper), 0.0, 0.5 * (upper - lower))
     exact, speed = exact_speed(truth), y[:, 0]
     result["mean"] = held(mean_estimate(speed, bed), exact["mean"])
     quantiles = quantile_estimates(speed, bed, PROBABILITIES)
@@ -111,6 +110,34 @@ def one_study(truth: Truth, run_count: int, bed_count: int, seed: int) -> dict[s
     return result | {"inputs not found": (float(not_found), 0.0, 0.0)}
 
 
+def missing(truth: Truth, seed: int) -> dict[str, tuple[float, float, float]]:
+    """The share where landings are lost over the rim: as used, and by the landings with an outcome alone."""
+    x, y, outcome, bed = truth.study(240, 24, seed)
+    h, terms, exactly = returns(y, outcome), regression_terms(INPUTS, x), exact_share(truth)
+    known = np.isfinite(h)
+    found = {
+        "share": share_estimate(h, bed, terms=terms),
+        "share, those with an outcome alone": share_estimate(h[known], bed[known], terms=(terms[0][known], terms[1])),
+    }
+    return {name: held(IntervalEstimate(one.share, one.lower, one.upper), exactly) for name, one in found.items()}
+
+
+def like_missing(truth: Truth, seed: int) -> dict[str, tuple[float, float, float]]:
+    """The share where every second landing over the rim has an outcome after all, and stands for the others or not."""
+    rng = np.random.default_rng([seed, 7])
+    x, bed = sobol_sequence(INPUTS, 240, seed=seed), rng.permutation(np.arange(240) % 24)
+    landings = truth.draw(x, rng.standard_normal(24)[bed], rng)
+    over = landings.outcome == "left_sideways"
+    lost = over & (rng.random(240) < 0.5)
+    h, terms = returns(np.where(lost[:, None], np.nan, landings.left), landings.outcome), regression_terms(INPUTS, x)
+    found = {
+        "share, half of the rim known": share_estimate(h, bed, terms=terms),
+        "share, half of the rim known and like the other": share_estimate(h, bed, terms=terms, like_missing=over),
+    }
+    exactly = exact_share(truth)
+    return {name: held(IntervalEstimate(one.share, one.lower, one.upper), exactly) for name, one in found.items()}
+
+
 def table(truth: Truth, run_count: int, bed_count: int, study_count: int, seed: int = 0) -> dict[str, Row]:
     """Coverage, bias and half width of every quantity in one setting."""
     studies = [one_study(truth, run_count, bed_count, seed + k) for k in range(study_count)]
@@ -119,7 +146,7 @@ def table(truth: Truth, run_count: int, bed_count: int, study_count: int, seed: 
 
 def exact(truth: Truth, name: str) -> float | None:
     """The truth of a quantity, where it is one number."""
-    return exact_share(truth) if name in ("share", "if missing") else exact_speed(truth).get(name)
+    return exact_share(truth) if name == "share" else exact_speed(truth).get(name)
 
 
 def summed(studies: list[dict[str, tuple[float, float, float]]], name: str) -> Row:
@@ -203,7 +230,7 @@ def flights(truth: Truth, seed: int, systematic: bool) -> float:
     widths = []
     for count in (21, 210):
         flown = np.floor(count * h + rng.random(len(h))) if systematic else rng.binomial(count, h)
-        found = share_estimate(np.minimum(flown / count, 1.0), bed, terms=terms, flight_count=count)
+        found = share_estimate(np.minimum(flown / count, 1.0), bed, terms=terms)
         widths.append(found.upper - found.lower)
     return widths[1] / widths[0]
 
@@ -214,7 +241,7 @@ def no_event(run_count: int, study_count: int) -> float:
     covered = []
     for count in counts:
         stay = (np.arange(run_count) < count).astype(float)
-        found = share_estimate(stay, np.arange(run_count), beds_differ=False).upper
+        found = share_estimate(stay, np.arange(run_count)).upper
         covered.append(found is not None and found >= 1.0 / run_count)
     return float(np.mean(covered))
 
@@ -231,6 +258,7 @@ def rows(count: int) -> Iterator[Row]:
     for truth in (Truth(rim="random"), Truth(rim="fast_flat"), Truth(soil=0.0), Truth(soil=2.7), Truth(soil=3.0)):
         for name, row in table(truth, 240, 24, count).items():
             yield setting(truth, 240, 24) | {"quantity": name} | row
+    yield from rows_of_missing(count)
     for beds, rho in ((4, 0.05), (4, 0.2), (6, 0.0), (6, 0.05), (6, 0.2), (8, 0.05), (8, 0.2)):
         few = [few_beds(Truth(rho=rho), 240, beds, k) for k in range(count)]
         yield from (setting(Truth(rho=rho), 240, beds) | {"quantity": n} | summed(few, n) for n in few[0])
@@ -251,6 +279,22 @@ def rows(count: int) -> Iterator[Row]:
         }
 
 
+def rows_of_missing(count: int) -> Iterator[Row]:
+    """The share where 0, 3 and 10 % of the landings are lost: any, the fast, or the fast of which none returns."""
+    cells = [(missing, Truth(rim_share=0.0))]
+    for rim_share in (0.03, 0.1):
+        cells += [
+            (missing, Truth(rim="random", rim_share=rim_share)),
+            (missing, Truth(rim="fast", rim_share=rim_share)),
+            (missing, Truth(rim="fast", rim_share=rim_share, rim_returns=False)),
+            (like_missing, Truth(rim="fast", rim_share=2.0 * rim_share)),
+        ]
+    for study, truth in cells:
+        found = [study(truth, k) for k in range(count)]
+        extra = {"rim_share": truth.rim_share, "rim_returns": truth.rim_returns, "truth": exact_share(truth)}
+        yield from (setting(truth, 240, 24) | extra | {"quantity": n} | summed(found, n) for n in found[0])
+
+
 def setting(truth: Truth, runs: int, beds: int) -> Row:
     """What a row was measured with."""
     return {"runs": runs, "beds": beds, "rho": truth.rho, "soil": truth.soil, "rim": truth.rim}
@@ -262,7 +306,8 @@ def main() -> None:
     parser.add_argument("--studies", type=int, default=400)
     count = parser.parse_args().studies
     begin = time.process_time()
-    columns = ("quantity", "runs", "beds", "rho", "soil", "rim", "studies", "truth", "held", "bias", "half_width")
+    columns = ("quantity", "runs", "beds", "rho", "soil", "rim", "rim_share", "rim_returns")
+    columns += ("studies", "truth", "held", "bias", "half_width")
     path = Path(__file__).with_suffix(".csv")
     with path.open("w", newline="") as file:
         writer = csv.DictWriter(file, columns, lineterminator="\n")

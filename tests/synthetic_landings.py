@@ -25,8 +25,6 @@ OUTPUT_NAMES = ("speed_out", "elevation_out", "azimuth_out", "spin_out")
 OUTCOMES = ("clear", "captured", "left_sideways")
 # No lander leaves faster [m/s], or at an elevation outside 0 to this [rad].
 SPEED_LIMIT, ELEVATION_LIMIT = 0.4, 0.5 * np.pi
-# Share of the landers that are not captured which leave over the rim, where there is one.
-RIM_SHARE = 0.1
 # Standard deviations by place and bed of logit(speed / limit), logit(elevation / limit) and log(spin).
 SPREADS = np.array([0.5, 0.9, 0.6])
 CENTRES = special.logit(np.array([0.075 / SPEED_LIMIT, np.radians(33.0) / ELEVATION_LIMIT]))
@@ -48,13 +46,18 @@ class Truth:
     """One law of landings. soil: scale of its effect. rho: bed's share of the variance of logit(speed) at one soil.
 
     capture: share of landers that stay. skewness: of each branch of the place. branch_gap: distance of the two
-    branches [standard deviations of one]; 0 makes them one, and the place's skewness the given one.
+    branches [standard deviations of one]; 0 makes them one, and the place's skewness the given one. rim: who leaves
+    over it, so that nothing is known of them: nobody, anyone, the fast and flat, or the fast; rim_share: share of the
+    landers that are not captured which do, where there is a rim. rim_returns: whether these return as others of their
+    speed and elevation do, or none of them does.
     """
 
     soil: float = 1.0
     rho: float = 0.05
     capture: float = 0.04
-    rim: Literal["none", "random", "fast_flat"] = "none"
+    rim: Literal["none", "random", "fast_flat", "fast"] = "none"
+    rim_share: float = 0.1
+    rim_returns: bool = True
     skewness: float = 1.0
     branch_gap: float = 1.8
 
@@ -129,22 +132,23 @@ class Truth:
         if self.rim == "none":
             return np.zeros(len(left))
         if self.rim == "random":
-            return np.full(len(left), RIM_SHARE)
-        return special.expit(8.0 * (_fast_and_flat(left) - _rim_offset(self)))
+            return np.full(len(left), self.rim_share)
+        return special.expit(_rim_score(self, left) - _rim_offset(self))
 
 
 def returns(y: np.ndarray, outcome: np.ndarray) -> np.ndarray:
-    """Chance of staying [n], smooth in speed and elevation y [n, 4]: 1 where captured, NaN where y is unknown."""
+    """Chance of returning [n], smooth in speed and elevation y [n, 4]: 1 where captured, NaN where y is unknown."""
     chance = special.expit(1.0 - 21.0 * (y[:, 0] - 0.082) - 0.6 * (y[:, 1] - 0.6))
     return np.where(np.asarray(outcome) == "captured", 1.0, chance)
 
 
 @lru_cache
 def exact_share(truth: Truth, count: int = 1_000_000, seed: int = 20_261_122) -> float:
-    """Mean chance of staying over all soils, beds and places, rim or not, from so many draws."""
+    """Mean chance of returning over all soils, beds and places, rim or not, from so many draws."""
     rng = np.random.default_rng(seed)
     landings = truth.draw(random_soils(count, rng), rng.standard_normal(count), rng)
-    return float(returns(landings.left, landings.outcome).mean())
+    chance = returns(landings.left, landings.outcome)
+    return float((chance if truth.rim_returns else chance * (landings.outcome != "left_sideways")).mean())
 
 
 def random_soils(count: int, rng: np.random.Generator) -> np.ndarray:
@@ -165,9 +169,11 @@ def _soil_effects(u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return speed / np.sqrt(0.9675), elevation / np.sqrt(0.98)
 
 
-def _fast_and_flat(left: np.ndarray) -> np.ndarray:
-    """How fast and flat landers leave [n]: larger for more of both."""
-    return left[:, 0] / 0.08 - left[:, 1] / 0.6
+def _rim_score(truth: Truth, left: np.ndarray) -> np.ndarray:
+    """How likely landers are to leave over the rim [n], by how fast, and how flat, they leave."""
+    if truth.rim == "fast":
+        return 30.0 * left[:, 0] / 0.08
+    return 8.0 * (left[:, 0] / 0.08 - left[:, 1] / 0.6)
 
 
 @lru_cache
@@ -184,8 +190,10 @@ def _rim_offset(truth: Truth) -> float:
     """Offset that makes the mean chance of leaving over the rim its share, from a quarter of a million draws."""
     rng = np.random.default_rng(1)
     left = truth._leaving(random_soils(250_000, rng), rng.standard_normal(250_000), rng)
-    score = _fast_and_flat(left)
-    return float(optimize.brentq(lambda offset: special.expit(8.0 * (score - offset)).mean() - RIM_SHARE, -50.0, 50.0))
+    score = _rim_score(truth, left)
+    return float(
+        optimize.brentq(lambda offset: special.expit(score - offset).mean() - truth.rim_share, score.min(), score.max())
+    )
 
 
 NO_SOIL, WEAK, STRONG = Truth(soil=0.0), Truth(soil=1.0), Truth(soil=3.0)

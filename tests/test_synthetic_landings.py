@@ -9,7 +9,6 @@ from scipy import special, stats
 from .synthetic_landings import (
     ELEVATION_LIMIT,
     NO_SOIL,
-    RIM_SHARE,
     SPEED_LIMIT,
     STRONG,
     WEAK,
@@ -56,7 +55,7 @@ def test_outcomes_have_their_shares(rim: str) -> None:
     captured, over = (landings.outcome == one for one in ("captured", "left_sideways"))
     slack = 4.0 * np.sqrt(0.25 / COUNT)
     assert abs(captured.mean() - 0.04) < slack
-    assert abs(over.sum() / (~captured).sum() - (RIM_SHARE if rim != "none" else 0.0)) < slack
+    assert abs(over.sum() / (~captured).sum() - (Truth().rim_share if rim != "none" else 0.0)) < slack
     assert np.isnan(landings.y[captured | over]).all()
     assert np.isnan(landings.left[:, 0]).tolist() == captured.tolist()
     faster = landings.left[over, 0].mean() - np.nanmean(landings.y[:, 0]) if over.any() else 0.0

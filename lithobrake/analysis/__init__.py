@@ -3,6 +3,7 @@
 from lithobrake.analysis.best_choice import BestChoice, best_choice, quantile_within
 from lithobrake.analysis.confidence import LEVEL, IntervalEstimate
 from lithobrake.analysis.control_variate import regression_terms
+from lithobrake.analysis.direction import DirectionEstimate, direction_estimate
 from lithobrake.analysis.ellipse import Ellipses, dispersion_ellipses
 from lithobrake.analysis.failure_inputs import FailureInput, failure_inputs
 from lithobrake.analysis.failure_probability import (
@@ -14,7 +15,7 @@ from lithobrake.analysis.failure_probability import (
 from lithobrake.analysis.half_width import expected_half_width, runs_for_half_width
 from lithobrake.analysis.inference import LearntInput, Observation, Posterior, infer
 from lithobrake.analysis.observed_bounces import Identifiability, identifiability, predictive_p_value
-from lithobrake.analysis.outcome_model import OutcomeModel, upper_limit
+from lithobrake.analysis.outcome_model import OutcomeModel, unseen_limit, upper_limit
 from lithobrake.analysis.output_estimates import mean_estimate, quantile_estimates
 from lithobrake.analysis.proportion import wilson_interval
 from lithobrake.analysis.refit_interval import refit_interval
@@ -28,6 +29,7 @@ from lithobrake.analysis.variance_shares import VarianceShares, variance_shares
 __all__ = [
     "LEVEL",
     "BestChoice",
+    "DirectionEstimate",
     "Ellipses",
     "FailureInput",
     "FailureProbability",
@@ -42,6 +44,7 @@ __all__ = [
     "VarianceShares",
     "best_choice",
     "chaos_variance",
+    "direction_estimate",
     "dispersion_ellipses",
     "drawn_counts",
     "drawn_failures",
@@ -64,6 +67,7 @@ __all__ = [
     "share_estimate",
     "soil_total_effect",
     "subset_simulation",
+    "unseen_limit",
     "upper_limit",
     "variance_shares",
     "wilson_interval",

@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[np.float64]
 Labels = NDArray[np.int64]
+Bounds = tuple[float, float]
 
 # Probability with which every interval of an estimate holds the truth; results carry it, so that no reader has to ask.
 LEVEL = 0.9
@@ -30,6 +31,26 @@ def t_quantile(freedom: float) -> float:
     from scipy import special
 
     return float(special.stdtrit(freedom, 0.5 + 0.5 * LEVEL))
+
+
+def partial_quantile(width: float, error: float, freedom: float) -> float:
+    """Errors to add outside of both ends of an identified range, so that each number within it is held at the level.
+
+    width: of the range, at least 0; error: standard error of its ends, the larger one, above 0, in the same unit. From
+    the two-sided quantile of Student's t where the range has no width down to the one-sided one where it is wide, since
+    the number then can be missed at one end only.
+    Source: [Imbens-2004], Eq 6 and 7, valid for ends that cannot cross by [Stoye-2009], Lemma 3; Student's t for beds.
+    """
+    from scipy import optimize, special
+
+    def excess(quantile: float) -> float:
+        return float(special.stdtr(freedom, quantile + width / error) - special.stdtr(freedom, -quantile)) - LEVEL
+
+    two_sided = t_quantile(freedom)
+    # Without a width rounding alone decides the sign.
+    if excess(two_sided) <= 0.0:
+        return two_sided
+    return float(optimize.brentq(excess, 0.99 * float(special.stdtrit(freedom, LEVEL)), two_sided))
 
 
 def normal_quantile() -> float:

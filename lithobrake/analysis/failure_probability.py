@@ -6,17 +6,17 @@ landings, over beds that were not in the study.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from lithobrake.analysis.confidence import LEVEL, Array, IntervalEstimate, Labels
-from lithobrake.analysis.outcome_model import upper_limit
+from lithobrake.analysis.outcome_model import unseen_limit
 from lithobrake.analysis.refit_interval import refit_interval
 from lithobrake.analysis.sampling import sample_inputs
-from lithobrake.analysis.share_estimate import Bounds, ShareEstimate, share_estimate
+from lithobrake.analysis.share_estimate import ShareEstimate, share_estimate
 
 if TYPE_CHECKING:
     from lithobrake.emulator import Draws, Emulator
@@ -34,10 +34,11 @@ class FailureProbability:
     probability, lower, upper   from the runs where it is at least a fiftieth away from 0 and 1, else from the emulator;
                                 bounds None where there is none, and `why` says why
     source                      "runs" or "emulator"
-    by_runs                     what the runs say, whichever answers: interval, next bed, bounds by missing runs
+    by_runs                     what the runs say, whichever answers, with bounds for those without an outcome
     by_emulator                 what the emulator says; None where it was not asked, or cannot tell
-    tail_limit                  what so many places can say of any tail: the largest probability that an event may have
-                                of which they show none; an emulator's rarer ones rest on the form of its scatter
+    tail_limit                  the largest probability that an event may have which no run on so many beds has met;
+                                what an emulator has of rarer ones rests on the form of its scatter, so its interval
+                                then reaches at least as far as that of the runs
     """
 
     probability: float
@@ -63,7 +64,9 @@ class FailureProbability:
             "upper": self.upper,
             "level": self.level,
             "source": self.source,
-            "runs": {key: runs[key] for key in ("share", "lower", "upper", "from", "next_bed", "if_missing")},
+            "runs": {
+                key: runs[key] for key in ("share", "lower", "upper", "from", "next_bed", "if_missing", "missing")
+            },
             "emulator": None
             if emulator is None
             else {"share": emulator.value, "lower": emulator.lower, "upper": emulator.upper},
@@ -78,7 +81,6 @@ def failure_probability(
     *,
     terms: tuple[Array, Labels] | None = None,
     drawn: tuple[ArrayLike, ArrayLike] | None = None,
-    flight_count: int | None = None,
     why: str | None = None,
 ) -> FailureProbability:
     """Estimate the probability of a limit state from runs, and from draws of an emulator fitted to them.
@@ -88,19 +90,27 @@ def failure_probability(
     terms                as in `share_estimate`, which is what the runs say
     drawn                how many draws of each refit of the emulator meet it, and how many were made, [refit_count]
                          each, as `drawn_failures` gives them; None: runs alone
-    flight_count, why    as in `share_estimate`
+    why                  as in `share_estimate`
 
     Raises ValueError as `share_estimate` and `refit_interval` do.
     """
-    runs = share_estimate(failing, bed, terms=terms, flight_count=flight_count, why=why)
-    answered = np.isfinite(np.asarray(failing, dtype=float))
-    run_count, limit = int(answered.sum()), upper_limit(int(answered.sum()), LEVEL)
-    if drawn is None or runs.why is not None:
-        return FailureProbability(runs.share, runs.lower, runs.upper, RUNS, runs, None, limit)
-    emulator = refit_interval(*drawn, len(np.unique(np.asarray(bed)[answered])), run_count)
+    runs = share_estimate(failing, bed, terms=terms, why=why)
+    beds = np.asarray(bed)[np.isfinite(np.asarray(failing, dtype=float))]
+    limit = unseen_limit(beds)
+    by_runs = FailureProbability(runs.share, runs.lower, runs.upper, RUNS, runs, None, limit)
+    if drawn is None or runs.lower is None or runs.upper is None:
+        return by_runs
+    emulator = refit_interval(*drawn, len(np.unique(beds)))
     if RARE <= runs.share <= 1.0 - RARE:
-        return FailureProbability(runs.share, runs.lower, runs.upper, RUNS, runs, emulator, limit)
-    return FailureProbability(emulator.value, *_with_tail(emulator, limit), EMULATOR, runs, emulator, limit)
+        return replace(by_runs, by_emulator=emulator)
+    # The emulator learnt nothing from the runs without an outcome: none of them may meet the limit state, or all.
+    lower, upper = (1.0 - runs.missing) * emulator.lower, (1.0 - runs.missing) * emulator.upper + runs.missing
+    # A tail that is rarer than so many beds can show rests on the form of its scatter: it rules out no more than they.
+    if emulator.value < limit:
+        upper = max(upper, runs.upper)
+    if emulator.value > 1.0 - limit:
+        lower = min(lower, runs.lower)
+    return FailureProbability(emulator.value, lower, upper, EMULATOR, runs, emulator, limit)
 
 
 def drawn_failures(
@@ -133,13 +143,3 @@ def drawn_counts(met: ArrayLike, refit: ArrayLike, refit_count: int) -> tuple[La
     known = np.isfinite(found)
     counts = np.bincount(of[known], weights=found[known], minlength=refit_count)
     return counts.astype(np.int64), np.bincount(of[known], minlength=refit_count)
-
-
-def _with_tail(found: IntervalEstimate, limit: float) -> Bounds:
-    """Bounds of the emulator, which for a tail that is rarer than so many places can show reach to their limit."""
-    lower, upper = found.lower, found.upper
-    if found.value < limit:
-        upper = max(upper, limit)
-    if found.value > 1.0 - limit:
-        lower = min(lower, 1.0 - limit)
-    return lower, upper

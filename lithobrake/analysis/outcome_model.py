@@ -4,6 +4,9 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
+
+from lithobrake.analysis.confidence import LEVEL
 
 if TYPE_CHECKING:
     from lithobrake.chaos import Distribution
@@ -81,11 +84,21 @@ class OutcomeModel:
         return np.column_stack(columns)
 
 
-def upper_limit(run_count: int, level: float = 0.95) -> float:
-    """Largest probability that an event may have, at a level of confidence, which none of so many runs has met.
+def upper_limit(unit_count: int, level: float = 0.95) -> float:
+    """Largest probability that an event may have, at a level of confidence, which none of so many units has met.
 
-    Source: [Clopper-1934], at a count of 0; about 3 / run_count for .95.
+    Units are independent: beds, not the runs on them (`unseen_limit`).
+    Source: [Clopper-1934], at a count of 0; about 3 / unit_count for 0.95.
     """
-    if run_count < 1:
+    if unit_count < 1:
         return 1.0
-    return float(1.0 - (1.0 - level) ** (1.0 / run_count))
+    return float(1.0 - (1.0 - level) ** (1.0 / unit_count))
+
+
+def unseen_limit(bed: ArrayLike) -> float:
+    """Largest probability, at `LEVEL`, of an event that none of the runs on these beds [run_count] has met.
+
+    bed: labels of the beds of the runs of which it is known that they have not met it. The unit is the bed, as in every
+    interval of the estimates: runs on one bed may all miss what the runs on another meet. Source: [Clopper-1934].
+    """
+    return upper_limit(len(np.unique(np.asarray(bed))), LEVEL)

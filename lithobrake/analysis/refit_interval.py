@@ -9,12 +9,13 @@ from lithobrake.analysis.confidence import LEVEL, IntervalEstimate, share_interv
 from lithobrake.analysis.outcome_model import upper_limit
 
 
-def refit_interval(counts: ArrayLike, totals: ArrayLike, bed_count: int, run_count: int) -> IntervalEstimate:
+def refit_interval(counts: ArrayLike, totals: ArrayLike, bed_count: int) -> IntervalEstimate:
     """Share of draws that have met an event, with its interval over beds that were not in the study.
 
-    counts, totals [refit_count]: draws of each refit that have met it, and all of its draws, at least two. bed_count,
-    run_count: what the emulator was fitted to. The scatter of the refits' shares, less what finite draws add, is the
-    error of the fit; an event that no draw or every draw has met is bounded by what so many runs can say.
+    counts, totals [refit_count]: draws of each refit that have met it, and all of its draws, at least two. bed_count:
+    beds that the emulator was fitted to. The scatter of the refits' shares, less what finite draws add, is the error of
+    the fit. An event that no draw or every draw has met is bounded by what so many beds can say (`unseen_limit`), and
+    one that few have met has no wider bounds than that, or than its error on the plain scale.
     Raises ValueError for fewer than two refits or beds, and for a refit with fewer than two draws.
     Source: [Sun-2011] (variance between, freed of that within); [Field-2007] (groups drawn whole).
     """
@@ -25,8 +26,8 @@ def refit_interval(counts: ArrayLike, totals: ArrayLike, bed_count: int, run_cou
             "of each"
         )
     share, total = float(met.sum() / drawn.sum()), float(drawn.sum())
+    limit = upper_limit(bed_count, LEVEL)
     if share in (0.0, 1.0):
-        limit = upper_limit(run_count, LEVEL)
         return IntervalEstimate(share, share * (1.0 - limit), share + (1.0 - share) * limit)
     shares = met / drawn
     total_variance = float(shares.var(ddof=1))
@@ -35,5 +36,9 @@ def refit_interval(counts: ArrayLike, totals: ArrayLike, bed_count: int, run_cou
     between = max(between, total_variance * math.sqrt(2.0 / len(shares)))
     # Drawing B of B beds scatters by (B - 1) / B of what B beds scatter by.
     error = math.sqrt(between * bed_count / (bed_count - 1) + share * (1.0 - share) / total)
-    lower, upper = share_interval(share, t_quantile(bed_count - 1) * error)
-    return IntervalEstimate(share, lower, upper)
+    half = t_quantile(bed_count - 1) * error
+    lower, upper = share_interval(share, half)
+    # On the logit scale a few draws with the event could pass for anything.
+    if share < 0.5:
+        return IntervalEstimate(share, lower, min(upper, max(share + half, limit)))
+    return IntervalEstimate(share, max(lower, min(share - half, 1.0 - limit)), upper)

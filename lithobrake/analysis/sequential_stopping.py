@@ -23,11 +23,13 @@ RUNS_A_STEP = 10
 def half_width_of(values: ArrayLike, bed: ArrayLike) -> float | None:
     """Half the interval of the mean of values [run_count], each from 0 to 1, on beds [run_count] of any labels.
 
-    Runs without an answer are NaN. None where the runs give no interval: no answer, or all on one bed.
+    Runs without an answer are NaN and left out: what they hide no number of runs narrows, and the interval of
+    `share_estimate` adds it. None where the runs give no interval: no answer, or all on one bed.
     """
-    if not np.isfinite(np.asarray(values, dtype=float)).any():
+    known, beds = answered_runs(values, bed)
+    if len(known) == 0:
         return None
-    found = share_estimate(values, bed)
+    found = share_estimate(known, beds)
     return None if found.lower is None or found.upper is None else 0.5 * (found.upper - found.lower)
 
 

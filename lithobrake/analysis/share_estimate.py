@@ -1,19 +1,20 @@
-"""A share of the landers, over the law of the inputs and over beds nobody has poured yet."""
+"""A fraction of the landings, over the input distributions and over beds that were not in the study."""
 
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from lithobrake.analysis.bed_components import bed_components
 from lithobrake.analysis.confidence import (
     LEVEL,
     Array,
+    Bounds,
     Labels,
-    normal_quantile,
     numbered_beds,
+    partial_quantile,
     share_interval,
     share_spread,
     t_quantile,
@@ -23,28 +24,30 @@ from lithobrake.analysis.next_bed import next_bed_deviation
 from lithobrake.analysis.outcome_model import upper_limit
 from lithobrake.chaos.threads import one_thread
 
-Bounds = tuple[float, float]
 ONE_BED = (
     "all runs came down on one bed; another bed gives another share, and these runs cannot say how different: set "
     "bed.bed_count to 12 or more"
 )
+# Fewer landings that resemble those without an outcome say less of them than all landings do.
+FEWEST_LIKE = 5
 
 
 @dataclass(frozen=True)
 class ShareEstimate:
-    """A share with what its runs say of it; shares are fractions of 1.
+    """A fraction of the landings with what they show of it; fractions of 1.
 
-    share                  over the law of the inputs, on beds that were not in the study
-    lower, upper           its interval; None where the runs cannot give one, and `why` says why not
-    level                  probability that each interval stands for
-    source                 how many landings on how many beds it comes from
-    next_bed               interval of the share on one bed more; None without an interval, where all runs end alike, or
-                           with one run a bed
-    if_missing             the share if none, and if all, of the runs without an answer stayed
-    if_missing_interval    the same two, each moved outward by its own sampling error; None without an interval
-    flight_sampling        half the interval that the number of flights of each run alone gives; None where not said
-    emulator               the share by the emulator, as the caller gave it
-    why                    why there is no interval; None where there is one
+    share         over the input distributions, on beds that were not in the study; landings without an outcome count as
+                  those like them (see `share_estimate`)
+    lower, upper  its confidence interval, which assumes nothing of the landings without an outcome; None where the
+                  landings cannot give one, and `why` has the reason
+    level         confidence of each interval
+    source        how many landings on how many beds it comes from, and how many have no outcome
+    next_bed      prediction interval of the fraction on a new bed; None without an interval, where all landings end
+                  alike, or with one landing a bed
+    if_missing    the fraction if it is 0, and if it is 1, for all landings without an outcome; without sampling error
+    missing       fraction of the landings that have no outcome
+    emulator      the fraction by the emulator, as the caller gave it
+    why           why there is no interval; None where there is one
     """
 
     share: float
@@ -54,8 +57,7 @@ class ShareEstimate:
     source: str
     next_bed: Bounds | None
     if_missing: Bounds
-    if_missing_interval: Bounds | None
-    flight_sampling: float | None
+    missing: float
     emulator: float | None
     why: str | None
 
@@ -69,65 +71,79 @@ class ShareEstimate:
             "from": self.source,
             "next_bed": None if self.next_bed is None else list(self.next_bed),
             "if_missing": list(self.if_missing),
-            "flight_sampling": self.flight_sampling,
+            "missing": self.missing,
             "emulator": self.emulator,
             "why": self.why,
         }
 
 
+class _Mean(NamedTuple):
+    """A mean over landings: values less what the inputs explain, of which it is the plain mean, and beds from 0."""
+
+    value: float
+    values: Array
+    beds: Labels
+
+    @property
+    def bed_count(self) -> int:
+        """Units of its error."""
+        return int(self.beds.max()) + 1
+
+    @property
+    def error(self) -> float:
+        """Its standard error."""
+        return standard_error(self.values, self.beds)
+
+
 @one_thread()
 def share_estimate(
-    returns: ArrayLike,
+    shares: ArrayLike,
     bed: ArrayLike,
     *,
     terms: tuple[Array, Labels] | None = None,
     weights: ArrayLike | None = None,
-    beds_differ: bool = True,
-    flight_count: int | None = None,
+    like_missing: ArrayLike | None = None,
     emulator: float | None = None,
     why: str | None = None,
 ) -> ShareEstimate:
-    """Estimate the mean of `returns` over the law of the inputs, with its interval from beds.
+    """Estimate the mean of `shares` over the input distributions, with its interval from beds.
 
-    returns [run_count]    share of its flights for which each run returns, 0 to 1; NaN where the run has no answer
-    bed [run_count]      label of the bed of each run: the units of the interval
-    terms                what `regression_terms` gives for the inputs of all runs; None: plain mean
-    weights [run_count]  density of the law over that the runs were drawn from; None: drawn from the law
-    beds_differ          whether beds matter; where no run, or every run, returns this cannot be seen, and an interval
-                         takes beds as its units where they do, runs where they do not
-    flight_count         flights behind each entry of returns, each of its own draw
-    why                  a reason why these runs give no interval, as one place or one attitude
+    shares [run_count]        0 to 1 for each landing, as the share of its flights that return; NaN without an outcome
+    bed [run_count]           label of the bed of each landing: the units of the interval
+    terms                     what `regression_terms` gives for the inputs of all landings; None: plain mean
+    weights [run_count]       density of the input distribution over that the landings were drawn from; None: 1
+    like_missing [run_count]  whether each landing resembles those without an outcome, as one that left across the edge
+                              of the bed: where at least five of these have an outcome, the point estimate takes their
+                              mean for those without, else that of all. It moves no bound but to hold the estimate
+    why                       a reason why these landings give no interval, as one impact point or one attitude
 
-    The mean of what is left when a regression on the inputs is taken off; its error is that of the beds' sums, never
-    below that of independent runs, with Student's t of one less than the beds. Raises ValueError where nothing has an
-    answer, for shares outside [0, 1] and for weights that are not above 0.
-    Source: [Saerndal-1992], section 6.3 (difference estimator); [Cameron-2008] (errors from few clusters).
+    The mean of what is left when a regression on the inputs is taken off; its error is that of the sums over beds,
+    never below that of independent landings, with Student's t of one less than the beds. The interval reaches from the
+    mean with 0 for every landing without an outcome to that with 1, and beyond either by a sampling error that holds
+    each fraction between at the level; it is never narrower than the interval of the landings with an outcome.
+    Raises ValueError where nothing has an outcome, for shares outside [0, 1] and for weights that are not above 0.
+    Source: [Saerndal-1992], section 6.3 (difference estimator); [Cameron-2008] (errors from few clusters);
+    [Manski-2003] (bounds of a mean with missing data); [Imbens-2004] (their sampling error).
     """
-    h, w = _checked(returns, weights)
+    h, w, like = _checked(shares, weights, like_missing)
     if terms is not None and len(terms[0]) != len(h):
-        raise ValueError(f"terms are of {len(terms[0])} runs and returns of {len(h)}; give those of the same runs")
-    if flight_count is not None and flight_count < 1:
-        raise ValueError(f"flight_count is {flight_count}; allowed: at least 1, or None where nothing flew")
+        raise ValueError(f"terms are of {len(terms[0])} runs and shares of {len(h)}; give those of the same runs")
     beds, answered = numbered_beds(bed, len(h)), np.isfinite(h)
-    told = np.zeros(len(h)) if terms is None else control_variate(terms[0], terms[1].sum(axis=1), h, beds)
-    share = _mean((h - told)[answered], w[answered])
-    if not 0.0 < share < 1.0:
-        # Where hardly a run returns a regression may promise less than none.
-        told = np.zeros(len(h))
-        share = _mean(h[answered], w[answered])
-    own = numbered_beds(beds[answered], int(answered.sum()))
-    bed_count = int(own.max()) + 1
-    why = why or (ONE_BED if bed_count == 1 else None)
-    bounds = next_bed = None
-    if why is None and share in (0.0, 1.0):
-        bounds = _without_event(share, bed_count if beds_differ else len(own))
-    elif why is None:
-        bounds, next_bed = _intervals(_scaled((h - told)[answered], w[answered]), own)
-    ends, ends_interval = _if_missing(h, told, w, beds, share, bounds)
+    left = _less_inputs(h, terms, w, beds)
+    known = _mean_of(left[answered], w[answered], beds[answered])
+    ends = known, known
+    if not answered.all():
+        filled = (np.where(answered, h, end) for end in (0.0, 1.0))
+        ends = tuple(_mean_of(_less_inputs(values, terms, w, beds), w, beds) for values in filled)
+    why = why or (ONE_BED if known.bed_count == 1 else None)
+    share = _point(left, w, answered, like)
+    # A regression of its own for each end may leave the estimate just outside.
+    if_missing = min(max(ends[0].value, 0.0), share), max(min(ends[1].value, 1.0), share)
+    bounds = None if why is not None else _outer(if_missing, _interval(known, known), _interval(*ends))
+    next_bed = None if bounds is None else _next_bed(known, ends, bounds)
     lower, upper = bounds or (None, None)
-    sampling = None if flight_count is None else _flight_sampling(h[answered], w[answered], flight_count)
-    source = f"{len(own)} landing{'s' if len(own) > 1 else ''} on {bed_count} bed{'s' if bed_count > 1 else ''}"
-    return ShareEstimate(share, lower, upper, LEVEL, source, next_bed, ends, ends_interval, sampling, emulator, why)
+    source, missing = _source(answered, known.bed_count), float(np.mean(~answered))
+    return ShareEstimate(share, lower, upper, LEVEL, source, next_bed, if_missing, missing, emulator, why)
 
 
 def standard_error(values: Array, bed: Labels) -> float:
@@ -142,70 +158,90 @@ def standard_error(values: Array, bed: Labels) -> float:
     return math.sqrt(max(from_beds, float(values.var(ddof=1)) / len(values)))
 
 
-def _checked(returns: ArrayLike, weights: ArrayLike | None) -> tuple[Array, Array]:
-    h = np.asarray(returns, dtype=float)
+def _checked(
+    shares: ArrayLike, weights: ArrayLike | None, like_missing: ArrayLike | None
+) -> tuple[Array, Array, NDArray[np.bool_]]:
+    h = np.asarray(shares, dtype=float)
     w = np.ones_like(h) if weights is None else np.asarray(weights, dtype=float)
+    like = np.zeros(h.shape, dtype=bool) if like_missing is None else np.asarray(like_missing, dtype=bool)
     if h.ndim != 1 or not np.isfinite(h).any():
-        raise ValueError(f"returns has shape {h.shape} and no answer; give one share for each run, some of them known")
+        raise ValueError(f"shares has shape {h.shape} and no outcome; give one for each run, some of them known")
     if np.nanmin(h) < 0.0 or np.nanmax(h) > 1.0:
-        raise ValueError(f"returns reaches from {np.nanmin(h):g} to {np.nanmax(h):g}; each must lie between 0 and 1")
+        raise ValueError(f"shares reaches from {np.nanmin(h):g} to {np.nanmax(h):g}; each must lie between 0 and 1")
     if w.shape != h.shape or not np.all((w > 0.0) & np.isfinite(w)):
         raise ValueError(f"weights have shape {w.shape}; give one finite number above 0 for each of {len(h)} runs")
-    return h, w
+    if like.shape != h.shape:
+        raise ValueError(f"like_missing has shape {like.shape}; give true or false for each of {len(h)} runs")
+    return h, w, like
+
+
+def _less_inputs(h: Array, terms: tuple[Array, Labels] | None, weights: Array, beds: Labels) -> Array:
+    """Shares less what a regression on the inputs explains of them [run_count]; NaN where a run has none."""
+    if terms is None:
+        return h
+    left: Array = h - control_variate(terms[0], terms[1].sum(axis=1), h, beds)
+    known = np.isfinite(h)
+    # Where hardly a run returns a regression may promise less than none.
+    return left if 0.0 < _mean(left[known], weights[known]) < 1.0 else h
 
 
 def _mean(values: Array, weights: Array) -> float:
     return float(np.sum(weights * values) / np.sum(weights))
 
 
-def _scaled(values: Array, weights: Array) -> Array:
-    """Values whose plain mean, with its error, is the weighted mean. Source: [Saerndal-1992], section 5.5."""
+def _mean_of(values: Array, weights: Array, beds: Labels) -> _Mean:
+    """The weighted mean as a plain one, with its error. Source: [Saerndal-1992], section 5.5."""
     mean = _mean(values, weights)
-    scaled: Array = mean + weights / weights.mean() * (values - mean)
-    return scaled
+    return _Mean(mean, mean + weights / weights.mean() * (values - mean), numbered_beds(beds, len(values)))
 
 
-def _without_event(share: float, unit_count: int) -> Bounds:
-    limit = upper_limit(unit_count, LEVEL)
+def _point(left: Array, weights: Array, answered: NDArray[np.bool_], like: NDArray[np.bool_]) -> float:
+    """The mean of what is left of the inputs, with that of similar runs for those without an outcome."""
+    similar = answered & like if (answered & like).sum() >= FEWEST_LIKE else answered
+    share = _mean(np.where(answered, left, _mean(left[similar], weights[similar])), weights)
+    return min(max(share, 0.0), 1.0)
+
+
+def _interval(least: _Mean, most: _Mean) -> Bounds:
+    """Interval that holds each number between two means at the level; that of Student where both are one."""
+    lower, upper = (min(max(one.value, 0.0), 1.0) for one in (least, most))
+    errors = least.error, most.error
+    freedom, width, error = least.bed_count - 1, max(upper - lower, 0.0), max(errors)
+    quantile = partial_quantile(width, error, freedom) if error > 0.0 else t_quantile(freedom)
+    low = _certain(lower, least) or share_interval(lower, quantile * errors[0])
+    high = _certain(upper, most) or share_interval(upper, quantile * errors[1])
+    return low[0], high[1]
+
+
+def _certain(share: float, of: _Mean) -> Bounds | None:
+    """Bounds where no run, or every run, has met the event; None elsewhere."""
+    if share not in (0.0, 1.0):
+        return None
+    limit = upper_limit(of.bed_count, LEVEL)
     return (0.0, limit) if share == 0.0 else (1.0 - limit, 1.0)
 
 
-def _intervals(values: Array, bed: Labels) -> tuple[Bounds, Bounds | None]:
-    """Interval of the mean of values [run_count], and of that on the next bed where a bed has more than one run."""
-    share, error, bed_count = float(values.mean()), standard_error(values, bed), int(bed.max()) + 1
-    half = t_quantile(bed_count - 1) * error
-    bounds = share_interval(share, half)
-    if len(values) == bed_count:
-        return bounds, None
+def _next_bed(known: _Mean, ends: tuple[_Mean, _Mean], bounds: Bounds) -> Bounds | None:
+    """Prediction interval of the mean on a new bed; it holds the interval of the mean over all beds."""
+    if known.value in (0.0, 1.0) or len(known.values) == known.bed_count:
+        return None
     # One bed more is never better known than the mean over all, however alike a few beds are.
-    lower, upper = share_spread(share, next_bed_deviation(bed_components(values, bed), error))
-    return bounds, (min(lower, bounds[0]), max(upper, bounds[1]))
+    return _outer(bounds, _spread(known), (_spread(ends[0])[0], _spread(ends[1])[1]))
 
 
-def _if_missing(
-    h: Array, told: Array, weights: Array, beds: Labels, share: float, bounds: Bounds | None
-) -> tuple[Bounds, Bounds | None]:
-    """Share if none and if all without an answer count, and the interval about both; both hold the share itself.
-
-    Source: [Manski-2003] (bounds of a mean with missing data).
-    """
-    if np.isfinite(h).all():
-        return (share, share), bounds
-    ends, outer = [], []
-    for filling in (0.0, 1.0):
-        values = _scaled(np.where(np.isfinite(h), h, filling) - told, weights)
-        ends.append(min(max(float(values.mean()), 0.0), 1.0))
-        half = t_quantile(int(beds.max())) * standard_error(values, beds) if bounds else 0.0
-        outer.append(share_interval(ends[-1], half))
-    # What a regression takes off differs between runs with and without an answer, so the share may lie just outside.
-    around = (min(share, ends[0]), max(share, ends[1]))
-    return around, (min(bounds[0], outer[0][0]), max(bounds[1], outer[1][1])) if bounds else None
+def _spread(one: _Mean) -> Bounds:
+    share = min(max(one.value, 0.0), 1.0)
+    return share_spread(share, next_bed_deviation(bed_components(one.values, one.beds), one.error))
 
 
-def _flight_sampling(h: Array, weights: Array, flight_count: int) -> float:
-    """Half the interval by the luck of flights alone; each entry of h is a share of so many draws.
+def _outer(*bounds: Bounds) -> Bounds:
+    return min(one[0] for one in bounds), max(one[1] for one in bounds)
 
-    Source: [Cochran-1977], section 3.2 (unbiased variance of a sample's proportion).
-    """
-    variances = h * (1.0 - h) / max(flight_count - 1, 1)
-    return normal_quantile() * float(np.sqrt(np.sum(weights**2 * variances)) / np.sum(weights))
+
+def _source(answered: NDArray[np.bool_], bed_count: int) -> str:
+    """How many landings on how many beds, and how many of them have no outcome."""
+    known, total = int(answered.sum()), len(answered)
+    on_beds = f"landing{'s' if total > 1 else ''} on {bed_count} bed{'s' if bed_count > 1 else ''}"
+    if known == total:
+        return f"{total} {on_beds}"
+    return f"{known} of {total} {on_beds}; {total - known} {'have' if total - known > 1 else 'has'} no outcome"

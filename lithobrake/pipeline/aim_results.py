@@ -117,7 +117,7 @@ def _share(
     told = totals >= 2
     if fitted.why is not None or told.sum() < REFIT_COUNT // 2:
         return share, None, None
-    found = refit_interval(counts[told], totals[told], fitted.bed_count, fitted.run_count)
+    found = refit_interval(counts[told], totals[told], fitted.bed_count)
     return share, found.lower, found.upper
 
 

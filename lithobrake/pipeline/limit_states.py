@@ -9,10 +9,10 @@ from lithobrake.outcomes import FlightStatus, SampleOutcome
 from lithobrake.pipeline.design_runs import DesignRuns
 from lithobrake.pipeline.designs import design_inputs
 from lithobrake.pipeline.dispersion_statistics import Rows
-from lithobrake.pipeline.failing_runs import CAPTURED, OF_TOUCHDOWN, failing_runs
+from lithobrake.pipeline.failing_runs import CAPTURED, failing_runs
 from lithobrake.pipeline.fitted_emulator import REFIT_COUNT
 from lithobrake.pipeline.folder import StudyFolder
-from lithobrake.pipeline.run_flights import FLIGHT_COUNT, RunFlights
+from lithobrake.pipeline.run_flights import RunFlights
 from lithobrake.pipeline.samples import Samples
 from lithobrake.pipeline.scope import why_no_interval
 from lithobrake.pipeline.shares_over_refits import sample_fates
@@ -61,7 +61,6 @@ def _one(
         runs.inputs["bed"],
         terms=regression_terms(inputs, x),
         drawn=_drawn(state, of_samples),
-        flight_count=FLIGHT_COUNT if set(state.fates) - set(OF_TOUCHDOWN) else None,
         why=why_no_interval(study),
     )
     several = len(np.unique(runs.inputs["bed"][np.isfinite(failing)])) > 1

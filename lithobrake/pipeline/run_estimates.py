@@ -21,7 +21,7 @@ from lithobrake.pipeline.design_runs import DesignRuns
 from lithobrake.pipeline.designs import design_inputs
 from lithobrake.pipeline.flights import QUANTILES
 from lithobrake.pipeline.job import Job
-from lithobrake.pipeline.run_flights import FLIGHT_COUNT, RunFlights
+from lithobrake.pipeline.run_flights import RunFlights
 from lithobrake.pipeline.scope import why_no_interval
 from lithobrake.pipeline.sequence import AZIMUTH
 from lithobrake.study import Study
@@ -48,7 +48,6 @@ def estimate(job: Job) -> None:
         returns,
         bed,
         terms=regression_terms(inputs, runs.columns(list(inputs))),
-        flight_count=FLIGHT_COUNT,
         why=why,
     )
     values = {name: runs.output(name) for name in SPLIT if name != RETURNS} | {RETURNS: returns}

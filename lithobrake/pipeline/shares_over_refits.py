@@ -30,15 +30,15 @@ class Refits:
             return
         for name, event in met.items():
             counts = np.bincount(refit[event], minlength=REFIT_COUNT)
-            found = refit_interval(counts, totals, self.bed_count, self.run_count)
+            found = refit_interval(counts, totals, self.bed_count)
             table[name] |= {"lower": found.lower, "upper": found.upper}
 
     def widen_what_no_run_met(self, table: dict[str, Any], run_outcomes: Mapping[str, int]) -> None:
-        """Let the bounds of an outcome that no run had reach from 0 to what so many runs can say of it."""
+        """Let the bounds of an outcome that no run had reach from 0 to what so many beds can say of it."""
         for name in set(TouchdownOutcome) - {TouchdownOutcome.CLEAR, *run_outcomes}:
             entry = table[name]
             if entry["upper"] is not None:
-                entry |= {"lower": 0.0, "upper": max(entry["upper"], upper_limit(self.run_count, LEVEL))}
+                entry |= {"lower": 0.0, "upper": max(entry["upper"], upper_limit(self.bed_count, LEVEL))}
 
 
 def sample_fates(samples: Samples, flights: Rows, *, holds: bool) -> dict[str, np.ndarray]:

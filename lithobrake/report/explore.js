@@ -143,7 +143,11 @@ function refitInterval(returns, known, bedCount, reach) {
   if (share >= 0.1 && share <= 0.9 || share === 0 || share === 1)
     return [share, Math.max(share - half, 0), Math.min(share + half, 1)];
   const odds = share / (1 - share), factor = Math.exp(Math.min(half / (share * (1 - share)), 600));
-  return [share, odds / factor / (1 + odds / factor), odds * factor / (1 + odds * factor)];
+  const low = odds / factor / (1 + odds / factor), high = odds * factor / (1 + odds * factor);
+  // What so many beds leave open of an event that nobody has met (90 %): few who have leave no more open.
+  const limit = 1 - Math.pow(0.1, 1 / bedCount);
+  if (share < 0.5) return [share, low, Math.min(high, Math.max(share + half, limit))];
+  return [share, Math.max(low, Math.min(share - half, 1 - limit)), high];
 }
 
 // Value that a share of counts does not exceed, straight within a bin; axis: where the last bin ends.

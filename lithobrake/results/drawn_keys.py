@@ -70,7 +70,7 @@ DRAWN_TABLES = (
             "runs.*": "the same by the runs, whichever answers: keys of results.returns",
             "emulator": "null where the emulator cannot tell",
             "emulator.*": "the same by the emulator",
-            "tail_limit": "the most that a tail may have of which so many runs show nothing",
+            "tail_limit": "largest probability of an event that no run on so many beds has met",
             "failing_runs": "runs that meet it; of those whose flights meet it in part, their shares",
             "inputs": "none where no run meets it, or all came down on one bed",
             "inputs.*.distance": "largest difference of the distribution functions of the input among the runs that "

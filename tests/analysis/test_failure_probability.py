@@ -10,6 +10,7 @@ from lithobrake.analysis import (
     failure_probability,
     refit_interval,
     share_estimate,
+    unseen_limit,
     upper_limit,
 )
 from lithobrake.chaos import Normal, sobol_sequence
@@ -29,18 +30,37 @@ def test_the_runs_tell_what_at_least_a_fiftieth_of_them_meets() -> None:
     found, runs = failure_probability(failing(24), BED, drawn=(COUNTS, TOTALS)), share_estimate(failing(24), BED)
     assert (found.source, found.why) == ("runs", None)
     assert (found.probability, found.lower, found.upper) == (runs.share, runs.lower, runs.upper)
-    assert found.by_emulator == refit_interval(COUNTS, TOTALS, 24, 240)
+    assert found.by_emulator == refit_interval(COUNTS, TOTALS, 24)
 
 
-def test_the_emulator_tells_what_is_rarer_within_the_limit_of_so_many_places() -> None:
-    found = failure_probability(failing(2), BED, drawn=(COUNTS // 4, TOTALS))
-    of_emulator = refit_interval(COUNTS // 4, TOTALS, 24, 240)
+def test_the_emulator_tells_what_is_rarer_and_rules_out_no_more_than_so_many_beds() -> None:
+    found, runs = failure_probability(failing(2), BED, drawn=(COUNTS // 4, TOTALS)), share_estimate(failing(2), BED)
+    of_emulator = refit_interval(COUNTS // 4, TOTALS, 24)
     assert (found.source, found.probability) == ("emulator", of_emulator.value)
-    assert found.tail_limit == upper_limit(240, 0.9)
-    assert found.probability < found.tail_limit
-    # The emulator alone would rule out what 240 places cannot.
-    assert of_emulator.upper < found.tail_limit == found.upper
+    assert found.tail_limit == upper_limit(24, 0.9) == unseen_limit(BED)
+    assert of_emulator.upper < runs.upper == found.upper
     assert found.lower == of_emulator.lower
+    none = failure_probability(failing(0), BED, drawn=(COUNTS // 4, TOTALS))
+    assert none.upper == none.tail_limit == none.by_runs.upper
+    # A study of 240 beds may rule out more than its runs do one by one.
+    assert failure_probability(failing(2), np.arange(240), drawn=(np.arange(50) % 3 + 2, TOTALS)).tail_limit < 0.01
+
+
+@pytest.mark.parametrize("rare", [True, False])
+def test_runs_without_an_outcome_may_all_or_none_meet_the_limit_state(rare: bool) -> None:
+    met = failing(2)
+    met[100:112] = np.nan
+    drawn = (COUNTS // 4, TOTALS)
+    if not rare:
+        met, drawn = 1.0 - met, (TOTALS - COUNTS // 4, TOTALS)
+    found = failure_probability(met, BED, drawn=drawn)
+    assert found.by_runs.missing == 0.05
+    assert found.source == "emulator"
+    # Twelve of 240 may, beside a sampling error.
+    assert found.upper - found.lower > 0.05 + 0.01
+    assert found.lower <= 0.95 * found.by_emulator.lower
+    assert found.upper >= 0.95 * found.by_emulator.upper + 0.05
+    assert found.summary()["runs"]["missing"] == 0.05
 
 
 def test_what_nearly_always_happens_is_as_rare_the_other_way_round() -> None:
@@ -75,7 +95,7 @@ def test_an_emulator_of_any_model_is_drawn_refit_by_refit() -> None:
     model = emulator.fit(inputs, x, y, groups=BED)
     counts, totals = drawn_failures(model, lambda draws: draws.y[:, :, 0] > 2.5, sample_count=20_000, refit_count=20)
     assert totals.tolist() == [1000] * 20
-    found = refit_interval(counts, totals, 24, 240)
+    found = refit_interval(counts, totals, 24)
     assert found.lower < (model.sample(x, 100) > 2.5).mean() < found.upper
     again, _ = drawn_failures(model, lambda draws: draws.y[:, :, 0] > 2.5, sample_count=20_000, refit_count=20)
     assert counts.tolist() == again.tolist()

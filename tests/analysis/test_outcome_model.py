@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from lithobrake.analysis import OutcomeModel, sample_inputs, upper_limit
+from lithobrake.analysis import LEVEL, OutcomeModel, sample_inputs, unseen_limit, upper_limit
 from lithobrake.chaos import LogUniform, Uniform
 
 INPUTS = {"young_modulus": LogUniform(1e6, 1e8), "restitution": Uniform(0.2, 0.9)}
@@ -47,3 +47,9 @@ def test_the_upper_limit_of_what_no_run_had(count: int) -> None:
     assert (1.0 - limit) ** count == pytest.approx(0.05)
     assert limit == pytest.approx(3.0 / count, rel=0.1)
     assert upper_limit(0) == 1.0
+
+
+def test_the_unit_of_what_no_run_had_is_the_bed() -> None:
+    bed = np.repeat(["a", "b", "c"], 40)
+    assert (1.0 - unseen_limit(bed)) ** 3 == pytest.approx(1.0 - LEVEL)
+    assert unseen_limit([]) == 1.0

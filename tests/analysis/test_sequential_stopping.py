@@ -1,5 +1,6 @@
 """Runs in stages on landings whose truth is known: when they stop, how many come next, what the interval is worth."""
 
+import math
 import sys
 from collections.abc import Callable
 from itertools import pairwise
@@ -107,3 +108,13 @@ def test_the_scatter_is_that_of_runs_and_beds() -> None:
     assert (spread, correlation) == (pytest.approx(0.05, rel=0.15), pytest.approx(0.36, abs=0.15))
     assert scatter_of(values[:2], bed[:2]) == (pytest.approx(values[:2].std(ddof=1)), 0.0)
     assert scatter_of([0.3, np.nan], [0, 1]) is None
+
+
+def test_what_landings_without_an_outcome_hide_asks_for_no_more_runs() -> None:
+    rng, bed = np.random.default_rng(3), np.arange(240) % 24
+    values = np.where(rng.random(240) < 0.05, np.nan, np.clip(0.7 + 0.1 * rng.standard_normal(240), 0.0, 1.0))
+    width = half_width_of(values, bed)
+    assert width == pytest.approx(1.71 * 0.1 / math.sqrt(228), rel=0.2)
+    found = share_estimate(values, bed)
+    assert 0.5 * (found.upper - found.lower) > 2.0 * width
+    assert next_run_count(values, bed, 1.1 * width, 2400, lambda count: count // 10) is None

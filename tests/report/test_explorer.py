@@ -160,7 +160,7 @@ def test_an_interval_is_that_of_python(share: float) -> None:
             "return refitInterval(Float64Array.from(given.returns), Float64Array.from(given.known), 12, given.reach);",
             {"returns": returns.tolist(), "known": known.tolist(), "reach": t_quantile(11)},
         )
-        known_to_python = refit_interval(returns, known, 12, 240)
+        known_to_python = refit_interval(returns, known, 12)
         bounds = [known_to_python.value, known_to_python.lower, known_to_python.upper]
         assert found == pytest.approx(bounds, rel=EXACT)
 
