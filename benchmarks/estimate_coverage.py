@@ -15,6 +15,7 @@ import math
 import sys
 import time
 from collections.abc import Iterator
+from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -104,8 +105,9 @@ def one_study(truth: Truth, run_count: int, bed_count: int, seed: int) -> dict[s
         f"quantile {p:g}": held(one, exact[f"quantile {p:g}"]) for p, one in zip(PROBABILITIES, quantiles, strict=True)
     }
     parts = variance_shares(INPUTS, x, speed, bed, soil=tuple(INPUTS))
-    result["bed share"] = held(parts.bed, exact["bed share"])
-    result["soil share"] = held(parts.soil, max(exact["soil share"], 0.0) if truth.soil else 0.0)
+    result["bed share"] = held(replace(parts.bed, value=parts.unbiased["bed"]), exact["bed share"])
+    soil = replace(parts.soil, value=parts.unbiased["soil"])
+    result["soil share"] = held(soil, max(exact["soil share"], 0.0) if truth.soil else 0.0)
     not_found = np.mean([one.lower <= 0.0 for one in parts.soil_by_input.values()])
     return result | {"inputs not found": (float(not_found), 0.0, 0.0)}
 

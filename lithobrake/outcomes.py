@@ -28,8 +28,8 @@ class TouchdownOutcome(_Ending):
     CAPTURED = "captured", "The lander is captured."
     LEFT_SIDEWAYS = (
         "left_sideways",
-        "The lander goes over the rim of the bed, and does not clearly fly.",
-        "lost over the rim of the bed",
+        "The lander leaves the bed laterally, and does not clearly fly.",
+        "left the bed laterally",
     )
     TIME_LIMIT = "time_limit", "The lander is still in contact at the time limit.", "in contact at the time limit"
 

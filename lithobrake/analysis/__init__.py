@@ -12,7 +12,7 @@ from lithobrake.analysis.failure_probability import (
     drawn_failures,
     failure_probability,
 )
-from lithobrake.analysis.half_width import expected_half_width, runs_for_half_width
+from lithobrake.analysis.half_width import expected_half_width, expected_half_widths, runs_for_half_width
 from lithobrake.analysis.inference import LearntInput, Observation, Posterior, infer
 from lithobrake.analysis.observed_bounces import Identifiability, identifiability, predictive_p_value
 from lithobrake.analysis.outcome_model import OutcomeModel, unseen_limit, upper_limit
@@ -49,6 +49,7 @@ __all__ = [
     "drawn_counts",
     "drawn_failures",
     "expected_half_width",
+    "expected_half_widths",
     "failure_inputs",
     "failure_probability",
     "half_width_of",

@@ -1,6 +1,6 @@
 """Variance between beds and within them, beside what the inputs explain: analysis of variance with random beds."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -8,6 +8,8 @@ from lithobrake.analysis.confidence import LEVEL, Array, IntervalEstimate, Label
 
 # Directions along which beds are told apart by less than this part of the best are told by the inputs already.
 SMALLEST_COUNT = 1e-9
+# A variance of beds that is not cut at 0 stays this part of its way off the pole of the F statistic.
+LEAST_SPREAD = 1e-6
 
 
 @dataclass(frozen=True)
@@ -34,10 +36,11 @@ class BedComponents:
         """
         return float((self.squares.sum() - len(self.squares) * self.within) / self.counts.sum())
 
-    def variance_at(self, probability: float) -> float:
-        """Variance of beds with which they would differ more than here with this probability; at least 0.
+    def variance_at(self, probability: float, *, cut: bool = True) -> float:
+        """Variance of beds with which they would differ more than here with this probability.
 
-        Exact for normal scatter, whatever the counts. Source: [Wald-1947]; [Thomas-1978] (a close approximation to it).
+        At least 0, or, where it is not cut, above that with which beds would all have one sum. Exact for normal
+        scatter, whatever the counts. Source: [Wald-1947]; [Thomas-1978] (a close approximation to it).
         """
         from scipy import optimize, special
 
@@ -47,12 +50,27 @@ class BedComponents:
         def excess(ratio: float) -> float:
             return float(np.sum(self.squares / (1.0 + ratio * self.counts))) - expected
 
-        if excess(0.0) <= 0.0:
-            return 0.0
+        lowest = 0.0 if cut else -(1.0 - LEAST_SPREAD) / float(self.counts.max())
+        if excess(lowest) <= 0.0:
+            return self.within * lowest
         highest = 1.0 / self.counts.min()
         while excess(highest) > 0.0:
             highest *= 4.0
-        return self.within * float(optimize.brentq(excess, 0.0, highest, xtol=1e-12, rtol=1e-10))
+        return self.within * float(optimize.brentq(excess, lowest, highest, xtol=1e-12, rtol=1e-10))
+
+    @property
+    def positive(self) -> "BedComponents":
+        """These, or where beds differ less than chance has it those of beds that differ as chance has it."""
+        least = len(self.squares) * self.within
+        if self.squares.sum() >= least:
+            return self
+        # Squares that are all 0 have no spread to scale.
+        squares = self.squares * least / self.squares.sum() if self.squares.any() else self.squares + self.within
+        return replace(self, squares=squares)
+
+    def correlation_at(self, variance: float) -> float:
+        """Correlation of two runs on one bed (intraclass) with this variance of beds [unit of the runs, squared]."""
+        return variance / (variance + self.within) if self.within > 0.0 else 1.0
 
     @property
     def correlation(self) -> IntervalEstimate:
@@ -60,7 +78,7 @@ class BedComponents:
         if self.within <= 0.0:
             return IntervalEstimate(1.0, 0.0, 1.0)
         variances = [self.bed_variance, *(self.variance_at(0.5 + side * LEVEL) for side in (-0.5, 0.5))]
-        value, lower, upper = (one / (one + self.within) for one in variances)
+        value, lower, upper = (self.correlation_at(one) for one in variances)
         return IntervalEstimate(value, lower, upper)
 
 

@@ -6,31 +6,39 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lithobrake.analysis.confidence import Array, IntervalEstimate, t_quantile
+from lithobrake.analysis.confidence import LEVEL, Array, IntervalEstimate, t_quantile
 
 
 @dataclass(frozen=True)
 class BestChoice:
     """The choice of the largest mean.
 
-    best, runner_up: places among the choices; runner_up is None where only one was allowed. shares [choice_count]: of
-    refits in which each choice is the best; 0 of those not allowed. difference: of the best over the runner-up.
+    best, runner_up  places among the choices; runner_up is None where only one was allowed
+    shares           of refits in which each choice is the best, [choice_count]; 0 of those not allowed. No probability
+                     that it is: refits scatter about one fit, whose own error they share
+    difference       of the best over the runner-up
+    own              how often the best meets the event, less what its selection adds: the mean of the best of many is
+                     too high by several points. An estimate; a little of the excess is left where many are alike
+    not_worse        places of the best and of all that cannot be told from it; they hold the true best at the level
     """
 
     best: int
     runner_up: int | None
     shares: Array
     difference: IntervalEstimate | None
+    own: IntervalEstimate
+    not_worse: tuple[int, ...]
 
 
 def best_choice(met: ArrayLike, bed_count: int, allowed: ArrayLike) -> BestChoice:
-    """Say which choice has met an event most often, met [choice_count, refit_count, draw_count], of those allowed.
+    """Find the choice that meets an event most often, met [choice_count, refit_count, draw_count], of those allowed.
 
     bed_count: beds that the emulator was fitted to. The same place in two choices is the same draw of all but the
     choice, so differences are taken draw by draw. Refits scatter by what beds do and by what so few draws add; their
     distances from the mean are scaled to the first, and to what all draws together leave of the second.
     Raises ValueError for fewer than two refits, draws or beds, and where nothing is allowed.
-    Source: [Sun-2011] (variance between, freed of that within).
+    Source: [Sun-2011] (variance between, freed of that within); [Efron-1983] (what selection adds); [Hsu-1981] (all
+    that cannot be told from the best).
     """
     values, open_to = np.asarray(met, dtype=float), np.flatnonzero(np.asarray(allowed, dtype=bool))
     if values.ndim != 3 or min(values.shape[1:]) < 2 or bed_count < 2 or not len(open_to):
@@ -46,12 +54,13 @@ def best_choice(met: ArrayLike, bed_count: int, allowed: ArrayLike) -> BestChoic
     wins = scaled >= scaled.max(axis=0)
     shares = np.zeros(len(values))
     shares[open_to] = (wins / wins.sum(axis=0)).mean(axis=1)
+    own, not_worse = _own(values, best, open_to, bed_count), _not_worse(values, best, open_to, bed_count)
     if runner_up is None:
-        return BestChoice(best, None, shares, None)
+        return BestChoice(best, None, shares, None, own, not_worse)
     between = values[best] - values[runner_up]
     half = t_quantile(bed_count - 1) * math.sqrt(_error_variance(between, bed_count))
     value = float(between.mean())
-    return BestChoice(best, runner_up, shares, IntervalEstimate(value, value - half, value + half))
+    return BestChoice(best, runner_up, shares, IntervalEstimate(value, value - half, value + half), own, not_worse)
 
 
 def quantile_within(values: ArrayLike, probability: float, levels: tuple[float, float]) -> tuple[float, float, float]:
@@ -64,6 +73,36 @@ def quantile_within(values: ArrayLike, probability: float, levels: tuple[float, 
     places = (np.arange(len(ordered)) + 0.5) / len(ordered)
     lower, middle, upper = np.interp([levels[0], probability, levels[1]], places, ordered).tolist()
     return middle, lower if levels[0] >= places[0] else -math.inf, upper if levels[1] <= places[-1] else math.inf
+
+
+def _own(values: Array, best: int, allowed: NDArray[np.intp], bed_count: int) -> IntervalEstimate:
+    """The mean of the best less its optimism: how far the best of a refit lies above its own mean over all refits.
+
+    Choices scatter alike, so what refits and draws add is told from all of them together: that of one choice alone is
+    told so roughly from few draws that too much would be taken off.
+    """
+    means = values[allowed].mean(axis=2)
+    centres = means.mean(axis=1, keepdims=True)
+    total = float(means.var(axis=1, ddof=1).mean())
+    within = float(values[allowed].var(axis=2, ddof=1).mean()) / values.shape[2]
+    error = max(total - within, 0.0) * bed_count / (bed_count - 1) + within / values.shape[1]
+    deviations = math.sqrt(error / total) * (means - centres) if total > 0.0 else means - centres
+    winners = (centres + deviations).argmax(axis=0)
+    optimism = float(deviations[winners, np.arange(len(winners))].mean())
+    value = min(max(float(values[best].mean()) - optimism, 0.0), 1.0)
+    half = t_quantile(bed_count - 1) * math.sqrt(_error_variance(values[best], bed_count))
+    return IntervalEstimate(value, max(value - half, 0.0), min(value + half, 1.0))
+
+
+def _not_worse(values: Array, best: int, allowed: NDArray[np.intp], bed_count: int) -> tuple[int, ...]:
+    """Places of the best and of those whose difference to it is within its error, all together (Bonferroni)."""
+    from scipy import special
+
+    others = [int(one) for one in allowed if one != best]
+    reach = float(special.stdtrit(bed_count - 1, 1.0 - (1.0 - LEVEL) / max(len(others), 1)))
+    differences = {one: values[best] - values[one] for one in others}
+    near = [one for one, gap in differences.items() if gap.mean() <= reach * math.sqrt(_error_variance(gap, bed_count))]
+    return tuple(sorted([best, *near]))
 
 
 def _error_variance(draws: Array, bed_count: int) -> float:

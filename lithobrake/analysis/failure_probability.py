@@ -81,6 +81,7 @@ def failure_probability(
     *,
     terms: tuple[Array, Labels] | None = None,
     drawn: tuple[ArrayLike, ArrayLike] | None = None,
+    like_missing: ArrayLike | None = None,
     why: str | None = None,
 ) -> FailureProbability:
     """Estimate the probability of a limit state from runs, and from draws of an emulator fitted to them.
@@ -90,11 +91,11 @@ def failure_probability(
     terms                as in `share_estimate`, which is what the runs say
     drawn                how many draws of each refit of the emulator meet it, and how many were made, [refit_count]
                          each, as `drawn_failures` gives them; None: runs alone
-    why                  as in `share_estimate`
+    like_missing, why    as in `share_estimate`
 
     Raises ValueError as `share_estimate` and `refit_interval` do.
     """
-    runs = share_estimate(failing, bed, terms=terms, why=why)
+    runs = share_estimate(failing, bed, terms=terms, like_missing=like_missing, why=why)
     beds = np.asarray(bed)[np.isfinite(np.asarray(failing, dtype=float))]
     limit = unseen_limit(beds)
     by_runs = FailureProbability(runs.share, runs.lower, runs.upper, RUNS, runs, None, limit)

@@ -134,7 +134,8 @@ def share_estimate(
     ends = known, known
     if not answered.all():
         filled = (np.where(answered, h, end) for end in (0.0, 1.0))
-        ends = tuple(_mean_of(_less_inputs(values, terms, w, beds), w, beds) for values in filled)
+        least, most = (_mean_of(_less_inputs(values, terms, w, beds), w, beds) for values in filled)
+        ends = least, most
     why = why or (ONE_BED if known.bed_count == 1 else None)
     share = _point(left, w, answered, like)
     # A regression of its own for each end may leave the estimate just outside.

@@ -28,8 +28,10 @@ def soil_total_effect(differences: ArrayLike, y: ArrayLike) -> IntervalEstimate:
     """Share of an output's variance that goes with its soil, interactions with bed, place and attitude included.
 
     differences [pair_count] between two soils of their own on the same bed, place and attitude; y [run_count]: the
-    output over the law, NaN where a run has none. The interval is that of a chi-square number which scatters as the
-    squares of both do. Raises ValueError where fewer than two differences or runs are known, or all runs are alike.
+    output over the input distributions, NaN where a run has none. The interval is that of a chi-square number which
+    scatters as the squares of both do. Few pairs may show more than the whole variance: value and bounds are cut at 1,
+    and an interval that reaches from near 0 to 1 says that so many pairs cannot tell. Raises ValueError where fewer
+    than two differences or runs are known, or all runs are alike.
     Source: [Jansen-1999]; [Searle-1992] (Satterthwaite's degrees of freedom).
     """
     from scipy import special
@@ -39,13 +41,13 @@ def soil_total_effect(differences: ArrayLike, y: ArrayLike) -> IntervalEstimate:
     if len(halves) < 2 or len(known) < 2 or np.ptp(known) == 0.0:
         raise ValueError(f"{len(halves)} pairs and {len(known)} runs, or runs all alike; give two or more that differ")
     deviations = (known - known.mean()) ** 2
-    effect = float(halves.mean() * len(known) / ((len(known) - 1) * deviations.mean()))
+    effect = min(float(halves.mean() * len(known) / ((len(known) - 1) * deviations.mean())), 1.0)
     if effect == 0.0:
         return IntervalEstimate(0.0, 0.0, 0.0)
     error = sum(float(one.var(ddof=1) / (len(one) * one.mean() ** 2)) for one in (halves, deviations))
     freedom = 2.0 / (SKEWNESS_FACTOR * error)
     lower, upper = (effect * freedom / float(special.chdtri(freedom, 0.5 - side * LEVEL)) for side in (0.5, -0.5))
-    return IntervalEstimate(effect, lower, upper)
+    return IntervalEstimate(effect, lower, min(upper, 1.0))
 
 
 def _squares(differences: ArrayLike) -> Array:

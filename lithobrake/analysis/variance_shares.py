@@ -1,4 +1,4 @@
-"""Where the scatter of an output comes from: soil, arrival, bed, place and attitude, chaos."""
+"""Where the scatter of an output comes from: soil, arrival, bed, chaos, and everything else."""
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lithobrake.analysis.bed_components import bed_components
-from lithobrake.analysis.confidence import Array, IntervalEstimate, Labels, numbered_beds, t_quantile
+from lithobrake.analysis.bed_components import BedComponents, bed_components
+from lithobrake.analysis.confidence import LEVEL, Array, Bounds, IntervalEstimate, Labels, numbered_beds, t_quantile
 from lithobrake.analysis.control_variate import regression_terms
 from lithobrake.analysis.side_runs import chaos_variance
 from lithobrake.chaos.threads import one_thread
@@ -22,17 +22,22 @@ TERMS_PER_RUN = 1 / 3
 
 @dataclass(frozen=True)
 class VarianceShares:
-    """Shares of the total variance of one output over the law of the inputs, beds, places and attitudes.
+    """Shares of the total variance of one output over the input distributions, beds, impact points and attitudes.
 
-    They are free of bias and therefore not cut: where there is nothing one may be a little below 0. Soil, arrival,
-    bed, place_and_attitude and chaos add up to 1; bounds lie within [0, 1].
+    Each part lies within its interval and within [0, 1]. Soil, arrival, bed, place_and_attitude and chaos add up to 1,
+    place_and_attitude being what the others leave (0 where they leave nothing). `unbiased` has the parts before they
+    are cut: free of bias, below 0 by chance where there is nothing, and with the sum 1 exactly.
 
     variance              the whole [unit of the output, squared]
-    soil, soil_by_input   all terms of soil inputs, with interactions among them; terms of one soil input alone
-    arrival               all terms in which another input takes part; None where there is none
+    soil, soil_by_input   at least so much: terms of first and second degree of soil inputs, with products among them;
+                          terms of one soil input alone. What the soil does in another form, as waves or products of
+                          three, is part of place_and_attitude
+    arrival               the same of all terms in which another input takes part; None where there is none
     bed                   what landings on one bed have in common
-    place_and_attitude    the rest: what inputs and bed do not decide, less chaos where it is known
+    place_and_attitude    everything else: impact point, attitude, lack of fit and interactions with the soil, less
+                          chaos where it is known
     chaos                 what twins differ in; None without twins
+    unbiased              values before the cut, by the names of the parts
     """
 
     variance: float
@@ -42,6 +47,7 @@ class VarianceShares:
     bed: IntervalEstimate
     place_and_attitude: IntervalEstimate
     chaos: IntervalEstimate | None
+    unbiased: dict[str, float]
 
     def summary(self) -> dict[str, Any]:
         """The shares as `summary.json` holds them: {"share", "lower", "upper"} of each part, or None."""
@@ -57,6 +63,30 @@ class VarianceShares:
             "place_and_attitude": part(self.place_and_attitude),
             "chaos": part(self.chaos),
         }
+
+
+class _Part(NamedTuple):
+    """A share of the variance, free of bias and not cut, with its bounds, not cut either, and its bounds to print."""
+
+    value: float
+    lower: float
+    upper: float
+    printed: Bounds
+
+    @classmethod
+    def of(cls, value: float, half: float) -> "_Part":
+        """A share with half its interval; a share outside [0, 1] has the bounds to print of that end.
+
+        Evenly spread runs have less scatter in their coefficients than is taken off, and no bound should say that there
+        is surely nothing.
+        """
+        nearest = min(max(value, 0.0), 1.0)
+        return cls(value, value - half, value + half, (nearest - half, nearest + half))
+
+    def estimate(self) -> IntervalEstimate:
+        """The share to print, within its bounds and within [0, 1]."""
+        value = min(max(self.value, 0.0), 1.0)
+        return IntervalEstimate(value, min(max(self.printed[0], 0.0), value), max(min(self.printed[1], 1.0), value))
 
 
 class _Regression(NamedTuple):
@@ -100,14 +130,30 @@ def variance_shares(
     components = bed_components(values, beds, terms)
     explained = float(found.squares.sum())
     total = explained + components.bed_variance + components.within
-    table = np.array(list(groups.values()))
-    parts = dict(zip(groups, _left_out(terms, values, beds, table, found, total), strict=True))
-    correlation, rest = components.correlation, 1.0 - explained / total
-    on_bed = _within(correlation.value * rest, correlation.lower * rest, correlation.upper * rest)
-    soil_part, arrival = parts.pop("soil"), parts.pop("arrival", None)
-    chaos = None if twins is None else _over(chaos_variance(twins), total)
-    place = _remainder([one for one in (soil_part, arrival, on_bed, chaos) if one is not None])
-    return VarianceShares(total, soil_part, parts, arrival, on_bed, place, chaos)
+    of_terms = _left_out(terms, values, beds, np.array(list(groups.values())), found, total)
+    parts = dict(zip(groups, of_terms, strict=True)) | {"bed": _of_beds(components, 1.0 - explained / total)}
+    if twins is not None:
+        chaos = chaos_variance(twins)
+        bounds = chaos.lower / total, chaos.upper / total
+        parts["chaos"] = _Part(chaos.value / total, *bounds, bounds)
+    return _printed(total, parts, [name for name in inputs if name in soil])
+
+
+def _printed(total: float, parts: dict[str, _Part], soil: Collection[str]) -> VarianceShares:
+    """Parts by name, those of single soil inputs among them, as they are printed, with what they leave."""
+    by_input = {name: parts.pop(name).estimate() for name in soil}
+    printed = {name: part.estimate() for name, part in parts.items()}
+    rest = _remainder(list(parts.values()))
+    return VarianceShares(
+        total,
+        printed["soil"],
+        by_input,
+        printed.get("arrival"),
+        printed["bed"],
+        _completing(rest, list(printed.values())),
+        printed.get("chaos"),
+        {name: part.value for name, part in parts.items()} | {"place_and_attitude": rest.value},
+    )
 
 
 def _checked_points(inputs: Mapping[str, "Distribution"], x: ArrayLike, y: Array, soil: Collection[str]) -> Array:
@@ -154,11 +200,9 @@ def _regression(terms: Array, y: Array) -> _Regression:
 
 def _left_out(
     terms: Array, y: Array, beds: Labels, groups: np.ndarray, found: _Regression, total: float
-) -> list[IntervalEstimate]:
+) -> list[_Part]:
     """Shares of groups [group_count, term_count] of terms, with intervals from leaving out each bed in turn.
 
-    A share that comes out below 0 counts as 0 for its upper bound: evenly spread runs have less scatter in their
-    coefficients than is taken off, and no bound should say that there is surely nothing.
     Source: [Davison-1997], section 2.7 (jackknife), beds as units.
     """
     rows = []
@@ -168,21 +212,33 @@ def _left_out(
     count = len(rows)
     half = t_quantile(count - 1) * np.sqrt((count - 1) * np.var(rows, axis=0))
     shares = groups @ found.squares / total
-    return [_within(s, s - h, max(s, 0.0) + h) for s, h in zip(shares.tolist(), half.tolist(), strict=True)]
+    return [_Part.of(s, h) for s, h in zip(shares.tolist(), half.tolist(), strict=True)]
 
 
-def _remainder(parts: list[IntervalEstimate]) -> IntervalEstimate:
+def _of_beds(components: BedComponents, rest: float) -> _Part:
+    """Share of the beds in the whole, of which inputs leave a rest.
+
+    Beds that differ less than chance has it have the upper bound to print of beds that differ as chance has it: else an
+    estimate below 0 could pass for certainty that there is nothing.
+    """
+    tails = [0.5 + side * LEVEL for side in (-0.5, 0.5)]
+    variances = [components.bed_variance, *(components.variance_at(tail, cut=False) for tail in tails)]
+    variances.append(components.positive.variance_at(tails[1]))
+    value, lower, upper, most = (rest * components.correlation_at(one) for one in variances)
+    return _Part(value, lower, upper, (lower, most))
+
+
+def _remainder(parts: list[_Part]) -> _Part:
     """What parts leave of 1, its bounds from theirs. Source: [Zou-2008] (recovered variances)."""
     share = 1.0 - sum(part.value for part in parts)
     down = np.sqrt(sum((part.upper - part.value) ** 2 for part in parts))
     up = np.sqrt(sum((part.value - part.lower) ** 2 for part in parts))
-    return _within(share, share - float(down), share + float(up))
+    bounds = share - float(down), share + float(up)
+    return _Part(share, *bounds, bounds)
 
 
-def _over(variance: IntervalEstimate, total: float) -> IntervalEstimate:
-    return _within(variance.value / total, variance.lower / total, variance.upper / total)
-
-
-def _within(value: float, lower: float, upper: float) -> IntervalEstimate:
-    """Bounds within [0, 1]; the value as it is."""
-    return IntervalEstimate(value, min(max(lower, 0.0), 1.0), min(max(upper, 0.0), 1.0))
+def _completing(rest: _Part, others: list[IntervalEstimate]) -> IntervalEstimate:
+    """The remainder to print: what the others, as printed, leave of 1; its interval holds it."""
+    value = min(max(1.0 - sum(one.value for one in others), 0.0), 1.0)
+    lower, upper = (min(max(bound, 0.0), 1.0) for bound in rest.printed)
+    return IntervalEstimate(value, min(lower, value), max(upper, value))

@@ -68,15 +68,8 @@ def shares(samples: Samples, flights: Rows, run_outcomes: Mapping[str, int], *, 
 
 
 def return_fraction(study: Study, table: Mapping[str, Any], run_count: int) -> dict[str, Any]:
-    """The return fraction, without an interval, which runs on one bed or at one place do not give.
-
-    flight_sampling: half of the interval that the number of samples alone would give; more flights narrow it without
-    knowing more.
-    """
-    from lithobrake.analysis import wilson_interval
-
+    """The return fraction, without an interval, which runs on one bed or at one place do not give."""
     total, returning = table["sample_count"], table["returns"]
-    lower, upper = wilson_interval(returning["count"], total, NORMAL_QUANTILE_90)
     return {
         "share": returning["share"],
         "lower": None,
@@ -85,7 +78,7 @@ def return_fraction(study: Study, table: Mapping[str, Any], run_count: int) -> d
         "from": f"{total} samples of an expansion of {run_count} landings {scope(study).landings}",
         "next_bed": None,
         "if_missing": [returning["share"], returning["share"] + table["missing"]["share"]],
-        "flight_sampling": 0.5 * (upper - lower),
+        "missing": table["missing"]["share"],
         "emulator": returning["share"],
         "why": scope(study).why,
     }
@@ -123,7 +116,34 @@ def rest_results(job: Job) -> dict[str, Any]:
     for ground in ("soil", "hard", "equivalent"):
         part = [row for row in rows if row["ground"] == ground]
         table[ground] = _ends(job.study, part, known["trained_ranges"]) if part else None
+        if part:
+            table[ground]["of"] = followed_words(job.study, ground, len(part))
+    if table["hard"] is not None:
+        _put_sampling_intervals(table["hard"])
     return table
+
+
+def followed_words(study: Study, ground: str, count: int) -> str:
+    """Which journeys the numbers of a ground describe, and what of the study they depend on."""
+    if ground == "hard":
+        return (
+            f"{count} journeys on the hard ground of [rest], from the impacts of the study file; no soil, bed or "
+            "emulator takes part in them"
+        )
+    model = "expansion" if study.design.method == "paper" else "emulator"
+    on = "" if ground == "soil" else " on hard ground with the restitution that the soil implies"
+    return f"{count} journeys of samples of the {model}{on}"
+
+
+def _put_sampling_intervals(table: dict[str, Any]) -> None:
+    """Fill in the bounds of shares that depend on nothing but the samples drawn. Source: [Wilson-1927]."""
+    from lithobrake.analysis import LEVEL, wilson_interval
+
+    for entry in table.values():
+        if isinstance(entry, dict) and "count" in entry:
+            lower, upper = wilson_interval(entry["count"], table["sample_count"], NORMAL_QUANTILE_90)
+            entry |= {"lower": lower, "upper": upper}
+    table |= {"level": LEVEL, "why": None}
 
 
 def _ends(study: Study, rows: Rows, ranges: dict[str, list[float]]) -> dict[str, Any]:

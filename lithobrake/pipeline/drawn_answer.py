@@ -1,33 +1,39 @@
-"""The answer of a sequence in sentences, with its interval, and the numbers that tell most beside it."""
+"""The answer of a drawn study in sentences, with its intervals, and the most informative numbers behind it."""
 
 import math
 from collections.abc import Mapping
 from typing import Any
 
-from lithobrake.outcomes import FlightStatus, SampleOutcome, TouchdownOutcome
+from lithobrake.outcomes import FlightStatus, JourneyStatus, TouchdownOutcome
+from lithobrake.pipeline.missing_landings import missing_words
+from lithobrake.pipeline.run_shares import CAPTURED
 from lithobrake.pipeline.scope import scope
 from lithobrake.study import Study
 
 CENTIMETRES = 100.0
-# Parts of the variance, as they stand in a sentence.
+# An interval narrower than this is told in tenths of a per cent.
+NARROW = 0.02
+# Parts of the variance, as they stand in a sentence; of those in FLOORS only terms of first and second degree are seen.
 PARTS = {
     "soil": "soil",
-    "arrival": "arrival",
+    "arrival": "speed, angle and spin of the impact",
+    "attitude": "attitude",
     "bed": "the bed",
-    "place_and_attitude": "place and attitude",
+    "place_and_attitude": "everything else",
     "chaos": "chaos",
 }
+FLOORS = ("soil", "arrival", "attitude")
+GROUNDS = {"soil": "on the soil", "hard": "on hard ground"}
 
 
 def drawn_answer(study: Study, results: Mapping[str, Any]) -> list[str]:
     """What becomes of the landers, over what that holds, what is missing, and what the site does to those that lie."""
-    returns, site, hours = results["returns"], results["site"], f"{study.flight.duration / 3600:.3g} h"
+    site = results["site"]
     holds = site["effective_acceleration_outward"] < 0.0
-    down = f"stay or come down again within {hours}" if holds else f"come down again within {hours}"
     return [
-        *_share(study, returns, down),
-        *_missing(results["runs"], returns),
-        _others(results["shares"], holds=holds),
+        *_share(study, results, holds=holds),
+        *_missing(results["runs"], results["returns"]),
+        _others(study, results["shares"], holds=holds),
         *(one["statement"] for one in results["limit_states"].values()),
         *([results["aim"]["statement"]] if results["aim"] else []),
         *([site["warning"]] if site["warning"] else []),
@@ -35,7 +41,7 @@ def drawn_answer(study: Study, results: Mapping[str, Any]) -> list[str]:
 
 
 def drawn_headline(study: Study, results: Mapping[str, Any]) -> list[str]:
-    """The answer, and the most telling numbers behind it, each in a sentence."""
+    """The answer, and the most informative numbers behind it, each in a sentence."""
     emulator = results["emulator"]
     return [
         *results["answer"],
@@ -48,22 +54,22 @@ def drawn_headline(study: Study, results: Mapping[str, Any]) -> list[str]:
 
 
 def limit_statement(name: str, found: Mapping[str, Any]) -> str:
-    """The probability of a limit state in a sentence: its interval, what answers, and which inputs make it."""
+    """The probability of a limit state in a sentence: its interval, where it comes from, and correlated inputs."""
     share, runs = _small(found["probability"]), found["runs"]
-    begin = f"{name} ({found['condition']}): {share} of the landers"
+    begin = f"{name} ({found['condition']}): {share} of the landings"
     if found["lower"] is None:
         return f"{begin}, from {runs['from']}, without an interval: {found['why']}"
     said = f"{begin} ({100 * found['level']:.0f} % interval {_small(found['lower'])} to {_small(found['upper'])})"
     if found["source"] == "emulator":
-        said += f", by the emulator, as {found['failing_runs']:.3g} of {runs['from']} are too few to tell"
+        said += f", by the emulator: {found['failing_runs']:.3g} landings that meet it are too few for an estimate"
         if found["probability"] < found["tail_limit"]:
-            said += f"; so many places rule out no tail below {_small(found['tail_limit'])}"
+            said += f", and so few beds rule out no tail below {_small(found['tail_limit'])}"
     else:
         said += f", from {runs['from']}"
     made = [key for key, one in found["inputs"].items() if one["found"]]
     made.sort(key=lambda key: -found["inputs"][key]["distance"])
-    no_input = "no input was found to make it" if found["inputs"] else "which inputs make it is not known"
-    return f"{said}; {'it comes with ' + ', '.join(made) if made else no_input}."
+    none = "No input is significant" if found["inputs"] else "Its inputs are not known"
+    return f"{said}. {'It is correlated with ' + ', '.join(made) if made else none}."
 
 
 def _small(share: float) -> str:
@@ -77,87 +83,126 @@ def _digits(away: float) -> int:
     return max(0, 1 - math.floor(math.log10(100.0 * away)))
 
 
-def _share(study: Study, returns: Mapping[str, Any], down: str) -> list[str]:
-    share, level = _percent(returns["share"]), f"{100 * returns['level']:.0f} %"
+def _share(study: Study, results: Mapping[str, Any], *, holds: bool) -> list[str]:
+    """Who comes to rest, as far as that was asked, and the return fraction; why it has no interval, if so."""
+    returns, rest = results["returns"], _at_rest(study, results["rest"], holds=holds)
+    # The level of an interval is named once in a sentence.
+    said = {key: value for key, value in returns.items() if key != "level" or "interval" not in rest}
+    again = f"impact the surface again within {_hours(study.flight.duration)}"
+    again += " or are captured where the ground holds them" if holds else ""
+    of = "" if rest else " of the landings"
+    share = f"{rest}{_interval(said)}{of} {again}"
     if returns["lower"] is None:
-        return [f"{scope(study).where}: {share} of the landers {down}; from {returns['from']}.", returns["why"]]
-    attitudes = "beds, places and attitudes" if study.impact.orientation == "random" else "beds and places"
-    sentences = [
-        f"{share} of the landers {down} ({level} interval {_span(returns['lower'], returns['upper'])}), over the laws "
-        f"of the study file, on {attitudes} that were not in the study; from {returns['from']}."
+        return [f"{scope(study).where}: {share}; from {returns['from']}.", returns["why"]]
+    attitudes = (
+        "beds, impact points and attitudes" if study.impact.orientation == "random" else "beds and impact points"
+    )
+    return [
+        f"{share}, over the input distributions of the study file, on {attitudes} that were not in the study; from "
+        f"{returns['from']}."
     ]
-    if returns["next_bed"] is not None:
-        low, high = returns["next_bed"]
-        sentences.append(f"On one next bed the share lies between {_span(low, high, 'and')} ({level}).")
-    return sentences
+
+
+def _at_rest(study: Study, rest: Mapping[str, Any], *, holds: bool) -> str:
+    """Which landings come to rest, on the soil or else on hard ground; of none where journeys were not asked for."""
+    ground = next((ground for ground in GROUNDS if rest[ground] is not None), None)
+    if ground is None:
+        return "" if holds else "None of the landings stays at the site; "
+    table = rest[ground]
+    settled, unknown = table[JourneyStatus.SETTLED], table[JourneyStatus.OUTSIDE]["share"]
+    lost = f" (of {_percent(unknown)} the outcome is unknown)" if unknown > 0.0 else ""
+    return (
+        f"{_interval(settled | {'level': table['level']})} of the landings come to rest {GROUNDS[ground]} within "
+        f"{_hours(study.rest.duration)}{lost}; "
+    )
 
 
 def _missing(runs: Mapping[str, Any], returns: Mapping[str, Any]) -> list[str]:
-    """What it would change if landers stayed or flew of which nobody knows."""
-    known = (TouchdownOutcome.CLEAR, TouchdownOutcome.CAPTURED)
-    lost = {name: count for name, count in runs["outcomes"].items() if name not in known}
-    if not lost:
+    """What landings without an outcome could change."""
+    lost = runs["missing"]
+    if not lost["count"]:
         return []
-    labels = {str(one): one.label for one in TouchdownOutcome} | {"failed": "failed"}
-    count = sum(lost.values())
-    words = ", ".join(f"{number} {labels[name]}" for name, number in lost.items())
-    low, high = (f"{100 * bound:.1f} %" for bound in returns["if_missing"])
+    low, high = (_percent(bound, 1) for bound in returns["if_missing"])
+    covers = "" if returns["lower"] is None else "; the interval covers both"
     return [
-        f"Of {count} of {runs['count']} landings nobody knows where the lander went ({words}): {low} if none, {high} "
-        "if all of them came down again."
+        f"{lost['count']} of {runs['count']} landings have no outcome ({missing_words(lost['outcomes'])}): {low} "
+        f"impact again if none, {high} if all of these do{covers}."
     ]
 
 
-def _others(shares: Mapping[str, Any], *, holds: bool) -> str:
+def _others(study: Study, shares: Mapping[str, Any], *, holds: bool) -> str:
     """What becomes of the others."""
-    ways: dict[str, str] = {FlightStatus.ESCAPED: "escape", FlightStatus.FLYING: "are still flying"}
+    ways: dict[str, str] = {
+        FlightStatus.ESCAPED: "escape",
+        FlightStatus.FLYING: f"are still flying after {_hours(study.flight.duration)}",
+    }
     if shares[FlightStatus.PARTNER]["count"]:
-        ways[FlightStatus.PARTNER] = "come down on the partner"
-    if shares[SampleOutcome.CAPTURED]["count"] and not holds:
-        ways[SampleOutcome.CAPTURED] = "are captured and lifted again"
-    listed = [f"{_percent(shares[name]['share'])} {words}" for name, words in ways.items()]
-    return f"By the emulator {', '.join(listed)}."
+        ways[FlightStatus.PARTNER] = "impact the partner"
+    if shares[CAPTURED]["count"] and not holds:
+        ways[CAPTURED] = "are captured and lifted off again"
+    return f"Of all landings {', '.join(f'{_interval(shares[name])} {words}' for name, words in ways.items())}."
 
 
 def _touchdowns(runs: Mapping[str, Any]) -> str:
     """How the touchdowns ended."""
     left, *others = TouchdownOutcome
-    found = [f"{runs['outcomes'].get(left, 0)} of {runs['count']} touchdowns {left.label}"]
+    found = [f"{runs['outcomes'].get(left, 0)} of {runs['count']} landings {left.label}"]
     found += [f"{runs['outcomes'][one]} {one.label}" for one in others if one in runs["outcomes"]]
     found += [f"{runs['outcomes']['failed']} failed"] if "failed" in runs["outcomes"] else []
     return f"{'; '.join(found)}."
 
 
 def _speed(outputs: Mapping[str, Any]) -> list[str]:
-    """The outgoing speed of the runs that leave."""
+    """The rebound speed of the landings that have one."""
     if "speed_out" not in outputs:
         return []
     low, middle, high = outputs["speed_out"]["quantiles"].values()
     ends = [middle["lower"], middle["upper"]]
-    interval = "" if None in ends else ", {:.3g} to {:.3g} at 90 %".format(*(CENTIMETRES * end for end in ends))
+    interval = (
+        "" if None in ends else ", 90 % interval {:.3g} to {:.3g} cm/s".format(*(CENTIMETRES * one for one in ends))
+    )
     return [
-        f"Outgoing speed of those that leave: {CENTIMETRES * middle['value']:.3g} cm/s (median{interval}; 5 to 95 % of "
-        f"the landers: {CENTIMETRES * low['value']:.3g} to {CENTIMETRES * high['value']:.3g} cm/s)."
+        f"Rebound speed of {outputs['speed_out']['of']}: median {CENTIMETRES * middle['value']:.3g} cm/s{interval}; 5 "
+        f"to 95 % of them: {CENTIMETRES * low['value']:.3g} to {CENTIMETRES * high['value']:.3g} cm/s."
     ]
 
 
 def _scatter(parts: Mapping[str, Any] | None) -> list[str]:
-    """Where the scatter of the outgoing speed comes from."""
+    """What explains the variance of the rebound speed."""
     if parts is None:
         return []
-    found = {words: parts[name] for name, words in PARTS.items() if parts[name] is not None}
-    # Shares are free of bias, and so may be a little outside of what a share can be.
-    shown = {words: min(max(part["share"], 0.0), 1.0) for words, part in found.items()}
-    listed = [
-        f"{words} {_percent(shown[words])} ({_span(part['lower'], part['upper'])})" for words, part in found.items()
+    listed = [f"{words} {_part(parts[name], name)}" for name, words in PARTS.items() if parts.get(name) is not None]
+    return [
+        "The variance of the rebound speed, over the input distributions of the study file, comes from: "
+        f"{', '.join(listed)} (90 % intervals)."
     ]
-    return [f"The scatter of the outgoing speed comes from: {', '.join(listed)} (90 % intervals)."]
 
 
-def _span(lower: float, upper: float, word: str = "to") -> str:
-    return f"{_percent(lower).removesuffix(' %')} {word} {_percent(upper)}"
+def _part(part: Mapping[str, float], name: str) -> str:
+    """A part of a variance within what it can be; estimates without bias may lie a little outside."""
+    share, lower, upper = (min(max(part[key], 0.0), 1.0) for key in ("share", "lower", "upper"))
+    shown = f"{'at least ' if name in FLOORS else ''}{_percent(share)}" if share > 0.0 else "not detected"
+    return f"{shown} ({_span(lower, upper)})"
 
 
-def _percent(share: float) -> str:
-    """A share in words, to a tenth only near its ends."""
-    return f"{100 * share:.0f} %" if 0.01 <= share <= 0.99 or share in (0.0, 1.0) else f"{100 * share:.1f} %"
+def _interval(found: Mapping[str, Any]) -> str:
+    """A share with its interval, where it has one: "75 % (90 % interval 71-77 %)"."""
+    if found["lower"] is None:
+        return _percent(found["share"])
+    digits = 1 if found["upper"] - found["lower"] < NARROW else 0
+    level = f"{100 * found['level']:.0f} % interval " if "level" in found else ""
+    return f"{_percent(found['share'], digits)} ({level}{_span(found['lower'], found['upper'], digits)})"
+
+
+def _span(lower: float, upper: float, digits: int = 0) -> str:
+    return f"{_percent(lower, digits).removesuffix(' %')}-{_percent(upper, digits)}"
+
+
+def _percent(share: float, digits: int = 0) -> str:
+    """A share in words, to a tenth only near its ends, or as many digits as asked."""
+    near = share not in (0.0, 1.0) and not 0.01 <= share <= 0.99
+    return f"{100 * share:.{max(digits, int(near))}f} %"
+
+
+def _hours(seconds: float) -> str:
+    return f"{seconds / 3600:.3g} h"

@@ -9,12 +9,13 @@ from lithobrake.outputs import OUTPUTS, SEQUENCE_DESIGNS, TOUCHDOWN
 from lithobrake.pipeline.aim_results import aim_results
 from lithobrake.pipeline.beds import bed_files
 from lithobrake.pipeline.design_runs import DesignRuns
-from lithobrake.pipeline.dispersion_statistics import ellipses, rest_results, shares
+from lithobrake.pipeline.dispersion_statistics import Rows, ellipses, rest_results, shares
 from lithobrake.pipeline.drawn_answer import drawn_answer, drawn_headline, limit_statement
 from lithobrake.pipeline.fitted_emulator import FILE as EMULATOR
-from lithobrake.pipeline.flights import flight_numbers, read_table
+from lithobrake.pipeline.flights import read_table
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.limit_states import limit_state_results
+from lithobrake.pipeline.missing_landings import described
 from lithobrake.pipeline.run_estimates import FILE as ESTIMATES
 from lithobrake.pipeline.samples import Samples
 from lithobrake.pipeline.shares_over_refits import Refits, journey_ends, sample_fates
@@ -45,13 +46,14 @@ def write_drawn_summary(job: Job) -> None:
         "site": site_results(job.study),
         **_dispersion(job, estimates),
     }
-    results["limit_states"] = _limit_states(job)
+    results["limit_states"] = _limit_states(job, results["shares"])
     results["aim"] = aim_results(job.study, job.folder, _refits(estimates))
-    results["emulator"] = _emulator(job, results)
+    results["emulator"] = _emulator(job, runs[0], results)
     results["answer"] = drawn_answer(job.study, results)
     results["headline"] = drawn_headline(job.study, results)
-    if results["emulator"]["warning"]:
-        job.say(results["emulator"]["warning"])
+    for warning in (results["runs"]["warning"], results["emulator"]["warning"]):
+        if warning:
+            job.say(warning)
     job.folder.write_json(
         "summary.json",
         {
@@ -63,10 +65,10 @@ def write_drawn_summary(job: Job) -> None:
     )
 
 
-def _limit_states(job: Job) -> dict[str, Any]:
+def _limit_states(job: Job, shares: dict[str, Any]) -> dict[str, Any]:
     """What the study file asks for, by name, each with a sentence."""
     holds = bool(effective_acceleration_at_site(job.study)[2] < 0.0)
-    found = limit_state_results(job.study, job.folder, read_table(job.folder, "flights.csv"), holds=holds)
+    found = limit_state_results(job.study, job.folder, read_table(job.folder, "flights.csv"), shares, holds=holds)
     return {name: one | {"statement": limit_statement(name, one)} for name, one in found.items()}
 
 
@@ -81,35 +83,42 @@ def _refits(estimates: dict[str, Any]) -> Refits:
 
 
 def _dispersion(job: Job, estimates: dict[str, Any]) -> dict[str, Any]:
-    """What became of the samples, with intervals from refits; the share of the runs gets that of the emulator."""
+    """What became of the samples of the emulator, with intervals from refits, beside what the runs say."""
     study, samples, flights = job.study, Samples.load(job.folder), read_table(job.folder, "flights.csv")
-    holds, ended = bool(effective_acceleration_at_site(study)[2] < 0.0), _ended(estimates)
-    refits = _refits(estimates)
-    fates = sample_fates(samples, flights, holds=holds)
-    table = shares(samples, flights, ended, holds=holds)
-    for entry in table.values():
-        if isinstance(entry, dict):
-            entry.pop("upper_limit", None)
-    refits.put_intervals(table, np.arange(table["sample_count"]), fates)
-    refits.widen_what_no_run_met(table, ended)
+    holds, refits = bool(effective_acceleration_at_site(study)[2] < 0.0), _refits(estimates)
+    table = _emulator_shares(samples, flights, _ended(estimates), refits, holds=holds)
     known = table["sample_count"] - table["missing"]["count"]
-    returns = estimates["returns"] | {"emulator": table["returns"]["count"] / known if known else None}
     rest = rest_results(job)
     if rest["soil"] is not None:
         rows = [row for row in read_table(job.folder, "rest.csv") if row["ground"] == "soil"]
         refits.put_intervals(rest["soil"], np.array([int(row["sample"]) for row in rows]), journey_ends(rows))
+    spread = monte_carlo_results(samples)
     return {
-        "returns": returns,
-        "shares": table,
-        "monte_carlo": monte_carlo_results(samples),
-        "flights": flight_numbers(flights) | job.folder.read_json("flights.json"),
+        "returns": estimates["returns"] | {"emulator": table["returns"]["count"] / known if known else None},
+        "shares": estimates["shares"] | {"emulator": table},
+        # Its outputs are those of the runs, of which results.outputs speaks.
+        "monte_carlo": {key: spread[key] for key in ("sample_count", "leaving_count")},
+        "flights": estimates["flights"] | job.folder.read_json("flights.json"),
         "ellipses": ellipses(study, flights, FlightStatus.IMPACT),
         "without_scatter": None,
         "rest": rest,
     }
 
 
-def _emulator(job: Job, results: dict[str, Any]) -> dict[str, Any]:
+def _emulator_shares(
+    samples: Samples, flights: Rows, ended: dict[str, int], refits: Refits, *, holds: bool
+) -> dict[str, Any]:
+    """What became of the samples of the emulator, as shares of all that were looked at; ended: runs by outcome."""
+    table = shares(samples, flights, ended, holds=holds)
+    for entry in table.values():
+        if isinstance(entry, dict):
+            entry.pop("upper_limit", None)
+    refits.put_intervals(table, np.arange(table["sample_count"]), sample_fates(samples, flights, holds=holds))
+    refits.widen_what_no_run_met(table, ended)
+    return table
+
+
+def _emulator(job: Job, runs: DesignRuns, results: dict[str, Any]) -> dict[str, Any]:
     """What the emulator is worth on beds left out, and whether it agrees with the runs."""
     from lithobrake.emulator import load
 
@@ -123,6 +132,7 @@ def _emulator(job: Job, results: dict[str, Any]) -> dict[str, Any]:
             "pit": np.histogram(scores.pit[:, column], PIT_BINS, (0.0, 1.0))[0].tolist(),
         }
     return {
+        "of": described(runs.has_outputs, runs.outcomes),
         "statement": model.statement_on("beds"),
         "follows_inputs": model.follows_inputs,
         "found_inputs": [name for name, found in model.found_inputs().items() if found],

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from lithobrake.outcomes import FlightStatus, TouchdownOutcome
+from lithobrake.outcomes import TouchdownOutcome
 from lithobrake.outputs import TOUCHDOWN
 from lithobrake.pipeline.design_runs import DesignRuns
 from lithobrake.pipeline.run_flights import FATES as RUN_FATES
@@ -41,5 +41,5 @@ def values_of_runs(runs: DesignRuns) -> dict[str, np.ndarray]:
 
 def _words(fate: str, count: int) -> dict[str, np.ndarray]:
     """Whether each word of the grammar holds of flights that ended so, [count] each; `captured` is of the touchdown."""
-    held = {status.value: status == fate for status in FlightStatus} | {RETURNS: fate in RETURNING}
+    held = {word: word == fate for word in RUN_FATES} | {RETURNS: fate in RETURNING}
     return {word: np.full(count, float(one)) for word, one in held.items()}

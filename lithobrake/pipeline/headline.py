@@ -1,4 +1,4 @@
-"""The answer of a study in sentences, and the numbers that tell most beside it."""
+"""The answer of a paper study in sentences, and the most informative numbers behind it."""
 
 from typing import Any
 
@@ -15,15 +15,19 @@ def answer(study: Study, results: dict[str, Any]) -> list[str]:
     """What becomes of the landers, over what that holds, what is missing, and what the site does to those that lie."""
     shares, site, hours = results["shares"], results["site"], f"{study.flight.duration / 3600:.3g} h"
     holds = site["effective_acceleration_outward"] < 0.0
-    down = f"are captured or come down again within {hours}" if holds else f"come down again within {hours}"
+    down = (
+        f"are captured or impact the surface again within {hours}"
+        if holds
+        else f"impact the surface again within {hours}"
+    )
     returning = _percent(shares["returns"]["share"])
-    ways = {FlightStatus.ESCAPED: "escape", FlightStatus.FLYING: "are still flying"}
+    ways = {FlightStatus.ESCAPED: "escape", FlightStatus.FLYING: f"are still flying after {hours}"}
     if shares[FlightStatus.PARTNER]["count"]:
-        ways[FlightStatus.PARTNER] = "come down on the partner"
+        ways[FlightStatus.PARTNER] = "impact the partner"
     beside = [f"{_percent(shares[status]['share'])} {words}" for status, words in ways.items()]
     captured = shares[SampleOutcome.CAPTURED]
     if captured["count"] and not holds:
-        beside.append(f"{_percent(captured['share'])} are captured and lifted again")
+        beside.append(f"{_percent(captured['share'])} are captured and lifted off again")
     sentences = [
         f"{scope(study).where}: {returning} of the landers {down}; {', '.join(beside)}.",
         scope(study).why,
@@ -32,15 +36,14 @@ def answer(study: Study, results: dict[str, Any]) -> list[str]:
         lost = [f"{_percent(shares[outcome]['share'])} {outcome.label}" for outcome in MISSING]
         low, high = (_percent(bound) for bound in results["returns"]["if_missing"])
         sentences.append(
-            f"Of {_percent(shares['missing']['share'])} of the samples nobody knows where they went ("
-            f"{', '.join(lost)}): "
-            f"{low} if none, {high} if all of them came down again."
+            f"{_percent(shares['missing']['share'])} of the samples have no outcome ({', '.join(lost)}): {low} impact "
+            f"again if none, {high} if all of these do."
         )
     return [*sentences, *([site["warning"]] if site["warning"] else [])]
 
 
 def headline(study: Study, results: dict[str, Any]) -> list[str]:
-    """The answer, and the most telling numbers behind it, each in a sentence."""
+    """The answer, and the most informative numbers behind it, each in a sentence."""
     telling = TellingNumbers.of(results)
     return [
         *results["answer"],
@@ -60,48 +63,49 @@ def _touchdowns(telling: TellingNumbers) -> str:
 
 
 def _speed(study: Study, speed: dict[str, float] | None) -> list[str]:
-    """The outgoing speed of the samples that leave."""
+    """The rebound speed of the samples that leave."""
     if not speed:
         return []
     low, middle, high = (CENTIMETRES * speed[f"quantile_{level:g}"] for level in (0.05, 0.5, 0.95))
     of = "with the scatter from run to run" if study.monte_carlo.scatter else "of the expansion, without scatter"
     return [
-        f"Outgoing speed of those that leave, {of}: {middle:.3g} cm/s "
-        f"(median; 5 to 95 %: {low:.3g} to {high:.3g} cm/s)."
+        f"Rebound speed of those that leave, {of}: {middle:.3g} cm/s (median; 5 to 95 %: {low:.3g} to {high:.3g} cm/s)."
     ]
 
 
 def _main_input(main: MainInput) -> str:
-    """The input that the outgoing speed varies with most, with its interval, and of what it is a share."""
+    """The dominant input of the rebound speed, with its interval, of what it is a share, and what rivals it."""
     if main.total <= 0.0:
-        return "No input was found to decide the outgoing speed."
+        return "No input was found to explain the rebound speed."
     low, high = main.interval
     noise = main.noise_share
+    role = f"cannot be told from {', '.join(main.equals)} by its" if main.equals else "is the dominant input by its"
     rest = (
-        "" if noise is None else f"; {100 * noise:.0f} % of the variance of the runs is scatter that no input decides"
+        "" if noise is None else f"; {100 * noise:.0f} % of the variance of the runs is scatter that no input explains"
     )
     return (
-        f"{main.name} counts most in what the screening explains of the outgoing speed: total Sobol index "
-        f"{main.total:.2f} ({low:.2f} to {high:.2f}, 95 %) of that variance{rest}."
+        f"For the rebound speed {main.name} {role} total Sobol index, {main.total:.2f} (95 % interval {low:.2f} to "
+        f"{high:.2f}) of the variance that the refined expansion of degree {main.degree} explains over its inputs; the "
+        f"interval contains no truncation error{rest}."
     )
 
 
 def _explained(score: dict[str, Any]) -> str:
-    """How well the expansion meets fresh runs."""
+    """How well the expansion predicts fresh runs."""
     error = (
         f"error {CENTIMETRES * score['rmse']:.2g} cm/s at a spread of {CENTIMETRES * score['std']:.2g} cm/s, "
         f"MAPE {'undefined' if score['mape'] is None else format(score['mape'], '.2g') + ' %'}"
     )
     if score["q2"] is None:
-        return f"On fresh runs with all inputs varying the outgoing speed does not vary ({error})."
+        return f"On fresh runs with all inputs varying the rebound speed does not vary ({error})."
     q2 = f"Q2 = {score['q2']:.2f}"
     low, high = score.get("q2_interval") or (None, None)
     if high is not None:
         q2 += f", 95 %: {'below any bound' if low is None else format(low, '.2f')} to {high:.2f}"
     words = (
-        f"explains {100 * score['q2']:.0f} % of the variance of the outgoing speed"
+        f"explains {100 * score['q2']:.0f} % of the variance of the rebound speed"
         if score["q2"] > 0.0
-        else "is worse than the mean of the runs: it explains nothing of the outgoing speed"
+        else "is worse than the mean of the runs: it explains nothing of the rebound speed"
     )
     return f"On fresh runs with all inputs varying the expansion {words} ({q2}; {error})."
 

@@ -1,5 +1,6 @@
 """What the study file asks for under [limit_states]: the probability of each, and which inputs make the failures."""
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -12,16 +13,21 @@ from lithobrake.pipeline.dispersion_statistics import Rows
 from lithobrake.pipeline.failing_runs import CAPTURED, failing_runs
 from lithobrake.pipeline.fitted_emulator import REFIT_COUNT
 from lithobrake.pipeline.folder import StudyFolder
+from lithobrake.pipeline.missing_landings import left_in_flight
 from lithobrake.pipeline.run_flights import RunFlights
 from lithobrake.pipeline.samples import Samples
 from lithobrake.pipeline.scope import why_no_interval
 from lithobrake.pipeline.shares_over_refits import sample_fates
 from lithobrake.study import Study
-from lithobrake.study.limit_state import RETURNS, LimitState
+from lithobrake.study.limit_state import LOFTED, RETURNS, SETTLED, LimitState
 
 
-def limit_state_results(study: Study, folder: StudyFolder, flights: Rows, *, holds: bool) -> dict[str, Any]:
+def limit_state_results(
+    study: Study, folder: StudyFolder, flights: Rows, shares: Mapping[str, Any], *, holds: bool
+) -> dict[str, Any]:
     """The results of every limit state of a study, by its name; holds: whether the site holds what lies there.
+
+    shares: the table of how landings end (`run_shares`), from which a limit state of one of its words has its numbers.
 
     Raises ValueError for an output that no run has.
     """
@@ -30,8 +36,14 @@ def limit_state_results(study: Study, folder: StudyFolder, flights: Rows, *, hol
         return {}
     runs, samples = DesignRuns.load(folder, "sequence"), Samples.load(folder)
     fates = RunFlights.load(folder, "sequence").fates
-    of_samples = _values_of_samples(samples, sample_fates(samples, flights, holds=holds))
-    return {name: _one(study, name, LimitState.of(text), runs, fates, of_samples) for name, text in conditions.items()}
+    of_samples = _values_of_samples(samples, sample_fates(samples, flights, holds=holds), holds=holds)
+    states = {name: LimitState.of(text) for name, text in conditions.items()}
+    found = {name: _one(study, name, state, runs, fates, of_samples) for name, state in states.items()}
+    for name, state in states.items():
+        of_word = _of_one_word(state, shares)
+        found[name] |= of_word
+        found[name]["runs"] |= {"share" if key == "probability" else key: one for key, one in of_word.items()}
+    return found
 
 
 def _one(
@@ -61,6 +73,7 @@ def _one(
         runs.inputs["bed"],
         terms=regression_terms(inputs, x),
         drawn=_drawn(state, of_samples),
+        like_missing=left_in_flight(runs),
         why=why_no_interval(study),
     )
     several = len(np.unique(runs.inputs["bed"][np.isfinite(failing)])) > 1
@@ -73,22 +86,38 @@ def _one(
     }
 
 
-def _values_of_samples(samples: Samples, met: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+def _of_one_word(state: LimitState, shares: Mapping[str, Any]) -> dict[str, Any]:
+    """Probability and bounds of a limit state that is a fate, or its opposite; none of another."""
+    if state.outputs or len(state.fates) != 1:
+        return {}
+    (word,) = state.fates
+    share, lower, upper = (shares[word][key] for key in ("share", "lower", "upper"))
+    so, otherwise = (state.met({CAPTURED: np.full(1, end), word: np.full(1, end)})[0] for end in (1.0, 0.0))
+    if so == otherwise:
+        return {}
+    if otherwise:
+        share, lower, upper = 1.0 - share, *(None if end is None else 1.0 - end for end in (upper, lower))
+    return {"probability": share, "lower": lower, "upper": upper}
+
+
+def _values_of_samples(samples: Samples, met: dict[str, np.ndarray], *, holds: bool) -> dict[str, np.ndarray]:
     """What limit states may name, of the samples up to the last that was looked at, and which of them are known."""
     total = len(met["returns"])
     known = ~met["missing"]
     words = {status.value: met[status] for status in FlightStatus}
-    words |= {RETURNS: met["returns"], CAPTURED: met[SampleOutcome.CAPTURED]}
+    captured = met[SampleOutcome.CAPTURED]
+    words |= {RETURNS: met["returns"], CAPTURED: captured, SETTLED: captured & holds, LOFTED: captured & (not holds)}
     values = {name: samples.output(name)[:total] for name in samples.output_names}
     return values | {word: np.where(known, one.astype(float), np.nan) for word, one in words.items()}
 
 
 def _drawn(state: LimitState, values: dict[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray] | None:
-    """How many samples of each refit meet a limit state, and how many are known; None where samples cannot tell.
+    """How many samples of each refit meet a limit state, and how many are known; None where the runs alone are asked.
 
-    The emulator draws no outputs of landers that are captured: where one decides, only the runs can tell.
+    Of a fate alone the flights of the runs are an estimate already, that of results.shares. And the emulator samples no
+    outputs of landers that are captured: where one decides, only the runs can tell.
     """
-    if any(name not in values for name in state.outputs):
+    if not state.outputs or any(name not in values for name in state.outputs):
         return None
     met, refit = state.met(values), np.arange(len(values[CAPTURED])) % REFIT_COUNT
     if np.isnan(met[values[CAPTURED] == 1.0]).any():

@@ -8,10 +8,9 @@ import numpy as np
 from lithobrake.analysis import (
     IntervalEstimate,
     chaos_variance,
+    direction_estimate,
     mean_estimate,
     quantile_estimates,
-    regression_terms,
-    share_estimate,
     soil_total_effect,
     variance_shares,
 )
@@ -21,13 +20,15 @@ from lithobrake.pipeline.design_runs import DesignRuns
 from lithobrake.pipeline.designs import design_inputs
 from lithobrake.pipeline.flights import QUANTILES
 from lithobrake.pipeline.job import Job
-from lithobrake.pipeline.run_flights import RunFlights
+from lithobrake.pipeline.missing_landings import described, missing_landings, missing_warning
+from lithobrake.pipeline.run_flights import RunFlights, RunImpacts
+from lithobrake.pipeline.run_shares import flight_estimates, return_fraction, run_shares
 from lithobrake.pipeline.scope import why_no_interval
 from lithobrake.pipeline.sequence import AZIMUTH
 from lithobrake.study import Study
 from lithobrake.touchdown_model import PLACE, SURFACE
 
-FILE = "estimates.json"
+FILE, AZIMUTH_OUT = "estimates.json", "azimuth_out"
 RETURNS = "returns"
 SPLIT = ("speed_out", "elevation_out", "spin_out", RETURNS)
 # Numbers that say what the ground is, the lander's side of its contacts among them; all others say how it arrives.
@@ -37,26 +38,27 @@ SOIL = ("grain.", "surface.", "solver.inputs.", *(f"lander.{name}" for name in S
 def estimate(job: Job) -> None:
     """Write what the runs say of the return fraction, of where scatter comes from, and of their outputs."""
     study, runs = job.study, DesignRuns.load(job.folder, "sequence")
-    returns = RunFlights.load(job.folder, "sequence").returns
+    flights = RunFlights.load(job.folder, "sequence")
+    returns = flights.returns
     if not np.isfinite(returns).any():
         raise ValueError(
             f"none of the {runs.run_count} runs left the surface or was captured (runs.sqlite has how each ended), so "
             "nothing can be said of the landers; mend what the runs say, or widen the bed"
         )
-    inputs, bed, why = design_inputs(study), runs.inputs["bed"].astype(int), why_no_interval(study)
-    found = share_estimate(
-        returns,
-        bed,
-        terms=regression_terms(inputs, runs.columns(list(inputs))),
-        why=why,
-    )
+    bed, why = runs.inputs["bed"].astype(int), why_no_interval(study)
     values = {name: runs.output(name) for name in SPLIT if name != RETURNS} | {RETURNS: returns}
+    found = return_fraction(study, runs, flights)
     job.folder.write_json(
         FILE,
         {
-            "returns": found.summary(),
+            "returns": found,
+            "shares": run_shares(study, runs, flights, found),
+            "flights": flight_estimates(RunImpacts.load(job.folder), runs, why),
             "variance_shares": {name: _split(job, runs, name, y) for name, y in values.items()},
-            "outputs": {name: _spread(y, bed, why) for name, y in _outputs(runs).items()},
+            "outputs": {
+                name: _spread(name, y, bed, why) | {"of": described(np.isfinite(y), runs.outcomes)}
+                for name, y in _outputs(runs).items()
+            },
             "runs": _counts(job, runs, values),
         },
     )
@@ -68,8 +70,13 @@ def _outputs(runs: DesignRuns) -> dict[str, np.ndarray]:
     return {name: y for name, y in known.items() if np.isfinite(y).sum() >= 2}
 
 
-def _spread(y: np.ndarray, bed: np.ndarray, why: str | None) -> dict[str, Any]:
-    """Mean and quantiles of an output over the runs that have it, with intervals where beds and places give them."""
+def _spread(name: str, y: np.ndarray, bed: np.ndarray, why: str | None) -> dict[str, Any]:
+    """Mean and quantiles of an output over the runs that have it, with intervals where beds and places give them.
+
+    Of the azimuth, which has neither beginning nor end, mean direction and resultant length.
+    """
+    if name == AZIMUTH_OUT:
+        return direction_estimate(y, bed, why=why).summary()
     known = y[np.isfinite(y)]
     several = len(np.unique(bed[np.isfinite(y)])) > 1
     if why is None and several:
@@ -87,7 +94,9 @@ def _spread(y: np.ndarray, bed: np.ndarray, why: str | None) -> dict[str, Any]:
 
 
 def _with_ends(one: IntervalEstimate) -> dict[str, float | None]:
-    return {"value": one.value, "lower": one.lower, "upper": one.upper}
+    # Few beds give no interval of a tail.
+    lower, upper = (bound if np.isfinite(bound) else None for bound in (one.lower, one.upper))
+    return {"value": one.value, "lower": lower, "upper": upper}
 
 
 def _part(one: IntervalEstimate) -> dict[str, float]:
@@ -104,12 +113,12 @@ def _split(job: Job, runs: DesignRuns, name: str, y: np.ndarray) -> dict[str, An
     twins = _differences(job, "twins", name, y)
     known = twins if np.isfinite(twins).any() else None
     found = variance_shares(inputs, runs.columns(list(inputs)), y, runs.inputs["bed"], soil=soil, twins=known)
-    return None if found is None else found.summary()
+    return None if found is None else found.summary() | {"of": described(np.isfinite(y), runs.outcomes)}
 
 
 def _differences(job: Job, design: str, name: str, y: np.ndarray) -> np.ndarray:
     """What an output differs by between the runs of a side design and theirs of the sequence, [pair_count]."""
-    if not job.study.design.side_runs or (name == RETURNS and design != "twins"):
+    if not job.study.design.side_runs:
         return np.empty(0)
     beside = DesignRuns.load(job.folder, design).output(name) if name != RETURNS else None
     other = RunFlights.load(job.folder, design).returns if beside is None else beside
@@ -119,11 +128,13 @@ def _differences(job: Job, design: str, name: str, y: np.ndarray) -> np.ndarray:
 
 def _counts(job: Job, runs: DesignRuns, values: Mapping[str, np.ndarray]) -> dict[str, Any]:
     """How many runs ended how, and what the side runs say that the parts of the variance do not hold."""
-    left = np.array(runs.outcomes) == TouchdownOutcome.CLEAR
+    left, outcomes = np.array(runs.outcomes) == TouchdownOutcome.CLEAR, runs.outcome_counts()
     return {
         "count": runs.run_count,
         "beds": len(np.unique(runs.inputs["bed"])),
-        "outcomes": runs.outcome_counts(),
+        "outcomes": outcomes,
+        "missing": missing_landings(outcomes),
+        "warning": missing_warning(job.study, outcomes),
         # A lander that clearly flies beyond the rim has left; one that does not is left_sideways.
         "over_rim": int((runs.output(OVER_RIM) == 1.0)[left].sum()),
         "side_runs": _side_runs(job, values) if job.study.design.side_runs else None,

@@ -1,4 +1,4 @@
-"""The flights of the runs themselves: each run's own velocity from many sites, and the share of them that returns."""
+"""The flights of the runs themselves: each run's own velocity from many sites, and how these flights end."""
 
 import math
 from collections.abc import Iterator
@@ -9,6 +9,7 @@ import numpy as np
 
 from lithobrake.hashing import hashed_seed
 from lithobrake.outcomes import FlightStatus, JourneyStatus, TouchdownOutcome
+from lithobrake.outputs import FLIGHT, RUN, SEQUENCE_DESIGNS
 from lithobrake.pipeline.design_runs import DesignRuns
 from lithobrake.pipeline.flights import Starts, flight_reads, fly_starts, write_table
 from lithobrake.pipeline.folder import AGAIN, StudyFolder
@@ -21,7 +22,7 @@ from lithobrake.study.quantity import uncertain
 
 # Flights of each run. In equal steps of the heading so many leave nothing to gain from more.
 FLIGHT_COUNT = 64
-FILE = "run_flights.csv"
+FILE, IMPACTS = "run_flights.csv", "run_impacts.csv"
 # What may become of a run at one of its sites; of a captured one, whether the ground there holds it.
 FATES = (
     *(FlightStatus.IMPACT, FlightStatus.FLYING, FlightStatus.ESCAPED, FlightStatus.PARTNER),
@@ -32,6 +33,9 @@ RETURNS = (FlightStatus.IMPACT, JourneyStatus.SETTLED)
 FIRST = ("heading_deg", "partner_longitude_deg")
 LATTICE = (*FIRST, *(key for key in SITE_KEYS if key not in FIRST))
 COLUMNS = ("design", "run", "key", "outcome", "flight_count", *FATES, "returns")
+# Of each flight of the sequence that ends on the body.
+IMPACT_NUMBERS = ("time_s", "impact_speed", "impact_incidence_deg")
+IMPACT_COLUMNS = ("run", *IMPACT_NUMBERS)
 
 
 @dataclass(frozen=True)
@@ -53,17 +57,35 @@ class RunFlights:
 
 
 def run_flight_reads(study: Study) -> dict[str, Any]:
-    """What the flights of the runs depend on beside the runs."""
+    """What the flights of the runs depend on apart from the runs."""
     return {name: value for name, value in flight_reads(study).items() if name != "flight_count"}
 
 
+@dataclass(frozen=True)
+class RunImpacts:
+    """Flights of the sequence that end on the body, [impact_count] each: the run, and the numbers of IMPACT_NUMBERS."""
+
+    run: np.ndarray
+    numbers: dict[str, np.ndarray]
+
+    @classmethod
+    def load(cls, folder: StudyFolder) -> "RunImpacts":
+        """Those of a folder. Raises DamagedFileError for another file."""
+        rows = read_rows(folder / IMPACTS, IMPACT_COLUMNS, AGAIN)
+        numbers = {name: np.array([float(row[name]) for row in rows]) for name in IMPACT_NUMBERS}
+        return cls(np.array([int(row["run"]) for row in rows], dtype=np.int64), numbers)
+
+
 def fly_runs(job: Job) -> None:
-    """Fly every run that left, and its twin, from the same sites, and write which share of the flights returns."""
-    designs = ("sequence", *(("twins",) if job.study.design.side_runs else ()))
+    """Fly every run that left, its pair and its twin, from the same sites, and write how their flights end."""
+    designs = SEQUENCE_DESIGNS if job.study.design.side_runs else SEQUENCE_DESIGNS[:1]
     rows: list[list[Any]] = []
     for design in designs:
         runs = DesignRuns.load(job.folder, design)
-        rows += [[design, *row] for row in _rows(runs, _fates(job, runs, design))]
+        fates, impacts = _flown(job, runs, design)
+        rows += [[design, *row] for row in _rows(runs, fates)]
+        if design == designs[0]:
+            write_table(job.folder, IMPACTS, IMPACT_COLUMNS, impacts, RUN | FLIGHT)
     write_table(job.folder, FILE, COLUMNS, rows)
 
 
@@ -97,8 +119,11 @@ def _generator(count: int) -> int:
     return min((one for one in range(1, count + 1) if math.gcd(one, count) == 1), key=lambda one: abs(one - golden))
 
 
-def _fates(job: Job, runs: DesignRuns, design: str) -> np.ndarray:
-    """How many flights of each run ended how, [run_count, len(FATES)]; none for a run without an answer."""
+def _flown(job: Job, runs: DesignRuns, design: str) -> tuple[np.ndarray, list[list[Any]]]:
+    """How many flights of each run ended how, [run_count, len(FATES)], none for a run without an outcome; and impacts.
+
+    The impacts are rows of IMPACT_COLUMNS.
+    """
     sites = run_sites(job.study, runs.run_count)
     fates = np.zeros((runs.run_count, len(FATES)), dtype=np.int64)
     captured = np.array(runs.outcomes) == TouchdownOutcome.CAPTURED
@@ -114,7 +139,9 @@ def _fates(job: Job, runs: DesignRuns, design: str) -> np.ndarray:
     flown = fly_starts(site_body(job.study), start, job.study, job, f"flights of the {design.replace('_', ' ')}")
     for column, fate in enumerate(FATES[:4]):
         fates[:, column] = np.bincount(row[flown.status == fate], minlength=runs.run_count)
-    return fates
+    down = flown.status == FlightStatus.IMPACT
+    numbers = np.column_stack([flown.time, flown.impact_speed, np.degrees(flown.incidence)])[down].tolist()
+    return fates, [[run, *one] for run, one in zip(row[down].tolist(), numbers, strict=True)]
 
 
 def _held(study: Study, sites: dict[str, np.ndarray]) -> np.ndarray:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from lithobrake.campaign import Record, RunStatus
 from lithobrake.outcomes import TouchdownOutcome
+from lithobrake.outputs import OVER_RIM
 
 if TYPE_CHECKING:
     from lithobrake.analysis import IntervalEstimate, ShareEstimate
@@ -70,22 +71,22 @@ def running_estimates(records: Sequence[Record], flown: Mapping[str, float]) -> 
     captured = np.array([_CAPTURED.get(record.outcome or "", np.nan) for record in done])
     speed = np.array([record.outputs.get("speed_out", np.nan) for record in done])
     returns = np.array([flown.get(record.key, np.nan) for record in done])
+    # As the result takes landings without an outcome.
+    over = np.array(
+        [record.outputs.get(OVER_RIM) == 1.0 and record.outcome == TouchdownOutcome.CLEAR for record in done]
+    )
     return RunningEstimates(
-        captured=share_estimate(captured, bed) if np.isfinite(captured).any() else None,
+        captured=share_estimate(captured, bed, like_missing=over) if np.isfinite(captured).any() else None,
         speed_out=mean_estimate(speed, bed) if len(np.unique(bed[np.isfinite(speed)])) > 1 else None,
-        returns=share_estimate(returns, bed) if np.isfinite(returns).any() else None,
+        returns=share_estimate(returns, bed, like_missing=over) if np.isfinite(returns).any() else None,
     )
 
 
 def _share(found: "ShareEstimate") -> str:
-    """A share with its interval, or why it has none, and what runs without an answer could make of it."""
+    """A share with its interval, which holds whatever became of landings without an outcome, or why it has none."""
     if found.lower is None or found.upper is None:
         return f"{_percent(found.share)}, without an interval: {found.why}"
-    said = f"{_percent(found.share)} ({100 * found.level:.0f} %: {_percent(found.lower)} to {_percent(found.upper)})"
-    least, most = found.if_missing
-    if least == most:
-        return said
-    return f"{said}; {_percent(least)} to {_percent(most)} if none or all without an answer were"
+    return f"{_percent(found.share)} ({100 * found.level:.0f} %: {_percent(found.lower)} to {_percent(found.upper)})"
 
 
 def _percent(share: float) -> str:

@@ -175,7 +175,13 @@ SEQUENCE = (
     Stage("runs", "runs", _files(file_of("sequence")), _drawn_runs, ("bed",), RUNS, make_drawn_runs),
     Stage("side_runs", "side runs", _side_files, _side_runs, ("runs",), RUNS, make_side_runs),
     Stage(
-        "fly_runs", "flights of the runs", _files("run_flights.csv"), run_flight_reads, ("side_runs",), FLY, fly_runs
+        "fly_runs",
+        "flights of the runs",
+        _files("run_flights.csv", "run_impacts.csv"),
+        run_flight_reads,
+        ("side_runs",),
+        FLY,
+        fly_runs,
     ),
     Stage("telling_landing", "telling landing", telling_files, _nothing, ("runs",), (), land_tellingly),
     Stage("estimate", "estimates", _files("estimates.json"), _nothing, ("fly_runs",), FIT, estimate),

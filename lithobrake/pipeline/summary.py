@@ -21,6 +21,7 @@ from lithobrake.pipeline.dispersion_statistics import dispersion_results
 from lithobrake.pipeline.flights import read_table
 from lithobrake.pipeline.headline import answer, headline
 from lithobrake.pipeline.job import Job
+from lithobrake.pipeline.missing_landings import described
 from lithobrake.pipeline.run_estimates import SPLIT
 from lithobrake.pipeline.samples import Samples
 from lithobrake.pipeline.site_summary import body_product, site_results
@@ -148,7 +149,7 @@ def outputs_of_runs(runs: DesignRuns) -> dict[str, Any]:
         if len(values):
             table[name] = {
                 "median": float(np.median(values)), "smallest": float(values.min()), "largest": float(values.max()),
-                "unit": TOUCHDOWN[name].units,
+                "unit": TOUCHDOWN[name].units, "of": described(np.isfinite(runs.output(name)), runs.outcomes),
             }  # fmt: skip
     return table
 

@@ -15,6 +15,7 @@ CONTENTS = {
     "designs/soil_pairs.csv": "landings of the sequence made again on a second soil",
     "designs/twins.csv": "landings of the sequence made again a little beside",
     "run_flights.csv": "how the flights of each run ended, from many sites",
+    "run_impacts.csv": "time, speed and incidence of the impacts that end these flights",
     "estimates.json": "what the runs say, with intervals",
     "landing.h5": "one landing, made before all runs: shapes, poses, and how they moved",
     "telling_landing.h5": "the landing of this page, likewise: the run with the median speed of those that leave",

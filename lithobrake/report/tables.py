@@ -42,8 +42,9 @@ def tiles(data: PaperResults) -> list[Tile]:
         Tile(
             f"{main.total:.2f}",
             "Sobol",
-            f"({low:.2f} to {high:.2f}, 95 %) {input_words(main.name)} counts most in what the screening explains of "
-            "the outgoing speed (total index)" + ("" if noise is None else f"; {percent(noise, 0)} of it is scatter"),
+            f"({low:.2f} to {high:.2f}, 95 %) {input_words(main.name)}: largest total index of the rebound speed in "
+            "the refined expansion, without truncation error"
+            + ("" if noise is None else f"; {percent(noise, 0)} of the variance of the runs is scatter"),
         ),
         Tile(
             "none" if score["q2"] is None else fixed(score["q2"]),

@@ -1,7 +1,8 @@
 """What every key means that only the summary of a drawn study has; docs/summary.md is made of it."""
 
-from lithobrake.results.summary_keys import QUANTILES, SUMMARY, KeyTable
+from lithobrake.results.summary_keys import COUNTED, QUANTILES, SUMMARY, KeyTable
 
+OF = "which landings it describes, in words"
 PART = {
     "share": "of the variance; free of bias, so it may be a little below 0",
     "lower": "lower bound (90 %)",
@@ -16,7 +17,14 @@ DRAWN_TABLES = (
             "count": "runs of the sequence",
             "beds": "beds that they came down on",
             "outcomes.*": "runs that ended so; failed: runs without an outcome",
-            "over_rim": "of those that left: runs that crossed the rim of the bed, touching nothing and going up",
+            "missing.count": "runs without an outcome: left the bed laterally, at the time limit, or failed",
+            "missing.share": "the same as a share of count",
+            "missing.outcomes": "none where every run has an outcome",
+            "missing.outcomes.*": "of these, runs that ended so",
+            "warning": "where more than 2 % of the runs have no outcome: how many, why, what they leave undescribed, "
+            "and how to avoid it, in a sentence; else null",
+            "over_rim": "of those that left: runs that crossed the edge of the bed in flight, touching nothing and "
+            "going up",
             "side_runs": "null without design.side_runs",
             "side_runs.soil_pairs": "runs again on a second soil",
             "side_runs.twins": "runs again a little beside",
@@ -37,23 +45,42 @@ DRAWN_TABLES = (
             "soil_by_input.*": "one of them alone: part",
             "arrival": "all other inputs, as speed, incidence and mass: part; null where none is uncertain",
             "bed": "what landings on one bed have in common: part",
-            "place_and_attitude": "the rest: part",
+            "place_and_attitude": "everything else, impact point, attitude, lack of fit and interactions with the "
+            "soil: part",
             "chaos": "what twins differ in: part; null without side runs",
             **{f"{part}.{key}": words for part in ("*", "soil_by_input.*") for key, words in PART.items()},
+            "of": OF,
         },
     ),
     KeyTable(
         SUMMARY,
         ("results.outputs.*",),
-        "Each output over the runs of a drawn study that have it, in its unit",
+        "Each output over the runs of a drawn study that have it, in its unit. azimuth_out, which has neither "
+        "beginning nor end, has mean_direction and resultant_length in place of mean, quantiles and standard deviation",
         {
+            "of": OF,
             **{f"{name}.value": words for name, words in (("mean", "mean"), ("quantiles.*", QUANTILES))},
+            "mean_direction.value": "direction of the mean of the unit vectors [rad]; its bounds may lie beyond pi",
+            "resultant_length.value": "length of that mean: 0 where directions cancel, 1 where all are alike",
             **{
                 f"{name}.{end}": "its 90 % interval; null where there is none"
-                for name in ("mean", "quantiles.*")
+                for name in ("mean", "quantiles.*", "mean_direction", "resultant_length")
                 for end in ("lower", "upper")
             },
             "standard_deviation": "of the runs",
+        },
+    ),
+    KeyTable(
+        SUMMARY,
+        ("results.shares.emulator",),
+        "The same by the samples of the emulator, up to the last that flew, as shares of all of these, for comparison; "
+        "outside: sampled with an elevation or speed that there is not; missing: left_sideways, time_limit, outside",
+        {
+            "sample_count": "samples looked at",
+            "flight_count": "of those, samples that flew",
+            **COUNTED,
+            "why": "why the shares have no interval, in a sentence; null where they have one",
+            "level": "probability that the bounds stand for",
         },
     ),
     KeyTable(
@@ -141,6 +168,7 @@ DRAWN_TABLES = (
         ("results.emulator",),
         "The emulator of a drawn study, on beds that were left out (docs/emulator.md)",
         {
+            "of": OF,
             "statement": "what it makes of the inputs, in a sentence",
             "follows_inputs": "whether draws depend on the inputs; else each is one of the runs",
             "found_inputs": "inputs that change the mean of an output, at one level of 90 % for all",

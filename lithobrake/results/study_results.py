@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from lithobrake.results.table import Table
     from lithobrake.touchdown import Outcome
 
-SUMMARY_FORMAT = 2
+SUMMARY_FORMAT = 3
 # Columns that a table has even without rows.
 _RUN = ("key", "outcome")
 _PLACES = ("sample", "status", "latitude_deg", "longitude_deg")

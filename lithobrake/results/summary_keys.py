@@ -24,7 +24,8 @@ class KeyTable:
 COUNTED = {
     "*.count": "samples of which this is so",
     "*.share": "the same as a share of sample_count",
-    "*.lower": "lower bound, over refits of the emulator to other beds; null where why says that there is none",
+    "*.lower": "lower bound, over refits of the emulator to other beds, or of rest.hard by the number of samples; null "
+    "where why says that there is none",
     "*.upper": "upper bound likewise",
 }
 QUANTILES = "quantile of this level"
@@ -92,6 +93,7 @@ SUMMARY_TABLES = (
             "smallest": "likewise",
             "largest": "likewise",
             "unit": "of the three numbers",
+            "of": "which landings have it, in words",
         },
     ),
     KeyTable(
@@ -132,7 +134,8 @@ SUMMARY_TABLES = (
         {
             "sample_count": "samples",
             "leaving_count": "samples that leave the surface",
-            "outputs.*.mean": "over the samples that leave, in the unit of the output",
+            "outputs.*.mean": "over the samples of the refined expansion that leave, in the unit of the output; a "
+            "drawn study has results.outputs",
             "outputs.*.std": "likewise",
             "outputs.*.quantile_*": QUANTILES,
         },
@@ -176,16 +179,21 @@ SUMMARY_TABLES = (
     KeyTable(
         SUMMARY,
         ("results.returns",),
-        "The answer as numbers: the share that remain, down again in time, or captured where the site holds",
+        "The return fraction: landings that impact the surface again within flight.duration, or are captured where the "
+        "site holds them, of all landings",
         {
-            "share": "over the laws of the study file: of runs that were drawn, or of samples of the expansion",
-            "lower": "lower bound, over beds and places not in the study; null where why says that there is none",
+            "share": "over the input distributions of the study file: of the landings of a drawn study, those without "
+            "an outcome as like those that left in flight across the edge of the bed, or of samples of the expansion",
+            "lower": "lower bound, over beds and impact points not in the study, whatever became of the landings "
+            "without an outcome; null where why says that there is none",
             "upper": "upper bound likewise",
             "level": "probability that bounds of this table stand for",
-            "from": "of how many runs and beds, or samples",
-            "next_bed": "in which the share on one bed more lies: lower, upper; null where that is not known",
-            "if_missing": "the share if none, and if all, remained of which nobody knows where they went",
-            "flight_sampling": "half the interval (level) that the number of flights, or of samples, alone would give",
+            "from": "of how many landings and beds, or samples",
+            "next_bed": "prediction interval for a new bed of the size of the study's: lower, upper; null where that "
+            "is not known",
+            "if_missing": "the share if none, and if all, of the landings without an outcome return, without sampling "
+            "error",
+            "missing": "share of the landings, or samples, without an outcome",
             "emulator": "the share by the emulator or the expansion, of the samples whose end is known",
             "why": "why there is no interval, in a sentence; null where there is one",
         },
@@ -193,14 +201,21 @@ SUMMARY_TABLES = (
     KeyTable(
         SUMMARY,
         ("results.shares", "results.without_scatter.shares"),
-        "What became of the samples up to the last that flew: captured, left_sideways, time_limit, outside (drawn with "
-        "an elevation or speed that there is not), impact, flying (at the end of the time), escaped, partner; returns "
-        "(impact, and captured where the site holds), missing (left_sideways, time_limit, outside)",
+        "What became of the landings: impact, flying (at the end of the time), escaped, partner and captured, which "
+        "add up to 1 in a drawn study; returns (impact, and captured where the site holds), settled and lofted "
+        "(captured where the ground holds, or lifts off), missing (left_sideways, time_limit, failed). A drawn study "
+        "takes them from flights of its runs, by the estimator of results.returns; design.method = paper from samples "
+        "up to the last that flew, of which outside (with an elevation or speed that cannot be) are missing too",
         {
-            "sample_count": "samples looked at",
-            "flight_count": "of those, samples that flew",
-            **COUNTED,
-            "*.upper_limit": "95 % limit of the share of an outcome that no run had",
+            "sample_count": "flights of all landings, 64 each, whether they could be made or not; or samples",
+            "flight_count": "of those, flights that were made",
+            "*.count": "of sample_count, those of which this is so",
+            "*.share": "of all landings; in a drawn study those without an outcome count as like those that left in "
+            "flight across the edge of the bed, and are missing themselves",
+            "*.lower": "lower bound, over beds and impact points not in the study, whatever became of the landings "
+            "without an outcome; null where why says that there is none",
+            "*.upper": "upper bound likewise",
+            "*.upper_limit": "95 % limit of the share of an outcome that no run had, with design.method = paper",
             "why": "why the shares have no interval, in a sentence; null where they have one",
             "level": "probability that the bounds stand for, in a drawn study",
         },
@@ -208,8 +223,12 @@ SUMMARY_TABLES = (
     KeyTable(
         SUMMARY,
         ("results.flights", "results.without_scatter.flights"),
-        "The flights that end on the body, and how exact all flights are (flights.json)",
+        "The flights that end on the body, of the runs of a drawn study or of samples, and how exact all flights are "
+        "(flights.json)",
         {
+            "*.of": "of a drawn study: which landings it describes, in words",
+            "*.intervals.quantile_*": "of a drawn study: lower and upper bound (90 %) of the quantile over beds not in "
+            "the study; null where there is none",
             "time_s.quantile_*": f"time of flight [s], {QUANTILES}",
             "impact_speed.quantile_*": f"speed of the impact against the ground [m/s], {QUANTILES}",
             "impact_incidence_deg.quantile_*": f"angle of that velocity from the inward normal [deg], {QUANTILES}",
@@ -257,6 +276,8 @@ SUMMARY_TABLES = (
         "none were followed",
         {
             "sample_count": "samples followed",
+            "of": "which journeys the table describes and what they depend on, in words: hard ground takes no soil, "
+            "bed or emulator of the study",
             **COUNTED,
             "why": "why the shares have no interval, in a sentence; null where they have one; in a drawn study",
             "level": "probability that the bounds stand for, in a drawn study",

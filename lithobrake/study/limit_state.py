@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from pydantic_core import core_schema
 
-from lithobrake.outcomes import FlightStatus, TouchdownOutcome
+from lithobrake.outcomes import FlightStatus, JourneyStatus, TouchdownOutcome
 from lithobrake.outputs import TOUCHDOWN
 from lithobrake.study.quantity import refuse
 from lithobrake.study.refusals import closest
@@ -20,8 +20,10 @@ if TYPE_CHECKING:
     Mask = NDArray[np.bool_]
 
 RETURNS = "returns"
+# Of a captured lander: whether gravity and rotation together hold it where it lies, or lift it off.
+SETTLED, LOFTED = JourneyStatus.SETTLED.value, JourneyStatus.LOFTED.value
 # What becomes of a lander in the first flight, as a word that is true or false.
-FATES = (RETURNS, TouchdownOutcome.CAPTURED.value, *(status.value for status in FlightStatus))
+FATES = (RETURNS, TouchdownOutcome.CAPTURED.value, SETTLED, LOFTED, *(status.value for status in FlightStatus))
 # Outputs that a lander has also if it is captured; all others are of its way out, which it does not have.
 ALSO_OF_CAPTURED = ("contact_duration", "penetration", "peak_acceleration", "energy_lost")
 # A condition that a person wrote; a longer one would overflow the parser.

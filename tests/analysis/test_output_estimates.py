@@ -40,7 +40,30 @@ def test_runs_without_the_output_are_left_out() -> None:
     y[bed == 5] = np.nan
     kept = np.isfinite(y)
     assert mean_estimate(y, bed) == mean_estimate(y[kept], bed[kept])
-    assert quantile_estimates(y, bed) == quantile_estimates(y[kept], bed[kept])
+    assert quantile_estimates(y, bed, [0.5]) == quantile_estimates(y[kept], bed[kept], [0.5])
+
+
+def test_few_beds_give_no_interval_of_a_tail() -> None:
+    rng = np.random.default_rng(4)
+    y = rng.standard_normal(90)
+    for bed_count, told in ((9, False), (10, True)):
+        low, middle, high = quantile_estimates(y, np.arange(90) % bed_count)
+        for one in (low, high):
+            assert math.isfinite(one.lower) == math.isfinite(one.upper) == told
+            assert math.isfinite(one.value)
+        assert math.isfinite(middle.upper - middle.lower)
+
+
+@pytest.mark.parametrize("rho", [0.05, 0.2])
+def test_an_interval_of_a_tail_on_ten_beds_holds_the_truth(rho: float) -> None:
+    held = []
+    for seed in range(100):
+        rng, bed = np.random.default_rng(seed), np.arange(100) % 10
+        y = np.exp(math.sqrt(rho) * rng.standard_normal(10)[bed] + math.sqrt(1.0 - rho) * rng.standard_normal(100))
+        found = quantile_estimates(y, bed, [0.05, 0.95])
+        held.append([one.lower <= math.exp(z) <= one.upper for one, z in zip(found, (-1.6449, 1.6449), strict=True)])
+    # Three standard deviations of 200 intervals below the level.
+    assert np.mean(held) >= 0.836
 
 
 def test_one_bed_and_impossible_probabilities_are_refused() -> None:

@@ -88,10 +88,12 @@ def test_the_parts_add_up_and_are_free_of_bias() -> None:
     for one in found:
         parts = (one.soil, one.arrival, one.bed, one.place_and_attitude, one.chaos)
         assert sum(part.value for part in parts) == pytest.approx(1.0)
-        assert all(0.0 <= part.lower <= part.upper <= 1.0 for part in parts)
+        assert sum(one.unbiased.values()) == pytest.approx(1.0)
+        assert list(one.unbiased) == ["soil", "arrival", "bed", "chaos", "place_and_attitude"]
+        assert all(0.0 <= part.lower <= part.value <= part.upper <= 1.0 for part in parts)
     expected = {"soil": 0.3, "arrival": 0.2, "bed": 0.1}
     for name, share in expected.items():
-        estimates = np.array([getattr(one, name).value for one in found])
+        estimates = np.array([one.unbiased[name] for one in found])
         assert estimates.mean() == pytest.approx(share, abs=3.0 * estimates.std() / math.sqrt(60))
         inside = [getattr(one, name).lower <= share <= getattr(one, name).upper for one in found]
         assert 0.78 <= np.mean(inside) <= 1.0
@@ -109,13 +111,28 @@ def test_where_inputs_do_nothing_none_is_found() -> None:
         x = sobol_sequence(INPUTS, 144, seed=seed)
         y, bed = on_beds(12, 12, 0.05, seed)
         found.append(variance_shares(INPUTS, x, np.random.default_rng(seed).permutation(y), bed, soil=tuple(INPUTS)))
-    soil = np.array([one.soil.value for one in found])
+    soil = np.array([one.unbiased["soil"] for one in found])
     assert abs(soil.mean()) < 0.02
     assert soil.min() < 0.0
     assert found[0].arrival is None
     assert np.mean([part.lower > 0.0 for one in found for part in one.soil_by_input.values()]) <= 0.1
-    # Nothing found is not nothing for sure.
-    assert min(one.soil.upper for one in found) > 0.01
+    for part in [part for one in found for part in (one.soil, one.bed, *one.soil_by_input.values())]:
+        # Nothing found is not nothing for sure, and what is printed lies within its interval.
+        assert part.upper > 0.001
+        assert 0.0 <= part.lower <= part.value <= part.upper <= 1.0
+    # Where everything may be the remainder its interval reaches so far.
+    alone = [one for one in found if one.unbiased["soil"] > 0.0 and one.soil.lower == one.bed.lower == 0.0]
+    assert np.mean([one.place_and_attitude.upper == 1.0 for one in alone]) > 0.9
+
+
+def test_beds_that_differ_less_than_chance_have_an_upper_bound_above_0() -> None:
+    values = np.tile(np.random.default_rng(0).standard_normal(10), 12)
+    x = sobol_sequence(INPUTS, 120, seed=1)
+    found = variance_shares(INPUTS, x, values, np.repeat(np.arange(12), 10), soil=tuple(INPUTS))
+    assert found.unbiased["bed"] < 0.0 == found.bed.value == found.bed.lower
+    # As wide as that of beds which differ as chance has it: F of 11 and about 105 degrees of freedom, ten runs each.
+    chance = (1.0 / stats.f.ppf(0.05, 11, 105) - 1.0) / 10.0
+    assert found.bed.upper == pytest.approx(chance / (1.0 + chance), rel=0.25)
 
 
 def test_few_runs_drop_terms_and_then_the_answer() -> None:
@@ -175,6 +192,8 @@ def test_pairs_tell_the_total_effect_of_the_soil() -> None:
         found.append(soil_total_effect(ishigami(pair) - ishigami(other), y))
     assert np.mean([one.value for one in found]) == pytest.approx(0.2437, abs=0.03)
     assert np.mean([one.lower <= 0.2437 <= one.upper for one in found]) >= 0.78
+    few = soil_total_effect([3.0, -2.0, 2.5], np.random.default_rng(3).standard_normal(60))
+    assert few.lower < few.value == few.upper == 1.0
     assert soil_total_effect(np.zeros(20), y) == IntervalEstimate(0.0, 0.0, 0.0)
     with pytest.raises(ValueError, match="two or more"):
         soil_total_effect([1.0], y)

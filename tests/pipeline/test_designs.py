@@ -169,13 +169,23 @@ def test_samples_have_the_scatter_and_are_kept_without_it(out: Path) -> None:
 def test_the_page_gives_no_interval_that_would_hold_for_these_runs_only(out: Path) -> None:
     results = open_study(out).summary["results"]
     shares = [value for value in results["shares"].values() if isinstance(value, dict)]
-    shares += [value for ground in ("soil", "hard") for value in (results["rest"][ground] or {}).values()
-               if isinstance(value, dict) and "share" in value]  # fmt: skip
-    assert len(shares) > 10
+    shares += [
+        value for value in (results["rest"]["soil"] or {}).values() if isinstance(value, dict) and "share" in value
+    ]
+    assert len(shares) > 9
+    assert results["returns"]["missing"] == results["shares"]["missing"]["share"]
+    # What bounces on hard ground has met neither the bed nor the expansion: its shares have the sampling error alone.
+    settled = results["rest"]["hard"]["settled"]
+    assert settled["lower"] <= settled["share"] <= settled["upper"]
     assert all(share["lower"] is share["upper"] is None for share in shares)
     assert results["shares"]["why"] == results["returns"]["why"]
     assert results["headline"][0].startswith("With the touchdowns of this study's own program: ")
     assert results["headline"][1] == results["returns"]["why"]
+    refined = results["refined"]["sobol_total"]["speed_out"]
+    main = max(refined, key=lambda name: refined[name])
+    (said,) = (one for one in results["headline"] if "truncation error" in one)
+    assert f" {main} " in said
+    assert f"{refined[main]:.2f}" in said
     total, bounds = (results["screening"][key]["speed_out"] for key in ("sobol_total", "sobol_total_interval"))
     assert all(bounds[name][0] <= total[name] <= bounds[name][1] for name in total)
     assert all("q2_interval" in score for table in results["scores"].values() for score in table.values())

@@ -1,4 +1,4 @@
-"""Drawn studies whose landers go on from bounce to bounce, lie on one bed, or go over its rim."""
+"""Drawn studies whose landers go on from bounce to bounce, lie on one bed, or leave it laterally."""
 
 import dataclasses
 from pathlib import Path
@@ -9,6 +9,7 @@ import pytest
 
 import lithobrake
 from lithobrake.outcomes import JourneyStatus
+from lithobrake.pipeline.run_shares import PARTS
 from lithobrake.results import StudyResults
 
 from ..synthetic_landings import WEAK
@@ -42,7 +43,11 @@ def test_landers_rest_on_the_soil_and_their_shares_have_intervals(journeys: Stud
     assert soil["level"] == 0.9
     # Most of the others have become slower than any run.
     assert soil[JourneyStatus.OUTSIDE]["count"] + soil[JourneyStatus.SETTLED]["count"] > 0.5 * soil["sample_count"]
-    assert found["hard"]["settled"]["lower"] is None
+    # Hard ground takes neither soil nor beds nor emulator: its shares have the sampling error of so many samples.
+    hard = found["hard"]
+    assert hard["settled"]["lower"] <= hard["settled"]["share"] <= hard["settled"]["upper"]
+    assert (hard["level"], hard["why"]) == (0.9, None)
+    assert "no soil, bed or emulator" in hard["of"]
     several = journeys.rest.where(journeys.rest["ground"] == "soil")["rebounds"]
     assert several.max() > 2
 
@@ -79,7 +84,10 @@ def test_one_bed_or_one_place_gives_no_interval_anywhere(
     assert words in returns["why"]
     assert "gives another figure; this study cannot say how different" in results.headline[1]
     assert "interval" not in results.headline[0]
-    assert {entry["lower"] for entry in found["shares"].values() if isinstance(entry, dict)} == {None}
+    tables = found["shares"], found["shares"]["emulator"]
+    assert {one["lower"] for table in tables for one in table.values() if isinstance(one, dict) and "lower" in one} == {
+        None
+    }
     assert found["outputs"]["speed_out"]["mean"]["lower"] is None
 
 
@@ -96,16 +104,37 @@ def test_a_journey_has_a_flight_for_each_rebound(journeys: StudyResults) -> None
     assert np.array_equal(journeys.arcs["end_s"][last], soil["time_s"][:100][bounced])
 
 
-def test_landers_over_the_rim_never_count_as_staying(tmp_path: Path) -> None:
-    results = made(tmp_path / "out", SyntheticLander(dataclasses.replace(WEAK, rim="fast_flat")))
+def test_landings_without_an_outcome_are_named_and_widen_the_interval(tmp_path: Path) -> None:
+    limits = {"away": "escaped", "back": "returns", "caught": "captured"}
+    lander = SyntheticLander(dataclasses.replace(WEAK, rim="fast_flat"))
+    results = made(tmp_path / "out", lander, limit_states=limits)
     found = results.summary["results"]
-    lost = found["runs"]["outcomes"]["left_sideways"]
-    assert lost > 0
-    low, high = found["returns"]["if_missing"]
-    assert low < found["returns"]["share"] < high
-    assert high - low == pytest.approx(lost / 48)
-    assert any("nobody knows where the lander went" in sentence for sentence in results.headline)
-    assert found["shares"]["missing"]["count"] >= found["shares"]["left_sideways"]["count"] > 0
+    runs, returns, shares = found["runs"], found["returns"], found["shares"]
+    lost = runs["outcomes"]["left_sideways"]
+    assert runs["missing"] == {"count": lost, "share": lost / 48, "outcomes": {"left_sideways": lost}}
+    assert lost / 48 > 0.02
+    assert runs["warning"].startswith(f"{lost} of 48 landings ({100 * lost / 48:.0f} %) have no outcome")
+    low, high = returns["if_missing"]
+    assert returns["lower"] < low < returns["share"] < high < returns["upper"]
+    assert returns["missing"] == shares["missing"]["share"] == lost / 48
+    assert any(f"{lost} of 48 landings have no outcome" in sentence for sentence in results.headline)
+    # Whatever describes fewer than all landings says which.
+    left = f"the {48 - lost - runs['outcomes']['captured']} of 48 landings that left the surface"
+    assert found["outputs"]["speed_out"]["of"] == found["variance_shares"]["speed_out"]["of"] == left
+    assert found["emulator"]["of"] == left
+    # One number for one thing: parts of one whole, and limit states of the same words.
+    assert sum(shares[name]["share"] for name in PARTS) == pytest.approx(1.0)
+    counted = [*PARTS, "missing"]
+    assert sum(shares[name]["count"] for name in counted) == shares["sample_count"] == 64 * 48
+    assert shares["returns"] == {key: returns[key] for key in ("share", "lower", "upper")} | {
+        "count": shares["impact"]["count"]
+    }
+    states = found["limit_states"]
+    for name, word in (("away", "escaped"), ("back", "returns"), ("caught", "captured")):
+        assert states[name]["source"] == "runs"
+        assert [states[name][key] for key in ("probability", "lower", "upper")] == [
+            shares[word][key] for key in ("share", "lower", "upper")
+        ]
 
 
 def test_runs_with_more_energy_than_they_brought_leave_the_speed_without_a_bound(tmp_path: Path) -> None:

@@ -54,6 +54,22 @@ def test_the_share_of_the_runs_and_that_of_the_emulator_hold_the_truth(results: 
     assert returning["lower"] < truth < returning["upper"]
     assert results.summary["results"]["emulator"]["warning"] is None
     assert "90 % interval" in results.headline[0]
+    # The runs' own flights, by the estimator of the return fraction; samples of the emulator stand apart.
+    shares = results.summary["results"]["shares"]
+    assert shares["returns"]["share"] == returns["share"]
+    assert shares["emulator"]["returns"]["lower"] < truth < shares["emulator"]["returns"]["upper"]
+    narrow, wide = (table["flying"]["upper"] - table["flying"]["lower"] for table in (shares, shares["emulator"]))
+    assert narrow < wide
+
+
+def test_times_and_speeds_of_flights_are_of_the_runs_and_have_intervals(results: StudyResults) -> None:
+    found = results.summary["results"]
+    assert "outputs" not in found["monte_carlo"]
+    for name in ("time_s", "impact_speed", "impact_incidence_deg"):
+        for key, (lower, upper) in found["flights"][name]["intervals"].items():
+            assert lower < found["flights"][name][key] < upper
+    with (results.folder / "run_impacts.csv").open() as file:
+        assert sum(1 for _ in file) - 1 == found["shares"]["impact"]["count"]
 
 
 @needs_node
@@ -98,7 +114,7 @@ def test_parts_of_the_variance_add_up_and_side_runs_tell_theirs(results: StudyRe
     assert parts["chaos"]["upper"] > 0.5
     side = found["runs"]["side_runs"]
     assert (side["soil_pairs"], side["twins"]) == (20, 12)
-    assert set(side["chaos_deviation"]) == set(found["variance_shares"])
+    assert set(side["chaos_deviation"]) == set(side["soil_total_effect"]) == set(found["variance_shares"])
 
 
 def test_samples_leave_outwards_with_the_speed_that_was_drawn_and_energy_allows(results: StudyResults) -> None:

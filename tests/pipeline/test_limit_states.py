@@ -21,6 +21,8 @@ CONDITIONS = {
     "gone": "returns == false",
     "caught": "captured",
     "fast_and_back": f"speed_out > {FAST} and returns",
+    "held": "settled",
+    "lifted": "lofted",
 }
 
 
@@ -51,7 +53,7 @@ def test_a_common_limit_state_is_told_by_the_runs_and_a_rare_one_by_the_emulator
         truth = share_faster(speed)
         assert found[name]["lower"] < truth < found[name]["upper"], (name, truth)
     rare = found["fastest"]
-    assert rare["tail_limit"] == pytest.approx(1.0 - 0.1 ** (1.0 / 150.0))
+    assert rare["tail_limit"] == pytest.approx(1.0 - 0.1 ** (1.0 / 15.0))
     assert rare["upper"] >= rare["tail_limit"]
 
 
@@ -60,10 +62,13 @@ def test_words_agree_with_the_shares_of_the_study(results: StudyResults, found: 
     gone = found["gone"]["runs"]
     assert 1.0 - gone["share"] == pytest.approx(returns["share"], abs=1e-9)
     assert [1.0 - gone["upper"], 1.0 - gone["lower"]] == pytest.approx([returns["lower"], returns["upper"]], abs=1e-9)
-    assert found["gone"]["emulator"]["share"] == pytest.approx(1.0 - returns["emulator"], abs=1e-9)
+    # Of a fate alone the flights of the runs say more than samples of the emulator.
+    assert (found["gone"]["source"], found["gone"]["emulator"]) == ("runs", None)
     captured = results.summary["results"]["runs"]["outcomes"]["captured"]
     assert found["caught"]["failing_runs"] == captured
     assert found["fast_and_back"]["failing_runs"] < found["fast"]["failing_runs"]
+    # At the equator of Didymos nothing lies on the ground.
+    assert (found["held"]["failing_runs"], found["lifted"]["failing_runs"]) == (0.0, captured)
 
 
 def test_inputs_stand_beside_what_luck_would_do(found: dict[str, Any]) -> None:

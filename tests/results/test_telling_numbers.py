@@ -14,7 +14,8 @@ def results() -> dict[str, Any]:
         },
         "monte_carlo": {"outputs": {"speed_out": {"quantile_0.5": 0.1}}},
         "scores": {"test_all": {"speed_out": {"q2": 0.8}}},
-        "screening": {
+        "refined": {
+            "degree": 5,
             "sobol_total": {"speed_out": {"grain.friction": 0.3, "grain.restitution": 0.6}},
             "sobol_total_interval": {"speed_out": {"grain.friction": [0.2, 0.4], "grain.restitution": [0.5, 0.7]}},
             "fits": {"speed_out": {"noise_share": None}},
@@ -31,6 +32,13 @@ def test_touchdowns_are_counted_over_all_designs_and_failed_runs_apart() -> None
 def test_the_main_input_has_the_largest_total_index() -> None:
     telling = TellingNumbers.of(results())
     assert telling.main_input.name == "grain.restitution"
-    assert telling.main_input.interval == (0.5, 0.7)
+    assert (telling.main_input.interval, telling.main_input.degree) == ((0.5, 0.7), 5)
+    assert telling.main_input.equals == ()
     assert telling.speed == {"quantile_0.5": 0.1}
     assert telling.score == {"q2": 0.8}
+
+
+def test_inputs_whose_intervals_overlap_that_of_the_main_input_are_named() -> None:
+    found = results()
+    found["refined"]["sobol_total_interval"]["speed_out"]["grain.friction"] = [0.2, 0.55]
+    assert TellingNumbers.of(found).main_input.equals == ("grain.friction",)

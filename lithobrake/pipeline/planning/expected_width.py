@@ -22,9 +22,9 @@ class ExpectedHalfWidth:
     """Half the interval of a share over so many runs on so many beds, as a share of 1.
 
     at_worst           of a share for which each run is all or nothing
-    typical            of one for which each run has a share of its own, as the share of headings that return, with the
-                       scatter of landings with drawn places
-    spread             standard deviation of a run in the typical case
+    typical            of the return fraction, for which each run has a share of its own, as that of the headings that
+                       return: least and largest, by the scatter of studies with randomised impact points
+    spread             standard deviation of a run in these cases
     correlation        of two runs on one bed, in both
     own                of `answer`, by the scatter of the study's own runs; None before enough have ended
     own_run_count      how many these are
@@ -34,8 +34,8 @@ class ExpectedHalfWidth:
     run_count: int
     bed_count: int
     at_worst: float
-    typical: float
-    spread: float
+    typical: tuple[float, float]
+    spread: tuple[float, float]
     correlation: float
     own: float | None
     own_run_count: int
@@ -46,10 +46,11 @@ class ExpectedHalfWidth:
         """The half width in words."""
         counts = f"{self.run_count} runs on {self.bed_count} beds"
         lines = [
-            f"Half width to expect ({100 * self.level:.0f} % interval, {counts}): {_points(self.typical)} for the "
-            f"return fraction, at most {_points(self.at_worst)} for any share.",
-            f"  Assumed: a run scatters by {self.spread:g} (as landings with drawn places did), at most by "
-            f"{YES_OR_NO:g}; runs on one bed are correlated by {self.correlation:g}.",
+            f"Expected half-width of the {100 * self.level:.0f} % interval ({counts}): {_points(*self.typical)} for "
+            f"the return fraction, at most {_points(self.at_worst)} for any share.",
+            f"  Assumed: the standard deviation of a run is {self.spread[0]:g} to {self.spread[1]:g} (as measured with "
+            f"randomised impact points), at most {YES_OR_NO:g}; the correlation of runs on one bed is "
+            f"{self.correlation:g}; every landing has an outcome.",
         ]
         if self.own is not None:
             lines.append(
@@ -65,16 +66,16 @@ def expected_width(study: Study, known: Mapping[str, Record], folder: StudyFolde
     """
     if study.design.method != "sequence" or study.bed_count == 1:
         return None
-    from lithobrake.analysis import LEVEL, expected_half_width
-    from lithobrake.analysis.half_width import CORRELATION, SPREAD
+    from lithobrake.analysis import LEVEL, expected_half_width, expected_half_widths
+    from lithobrake.analysis.half_width import CORRELATION, SPREAD_RANGE
 
     counts = study.design.run_count, study.bed_count
     values, bed = answers_of(sequence_keys(study), known, flown_shares(study, folder))
     return ExpectedHalfWidth(
         *counts,
         at_worst=expected_half_width(*counts, spread=YES_OR_NO) or np.inf,
-        typical=expected_half_width(*counts) or np.inf,
-        spread=SPREAD,
+        typical=expected_half_widths(*counts) or (np.inf, np.inf),
+        spread=SPREAD_RANGE,
         correlation=CORRELATION,
         own=_own(values, bed, counts),
         own_run_count=int(np.isfinite(values).sum()),
@@ -91,5 +92,5 @@ def _own(values: np.ndarray, bed: np.ndarray, counts: tuple[int, int]) -> float 
     return expected_half_width(*counts, spread=scatter[0], correlation=scatter[1])
 
 
-def _points(share: float) -> str:
-    return f"+- {100 * share:.2g} points"
+def _points(*shares: float) -> str:
+    return f"+- {' to '.join(f'{100 * share:.2g}' for share in shares)} points"

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 from lithobrake.pipeline.designs import design_inputs
 from lithobrake.pipeline.place_region import place_region, smallest_width
+from lithobrake.pipeline.planning.expected_losses import UNKNOWN_JOURNEYS, expected_loss
 from lithobrake.pipeline.planning.expected_steps import ExpectedSoil
 from lithobrake.pipeline.site import gravity_warning, site_warning
 from lithobrake.pipeline.surrogate_bounce import why_no_soil
@@ -26,7 +27,9 @@ def study_warnings(study: Study, soil: ExpectedSoil | None) -> list[str]:
     """What to know before the study runs, in sentences, the most important first."""
     site = [warning for warning in (site_warning(study), gravity_warning(study)) if warning]
     touchdown = (
-        [] if soil is None else [*_bed(soil), *_rim(study, soil), *_time_limit(study, soil), *_never_count(study)]
+        []
+        if soil is None
+        else [*_bed(soil), *_rim(study, soil), *_lost(soil), *_time_limit(study, soil), *_never_count(study)]
     )
     return [*site, *touchdown, *_wide(study), *_terms(study), *_bounces(study), *_few_beds(study), *_one_place(study)]
 
@@ -46,17 +49,29 @@ def _bed(soil: ExpectedSoil) -> Iterator[str]:
 
 
 def _rim(study: Study, soil: ExpectedSoil) -> Iterator[str]:
-    """A lander that comes down over the rim of the bed."""
+    """A lander that comes down over the edge of the bed."""
     reach, region = soil.landings[0][0].shape.bounding_radius, place_region(study)
     for number, (axis, name, width) in enumerate(zip("xy", PLACE, soil.recipe.width, strict=True)):
         low, high = region[number] if region else _reach(study.touchdown_values()[name])
         room = 0.5 * width - reach
         if max(-low, high) > room:
             yield (
-                f"The lander reaches {reach:.2g} m to each side, so along {axis} it may come down over the rim of the "
+                f"The lander reaches {reach:.2g} m to each side, so along {axis} it may come down over the edge of the "
                 f"bed: keep impact.{'region' if region else 'place'}.{axis} within {room:.2g} m of the middle, or "
                 "widen the bed."
             )
+
+
+def _lost(soil: ExpectedSoil) -> Iterator[str]:
+    """Landings that will leave the bed laterally after they have come down on it."""
+    share = expected_loss(soil.landings[1:], min(soil.recipe.width))
+    if share > CUT_OFF:
+        yield (
+            f"About {100 * share:.0f} % of the landings may leave the bed laterally, by their angle of impact, and "
+            "have no outcome: medians, quantiles, variance shares and the emulator will describe only the others, and "
+            "every share will be known no better than that; widen the bed (bed.width, with bed.grain_count), or keep "
+            "impact.incidence_deg steeper."
+        )
 
 
 def _time_limit(study: Study, soil: ExpectedSoil) -> Iterator[str]:
@@ -111,10 +126,17 @@ def _terms(study: Study) -> Iterator[str]:
 
 
 def _bounces(study: Study) -> Iterator[str]:
-    """Journeys that the soil cannot answer."""
+    """Journeys of which the soil tells nothing, or little."""
     why = why_no_soil(study)
     if study.rest.count and why:
         yield f"Bounce after bounce on hard ground only: {why}."
+    elif study.rest.count and study.has_soil:
+        low, high = UNKNOWN_JOURNEYS
+        yield (
+            f"Many journeys on the soil will have an unknown outcome, in studies so far {100 * low:.0f} to "
+            f"{100 * high:.0f} %: they meet an impact slower or flatter than those of the runs, or leave the bed "
+            "laterally; let impact.speed reach down to where landers are captured, and widen the bed."
+        )
 
 
 def _few_beds(study: Study) -> Iterator[str]:
