@@ -4,8 +4,10 @@ import math
 from typing import Any
 
 from lithobrake.outcomes import FlightStatus, JourneyStatus, TouchdownOutcome
+from lithobrake.report.ellipse_line import follows_gaussian
 from lithobrake.report.error_figure import Score
 from lithobrake.report.page import fixed, number
+from lithobrake.report.percentages import percent, with_interval
 from lithobrake.report.results import PaperResults, Results
 from lithobrake.report.scatter_figure import DRAWN_COUNT
 from lithobrake.report.style import PAPER_OUTPUTS, output
@@ -33,17 +35,12 @@ def listing(words: list[str]) -> str:
     return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
 
 
-def percent(share: float, digits: int = 1) -> str:
-    """A share of one in per cent."""
-    return f"{100 * share:.{digits}f} %"
-
-
 def hours(seconds: float) -> str:
     """A length of time in hours."""
     return f"{seconds / 3600:.3g} h"
 
 
-def answer(data: PaperResults) -> str:
+def answer(data: Results) -> str:
     """The answer to the question of the study: where, and what the summary says of it."""
     return " ".join([*place_words(data), *data.results["answer"]])
 
@@ -59,7 +56,8 @@ def place_words(data: Results) -> list[str]:
 
 def body_name(data: Results) -> str:
     """The body in words."""
-    return "Didymos" if data.study["site"]["body"] == "didymos" else "the body"
+    site = data.study["site"]
+    return "Didymos" if site["body"] == "didymos" else site.get("name") or "the body"
 
 
 def facts(data: Results) -> str:
@@ -93,9 +91,9 @@ def bed(data: Results) -> str:
         f"{number(first['surface_height_m'])} m deep with a solid fraction of {first['solid_fraction']:.2f} and "
         f"{first['coordination_number']:.1f} contacts a grain. Grains are poured with the medians of their ranges, and "
         "take on the soil of a landing at its touchdown. "
-        f"So that walls and floor do not answer the first blow, {number(first['smallest_width_m'])} m of width and "
-        f"{number(first['smallest_depth_m'])} m of depth are needed: "
-        + ("it has them." if first["large_enough"] else "it is smaller, and they answer too.")
+        f"The bed must be at least {number(first['smallest_width_m'])} m wide and "
+        f"{number(first['smallest_depth_m'])} m deep to avoid boundary reflections during the first impact; this bed "
+        f"{'meets' if first['large_enough'] else 'does not meet'} that limit."
     )
 
 
@@ -143,12 +141,12 @@ def sobol(data: PaperResults) -> str:
     screening = data.results["screening"]
     leaders = [_leader(name, screening) for name in PAPER_OUTPUTS]
     shares = {name: screening["fits"][name]["noise_share"] for name in PAPER_OUTPUTS}
-    scatter = [f"{percent(share, 0)} of {output(name).sign}" for name, share in shares.items() if share is not None]
+    scatter = [f"{percent(share)} of {output(name).sign}" for name, share in shares.items() if share is not None]
     rest = f"; of the variance of the runs {listing(scatter)} is scatter, which no input decides" if scatter else ""
     kept = listing([input_words(name) for name in data.results["kept_inputs"]])
     share = min(data.results["kept_share"][name] for name in data.study["design"]["kept_outputs"])
     return (
-        f"{listing(leaders)}{rest}; the second step keeps {kept}, which together have at least {percent(share, 0)} of "
+        f"{listing(leaders)}{rest}; the second step keeps {kept}, which together have at least {percent(share)} of "
         "the explained variance of every output that decides."
     )
 
@@ -159,9 +157,9 @@ def _leader(name: str, screening: dict[str, Any]) -> str:
     main = max(first, key=lambda key: first[key])
     if first[main] <= 0.0:
         return f"no input was found that {output(name).sign} varies with"
-    low, high = (percent(end, 0) for end in screening["sobol_first_interval"][name][main])
+    low, high = (percent(end) for end in screening["sobol_first_interval"][name][main])
     return (
-        f"{output(name).sign} varies most with the {input_words(main)} ({percent(first[main], 0)}, {low} to {high}, "
+        f"{output(name).sign} varies most with the {input_words(main)} ({percent(first[main])}, {low} to {high}, "
         "of its explained variance)"
     )
 
@@ -209,11 +207,11 @@ def impact_map(data: Results) -> str:
     extents = " x ".join(f"{length:.0f}" for length in site["extents_m"])
     outward = site["effective_acceleration_outward"]
     direction = "outward" if outward > 0 else "inward"
-    down = percent(shares[FlightStatus.IMPACT]["share"])
+    down = with_interval(shares[FlightStatus.IMPACT], data.digits)
     return (
-        f"Of {thousands(shares['sample_count'])} samples, of which {thousands(shares['flight_count'])} were flown, "
-        f"{down} come down again within {hours(data.study['flight']['duration'])}, "
-        f"where the map shows (body: {number(site['mass_kg'])} kg, {extents} m, one turn in "
+        f"{down} of the landings impact the surface again within {hours(data.study['flight']['duration'])}. "
+        f"The map has the {thousands(len(data.facet))} impacts of {thousands(data.flights.row_count)} flown samples of "
+        f"the {data.model} (body: {number(site['mass_kg'])} kg, {extents} m, one turn in "
         f"{site['spin_period_s'] / 3600:.4g} h; at the site gravity and spin together pull "
         f"{number(abs(outward), 2)} m/s2 {direction}; {gravity_words(data)})."
     )
@@ -232,7 +230,7 @@ def body(data: Results) -> str:
     latitude, longitude = (fixed(ellipse[key], 1) for key in ("latitude_deg", "longitude_deg"))
     return (
         f"{shared}; an ellipse of {number(long)} by {number(short)} m (semi-axes) about latitude {latitude} deg, "
-        f"longitude {longitude} deg holds 95 % of them."
+        f"longitude {longitude} deg holds 95 % of them{_shape_words(data)}."
     )
 
 
@@ -243,17 +241,23 @@ def rest(data: Results) -> str:
     if hard is None:
         return ""
     limit = hours(data.study["rest"]["duration"])
-    settled = percent(hard[JourneyStatus.SETTLED]["share"])
-    words = f"Followed from bounce to bounce for up to {limit}, on hard ground {settled} come to rest"
+    settled = with_interval(hard[JourneyStatus.SETTLED], data.digits)
+    words = f"Followed from bounce to bounce for up to {limit}, {settled} come to rest on hard ground"
     if soil is None:
         return f"{words}; on the soil it is not known: {table['why_no_soil']}."
     settled_on_soil, outside = (
-        percent(soil[status]["share"]) for status in (JourneyStatus.SETTLED, JourneyStatus.OUTSIDE)
+        with_interval(soil[status], data.digits) for status in (JourneyStatus.SETTLED, JourneyStatus.OUTSIDE)
     )
     return (
-        f"{words}, on the soil {settled_on_soil}; there {outside} stop where the {data.model} has no "
-        "answer: at an impact unlike those of the runs, or drawn in a way that there is not."
+        f"{words}, {settled_on_soil} on the soil. The outcome of {outside} on the soil is unknown: they were stopped "
+        f"because the impact was outside the training range of the {data.model} or the sampled rebound was unphysical."
     )
+
+
+def _shape_words(data: Results) -> str:
+    """What to beware of where the places are not spread as the ellipses suggest."""
+    is_gaussian = follows_gaussian(data.results["ellipses"], len(data.facet))
+    return "" if is_gaussian else ", but the places are not Gaussian, and it says little of where they lie inside it"
 
 
 def thousands(count: int) -> str:

@@ -37,8 +37,8 @@ class Results:
 
     model: ClassVar[str]
     """What was fitted to the runs and stands for them in the samples, in a word."""
-    level: ClassVar[float]
-    """Probability that intervals and limits of shares stand for."""
+    digits: ClassVar[int]
+    """Digits behind the point of a share in per cent without an interval, as its answer prints them."""
     study: dict[str, Any]
     results: dict[str, Any]
     provenance: dict[str, Any]
@@ -57,6 +57,11 @@ class Results:
     samples: Table
 
     @property
+    def level(self) -> float:
+        """Probability that intervals and limits of shares stand for."""
+        raise NotImplementedError
+
+    @property
     def shown_landing(self) -> str:
         """Which landing has been kept with its pictures, as a sentence about it begins; empty where none has."""
         return ""
@@ -73,8 +78,13 @@ class Results:
 class PaperResults(Results):
     """Results of the method in two steps; scores: stage, output, score."""
 
-    model, level = "expansion", 0.95
+    model, digits = "expansion", 1
     scores: dict[str, dict[str, Score]]
+
+    @property
+    def level(self) -> float:
+        """That of the limits of outcomes that no run had."""
+        return 0.95
 
     @property
     def shown_landing(self) -> str:
@@ -86,10 +96,15 @@ class PaperResults(Results):
 class SequenceResults(Results):
     """Results of a sequence; runs: its landings, without side runs; rare: what `lithobrake rare` found, by state."""
 
-    model, level = "emulator", 0.9
+    model, digits = "emulator", 0
 
     runs: Table
     rare: Mapping[str, Mapping[str, Any]]
+
+    @property
+    def level(self) -> float:
+        """That of all intervals."""
+        return float(self.results["returns"]["level"])
 
     @property
     def shown_landing(self) -> str:

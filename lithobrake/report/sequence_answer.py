@@ -1,9 +1,11 @@
 """What the answer of a sequence is of, and what a reader has to beware of, in words."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
+from typing import Any
 
 from lithobrake.outcomes import TouchdownOutcome
-from lithobrake.report.captions import hours, listing, percent
+from lithobrake.report.captions import hours, listing
+from lithobrake.report.percentages import percent, span
 from lithobrake.report.rare_tables import rare_warnings
 from lithobrake.report.results import Results, SequenceResults
 
@@ -12,10 +14,10 @@ FEW_BEDS = 12
 
 
 def action(data: Results) -> str:
-    """What the share of the answer is of: landers that do this."""
-    limit = hours(data.study["flight"]["duration"])
+    """What the return fraction is of: landers that do this."""
+    again = f"impact the surface again within {hours(data.study['flight']['duration'])}"
     holds = data.results["site"]["effective_acceleration_outward"] < 0.0
-    return f"stay or come down again within {limit}" if holds else f"come down again within {limit}"
+    return f"{again} or are captured where the ground holds them" if holds else again
 
 
 def has_interval(data: Results) -> bool:
@@ -23,22 +25,11 @@ def has_interval(data: Results) -> bool:
     return data.results["returns"]["lower"] is not None
 
 
-def share_digits(data: SequenceResults) -> int:
-    """Digits behind the point that a share in per cent deserves: none unless it is known to two points."""
-    returns = data.results["returns"]
-    return 1 if has_interval(data) and returns["upper"] - returns["lower"] < 0.02 else 0
-
-
-def bounds(ends: Sequence[float], digits: int) -> str:
-    """Two shares in per cent: "68 to 73 %"."""
-    low, high = ends
-    return f"{100 * low:.{digits}f} to {percent(high, digits)}"
-
-
-def interval(data: SequenceResults) -> str:
-    """The interval of the share, with its level: "90 %: 68 to 73 %"."""
-    returns = data.results["returns"]
-    return f"{percent(data.level, 0)}: {bounds((returns['lower'], returns['upper']), share_digits(data))}"
+def interval(entry: Mapping[str, Any], level: float) -> str:
+    """The interval of an entry with its level, "90 % interval 68-73 %"; empty where it has none."""
+    if entry["lower"] is None:
+        return ""
+    return f"{percent(level)} interval {span(entry['lower'], entry['upper'])}"
 
 
 def drawn_things(data: SequenceResults) -> list[str]:
@@ -47,7 +38,7 @@ def drawn_things(data: SequenceResults) -> list[str]:
     place = impact["place"] or {}
     has_place = impact["region"] is not None or any(isinstance(one, Mapping) for one in place.values())
     found = {
-        "place": has_place,
+        "impact point": has_place,
         "azimuth": impact["azimuth_deg"] == "random",
         "attitude": impact["orientation"] == "random",
     }
@@ -61,15 +52,8 @@ def as_sentence(words: str) -> str:
 
 
 def left_out(data: SequenceResults) -> str:
-    """What the emulator was tried on: beds that it had not seen, or, where there is but one, runs."""
-    return "runs left out" if data.results["runs"]["beds"] == 1 else "beds left out"
-
-
-def unanswered(data: SequenceResults) -> dict[str, int]:
-    """How many runs ended in a way after which nobody knows where the lander went, in words."""
-    known = (TouchdownOutcome.CLEAR, TouchdownOutcome.CAPTURED)
-    outcomes = data.results["runs"]["outcomes"]
-    return {outcome_label(word): count for word, count in outcomes.items() if count and word not in known}
+    """What the emulator was validated on: beds that it had not seen, or, where there is but one, runs."""
+    return "held-out runs" if data.results["runs"]["beds"] == 1 else "held-out beds"
 
 
 def outcome_label(word: str) -> str:
@@ -78,22 +62,22 @@ def outcome_label(word: str) -> str:
 
 
 def missing_sentence(data: SequenceResults) -> str:
-    """How many runs have no answer, and between which shares the truth then lies; empty where all have one."""
-    lost, returns = unanswered(data), data.results["returns"]
-    if not lost:
+    """How many runs have no outcome, and between which shares the truth then lies; empty where all have one."""
+    missing, returns = data.results["runs"]["missing"], data.results["returns"]
+    if not missing["count"]:
         return ""
-    total, count = sum(data.results["runs"]["outcomes"].values()), sum(lost.values())
-    kinds = listing([words if len(lost) == 1 else f"{number} {words}" for words, number in lost.items()])
-    ends = bounds(returns["if_missing"], 1).replace(" to ", " and ")
+    kinds = listing([f"{number} {outcome_label(word)}" for word, number in missing["outcomes"].items()])
+    low, high = (percent(end, 1) for end in returns["if_missing"])
     return (
-        f"{count} of {total} landings ({percent(count / total, 0)}), {kinds}, have no answer: between {ends} of all "
-        f"{action(data)}, if none or all of these do."
+        f"{missing['count']} of {data.results['runs']['count']} landings have no outcome ({kinds}): the return "
+        f"fraction is {low} if none of these return, {high} if all do."
     )
 
 
 def warnings(data: SequenceResults) -> list[str]:
     """What makes the numbers of the page weaker than they look."""
     found = [
+        _said(data.results["runs"]["warning"]),
         _few_beds(data),
         emulator_outside(data),
         _said(data.results["site"]["gravity_warning"]),
@@ -107,7 +91,7 @@ def _few_beds(data: SequenceResults) -> str:
     if not has_interval(data) or beds >= FEW_BEDS:
         return ""
     return (
-        f"The study has {beds} beds: its intervals are wide, and how much beds differ is hardly known. Set "
+        f"The study has {beds} beds: its intervals are wide, and the variance between beds is hardly known. Set "
         f"bed.bed_count to {FEW_BEDS} or more."
     )
 

@@ -76,7 +76,7 @@ def _runs(data: SequenceResults) -> "Figure":
 
 def _variance(data: SequenceResults) -> "Figure | None":
     shares = data.results["variance_shares"]
-    return variance_figure(shares, RETURNS_ROW) if any(shares.values()) else None
+    return variance_figure(shares, RETURNS_ROW, data.level) if any(shares.values()) else None
 
 
 def _calibration(data: SequenceResults) -> "Figure":

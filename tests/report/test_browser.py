@@ -69,13 +69,17 @@ def test_paper_has_everything_unfolded_and_no_controls(page: Page, report: Path)
     assert page.value(folded) == before
 
 
-def test_a_figure_grows_to_its_own_size(page: Page, report: Path) -> None:
+def test_a_figure_fills_the_window_until_it_is_left(page: Page, report: Path) -> None:
     page.open(report, PHONE)
-    small, grown, full = page.value(
-        "(() => { const picture = document.querySelector('.picture img'), small = picture.width; picture.click();"
-        "return [small, picture.width, picture.naturalWidth]; })()"
-    )
-    assert grown == full > small
+    show = "(() => { const one = document.querySelector('.picture img').getBoundingClientRect();"
+    show += " return [one.width, one.height]; })()"
+    small = page.value(show)
+    page.value("document.querySelector('.picture img').click()")
+    width, height = page.value(show)
+    assert [width, height] == page.value("[innerWidth, innerHeight]")
+    assert width > small[0]
+    page.value("dispatchEvent(new KeyboardEvent('keydown', { key: 'Escape' }))")
+    assert page.value(show) == small
 
 
 def test_a_page_is_light_enough_to_be_sent(report: Path) -> None:

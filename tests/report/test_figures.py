@@ -1,30 +1,36 @@
 """Each figure is made from plain arrays and shows what it is given."""
 
+from typing import Any
+
 import matplotlib
 import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
+from lithobrake.analysis import dispersion_ellipses
+from lithobrake.report.aim_figure import aim_figure
+from lithobrake.report.any_study_figures import draw_map, draw_rest
 from lithobrake.report.bed_figure import bed_figure, three_moments
 from lithobrake.report.body_figure import body_figure, colour_ends, facet_density
 from lithobrake.report.count_figure import Design, count_figure
-from lithobrake.report.density import WHOLE, close_window, draw_density, neighbour_count
-from lithobrake.report.ellipse_line import draw_ellipses, outline
+from lithobrake.report.density import WHOLE, Window, close_window, draw_density, neighbour_count
+from lithobrake.report.ellipse_line import draw_ellipses, fitting, follows_gaussian, outline
 from lithobrake.report.error_figure import Score, error_figure
 from lithobrake.report.hulls import Hull
 from lithobrake.report.landing_figure import instants, landing_figure
 from lithobrake.report.map_figure import Share, draw_shares, map_figure
 from lithobrake.report.rest_figure import RestMap, rest_figure
+from lithobrake.report.results import SequenceResults
 from lithobrake.report.scatter_figure import scatter_figure
 from lithobrake.report.sobol_figure import sobol_figure
-from lithobrake.report.style import INK, PAPER_OUTPUTS, figure_style, input_label
+from lithobrake.report.style import FATE_COLOURS, INK, PAPER_OUTPUTS, figure_style, input_label
 
 ELLIPSES = {
     "latitude_deg": 10.0,
     "longitude_deg": 30.0,
     "heading_deg": 20.0,
-    "shares": [{"share": 0.5, "semi_axes_deg": [2.0, 1.0]}, {"share": 0.95, "semi_axes_deg": [4.0, 2.0]}],
+    "shares": [{"share": 0.5, "semi_axes_deg": [0.8, 0.4]}, {"share": 0.95, "semi_axes_deg": [1.6, 0.8]}],
 }
 TETRAHEDRON = np.array([(1.0, 1.0, 1.0), (1.0, -1.0, -1.0), (-1.0, 1.0, -1.0), (-1.0, -1.0, 1.0)])
 FACES = np.array([(0, 1, 2), (0, 3, 1), (0, 2, 3), (1, 3, 2)])
@@ -166,7 +172,7 @@ def test_map_figure_shows_shares_with_intervals(with_relief: bool) -> None:
     with figure_style():
         figure = map_figure(latitude, longitude, (0.0, 10.0), shares, vertices if with_relief else None)
     words = texts(figure)
-    assert "60.00 %   [55.00, 65.00]" in words
+    assert "60 % (55-65 %)" in words
     assert "landing site" in words
 
 
@@ -236,10 +242,72 @@ def test_shares_end_at_the_whole_and_have_their_figures_beside_the_axis() -> Non
     axes = Figure().add_subplot()
     draw_shares(axes, [Share("down", 0.75, 0.7, 0.8), Share("captured", 0.25)], "all 100 000 samples")
     assert axes.get_xlim() == (0.0, 100.0)
-    assert [text.get_text() for text in axes.texts] == ["75.00 %   [70.00, 80.00]", "25.00 %"]
+    assert [text.get_text() for text in axes.texts] == ["75 % (70-80 %)", "25 %"]
     assert all(text.get_position()[0] > 1.0 for text in axes.texts)
     assert len(axes.lines) == 1
     assert axes.get_xlabel() == "share of all 100 000 samples [%], with 90 % interval"
+
+
+def test_one_fate_has_one_colour_in_every_figure(drawn: SequenceResults) -> None:
+    with figure_style():
+        figures = draw_map(drawn), draw_rest(drawn)
+    found: dict[str, set[str]] = {}
+    for axes in (axes for figure in figures for axes in figure.axes if axes.patches and axes.get_yticklabels()):
+        for label, bar in zip(axes.get_yticklabels(), axes.patches, strict=False):
+            found.setdefault(label.get_text(), set()).add(matplotlib.colors.to_hex(bar.get_facecolor()))
+    assert {"captured", "at rest", "unknown outcome"} <= found.keys()
+    assert all(len(colours) == 1 for colours in found.values())
+    assert found["captured"] == {FATE_COLOURS["captured"]}
+    assert len(set(FATE_COLOURS.values())) == len(FATE_COLOURS)
+
+
+def test_an_ellipse_over_the_edge_of_the_map_or_round_a_pole_is_not_drawn() -> None:
+    entries = [{"share": 0.5, "semi_axes_deg": [2.0, 1.0]}, {"share": 0.95, "semi_axes_deg": [20.0, 8.0]}]
+    at = {"latitude_deg": 85.0, "longitude_deg": 170.0, "heading_deg": 0.0, "shares": entries}
+    assert [one["share"] for one in fitting(at, WHOLE)] == [0.5]
+    assert [one["share"] for one in fitting(at | {"latitude_deg": 10.0}, WHOLE)] == [0.5, 0.95]
+    close = Window(latitude=10.0, longitude=170.0, half=5.0, half_longitude=5.0)
+    assert [one["share"] for one in fitting(at | {"latitude_deg": 10.0}, close)] == [0.5]
+    assert fitting(None, WHOLE) == []
+
+
+@pytest.mark.parametrize(("freedom", "is_gaussian"), [(np.inf, True), (2.0, False)])
+def test_ellipses_of_heavy_tails_are_flagged(freedom: float, is_gaussian: bool) -> None:
+    random = np.random.default_rng(1)
+    places = random.standard_normal((2000, 2))
+    if np.isfinite(freedom):
+        places /= np.sqrt(random.chisquare(freedom, 2000) / freedom)[:, None]
+    found = dispersion_ellipses(*(0.1 * places.T))
+    assert found is not None
+    shares = [{"share": share, "semi_axes_deg": axes} for share, axes in found.semi_axes_deg.items()]
+    assert follows_gaussian({"shares": shares}, 2000) is is_gaussian
+    assert follows_gaussian(None, 0)
+
+
+def test_aims_share_one_scale_and_have_colour_bars() -> None:
+    def far(value: float) -> dict[str, float]:
+        return {"value": value, "lower": 0.7 * value, "upper": 1.4 * value}
+
+    def ground(share: float) -> dict[str, Any]:
+        return {
+            "settled": {"share": share, "lower": share - 0.1, "upper": share + 0.1}, "missing": 0.4, "allowed": True,
+            "distance_p95": far(100.0 * share), "time_p95": far(3600.0),
+        }  # fmt: skip
+
+    aims = [
+        {"values": [speed], "soil": ground(share), "hard": ground(0.2)} for speed, share in ((0.1, 0.2), (0.2, 0.3))
+    ]
+    table = {"names": ["impact.speed"], "units": ["m/s"], "aims": aims, "best_on_soil": {"aim": 1},
+             "best_on_hard": None}  # fmt: skip
+    with figure_style():
+        figure = aim_figure(table)
+    maps = [axes.images[0] for axes in figure.axes if axes.images]
+    assert len(maps) == 5
+    assert [drawn.get_clim() for drawn in maps][::4] == [(0.0, 100.0)] * 2
+    assert len({drawn.get_cmap().name for drawn in maps}) == 1
+    assert len(figure.axes) == 10
+    assert figure.get_figwidth() == 9.2
+    assert {"20", "30"} <= {text.get_text() for text in figure.axes[0].texts}
 
 
 def test_shares_without_intervals_speak_of_none() -> None:
@@ -301,7 +369,7 @@ def test_rest_figure_shows_both_grounds_over_one_window_or_says_why_not() -> Non
         )
     maps = [axes for axes in figure.axes if axes.get_title(loc="left").startswith("On ")]
     assert maps[0].get_ylim() == maps[1].get_ylim()
-    assert "50.00 %   [40.00, 60.00]" in texts(figure)
+    assert "50 % (40-60 %)" in texts(figure)
     assert "not asked" in texts(silent)
 
 

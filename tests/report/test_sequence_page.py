@@ -1,6 +1,7 @@
 """The page of a drawn study: its figures, sentences and tables have the numbers of the summary."""
 
 import json
+import math
 import re
 import shutil
 from collections.abc import Mapping
@@ -12,7 +13,9 @@ import h5py
 import pytest
 
 from lithobrake.report import captions, sequence_captions, sequence_tables, write_report
+from lithobrake.report.dispersion_tables import parts
 from lithobrake.report.page import PageTable
+from lithobrake.report.percentages import with_interval
 from lithobrake.report.rare_tables import rare_tables
 from lithobrake.report.results import SequenceResults, page_results
 from lithobrake.report.sequence_answer import warnings
@@ -56,24 +59,61 @@ def test_the_page_opens_with_the_answer_of_the_summary(drawn: SequenceResults) -
 def test_the_share_has_its_interval_in_the_first_tile(drawn: SequenceResults) -> None:
     tile, returns = sequence_tables.tiles(drawn)[0], drawn.results["returns"]
     assert float(tile.value) == round(100 * returns["share"])
-    assert f"{100 * returns['lower']:.0f} to {100 * returns['upper']:.0f} %" in tile.words
+    assert f"{100 * returns['lower']:.0f}-{100 * returns['upper']:.0f} %" in tile.words
     narrow = returns | {"lower": returns["share"] - 0.004, "upper": returns["share"] + 0.004}
     assert sequence_tables.tiles(changed(drawn, returns=narrow))[0].value == f"{100 * returns['share']:.1f}"
 
 
 def test_warnings_name_few_beds_and_what_the_summary_warns_of(drawn: SequenceResults) -> None:
     gravity = drawn.results["site"]["gravity_warning"]
-    (words,) = warnings(changed(drawn, emulator={"warning": None}))
-    assert words[1:-1] in gravity
+    lost, last = warnings(changed(drawn, emulator={"warning": None}))
+    assert lost[:-1] == drawn.results["runs"]["warning"]
+    assert last[1:-1] in gravity
     few = warnings(changed(drawn, emulator={"warning": "the emulator is off"}, runs={"beds": 6}))
-    assert few[0].startswith("The study has 6 beds")
-    assert few[1] == "The emulator is off."
-    assert warnings(changed(drawn, site={"gravity_warning": None}, emulator={"warning": None})) == []
+    assert [words[:20] for words in few[1:3]] == ["The study has 6 beds", "The emulator is off."]
+    calm = changed(drawn, site={"gravity_warning": None}, emulator={"warning": None}, runs={"warning": None})
+    assert warnings(calm) == []
+
+
+def test_the_first_warning_of_the_page_is_that_of_missing_landings(drawn: SequenceResults, drawn_page: str) -> None:
+    first = re.search(r'<p class="warning">(.*?)</p>', drawn_page)
+    assert first is not None
+    assert first[1][:-1] == drawn.results["runs"]["warning"]
+
+
+def test_tile_answer_tables_and_figure_have_one_value_of_the_return_fraction(drawn: SequenceResults) -> None:
+    returns = drawn.results["returns"]
+    share, held = f"{100 * returns['share']:.0f} %", f"{100 * returns['lower']:.0f}-{100 * returns['upper']:.0f} %"
+    tile = sequence_tables.tiles(drawn)[0]
+    rows = table_of(drawn, "The answer").rows
+    outcomes = {row[0]: row[1:] for row in table_of(drawn, "After the first bounce").rows}
+    assert f"{tile.value} %" == rows[0][1] == share
+    assert rows[1][1] == held
+    (one,) = [cells for words, cells in outcomes.items() if words.startswith("return fraction")]
+    assert one == [f"{share} ({held})", f"{100 * returns['emulator']:.0f} %"]
+    assert share in captions.answer(drawn)
+
+
+def test_the_outcomes_of_the_runs_add_up_and_each_stands_once(drawn: SequenceResults) -> None:
+    table, shares = table_of(drawn, "After the first bounce"), drawn.results["shares"]
+    assert len({row[0] for row in table.rows}) == len(table.rows)
+    whole = parts(drawn)
+    assert sum(shares[key]["share"] for key in whole) == pytest.approx(1.0)
+    assert [row[1] for row in table.rows[: len(whole)]] == [with_interval(shares[key]) for key in whole]
+    outward = changed(drawn, site={"effective_acceleration_outward": 1e-5})
+    assert not any(row[0].startswith("return fraction") for row in table_of(outward, "After the first bounce").rows)
+
+
+def test_a_prediction_interval_for_a_new_bed_has_the_size_of_the_bed(drawn: SequenceResults) -> None:
+    low, high = drawn.results["returns"]["next_bed"]
+    row = next(row for row in table_of(drawn, "The answer").rows if "new bed" in row[0])
+    assert row == ["prediction interval for a new bed of 0.55 x 0.55 m", f"{100 * low:.0f}-{100 * high:.0f} %"]
+    assert "new bed" not in captions.answer(drawn)
 
 
 def test_the_caption_of_what_decides_has_every_part_with_its_interval(drawn: SequenceResults) -> None:
     words = sequence_captions.variance(changed(drawn, variance_shares={"speed_out": record(), "spin_out": record()}))
-    for shown in ("6 % (1 to 11", "3 % (0 to 15)", "91 % (80 to 97)", "0.4 % (0 to 1)"):
+    for shown in ("at least 6 % (1-11 %; most", "3 % (0-15 %)", "everything else 91 % (80-97 %)", "0.4 % (0.3-1.0 %)"):
         assert shown in words
     assert "friction of the grains" in words
 
@@ -161,6 +201,24 @@ def test_every_output_of_the_runs_has_its_numbers_and_their_intervals(drawn: Seq
     assert sum(" to " in cell for cell in row) == 4
 
 
+def test_an_azimuth_has_a_direction_and_a_resultant_length(drawn: SequenceResults) -> None:
+    azimuth = {
+        "mean_direction": {"value": math.radians(5.0), "lower": math.radians(-10.0), "upper": math.radians(20.0)},
+        "resultant_length": {"value": 0.2, "lower": 0.1, "upper": 0.3}, "of": "the landings",
+    }  # fmt: skip
+    table = table_of(changed(drawn, outputs={"azimuth_out": azimuth}), "Directions of the landings")
+    assert table.rows == [["azimuth out", "5.00 (-10 to 20)", "0.200 (0.1 to 0.3)"]]
+    assert not any(one.title.startswith("Directions") for one in sequence_tables.tables(drawn))
+
+
+def test_touchdowns_without_a_bed_have_a_page_without_one(drawn: SequenceResults) -> None:
+    alone = replace(drawn, bed=None, landing=None, results=drawn.results | {"beds": []})
+    content = sequence_content(alone)
+    assert "Beds" not in {table.title for table in content.tables}
+    assert next(row for row in content.tables[0].rows if "new bed" in row[0])[0] == "prediction interval for a new bed"
+    assert {plot.name for plot in content.plots if not plot.sentence} == {"landing"}
+
+
 def test_side_runs_have_their_numbers(drawn: SequenceResults) -> None:
     table, side = table_of(drawn, "Side runs"), drawn.results["runs"]["side_runs"]
     assert re.findall(r"\d+", table.note)[:2] == [str(side["soil_pairs"]), str(side["twins"])]
@@ -202,10 +260,10 @@ def test_one_bed_has_a_page_without_intervals(drawn: SequenceResults) -> None:
     content = sequence_content(replace(alone, results=alone.results | {"outputs": outputs}))
     answer, outputs_table = content.tables[0], next(one for one in content.tables if one.title.startswith("Outputs"))
     assert not any("interval" in row[0] for row in answer.rows)
-    assert answer.note == ONE_BED["why"]
+    assert answer.note.startswith(ONE_BED["why"])
     assert not any(" to " in cell for row in outputs_table.rows for cell in row)
     assert next(plot for plot in content.plots if plot.name == "variance").draw() is None
-    assert not any("beds left out" in table.title for table in content.tables)
+    assert not any("held-out beds" in table.title for table in content.tables)
 
 
 def test_what_a_study_has_not_is_left_out(drawn: SequenceResults) -> None:

@@ -73,4 +73,4 @@ def test_the_page_says_how_far_places_are_rounded(paper: PaperResults) -> None:
     assert "Places are rounded to" in landing.html
     assert 'id="body-3d-data"' in body.html
     assert f"the first {len(paper.paths[1])} flights, seen from the turning body" in body.html
-    assert {"blue: came down", "grey: still flew"} <= set(re.findall(r"\w+: \w+ \w+", body.html))
+    assert {"blue: impact", "grey: still flying"} <= set(re.findall(r"\w+: [\w ]+", body.html))
