@@ -7,6 +7,7 @@ from typing import Any, ClassVar
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.image import AxesImage
 from matplotlib.patches import Rectangle
 from numpy.typing import NDArray
 
@@ -15,17 +16,20 @@ from lithobrake.report.style import QUIET, SITE, input_label
 
 SETTLED = JourneyStatus.SETTLED.value
 HOUR = 3600.0
-# Colours darker than this part of their scale have white figures.
-DARK = 0.55
+# One for all maps; colours darker than this part of their scale have white figures.
+COLOURS, DARK = "Blues", 0.55
 
 
 @dataclass(frozen=True)
 class AimRow:
-    """A row of maps: words, ground, colours, and the number of an aim with its bounds, in the unit that is drawn."""
+    """A row of maps: words, ground, and the number of an aim with its bounds, in the unit that is drawn.
+
+    scale: its ends, None for those of the numbers.
+    """
 
     title: str
     ground: str
-    colours: str
+    scale: tuple[float, float] | None
     read: Callable[[Mapping[str, Any]], tuple[float, float | None, float | None]]
 
 
@@ -53,12 +57,14 @@ def _missing(aim: Mapping[str, Any]) -> tuple[float, float | None, float | None]
     return 100 * aim["soil"]["missing"], None, None
 
 
+# Maps in per cent share one scale, from nothing to all: colours differ as much as the shares do.
+WHOLE = (0.0, 100.0)
 ROWS = (
-    AimRow("settled on soil [%]", "soil", "Blues", _share("soil")),
-    AimRow("end not known on soil [%]", "soil", "Greens", _missing),
-    AimRow("95 % rest within [m]", "soil", "Oranges", _far("distance_p95", 1.0)),
-    AimRow("95 % rest within [h]", "soil", "Purples", _far("time_p95", HOUR)),
-    AimRow("settled on hard ground [%]", "hard", "Greys", _share("hard")),
+    AimRow("at rest on soil [%]", "soil", WHOLE, _share("soil")),
+    AimRow("unknown outcome on soil [%]", "soil", WHOLE, _missing),
+    AimRow("95 % rest within [m]", "soil", None, _far("distance_p95", 1.0)),
+    AimRow("95 % rest within [h]", "soil", None, _far("time_p95", HOUR)),
+    AimRow("at rest on hard ground [%]", "hard", WHOLE, _share("hard")),
 )
 
 
@@ -72,42 +78,54 @@ def aim_figure(table: Mapping[str, Any]) -> Figure:
     # What is not chosen is the same everywhere.
     places = np.column_stack([values, np.zeros((len(values), 3 - values.shape[1]))])
     across, up, panels = (np.unique(column) for column in places.T)
-    layout = _Layout(max(2.9, 0.62 * len(across)), max(0.36 * len(up), 0.5), len(panels))
+    room = (_Layout.least - _Layout.left - _Layout.right) / len(panels) - 0.2
+    layout = _Layout(max(room, 0.62 * len(across)), max(0.36 * len(up), 0.5), len(panels))
     figure = Figure(figsize=layout.size)
     for number, row in enumerate(ROWS):
         read = [row.read(aim) for aim in table["aims"]]
-        known = np.array([one[0] for one in read])
-        scale = (float(np.nanmin(known)), float(np.nanmax(known))) if np.isfinite(known).any() else (0.0, 1.0)
+        scale = row.scale or _ends(np.array([one[0] for one in read]))
         for column, panel in enumerate(panels.tolist()):
             axes = figure.add_axes(layout.place(number, column))
             shown = np.flatnonzero(places[:, 2] == panel)
             cells = _Cells(places[shown, 0], places[shown, 1], across, up)
-            _draw(axes, cells, [read[one] for one in shown], row.colours, scale)
+            drawn = _draw(axes, cells, [read[one] for one in shown], scale)
             _mark(axes, cells, table, shown, row.ground)
             third = f"{labels[2].partition(' [')[0]} = {panel:g}" if len(labels) > 2 and number == 0 else ""
             axes.set_title("\n".join(filter(None, [third, row.title if column == 0 else ""])))
             _label(axes, cells, labels, is_last=number == len(ROWS) - 1, is_first=column == 0)
+        bar = figure.colorbar(drawn, cax=figure.add_axes(layout.bar(number)))
+        bar.ax.tick_params(labelsize=7.5)
+        outline: Any = bar.outline
+        outline.set_visible(False)
     return figure
+
+
+def _ends(known: NDArray[np.float64]) -> tuple[float, float]:
+    """The ends of a scale from nothing to the largest of some numbers."""
+    return 0.0, float(np.nanmax(known)) if np.isfinite(known).any() else 1.0
 
 
 @dataclass(frozen=True)
 class _Layout:
-    """Where the maps stand, in inches: width and height of one, and how many stand beside each other."""
+    """Where the maps stand, in inches: width and height of one, and how many stand beside each other.
+
+    The figure is as wide as every other, so that its letters are as large on the page.
+    """
 
     width: float
     height: float
     count: int
     left: ClassVar[float] = 0.85
+    right: ClassVar[float] = 0.7
     top: ClassVar[float] = 0.5
     gap: ClassVar[float] = 0.42
+    least: ClassVar[float] = 9.2
 
     @property
     def size(self) -> tuple[float, float]:
         """Width and height of the figure."""
-        return (
-            self.left + self.count * (self.width + 0.2) + 0.05,
-            self.top + len(ROWS) * (self.height + self.gap) + 0.2,
-        )
+        across = max(self.left + self.count * (self.width + 0.2) + self.right, self.least)
+        return across, self.top + len(ROWS) * (self.height + self.gap) + 0.2
 
     def place(self, row: int, column: int) -> tuple[float, float, float, float]:
         """Left, bottom, width and height of a map, in parts of the figure."""
@@ -115,6 +133,13 @@ class _Layout:
         bottom = high - self.top - (row + 1) * self.height - row * self.gap
         left = self.left + column * (self.width + 0.2)
         return left / whole, bottom / high, self.width / whole, self.height / high
+
+    def bar(self, row: int) -> tuple[float, float, float, float]:
+        """The place of the colour bar of a row, to the right of its maps."""
+        _, bottom, _, height = self.place(row, 0)
+        whole, _ = self.size
+        right = self.left + self.count * (self.width + 0.2)
+        return right / whole, bottom, 0.12 / whole, height
 
 
 @dataclass(frozen=True)
@@ -137,25 +162,22 @@ def _draw(
     axes: Axes,
     cells: _Cells,
     read: Sequence[tuple[float, float | None, float | None]],
-    colours: str,
     scale: tuple[float, float],
-) -> None:
+) -> AxesImage:
     """Colour the cells by their number, and write it there with its bounds."""
     table = np.full((len(cells.up), len(cells.across)), np.nan)
     for (column, row), (value, _, _) in zip(cells.places, read, strict=True):
         table[row, column] = value
     span = scale[1] - scale[0] or 1.0
-    # The palest and the darkest tenth of a colour scale are hard to tell from paper and ink.
-    axes.imshow(
-        table, origin="lower", aspect="auto", cmap=colours, vmin=scale[0] - 0.1 * span, vmax=scale[1] + 0.25 * span
-    )
+    drawn = axes.imshow(table, origin="lower", aspect="auto", cmap=COLOURS, vmin=scale[0], vmax=scale[0] + span)
     for (column, row), (value, low, high) in zip(cells.places, read, strict=True):
         ink = "white" if (value - scale[0]) / span > DARK else "black"
-        text = "none" if np.isnan(value) else f"{value:.3g}"
-        axes.text(column, row + 0.16, text, ha="center", va="center", fontsize=7.5, color=ink)
+        text = "none" if np.isnan(value) else f"{value:.0f}" if scale == WHOLE else f"{value:.3g}"
+        axes.text(column, row + 0.16, text, ha="center", va="center", fontsize=9, color=ink)
         bounds = " to ".join("?" if end is None else f"{end:.2g}" if end < 1 else f"{end:.0f}" for end in (low, high))
         if (low, high) != (None, None):
-            axes.text(column, row - 0.24, bounds, ha="center", va="center", fontsize=5.5, color=ink)
+            axes.text(column, row - 0.24, bounds, ha="center", va="center", fontsize=7, color=ink)
+    return drawn
 
 
 def _mark(axes: Axes, cells: _Cells, table: Mapping[str, Any], shown: NDArray[np.int64], ground: str) -> None:
@@ -175,9 +197,9 @@ def _label(axes: Axes, cells: _Cells, labels: Sequence[str], *, is_last: bool, i
     for side in axes.spines.values():
         side.set_visible(False)
     axes.tick_params(length=0)
-    axes.set_xticks(range(len(cells.across)), [f"{one:g}" for one in cells.across] if is_last else [])
+    axes.set_xticks(range(len(cells.across)), [f"{one:.3g}" for one in cells.across] if is_last else [])
     is_shown = is_first and len(labels) > 1
-    axes.set_yticks(range(len(cells.up)), [f"{one:g}" for one in cells.up] if is_shown else [])
+    axes.set_yticks(range(len(cells.up)), [f"{one:.3g}" for one in cells.up] if is_shown else [])
     if is_last:
         axes.set_xlabel(labels[0])
     if is_shown:

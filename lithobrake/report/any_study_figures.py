@@ -5,24 +5,31 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from lithobrake.outcomes import JourneyStatus
+from lithobrake.outcomes import FlightStatus, JourneyStatus
 from lithobrake.report.bed_figure import bed_figure
 from lithobrake.report.body_figure import body_figure
-from lithobrake.report.captions import hours
-from lithobrake.report.dispersion_tables import GROUND_WORDS, SUMS, followed, outcome_words
+from lithobrake.report.captions import hours, thousands
+from lithobrake.report.dispersion_tables import GROUND_WORDS, followed, parts
 from lithobrake.report.landing_figure import landing_figure
 from lithobrake.report.map_figure import Share, map_figure
 from lithobrake.report.rest_figure import RestMap, rest_figure
-from lithobrake.report.results import Results
+from lithobrake.report.results import PaperResults, Results
+from lithobrake.report.style import FATE_COLOURS
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+# What may become of a landing, as short as it has to be beside a bar.
+SHORT_OUTCOME_WORDS: dict[str, str] = {
+    FlightStatus.IMPACT: "impact within {hours}",
+    FlightStatus.FLYING: "flying after {hours}",
+    FlightStatus.PARTNER: "on the partner",
+}
 # What may become of a lander after all bounces, as short as it has to be beside a bar.
 SHORT_JOURNEY_WORDS = {
     JourneyStatus.SETTLED: "at rest",
     JourneyStatus.LOFTED: "lifted off again",
-    JourneyStatus.OUTSIDE: "outside the runs",
+    JourneyStatus.OUTSIDE: "unknown outcome",
     JourneyStatus.SLIDING: "still sliding",
     JourneyStatus.BOUNCING: "still bouncing",
     JourneyStatus.FLYING: "not at rest, {hours}",
@@ -51,53 +58,43 @@ def draw_landing(data: Results) -> "Figure | None":
 
 def draw_map(data: Results) -> "Figure":
     table, site, limit = data.results["shares"], data.results["site"], hours(data.study["flight"]["duration"])
-    shares = [
-        _share(words.format(hours=limit), table[key], data.level)
-        for key, words in outcome_words(data).items()
-        if key not in SUMS
-    ]
+    words = {key: SHORT_OUTCOME_WORDS.get(key, long).format(hours=limit) for key, long in parts(data).items()}
+    shares = [_share(data, key, short, table[key]) for key, short in words.items()]
     where = (site["latitude_deg"], site["longitude_deg"])
-    sampled = data.results.get("monte_carlo", table)["sample_count"]
-    whole, vertices = _samples(table["sample_count"], sampled), data.body_vertices if len(data.body_vertices) else None
-    return map_figure(data.latitude, data.longitude, where, shares, vertices, data.results.get("ellipses"), whole)
+    ellipses = data.results["ellipses"]
+    return map_figure(data.latitude, data.longitude, where, shares, data.body_vertices, ellipses, _whole(data))
 
 
-def _share(words: str, entry: Mapping[str, Any], level: float) -> Share:
+def _share(data: Results, fate: str, words: str, entry: Mapping[str, Any]) -> Share:
     """A share of the summary, with its interval or its limit where it has one."""
-    lower, upper = entry.get("lower"), entry.get("upper")
     limit = entry.get("upper_limit")
-    return Share(words, entry["share"], *((lower, upper) if limit is None else (None, limit)), level)
+    lower, upper = (entry["lower"], entry["upper"]) if limit is None else (None, limit)
+    return Share(words, entry["share"], lower, upper, data.level, FATE_COLOURS[fate], data.digits)
 
 
-def _samples(looked_at: int, count: int) -> str:
+def _whole(data: Results) -> str:
     """What the shares of the flights are shares of."""
-    words = f"{looked_at:,} samples".replace(",", " ")
+    if not isinstance(data, PaperResults):
+        return "all landings"
+    looked_at, count = (data.results[table]["sample_count"] for table in ("shares", "monte_carlo"))
+    words = f"{thousands(looked_at)} samples"
     return f"all {words}" if looked_at == count else f"the {words} up to the last that was flown"
 
 
-def draw_body(data: Results) -> "Figure | None":
-    if not len(data.facet):
-        return None
+def draw_body(data: Results) -> "Figure":
     return body_figure(data.body_vertices, data.body_faces, data.facet, np.array(data.results["site"]["place_m"]))
 
 
-def draw_rest(data: Results) -> "Figure | None":
+def draw_rest(data: Results) -> "Figure":
     found, site, limit = followed(data), data.results["site"], hours(data.study["rest"]["duration"])
-    if not found:
-        return None
     # The same statuses on both sides, so that rows and colours match.
-    met = {
-        key: words
-        for key, words in SHORT_JOURNEY_WORDS.items()
-        if any(one.get(key, {}).get("count") for one in found.values())
-    }
+    met = {key: words for key, words in SHORT_JOURNEY_WORDS.items() if any(one[key]["count"] for one in found.values())}
     maps = []
     for ground, (latitude, longitude) in data.rest.items():
         table = found.get(ground)
-        shares = [_share(words.format(hours=limit), table[key], data.level) for key, words in met.items() if table]
-        absent = None if table else f"Not asked: {data.results['rest'].get('why_no_soil')}."
-        ellipses = table.get("ellipses") if table else None
+        shares = [_share(data, key, words.format(hours=limit), table[key]) for key, words in met.items() if table]
+        absent = None if table else f"Not asked: {data.results['rest']['why_no_soil']}."
+        ellipses = table["ellipses"] if table else None
         whole = f"the {table['sample_count']} followed" if table else ""
         maps.append(RestMap(f"On {GROUND_WORDS[ground]}", latitude, longitude, ellipses, shares, absent, whole))
-    vertices = data.body_vertices if len(data.body_vertices) else None
-    return rest_figure(maps, (site["latitude_deg"], site["longitude_deg"]), vertices)
+    return rest_figure(maps, (site["latitude_deg"], site["longitude_deg"]), data.body_vertices)

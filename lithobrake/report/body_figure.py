@@ -52,7 +52,7 @@ def body_figure(vertices: Array, faces: Facets, facet: Facets, site: Array) -> F
             mark_site(axes, *camera.project(site)[0])
         frame_axes(axes, (-1.04 * reach, 1.04 * reach), (-1.04 * reach, 1.04 * reach))
         axes.set_title(title, loc="center", fontsize=9)
-    draw_legend(figure, None, "impacts", (0.01, 0.01))
+    draw_legend(figure, (), "impacts", (0.01, 0.01))
     bar = figure.colorbar(ScalarMappable(norm, "viridis"), cax=figure.add_axes((0.925, 0.14, 0.013, 0.68)), format="%g")
     bar.set_label("impacts per hectare")
     outline: Any = bar.outline

@@ -1,4 +1,4 @@
-"""Figure 5 of a sequence: whether the emulator foretells landings on beds that it has not seen."""
+"""Figure 5 of a sequence: whether the emulator predicts landings on beds that it has not seen."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -41,7 +41,7 @@ def band_luck(run_count: int) -> tuple[float, float]:
 
 
 def calibration_figure(scores: Mapping[str, Mapping[str, Any]]) -> Figure:
-    """Draw a histogram for each output of where its runs lay in what was foretold, and how many the 90 % bands held.
+    """Draw a histogram for each output of the PIT values of its runs, and how many the 90 % bands held.
 
     scores: by output, with the counts "pit" and the share "band_90".
     """
@@ -52,7 +52,7 @@ def calibration_figure(scores: Mapping[str, Mapping[str, Any]]) -> Figure:
     for axes, (name, counts) in zip(grid, found.items(), strict=False):
         _histogram(axes, name, counts)
     grid[0].set_ylabel("runs")
-    _bands(grid[-1], {name: scores[name] for name in found if scores[name].get("band_90") is not None})
+    _bands(grid[-1], {name: scores[name] for name in found})
     return figure
 
 
@@ -72,7 +72,7 @@ def _histogram(axes: Axes, name: str, counts: Sequence[int]) -> None:
     axes.set_title(f"{shown.words} {shown.symbol}".strip())
     axes.set_xlim(0.0, 1.0)
     axes.set_xticks([0.0, 0.5, 1.0], ["0", "0.5", "1"])
-    axes.set_xlabel("place in what was foretold")
+    axes.set_xlabel("PIT value")
 
 
 def _bands(axes: Axes, scores: Mapping[str, Mapping[str, Any]]) -> None:

@@ -4,8 +4,10 @@ import math
 from typing import Any
 
 from lithobrake.outcomes import FlightStatus, JourneyStatus, TouchdownOutcome
+from lithobrake.report.ellipse_line import follows_gaussian
 from lithobrake.report.error_figure import Score
 from lithobrake.report.page import fixed, number
+from lithobrake.report.percentages import percent, with_interval
 from lithobrake.report.results import PaperResults, Results
 from lithobrake.report.scatter_figure import DRAWN_COUNT
 from lithobrake.report.style import PAPER_OUTPUTS, output
@@ -34,29 +36,22 @@ def listing(words: list[str]) -> str:
     return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
 
 
-def percent(share: float, digits: int = 1) -> str:
-    """A share of one in per cent."""
-    return f"{100 * share:.{digits}f} %"
-
-
 def hours(seconds: float) -> str:
     """A length of time in hours."""
     return f"{seconds / 3600:.3g} h"
 
 
-def answer(data: PaperResults) -> str:
+def answer(data: Results) -> str:
     """The answer to the question of the study: where, and what the summary says of it."""
     return " ".join([*place_words(data), *data.results["answer"]])
 
 
 def place_words(data: Results) -> list[str]:
-    """Where the study lands, in a sentence; none where the summary has no site."""
-    site = data.results.get("site")
-    if not site:
-        return []
+    """Where the study lands, in a sentence."""
+    site = data.results["site"]
     place = f"latitude {site['latitude_deg']:g} deg, longitude {site['longitude_deg']:g} deg on {body_name(data)}"
     # A product of an archive tells which shape "the body" is.
-    product = f" ({site['product_id']})" if site.get("product_id") else ""
+    product = f" ({site['product_id']})" if site["product_id"] else ""
     return [f"Landing at {place}{product}."]
 
 
@@ -68,29 +63,23 @@ def body_name(data: Results) -> str:
 
 def facts(data: Results) -> str:
     """When the study was made, and what the body's gravity is known by."""
-    found = []
-    if "date" in data.provenance:
-        found.append(f"Study of {data.provenance['date'][:16].replace('T', ', ')} UTC.")
-    known = gravity_words(data)
-    if known:
-        found.append(f"{known[0].upper()}{known[1:]}.")
-    return " ".join(found)
+    known, date = gravity_words(data), data.provenance["date"][:16].replace("T", ", ")
+    return f"Study of {date} UTC. {known[0].upper()}{known[1:]}."
 
 
 def gravity_words(data: Results) -> str:
-    """Escape speed at the site and bulk density of the body, where the summary has them."""
-    words = {
-        "escape_speed_m_s": "escape speed at the site {} m/s",
-        "bulk_density_kg_m3": "bulk density of the body {} kg/m3",
-    }
-    site = data.results.get("site", {})
-    return ", ".join(text.format(number(site[key])) for key, text in words.items() if site.get(key) is not None)
+    """Escape speed at the site and bulk density of the body."""
+    site = data.results["site"]
+    return (
+        f"escape speed at the site {number(site['escape_speed_m_s'])} m/s, bulk density of the body "
+        f"{number(site['bulk_density_kg_m3'])} kg/m3"
+    )
 
 
 def bed(data: Results) -> str:
     """Figure 1."""
     if data.bed is None:
-        program = data.study.get("solver", {}).get("command")
+        program = data.study["solver"]["command"]
         return "The touchdowns were made by a " + (
             f"program of the study's author: {program}" if program else "function."
         )
@@ -103,16 +92,16 @@ def bed(data: Results) -> str:
         f"{number(first['surface_height_m'])} m deep with a solid fraction of {first['solid_fraction']:.2f} and "
         f"{first['coordination_number']:.1f} contacts a grain. Grains are poured with the medians of their ranges, and "
         "take on the soil of a landing at its touchdown. "
-        f"So that walls and floor do not answer the first blow, {number(first['smallest_width_m'])} m of width and "
-        f"{number(first['smallest_depth_m'])} m of depth are needed: "
-        + ("it has them." if first["large_enough"] else "it is smaller, and they answer too.")
+        f"The bed must be at least {number(first['smallest_width_m'])} m wide and "
+        f"{number(first['smallest_depth_m'])} m deep to avoid boundary reflections during the first impact; this bed "
+        f"{'meets' if first['large_enough'] else 'does not meet'} that limit."
     )
 
 
 def landing(data: Results) -> str:
     """Figure 2."""
     if data.landing is None:
-        return "The pictures of a touchdown are that program's own."
+        return ""
     attributes, time = data.landing.moving.attributes, data.landing.moving.time
     ended = TouchdownOutcome(str(attributes["status"])).sentence.rstrip(".")
     return (
@@ -153,12 +142,12 @@ def sobol(data: PaperResults) -> str:
     screening = data.results["screening"]
     leaders = [_leader(name, screening) for name in PAPER_OUTPUTS]
     shares = {name: screening["fits"][name]["noise_share"] for name in PAPER_OUTPUTS}
-    scatter = [f"{percent(share, 0)} of {output(name).sign}" for name, share in shares.items() if share is not None]
+    scatter = [f"{percent(share)} of {output(name).sign}" for name, share in shares.items() if share is not None]
     rest = f"; of the variance of the runs {listing(scatter)} is scatter, which no input decides" if scatter else ""
     kept = listing([input_words(name) for name in data.results["kept_inputs"]])
     share = min(data.results["kept_share"][name] for name in data.study["design"]["kept_outputs"])
     return (
-        f"{listing(leaders)}{rest}; the second step keeps {kept}, which together have at least {percent(share, 0)} of "
+        f"{listing(leaders)}{rest}; the second step keeps {kept}, which together have at least {percent(share)} of "
         "the explained variance of every output that decides."
     )
 
@@ -169,9 +158,9 @@ def _leader(name: str, screening: dict[str, Any]) -> str:
     main = max(first, key=lambda key: first[key])
     if first[main] <= 0.0:
         return f"no input was found that {output(name).sign} varies with"
-    low, high = (percent(end, 0) for end in screening["sobol_first_interval"][name][main])
+    low, high = (percent(end) for end in screening["sobol_first_interval"][name][main])
     return (
-        f"{output(name).sign} varies most with the {input_words(main)} ({percent(first[main], 0)}, {low} to {high}, "
+        f"{output(name).sign} varies most with the {input_words(main)} ({percent(first[main])}, {low} to {high}, "
         "of its explained variance)"
     )
 
@@ -219,23 +208,22 @@ def impact_map(data: Results) -> str:
     extents = " x ".join(f"{length:.0f}" for length in site["extents_m"])
     outward = site["effective_acceleration_outward"]
     direction = "outward" if outward > 0 else "inward"
-    known = gravity_words(data)
-    down = percent(shares[FlightStatus.IMPACT]["share"])
+    down = with_interval(shares[FlightStatus.IMPACT], data.digits)
     return (
-        f"Of {thousands(shares['sample_count'])} samples, of which {thousands(shares['flight_count'])} were flown, "
-        f"{down} come down again within {hours(data.study['flight']['duration'])}, "
-        f"where the map shows (body: {number(site['mass_kg'])} kg, {extents} m, one turn in "
+        f"{down} of the landings impact the surface again within {hours(data.study['flight']['duration'])}. "
+        f"The map has the {thousands(len(data.facet))} impacts of {thousands(data.flights.row_count)} flown samples of "
+        f"the {data.model} (body: {number(site['mass_kg'])} kg, {extents} m, one turn in "
         f"{site['spin_period_s'] / 3600:.4g} h; at the site gravity and spin together pull "
-        f"{number(abs(outward), 2)} m/s2 {direction}{known and f'; {known}'})."
+        f"{number(abs(outward), 2)} m/s2 {direction}; {gravity_words(data)})."
     )
 
 
 def body(data: Results) -> str:
     """Figure 8."""
     if not len(data.facet):
-        return "No flight comes down on the body, so there is nothing to show on it."
+        return ""
     shared = f"{thousands(len(data.facet))} impacts on the shape that the flights used"
-    ellipse = data.results.get("ellipses") or {}
+    ellipse = data.table("ellipses")
     large = [entry["semi_axes_m"] for entry in ellipse.get("shares", ()) if entry["share"] > 0.9]
     if not large:
         return f"{shared}; they lie too far around the body, or are too few, for an ellipse that holds 95 % of them."
@@ -243,7 +231,7 @@ def body(data: Results) -> str:
     latitude, longitude = (fixed(ellipse[key], 1) for key in ("latitude_deg", "longitude_deg"))
     return (
         f"{shared}; an ellipse of {number(long)} by {number(short)} m (semi-axes) about latitude {latitude} deg, "
-        f"longitude {longitude} deg holds 95 % of them."
+        f"longitude {longitude} deg holds 95 % of them{_shape_words(data)}."
     )
 
 
@@ -252,19 +240,25 @@ def rest(data: Results) -> str:
     table = data.results["rest"]
     soil, hard = table["soil"], table["hard"]
     if hard is None:
-        return "No sample was followed beyond its next impact (rest.count is 0)."
+        return ""
     limit = hours(data.study["rest"]["duration"])
-    settled = percent(hard[JourneyStatus.SETTLED]["share"])
-    words = f"Followed from bounce to bounce for up to {limit}, on hard ground {settled} come to rest"
+    settled = with_interval(hard[JourneyStatus.SETTLED], data.digits)
+    words = f"Followed from bounce to bounce for up to {limit}, {settled} come to rest on hard ground"
     if soil is None:
         return f"{words}; on the soil it is not known: {table['why_no_soil']}."
     settled_on_soil, outside = (
-        percent(soil[status]["share"]) for status in (JourneyStatus.SETTLED, JourneyStatus.OUTSIDE)
+        with_interval(soil[status], data.digits) for status in (JourneyStatus.SETTLED, JourneyStatus.OUTSIDE)
     )
     return (
-        f"{words}, on the soil {settled_on_soil}; there {outside} stop where the {data.model} has no "
-        "answer: at an impact unlike those of the runs, or drawn in a way that there is not."
+        f"{words}, {settled_on_soil} on the soil. The outcome of {outside} on the soil is unknown: they were stopped "
+        f"because the impact was outside the training range of the {data.model} or the sampled rebound was unphysical."
     )
+
+
+def _shape_words(data: Results) -> str:
+    """What to beware of where the places are not spread as the ellipses suggest."""
+    is_gaussian = follows_gaussian(data.results["ellipses"], len(data.facet))
+    return "" if is_gaussian else ", but the places are not Gaussian, and it says little of where they lie inside it"
 
 
 def thousands(count: int) -> str:

@@ -4,25 +4,30 @@ from collections.abc import Mapping
 from typing import Any
 
 from lithobrake.outcomes import FlightStatus, JourneyStatus, SampleOutcome
-from lithobrake.report.captions import hours, percent
+from lithobrake.report.captions import hours, thousands
+from lithobrake.report.ellipse_line import follows_gaussian
 from lithobrake.report.page import PageTable, fixed, flat, number
+from lithobrake.report.percentages import percent, with_interval
 from lithobrake.report.results import PaperResults, Results
 
 OUTCOME_WORDS: dict[str, str] = {
-    FlightStatus.IMPACT: "down again within {hours}",
+    FlightStatus.IMPACT: "impact the surface again within {hours}",
     FlightStatus.FLYING: "still flying after {hours}",
     FlightStatus.ESCAPED: FlightStatus.ESCAPED.label,
-    FlightStatus.PARTNER: "on the partner within {hours}",
+    FlightStatus.PARTNER: "impact the partner within {hours}",
     **{outcome: outcome.label for outcome in SampleOutcome if outcome != SampleOutcome.CLEAR},
-    "returns": "{returning}",
-    "missing": "nobody knows where (over the rim, time limit, drawn outside)",
+    "failed": "failed",
+    "returns": "return fraction (impact again, or captured where the ground holds them)",
+    "missing": "unknown outcome",
 }
 # Each holds others of the table.
 SUMS = ("returns", "missing")
+# Landings without an outcome, by reason.
+LOST = (SampleOutcome.LEFT_SIDEWAYS, SampleOutcome.TIME_LIMIT, SampleOutcome.OUTSIDE, "failed")
 JOURNEY_WORDS: dict[str, str] = {
     JourneyStatus.SETTLED: "at rest",
     JourneyStatus.LOFTED: "captured where the spin lifts it off again",
-    JourneyStatus.OUTSIDE: "stopped where the {model} has no answer",
+    JourneyStatus.OUTSIDE: "unknown outcome: impact outside the training range of the {model}, or unphysical rebound",
     "outside_too_slow": "(of these: slower than any run)",
     JourneyStatus.SLIDING: "still sliding along the ground after {hours}",
     JourneyStatus.BOUNCING: "still bouncing after a thousand bounces",
@@ -37,47 +42,80 @@ ACCELERATIONS = ("effective_acceleration_outward", "effective_acceleration_along
 
 
 def outcome_words(data: Results) -> dict[str, str]:
-    """What may become of a sample, in words; the partner is left out where there is none."""
-    site, known = data.results.get("site", {}), data.results["shares"]
-    holds = site.get("effective_acceleration_outward", 0.0) < 0.0
-    returning = "down again within {hours}, or captured" if holds else "down again within {hours}"
-    words = OUTCOME_WORDS | {"returns": returning}
-    absent = set() if site.get("partner") else {FlightStatus.PARTNER}
-    return {key: text for key, text in words.items() if key in known and key not in absent}
+    """What may become of a landing, in words; the partner is left out where there is none.
+
+    So is the return fraction where the ground holds nothing: it is then the share of those that impact again.
+    """
+    site, known = data.results["site"], data.results["shares"]
+    absent: set[str] = set() if site["partner"] else {FlightStatus.PARTNER}
+    if site["effective_acceleration_outward"] >= 0.0:
+        absent.add("returns")
+    return {key: text for key, text in OUTCOME_WORDS.items() if key in known and key not in absent}
+
+
+def parts(data: Results) -> dict[str, str]:
+    """Those of the outcomes that add up to the whole, in words; `lost` landings of a drawn study are in no other."""
+    absent = SUMS if isinstance(data, PaperResults) else (*SUMS, *LOST)
+    return {key: words for key, words in outcome_words(data).items() if key not in absent}
 
 
 def dispersion_tables(data: Results) -> list[PageTable]:
-    """Those of what the summary has, in the order of the journey."""
-    made = {
-        _outcomes: "shares",
-        _flights: "flights",
-        _statuses: "rest",
-        _journeys: "rest",
-        _ellipses: "flights",
-        _site: "site",
-    }
-    return [table(data) for table, key in made.items() if data.results.get(key)]
+    """In the order of the journey, those that have a row."""
+    made = (_outcomes, _flights, _statuses, _journeys, _ellipses, _site)
+    return [table for table in (make(data) for make in made) if table.rows]
 
 
 def _outcomes(data: Results) -> PageTable:
+    return _outcomes_of_samples(data) if isinstance(data, PaperResults) else _outcomes_of_landings(data)
+
+
+def _outcomes_of_landings(data: Results) -> PageTable:
+    """Outcomes of the runs of a drawn study, beside what the emulator gives."""
     shares, limit = data.results["shares"], hours(data.study["flight"]["duration"])
-    alone = data.results.get("without_scatter")
-    columns = ["what became of the sample", "samples", "share", *(["without scatter"] if alone else [])]
+    level = percent(data.level)
+    columns = ["outcome", f"share of the landings ({level} interval)", f"by the {data.model}"]
+    known, whole = outcome_words(data), parts(data)
+    shown = whole | {key: known[key] for key in SUMS if key in known}
+    shown |= {key: f"(of these: {known[key]})" for key in LOST if key in known and shares[key]["count"]}
+    rows = [
+        [words.format(hours=limit), with_interval(shares[key]), _by_emulator(shares["emulator"], key)]
+        for key, words in shown.items()
+    ]
+    note = (
+        f"Of all landings, by {thousands(shares['flight_count'])} flights of the runs themselves; the first "
+        f"{len(whole)} rows add up to 100 %. In the last column {thousands(shares['emulator']['flight_count'])} flown "
+        f"samples of the {data.model}."
+    )
+    if shares["missing"]["count"]:
+        note += (
+            " Landings of unknown outcome count as like those that left in flight across the edge of the bed, and "
+            "every interval covers whatever became of them."
+        )
+    note += f" {shares['why']}" if shares["why"] else ""
+    return PageTable("After the first bounce", columns, rows, note, frozenset(columns[1:]))
+
+
+def _by_emulator(shares: Mapping[str, Any], key: str) -> str:
+    """A share of the samples: unknown outcomes are shares of all, the others of those with an outcome, as by runs."""
+    if key not in shares:
+        return ""
+    known = shares["sample_count"] - shares["missing"]["count"]
+    total = shares["sample_count"] if key in (*LOST, "missing") else known
+    return percent(shares[key]["count"] / total) if total else ""
+
+
+def _outcomes_of_samples(data: PaperResults) -> PageTable:
+    """Outcomes of the samples of an expansion, which have no interval."""
+    shares, limit = data.results["shares"], hours(data.study["flight"]["duration"])
+    alone = data.results["without_scatter"]
+    columns = ["outcome", "samples", "share", *(["without scatter"] if alone else [])]
     rows = []
     for key, words in outcome_words(data).items():
-        row = [words.format(hours=limit), str(shares[key]["count"]), _share(shares[key])]
-        rows.append(row + ([_share(alone["shares"][key])] if alone else []))
-    returns, level = data.results.get("returns", {}), percent(data.level, 0)
-    note = f"Shares of {shares['sample_count']} samples; {shares['flight_count']} of them were flown."
-    note += f" {returns['why']}" if returns.get("why") else ""
-    # The runs of a sequence have flights of their own, of which its answer speaks.
-    if isinstance(data, PaperResults) and returns.get("flight_sampling") is not None:
-        sampling = f"{100 * returns['flight_sampling']:.1f} points ({percent(returns['level'], 0)})"
-        note += f" The number of flights alone leaves +- {sampling} in the return fraction."
+        row = [words.format(hours=limit), str(shares[key]["count"]), _share(shares[key], data.digits)]
+        rows.append(row + ([_share(alone["shares"][key], data.digits)] if alone else []))
+    note = f"Shares of {shares['sample_count']} samples; {shares['flight_count']} of them were flown. {shares['why']}"
     if any(_is_unmet(shares[key]) for key in outcome_words(data)):
-        note += f' "At most": no run ended so, which such a probability allows ({level}).'
-    if any(shares[key].get("lower") is not None for key in outcome_words(data)):
-        note += f" In brackets {level} intervals over refits of the {data.model} to other draws of beds."
+        note += f' "At most": no run ended so, which such a probability allows ({percent(data.level)}).'
     if alone:
         note += (
             " The first shares have the scatter from run to run; without it stand those of the expansion alone, of "
@@ -86,14 +124,9 @@ def _outcomes(data: Results) -> PageTable:
     return PageTable("After the first bounce", columns, rows, note, frozenset(columns[1:]))
 
 
-def _share(entry: Mapping[str, Any]) -> str:
+def _share(entry: Mapping[str, Any], alone: int) -> str:
     """A share, with its interval if it has one, or the largest that an outcome may have which no run had."""
-    if _is_unmet(entry):
-        return f"at most {percent(entry['upper_limit'], 1)}"
-    share = percent(entry["share"], 2)
-    if entry.get("lower") is None:
-        return share
-    return f"{share} ({100 * entry['lower']:.1f} to {100 * entry['upper']:.1f})"
+    return f"at most {percent(entry['upper_limit'], 1)}" if _is_unmet(entry) else with_interval(entry, alone)
 
 
 def _is_unmet(entry: Mapping[str, Any]) -> bool:
@@ -105,14 +138,16 @@ def _flights(data: Results) -> PageTable:
     """Times, speeds and incidences of the impacts, and how exact the flights are."""
     flights, words = data.results["flights"], {"time_s": "time of flight [s]", "impact_speed": "impact speed [m/s]"}
     words |= {"impact_incidence_deg": "incidence at the impact, from the normal [deg]"}
-    columns = ["flights that come down again", "5 %", "median", "95 %"]
-    rows = [[words[key], *(number(flights[key][level]) for level in QUANTILES)] for key in words if key in flights]
+    columns = ["flights that impact the surface again", "5 %", "median", "95 %"]
+    rows = [[words[key], *(_with_ends(flights[key], level) for level in QUANTILES)] for key in words if key in flights]
     error, drift = flights.get("gravity_table_error"), flights.get("jacobi_drift_largest_m2_s2")
-    note = "Gravity is summed over the facets."
+    whose = next((f"Of {flights[key]['of']}. " for key in words if key in flights and "of" in flights[key]), "")
+    note = f"{whose}Gravity is summed over the facets."
     if error:
         note = (
-            f"Gravity is read from a table, {number(error['median'], 2)} of the surface gravity off the sum over the "
-            f"facets in the median, {number(error['p95'], 2)} at the 95th percentile of {error['point_count']} points."
+            f"{whose}Gravity is read from a table, {number(error['median'], 2)} of the surface gravity off the sum "
+            f"over the facets in the median, {number(error['p95'], 2)} at the 95th percentile of "
+            f"{error['point_count']} points."
         )
     if drift is not None:
         note += (
@@ -122,27 +157,35 @@ def _flights(data: Results) -> PageTable:
     return PageTable("The flights to the next impact", columns, rows, note, frozenset(columns[1:]))
 
 
+def _with_ends(entry: Mapping[str, Any], level: str) -> str:
+    """A quantile, with its interval where it has one."""
+    ends = (entry.get("intervals") or {}).get(level)
+    shown = number(entry[level])
+    return shown if ends is None else f"{shown} ({number(ends[0])} to {number(ends[1])})"
+
+
 def followed(data: Results) -> dict[str, Mapping[str, Any]]:
     """The grounds on which samples were followed, with what became of them."""
-    rest = data.results.get("rest") or {}
-    return {ground: rest[ground] for ground in GROUND_WORDS if rest.get(ground)}
+    rest = data.results["rest"]
+    return {ground: rest[ground] for ground in GROUND_WORDS if rest[ground]}
 
 
 def _statuses(data: Results) -> PageTable:
     found, limit = followed(data), hours(data.study["rest"]["duration"])
-    columns = ["after all bounces"]
-    for ground in found:
-        columns += [GROUND_WORDS[ground]]
+    columns = ["after all bounces", *(GROUND_WORDS[ground] for ground in found)]
     rows = []
     for key, words in JOURNEY_WORDS.items():
-        if any(table.get(key, {}).get("count") for table in found.values()):
+        if any(table[key]["count"] for table in found.values()):
             rows.append(
-                [words.format(hours=limit, model=data.model), *(_share(table[key]) for table in found.values())]
+                [
+                    words.format(hours=limit, model=data.model),
+                    *(_share(table[key], data.digits) for table in found.values()),
+                ]
             )
-    counts = {table["sample_count"] for table in found.values()}
-    note = f"Shares of {counts.pop()} samples, followed from the first impact." if counts else "No sample was followed."
-    why = data.results["rest"].get("why_no_soil")
-    note += f" The soil could not be asked: {why}." if why and found else ""
+    of = "; ".join(f"{GROUND_WORDS[ground]}: {table['of']}" for ground, table in found.items())
+    note = f"From the first impact. {of[:1].upper()}{of[1:]}."
+    why = data.results["rest"]["why_no_soil"]
+    note += f" The soil could not be asked: {why}." if why else ""
     return PageTable("From bounce to bounce", columns, rows, note, frozenset(columns[1:]))
 
 
@@ -170,31 +213,34 @@ def _journeys(data: Results) -> PageTable:
 
 def _sliding(rest: Mapping[str, Any]) -> str:
     """The law by which a captured lander moves on, in words."""
-    if rest.get("rolling_friction") is not None:
+    if rest["rolling_friction"] is not None:
         return f"rolls on like a ball against a resistance of {rest['rolling_friction']:g} of what presses it down,"
     return "slides on by Coulomb friction, on soil that of hull and grain,"
 
 
 def _ellipses(data: Results) -> PageTable:
-    columns = ["places", "share inside", "latitude [deg]", "longitude [deg]", "semi-axes [m]", "heading [deg]"]
-    sets = {"next impact": data.results.get("ellipses")}
-    if data.results.get("without_scatter"):
-        sets["next impact, without scatter"] = data.results["without_scatter"]["ellipses"]
-    sets |= {f"at rest, {GROUND_WORDS[ground]}": table.get("ellipses") for ground, table in followed(data).items()}
+    columns = ["places", "share inside", "latitude [deg]", "longitude [deg]", "semi-axes [m]", "heading [deg]", "shape"]
+    sets = {"next impact": (data.results["ellipses"], len(data.facet))}
+    if data.results["without_scatter"]:
+        alone = data.results["without_scatter"]
+        sets["next impact, without scatter"] = (alone["ellipses"], alone["shares"][FlightStatus.IMPACT]["count"])
+    sets |= {
+        f"at rest, {GROUND_WORDS[ground]}": (table["ellipses"], table[JourneyStatus.SETTLED]["count"])
+        for ground, table in followed(data).items()
+    }
     rows = []
-    for name, found in sets.items():
-        if not found or not found["shares"]:
-            rows.append([name, "none", "", "", "", ""])
-            continue
-        for entry in found["shares"]:
+    for name, (found, count) in sets.items():
+        shape = "as Gaussian" if follows_gaussian(found, count) else "not Gaussian"
+        for entry in found["shares"] if found else ():
             axes = " x ".join(number(axis) for axis in entry["semi_axes_m"])
             middle = [fixed(found[key]) for key in ("latitude_deg", "longitude_deg")]
-            rows.append([name, percent(entry["share"], 0), *middle, axes, f"{found['heading_deg']:.1f}"])
+            rows.append([name, percent(entry["share"]), *middle, axes, f"{found['heading_deg']:.1f}", shape])
     note = (
         "Each holds that share of the places, which need follow no law; the heading is that of the longer axis, from "
-        "north toward east. None: fewer than ten places, or places too far around the body to have a middle."
+        "north toward east. Not Gaussian: the sizes of both differ from those of a Gaussian law by more than chance, "
+        "so an ellipse says little of where the places lie inside it."
     )
-    return PageTable("Landing ellipses", columns, rows, note, frozenset(columns[1:]))
+    return PageTable("Landing ellipses", columns, rows, note, frozenset(columns[1:6]))
 
 
 def _site(data: Results) -> PageTable:

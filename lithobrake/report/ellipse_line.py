@@ -1,5 +1,6 @@
 """Ellipses of landing places on a map of latitude and longitude."""
 
+import math
 from collections.abc import Mapping
 from typing import Any
 
@@ -13,6 +14,13 @@ from lithobrake.report.style import SITE
 
 Array = NDArray[np.float64]
 POINTS = 361
+# Of half and 95 % of a Gaussian law in the plane: logarithm of the ratio of the squared sizes of their ellipses.
+GAUSSIAN_RATIO = math.log(math.log(0.05) / math.log(0.5))
+# Variance of that logarithm from a sample, times the number of places (delta method on two exponential quantiles).
+RATIO_VARIANCE = 0.95 / 0.05 / math.log(0.05) ** 2 + 1.0 / math.log(0.5) ** 2 - 2.0 / (math.log(0.5) * math.log(0.05))
+NINE_TENTHS = 1.645
+# Departures of the ratio of both sizes by less than this are no matter [-].
+TOLERANCE = 0.1
 
 
 def outline(
@@ -35,14 +43,46 @@ def outline(
     return np.degrees(np.arcsin(np.clip(height, -1.0, 1.0))), longitude_deg + np.degrees(away)
 
 
-def draw_ellipses(axes: Axes, ellipses: Mapping[str, Any] | None, window: Window) -> None:
-    """Draw the ellipses of the summary into a window of the map; none where there are none."""
-    if ellipses is None:
-        return
+def follows_gaussian(ellipses: Mapping[str, Any] | None, count: int) -> bool:
+    """Whether the ellipses of half and of 95 % of so many places have sizes as under a Gaussian law.
+
+    Each holds its share by construction; a Gaussian law has one ratio of their sizes, 2.08, and where that of the
+    places differs by more than 10 % and than chance (90 %), the larger holds another share than a Gaussian law says.
+    Source: [Cramer-1946], chapter 28 (variances of sample quantiles).
+    """
+    sizes = {entry["share"]: entry["semi_axes_deg"][0] for entry in ellipses["shares"]} if ellipses else {}
+    if not {0.5, 0.95} <= sizes.keys():
+        return True
+    departure = abs(2.0 * math.log(sizes[0.95] / sizes[0.5]) - GAUSSIAN_RATIO)
+    return departure < max(2.0 * math.log1p(TOLERANCE), NINE_TENTHS * math.sqrt(RATIO_VARIANCE / count))
+
+
+def fitting(ellipses: Mapping[str, Any] | None, window: Window) -> list[Mapping[str, Any]]:
+    """The ellipses that a window of the map holds whole: none round a pole, or over an edge of a close view."""
+    found = []
+    for entry in ellipses["shares"] if ellipses else ():
+        latitude, longitude = _on_map(ellipses, entry, window) if ellipses else (np.empty(0), np.empty(0))
+        # The way once around the line ends a whole turn off where a pole is inside.
+        turns = near(np.diff(longitude), 0.0).sum()
+        inside = np.abs(latitude - window.latitude).max() <= window.half
+        inside &= np.abs(longitude - window.longitude).max() <= window.half_longitude
+        if abs(turns) < 180.0 and inside:
+            found.append(entry)
+    return found
+
+
+def _on_map(ellipses: Mapping[str, Any], entry: Mapping[str, Any], window: Window) -> tuple[Array, Array]:
+    """Latitude and longitude [deg] of the line of one ellipse, the latter within half a turn of a window."""
     middle = (ellipses["latitude_deg"], ellipses["longitude_deg"], ellipses["heading_deg"])
-    for entry in ellipses["shares"]:
-        latitude, longitude = outline(*middle, tuple(entry["semi_axes_deg"]))
-        longitude = near(longitude, window.longitude)
+    latitude, longitude = outline(*middle, tuple(entry["semi_axes_deg"]))
+    return latitude, near(longitude, window.longitude)
+
+
+def draw_ellipses(axes: Axes, ellipses: Mapping[str, Any] | None, window: Window) -> None:
+    """Draw the ellipses of the summary that a window of the map holds whole."""
+    for entry in fitting(ellipses, window):
+        assert ellipses is not None
+        latitude, longitude = _on_map(ellipses, entry, window)
         # Where the line leaves the map on one side it comes back on the other, and must not be joined across.
         longitude[1:][np.abs(np.diff(longitude)) > 180.0] = np.nan
         style = ellipse_style(entry["share"])

@@ -24,9 +24,7 @@ START = ("start_speed", "start_elevation_deg", "velocity_x", "velocity_y")
 
 
 def explorer_sections(data: PaperResults | SequenceResults) -> list[LiveSection]:
-    """The explorer with all its numbers, or nothing where the folder has none for it."""
-    if data.explorer is None or data.flights is None:
-        return []
+    """The explorer with all its numbers."""
     flown = _flown(data.flights)
     count = thousands(len(flown["status"]))
     flown_words = (
@@ -77,8 +75,8 @@ def _law(explorer: ExplorerTables) -> dict[str, np.ndarray]:
 
 def _facts(data: PaperResults | SequenceResults, explorer: ExplorerTables) -> dict[str, Any]:
     """Names, units and words beside the numbers."""
-    names, site = list(explorer.output_names), data.table("site")
-    units = {} if data.samples is None else {name: one.units for name, one in data.samples.columns.items()}
+    names, site = list(explorer.output_names), data.results["site"]
+    units = {name: one.units for name, one in data.samples.columns.items()}
     shown = {name: output(name) for name in names if name in SHOWN}
     return {
         "inputNames": list(explorer.input_names),
@@ -104,10 +102,10 @@ def _facts(data: PaperResults | SequenceResults, explorer: ExplorerTables) -> di
         "ofAll": isinstance(data, PaperResults),
         "fates": [str(fate) for fate in FlightStatus],
         "impact": list(FlightStatus).index(FlightStatus.IMPACT),
-        "holds": site.get("effective_acceleration_outward", -1.0) < 0.0,
+        "holds": site["effective_acceleration_outward"] < 0.0,
         "action": action(data),
         "hours": hours(data.study["flight"]["duration"]),
-        "site": [site.get("latitude_deg"), site.get("longitude_deg")],
+        "site": [site["latitude_deg"], site["longitude_deg"]],
         "bedCount": explorer.group_count,
         "reach": explorer.interval_reach if has_interval(data) else None,
     }

@@ -5,10 +5,11 @@ from typing import Any
 
 from lithobrake.report.captions import input_words
 from lithobrake.report.page import PageTable, fixed, number
+from lithobrake.report.percentages import percent
 from lithobrake.report.results import SequenceResults
 from lithobrake.report.tables import table_cell
 
-SOURCES = {"runs": "the runs", "emulator": "the emulator: too few runs meet it"}
+SOURCES = {"runs": "runs", "emulator": "emulator: too few runs meet it"}
 
 
 def limit_state_tables(data: SequenceResults) -> list[PageTable]:
@@ -18,7 +19,8 @@ def limit_state_tables(data: SequenceResults) -> list[PageTable]:
 
 
 def _probabilities(states: Mapping[str, Any]) -> PageTable:
-    columns = ["limit state", "met where", "probability [%]", "90 % interval [%]", "told by", "runs that meet it"]
+    level = percent(next(iter(states.values()))["level"])
+    columns = ["limit state", "met where", "probability [%]", f"{level} interval [%]", "source", "runs that meet it"]
     rows = [
         [
             name,
@@ -35,7 +37,7 @@ def _probabilities(states: Mapping[str, Any]) -> PageTable:
 
 
 def _inputs(states: Mapping[str, Any]) -> list[PageTable]:
-    """Inputs among the runs that meet a limit state, furthest from their law first."""
+    """Inputs among the runs that meet a limit state, furthest from their distribution first."""
     rows = []
     for name, state in states.items():
         found = sorted(state["inputs"].items(), key=lambda entry: -entry[1]["distance"])
@@ -52,13 +54,14 @@ def _inputs(states: Mapping[str, Any]) -> list[PageTable]:
             for place, (key, one) in enumerate(found)
         ]
     columns = [
-        *("limit state", "input", "distance from its law", "distance by luck"),
-        *("median where met", "median of its law", "found"),
+        *("limit state", "input", "distance from its distribution", "critical distance"),
+        *("median where met", "median of its distribution", "significant"),
     ]
     note = (
         "Distance: the largest difference of the distribution functions of the input among the runs that meet the "
-        "limit state and by its law (Kolmogorov's), in brackets its 90 % interval. Luck alone passes the distance "
-        "beside it in one of ten studies, all inputs together. Medians in the unit of the study file."
+        "limit state and over all landings (Kolmogorov's), in brackets its interval. Significant: above the critical "
+        "distance, which chance alone passes in one of ten studies, all inputs together. Medians in the unit of the "
+        "study file."
     )
     return [PageTable("Inputs of the limit states", columns, rows, note, frozenset(columns[2:6]))] if rows else []
 

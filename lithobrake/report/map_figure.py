@@ -13,9 +13,10 @@ from numpy.typing import NDArray
 from scipy.interpolate import LinearNDInterpolator
 
 from lithobrake.report.density import WHOLE, Window, close_window, draw_density, near
-from lithobrake.report.ellipse_line import draw_ellipses
+from lithobrake.report.ellipse_line import draw_ellipses, fitting, follows_gaussian
+from lithobrake.report.percentages import percent, with_interval
 from lithobrake.report.site_mark import draw_legend, mark_site
-from lithobrake.report.style import INK, INPUT_COLOURS, INTERACTIONS, QUIET, TEST
+from lithobrake.report.style import INK, QUIET, TRAINING
 
 Array = NDArray[np.float64]
 
@@ -24,7 +25,8 @@ Array = NDArray[np.float64]
 class Share:
     """A share of the samples with its interval, if it has one, all in [0, 1]; upper alone: no run had it.
 
-    level: probability that the interval stands for.
+    level: probability that the interval stands for; colour: of its bar; digits: of its figure in per cent where it has
+    no interval.
     """
 
     name: str
@@ -32,6 +34,15 @@ class Share:
     lower: float | None = None
     upper: float | None = None
     level: float = 0.9
+    colour: str = TRAINING
+    digits: int = 0
+
+    @property
+    def words(self) -> str:
+        """The share in per cent, with its interval or its limit."""
+        if self.lower is None and self.upper is not None:
+            return f"at most {percent(self.upper, 1)}"
+        return with_interval({"share": self.value, "lower": self.lower, "upper": self.upper}, self.digits)
 
 
 def map_figure(
@@ -66,10 +77,12 @@ def map_figure(
     axes.set_xlabel("longitude, east [deg]")
     axes.set_ylabel("latitude [deg]")
     bar_place = (0.915, bottom + 0.03 * map_height / height, 0.014, 0.94 * map_height / height)
-    drawn = _impacts(axes, latitude, longitude, site, ellipses)
+    window = close_window(latitude, longitude, site)
+    drawn = _impacts(axes, latitude, longitude, site, window, ellipses)
     if drawn is not None:
         draw_scale(figure, *drawn, bar_place)
-    draw_legend(figure, ellipses, "impacts", (0.06, 1.0 - 0.28 / height))
+    held, is_gaussian = fitting(ellipses, window or WHOLE), follows_gaussian(ellipses, len(latitude))
+    draw_legend(figure, held, "impacts", (0.06, 1.0 - 0.28 / height), is_gaussian=is_gaussian)
     draw_shares(figure.add_axes((0.2, 0.5 / height, 0.52, rows / height)), shares, whole)
     return figure
 
@@ -80,7 +93,12 @@ def inset_left(site: tuple[float, float]) -> bool:
 
 
 def _impacts(
-    axes: Axes, latitude: Array, longitude: Array, site: tuple[float, float], ellipses: Mapping[str, Any] | None
+    axes: Axes,
+    latitude: Array,
+    longitude: Array,
+    site: tuple[float, float],
+    window: Window | None,
+    ellipses: Mapping[str, Any] | None,
 ) -> tuple[Any, str] | None:
     """Draw the impacts, in a close view beside the site where on the whole map they would lie under its mark.
 
@@ -89,7 +107,6 @@ def _impacts(
     if not len(latitude):
         axes.text(0, -50, "no impact among the flights", ha="center", fontsize=11, color=QUIET)
         return None
-    window = close_window(latitude, longitude, site)
     if window is None:
         draw_ellipses(axes, ellipses, WHOLE)
         return draw_density(axes, latitude, longitude, WHOLE, 11.0)
@@ -163,22 +180,17 @@ def draw_shares(axes: Axes, shares: list[Share], whole: str) -> None:
 
     whole: what they are shares of, "all samples".
     """
-    colours = (INPUT_COLOURS[0], INPUT_COLOURS[5], TEST, QUIET, INTERACTIONS)
     place = np.arange(len(shares))[::-1]
     words = f"share of {whole} [%]"
-    for y, share, colour in zip(place, shares, colours * 3, strict=False):
-        axes.barh(y, 100 * share.value, color=colour, height=0.68)
-        text = f"{100 * share.value:.2f} %"
-        if share.lower is not None and share.upper is not None:
-            low, high = 100 * share.lower, 100 * share.upper
+    for y, share in zip(place, shares, strict=True):
+        axes.barh(y, 100 * share.value, color=share.colour, height=0.68)
+        if share.upper is not None:
+            ends = [100 * (share.lower or 0.0), 100 * share.upper]
             # At the very ends of the axis a clipped line would look as if there were no interval.
-            axes.plot([low, high], [y, y], color=INK, linewidth=1.4, solid_capstyle="butt", clip_on=False)
-            text += f"   [{low:.2f}, {high:.2f}]"
-            words = f"share of {whole} [%], with {100 * share.level:.0f} % interval"
-        elif share.upper is not None:
-            axes.plot([0, 100 * share.upper], [y, y], color=INK, linewidth=1.4, solid_capstyle="butt", clip_on=False)
-            text = f"at most {100 * share.upper:.1f} %"
-        axes.text(1.025, y, text, transform=axes.get_yaxis_transform(), va="center_baseline", fontsize=8)
+            axes.plot(ends, [y, y], color=INK, linewidth=1.4, solid_capstyle="butt", clip_on=False)
+        if share.lower is not None:
+            words = f"share of {whole} [%], with {percent(share.level)} interval"
+        axes.text(1.025, y, share.words, transform=axes.get_yaxis_transform(), va="center_baseline", fontsize=8)
     axes.set_yticks(place, [share.name for share in shares])
     axes.set_xlim(0, 100)
     axes.set_xticks(range(0, 101, 20))

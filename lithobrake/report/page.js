@@ -44,6 +44,12 @@ function sortRows(heading) {
   body.append(...keyed.map((one) => one.row));
 }
 
+// Esc leaves the full size of a figure.
+addEventListener("keydown", (event) => {
+  if (event.key !== "Escape") return;
+  for (const box of document.querySelectorAll(".picture input:checked")) box.checked = false;
+});
+
 for (const heading of typeof document === "undefined" ? [] : document.querySelectorAll("thead th")) {
   const button = document.createElement("button");
   button.append(...heading.childNodes);

@@ -118,7 +118,7 @@ def page(
 <ul class="tiles">
 {"".join(_tile(tile) for tile in content.tiles)}</ul>
 <h2>Figures</h2>
-<p class="note hint">Click or tap a figure to see it in full size, and again to go back.</p>
+<p class="note hint">Click or tap a figure to let it fill the window; click again or press Esc to go back.</p>
 {pictures}
 {_live(content.live)}<h2>Tables</h2>
 {"".join(_table(table) for table in sorted(content.tables, key=_is_long))}

@@ -5,8 +5,8 @@ from itertools import accumulate
 from operator import mul
 from typing import Any
 
-from lithobrake.report.captions import percent
 from lithobrake.report.page import PageTable, fixed, number
+from lithobrake.report.percentages import percent
 
 RareResults = Mapping[str, Mapping[str, Any]]
 
@@ -51,7 +51,7 @@ def _probabilities(rare: RareResults) -> PageTable:
 def _levels(rare: RareResults) -> PageTable:
     columns = ["limit state", "level", "threshold", "share nearer", "probability so far"]
     rows = [
-        [name if level == 0 else "", str(level + 1), fixed(threshold), percent(share), number(left)]
+        [name if level == 0 else "", str(level + 1), fixed(threshold), percent(share, 1), number(left)]
         for name, found in rare.items()
         for level, (threshold, share, left) in enumerate(
             zip(found["thresholds"], found["shares"], accumulate(found["shares"], mul), strict=True)

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from lithobrake.report.density import WHOLE, Window, close_window, draw_density, near
-from lithobrake.report.ellipse_line import draw_ellipses
+from lithobrake.report.ellipse_line import draw_ellipses, fitting, follows_gaussian
 from lithobrake.report.map_figure import Share, draw_relief, draw_scale, draw_shares
 from lithobrake.report.site_mark import draw_legend, mark_site
 from lithobrake.report.style import QUIET
@@ -57,8 +57,9 @@ def rest_figure(maps: list[RestMap], site: tuple[float, float], vertices: Array 
         share = row_height * len(one.shares) / height
         bars = figure.add_axes((0.135 + 0.5 * side, 1.0 - maps_height / height - share, 0.18, share))
         draw_shares(bars, one.shares, one.whole)
-    ellipses = [one.ellipses for one in maps if one.ellipses]
-    draw_legend(figure, ellipses[0] if ellipses else None, "landers at rest", (0.06, 1.0 - 0.25 / height))
+    held = {entry["share"]: entry for one in maps for entry in fitting(one.ellipses, window)}
+    is_gaussian = all(follows_gaussian(one.ellipses, len(one.latitude)) for one in maps)
+    draw_legend(figure, list(held.values()), "landers at rest", (0.06, 1.0 - 0.25 / height), is_gaussian=is_gaussian)
     return figure
 
 

@@ -15,9 +15,11 @@ from lithobrake.report.scene import Scene, scene
 from lithobrake.results import ExplorerTables, StudyResults, Table
 
 Array = NDArray[np.float64]
-BODY, PATHS = "body.obj", "flight_paths.h5"
 FILES = ("summary.json", "study.toml")
-PAPER_FILES = (*FILES, "scores.json", "samples.h5", "flights.csv", "rest.csv", BODY)
+# What the last stages of either method write before the report.
+OF_ANY_STUDY = ("samples.h5", "explorer.h5", "flights.csv", "flight_paths.h5", "rest.csv", "body.obj")
+PAPER_FILES = (*FILES, "scores.json", *OF_ANY_STUDY)
+DRAWN_FILES = (*FILES, "designs/sequence.csv", *OF_ANY_STUDY)
 GROUNDS = ("soil", "hard")
 
 
@@ -29,14 +31,14 @@ class Results:
     latitude, longitude: of the impacts [deg], shape [impact], and facet, the one of the body that was hit;
     body_vertices of the body [m] and its body_faces, counted from 0; rest: latitude and longitude [deg] of the landers
     that rest, by ground; paths: places on the ways of some flights [m] and how each ended; flights: of the samples;
-    explorer: what the page evaluates of the model. None where there are none; bed and landing are so where a solver of
+    explorer: what the page evaluates of the model; samples: of the model. bed and landing are None where a solver of
     the user's own made the touchdowns.
     """
 
     model: ClassVar[str]
     """What was fitted to the runs and stands for them in the samples, in a word."""
-    level: ClassVar[float]
-    """Probability that intervals and limits of shares stand for."""
+    digits: ClassVar[int]
+    """Digits behind the point of a share in per cent without an interval, as its answer prints them."""
     study: dict[str, Any]
     results: dict[str, Any]
     provenance: dict[str, Any]
@@ -49,9 +51,15 @@ class Results:
     body_vertices: Array
     body_faces: NDArray[np.int64]
     rest: dict[str, tuple[Array, Array]]
-    paths: tuple[Array, tuple[str, ...]] | None
-    flights: Table | None
-    explorer: ExplorerTables | None
+    paths: tuple[Array, tuple[str, ...]]
+    flights: Table
+    explorer: ExplorerTables
+    samples: Table
+
+    @property
+    def level(self) -> float:
+        """Probability that intervals and limits of shares stand for."""
+        raise NotImplementedError
 
     @property
     def shown_landing(self) -> str:
@@ -59,7 +67,7 @@ class Results:
         return ""
 
     def table(self, *keys: str) -> Mapping[str, Any]:
-        """A table within the results, by the keys that lead to it; an empty one where the summary has none."""
+        """A table within the results, by the keys that lead to it; an empty one where there is none or it is null."""
         found: Mapping[str, Any] = self.results
         for key in keys:
             found = found.get(key) or {}
@@ -70,9 +78,13 @@ class Results:
 class PaperResults(Results):
     """Results of the method in two steps; scores: stage, output, score."""
 
-    model, level = "expansion", 0.95
+    model, digits = "expansion", 1
     scores: dict[str, dict[str, Score]]
-    samples: Table
+
+    @property
+    def level(self) -> float:
+        """That of the limits of outcomes that no run had."""
+        return 0.95
 
     @property
     def shown_landing(self) -> str:
@@ -82,15 +94,17 @@ class PaperResults(Results):
 
 @dataclass(frozen=True)
 class SequenceResults(Results):
-    """Results of a sequence; runs: its landings, without side runs; samples: of the emulator, None where there are
-    none; rare: what `lithobrake rare` found, by limit state.
-    """
+    """Results of a sequence; runs: its landings, without side runs; rare: what `lithobrake rare` found, by state."""
 
-    model, level = "emulator", 0.9
+    model, digits = "emulator", 0
 
     runs: Table
-    samples: Table | None
     rare: Mapping[str, Mapping[str, Any]]
+
+    @property
+    def level(self) -> float:
+        """That of all intervals."""
+        return float(self.results["returns"]["level"])
 
     @property
     def shown_landing(self) -> str:
@@ -126,32 +140,22 @@ def page_results(found: StudyResults) -> PaperResults | SequenceResults:
     """What the page shows of a study. Raises ValueError that names the file when one is missing or damaged."""
     _refuse_without(found.folder, FILES)
     summary = SummaryTable(found.summary, found.folder / "summary.json", found.remedy)
-    if summary["study"]["design"].get("method") == "sequence":
-        return _sequence_results(found, summary)
-    _refuse_without(found.folder, PAPER_FILES)
-    return PaperResults(**_of_any_study(found, summary), scores=_scores(found), samples=found.samples)
-
-
-def _sequence_results(found: StudyResults, summary: SummaryTable) -> SequenceResults:
-    """Those of a sequence, whose page has what there is so far of flights and samples."""
-    has_samples = (found.folder / "samples.h5").is_file()
-    return SequenceResults(
-        **_of_any_study(found, summary),
-        runs=found.runs.where(found.runs["design"] == "sequence"),
-        samples=found.samples if has_samples else None,
-        rare=found.rare,
-    )
+    if summary["study"]["design"]["method"] == "paper":
+        _refuse_without(found.folder, PAPER_FILES)
+        return PaperResults(**_of_any_study(found, summary), scores=_scores(found))
+    _refuse_without(found.folder, DRAWN_FILES)
+    runs = found.runs.where(found.runs["design"] == "sequence")
+    return SequenceResults(**_of_any_study(found, summary), runs=runs, rare=found.rare)
 
 
 def _of_any_study(found: StudyResults, summary: SummaryTable) -> dict[str, Any]:
     """The fields that results of every method have."""
     # A program or function of the user's own has neither beds nor pictures.
-    has_scenes = bool(summary["results"].get("beds"))
+    has_scenes = bool(summary["results"]["beds"])
     if has_scenes:
         _refuse_without(found.folder, ("landing.h5", "beds/bed_0.h5"))
     latitude, longitude, facet = _impacts(found)
-    has_body = (found.folder / BODY).is_file()
-    vertices, faces = found.body_shape if has_body else (np.empty((0, 3)), np.empty((0, 3), dtype=np.int64))
+    vertices, faces = found.body_shape
     return {
         "study": summary["study"],
         "results": summary["results"],
@@ -164,9 +168,10 @@ def _of_any_study(found: StudyResults, summary: SummaryTable) -> dict[str, Any]:
         "facet": facet,
         "body_vertices": vertices,
         "body_faces": faces,
-        "paths": found.flight_paths if (found.folder / PATHS).is_file() else None,
-        "flights": found.flights if (found.folder / "flights.csv").is_file() else None,
-        "explorer": found.explorer if (found.folder / "explorer.h5").is_file() else None,
+        "paths": found.flight_paths,
+        "flights": found.flights,
+        "explorer": found.explorer,
+        "samples": found.samples,
         "rest": {ground: _resting(found, ground) for ground in GROUNDS},
     }
 
@@ -180,21 +185,16 @@ def _refuse_without(folder: Path, needed: tuple[str, ...]) -> None:
 
 
 def _impacts(found: StudyResults) -> tuple[Array, Array, NDArray[np.int64]]:
-    """Latitude, longitude [deg] and facet of each impact; none where nothing was flown."""
+    """Latitude, longitude [deg] and facet of each impact."""
     path = found.folder / "flights.csv"
-    if not path.is_file():
-        return np.empty(0), np.empty(0), np.empty(0, dtype=np.int64)
     impacts = found.flights.where(found.flights["status"] == FlightStatus.IMPACT)
     return *_places(path, impacts, found.remedy), impacts["facet"].astype(np.int64)
 
 
 def _resting(found: StudyResults, ground: str) -> tuple[Array, Array]:
     """Where the landers lie that rest on a ground."""
-    path = found.folder / "rest.csv"
-    if not path.is_file():
-        return np.empty(0), np.empty(0)
     chosen = (found.rest["status"] == JourneyStatus.SETTLED) & (found.rest["ground"] == ground)
-    return _places(path, found.rest.where(chosen), found.remedy)
+    return _places(found.folder / "rest.csv", found.rest.where(chosen), found.remedy)
 
 
 def _places(path: Path, table: Table, remedy: str) -> tuple[Array, Array]:

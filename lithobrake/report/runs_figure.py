@@ -47,8 +47,8 @@ class LandingsOfRuns:
         return np.asarray(self.outcome == TouchdownOutcome.CAPTURED)
 
     @property
-    def has_no_answer(self) -> NDArray[np.bool_]:
-        """Of which landers nobody knows where they went."""
+    def has_no_outcome(self) -> NDArray[np.bool_]:
+        """Which landings have an unknown outcome."""
         return ~(self.has_speed | self.is_captured)
 
 
@@ -109,7 +109,7 @@ def _bed_by_bed(axes: Axes, landings: LandingsOfRuns, bed_count: int) -> None:
     # In parts of the panel's width.
     for words, chosen, place in (
         (TouchdownOutcome.CAPTURED.value, landings.is_captured, 0.07),
-        ("no answer", landings.has_no_answer, 0.2),
+        ("unknown outcome", landings.has_no_outcome, 0.2),
     ):
         if not chosen.any():
             continue
@@ -138,7 +138,7 @@ def _legend(figure: Figure, landings: LandingsOfRuns) -> None:
     handles = [Line2D([], [], marker="o", markersize=4, linestyle="none", color=TRAINING, label="left the surface")]
     if (landings.has_speed & landings.over_rim).any():
         ring = Line2D([], [], marker="o", markersize=6, linestyle="none", markerfacecolor="none", markeredgecolor=SITE)
-        ring.set_label("of these: over the rim of the bed")
+        ring.set_label("of these: across the edge of the bed")
         handles.append(ring)
     handles.append(
         Line2D([], [], color=INK, linewidth=0.9, linestyle="--", label="5 % and 95 % of the landings, and median")

@@ -9,7 +9,7 @@ from lithobrake.outputs import OVER_RIM
 from lithobrake.report import any_study_figures as any_study
 from lithobrake.report import captions, sequence_captions
 from lithobrake.report.aim_figure import aim_figure
-from lithobrake.report.calibration_figure import calibration_figure, histograms
+from lithobrake.report.calibration_figure import calibration_figure
 from lithobrake.report.explorer import explorer_sections
 from lithobrake.report.page import Content, Plot
 from lithobrake.report.rare_figure import rare_figure
@@ -17,7 +17,7 @@ from lithobrake.report.rare_tables import rare_caption
 from lithobrake.report.results import SequenceResults
 from lithobrake.report.runs_figure import LandingsOfRuns, runs_figure
 from lithobrake.report.scatter_figure import scatter_figure
-from lithobrake.report.sequence_answer import answer, warnings
+from lithobrake.report.sequence_answer import warnings
 from lithobrake.report.sequence_tables import colour_input, tables, tiles
 from lithobrake.report.style import input_label
 from lithobrake.report.variance_figure import variance_figure
@@ -33,7 +33,7 @@ RETURNS_ROW = {"returns": "return fraction"}
 def sequence_content(data: SequenceResults) -> Content:
     """All that the page shows of the study."""
     live = [*explorer_sections(data), *view_sections(data)]
-    return Content(answer(data), warnings(data), tiles(data), _plots(data), tables(data), live)
+    return Content(captions.answer(data), warnings(data), tiles(data), _plots(data), tables(data), live)
 
 
 def _plots(data: SequenceResults) -> list[Plot]:
@@ -45,27 +45,19 @@ def _plots(data: SequenceResults) -> list[Plot]:
         Plot("variance", "What decides", words.variance(data), lambda: _variance(data)),
         Plot("calibration", "Whether to believe the emulator", words.calibration(data), lambda: _calibration(data)),
         Plot("outputs", "What may come out", words.samples(data, colour), lambda: _samples(data, colour)),
+        Plot("map", "Where the lander comes down", captions.impact_map(data), lambda: any_study.draw_map(data)),
+        Plot("body", "The same on the body", captions.body(data), lambda: any_study.draw_body(data)),
+        Plot("rest", "Where it rests", captions.rest(data), lambda: any_study.draw_rest(data)),
     ]
-    if data.results.get("shares") and data.results.get("site"):
-        plots += [
-            Plot("map", "Where the lander comes down", captions.impact_map(data), lambda: any_study.draw_map(data)),
-            Plot("body", "The same on the body", captions.body(data), lambda: any_study.draw_body(data)),
-        ]
-    else:
-        plots.append(Plot("map", "Where the lander comes down", words.impacts_absent(data), lambda: None))
-    if data.results.get("rest") and data.results.get("site"):
-        plots.append(Plot("rest", "Where it rests", captions.rest(data), lambda: any_study.draw_rest(data)))
-    if data.table("aim"):
-        plots.append(Plot("aim", "Where to aim", words.aims(data), lambda: aim_figure(data.table("aim"))))
+    if data.results["aim"]:
+        plots.append(Plot("aim", "Where to aim", words.aims(data), lambda: aim_figure(data.results["aim"])))
     if data.rare:
         plots.append(Plot("rare", "What is rare", rare_caption(data.rare), lambda: rare_figure(data.rare)))
     return plots
 
 
-def _runs(data: SequenceResults) -> "Figure | None":
+def _runs(data: SequenceResults) -> "Figure":
     runs = data.runs
-    if not len(runs["key"]):
-        return None
     nan = np.full(len(runs["key"]), np.nan)
     column = {name: runs.get(name, nan) for name in ("speed_out", "elevation_out", OVER_RIM, "bed")}
     landings = LandingsOfRuns(
@@ -77,27 +69,24 @@ def _runs(data: SequenceResults) -> "Figure | None":
     )
     quantiles = {
         name: {level: entry["value"] for level, entry in data.table("outputs", name, "quantiles").items()}
-        for name in data.table("outputs")
+        for name in data.results["outputs"]
     }
     return runs_figure(landings, quantiles)
 
 
 def _variance(data: SequenceResults) -> "Figure | None":
-    shares = data.table("variance_shares")
-    return variance_figure(shares, RETURNS_ROW) if any(shares.values()) else None
+    shares = data.results["variance_shares"]
+    return variance_figure(shares, RETURNS_ROW, data.level) if any(shares.values()) else None
 
 
-def _calibration(data: SequenceResults) -> "Figure | None":
-    scores = data.table("emulator", "scores")
-    return calibration_figure(scores) if histograms(scores) else None
+def _calibration(data: SequenceResults) -> "Figure":
+    return calibration_figure(data.results["emulator"]["scores"])
 
 
 def _samples(data: SequenceResults, colour: str | None) -> "Figure | None":
     samples = data.samples
-    if samples is None or colour is None:
-        return None
     leaves = samples["outcome"] == TouchdownOutcome.CLEAR
-    if not leaves.any():
+    if colour is None or not leaves.any():
         return None
     column = samples.columns[colour]
     return scatter_figure(samples, (input_label(colour, column.units), column.values), leaves)

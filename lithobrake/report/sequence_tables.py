@@ -1,122 +1,156 @@
 """The tables and the first numbers of the page of a sequence."""
 
+import math
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
-from lithobrake.outcomes import TouchdownOutcome
-from lithobrake.report.captions import input_words, percent
-from lithobrake.report.dispersion_tables import dispersion_tables
+from lithobrake.outcomes import JourneyStatus, TouchdownOutcome
+from lithobrake.report.captions import hours, input_words
+from lithobrake.report.dispersion_tables import GROUND_WORDS, dispersion_tables, followed
 from lithobrake.report.limit_state_tables import limit_state_tables
-from lithobrake.report.page import PageTable, Tile, fixed, number
+from lithobrake.report.page import PageTable, Tile, number
+from lithobrake.report.percentages import interval_digits, part, percent, span, with_interval
 from lithobrake.report.rare_tables import rare_tables
 from lithobrake.report.results import SequenceResults
 from lithobrake.report.sequence_answer import (
     action,
     as_sentence,
-    bounds,
     drawn_things,
     has_interval,
     interval,
     left_out,
     missing_sentence,
     outcome_label,
-    share_digits,
 )
 from lithobrake.report.sequence_captions import RETURNS, sign
 from lithobrake.report.style import output
 from lithobrake.report.tables import INPUT_COLUMNS, beds_table, input_cells, table_cell, touchdowns_table
-from lithobrake.report.variance_figure import PARTS, SOIL, part_words
+from lithobrake.report.variance_figure import PARTS, SOIL, long_part_words
 
+CENTIMETRES = 100.0
 LEVELS = {"0.05": "5 %", "0.5": "median", "0.95": "95 %"}
 
 
 def tiles(data: SequenceResults) -> list[Tile]:
-    """The return fraction, and the most telling numbers beside it, as far as the summary has them."""
-    returns = data.table("returns")
-    alone = "of these landings, without an interval: other beds, places or attitudes give another figure"
-    sure = f"({interval(data)})" if has_interval(data) else alone
-    found = [Tile(f"{100 * returns['share']:.{share_digits(data)}f}", "%", f"{action(data)} {sure}")] if returns else []
+    """The return fraction, and the most informative numbers beside it."""
+    results, returns = data.results, data.results["returns"]
+    digits = interval_digits(returns["lower"], returns["upper"])
+    alone = "of these landings, without an interval: other beds, impact points or attitudes give another figure"
+    sure = f"({interval(returns, data.level)})" if has_interval(data) else alone
+    share = percent(returns["share"], digits).removesuffix(" %")
+    found = [Tile(share, "%", f"of the landings {action(data)} {sure}"), *_at_rest(data)]
     median = data.table("outputs", "speed_out", "quantiles").get("0.5")
     if median:
-        words = "outgoing speed V+, median over those that leave"
-        if median.get("lower") is not None:
-            words += f" (90 %: {number(median['lower'])} to {number(median['upper'])})"
-        found.append(Tile(number(median["value"]), "m/s", words))
-    runs = data.table("runs")
-    if runs:
-        left = runs["outcomes"].get(TouchdownOutcome.CLEAR, 0)
-        beds = f", on {runs['beds']} beds" if runs.get("beds", 1) > 1 else ", all on one bed"
-        found.append(Tile(str(left), f"of {runs['count']}", f"landings left the surface{beds}"))
+        words = "rebound speed, median of those that leave"
+        if median["lower"] is not None:
+            ends = " to ".join(number(CENTIMETRES * median[end]) for end in ("lower", "upper"))
+            words += f" ({percent(data.level)} interval {ends})"
+        found.append(Tile(number(CENTIMETRES * median["value"]), "cm/s", words))
+    runs = results["runs"]
+    left = runs["outcomes"].get(TouchdownOutcome.CLEAR, 0)
+    beds = f", on {runs['beds']} beds" if runs["beds"] > 1 else ", all on one bed"
+    found.append(Tile(str(left), f"of {runs['count']}", f"landings left the surface{beds}"))
     soil = data.table("variance_shares", "speed_out").get(SOIL)
     if soil:
-        ends = f"90 %: {bounds((soil['lower'], soil['upper']), 0)}"
-        # Freed of scatter, a part that is next to nothing may come out below 0.
-        value = fixed(100 * soil["share"], 0) if soil["share"] > 0.0 else "about 0"
-        found.append(Tile(value, "%", f"of the scatter of V+ is the soil's ({ends})"))
-    band = data.table("emulator", "scores", "speed_out").get("band_90")
-    if band is not None:
-        words = f"of V+ on {left_out(data)} lay within the 90 % bands of the emulator"
-        found.append(Tile(f"{100 * band:.0f}", "%", words))
+        value, _, unit = part(soil).partition(" (")[0].partition(" %")
+        words = "at least of the variance of the rebound speed is explained by soil"
+        found.append(Tile(value, "%" if value[0].isdigit() else unit, f"{words} ({interval(soil, data.level)})"))
+    band = results["emulator"]["scores"].get("speed_out")
+    if band:
+        words = f"of the rebound speeds on {left_out(data)} lay within the 90 % bands of the emulator"
+        found.append(Tile(percent(band["band_90"]).removesuffix(" %"), "%", words))
     return found
 
 
+def _at_rest(data: SequenceResults) -> list[Tile]:
+    """Which landers come to rest after all bounces, on the soil or else on hard ground; none where it was not asked."""
+    found, limit = followed(data), hours(data.study["rest"]["duration"])
+    for ground, table in found.items():
+        share, _, ends = with_interval(table[JourneyStatus.SETTLED]).partition(" %")
+        unknown = table[JourneyStatus.OUTSIDE]["share"]
+        lost = f"; outcome of {percent(unknown)} unknown" if unknown > 0.0 else ""
+        return [Tile(share, "%", f"at rest within {limit}, bounce after bounce on {GROUND_WORDS[ground]}{ends}{lost}")]
+    return []
+
+
 def tables(data: SequenceResults) -> list[PageTable]:
-    """Those of what the summary has."""
-    results = data.results
-    made: dict[Callable[[SequenceResults], PageTable], str] = {
-        _answer: RETURNS,
-        _inputs: "runs",
-        _outputs: "outputs",
-        _variance: "variance_shares",
-        _runs: "runs",
-        _emulator: "emulator",
-        beds_table: "beds",
-        touchdowns_table: "outputs_of_runs",
-    }
-    found = [table(data) for table, key in made.items() if results.get(key)]
-    side = [_side_runs(data)] if data.table("runs", "side_runs", "chaos_deviation") else []
+    """Those that have a row."""
+    made: tuple[Callable[[SequenceResults], PageTable], ...] = (
+        _answer, _inputs, _outputs, _directions, _variance, _runs, _emulator, beds_table, touchdowns_table
+    )  # fmt: skip
+    found = [table for table in (make(data) for make in made) if table.rows]
+    side = [_side_runs(data)] if data.results["runs"]["side_runs"] else []
     return [*found, *side, *limit_state_tables(data), *rare_tables(data.rare), *dispersion_tables(data)]
 
 
 def _answer(data: SequenceResults) -> PageTable:
-    returns, digits = data.results[RETURNS], share_digits(data)
-    rows = [[f"landers that {action(data)}", percent(returns["share"], digits)]]
+    returns, missing = data.results["returns"], data.results["runs"]["missing"]["count"]
+    digits = interval_digits(returns["lower"], returns["upper"])
+    rows = [[f"return fraction: landings that {action(data)}", percent(returns["share"], digits)]]
     if has_interval(data):
-        rows.append([f"{percent(data.level, 0)} interval", bounds((returns["lower"], returns["upper"]), digits)])
-    for key, words in (("next_bed", "on one next bed"), ("if_missing", "if none or all of those without an answer do")):
-        low, high = returns.get(key) or (0.0, 0.0)
-        if low < high:
-            rows.append([words, bounds((low, high), 1)])
-    if returns.get("emulator") is not None:
-        rows.append(["the same by the emulator", percent(returns["emulator"])])
-    if returns.get("flight_sampling") is not None:
-        rows.append(["+- by the number of flights alone", f"{100 * returns['flight_sampling']:.1f} points"])
-    rows += [["from", returns["from"]]] if returns.get("from") else []
-    note = as_sentence(returns["why"]) if returns.get("why") else ""
+        held = f"{percent(data.level)} interval"
+        rows.append([held, span(returns["lower"], returns["upper"])])
+    if returns["next_bed"] is not None:
+        rows.append([f"prediction interval for a new bed{_bed_size(data)}", span(*returns["next_bed"])])
+    if missing:
+        rows.append(
+            [f"if none or all of the {missing} landings of unknown outcome return", span(*returns["if_missing"])]
+        )
+    if returns["emulator"] is not None:
+        rows.append(["return fraction by the emulator", percent(returns["emulator"], digits)])
+    rows.append(["from", returns["from"]])
+    note = as_sentence(returns["why"]) if returns["why"] else ""
+    if has_interval(data) and missing:
+        note = "The interval covers whatever became of the landings of unknown outcome."
     return PageTable("The answer", ["quantity", "value"], rows, note)
+
+
+def _bed_size(data: SequenceResults) -> str:
+    """How much ground a bed is; nothing where touchdowns are made without one."""
+    if not data.results["beds"]:
+        return ""
+    return f" of {' x '.join(f'{length:g}' for length in data.study['bed']['width'])} m"
 
 
 def _outputs(data: SequenceResults) -> PageTable:
     """Mean and quantiles of the landings that left."""
     columns = ["output", "unit", "mean", "standard deviation", *LEVELS.values()]
     rows = []
-    # The return fraction is the answer, and has a better estimate there.
-    for name in (name for name in data.results["outputs"] if name != RETURNS):
-        table = data.table("outputs", name)
-        shown, spread = output(name), table.get("standard_deviation")
-        cells = [
-            _estimate(table.get("mean"), shown.factor),
-            "" if spread is None else table_cell(spread * shown.factor),
-        ]
-        cells += [_estimate(data.table("outputs", name, "quantiles").get(level), shown.factor) for level in LEVELS]
+    for name, table in data.results["outputs"].items():
+        # An angle without beginning or end has a table of its own.
+        if "quantiles" not in table:
+            continue
+        shown = output(name)
+        cells = [_estimate(table["mean"], shown.factor), table_cell(table["standard_deviation"] * shown.factor)]
+        cells += [_estimate(table["quantiles"][level], shown.factor) for level in LEVELS]
         rows.append([shown.row.replace("_", " "), shown.unit, *cells])
+    of = data.table("outputs", "speed_out").get("of", "the landings that left")
     note = (
-        "Of the landings that left, over soils, beds, places and attitudes that were not in the study. In brackets "
-        "90 % intervals."
+        f"Of {of}, over the input distributions, on beds, impact points and attitudes that were not in the study. In "
+        f"brackets {percent(data.level)} intervals."
         if has_interval(data)
-        else "Of the landings that left, without intervals: they say nothing of other beds, places or attitudes."
+        else f"Of {of}, without intervals: other beds, impact points or attitudes give other numbers."
     )
     return PageTable("Outputs of the landings", columns, rows, note, frozenset(columns[2:]))
+
+
+def _directions(data: SequenceResults) -> PageTable:
+    """Mean direction and resultant length of the angles without beginning or end."""
+    columns = ["output", "mean direction [deg]", "resultant length"]
+    rows = [
+        [
+            output(name).row.replace("_", " "),
+            _estimate(table["mean_direction"], math.degrees(1.0)),
+            _estimate(table["resultant_length"], 1.0),
+        ]
+        for name, table in data.results["outputs"].items()
+        if "mean_direction" in table
+    ]
+    note = (
+        "Resultant length: 0 where directions cancel, 1 where all are alike. In brackets "
+        f"{percent(data.level)} intervals, which may reach beyond 180 deg."
+    )
+    return PageTable("Directions of the landings", columns, rows, note, frozenset(columns[1:]))
 
 
 def _estimate(entry: Mapping[str, Any] | None, factor: float) -> str:
@@ -134,7 +168,7 @@ def _variance(data: SequenceResults) -> PageTable:
     records = data.results["variance_shares"]
     known = [record for record in records.values() if record]
     inputs = list(dict.fromkeys(name for record in known for name in record["soil_by_input"]))
-    rows = [[SOIL, *(_part(record, SOIL) for record in records.values())]]
+    rows = [["soil, at least", *(_part(record, SOIL) for record in records.values())]]
     rows += [
         [
             f"of it {input_words(name)} alone",
@@ -143,38 +177,35 @@ def _variance(data: SequenceResults) -> PageTable:
         for name in inputs
     ]
     rows += [
-        [part_words(known[0], part), *(_part(record, part) for record in records.values())]
-        for part in PARTS
-        if any(record.get(part) for record in known)
+        [long_part_words(known[0], name), *(_part(record, name) for record in records.values())]
+        for name in PARTS
+        if any(record.get(name) for record in known)
     ]
     note = (
-        "Shares of the whole variance in per cent, over the laws of the inputs, beds, places and attitudes; in "
-        "brackets 90 % intervals. The parts (without those of single inputs) add up to 100. They are freed of scatter "
-        "and not cut, so one that is next to nothing may be below 0. The return fraction is a mean over headings "
-        "already: what headings do is in none of its parts."
+        "Shares of the variance over the input distributions of the study file, beds, impact points and attitudes; in "
+        f"brackets {percent(data.level)} intervals. Soil and impact: terms of first and second degree, so at least so "
+        "much; what they do in another form is within everything else. Not detected: no more than nothing, but for "
+        "chance. The return fraction is a mean over headings already: what headings do is in none of its parts."
     )
     columns = ["part", *(sign(name) for name in records)]
     return PageTable("Parts of the variance", columns, rows if known else [], note, frozenset(columns[1:]))
 
 
-def _part(record: Mapping[str, Any] | None, part: str) -> str:
+def _part(record: Mapping[str, Any] | None, name: str) -> str:
     if record is None:
         return "not known"
-    share = record.get(part)
-    if share is None:
-        return ""
-    return f"{fixed(100 * share['share'], 1)} ({fixed(100 * share['lower'], 1)} to {fixed(100 * share['upper'], 1)})"
+    share = record.get(name)
+    return "" if share is None else part(share)
 
 
 def _runs(data: SequenceResults) -> PageTable:
     runs = data.results["runs"]
     total = max(sum(runs["outcomes"].values()), 1)
     rows = [[outcome_label(word), str(count), percent(count / total)] for word, count in runs["outcomes"].items()]
-    if runs.get("over_rim") is not None:
-        rows.append(
-            ["left over the rim of the bed, in flight", str(runs["over_rim"]), percent(runs["over_rim"] / total)]
-        )
-    note = " ".join(filter(None, [f"On {runs['beds']} beds." if runs.get("beds") else "", missing_sentence(data)]))
+    rows.append(
+        ["(left the surface across the edge of the bed)", str(runs["over_rim"]), percent(runs["over_rim"] / total)]
+    )
+    note = " ".join(filter(None, [f"On {runs['beds']} beds.", missing_sentence(data)]))
     return PageTable("Outcomes of the runs", ["outcome", "runs", "share"], rows, note, frozenset({"runs", "share"}))
 
 
@@ -186,11 +217,12 @@ def _side_runs(data: SequenceResults) -> PageTable:
         shown = output(name)
         row, unit, factor = (sign(name), "", 1.0) if name == RETURNS else (shown.row, shown.unit, shown.factor)
         rows.append([row, _part(effects, name), _estimate(chaos.get(name), factor), unit])
-    columns = ["output", "total effect of the soil [%]", "standard deviation by chaos", "unit"]
+    columns = ["output", "total effect of the soil", "standard deviation by chaos", "unit"]
     note = (
-        f"{side.get('soil_pairs', 'No')} runs were made again on a second soil, {side.get('twins', 'no')} at a place "
-        f"{number(1e3 * side.get('twin_shift', 0.0))} mm beside. Total effect: the share of the variance that goes "
-        "with the soil at one bed, place and attitude, whatever these are. In brackets 90 % intervals."
+        f"{side['soil_pairs']} runs were repeated on a second soil, {side['twins']} with an impact point "
+        f"{number(1e3 * side['twin_shift'])} mm away. Total effect: the share of the variance that goes "
+        f"with the soil at one bed, impact point and attitude, whatever these are. In brackets {percent(data.level)} "
+        "intervals."
     )
     return PageTable("Side runs", columns, rows, note, frozenset(columns[1:3]))
 
@@ -198,41 +230,36 @@ def _side_runs(data: SequenceResults) -> PageTable:
 def _emulator(data: SequenceResults) -> PageTable:
     """How the emulator does on beds left out."""
     emulator = data.results["emulator"]
-    columns = ["output", "skill", "held by the 90 % band"]
+    columns = ["output", "skill", "within the 90 % band"]
     rows = []
-    for name, score in data.table("emulator", "scores").items():
+    for name, score in emulator["scores"].items():
         skill, band = score.get("crps_skill", score.get("energy_skill")), score.get("band_90")
         shown = "all together" if name == "joint" else output(name).row
         rows.append([shown, *("" if one is None else percent(one) for one in (skill, band))])
     note = (
-        f"{emulator.get('statement') or ''} Skill: how much smaller the score (CRPS; of all together the energy score) "
+        f"{emulator['statement']} Skill: how much smaller the score (CRPS; of all together the energy score) "
         f"is than that of drawing one of the runs, on {left_out(data)}; 0 is no better."
     )
-    return PageTable(f"The emulator on {left_out(data)}", columns, rows, note.strip(), frozenset(columns[1:]))
+    return PageTable(f"The emulator on {left_out(data)}", columns, rows, note, frozenset(columns[1:]))
 
 
 def _inputs(data: SequenceResults) -> PageTable:
     """What every run draws for itself, and which of the uncertain inputs the emulator found to matter."""
-    emulator = data.table("emulator")
-    found = emulator.get("found_inputs")
-    rows = []
+    found, rows = data.results["emulator"]["found_inputs"], []
     # Sizes of grains vary within a bed, and the site from flight to flight: neither is an input of a run.
     for name, law in ((name, law) for name, law in _uncertain(data.study) if name in data.runs):
-        rows.append([*input_cells(name, law), "" if found is None else "yes" if name in found else "no"])
-    keys = {"place": "impact.region", "azimuth": "impact.azimuth_deg", "attitude": "impact.orientation"}
+        rows.append([*input_cells(name, law), "yes" if name in found else "no"])
+    keys = {"impact point": "impact.region", "azimuth": "impact.azimuth_deg", "attitude": "impact.orientation"}
     named = {row[1] for row in rows}
-    drawn = [words for words in drawn_things(data) if not (words == "place" and "impact.place.x" in named)]
-    rows += [[f"{words} at impact", keys[words], "uniform", "drawn anew for each run", ""] for words in drawn]
-    note = ""
-    if found is not None:
-        names = [input_words(name) for name in found]
-        note = (
-            "Found: it changes the mean of an output, alone or by products with other inputs: one test for all inputs "
-            "and outputs (where none does, nine of ten studies find none), which does not say by how much."
-            if names
-            else "No input was found to change the mean of any output (where none does, nine of ten studies find none)."
-        )
-    return PageTable("Inputs that the runs draw", [*INPUT_COLUMNS, "found"], rows, note)
+    drawn = [words for words in drawn_things(data) if not (words == "impact point" and "impact.place.x" in named)]
+    rows += [[words, keys[words], "uniform", "randomised in each run", ""] for words in drawn]
+    note = (
+        "Significant input (one F test for all inputs and outputs, products included): it changes the mean of an "
+        f"output at {percent(data.level)} confidence."
+        if found
+        else "No significant input (one F test for all inputs and outputs, products included)."
+    )
+    return PageTable("Inputs that the runs draw", [*INPUT_COLUMNS, "significant"], rows, note)
 
 
 def _uncertain(tables: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Mapping[str, Any]]]:
@@ -246,8 +273,6 @@ def _uncertain(tables: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[st
 
 def colour_input(data: SequenceResults) -> str | None:
     """The input that figures of the samples are coloured by: the one that V+ varies most with, of those sampled."""
-    if data.samples is None:
-        return None
     sampled = [name for name, _ in _uncertain(data.study) if name in data.samples]
     parts = data.table("variance_shares", "speed_out", "soil_by_input")
     alone = {name: part["share"] for name, part in parts.items() if name in sampled}

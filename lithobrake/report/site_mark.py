@@ -1,6 +1,6 @@
 """The landing site and the legend of a map: an open mark, and words beside the map, so that no impact is hidden."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, Literal
 
 from matplotlib.axes import Axes
@@ -37,13 +37,22 @@ def ellipse_style(share: float) -> Literal["-", "--"]:
     return "-" if share < 0.9 else "--"
 
 
-def draw_legend(figure: Figure, ellipses: Mapping[str, Any] | None, what: str, place: tuple[float, float]) -> None:
+def draw_legend(
+    figure: Figure,
+    ellipses: Sequence[Mapping[str, Any]],
+    what: str,
+    place: tuple[float, float],
+    *,
+    is_gaussian: bool = True,
+) -> None:
     """Say what mark and lines are, in one row with its lower left end at a place in parts of the figure.
 
-    ellipses: of the summary, or None; what: what they hold, "impacts".
+    ellipses: of the summary, those that are drawn; what: what they hold, "impacts"; is_gaussian: whether these are
+    spread by a Gaussian law.
     """
+    law = "" if is_gaussian else " (not Gaussian)"
     handles = [Line2D([], [], linestyle="none", label="landing site", **SITE_STYLE)]
-    for entry in ellipses["shares"] if ellipses else ():
-        words = f"ellipse that holds {100 * entry['share']:.0f} % of the {what}"
+    for entry in ellipses:
+        words = f"ellipse that holds {100 * entry['share']:.0f} % of the {what}{law}"
         handles.append(Line2D([], [], linestyle=ellipse_style(entry["share"]), color=SITE, linewidth=1.2, label=words))
     figure.legend(handles=handles, loc="lower left", bbox_to_anchor=place, ncols=3, columnspacing=1.8, borderpad=0.0)

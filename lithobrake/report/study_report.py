@@ -30,13 +30,15 @@ def write_report(folder: Path, progress: Callable[[int, int], None]) -> Path:
     """
     data = page_results(open_study(folder))
     content = sequence_content(data) if isinstance(data, SequenceResults) else paper_content(data)
-    panels = _panels(folder, content.plots, progress)
+    # A figure of which there is nothing to say is left out.
+    plots = [plot for plot in content.plots if plot.sentence]
+    panels = _panels(folder, plots, progress)
     pictures = [
         (_file(number, plot, kind), f"Figure {number}. {plot.title}")
-        for number, (plot, panel) in enumerate(zip(content.plots, panels, strict=True), start=1)
+        for number, (plot, panel) in enumerate(zip(plots, panels, strict=True), start=1)
         for kind in (PICTURES if panel.picture is not None else ())
     ]
-    title = data.study.get("title") or folder.name
+    title = data.study["title"] or folder.name
     origin = [data_files(folder), picture_files(folder, pictures), *provenance(data)]
     text = page(title, captions.facts(data), content, panels, origin, data.study_text)
     path = folder / "report" / "index.html"

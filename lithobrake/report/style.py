@@ -10,6 +10,7 @@ import matplotlib
 import numpy as np
 from numpy.typing import NDArray
 
+from lithobrake.outcomes import FlightStatus, JourneyStatus, SampleOutcome
 from lithobrake.outputs import TOUCHDOWN
 
 INK = "#1c2733"
@@ -35,6 +36,21 @@ INPUT_COLOURS = (
     "#98b06f",
 )
 INTERACTIONS = "#d5d8dc"
+# One fate, one colour, on every page: how a touchdown, a flight or a journey may end.
+FATE_COLOURS: dict[str, str] = {
+    FlightStatus.IMPACT: "#2f6fb0",
+    FlightStatus.FLYING: "#8b8f96",
+    FlightStatus.ESCAPED: "#e69f00",
+    FlightStatus.PARTNER: "#a8659a",
+    SampleOutcome.CAPTURED: "#98b06f",
+    SampleOutcome.LEFT_SIDEWAYS: "#c8553d",
+    SampleOutcome.TIME_LIMIT: "#d9cb3f",
+    SampleOutcome.OUTSIDE: "#7a5c3e",
+    JourneyStatus.SETTLED: "#1f9e78",
+    JourneyStatus.LOFTED: "#31465a",
+    JourneyStatus.SLIDING: "#6fb7e0",
+    JourneyStatus.BOUNCING: "#f3c9b5",
+}
 
 # Any: the names of the settings are a type of their own in some versions of matplotlib and plain words in others.
 STYLE: Any = {

@@ -3,10 +3,12 @@
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from lithobrake.report.captions import hours, input_words, percent
-from lithobrake.report.dispersion_tables import dispersion_tables, outcome_words
+from lithobrake.report.captions import input_words
+from lithobrake.report.dispersion_tables import dispersion_tables
 from lithobrake.report.page import PageTable, Tile, fixed, flat, number, show, unit_scales
+from lithobrake.report.percentages import percent
 from lithobrake.report.results import PaperResults, Results
+from lithobrake.report.sequence_answer import action
 from lithobrake.report.style import PAPER_OUTPUTS, output
 from lithobrake.results.telling_numbers import TellingNumbers
 
@@ -34,9 +36,9 @@ def tiles(data: PaperResults) -> list[Tile]:
     noise = main.noise_share
     found = [
         Tile(
-            f"{100 * data.results['shares']['returns']['share']:.1f}",
+            percent(data.results["returns"]["share"], data.digits).removesuffix(" %"),
             "%",
-            f"{outcome_words(data)['returns'].format(hours=hours(data.study['flight']['duration']))}; {_scope(data)}",
+            f"of the landings {action(data)}; {_scope(data)}",
         ),
         _touchdowns_tile(telling),
         Tile(
@@ -90,14 +92,14 @@ def tables(data: PaperResults) -> list[PageTable]:
         _scores(data),
         _sobol(data),
         _outputs(data),
-        touchdowns_table(data),
+        *([touchdowns_table(data)] if data.results["outputs_of_runs"] else []),
         *dispersion_tables(data),
     ]
 
 
 def provenance(data: Results) -> list[PageTable]:
     """Where the numbers come from: seed, times, versions."""
-    rows = [("seed", show(data.study.get("seed"))), *flat(data.provenance)]
+    rows = [("seed", show(data.study["seed"])), *flat(data.provenance)]
     return [
         PageTable(
             "Execution",

@@ -9,6 +9,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
+from lithobrake.report.percentages import part as shown
+from lithobrake.report.percentages import percent
 from lithobrake.report.style import INK, INTERACTIONS, QUIET, input_colours, input_label, output
 
 Share = Mapping[str, float]
@@ -16,13 +18,15 @@ Record = Mapping[str, Any]
 
 # The parts beside the soil, in the order of the bar: words, colour, hatching. No soil input has any of these.
 PARTS = {
-    "arrival": ("arrival", QUIET, ""),
+    "arrival": ("impact, at least", QUIET, ""),
     "bed": ("bed", "#f1e6d0", "////"),
-    "place_and_attitude": ("place and attitude", INTERACTIONS, ""),
+    "attitude": ("attitude, at least", "#8fb7a8", "xxxx"),
+    "place_and_attitude": ("everything else", INTERACTIONS, ""),
     "chaos": ("chaos", INK, ""),
 }
 SOIL = "soil"
-WITHOUT_TWINS = "place, attitude, chaos"
+# What everything else holds, where there is room for it.
+REMAINDER = "impact point, attitude, interactions"
 # From here on a piece has room for its figure.
 ROOM = 0.055
 ROW_HEIGHT = 0.92
@@ -30,7 +34,7 @@ ROW_HEIGHT = 0.92
 
 @dataclass(frozen=True)
 class Piece:
-    """A piece of a bar: name of the part, its share of the whole (below 0 where scatter outweighs it), and its look."""
+    """A piece of a bar: name of the part, its share of the whole, and its look."""
 
     name: str
     share: float
@@ -38,35 +42,47 @@ class Piece:
     hatch: str = ""
 
 
-def part_words(record: Record, part: str) -> str:
-    """A part in words; without twins chaos is within place and attitude."""
-    if part == SOIL:
-        return SOIL
-    if part == "place_and_attitude" and record.get("chaos") is None:
-        return WITHOUT_TWINS
-    return PARTS[part][0]
+def part_words(record: Record, name: str) -> str:
+    """A part in words; without auxiliary runs chaos is within everything else."""
+    if name == SOIL:
+        return "soil, at least"
+    with_chaos = name == "place_and_attitude" and record.get("chaos") is None
+    return f"{PARTS[name][0]}, chaos" if with_chaos else PARTS[name][0]
+
+
+def long_part_words(record: Record, name: str) -> str:
+    """A part in words, and what everything else holds."""
+    words = part_words(record, name)
+    if name != "place_and_attitude":
+        return words
+    held = REMAINDER if record.get("attitude") is None else REMAINDER.replace("attitude, ", "")
+    return f"{PARTS[name][0]} ({held}{words.removeprefix(PARTS[name][0])})"
 
 
 def known_parts(record: Record) -> dict[str, Share]:
     """The parts that a record has, in the order of the bar."""
-    return {part: record[part] for part in (SOIL, *PARTS) if record.get(part) is not None}
+    return {name: record[name] for name in (SOIL, *PARTS) if record.get(name) is not None}
 
 
 def pieces(record: Record, colours: Mapping[str, str]) -> list[Piece]:
-    """The pieces of one bar, which add up to the whole; what no soil input does alone is left to their interactions."""
-    alone = {name: part["share"] for name, part in record["soil_by_input"].items()}
-    found = [Piece(name, share, colours[name]) for name, share in alone.items()]
-    if record.get(SOIL) is not None:
-        found.append(Piece("interactions", record[SOIL]["share"] - sum(alone.values()), "white", "...."))
+    """The pieces of one bar: of the soil each input alone, and what they do together.
+
+    What inputs do alone is estimated with scatter, and drawn smaller where together it is more than the soil does.
+    """
+    alone = {name: max(one["share"], 0.0) for name, one in record["soil_by_input"].items()}
+    soil, total = record[SOIL]["share"], sum(alone.values())
+    scale = min(1.0, soil / total) if total > 0.0 else 0.0
+    found = [Piece(name, scale * share, colours[name]) for name, share in alone.items()]
+    found.append(Piece("interactions", soil - scale * total, "white", "...."))
     return found + [
-        Piece(part, record[part]["share"], *PARTS[part][1:]) for part in PARTS if record.get(part) is not None
+        Piece(name, record[name]["share"], *PARTS[name][1:]) for name in PARTS if record.get(name) is not None
     ]
 
 
-def variance_figure(shares: Mapping[str, Record | None], words: Mapping[str, str]) -> Figure:
-    """Draw a bar for each output that adds up to 1, and beside it each part with its interval.
+def variance_figure(shares: Mapping[str, Record | None], words: Mapping[str, str], level: float) -> Figure:
+    """Draw a bar for each output, and beside it each part with its interval.
 
-    shares: by output, None where the runs cannot tell; words: title of the row of an output.
+    shares: by output, None where the runs cannot tell; words: title of the row of an output; level: of the intervals.
     """
     records = [record for record in shares.values() if record]
     names = tuple(dict.fromkeys(name for record in records for name in record["soil_by_input"]))
@@ -85,7 +101,7 @@ def variance_figure(shares: Mapping[str, Record | None], words: Mapping[str, str
         _bar(bars, row, pieces(record, colours))
         _intervals(whiskers, row, record)
     bars.set_yticks(range(len(shares)), [words.get(name) or _row(name) for name in shares])
-    for axes, title in ((bars, "parts of the variance"), (whiskers, "parts and 90 % intervals")):
+    for axes, title in ((bars, "parts of the variance"), (whiskers, f"parts and {percent(level)} intervals")):
         _dress(axes, title, len(shares))
     figure.legend(handles=handles, loc="lower center", ncols=4, handlelength=1.2, handleheight=1.0, columnspacing=1.4)
     return figure
@@ -105,21 +121,20 @@ def _handles(names: Sequence[str], records: Sequence[Record]) -> list[Patch]:
     for part, (_, colour, hatch) in PARTS.items():
         known = [record for record in records if record.get(part) is not None]
         if known:
-            label = part_words(known[0], part)
+            label = long_part_words(known[0], part)
             handles.append(Patch(facecolor=colour, edgecolor=QUIET if hatch else colour, hatch=hatch, label=label))
     return handles
 
 
 def _bar(axes: Axes, row: int, parts: Sequence[Piece]) -> None:
-    """Stack what is above 0 to the right of it, and what is below to the left: together they are the whole."""
-    ends = [0.0, 0.0]
+    """Stack the pieces."""
+    end = 0.0
     for part in parts:
-        side = int(part.share < 0.0)
         edge = QUIET if part.hatch else "white"
         axes.barh(
             row,
             part.share,
-            left=ends[side],
+            left=end,
             height=0.52,
             color=part.colour,
             hatch=part.hatch,
@@ -132,7 +147,7 @@ def _bar(axes: Axes, row: int, parts: Sequence[Piece]) -> None:
                 for value, weight in zip(matplotlib.colors.to_rgb(part.colour), (0.3, 0.59, 0.11), strict=True)
             )
             axes.text(
-                ends[side] + 0.5 * part.share,
+                end + 0.5 * part.share,
                 row,
                 f"{100 * part.share:.0f}",
                 ha="center",
@@ -141,7 +156,7 @@ def _bar(axes: Axes, row: int, parts: Sequence[Piece]) -> None:
                 color="white" if light < 0.62 else INK,
                 bbox={"facecolor": part.colour, "edgecolor": "none", "pad": 0.8} if part.hatch else None,
             )
-        ends[side] += part.share
+        end += part.share
 
 
 def _intervals(axes: Axes, row: int, record: Record) -> None:
@@ -157,8 +172,7 @@ def _intervals(axes: Axes, row: int, record: Record) -> None:
         axes.plot(share["share"], y, "o", color=INK, markersize=3.6, clip_on=False)
         side = axes.get_yaxis_transform()
         axes.text(-0.04, y, part_words(record, part), transform=side, ha="right", va="center_baseline", fontsize=7.5)
-        numbers = f"{100 * share['share']:.1f} % ({100 * share['lower']:.0f} to {100 * share['upper']:.0f})"
-        axes.text(1.05, y, numbers, transform=side, va="center_baseline", fontsize=7.5)
+        axes.text(1.05, y, shown(share), transform=side, va="center_baseline", fontsize=7.5)
 
 
 def _dress(axes: Axes, title: str, row_count: int) -> None:

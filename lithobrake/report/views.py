@@ -15,6 +15,7 @@ from lithobrake.report.packed import deflated, script_data
 from lithobrake.report.page import LiveSection, number
 from lithobrake.report.results import Results
 from lithobrake.report.scene import Scene
+from lithobrake.report.style import FATE_COLOURS
 
 Array = NDArray[np.float64]
 SCRIPTS = ("view3d.js", "moving.js")
@@ -24,12 +25,12 @@ LARGEST = 32767
 DECADES = 4.0
 SHADE_UNITS = {"speed": "m/s", "force": "N"}
 SHADE_WORDS = {"speed": "speed", "force": "the size of the sum of contact forces"}
-# How a flight ended: its colour in a word, what it did, and the colour.
-FATE_COLOURS = {
-    FlightStatus.IMPACT: ("blue", "came down", "#2f6fb0"),
-    FlightStatus.FLYING: ("grey", "still flew", "#8b8f96"),
-    FlightStatus.ESCAPED: ("orange", "flew away", "#e69f00"),
-    FlightStatus.PARTNER: ("violet", "came down on the partner", "#a8659a"),
+# How a flight ended: its colour in a word, and what it did.
+FATE_WORDS = {
+    FlightStatus.IMPACT: ("blue", "impact"),
+    FlightStatus.FLYING: ("grey", "still flying"),
+    FlightStatus.ESCAPED: ("orange", "escaped"),
+    FlightStatus.PARTNER: ("violet", "impact on the partner"),
 }
 # A view takes in a sphere when its middle is so many radii away.
 AWAY = 4.2
@@ -40,7 +41,7 @@ def view_sections(data: Results) -> list[LiveSection]:
     found = []
     if data.landing is not None and len(data.landing.moving.time) > 1:
         found.append(_landing(data.landing, data.shown_landing))
-    if len(data.facet) and data.results.get("site"):
+    if len(data.facet):
         found.append(_body(data))
     return found
 
@@ -116,7 +117,7 @@ def _continuous(orientation: Array) -> Array:
 
 
 def _body(data: Results) -> LiveSection:
-    """The body, facets coloured as in its figure, and the paths of some flights where the folder has them."""
+    """The body, facets coloured as in its figure, and the paths of some flights."""
     vertices, faces = data.body_vertices, data.body_faces
     density = facet_density(vertices[faces], data.facet)
     low, high = colour_ends(density)
@@ -132,20 +133,20 @@ def _body(data: Results) -> LiveSection:
     words = (
         f"Impacts per hectare as in the figure of the body, from {number(low, 2)} (dark) to {number(high, 2)} (yellow)."
     )
-    if data.paths is not None and len(data.paths[0]):
+    if len(data.paths[0]):
         # The ways reach farther out than the body.
         facts["orbit"]["distance"] *= 1.5
         arrays |= _paths(*data.paths)
-        met = [FATE_COLOURS[FlightStatus(word)] for word in dict.fromkeys(data.paths[1])]
+        met = [FATE_WORDS[FlightStatus(word)] for word in dict.fromkeys(data.paths[1])]
         words += f" Lines: the ways of the first {len(data.paths[1])} flights, seen from the turning body; "
-        words += ", ".join(f"{colour}: {what}" for colour, what, _ in met) + "."
+        words += ", ".join(f"{colour}: {what}" for colour, what in met) + "."
     return _section("body-3d", "Where the lander comes down, to turn", words, arrays, facts)
 
 
 def _paths(position: Array, status: Sequence[str]) -> dict[str, np.ndarray]:
     """Ends of the pieces of all ways [2 piece_count, 3], and the colour of each."""
     ends = np.stack([position[:, :-1], position[:, 1:]], axis=2).reshape(-1, 3)
-    paint = np.array([to_rgb(FATE_COLOURS[FlightStatus(word)][2]) for word in status])
+    paint = np.array([to_rgb(FATE_COLOURS[FlightStatus(word)]) for word in status])
     # Two ends of each piece.
     of_ends = np.repeat(np.rint(255.0 * paint), 2 * (position.shape[1] - 1), axis=0)
     return {"path_corner": ends.astype(np.float32), "path_paint": of_ends.astype(np.uint8)}

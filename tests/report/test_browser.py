@@ -8,7 +8,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from lithobrake.report import write_report
 from lithobrake.results import open_study
 
 from .browser import Page, browser_page, needs_browser
@@ -30,14 +29,14 @@ def page(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Page]:
 @pytest.fixture(scope="module", params=["study_folder", "sequence_folder"])
 def report(request: pytest.FixtureRequest) -> Path:
     """The page of a study by each method."""
-    return write_report(request.getfixturevalue(request.param))
+    return Path(request.getfixturevalue(request.param)) / "report" / "index.html"
 
 
 @pytest.fixture(scope="module")
 def sequence(sequence_folder: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The page of a drawn study away from its folder: it needs nothing but itself."""
     alone = tmp_path_factory.mktemp("alone") / "index.html"
-    shutil.copy(write_report(sequence_folder), alone)
+    shutil.copy(sequence_folder / "report" / "index.html", alone)
     return alone
 
 
@@ -70,13 +69,17 @@ def test_paper_has_everything_unfolded_and_no_controls(page: Page, report: Path)
     assert page.value(folded) == before
 
 
-def test_a_figure_grows_to_its_own_size(page: Page, report: Path) -> None:
+def test_a_figure_fills_the_window_until_it_is_left(page: Page, report: Path) -> None:
     page.open(report, PHONE)
-    small, grown, full = page.value(
-        "(() => { const picture = document.querySelector('.picture img'), small = picture.width; picture.click();"
-        "return [small, picture.width, picture.naturalWidth]; })()"
-    )
-    assert grown == full > small
+    show = "(() => { const one = document.querySelector('.picture img').getBoundingClientRect();"
+    show += " return [one.width, one.height]; })()"
+    small = page.value(show)
+    page.value("document.querySelector('.picture img').click()")
+    width, height = page.value(show)
+    assert [width, height] == page.value("[innerWidth, innerHeight]")
+    assert width > small[0]
+    page.value("dispatchEvent(new KeyboardEvent('keydown', { key: 'Escape' }))")
+    assert page.value(show) == small
 
 
 def test_a_page_is_light_enough_to_be_sent(report: Path) -> None:
@@ -115,15 +118,16 @@ def test_an_end_of_an_input_moves_every_number(page: Page, sequence: Path) -> No
     page.open(sequence, LAPTOP)
     read = "[...document.querySelectorAll('#explorer figcaption, #explorer .share')].map((one) => one.textContent)"
     before = page.value(read)
-    assert page.value("document.querySelectorAll('#explorer input[type=range]').length") == 10
-    # The friction of the grains, between its median and its end.
+    # Two ends of each of the seven inputs.
+    assert page.value("document.querySelectorAll('#explorer input[type=range]').length") == 14
+    # The density of the grains, between its median and its end.
     page.value(
         "(() => { const end = document.querySelector('#explorer input'); end.value = .9;"
         "end.dispatchEvent(new Event('input')); })()"
     )
     # What is read is what the law gives there, as soon as all draws are made.
     share = page.value(
-        "(() => { const found = explorer.at([[.9, 1], ...Array.from({ length: 4 }, () => [0, 1])]);"
+        "(() => { const found = explorer.at([[.9, 1], ...Array.from({ length: 6 }, () => [0, 1])]);"
         "return shareWords(explorer, found); })()"
     )
     page.value(
@@ -133,7 +137,7 @@ def test_an_end_of_an_input_moves_every_number(page: Page, sequence: Path) -> No
     after = page.value(read)
     assert len(before) == len(after) == 5
     assert all(old != new for old, new in zip(before[:4], after[:4], strict=True))
-    assert page.value("document.querySelector('#explorer output').textContent") == "0.84 to 0.9"
+    assert page.value("document.querySelector('#explorer output').textContent") == "2850 to 3000 kg/m3"
 
 
 def test_the_landing_moves_as_it_was_stored(page: Page, sequence: Path, sequence_folder: Path) -> None:

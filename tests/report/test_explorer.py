@@ -23,8 +23,8 @@ from lithobrake.chaos import (
 )  # fmt: skip
 from lithobrake.emulator import Emulator, law_tables
 from lithobrake.pipeline.energy_bound import bound_numbers, energy_bound
-from lithobrake.report import write_report
 from lithobrake.report.packed import packed, script_data
+from lithobrake.report.results import SequenceResults
 from lithobrake.study import check_tables
 
 from ..pipeline.synthetic_lander import synthetic_tables
@@ -190,14 +190,13 @@ def test_every_flown_start_is_met_and_the_nearest_speeds_are_near() -> None:
     assert len(set(found)) > 1500
 
 
-def test_the_page_has_the_explorer_with_all_its_numbers(sequence_folder: Path) -> None:
-    page = write_report(sequence_folder).read_text(encoding="utf-8")
-    data = explorer_data(page)
-    assert data["law"]["location"]["shape"][0] == 5
-    assert data["flown"]["starts"]["shape"] == [100, 3]
-    assert data["facts"]["inputs"][0]["words"] == "friction of the grains"
-    assert "one of 100 flown starts" in page
-    assert "startExplorer();" in page
+def test_the_page_has_the_explorer_with_all_its_numbers(drawn_page: str, drawn: SequenceResults) -> None:
+    data = explorer_data(drawn_page)
+    assert data["law"]["location"]["shape"] == list(drawn.explorer.tables["location"].shape)
+    assert data["flown"]["starts"]["shape"] == [drawn.flights.row_count, 3]
+    assert data["facts"]["inputNames"] == list(drawn.explorer.input_names)
+    assert f"one of {drawn.flights.row_count} flown starts" in drawn_page
+    assert "startExplorer();" in drawn_page
 
 
 def test_words_in_numbers_end_no_script() -> None:

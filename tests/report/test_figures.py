@@ -1,6 +1,6 @@
 """Each figure is made from plain arrays and shows what it is given."""
 
-import io
+from typing import Any
 
 import matplotlib
 import numpy as np
@@ -8,34 +8,32 @@ import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
+from lithobrake.analysis import dispersion_ellipses
+from lithobrake.report.aim_figure import aim_figure
+from lithobrake.report.any_study_figures import draw_map, draw_rest
 from lithobrake.report.bed_figure import bed_figure, three_moments
 from lithobrake.report.body_figure import body_figure, colour_ends, facet_density
 from lithobrake.report.count_figure import Design, count_figure
-from lithobrake.report.density import WHOLE, close_window, draw_density, neighbour_count
-from lithobrake.report.ellipse_line import draw_ellipses, outline
+from lithobrake.report.density import WHOLE, Window, close_window, draw_density, neighbour_count
+from lithobrake.report.ellipse_line import draw_ellipses, fitting, follows_gaussian, outline
 from lithobrake.report.error_figure import Score, error_figure
 from lithobrake.report.hulls import Hull
 from lithobrake.report.landing_figure import instants, landing_figure
 from lithobrake.report.map_figure import Share, draw_shares, map_figure
 from lithobrake.report.rest_figure import RestMap, rest_figure
+from lithobrake.report.results import SequenceResults
 from lithobrake.report.scatter_figure import scatter_figure
 from lithobrake.report.sobol_figure import sobol_figure
-from lithobrake.report.style import INK, PAPER_OUTPUTS, figure_style, input_label
+from lithobrake.report.style import FATE_COLOURS, INK, PAPER_OUTPUTS, figure_style, input_label
 
 ELLIPSES = {
     "latitude_deg": 10.0,
     "longitude_deg": 30.0,
     "heading_deg": 20.0,
-    "shares": [{"share": 0.5, "semi_axes_deg": [2.0, 1.0]}, {"share": 0.95, "semi_axes_deg": [4.0, 2.0]}],
+    "shares": [{"share": 0.5, "semi_axes_deg": [0.8, 0.4]}, {"share": 0.95, "semi_axes_deg": [1.6, 0.8]}],
 }
 TETRAHEDRON = np.array([(1.0, 1.0, 1.0), (1.0, -1.0, -1.0), (-1.0, 1.0, -1.0), (-1.0, -1.0, 1.0)])
 FACES = np.array([(0, 1, 2), (0, 3, 1), (0, 2, 3), (1, 3, 2)])
-
-
-def picture(figure: Figure) -> bytes:
-    memory = io.BytesIO()
-    figure.savefig(memory, format="png", dpi=40)
-    return memory.getvalue()
 
 
 def texts(figure: Figure) -> str:
@@ -69,7 +67,6 @@ def test_bed_figure_shows_three_moments_with_their_times() -> None:
     assert "random cloud" in words
     assert "falling\n$t$ = 0.5 s" in words
     assert "settled" in words
-    assert picture(figure)
 
 
 def test_three_moments_of_a_bed_with_one_frame() -> None:
@@ -94,7 +91,6 @@ def test_landing_figure_has_one_picture_an_instant() -> None:
     with figure_style():
         figure = landing_figure(bodies, time, position, orientation, (0.6, 0.6))
     assert len(figure.axes) == 6
-    assert picture(figure)
 
 
 def test_count_figure_names_the_designs_with_their_runs() -> None:
@@ -102,7 +98,6 @@ def test_count_figure_names_the_designs_with_their_runs() -> None:
     with figure_style():
         figure = count_figure([1, 2, 3], [1, 2], smolyak**2, smolyak, [Design("screening", 3, 2, 25)])
     assert "screening: 3 inputs, level 2, 25 runs" in texts(figure)
-    assert picture(figure)
 
 
 def test_sobol_figure_gives_the_rest_to_interactions() -> None:
@@ -114,7 +109,6 @@ def test_sobol_figure_gives_the_rest_to_interactions() -> None:
     assert words.count("50 %") == 3
     assert words.count("30 %") == 3
     assert "interactions" in words
-    assert picture(figure)
 
 
 def test_sobol_figure_says_what_is_scatter_and_where_no_input_was_found() -> None:
@@ -126,7 +120,6 @@ def test_sobol_figure_says_what_is_scatter_and_where_no_input_was_found() -> Non
     assert words.count("100 %") == 2
     assert words.count("no input found\nthat decides it") == 1
     assert words.count("scatter: 70 % of\nthe runs' variance") == 3
-    assert picture(figure)
 
 
 def test_error_figure_puts_q2_rmse_and_spread_beside_every_mape() -> None:
@@ -137,7 +130,6 @@ def test_error_figure_puts_q2_rmse_and_spread_beside_every_mape() -> None:
     words = texts(figure)
     assert words.count("MAPE") == words.count("$Q^2$ 0.75") == words.count("at a spread of") == 9
     assert "RMSE 0.57 at a spread of 1.1 deg" in words
-    assert picture(figure)
 
 
 def test_error_figure_says_how_many_errors_lie_beyond_the_axis() -> None:
@@ -160,7 +152,6 @@ def test_scatter_figure_leaves_out_samples_that_stay() -> None:
     with figure_style():
         figure = scatter_figure(outputs, ("restitution", np.linspace(0.3, 0.8, 20)), leaves)
     assert [len(axes.collections[0].get_offsets()) for axes in figure.axes[:3]] == [15, 15, 15]
-    assert picture(figure)
 
 
 def test_an_outcome_that_no_run_had_shows_its_upper_limit_in_place_of_nothing() -> None:
@@ -181,15 +172,15 @@ def test_map_figure_shows_shares_with_intervals(with_relief: bool) -> None:
     with figure_style():
         figure = map_figure(latitude, longitude, (0.0, 10.0), shares, vertices if with_relief else None)
     words = texts(figure)
-    assert "60.00 %   [55.00, 65.00]" in words
+    assert "60 % (55-65 %)" in words
     assert "landing site" in words
-    assert picture(figure)
 
 
 def test_map_figure_without_any_impact_is_still_a_map() -> None:
     with figure_style():
         figure = map_figure(np.zeros(0), np.zeros(0), (0.0, 0.0), [Share("escaped", 1.0, 0.9, 1.0)])
-    assert picture(figure)
+    assert "no impact among the flights" in texts(figure)
+    assert len(figure.axes) == 2
 
 
 def test_map_figure_shows_impacts_near_the_site_in_a_close_view() -> None:
@@ -202,7 +193,10 @@ def test_map_figure_shows_impacts_near_the_site_in_a_close_view() -> None:
     assert window.half < 5.0
     with figure_style():
         figure = map_figure(latitude, longitude, (30.0, 179.0), [Share("impact", 1.0, 0.98, 1.0)], None, ELLIPSES)
-    assert picture(figure)
+    ends = (window.latitude - window.half, window.latitude + window.half)
+    (view,) = figure.axes[0].child_axes
+    assert view.get_ylim() == pytest.approx(ends)
+    assert len(view.collections[0].get_offsets()) == 200
 
 
 def test_ellipses_are_named_beside_the_map_and_not_on_it() -> None:
@@ -248,10 +242,72 @@ def test_shares_end_at_the_whole_and_have_their_figures_beside_the_axis() -> Non
     axes = Figure().add_subplot()
     draw_shares(axes, [Share("down", 0.75, 0.7, 0.8), Share("captured", 0.25)], "all 100 000 samples")
     assert axes.get_xlim() == (0.0, 100.0)
-    assert [text.get_text() for text in axes.texts] == ["75.00 %   [70.00, 80.00]", "25.00 %"]
+    assert [text.get_text() for text in axes.texts] == ["75 % (70-80 %)", "25 %"]
     assert all(text.get_position()[0] > 1.0 for text in axes.texts)
     assert len(axes.lines) == 1
     assert axes.get_xlabel() == "share of all 100 000 samples [%], with 90 % interval"
+
+
+def test_one_fate_has_one_colour_in_every_figure(drawn: SequenceResults) -> None:
+    with figure_style():
+        figures = draw_map(drawn), draw_rest(drawn)
+    found: dict[str, set[str]] = {}
+    for axes in (axes for figure in figures for axes in figure.axes if axes.patches and axes.get_yticklabels()):
+        for label, bar in zip(axes.get_yticklabels(), axes.patches, strict=False):
+            found.setdefault(label.get_text(), set()).add(matplotlib.colors.to_hex(bar.get_facecolor()))
+    assert {"captured", "at rest", "unknown outcome"} <= found.keys()
+    assert all(len(colours) == 1 for colours in found.values())
+    assert found["captured"] == {FATE_COLOURS["captured"]}
+    assert len(set(FATE_COLOURS.values())) == len(FATE_COLOURS)
+
+
+def test_an_ellipse_over_the_edge_of_the_map_or_round_a_pole_is_not_drawn() -> None:
+    entries = [{"share": 0.5, "semi_axes_deg": [2.0, 1.0]}, {"share": 0.95, "semi_axes_deg": [20.0, 8.0]}]
+    at = {"latitude_deg": 85.0, "longitude_deg": 170.0, "heading_deg": 0.0, "shares": entries}
+    assert [one["share"] for one in fitting(at, WHOLE)] == [0.5]
+    assert [one["share"] for one in fitting(at | {"latitude_deg": 10.0}, WHOLE)] == [0.5, 0.95]
+    close = Window(latitude=10.0, longitude=170.0, half=5.0, half_longitude=5.0)
+    assert [one["share"] for one in fitting(at | {"latitude_deg": 10.0}, close)] == [0.5]
+    assert fitting(None, WHOLE) == []
+
+
+@pytest.mark.parametrize(("freedom", "is_gaussian"), [(np.inf, True), (2.0, False)])
+def test_ellipses_of_heavy_tails_are_flagged(freedom: float, is_gaussian: bool) -> None:
+    random = np.random.default_rng(1)
+    places = random.standard_normal((2000, 2))
+    if np.isfinite(freedom):
+        places /= np.sqrt(random.chisquare(freedom, 2000) / freedom)[:, None]
+    found = dispersion_ellipses(*(0.1 * places.T))
+    assert found is not None
+    shares = [{"share": share, "semi_axes_deg": axes} for share, axes in found.semi_axes_deg.items()]
+    assert follows_gaussian({"shares": shares}, 2000) is is_gaussian
+    assert follows_gaussian(None, 0)
+
+
+def test_aims_share_one_scale_and_have_colour_bars() -> None:
+    def far(value: float) -> dict[str, float]:
+        return {"value": value, "lower": 0.7 * value, "upper": 1.4 * value}
+
+    def ground(share: float) -> dict[str, Any]:
+        return {
+            "settled": {"share": share, "lower": share - 0.1, "upper": share + 0.1}, "missing": 0.4, "allowed": True,
+            "distance_p95": far(100.0 * share), "time_p95": far(3600.0),
+        }  # fmt: skip
+
+    aims = [
+        {"values": [speed], "soil": ground(share), "hard": ground(0.2)} for speed, share in ((0.1, 0.2), (0.2, 0.3))
+    ]
+    table = {"names": ["impact.speed"], "units": ["m/s"], "aims": aims, "best_on_soil": {"aim": 1},
+             "best_on_hard": None}  # fmt: skip
+    with figure_style():
+        figure = aim_figure(table)
+    maps = [axes.images[0] for axes in figure.axes if axes.images]
+    assert len(maps) == 5
+    assert [drawn.get_clim() for drawn in maps][::4] == [(0.0, 100.0)] * 2
+    assert len({drawn.get_cmap().name for drawn in maps}) == 1
+    assert len(figure.axes) == 10
+    assert figure.get_figwidth() == 9.2
+    assert {"20", "30"} <= {text.get_text() for text in figure.axes[0].texts}
 
 
 def test_shares_without_intervals_speak_of_none() -> None:
@@ -299,7 +355,6 @@ def test_density_on_the_body_counts_each_impact_over_the_area_around_it() -> Non
     with figure_style():
         figure = body_figure(1e3 * TETRAHEDRON, FACES, np.array([2, 2, 2, 0]), np.array([300.0, 300.0, 300.0]))
     assert "from the south" in texts(figure)
-    assert picture(figure)
 
 
 def test_rest_figure_shows_both_grounds_over_one_window_or_says_why_not() -> None:
@@ -314,10 +369,8 @@ def test_rest_figure_shows_both_grounds_over_one_window_or_says_why_not() -> Non
         )
     maps = [axes for axes in figure.axes if axes.get_title(loc="left").startswith("On ")]
     assert maps[0].get_ylim() == maps[1].get_ylim()
-    assert "50.00 %   [40.00, 60.00]" in texts(figure)
+    assert "50 % (40-60 %)" in texts(figure)
     assert "not asked" in texts(silent)
-    assert picture(figure)
-    assert picture(silent)
 
 
 def test_no_impact_is_lost_on_the_map_of_the_whole_body() -> None:

@@ -1,6 +1,5 @@
 """The report of a whole study folder: everything in it comes from the files, and a missing file is named."""
 
-import json
 import re
 import shutil
 import subprocess
@@ -14,110 +13,117 @@ import numpy as np
 import pytest
 
 from lithobrake.report import captions, write_report
-from lithobrake.report.results import page_results
+from lithobrake.report.page import PageTable, number
+from lithobrake.report.results import PaperResults
 from lithobrake.report.scene import scene
 from lithobrake.report.study_files import size
-from lithobrake.results import MovingBodies, open_study
+from lithobrake.report.tables import tables
+from lithobrake.results import MovingBodies
 
 
-@pytest.fixture(scope="module")
-def report(study_folder: Path) -> str:
-    """Text of the page."""
+def test_progress_counts_the_figures_and_the_same_files_give_the_same_page(
+    study_folder: Path, paper_page: str, tmp_path: Path
+) -> None:
+    folder = Path(shutil.copytree(study_folder, tmp_path / "again"))
     told: list[tuple[int, int]] = []
-    path = write_report(study_folder, lambda done, total: told.append((done, total)))
-    assert path == study_folder / "report" / "index.html"
+    path = write_report(folder, lambda done, total: told.append((done, total)))
+    assert path == folder / "report" / "index.html"
     assert told == [(number, 9) for number in range(9)]
-    return path.read_text(encoding="utf-8")
-
-
-def test_page_has_the_nine_figures_inside_and_nothing_outside(report: str) -> None:
-    assert len(re.findall(r'<img alt="[^"]+" src="data:image/png;base64,', report)) == 9
-    assert not re.search(r"https?://", report)
-
-
-def test_figures_are_files_for_papers_with_the_same_bytes_every_time(study_folder: Path, report: str) -> None:
-    drawn = {path.name: path.read_bytes() for path in (study_folder / "report").glob("figure_*.svg")}
+    assert path.read_text(encoding="utf-8") == paper_page
+    drawn = sorted((study_folder / "report").glob("figure_*.svg"))
     assert len(drawn) == 9
-    assert all(content.lstrip().startswith(b"<?xml") for content in drawn.values())
-    write_report(study_folder)
-    assert {name: (study_folder / "report" / name).read_bytes() for name in drawn} == drawn
+    assert not list((folder / "report").glob("*.part"))
+    for svg in drawn:
+        assert svg.read_bytes().lstrip().startswith(b"<?xml")
+        assert (folder / "report" / svg.name).read_bytes() == svg.read_bytes()
 
 
-def test_figures_stand_beside_the_page_as_files(study_folder: Path, report: str) -> None:
+def test_page_has_the_nine_figures_inside_and_nothing_outside(paper_page: str, study_folder: Path) -> None:
+    assert len(re.findall(r'<img alt="[^"]+" src="data:image/png;base64,', paper_page)) == 9
+    assert not re.search(r"https?://", paper_page)
     pictures = sorted(path.name for path in (study_folder / "report").glob("*.png"))
     assert [name.split("_")[1] for name in pictures] == ["1", "2", "3", "4", "5", "6", "7", "8", "9"]
-    assert not list((study_folder / "report").glob("*.part"))
 
 
-def test_sentences_carry_the_numbers_of_the_summary(report: str) -> None:
-    for words in (
-        "On this bed, at this place: 50.0 % come down again. Another bed gives another figure.",
-        "+- 4.0 points (90 %) in the return fraction",
-        "at most 3.0 %",
-        "12 grains",
-        "solid fraction of 0.58",
-        "0.2 m/s and 30 deg from the normal. The lander leaves the surface after",
-        "25 runs on the Smolyak grid, against 125",
-        "V+ varies most with the restitution of the grains (50 %, 45 % to 55 %, of its explained variance)",
-        "of the variance of the runs 6 % of V+, 6 % of theta+ and 6 % of omega+ is scatter, which no input decides",
-        "Q2 = 0.80 (0.70 to 0.85) of V+ (MAPE 1.5 %)",
-        "400 samples",
-        "pull 1.1 × 10⁻⁵ m/s2 outward",
-        "148 by 15 m (semi-axes) about latitude 1.0 deg, longitude 10.0 deg holds 95 % of them",
-        "on hard ground 50.0 % come to rest; on the soil it is not known: impact.speed",
-    ):
-        assert words in report
+def test_captions_carry_the_numbers_of_the_summary(paper: PaperResults) -> None:
+    results = paper.results
+    assert all(sentence in captions.answer(paper) for sentence in results["answer"])
+    bed, design = results["beds"][0], results["designs"]["screening"]
+    for name in ("surface_height_m", "mean_diameter_m", "smallest_width_m", "smallest_depth_m"):
+        assert f"{bed[name]:.3g} m" in captions.bed(paper)
+    assert "0.2 m/s and 30 deg from the normal" in captions.landing(paper)
+    assert f"takes {design['run_count']} runs on the Smolyak grid" in captions.counts(paper)
+    first = results["screening"]["sobol_first"]["speed_out"]
+    assert f"({100 * max(first.values()):.0f} %, " in captions.sobol(paper)
+    assert f"Q2 = {paper.scores['test_all']['speed_out'].q2:.2f}" in captions.errors(paper)
+    assert "pull 1.4 × 10⁻⁵ m/s2 outward" in captions.impact_map(paper)
+    long, short = next(one["semi_axes_m"] for one in results["ellipses"]["shares"] if one["share"] == 0.95)
+    assert f"{long:.3g} by {short:.3g} m (semi-axes)" in captions.body(paper)
 
 
-def test_every_mape_stands_beside_q2_rmse_and_spread(report: str) -> None:
-    table = report[report.index("Errors of the expansions") :]
-    head = table[: table.index("</tr>")]
-    for column in ("MAPE [%]", "Q2", "RMSE", "spread (std)"):
-        assert column in head
-    assert "0.800 (0.7 to 0.85)" in table
+def test_ground_that_could_not_be_asked_says_why(paper: PaperResults) -> None:
+    why = paper.results["rest"]["why_no_soil"]
+    assert why.startswith("impact.incidence_deg")
+    assert why in captions.rest(paper)
+    some = {"count": 3, "share": 0.15, "lower": None, "upper": None}
+    both = paper.results["rest"] | {"soil": paper.results["rest"]["hard"] | {"outside": some}}
+    assert "15.0 %" in captions.rest(replace(paper, results=paper.results | {"rest": both}))
 
 
-def test_every_sobol_index_has_its_interval(report: str) -> None:
-    assert "0.50 (0.45 to 0.55)" in report[report.index("<h3>Sobol indices") :]
+def test_every_score_and_every_sobol_index_has_its_interval(paper: PaperResults) -> None:
+    scores, indices = (table_of(paper, title) for title in ("Errors of the expansions", "Sobol indices"))
+    assert {"MAPE [%]", "Q2", "RMSE", "spread (std)"} <= set(scores.columns)
+    assert all(cell.endswith(")") for row in scores.rows for cell in row[3:5])
+    assert all(cell.endswith(")") for row in indices.rows for cell in row[1:])
 
 
-def test_provenance_stands_at_the_end(report: str) -> None:
-    assert report.index("<h2>Figures") < report.index("<h2>Tables") < report.index("<h2>Provenance")
-    assert "packages.numpy" in report
+def test_flights_without_scatter_stand_beside_those_with_it(paper: PaperResults) -> None:
+    table, alone = table_of(paper, "After the first bounce"), paper.results["without_scatter"]["shares"]
+    assert table.columns[-1] == "without scatter"
+    assert table.rows[0][-1] == f"{100 * alone['impact']['share']:.1f} %"
+    assert [row[0] for row in table_of(paper, "Landing ellipses").rows][-1] == "next impact, without scatter"
 
 
-def test_page_says_when_the_study_was_made_and_what_its_body_is_like(report: str) -> None:
-    words = "scape speed at the site 0.409 m/s, bulk density of the body 2790 kg/m3"
-    assert f'<p class="facts">Study of 2026-03-01, 09:30 UTC. E{words}.</p>' in report
-    caption = report[report.index("Figure 7.") : report.index("Figure 8.")]
-    assert f"outward; e{words})" in caption
-    assert "<td>escape_speed_m_s</td><td>0.4086</td>" in report
+def test_an_outcome_that_no_run_had_has_its_upper_limit(paper: PaperResults) -> None:
+    limit = paper.results["shares"]["time_limit"]["upper_limit"]
+    assert f"at most {100 * limit:.1f} %" in [row[2] for row in table_of(paper, "After the first bounce").rows]
 
 
-def test_page_links_the_files_that_are_there_and_no_others(study_folder: Path, report: str) -> None:
-    links = re.findall(r'href="([^"]+)"', report)
+def table_of(data: PaperResults, title: str) -> PageTable:
+    return next(table for table in tables(data) if table.title == title)
+
+
+def test_provenance_stands_at_the_end(paper_page: str) -> None:
+    order = [paper_page.index(f"<h2>{words}") for words in ("Figures", "Explorer", "Tables", "Provenance")]
+    assert order == sorted(order)
+    assert paper_page.index("packages.numpy") > order[-1]
+
+
+def test_page_says_when_the_study_was_made_and_what_its_body_is_like(paper: PaperResults) -> None:
+    words, site = captions.facts(paper), paper.results["site"]
+    assert re.match(r"Study of \d{4}-\d\d-\d\d, \d\d:\d\d UTC\. ", words)
+    for key in ("escape_speed_m_s", "bulk_density_kg_m3"):
+        assert number(site[key]) in words
+        assert number(site[key]) in captions.impact_map(paper)
+
+
+def test_page_links_the_files_that_are_there_and_no_others(study_folder: Path, paper_page: str) -> None:
+    links = re.findall(r'href="([^"]+)"', paper_page)
     assert all((study_folder / "report" / link).is_file() for link in links)
     for name in ("summary.json", "samples.h5", "flights.csv", "beds/bed_0.h5", "report/figure_7_map.png"):
         assert f"../{name}" in links
-    assert "../runs.sqlite" not in links
+    assert "../designs/sequence.csv" not in links
     held = size((study_folder / "samples.h5").stat().st_size)
-    assert f'every sample</td><td class="number">{held}</td>' in report
+    assert f'every sample</td><td class="number">{held}</td>' in paper_page
 
 
-def test_no_number_of_a_symmetric_study_is_rounding(report: str) -> None:
-    assert "10⁻¹⁴" not in report
-    assert "10⁻¹⁶" not in report
-    assert "10⁻¹⁹" not in report
-    assert '<td>velocity across y</td><td>m/s</td><td class="number">0</td>' in report
-    assert "<td>centroid_m</td><td>0, 0, 0</td>" in report
-
-
-def test_a_summary_without_date_and_escape_speed_is_read_too(study_folder: Path) -> None:
-    data = page_results(open_study(study_folder))
-    site = {key: value for key, value in data.results["site"].items() if key[:6] not in ("escape", "bulk_d")}
-    older = replace(data, provenance={}, results=data.results | {"site": site})
-    assert captions.facts(older) == ""
-    assert captions.impact_map(older).endswith("outward).")
+def test_no_number_of_a_symmetric_study_is_rounding(paper: PaperResults, paper_page: str) -> None:
+    assert "<td>centroid_m</td><td>0, 0, 0</td>" in paper_page
+    spread = paper.results["monte_carlo"]["outputs"]
+    across = {"velocity_out_y": {key: -2.2e-14 * value for key, value in spread["speed_out"].items()}}
+    symmetric = {"monte_carlo": paper.results["monte_carlo"] | {"outputs": spread | across}}
+    table = table_of(replace(paper, results=paper.results | symmetric), "Outputs of the samples that leave")
+    assert next(row for row in table.rows if row[0] == "velocity across y")[2:] == ["0"] * 5
 
 
 @pytest.mark.parametrize(
@@ -126,10 +132,6 @@ def test_a_summary_without_date_and_escape_speed_is_read_too(study_folder: Path)
 )
 def test_sizes_of_files_in_words(byte_count: int, words: str) -> None:
     assert size(byte_count) == words
-
-
-def test_same_files_give_the_same_page(study_folder: Path, report: str) -> None:
-    assert write_report(study_folder).read_text(encoding="utf-8") == report
 
 
 def test_missing_files_are_named_at_once(study_folder: Path, tmp_path: Path) -> None:
@@ -155,14 +157,14 @@ DAMAGED: list[tuple[str, Callable[[Path], object]]] = [
     ("summary.json", lambda path: path.write_text("[" * 3000)),
     (
         "summary.json",
-        lambda path: path.write_text(path.read_text().replace('"format_version": 3', '"format_version": 7')),
+        lambda path: path.write_text(re.sub(r'"format_version": \d+', '"format_version": 7', path.read_text())),
     ),
     ("summary.json", lambda path: path.write_text(path.read_text().replace('"returns"', '"return"'))),
     ("scores.json", lambda path: path.write_text('{"refined": 3}')),
     ("flights.csv", lambda path: path.write_text("")),
     ("flights.csv", lambda path: path.write_text(path.read_text()[:-9])),
     ("flights.csv", lambda path: path.write_text(re.sub("impact,([^,]*),[^,]*,", r"impact,\1,,", path.read_text()))),
-    ("flights.csv", lambda path: path.write_text(path.read_text().replace("0.05", "fast"))),
+    ("flights.csv", lambda path: path.write_text(path.read_text().replace("0.0", "fast"))),
     ("rest.csv", lambda path: path.write_text("a,b\n1,2\n")),
     ("body.obj", lambda path: path.write_text("\n")),
     ("body.obj", lambda path: path.write_text("v 0 0 0\nf 1 2 3\n")),
@@ -185,33 +187,12 @@ def test_a_damaged_file_is_one_sentence(
     assert "\n" not in str(refused.value)
 
 
-def test_study_in_which_nothing_leaves_has_a_page_that_says_so(study_folder: Path, tmp_path: Path) -> None:
-    folder = tmp_path / "captured"
-    shutil.copytree(study_folder, folder)
-    with h5py.File(folder / "samples.h5", "r+") as file:
-        file["outcome"][:] = 1
-    (folder / "flights.csv").write_text("sample,status,latitude_deg,longitude_deg,facet\n", encoding="utf-8")
-    summary = json.loads((folder / "summary.json").read_text())
-    summary["results"]["monte_carlo"] |= {"leaving_count": 0, "outputs": {}}
-    (folder / "summary.json").write_text(json.dumps(summary))
-    text = write_report(folder).read_text(encoding="utf-8")
-    assert "None of the 400 samples leaves the surface" in text
-    assert "No flight comes down on the body" in text
-
-
-def test_both_grounds_and_flights_without_scatter_stand_side_by_side(study_folder: Path, tmp_path: Path) -> None:
-    folder = tmp_path / "both"
-    shutil.copytree(study_folder, folder)
-    summary = json.loads((folder / "summary.json").read_text())
-    results = summary["results"]
-    results["rest"]["soil"] = results["rest"]["hard"] | {"outside": {"count": 3, "share": 0.06}}
-    results["without_scatter"] = {"shares": results["shares"], "flights": results["flights"], "ellipses": None}
-    (folder / "summary.json").write_text(json.dumps(summary))
-    text = write_report(folder).read_text(encoding="utf-8")
-    assert "on the soil 50.0 %; there 6.0 % stop where the expansion has no answer" in text
-    assert '<th class="number">without scatter</th>' in text
-    assert "stopped where the expansion has no answer" in text
-    assert "next impact, without scatter" in text
+def test_a_study_in_which_nothing_leaves_says_so(paper: PaperResults) -> None:
+    table = paper.results["monte_carlo"] | {"leaving_count": 0, "outputs": {}}
+    none = replace(paper, results=paper.results | {"monte_carlo": table}, facet=paper.facet[:0])
+    count = captions.thousands(table["sample_count"])
+    assert f"None of the {count} samples leaves the surface" in captions.scatter(none, "grain.restitution")
+    assert captions.body(none) == ""
 
 
 def test_a_body_is_drawn_about_its_centroid(tmp_path: Path) -> None:

@@ -1,0 +1,53 @@
+"""Shares in per cent, the same everywhere on the page: as many digits as the interval deserves."""
+
+from collections.abc import Mapping
+from typing import Any
+
+# Of an interval narrower than this tenths of a per cent say something.
+NARROW = 0.02
+# Within this of 0 or 1 whole per cent would say that there is nothing, or nothing else.
+NEAR = 0.01
+
+
+def percent(share: float, digits: int = 0) -> str:
+    """A share of one in per cent, to tenths at least where it is next to 0 or 1."""
+    return f"{_number(share, digits)} %"
+
+
+def span(lower: float, upper: float, digits: int | None = None) -> str:
+    """Two shares in per cent, "68-73 %"; digits: None for those that so wide an interval deserves.
+
+    A bound of a share lies between 0 and 1.
+    """
+    low, high = (min(max(end, 0.0), 1.0) for end in (lower, upper))
+    shown = interval_digits(lower, upper) if digits is None else digits
+    return f"{_number(low, shown)}-{percent(high, shown)}"
+
+
+def interval_digits(lower: float | None, upper: float | None) -> int:
+    """Digits behind the point that a share with this interval deserves: none unless it is narrow."""
+    return int(lower is not None and upper is not None and upper - lower < NARROW)
+
+
+def with_interval(entry: Mapping[str, Any], alone: int = 0) -> str:
+    """A share of the summary with its interval, "71 % (68-73 %)"; alone: digits of one without an interval."""
+    lower, upper = entry.get("lower"), entry.get("upper")
+    if lower is None or upper is None:
+        return percent(entry["share"], alone)
+    digits = interval_digits(lower, upper)
+    return f"{percent(entry['share'], digits)} ({span(lower, upper, digits)})"
+
+
+def part(entry: Mapping[str, float], more: str = "") -> str:
+    """A part of a variance, which cannot be told from nothing where it is 0 or less: "not detected (0-2 %)".
+
+    more: words that stand behind the interval.
+    """
+    digits = interval_digits(entry["lower"], entry["upper"])
+    shown = percent(min(entry["share"], 1.0), digits) if entry["share"] > 0.0 else "not detected"
+    return f"{shown} ({span(entry['lower'], entry['upper'], digits)}{more})"
+
+
+def _number(share: float, digits: int) -> str:
+    is_near = 0.0 < share < NEAR or 1.0 - NEAR < share < 1.0
+    return f"{100.0 * share:.{max(digits, 1 if is_near else 0)}f}"
