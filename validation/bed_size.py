@@ -7,9 +7,6 @@ and bed_size.json with the means and their standard errors, anew after each bed.
 and are the same on all beds. Landings that stand in bed_size.csv already are not run again: delete it to start anew.
 """
 
-import argparse
-import csv
-import json
 import math
 import sys
 import time
@@ -24,7 +21,7 @@ from lithobrake.touchdown import Bed, BedRecipe, ContactModel, GrainSizes, Lande
 from lithobrake.touchdown.smallest_bed import smallest_bed
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
-from origin import origin
+from harness import Row, add_row, command_line, origin, read_rows, write_document
 
 ROCK = Material(young_modulus=1.5e6, poisson_ratio=0.25, restitution=0.5, friction=0.7, density=2500.0)
 GRAVITY, DIAMETER, CONTACT = 5e-5, 0.09, ContactModel(steps_per_contact=30.0)
@@ -33,6 +30,7 @@ SEEDS = {"plain": (3, 4, 5, 6, 7, 8), "double": (3, 4, 5)}
 LANDINGS = {"steep": (0.4, 0.0), "slanted": (0.4, 15.0), "slow": (0.2, 30.0)}  # m/s, deg from the normal
 LANDER = Lander(shape=Box((0.1, 0.1, 0.1)), mass=1.3, inertia=None, material=ROCK)
 OUTPUTS = ("speed_out", "elevation_out", "spin_out")
+KINDS = {"bed": str, "seed": int, "landing": str, "placement": int, "status": str}
 
 
 @cache
@@ -50,13 +48,12 @@ def bed(name: str, seed: int, folder: Path) -> Bed:
     return Bed.load(path)
 
 
-def landings(name: str, seed: int, placements: int, folder: Path) -> list[dict[str, object]]:
+def landings(name: str, seed: int, placements: int, folder: Path) -> list[Row]:
     """Land at each place in each way on a bed, and note it in the table; what stands there is done."""
     table = folder / "bed_size.csv"
-    done = {
-        (row["landing"], row["placement"]): row for row in noted(table) if (row["bed"], row["seed"]) == (name, seed)
-    }
-    rows: list[dict[str, object]] = []
+    noted = [row for row in read_rows(table, KINDS) if (row["bed"], row["seed"]) == (name, seed)]
+    done = {(row["landing"], row["placement"]): row for row in noted}
+    rows: list[Row] = []
     generator = np.random.default_rng(11)
     for placement in range(placements):
         place = tuple(generator.uniform(-0.1, 0.1, size=2))
@@ -76,39 +73,21 @@ def landings(name: str, seed: int, placements: int, folder: Path) -> list[dict[s
                 {"bed": name, "seed": seed, "landing": way, "placement": placement, "status": outcome.status}
                 | {key: outcome.outputs[key] for key in OUTPUTS}
             )
-            note(rows[-1], table)
+            add_row(table, rows[-1])
     return rows
 
 
-def noted(table: Path) -> list[dict[str, object]]:
-    """Return the lines of the table on disk."""
-    if not table.exists():
-        return []
-    kinds = {"bed": str, "seed": int, "landing": str, "placement": int, "status": str} | dict.fromkeys(OUTPUTS, float)
-    with table.open(newline="") as file:
-        return [{key: kinds[key](value) for key, value in row.items()} for row in csv.DictReader(file)]
-
-
-def note(row: dict[str, object], table: Path) -> None:
-    """Append a line to the table on disk."""
-    with table.open("a", newline="") as file:
-        writer = csv.DictWriter(file, list(row))
-        if file.tell() == 0:
-            writer.writeheader()
-        writer.writerow(row)
-
-
-def bed_means(rows: list[dict[str, object]], name: str, way: str, key: str) -> np.ndarray:
+def bed_means(rows: list[Row], name: str, way: str, key: str) -> np.ndarray:
     """Mean of an output over the landings that left upward, one for each bed of a size."""
     of = [row for row in rows if row["bed"] == name and row["landing"] == way and row["status"] == "clear"]
     return np.array([np.mean([row[key] for row in of if row["seed"] == seed]) for seed in {row["seed"] for row in of}])
 
 
-def summary(rows: list[dict[str, object]]) -> dict[str, object]:
+def summary(rows: list[Row]) -> Row:
     """Means over beds, their scatter, and the difference of the sizes in standard errors of beds."""
-    result: dict[str, object] = {}
+    result: Row = {}
     for way in LANDINGS:
-        entry: dict[str, object] = {
+        entry: Row = {
             "outcomes": {
                 name: dict(Counter(str(r["status"]) for r in rows if r["bed"] == name and r["landing"] == way))
                 for name in BEDS
@@ -130,10 +109,7 @@ def summary(rows: list[dict[str, object]]) -> dict[str, object]:
 
 def main() -> None:
     """Run all landings and write what came of them."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--placements", type=int, default=10)
-    parser.add_argument("--out", type=Path, default=Path(__file__).parent)
-    chosen = parser.parse_args()
+    chosen = command_line(__doc__, placements=10, out=Path(__file__).parent).parse_args()
     start, rows = time.process_time(), []
     rule = {way: smallest_bed(LANDER, ROCK, DIAMETER, speed) for way, (speed, _) in LANDINGS.items()}
     turns = [(name, seed) for k in range(6) for name in BEDS for seed in SEEDS[name][k : k + 1]]
@@ -143,7 +119,7 @@ def main() -> None:
             **origin(f"validation/bed_size.py --placements {chosen.placements}"),
             "cpu_s": round(time.process_time() - start), "smallest_width_and_depth_m": rule, "landings": summary(rows),
         }  # fmt: skip
-        (chosen.out / "bed_size.json").write_text(json.dumps(document, indent=1) + "\n")
+        write_document(chosen.out / "bed_size.json", document)
         print(f"{name} {seed}: {document['cpu_s']} s of CPU time", flush=True)
 
 

@@ -6,9 +6,7 @@ CHECK is any of compression, friction, repose, froude, packing (none: all). Each
 numbers, date, command and machine, anew after every row; bulk_figures.py draws them.
 """
 
-import argparse
 import itertools
-import json
 import math
 import sys
 import time
@@ -29,10 +27,10 @@ from lithobrake.touchdown.simulation import relax, release
 from lithobrake.touchdown.surface import rotation_matrix
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
-from origin import origin
+from harness import Row as Result
+from harness import command_line, origin, write_document
 
 Floats = NDArray[np.float64]
-Result = dict[str, Any]
 
 
 def rock(**changes: float) -> Material:
@@ -324,9 +322,8 @@ CHECKS: dict[str, Callable[[], Iterator[Result]]] = {
 
 def main() -> None:
     """Run the checks asked for."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = command_line(__doc__, out=Path(__file__).parent)
     parser.add_argument("check", nargs="*", default=[*CHECKS])
-    parser.add_argument("--out", type=Path, default=Path(__file__).parent)
     chosen = parser.parse_args()
     for name in chosen.check:
         start = time.process_time()
@@ -337,7 +334,7 @@ def main() -> None:
                 "check": name, **origin(f"validation/bulk.py {name}"),
                 "cpu_s": round(time.process_time() - start), "rows": rows,
             }  # fmt: skip
-            (chosen.out / f"bulk_{name}.json").write_text(json.dumps(document, indent=1) + "\n")
+            write_document(chosen.out / f"bulk_{name}.json", document)
             print(f"{name}: {document['cpu_s']} s of CPU time, {row}", flush=True)
 
 

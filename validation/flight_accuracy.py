@@ -7,8 +7,6 @@ Results go into flight_accuracy.json beside this file.
 Usage: python validation/flight_accuracy.py [--oracle 200] [--own 2000]
 """
 
-import argparse
-import json
 import platform
 import sys
 from collections.abc import Callable
@@ -20,16 +18,14 @@ import numpy as np
 import scipy
 from scipy.integrate import solve_ivp
 
-from lithobrake.atomic import atomic_path
 from lithobrake.smallbody import Body, didymos, fly
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
-from origin import origin
+from harness import Row, command_line, origin, write_document
 
 RESULTS = Path(__file__).with_suffix(".json")
 DURATION = 12 * 3600.0
 TIGHT = 1e-11
-Row = dict[str, Any]
 
 
 def cone(body: Body, count: int, seed: int) -> tuple[np.ndarray, np.ndarray]:
@@ -112,10 +108,7 @@ def ends(body: Body, start: tuple[np.ndarray, np.ndarray], **choices: Any) -> tu
 
 def main() -> None:
     """Compare, print and write."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--oracle", type=int, default=200)
-    parser.add_argument("--own", type=int, default=2000)
-    options = parser.parse_args()
+    options = command_line(__doc__, oracle=200, own=2000).parse_args()
     alone, rows = didymos(partner=False), []
     start = cone(alone, options.oracle, seed=3)
     flown = [oracle(alone, *pair) for pair in zip(*start, strict=True)]
@@ -135,8 +128,7 @@ def main() -> None:
         "scipy": scipy.__version__,
         "rows": rows,
     }
-    with atomic_path(RESULTS) as draft:
-        draft.write_text(json.dumps(result, indent=1) + "\n", encoding="utf-8")
+    write_document(RESULTS, result)
 
 
 if __name__ == "__main__":

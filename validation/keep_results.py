@@ -7,13 +7,10 @@ ledger as CSV and a contact sheet of the landing that the study shows; and notes
 on what machine and in which time it was made (from the log of the run, as bash's `time` ends it).
 """
 
-import argparse
-import json
 import re
 import shutil
 import sys
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from scipy.stats import spearmanr
@@ -22,9 +19,8 @@ import lithobrake
 from lithobrake.export import export_study
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
-from origin import origin
+from harness import ROOT, command_line, origin, write_document
 
-ROOT = Path(__file__).parents[1]
 OUTPUTS = ("speed_out", "elevation_out", "spin_out")
 KEPT = (
     "study.toml", "summary.json", "scores.json", "screening.json", "refined.json", "emulator.json", "estimates.json",
@@ -72,24 +68,20 @@ def keep(study: Path, out: Path, motion: bool) -> None:
     for figure in sorted(set((study / "report").glob("*.png")) - {study / "report" / "figure_2_landing.png"}):
         shutil.copy(figure, out / "figures" / figure.name)
     results = lithobrake.StudyResults(study)
-    (out / "rank_correlations.json").write_text(json.dumps(rank_correlations(results), indent=1) + "\n")
+    write_document(out / "rank_correlations.json", rank_correlations(results))
     export_study(results, out / "landing", ["vtkhdf", "sheet"] if motion else ["sheet"])
 
 
 def main() -> None:
     """Keep one study."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("study", type=Path)
-    parser.add_argument("--command", required=True)
-    parser.add_argument("--log", type=Path, required=True)
+    parser = command_line(__doc__, "study", command=str, log=Path, out=ROOT / "showcase")
     parser.add_argument("--motion", action="store_true", help="the landing as VTKHDF too, some megabytes")
-    parser.add_argument("--out", type=Path, default=ROOT / "showcase")
     given = parser.parse_args()
     out = given.out / given.study.name
     keep(given.study, out, given.motion)
     log = given.log.read_text()
-    noted: dict[str, Any] = {**origin(""), "command": given.command, **times(log), "stages": stages(log)}
-    (out / "origin.json").write_text(json.dumps(noted, indent=1) + "\n")
+    made = {**origin(""), "command": given.command, **times(log), "stages": stages(log)}
+    write_document(out / "origin.json", made)
 
 
 if __name__ == "__main__":

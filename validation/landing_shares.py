@@ -7,8 +7,6 @@ Results go into landing_shares.json beside this file.
 Usage: python validation/landing_shares.py [--radar didymos_radar2020_1996.obj] [--flights 4000]
 """
 
-import argparse
-import json
 import sys
 from dataclasses import replace
 from itertools import pairwise
@@ -18,11 +16,10 @@ from typing import Any
 import numpy as np
 
 from lithobrake.analysis import wilson_interval
-from lithobrake.atomic import atomic_path
 from lithobrake.smallbody import Body, Shape, didymos, fly
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
-from origin import origin
+from harness import command_line, origin, write_document
 
 RESULTS = Path(__file__).with_suffix(".json")
 DURATION = 12 * 3600.0
@@ -65,9 +62,8 @@ def cases(radar: Path | None) -> dict[str, Body]:
 
 def main() -> None:
     """Fly, print and write."""
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = command_line(__doc__, flights=4000)
     parser.add_argument("--radar", type=Path)
-    parser.add_argument("--flights", type=int, default=4000)
     options = parser.parse_args()
     table = {}
     for name, body in cases(options.radar).items():
@@ -83,8 +79,7 @@ def main() -> None:
         "before": dict(zip([f"{low}-{high} m/s" for low, high in pairwise(BANDS)], BEFORE, strict=True)),
         "cases": table,
     }
-    with atomic_path(RESULTS) as draft:
-        draft.write_text(json.dumps(result, indent=1) + "\n", encoding="utf-8")
+    write_document(RESULTS, result)
 
 
 if __name__ == "__main__":

@@ -14,10 +14,9 @@ from pathlib import Path
 import pytest
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
-from origin import origin
+from harness import PAGES, ROOT, origin
 
-ROOT = Path(__file__).parents[1]
-PAGE = ROOT / "docs" / "validation" / "contact.md"
+PAGE = PAGES / "contact.md"
 ROWS = Path(__file__).with_name("contact_rows.csv")
 NOT_TESTS = (
     "Measured are the left sides of the comparisons that the tests make, among them some that only make",

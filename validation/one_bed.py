@@ -8,7 +8,6 @@ runs, which split soil, place and chaos. one_bed.json gets an entry a study as i
 run again: delete it to start anew. validation/one_bed_figures.py draws them.
 """
 
-import argparse
 import json
 import sys
 import tempfile
@@ -20,20 +19,19 @@ from typing import Any
 import lithobrake
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
-from origin import origin
+from harness import SCENARIOS, command_line, origin, write_document
 
-SCENARIO_FOLDER = Path(__file__).parents[1] / "scenarios"
 FIRST_SEED = 101
 # Enough to see how far apart they are.
 ONE_PLACE_SEEDS = 10
-SCENARIOS = {"one place": "one_place", "draws": "quick"}
+QUESTIONS = {"one place": "one_place", "draws": "quick"}
 DIAMETERS = (0.12, 0.09, 0.065)  # m; the lander measures .1 x .1 x .227 m
 SPEED, ELEVATION = "speed_out", "elevation_out"
 
 
 def scenario(name: str, seed: int) -> dict[str, Any]:
     """The tables of a study of the repository, with another seed."""
-    return tomllib.loads((SCENARIO_FOLDER / f"{name}.toml").read_text()) | {"seed": seed}
+    return tomllib.loads((SCENARIOS / f"{name}.toml").read_text()) | {"seed": seed}
 
 
 def with_grains(tables: dict[str, Any], diameter: float) -> dict[str, Any]:
@@ -50,7 +48,7 @@ def studies(seeds: int) -> list[tuple[str, float, dict[str, Any]]]:
     pairs = [
         (kind, own, scenario(name, FIRST_SEED + k))
         for k in range(seeds)
-        for kind, name in SCENARIOS.items()
+        for kind, name in QUESTIONS.items()
         if kind == "draws" or k < ONE_PLACE_SEEDS
     ]
     return pairs + [("grain sizes", d, with_grains(scenario("quick", FIRST_SEED), d)) for d in DIAMETERS]
@@ -76,10 +74,8 @@ def told(results: lithobrake.StudyResults) -> dict[str, Any]:
 
 def main() -> None:
     """Run what is missing."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--seeds", type=int, default=20)
-    parser.add_argument("--work", type=Path, default=Path(tempfile.gettempdir()) / "lithobrake_one_bed")
-    parser.add_argument("--out", type=Path, default=Path(__file__).parent)
+    work = Path(tempfile.gettempdir()) / "lithobrake_one_bed"
+    parser = command_line(__doc__, seeds=20, work=work, out=Path(__file__).parent)
     parser.add_argument("--workers", type=int, default=None)
     given = parser.parse_args()
     path = given.out / "one_bed.json"
@@ -95,8 +91,7 @@ def main() -> None:
         wall = time.perf_counter() - start
         entries.append(dict(zip(("kind", "diameter_m", "seed"), key, strict=True)) | {"wall_s": wall} | told(results))
         command = f"validation/one_bed.py --seeds {given.seeds}"
-        text = json.dumps({**origin(command), "studies": entries}, indent=1)
-        path.write_text(text + "\n")
+        write_document(path, {**origin(command), "studies": entries})
         print(*key, f"{wall:.0f} s", results.summary["results"]["headline"][0], flush=True)
 
 

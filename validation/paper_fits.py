@@ -7,9 +7,8 @@ seen; writes paper_fits.json, of which paper_study_figures.py makes a table.
 """
 
 import csv
-import json
 import sys
-import time
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -21,10 +20,9 @@ from lithobrake.pipeline.designs import design_inputs
 from lithobrake.study import read_study
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
-from origin import origin
+from harness import ROOT, origin, timed, write_document
 
-HERE = Path(__file__).parent
-RUNS = HERE.parent / "showcase" / "paper" / "runs"
+RUNS = ROOT / "showcase" / "paper" / "runs"
 INPUTS = design_inputs(read_study(RUNS.parent / "study.toml"))
 OUTPUTS = ("speed_out", "elevation_out", "spin_out")
 HELD_BACK = 50  # test runs that every fit is scored on
@@ -56,6 +54,12 @@ def together(*parts: Runs) -> Runs:
     return x[first], y[first]
 
 
+def scored(training: Runs, fresh: Runs, options: dict[str, Any]) -> dict[str, dict[str, float]]:
+    """Scores of a fit to some runs on others, by output."""
+    found = fit(INPUTS, *training, output_names=OUTPUTS, **options).score(*fresh)
+    return {output: {key: found[output][key] for key in ("mape", "q2", "rmse")} for output in OUTPUTS}
+
+
 def main() -> None:
     """Fit, score, write."""
     x, y = runs("test_all")
@@ -65,14 +69,11 @@ def main() -> None:
     rows = []
     for name, training in {"both grids": grid, "drawn": drawn, "grids and drawn": together(grid, drawn)}.items():
         for way, options in WAYS.items():
-            start = time.process_time()
-            scores = fit(INPUTS, *training, output_names=OUTPUTS, **options).score(*fresh)
-            scores = {output: {key: scores[output][key] for key in ("mape", "q2", "rmse")} for output in OUTPUTS}
-            cost = time.process_time() - start
+            scores, cost = timed(partial(scored, training, fresh, options))
             rows.append({"runs": name, "count": len(training[0]), "fit": way, "cpu_s": cost, "scores": scores})
             print(rows[-1], flush=True)
     content = {**origin("validation/paper_fits.py"), "fresh_runs": len(fresh[0]), "fits": rows}
-    (HERE / "paper_fits.json").write_text(json.dumps(content, indent=1) + "\n")
+    write_document(Path(__file__).with_suffix(".json"), content)
 
 
 if __name__ == "__main__":

@@ -11,7 +11,6 @@ it ends; a study that stands in it is not run again: delete it to start anew. va
 draws them.
 """
 
-import argparse
 import json
 import sys
 import tempfile
@@ -24,8 +23,7 @@ from typing import Any
 import lithobrake
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
-from one_bed import SCENARIO_FOLDER
-from origin import origin
+from harness import SCENARIOS, command_line, origin, write_document
 
 Tables = dict[str, Any]
 OTHER_SEEDS = range(2, 12)
@@ -40,7 +38,7 @@ PAIRED = ("speed_out", "elevation_out", "spin_out")
 
 def scenario(name: str) -> Tables:
     """The tables of a study of the repository."""
-    return tomllib.loads((SCENARIO_FOLDER / f"{name}.toml").read_text())
+    return tomllib.loads((SCENARIOS / f"{name}.toml").read_text())
 
 
 def changed(tables: Tables, section: str, **values: Any) -> Tables:
@@ -117,10 +115,9 @@ KINDS = {"twin": twin, "other beds": other_beds, "numerics": numerics, "grain si
 
 def main() -> None:
     """Run what is missing."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--work", type=Path, default=Path(tempfile.gettempdir()) / "lithobrake_paper_study")
+    work = Path(tempfile.gettempdir()) / "lithobrake_paper_study"
+    parser = command_line(__doc__, work=work, out=Path(__file__).parent)
     parser.add_argument("--kinds", nargs="+", choices=KINDS, default=list(KINDS))
-    parser.add_argument("--out", type=Path, default=Path(__file__).parent)
     parser.add_argument("--workers", type=int, default=None)
     given = parser.parse_args()
     path = given.out / "paper_study.json"
@@ -140,8 +137,7 @@ def main() -> None:
                 first = [row for row, design in enumerate(runs["design"]) if design == "screening"]
                 entry["screening_runs"] = {output: [float(runs[output][row]) for row in first] for output in PAIRED}
             entries.append(entry)
-            text = json.dumps({**origin("validation/paper_study.py"), "studies": entries}, indent=1)
-            path.write_text(text + "\n")
+            write_document(path, {**origin("validation/paper_study.py"), "studies": entries})
             print(kind, name, f"{wall:.0f} s", results.summary["results"]["headline"][0], flush=True)
 
 

@@ -12,8 +12,6 @@ By similarity all depends on friction, restitution, the Froude number v^2 / (g d
 and some pushes at 1e6 tell what that changes.
 """
 
-import argparse
-import csv
 import json
 import math
 import sys
@@ -32,7 +30,7 @@ from lithobrake.touchdown.bed import boxed_world
 from lithobrake.touchdown.simulation import release
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
-from origin import origin
+from harness import Row, add_row, command_line, origin, read_rows, write_document
 
 DIAMETER, GRAINS, WIDTH = 0.09, 200, (1.5, 0.45)
 DENSITY, GRAVITY, CONTACT = 2500.0, 0.02, ContactModel()
@@ -57,9 +55,6 @@ ATTITUDES = {
     "edge": (0.65328, 0.65328, 0.27060, 0.27060),
     "random": None,
 }
-
-
-Row = dict[str, Any]
 
 
 @dataclass(frozen=True)
@@ -192,20 +187,7 @@ def pushed(push: Push, folder: Path) -> Row:
 
 def noted(table: Path) -> list[Row]:
     """Lines of the table on disk."""
-    if not table.exists():
-        return []
-    words = {"attitude": str, "stopped": lambda word: word == "True", "bed": int}
-    with table.open(newline="") as file:
-        return [{key: words.get(key, float)(value) for key, value in row.items()} for row in csv.DictReader(file)]
-
-
-def note(row: Row, table: Path) -> None:
-    """Append a line to the table on disk."""
-    with table.open("a", newline="") as file:
-        writer = csv.DictWriter(file, list(row), lineterminator="\n")
-        if file.tell() == 0:
-            writer.writeheader()
-        writer.writerow(row)
+    return read_rows(table, {"attitude": str, "stopped": lambda word: word == "True", "bed": int})
 
 
 def mean_friction(rows: list[Row]) -> dict[str, float | None]:
@@ -265,22 +247,21 @@ def summary(rows: list[Row]) -> dict[str, Any]:
 
 def main() -> None:
     """Make the pushes and write what came of them."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--out", type=Path, default=Path(__file__).parent)
-    chosen, begin = parser.parse_args(), time.process_time()
+    chosen = command_line(__doc__, out=Path(__file__).parent).parse_args()
+    begin = time.process_time()
     table, told = chosen.out / "sliding_law.csv", chosen.out / "sliding_law.json"
     rows, spent = noted(table), json.loads(told.read_text())["cpu_s"] if told.exists() else 0
     done = [{key: row[key] for key in PUSH} for row in rows]
     to_do = [push for push in pushes() if asdict(push) not in done]
     for number, push in enumerate(to_do, start=1):
         rows.append(pushed(push, chosen.out))
-        note(rows[-1], table)
+        add_row(table, rows[-1])
         print(f"{number} of {len(to_do)}: {rows[-1]['effective_friction']:.3f}", flush=True)
         document = {
             **origin("validation/sliding_law.py"), "cpu_s": spent + round(time.process_time() - begin),
             **summary(rows),
         }  # fmt: skip
-        told.write_text(json.dumps(document, indent=1) + "\n")
+        write_document(told, document)
 
 
 if __name__ == "__main__":

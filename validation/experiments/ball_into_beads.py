@@ -9,7 +9,6 @@ again.
 Source: [Uehara-2003]; [Ambroso-2005]; [Ambroso-2005b]; for the set-up DEM-Engine's DEMdemo_BallDrop.cpp.
 """
 
-import argparse
 import math
 import time
 from collections.abc import Iterator
@@ -19,7 +18,7 @@ from pathlib import Path
 import numpy as np
 from repose import angle_of_repose
 from similarity import similar_drops
-from sphere_bed import Beads, Row, add_row, bulk_density, dropped, kept, note_origin, read_rows
+from sphere_bed import Beads, Row, bulk_density, dropped, kept, note, read_rows, work_folder
 
 from lithobrake.dem import Material, Sphere
 
@@ -124,17 +123,14 @@ def missing(chosen: list[str], work: Path, size: float) -> Iterator[tuple[Path, 
 
 def main() -> None:
     """Run the series asked for."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = work_folder(__doc__)
     parser.add_argument("series", nargs="*")
-    parser.add_argument("--work", type=Path, required=True, help="folder for beds and paths, made if it is not there")
     parser.add_argument("--beads", type=float, default=5.0, help="mean diameter of the beads [mm]")
     given = parser.parse_args()
     given.work.mkdir(parents=True, exist_ok=True)
     chosen = given.series or [*series(0.005), "similarity", "repose"]
     for table, row in missing(chosen, given.work, 1e-3 * given.beads):
-        add_row(table, row)
-        note_origin(table, f"ball_into_beads.py --work FOLDER --beads {given.beads:g}")
-        print(row, flush=True)
+        note(table, row, f"ball_into_beads.py --work FOLDER --beads {given.beads:g}")
 
 
 if __name__ == "__main__":

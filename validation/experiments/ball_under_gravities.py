@@ -10,7 +10,6 @@ Sources: [Sunday-2021], [Sunday-2022] (depth and duration follow the Froude numb
 speed and no gravity).
 """
 
-import argparse
 import itertools
 import math
 import time
@@ -19,7 +18,7 @@ from pathlib import Path
 
 import numpy as np
 from ball_into_beads import SPREAD
-from sphere_bed import Beads, Row, add_row, bulk_density, dropped, kept, note_origin, read_rows
+from sphere_bed import Beads, Row, bulk_density, dropped, kept, note, read_rows, work_folder
 
 from lithobrake.dem import Material, Sphere
 
@@ -62,8 +61,7 @@ def drop(work: Path, share: float, froude: float) -> Row:
 
 def main() -> None:
     """Run what has no row yet."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--work", type=Path, required=True, help="folder for beds and paths, made if it is not there")
+    parser = work_folder(__doc__)
     parser.add_argument("--froude", type=float, nargs="*", default=FROUDE)
     parser.add_argument("--shares", type=float, nargs="*", default=SHARES)
     given = parser.parse_args()
@@ -71,10 +69,7 @@ def main() -> None:
     ran = {(row["share"], row["froude"]) for row in read_rows(TABLE)}
     for share, froude in itertools.product(given.shares, given.froude):
         if (share, froude) not in ran:
-            row = drop(given.work, share, froude)
-            add_row(TABLE, row)
-            note_origin(TABLE, "ball_under_gravities.py --work FOLDER")
-            print(row, flush=True)
+            note(TABLE, drop(given.work, share, froude), "ball_under_gravities.py --work FOLDER")
 
 
 if __name__ == "__main__":

@@ -7,14 +7,13 @@ Basalt spheres of 150 um, at random points of the bed. Rows that stand in grain_
 Source: [Bogdan-2020].
 """
 
-import argparse
 import math
 import time
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from sphere_bed import Beads, Row, add_row, kept, note_origin, read_rows, steps_for
+from sphere_bed import Beads, Row, kept, note, read_rows, steps_for, work_folder
 
 from lithobrake.dem import Material, Sphere, World
 
@@ -94,19 +93,13 @@ def impact(work: Path, name: str, beads: Beads, number: int) -> Row:
 
 def main() -> None:
     """Run what has no row yet."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--work", type=Path, required=True, help="folder for beds, made if it is not there")
-    parser.add_argument("--impacts", type=int, default=100)
-    given = parser.parse_args()
+    given = work_folder(__doc__, impacts=100).parse_args()
     given.work.mkdir(parents=True, exist_ok=True)
     ran = {(row["kind"], row["impact"]) for row in read_rows(TABLE)}
     for name, (beads, share) in kinds().items():
         for number in range(math.ceil(share * given.impacts)):
             if (name, number) not in ran:
-                row = impact(given.work, name, beads, number)
-                add_row(TABLE, row)
-                note_origin(TABLE, "grain_on_its_own_kind.py --work FOLDER")
-                print(row, flush=True)
+                note(TABLE, impact(given.work, name, beads, number), "grain_on_its_own_kind.py --work FOLDER")
 
 
 if __name__ == "__main__":

@@ -9,7 +9,6 @@ each of these, and mascot.json.
 Facts: [Scholten-2019] (times, number of contacts, way), [Watanabe-2019] (Ryugu).
 """
 
-import argparse
 import csv
 import json
 import sys
@@ -22,7 +21,7 @@ from scipy.spatial import ConvexHull as Hull
 import lithobrake
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
-from origin import origin
+from harness import command_line, origin, write_document
 
 HERE = Path(__file__).parent
 # m, kg, s: a ball of Ryugu's volume, mass and spin.
@@ -82,7 +81,7 @@ def study(body: Path) -> dict[str, Any]:
 
 def main() -> None:
     """Run the study, take out the landers, say how they compare."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = command_line(__doc__)
     parser.add_argument("--work", type=Path, required=True, help="folder of the study, made if it is not there")
     work = parser.parse_args().work
     work.mkdir(parents=True, exist_ok=True)
@@ -103,8 +102,8 @@ def main() -> None:
         **origin("validation/experiments/mascot.py --work FOLDER"), "landers": int(like.sum()),
         "measured": MEASURED, "runs": results.summary["results"].get("runs"), "headline": results.headline,
     }  # fmt: skip
-    (HERE / "mascot.json").write_text(json.dumps(document, indent=1, default=str) + "\n")
-    print(json.dumps(document, indent=1, default=str))
+    write_document(HERE / "mascot.json", document)
+    print(json.dumps(document, indent=1))
 
 
 if __name__ == "__main__":

@@ -8,10 +8,7 @@ landings that stand there are not run again. Then oblique_map.json and oblique_m
 to docs/validation/experiments.
 """
 
-import argparse
-import csv
 import itertools
-import json
 import math
 import sys
 import time
@@ -27,7 +24,7 @@ from lithobrake.dem import Box, Material, Sphere
 from lithobrake.touchdown import Bed, BedRecipe, ContactModel, GrainSizes, Lander, Landing, Outcome, land, pour_bed
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
-from origin import origin
+from harness import PAGES, Row, add_row, command_line, origin, read_rows, write_document
 
 GRAVITY, GRAIN_DIAMETER, WIDTH = 5e-5, 0.09, 0.7  # m/s2, m, m
 SPEEDS, INCIDENCES = (0.02, 0.05, 0.1, 0.2, 0.4), (0.0, 30.0, 50.0, 65.0, 80.0)  # m/s, deg from the normal
@@ -44,7 +41,7 @@ FRAMES = 200
 # Farther off the straight line than this, a lander has touched [m].
 DEFLECTED = 1e-5
 HERE = Path(__file__).parent
-FIGURES = HERE.parents[1] / "docs" / "validation" / "experiments"
+FIGURES = PAGES / "experiments"
 CLASSES = ("stop", "along", "bounce", "lost")
 KEYS = {"shape": str, "speed": float, "incidence_deg": float, "bed": int, "placement": int, "status": str}
 
@@ -105,7 +102,7 @@ def way(outcome: Outcome, landing: Landing) -> float:
     return math.hypot(*gone)
 
 
-def run(shape: str, speed: float, incidence_deg: float, number: int, placement: int, work: Path) -> dict[str, object]:
+def run(shape: str, speed: float, incidence_deg: float, number: int, placement: int, work: Path) -> Row:
     """Land once and return a line of the table."""
     lander, landing = prepared(shape, speed, incidence_deg, number, placement)
     ground = bed(number, work)
@@ -124,24 +121,12 @@ def run(shape: str, speed: float, incidence_deg: float, number: int, placement: 
     }  # fmt: skip
 
 
-def noted(table: Path) -> list[dict[str, object]]:
+def noted(table: Path) -> list[Row]:
     """Return the lines of the table on disk."""
-    if not table.exists():
-        return []
-    with table.open(newline="") as file:
-        return [{key: KEYS.get(key, float)(value) for key, value in row.items()} for row in csv.DictReader(file)]
+    return read_rows(table, KEYS)
 
 
-def note(row: dict[str, object], table: Path) -> None:
-    """Append a line to the table on disk, its numbers to six digits."""
-    with table.open("a", newline="") as file:
-        writer = csv.DictWriter(file, list(row))
-        if file.tell() == 0:
-            writer.writeheader()
-        writer.writerow({key: f"{value:.6g}" if isinstance(value, float) else value for key, value in row.items()})
-
-
-def kind(row: dict[str, object]) -> str:
+def kind(row: Row) -> str:
     """Return what became of a lander: one of CLASSES."""
     far = row["way"] > LENGTHS[row["shape"]]
     if row["status"] == "captured":
@@ -151,7 +136,7 @@ def kind(row: dict[str, object]) -> str:
     return "along" if far and row["status"] == "left_sideways" else "lost"
 
 
-def cell(rows: list[dict[str, object]]) -> dict[str, object]:
+def cell(rows: list[Row]) -> Row:
     """Return the shares of a cell with their 95 % intervals, and how fast what left the ground was."""
     counts = Counter(kind(row) for row in rows)
     leaving = [row for row in rows if row["status"] == "clear"]
@@ -170,7 +155,7 @@ def cell(rows: list[dict[str, object]]) -> dict[str, object]:
     }  # fmt: skip
 
 
-def cells(rows: list[dict[str, object]]) -> list[dict[str, object]]:
+def cells(rows: list[Row]) -> list[Row]:
     """Return all cells that have landings."""
     found = []
     for shape, speed, angle in itertools.product(SHAPES, SPEEDS, INCIDENCES):
@@ -182,12 +167,7 @@ def cells(rows: list[dict[str, object]]) -> list[dict[str, object]]:
 
 def main() -> None:
     """Run the landings that are not noted yet, and write what came of all."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--work", type=Path, required=True)
-    parser.add_argument("--placements", type=int, default=3)
-    parser.add_argument("--speeds", type=float, nargs="+", default=SPEEDS)
-    parser.add_argument("--out", type=Path, default=HERE)
-    chosen = parser.parse_args()
+    chosen = command_line(__doc__, work=Path, placements=3, speeds=SPEEDS, out=HERE).parse_args()
     chosen.work.mkdir(parents=True, exist_ok=True)
     table = chosen.out / "oblique_map.csv"
     done = {tuple(row[key] for key in list(KEYS)[:5]) for row in noted(table)}
@@ -195,7 +175,7 @@ def main() -> None:
     # Cells fill evenly, so that a map that is stopped early is a coarser map and not a part of one.
     for placement, number, (shape, speed, angle) in itertools.product(range(chosen.placements), range(BEDS), ways):
         if (shape, speed, angle, number, placement) not in done:
-            note(run(shape, speed, angle, number, placement, chosen.work), table)
+            add_row(table, run(shape, speed, angle, number, placement, chosen.work), digits=6)
     rows = noted(table)
     document = {
         **origin(f"validation/experiments/oblique_map.py --work FOLDER --placements {chosen.placements}"),
@@ -203,7 +183,7 @@ def main() -> None:
         "cpu_s_of_landings": round(sum(row["cpu_s"] for row in rows)), "lengths_m": LENGTHS, "mass_kg": MASS,
         "gravity": GRAVITY, "cells": cells(rows),
     }  # fmt: skip
-    (chosen.out / "oblique_map.json").write_text(json.dumps(document, indent=1) + "\n")
+    write_document(chosen.out / "oblique_map.json", document)
     draw(document["cells"], (FIGURES if chosen.out == HERE else chosen.out) / "oblique_map.png")
 
 

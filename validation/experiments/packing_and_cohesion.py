@@ -18,7 +18,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from sphere_bed import LOOKS, PATIENCE, POUR_STEPS, Floats, add_box, add_row, note_origin, read_rows
+from sphere_bed import LOOKS, PATIENCE, POUR_STEPS, Floats, add_box, note, read_rows
 
 from lithobrake.dem import ConvexHull, Material, Shape, Sphere, World
 from lithobrake.touchdown import settling
@@ -155,9 +155,7 @@ def main() -> None:
             "coordination": 2.0 * float((world.contacts()["body_b"] >= 0).sum()) / len(volumes),
             "cpu_s": time.process_time() - start,
         }  # fmt: skip
-        add_row(TABLE, row)
-        note_origin(TABLE, "packing_and_cohesion.py")
-        print(row, flush=True)
+        note(TABLE, row, "packing_and_cohesion.py")
 
 
 if __name__ == "__main__":

@@ -8,14 +8,13 @@ time, so none acts here, and a bed may be as loose as one likes. Rows that stand
 run again.
 """
 
-import argparse
 import time
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 from scipy.spatial import cKDTree
-from sphere_bed import Floats, Row, add_box, add_row, note_origin, read_rows
+from sphere_bed import Floats, Row, add_box, note, read_rows, work_folder
 
 from lithobrake.dem import ConvexHull, Material, Sphere, World
 
@@ -149,8 +148,7 @@ def pressed_in(soil: Soil, work: Path) -> tuple[Row, Floats]:
 
 def main() -> None:
     """Run what has no row yet."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--work", type=Path, required=True, help="folder for paths, made if it is not there")
+    parser = work_folder(__doc__)
     parser.add_argument("--cases", nargs="*", default=list(cases()))
     given = parser.parse_args()
     given.work.mkdir(parents=True, exist_ok=True)
@@ -162,9 +160,7 @@ def main() -> None:
         row, path = pressed_in(soil, given.work)
         np.save(given.work / f"plate_{name}.npy", path)
         shown = {key: getattr(soil, key) for key in Soil.__dataclass_fields__}
-        add_row(TABLE, {"name": name, **shown, **row})
-        note_origin(TABLE, "plate_into_loose_grains.py --work FOLDER")
-        print(name, row, flush=True)
+        note(TABLE, {"name": name, **shown, **row}, "plate_into_loose_grains.py --work FOLDER")
 
 
 if __name__ == "__main__":

@@ -8,7 +8,6 @@ in settling_in_other_gravities.csv are not run again.
 Source: [Altshuler-2014].
 """
 
-import argparse
 import itertools
 import math
 import time
@@ -17,11 +16,12 @@ from pathlib import Path
 
 import numpy as np
 from ball_into_beads import SPREAD
-from sphere_bed import Beads, Row, add_row, bulk_density, dropped, kept, note_origin, read_rows
+from sphere_bed import Beads, Row, bulk_density, dropped, kept, note, read_rows, work_folder
 
 from lithobrake.dem import Material, Sphere
 
 TABLE = Path(__file__).parent / "settling_in_other_gravities.csv"
+COMMAND = "settling_in_other_gravities.py --work FOLDER"
 SHARES = (1.0, 0.4, 0.1, 0.01, 1e-4)  # of Earth's gravity
 # The source's grains and sphere could not be read. Light: a third of the sphere's density.
 GRAINS = Material(young_modulus=2e5, poisson_ratio=0.24, restitution=0.9, friction=0.3, density=1000.0)
@@ -54,25 +54,16 @@ def settled(work: Path, share: float, seed: int, place: int) -> Row:
 
 def main() -> None:
     """Run what has no row yet, bed after bed."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--work", type=Path, required=True, help="folder for beds and paths, made if it is not there")
-    work = parser.parse_args().work
+    work = work_folder(__doc__).parse_args().work
     work.mkdir(parents=True, exist_ok=True)
     ran = {(row["share"], row["seed"], row["place"]) for row in read_rows(TABLE)}
     for seed, share, place in itertools.product((1, 2, 3), SHARES, range(len(PLACES))):
         # Under the least gravity a bed and a drop cost forty times as much: one place, and last.
         if share >= 1e-3 and (share, seed, place) not in ran:
-            note(settled(work, share, seed, place))
+            note(TABLE, settled(work, share, seed, place), COMMAND)
     for seed in (1, 2):
         if (SHARES[-1], seed, 0) not in ran:
-            note(settled(work, SHARES[-1], seed, 0))
-
-
-def note(row: Row) -> None:
-    """Keep a row."""
-    add_row(TABLE, row)
-    note_origin(TABLE, "settling_in_other_gravities.py --work FOLDER")
-    print(row, flush=True)
+            note(TABLE, settled(work, SHARES[-1], seed, 0), COMMAND)
 
 
 if __name__ == "__main__":

@@ -4,8 +4,7 @@ A bed is settled once and kept with the springs of its contacts (World.save) in 
 starts from the same rest.
 """
 
-import csv
-import json
+import argparse
 import math
 import sys
 from dataclasses import dataclass
@@ -20,10 +19,10 @@ from lithobrake.dem import Material, Sphere, World
 from lithobrake.touchdown import settling
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
-from origin import origin
+import harness
+from harness import Row, origin, write_document
 
 Floats = NDArray[np.float64]
-Row = dict[str, Any]
 
 POUR_STEPS = 18.0  # in the shortest contact while beads fall and settle
 DROP_STEPS = 15.0  # in the shortest contact while the ball comes down
@@ -233,10 +232,7 @@ def dropped(
 
 def read_rows(path: Path) -> list[Row]:
     """Return the rows of a table, numbers as numbers; none where it is not there."""
-    if not path.exists():
-        return []
-    with path.open(newline="") as file:
-        return [{key: number(value) for key, value in row.items()} for row in csv.DictReader(file)]
+    return harness.read_rows(path, {}, number)
 
 
 def number(text: str) -> float | str:
@@ -247,20 +243,21 @@ def number(text: str) -> float | str:
         return text
 
 
-def add_row(path: Path, row: Row) -> None:
-    """Add a row to a table on disk, with its head if it is the first."""
-    new = not path.exists()
-    with path.open("a", newline="") as file:
-        writer = csv.DictWriter(file, list(row))
-        if new:
-            writer.writeheader()
-        writer.writerow({key: f"{value:.7g}" if isinstance(value, float) else value for key, value in row.items()})
+def work_folder(doc: str | None, **options: Any) -> argparse.ArgumentParser:
+    """Return a parser of options, and of that which names the folder of beds and paths."""
+    parser = harness.command_line(doc, **options)
+    parser.add_argument("--work", type=Path, required=True, help="folder for beds and paths, made if it is not there")
+    return parser
 
 
-def note_origin(table: Path, command: str) -> None:
-    """Write beside a table when, where and by which command it was last added to, and what all its rows cost."""
+def note(table: Path, row: Row, command: str) -> None:
+    """Add a row to a table on disk, tell it, and write beside the table when, where and by which command it was last
+    added to, and what all its rows cost.
+    """
+    harness.add_row(table, row, digits=7)
+    print(row, flush=True)
     rows = read_rows(table)
     cost = round(sum(float(row.get("cpu_s", 0.0)) for row in rows), 1)
     script = f"validation/experiments/{command}"
     document = {"table": table.name, **origin(script), "rows": len(rows), "cpu_s_of_rows": cost}
-    table.with_suffix(".json").write_text(json.dumps(document, indent=1) + "\n")
+    write_document(table.with_suffix(".json"), document)

@@ -11,7 +11,6 @@ are not run again.
 Sources: [Brisset-2018], [Colwell-2003] (a quartz ball on sand), [Brisset-2020] (a ball on irregular grains of mm, cm).
 """
 
-import argparse
 import itertools
 import math
 import time
@@ -20,7 +19,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-from sphere_bed import Floats, Row, add_box, add_row, note_origin, read_rows
+from sphere_bed import Floats, Row, add_box, note, read_rows, work_folder
 
 from lithobrake.dem import Material, Shape, Sphere, World
 from lithobrake.touchdown import settling
@@ -275,17 +274,13 @@ def missing(names: list[str], drops: int) -> Iterator[tuple[str, float, int]]:
 
 def main() -> None:
     """Run what has no row yet."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--work", type=Path, required=True, help="folder for beds, made if it is not there")
+    parser = work_folder(__doc__)
     parser.add_argument("--drops", type=int, default=10, help="in each cell of speed and gravity")
     parser.add_argument("--kinds", nargs="*", default=list(KINDS), choices=list(KINDS))
     given = parser.parse_args()
     given.work.mkdir(parents=True, exist_ok=True)
     for cell in missing(given.kinds, given.drops):
-        row = drop(given.work, *cell)
-        add_row(TABLE, row)
-        note_origin(TABLE, "who_rebounds.py --work FOLDER")
-        print(row, flush=True)
+        note(TABLE, drop(given.work, *cell), "who_rebounds.py --work FOLDER")
 
 
 if __name__ == "__main__":
