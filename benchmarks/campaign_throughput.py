@@ -7,7 +7,6 @@ the speed-up itself only on a quiet one: what all other processes took is printe
 are compiled once.
 """
 
-import argparse
 import json
 import os
 import subprocess
@@ -20,13 +19,14 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from harness import SCENARIOS, command_line
 
 from lithobrake.campaign import DaskExecutor, Ledger, LocalExecutor, Runs, run
 from lithobrake.pipeline import run_study
 from lithobrake.study import StudySource, read_study
 from lithobrake.touchdown_model import TouchdownModel, draw, engine_hash, medians
 
-STUDY = Path(__file__).parents[1] / "scenarios" / "quick.toml"
+STUDY = SCENARIOS / "quick.toml"
 
 
 class EqualLandings:
@@ -120,9 +120,7 @@ def empty_runs(folder: Path, count: int) -> None:
 
 def main() -> None:
     """Measure both."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--landings", type=int, default=40)
-    parser.add_argument("--empty-runs", type=int, default=20_000)
+    parser = command_line(__doc__, landings=40, empty_runs=20_000)
     parser.add_argument("--study", type=Path, metavar="DIR", help="keep the bed of the landings in this folder")
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as name:

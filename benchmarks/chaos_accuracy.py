@@ -4,10 +4,10 @@ Prints a table of medians over seeds of rRMSE (error at 2000 noise-free test poi
 Usage: python benchmarks/chaos_accuracy.py [--seeds 10] [--counts 50,100,250,450] [--cases smooth,kinked,...]
 """
 
-import argparse
 from collections.abc import Callable
 
 import numpy as np
+from harness import command_line
 
 from lithobrake.chaos import Uniform, fit, smolyak, sobol_sequence
 from lithobrake.chaos.basis import germs_of
@@ -64,11 +64,7 @@ def errors_of_case(model: Model, noise: float, count: int, seed: int) -> tuple[f
 
 def main() -> None:
     """Print the table."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--seeds", type=int, default=10)
-    parser.add_argument("--counts", default="50,100,250,450")
-    parser.add_argument("--cases", default=",".join(CASES))
-    options = parser.parse_args()
+    options = command_line(__doc__, seeds=10, counts="50,100,250,450", cases=",".join(CASES)).parse_args()
     print("| truth | runs | default | Gaussian process | paper, 241 runs | default / paper | its own estimate |")
     print("|---|---|---|---|---|---|---|")
     for name, (model, noise) in ((name, CASES[name]) for name in options.cases.split(",")):

@@ -7,10 +7,9 @@ of the expansion. Scores: 90 % intervals from 50 test runs against the scores at
 Usage: python benchmarks/chaos_coverage.py [--trials 40]
 """
 
-import argparse
-
 import numpy as np
 from chaos_accuracy import INPUTS, Model, kinked, smooth
+from harness import command_line
 from scipy import stats
 
 from lithobrake.chaos import fit, score_intervals, sobol_intervals, sobol_sequence
@@ -70,9 +69,7 @@ def trial(
 
 def main() -> None:
     """Print the table."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--trials", type=int, default=40)
-    options = parser.parse_args()
+    options = command_line(__doc__, trials=40).parse_args()
     exact = {model: true_indices(model) for model in (smooth, kinked)}
     print(
         "| truth | scatter | runs | fit | Sobol indices held [%] | least of them | mean width | predictions held [%] "

@@ -5,11 +5,11 @@ radial Matern 5/2 and Gaussian covariance with a length an input and a nugget, 2
 of the default to the better process. Usage: python benchmarks/chaos_processes.py [--seeds 3] [--counts 50,100]
 """
 
-import argparse
 import warnings
 
 import numpy as np
 from chaos_accuracy import Model, kinked, smooth
+from harness import command_line
 from sklearn.gaussian_process import GaussianProcessRegressor
 from sklearn.gaussian_process.kernels import RBF, ConstantKernel, Matern, WhiteKernel
 
@@ -61,10 +61,7 @@ def errors(truth: Model, noise: float, count: int, seed: int) -> list[float]:
 
 def main() -> None:
     """Print the table."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--seeds", type=int, default=3)
-    parser.add_argument("--counts", default="50,100")
-    options = parser.parse_args()
+    options = command_line(__doc__, seeds=3, counts="50,100").parse_args()
     # Of lengths at their limits: harmless here.
     warnings.filterwarnings("ignore", module="sklearn")
     print("| truth | scatter | runs | default | Matern | Gaussian | paper, 241 runs | default / better process |")

@@ -6,13 +6,12 @@ all take their turn, so that other work on the machine meets them alike. The oth
 Usage: OMP_NUM_THREADS=1 python benchmarks/chaos_speed.py [--points 10000000] [--rounds 5] [--alone]
 """
 
-import argparse
-import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from importlib.util import find_spec
 
 import numpy as np
+from harness import command_line, timed
 
 from lithobrake.chaos import Surrogate, Uniform, evaluation, fit, multi_index_set, smolyak, sobol_sequence
 
@@ -41,9 +40,7 @@ def times(one: Contender) -> np.ndarray:
         spent = []
         # One call that takes long says enough.
         while len(spent) < repeats and sum(spent) < 1.0:
-            start = time.process_time()
-            work()
-            spent.append(time.process_time() - start)
+            spent.append(timed(work)[1])
         result.append(float(np.median(spent)))
     return np.array(result) / [1.0, one.point_count, 1.0]
 
@@ -159,9 +156,7 @@ def with_openturns(x: np.ndarray, y: np.ndarray, points: np.ndarray) -> Contende
 
 def main() -> None:
     """Print the table."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--points", type=int, default=10_000_000)
-    parser.add_argument("--rounds", type=int, default=5)
+    parser = command_line(__doc__, points=10_000_000, rounds=5)
     parser.add_argument("--alone", action="store_true", help="without the other libraries, whose memory slows all")
     options = parser.parse_args()
     x = smolyak(INPUTS, level=5)

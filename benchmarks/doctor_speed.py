@@ -6,14 +6,12 @@ measures as the command does, seven times, takes each speed times the pace of th
 doctor_speed.json beside this file. The constants of lithobrake/doctor/speed.py were taken from there.
 """
 
-import json
 import statistics
 import sys
 from pathlib import Path
 
-from origin import origin
+from harness import origin, write_document
 
-from lithobrake.atomic import atomic_path
 from lithobrake.doctor.speed import measured_speeds
 
 RESULTS = Path(__file__).with_suffix(".json")
@@ -31,8 +29,7 @@ def main(repeats: int) -> None:
     }
     content = {**first, "paces": paces, "per_cpu_s": {what: statistics.median(all_) for what, all_ in speeds.items()},
                "all": speeds}  # fmt: skip
-    with atomic_path(RESULTS) as draft:
-        draft.write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
+    write_document(RESULTS, content)
 
 
 if __name__ == "__main__":

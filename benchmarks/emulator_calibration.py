@@ -6,30 +6,24 @@ fits emulators to that many synthetic studies a row (three times as many where i
 keeps the figures in benchmarks/results/emulator_calibration.csv, and beside it in .json how they were made.
 """
 
-import argparse
-import csv
-import json
 import sys
 from collections.abc import Iterator
 from dataclasses import replace
-from pathlib import Path
-from typing import Any
 
 import numpy as np
-from origin import origin
+from harness import RESULTS, ROOT, Row, command_line, origin, write_document, write_rows
 from scipy import stats
 
-sys.path.insert(0, str(Path(__file__).parents[1]))
+sys.path.insert(0, str(ROOT))
 
 from lithobrake.emulator import Emulator
 from tests.emulator.conditional_errors import DrawnRuns, fitted, law_errors
 from tests.emulator.test_calibration import fresh_energy_score
 from tests.synthetic_landings import NO_SOIL, STRONG, WEAK, Truth, exact_share, random_soils, returns
 
-RESULTS = Path(__file__).parent / "results" / "emulator_calibration.csv"
+TABLE = RESULTS / "emulator_calibration.csv"
 ERRORS = ("speed_w2", "joint_w2", "share_points", "marginal_w2")
 REFITS, DRAWS = 100, 1000
-Row = dict[str, Any]
 
 
 def law_row(name: str, truth: Truth, run_count: int, studies: int) -> Row:
@@ -103,20 +97,14 @@ def all_rows(studies: int) -> Iterator[Row]:
 
 def main() -> None:
     """Make all rows and write them."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--studies", type=int, default=10)
-    studies = parser.parse_args().studies
+    studies = command_line(__doc__, studies=10).parse_args().studies
     begin = origin(f"benchmarks/emulator_calibration.py --studies {studies}")
     rows = []
     for row in all_rows(studies):
         rows.append({key: round(float(value), 4) if isinstance(value, float) else value for key, value in row.items()})
         print(rows[-1], flush=True)
-    RESULTS.parent.mkdir(exist_ok=True)
-    with open(RESULTS, "w", newline="", encoding="utf-8") as file:
-        writer = csv.DictWriter(file, list(dict.fromkeys(key for row in rows for key in row)))
-        writer.writeheader()
-        writer.writerows(rows)
-    RESULTS.with_suffix(".json").write_text(json.dumps(begin, indent=1) + "\n", encoding="utf-8")
+    write_rows(TABLE, dict.fromkeys(key for row in rows for key in row), rows)
+    write_document(TABLE.with_suffix(".json"), begin)
 
 
 if __name__ == "__main__":

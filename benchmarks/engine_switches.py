@@ -15,12 +15,10 @@ import subprocess
 import sys
 import tempfile
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from grains_beds import bed, relaxed, touch_down
-from grains_speed import cpu_seconds
-from origin import origin
+from harness import ROOT, Row, command_line, cpu_seconds, origin, write_document
 
 # Name, file, what stands there, what stands there without the trick.
 SWITCHES = {
@@ -31,13 +29,14 @@ SWITCHES = {
                               "    if bodies.turning_radius[first] == 0.0:"),
     "one pair of edges alone": ("patch_energy.py", "(patch.family[0] == EDGES_APART and deep == 0.0)", "False"),
     "spheres met by their mass": ("force.py", "through_centroids or step.paper_mass", "step.paper_mass"),
-    "limits by squares": ("spring.py", "    return vector if square <= limit * limit else",
+    "limits by squares": ("tangential_spring.py", "    return vector if square <= limit * limit else",
                           "    return vector if square**0.5 <= limit else"),
-    "neighbours by their gap": ("neighbours.py", "near[pair] = found != APART", "near[pair] = True"),
+    "neighbours by their gap": ("neighbours.py", "    return found != APART", "    return True"),
     "edges by their part in the band": ("feature_culling.py", "    return low[0] - high[0] >= farthest or",
                                         "    if farthest > 0.0:\n        return False\n    return"),
     "skin of the list": ("engine.py", "SKIN = 0.25", "SKIN = 0.025"),
-    "one moment of inertia": ("assembly.py", "np.array_equal(body.inertia, body.inertia[0, 0] * np.eye(3))", "False"),
+    "one moment of inertia": ("assembly.py", "(inertia == inertia[:, :1, :1] * np.eye(3)).all(axis=(1, 2))",
+                              "np.zeros(len(inertia), dtype=bool)"),
     "look every 16 steps": ("stability.py", "LOOK_STEPS, LOOK_PHASE = 16", "LOOK_STEPS, LOOK_PHASE = 1"),
     "kernels in their callers": ("../compiled.py", '"forceinline": True', '"forceinline": False'),
 }  # fmt: skip
@@ -59,7 +58,7 @@ def measure(folder: Path, result: Path) -> None:
 
 def engine_without(switch: str | None, place: Path) -> None:
     """Put a copy of the package at a place, with one trick turned off."""
-    shutil.copytree(Path(__file__).parents[1] / "lithobrake", place / "lithobrake")
+    shutil.copytree(ROOT / "lithobrake", place / "lithobrake")
     if switch is not None:
         name, there, without = SWITCHES[switch]
         path = place / "lithobrake" / "dem" / name
@@ -69,7 +68,7 @@ def engine_without(switch: str | None, place: Path) -> None:
         path.write_text(text.replace(there, without))
 
 
-def run(place: Path, folder: Path) -> dict[str, Any]:
+def run(place: Path, folder: Path) -> Row:
     """Measure the copy of the package at a place, in a process of its own and with a cache of its own."""
     found = place / "found.npz"
     paths = os.pathsep.join([str(place), str(Path(__file__).parent)])
@@ -80,7 +79,7 @@ def run(place: Path, folder: Path) -> dict[str, Any]:
     return dict(np.load(found))
 
 
-def compare(switch: str, whole: Path, folder: Path) -> dict[str, Any]:
+def compare(switch: str, whole: Path, folder: Path) -> Row:
     """Measure without a trick and, right after it, with all."""
     with tempfile.TemporaryDirectory() as scratch:
         engine_without(switch, Path(scratch))
@@ -96,17 +95,15 @@ def compare(switch: str, whole: Path, folder: Path) -> dict[str, Any]:
 
 def main() -> None:
     """Measure the switches asked for."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("folder", type=Path)
+    parser = command_line(__doc__, "folder", out=Path(__file__).with_suffix(".json"))
     parser.add_argument("switch", nargs="*", default=[*SWITCHES])
-    parser.add_argument("--out", type=Path, default=Path(__file__).with_suffix(".json"))
     parser.add_argument("--measure", type=Path, help=argparse.SUPPRESS)
     chosen = parser.parse_args()
     if chosen.measure:
         measure(chosen.folder, chosen.measure)
         return
     known = json.loads(chosen.out.read_text())["rows"] if chosen.out.exists() else []
-    rows: list[dict[str, Any]] = [row for row in known if row["without"] not in chosen.switch]
+    rows: list[Row] = [row for row in known if row["without"] not in chosen.switch]
     with tempfile.TemporaryDirectory() as scratch:
         whole = Path(scratch)
         engine_without(None, whole)
@@ -115,10 +112,9 @@ def main() -> None:
             keep(rows, chosen.out)
 
 
-def keep(rows: list[dict[str, Any]], path: Path) -> None:
+def keep(rows: list[Row], path: Path) -> None:
     """Write the rows, and tell the last."""
-    document = {**origin("benchmarks/engine_switches.py BED_FOLDER"), "rows": rows}
-    path.write_text(json.dumps(document, indent=1) + "\n")
+    write_document(path, {**origin("benchmarks/engine_switches.py BED_FOLDER"), "rows": rows})
     row = rows[-1]
     gains = ", ".join(f"{case} {row[case]['gain']:.2f} ({row[case]['largest_change_m']:.2g} m)" for case in CASES)
     print(f"{row['without']}: {gains}", flush=True)

@@ -8,23 +8,18 @@ by generalised pivots and by the plain variance of beds; wild bootstrap with Web
 Writes estimate_coverage.csv and .json beside this file. Sources: [Webb-2014], [Krishnamoorthy-2009].
 """
 
-import argparse
-import csv
-import json
 import math
 import sys
-import time
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
-from typing import Any
 
 import numpy as np
-from origin import origin
+from harness import ROOT, Row, command_line, rounded, write_made, write_rows
 from scipy import special, stats
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
+sys.path.insert(0, str(ROOT / "tests"))
 from synthetic_landings import INPUTS, Truth, exact_share, random_soils, returns
 
 from lithobrake.analysis import (
@@ -43,6 +38,11 @@ from lithobrake.analysis.control_variate import control_variate
 from lithobrake.analysis.share_estimate import standard_error
 from lithobrake.chaos import sobol_sequence
 
+TABLE = Path(__file__).with_suffix(".csv")
+COLUMNS = (
+    *("quantity", "runs", "beds", "rho", "soil", "rim", "rim_share", "rim_returns"),
+    *("studies", "truth", "held", "bias", "half_width"),
+)
 DESIGNS = ((144, 12), (240, 24))
 CORRELATIONS = (0.0, 0.05, 0.2)
 PROBABILITIES = (0.05, 0.5, 0.95)
@@ -50,7 +50,6 @@ DRAW_COUNT = 400_000
 # Beds in equal steps of probability stand for all beds there are.
 BED_EFFECTS = special.ndtri((np.arange(200) + 0.5) / 200)
 NODES = np.linspace(-3.5, 3.5, 15)
-Row = dict[str, Any]
 
 
 @lru_cache
@@ -304,23 +303,9 @@ def setting(truth: Truth, runs: int, beds: int) -> Row:
 
 def main() -> None:
     """Measure and write."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--studies", type=int, default=400)
-    count = parser.parse_args().studies
-    begin = time.process_time()
-    columns = ("quantity", "runs", "beds", "rho", "soil", "rim", "rim_share", "rim_returns")
-    columns += ("studies", "truth", "held", "bias", "half_width")
-    path = Path(__file__).with_suffix(".csv")
-    with path.open("w", newline="") as file:
-        writer = csv.DictWriter(file, columns, lineterminator="\n")
-        writer.writeheader()
-        for row in rows(count):
-            rounded = {key: float(f"{value:.4g}") if isinstance(value, float) else value for key, value in row.items()}
-            writer.writerow(rounded)
-            file.flush()
-    facts = {"studies": count, "level": 0.9, "cpu_s": round(time.process_time() - begin), "table": path.name}
-    facts |= origin(f"benchmarks/estimate_coverage.py --studies {count}")
-    path.with_suffix(".json").write_text(json.dumps(facts, indent=1) + "\n")
+    count = command_line(__doc__, studies=400).parse_args().studies
+    write_rows(TABLE, COLUMNS, map(rounded, rows(count)))
+    write_made(TABLE, f"benchmarks/estimate_coverage.py --studies {count}", studies=count, level=0.9)
 
 
 if __name__ == "__main__":

@@ -8,18 +8,15 @@ all nine settle under the local gravity, by the criteria of every bed. The study
 middle. BED.h5 keeps the bed, which is not made again where it is there; FILE.json gets a row a share as it comes.
 """
 
-import argparse
 import json
-import time
 import tomllib
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
+from harness import Row, command_line, origin, timed, write_document
 from landing_ensembles import draws
-from origin import origin
 
 from lithobrake.dem import ConvexHull
 from lithobrake.pipeline.beds import bed_recipe
@@ -28,7 +25,6 @@ from lithobrake.study import Study, check_tables
 from lithobrake.touchdown import Bed, BedRecipe, land, pour_bed, pouring
 from lithobrake.touchdown.bed import boxed_world
 
-Row = dict[str, Any]
 TILES = 3
 
 
@@ -72,13 +68,8 @@ def wide_bed(bed: Bed, recipe: BedRecipe) -> Bed:
 
 def main() -> None:
     """Pour, put together, land, write."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("study", type=Path)
-    parser.add_argument("--diameter", type=float, default=0.023)
-    parser.add_argument("--grains", type=int, default=1200)
+    parser = command_line(__doc__, "study", diameter=0.023, grains=1200, bed=Path, out=Path)
     parser.add_argument("--held", type=float, nargs="+", default=[])
-    parser.add_argument("--bed", type=Path, required=True)
-    parser.add_argument("--out", type=Path, required=True)
     given = parser.parse_args()
     study = study_of(given.study, given.diameter, given.grains)
     whole = bed_recipe(study, 0)
@@ -93,12 +84,12 @@ def main() -> None:
     # Compiles, and finds the cores of the hulls, as the first landing of a process does.
     land(bed, lander, replace(landing, time_limit=1e-3))
     for share in given.held:
-        start = time.process_time()
-        outcome = land(bed, lander, replace(landing, contact=replace(landing.contact, held_speed=share)))
-        row = {"held_speed": share, "cpu_s": time.process_time() - start, "simulated_s": outcome.simulated_time}
+        one = replace(landing, contact=replace(landing.contact, held_speed=share))
+        outcome, cpu = timed(lambda one=one: land(bed, lander, one))
+        row = {"held_speed": share, "cpu_s": cpu, "simulated_s": outcome.simulated_time}
         rows.append(row | {"outcome": str(outcome.status), **outcome.outputs})
-        text = json.dumps({**origin(command), "grains": len(bed.grains), "landings": rows}, indent=1)
-        given.out.with_suffix(".json").write_text(text + "\n")
+        content = {**origin(command), "grains": len(bed.grains), "landings": rows}
+        write_document(given.out.with_suffix(".json"), content)
         print(json.dumps(rows[-1]), flush=True)
 
 

@@ -6,8 +6,6 @@ where it is installed. Results go into flight_speed.json beside this file.
 Usage: python benchmarks/flight_speed.py [--table 25000 50000 100000] [--exact 2500 5000 10000] [--threads 2]
 """
 
-import argparse
-import json
 import os
 import platform
 import sys
@@ -18,15 +16,13 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from origin import origin
+from harness import Row, command_line, origin, write_document
 
-from lithobrake.atomic import atomic_path
 from lithobrake.smallbody import Body, didymos, fly
 from lithobrake.smallbody.attraction import field
 
 RESULTS = Path(__file__).with_suffix(".json")
 DURATION = 12 * 3600.0
-Row = dict[str, Any]
 
 
 def timed(work: Callable[[], Any], repeats: int = 1) -> tuple[float, float, Any]:
@@ -119,11 +115,9 @@ def processor() -> str:
 
 def main() -> None:
     """Measure, print and write."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--table", type=int, nargs="+", default=[25_000, 50_000, 100_000])
-    parser.add_argument("--exact", type=int, nargs="+", default=[2_500, 5_000, 10_000])
-    parser.add_argument("--threads", type=int, default=2)
-    options = parser.parse_args()
+    options = command_line(
+        __doc__, table=[25_000, 50_000, 100_000], exact=[2_500, 5_000, 10_000], threads=2
+    ).parse_args()
     alone, both = didymos(partner=False), didymos()
     error = alone.shape.table_error._asdict()
     result = {
@@ -138,8 +132,7 @@ def main() -> None:
         rows += flight_rows(body, "table", options.table, options.threads)
         rows += flight_rows(body, "exact", options.exact, options.threads)
     result["rows"] = rows
-    with atomic_path(RESULTS) as draft:
-        draft.write_text(json.dumps(result, indent=1) + "\n", encoding="utf-8")
+    write_document(RESULTS, result)
 
 
 if __name__ == "__main__":

@@ -8,7 +8,6 @@ as they are in double precision, so that at 1e5 m from the origin it is the pair
 rounding is 1.5e-11 m itself.
 """
 
-import argparse
 import platform
 import sys
 import time
@@ -19,7 +18,7 @@ import numpy as np
 from distance_check import Meshes, gap_along, meshes_of, surface_distance, turned, widest_gap
 from distance_pairs import FAMILIES, Family, Floats, Integers, Library, Poses, library, poses
 from distance_queries import DISTANCE, FIRST, NORMAL, SECOND, STEPS, closest, kept, over_plane
-from origin import origin
+from harness import command_line, origin
 
 # Where the distance is a smaller part of the smaller body, round-off turns the line between the points too far.
 NORMAL_COUNTS = 1e-3
@@ -136,9 +135,8 @@ def check(shapes: Library, meshes: Meshes, name: str, seed: int, count: int) -> 
 
 def main() -> None:
     """Compare all families and print the table."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = command_line(__doc__, seed=1)
     parser.add_argument("--pairs", type=int, default=48_000, help="of every family")
-    parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--shapes", type=int, default=100, help="of every kind")
     chosen = parser.parse_args()
     made = origin(" ".join(sys.argv))

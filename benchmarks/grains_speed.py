@@ -9,7 +9,6 @@ Settled beds are relaxed for 20 000 steps with drag, then timed over undamped on
 counts, and everything but threads runs on one thread.
 """
 
-import argparse
 import json
 import os
 import statistics
@@ -25,22 +24,12 @@ from typing import Any
 
 import numpy as np
 from grains_beds import ROCK, WIDTH, bed, boxes, coordination, relaxed, touch_down
-from origin import origin
+from harness import Row as Result
+from harness import command_line, cpu_seconds, origin, timed, write_document
 
 from lithobrake.dem import Box, World
 
-Result = dict[str, Any]
 RELAX_STEPS, TIMED_STEPS, REPEATS = 20_000, 1000, 5
-
-
-def cpu_seconds(work: Callable[[], object], repeats: int = REPEATS) -> float:
-    """Median CPU time of some calls [s]."""
-    times = []
-    for _ in range(repeats):
-        start = time.process_time()
-        work()
-        times.append(time.process_time() - start)
-    return statistics.median(times)
 
 
 def yardstick(folder: Path) -> Result:
@@ -55,7 +44,7 @@ def yardstick(folder: Path) -> Result:
 def settled(folder: Path, case: str) -> Result:
     """Time a settled bed."""
     world = relaxed(bed(folder, case), RELAX_STEPS)
-    seconds = cpu_seconds(lambda: world.run(steps=TIMED_STEPS))
+    seconds = cpu_seconds(lambda: world.run(steps=TIMED_STEPS), REPEATS)
     return rates(world, seconds, TIMED_STEPS)
 
 
@@ -77,9 +66,7 @@ def landing(folder: Path) -> list[Result]:
         for speed in (0.1, 0.3, 0.5):
             world = World.load(Path(folder_of_bed) / "bed.h5")
             touch_down(world, speed)
-            start = time.process_time()
-            world.run(duration=1.0)
-            seconds = time.process_time() - start
+            _, seconds = timed(lambda world=world: world.run(duration=1.0))
             rows.append({"speed_m_s": speed} | rates(world, seconds, round(1.0 / world.time_step)))
     return rows
 
@@ -91,7 +78,7 @@ def scaling(folder: Path) -> list[Result]:
     for count, share in ((1, 0.5), (1, 1.0), (5, 1.0), (20, 1.0), (50, 1.0)):
         world = relaxed(boxes(settled, WIDTH["hull1000"], count, share), RELAX_STEPS if share < 1.0 else 1000)
         steps = max(20, 200_000 // len(world.bodies))
-        rows.append(rates(world, cpu_seconds(lambda world=world, steps=steps: world.run(steps=steps)), steps))
+        rows.append(rates(world, cpu_seconds(lambda world=world, steps=steps: world.run(steps=steps), REPEATS), steps))
     return rows
 
 
@@ -143,9 +130,7 @@ def whole(_: Path) -> Result:
         grain_count=1500, sizes=GrainSizes(distribution="uniform", lower=0.07, upper=0.09), cloud_point_count=14,
         width=(1.2, 1.2), material=ROCK, gravity=(0.0, 0.0, -5e-5), pour_gravity=0.1, seed=1, contact=contact,
     )  # fmt: skip
-    start = time.process_time()
-    surface = pour_bed(recipe)
-    poured = time.process_time() - start
+    surface, poured = timed(lambda: pour_bed(recipe))
     soil = type(ROCK)(young_modulus=2e6, poisson_ratio=0.25, restitution=0.4, friction=0.7, density=2500.0)
     lander = Lander(shape=Box((0.2, 0.1, 0.1)), mass=6.0, inertia=None, material=soil)
     generator, rows = np.random.default_rng(0), []
@@ -155,10 +140,9 @@ def whole(_: Path) -> Result:
             orientation=tuple(generator.normal(size=4)), spin=(0.0, 0.0, 0.0), gravity=(0.0, 0.0, -5e-5),
             time_limit=120.0, contact=contact,
         )  # fmt: skip
-        start = time.process_time()
-        outcome = land(surface, lander, event)
+        outcome, seconds = timed(lambda event=event: land(surface, lander, event))
         rows.append(
-            {"speed_m_s": speed, "cpu_s": time.process_time() - start, "status": outcome.status,
+            {"speed_m_s": speed, "cpu_s": seconds, "status": outcome.status,
              "touching_s": outcome.outputs["contact_duration"]}
         )  # fmt: skip
     median = statistics.median(row["cpu_s"] for row in rows)
@@ -212,16 +196,14 @@ LONG = ("scaling", "memory", "threads")
 
 def main() -> None:
     """Measure the cases asked for."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("folder", type=Path)
+    parser = command_line(__doc__, "folder", out=Path(__file__).with_suffix(".json"))
     parser.add_argument("case", nargs="*", default=[name for name in CASES if name not in LONG])
-    parser.add_argument("--out", type=Path, default=Path(__file__).with_suffix(".json"))
     chosen = parser.parse_args()
     known = json.loads(chosen.out.read_text()) if chosen.out.exists() else {}
     for name in chosen.case:
         found = CASES[name](chosen.folder)
         known[name] = {"result": found, **origin(f"benchmarks/grains_speed.py BED_FOLDER {name}")}
-        chosen.out.write_text(json.dumps(known, indent=1) + "\n")
+        write_document(chosen.out, known)
         for row in found if isinstance(found, list) else [found]:
             values = ", ".join(f"{key} {value:.4g}" if isinstance(value, float) else f"{key} {value}"
                                for key, value in row.items())  # fmt: skip

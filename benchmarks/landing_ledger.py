@@ -8,15 +8,12 @@ to the end. landing_ledger.json gets a row a way: mean of what is missing over t
 the largest.
 """
 
-import argparse
 import json
-import time
 from pathlib import Path
-from typing import Any
 
 import numpy as np
+from harness import SCENARIOS, Row, command_line, origin, timed, write_document
 from landing_ensembles import beds_of, drawn_study, draws
-from origin import origin
 
 from lithobrake.touchdown import Bed, Lander, Landing
 from lithobrake.touchdown.outcome_judge import OutcomeJudge
@@ -25,7 +22,7 @@ from lithobrake.touchdown.simulation import look_interval, moving_reach, release
 GRAINS, WIDTH, BEDS = 200, 1.8, 2
 # Steps a contact, and share of the lander's speed below which grains are held.
 WAYS = [(25.0, 0.0), (25.0, 0.03), (25.0, 0.1), (100.0, 0.0), (100.0, 0.03), (100.0, 0.1)]
-STUDY = Path(__file__).parents[1] / "scenarios" / "mission.toml"
+STUDY = SCENARIOS / "mission.toml"
 RESULTS = Path(__file__).with_suffix(".json")
 
 
@@ -48,26 +45,25 @@ def missing(bed: Bed, lander: Lander, landing: Landing, steps: float, held: floa
 
 def main() -> None:
     """Land in all ways, tell, write."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("beds", type=Path)
-    parser.add_argument("--landings", type=int, default=16)
-    given = parser.parse_args()
+    given = command_line(__doc__, "beds", landings=16).parse_args()
     study = drawn_study(STUDY, BEDS, 0.1)
     small = study.bed.model_copy(update={"grain_count": GRAINS, "width": (WIDTH, WIDTH)})
     study = study.model_copy(update={"bed": small})
     beds, cases = beds_of(study, given.beds), list(draws(study, given.landings))
-    rows: list[dict[str, Any]] = []
+    rows: list[Row] = []
     for steps, held in WAYS:
-        start = time.process_time()
-        errors = np.array([missing(beds[bed], body, arrival, steps, held) for bed, body, arrival in cases])
+        found, cpu = timed(
+            lambda steps=steps, held=held: [missing(beds[bed], *case, steps, held) for bed, *case in cases]
+        )
+        errors = np.array(found)
         rows.append({
             "steps_per_contact": steps, "held_speed": held, "mean": float(errors.mean()),
             "error_of_mean": float(errors.std(ddof=1) / len(errors) ** 0.5), "largest": float(abs(errors).max()),
-            "cpu_s": time.process_time() - start,
+            "cpu_s": cpu,
         })  # fmt: skip
         print(json.dumps(rows[-1]), flush=True)
     command = f"benchmarks/landing_ledger.py BED_FOLDER --landings {given.landings}"
-    RESULTS.write_text(json.dumps({**origin(command), "landings": given.landings, "ways": rows}, indent=1) + "\n")
+    write_document(RESULTS, {**origin(command), "landings": given.landings, "ways": rows})
 
 
 if __name__ == "__main__":

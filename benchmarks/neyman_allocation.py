@@ -13,26 +13,20 @@ with strata by the true probabilities. whole: with the 240 runs of the first sta
 Writes benchmarks/results/neyman_allocation.csv, and .json beside it.
 """
 
-import argparse
-import csv
-import json
 import sys
-import time
 from collections.abc import Iterator
-from pathlib import Path
-from typing import Any
 
 import numpy as np
-from origin import origin
+from harness import RESULTS, ROOT, Row, command_line, rounded, write_made, write_rows
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
+sys.path.insert(0, str(ROOT / "tests"))
 from synthetic_landings import INPUTS, OUTPUT_NAMES, SPEED_LIMIT, STRONG, WEAK, Truth, random_soils
 
 from lithobrake import emulator
 from lithobrake.analysis import regression_terms, share_estimate
 from lithobrake.chaos import sobol_sequence
 
-RESULTS = Path(__file__).parent / "results" / "neyman_allocation.csv"
+TABLE = RESULTS / "neyman_allocation.csv"
 COLUMNS = ("soil", "probability", "gain", "exact", "whole", "bias_equal", "bias_neyman", "sd_equal", "emulators")
 PROBABILITIES = (0.1, 0.05, 0.02)
 RUNS, BEDS, STRATA, OF_PRIOR = 240, 24, 10, 0.1
@@ -97,7 +91,7 @@ def one_emulator(truth: Truth, limits: list[float], exact: np.ndarray, seed: int
     return found
 
 
-def rows(name: str, truth: Truth, emulators: int, repeats: int) -> Iterator[dict[str, Any]]:
+def rows(name: str, truth: Truth, emulators: int, repeats: int) -> Iterator[Row]:
     """A row for each probability."""
     random = np.random.default_rng(7)
     soils = random_soils(1_000_000, random)
@@ -121,20 +115,12 @@ def rows(name: str, truth: Truth, emulators: int, repeats: int) -> Iterator[dict
 
 def main() -> None:
     """Measure and write."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--emulators", type=int, default=20)
-    parser.add_argument("--repeats", type=int, default=40)
-    asked, begin = parser.parse_args(), time.process_time()
-    with RESULTS.open("w", newline="") as file:
-        writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
-        writer.writeheader()
-        for name, truth in (("weak", WEAK), ("strong", STRONG)):
-            for row in rows(name, truth, asked.emulators, asked.repeats):
-                writer.writerow({key: float(f"{v:.4g}") if isinstance(v, float) else v for key, v in row.items()})
-                file.flush()
-    facts = {"repeats": asked.repeats, "cpu_s": round(time.process_time() - begin), "table": RESULTS.name}
-    facts |= origin(f"benchmarks/neyman_allocation.py --emulators {asked.emulators} --repeats {asked.repeats}")
-    RESULTS.with_suffix(".json").write_text(json.dumps(facts, indent=1) + "\n")
+    asked = command_line(__doc__, emulators=20, repeats=40).parse_args()
+    soils = {"weak": WEAK, "strong": STRONG}
+    found = (row for name, truth in soils.items() for row in rows(name, truth, asked.emulators, asked.repeats))
+    write_rows(TABLE, COLUMNS, map(rounded, found))
+    command = f"benchmarks/neyman_allocation.py --emulators {asked.emulators} --repeats {asked.repeats}"
+    write_made(TABLE, command, repeats=asked.repeats)
 
 
 if __name__ == "__main__":

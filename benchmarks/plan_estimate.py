@@ -7,17 +7,13 @@ and keeps the means of what came beside what was expected in benchmarks/plan_est
 expected_steps.py, expected_time.py and pace.py in lithobrake/pipeline/planning were taken from there.
 """
 
-import argparse
 import json
 import math
 import statistics
-import time
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, TypeVar
 
-from origin import origin
+from harness import SCENARIOS, Row, command_line, origin, timed, write_document
 
 from lithobrake.pipeline.planning.expected_steps import ExpectedSoil
 from lithobrake.pipeline.planning.expected_time import landing_time, pour_time
@@ -25,17 +21,9 @@ from lithobrake.pipeline.planning.pace import REFERENCE, probe
 from lithobrake.study import read_study
 from lithobrake.touchdown import Bed, land, pour_bed
 
-STUDIES = Path(__file__).parents[1] / "scenarios"
 RESULTS = Path(__file__).with_suffix(".json")
 HELD = (0.0, 0.03, 0.1)
 COMPILED_BY = 8  # grains
-Made = TypeVar("Made")
-
-
-def timed(work: Callable[[], Made]) -> tuple[Made, float]:
-    """What some work gives, and its CPU time [s]."""
-    start = time.process_time()
-    return work(), time.process_time() - start
 
 
 def landed(bed: Bed, soil: ExpectedSoil, held: float, count: int) -> dict[str, float]:
@@ -48,9 +36,9 @@ def landed(bed: Bed, soil: ExpectedSoil, held: float, count: int) -> dict[str, f
     return {"held_speed": held, "cpu_s": statistics.fmean(found[1:]), "expected_s": statistics.fmean(expected[1:])}
 
 
-def measure(name: str, bed_count: int, count: int) -> dict[str, Any]:
+def measure(name: str, bed_count: int, count: int) -> Row:
     """Pour beds of a study and make so many of its landings on the first."""
-    study = read_study(STUDIES / f"{name}.toml")
+    study = read_study(SCENARIOS / f"{name}.toml")
     soil = ExpectedSoil.of(study, len(study.touchdown_values()))
     paces = [probe() / REFERENCE]
     small = max(math.sqrt(COMPILED_BY / soil.recipe.grain_count) * soil.recipe.width[0], 2.0 * soil.recipe.sizes.upper)
@@ -69,16 +57,14 @@ def measure(name: str, bed_count: int, count: int) -> dict[str, Any]:
 
 def main() -> None:
     """Measure studies, one after the other."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("studies", nargs="+", choices=sorted(path.stem for path in STUDIES.glob("*.toml")))
-    parser.add_argument("--beds", type=int, default=4)
-    parser.add_argument("--landings", type=int, default=14)
+    parser = command_line(__doc__, beds=4, landings=14)
+    parser.add_argument("studies", nargs="+", choices=sorted(path.stem for path in SCENARIOS.glob("*.toml")))
     given = parser.parse_args()
     known = json.loads(RESULTS.read_text()) if RESULTS.exists() else {}
     for name in given.studies:
         command = f"benchmarks/plan_estimate.py {name} --beds {given.beds} --landings {given.landings}"
         known[name] = {"result": measure(name, given.beds, given.landings), **origin(command)}
-        RESULTS.write_text(json.dumps(known, indent=1) + "\n")
+        write_document(RESULTS, known)
         print(name, json.dumps(known[name]["result"]), flush=True)
 
 

@@ -8,17 +8,14 @@ own, whose kernels are compiled by a small bed before; beds are poured in turn, 
 a bed and checkout as it comes, FILE.json the sums; the last line printed says the ratio.
 """
 
-import argparse
-import csv
-import json
 import math
 import sys
-import time
+from collections.abc import Callable, Iterator
 from dataclasses import asdict, replace
 from pathlib import Path
-from typing import Any
 
-Row = dict[str, Any]
+from harness import Checkout, Row, answer_lines, command_line, in_turn
+
 LAW = ("shear_modulus_rule", "damping_mass", "pair_rule", "steps_per_contact")
 TOLD = ("solid_fraction", "coordination_number", "surface_height", "surface_top")
 COMPILED_BY = 8  # grains
@@ -40,61 +37,43 @@ def pour_recipes() -> None:
     from lithobrake.dem import Material
     from lithobrake.touchdown import BedRecipe, ContactModel, GrainSizes, pour_bed
 
-    for line in sys.stdin:
-        given = json.loads(line)
+    def prepared(given: Row) -> Callable[[], Row]:
         made = {"sizes": GrainSizes, "material": Material, "contact": ContactModel}
         given |= {name: kind(**given[name]) for name, kind in made.items()}
         recipe = BedRecipe(
             **{name: tuple(value) if isinstance(value, list) else value for name, value in given.items()}
         )
-        start = time.process_time()
-        row: Row
-        try:
+
+        def poured() -> Row:
             bed = pour_bed(recipe)
             row = {"outcome": "at rest", "simulated_s": float(bed.history["time"][-1])}
-            row |= {name: getattr(bed, name) for name in TOLD}
-        except (ValueError, FloatingPointError) as error:
-            row = {"outcome": f"failed: {error}"}
-        print(json.dumps(row | {"cpu_s": time.process_time() - start}), flush=True)
+            return row | {name: getattr(bed, name) for name in TOLD}
+
+        return poured
+
+    answer_lines(prepared)
 
 
 def main() -> None:
     """Pour in turn, write, tell the ratio."""
-    from checkouts import Checkout
-    from origin import origin
-
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("old", type=Path)
-    parser.add_argument("new", type=Path)
-    parser.add_argument("--study", type=Path, required=True)
-    parser.add_argument("--pours", type=int, default=3)
-    parser.add_argument("--out", type=Path, required=True)
-    given = parser.parse_args()
+    given = command_line(__doc__, "old", "new", study=Path, pours=3, out=Path).parse_args()
     checkouts = {
         name: Checkout(folder, __file__, "--pouring") for name, folder in (("old", given.old), ("new", given.new))
     }
-    sums = dict.fromkeys(checkouts, 0.0)
-    command = f"benchmarks/pour_speed.py OLD . --study {given.study} --pours {given.pours}"
-    with given.out.with_suffix(".csv").open("w", newline="") as file:
-        writer = csv.DictWriter(file, ["seed", "checkout", "outcome", "simulated_s", "cpu_s", *TOLD])
-        writer.writeheader()
+
+    def recipes() -> Iterator[dict[str, Row]]:
         for seed in range(1, given.pours + 1):
             recipe = recipe_of(given.study, seed)
-            for name, checkout in checkouts.items():
-                if seed == 1:
-                    small = [width * math.sqrt(COMPILED_BY / recipe["grain_count"]) for width in recipe["width"]]
-                    least = 2.0 * recipe["sizes"]["upper"]
-                    width = [max(value, least) for value in small]
+            if seed == 1:
+                small = [width * math.sqrt(COMPILED_BY / recipe["grain_count"]) for width in recipe["width"]]
+                width = [max(value, 2.0 * recipe["sizes"]["upper"]) for value in small]
+                for checkout in checkouts.values():
                     checkout.answer(recipe | {"grain_count": COMPILED_BY, "width": width})
-                row = checkout.answer(recipe)
-                sums[name] += row["cpu_s"]
-                writer.writerow({"seed": seed, "checkout": name, **row})
-                file.flush()
-            text = json.dumps({**origin(command), "pours": seed, "cpu_s": sums}, indent=1)
-            given.out.with_suffix(".json").write_text(text + "\n")
-    print(
-        f"{given.pours} beds: {sums['old']:.1f} s and {sums['new']:.1f} s of CPU: 1 / {sums['old'] / sums['new']:.2f}"
-    )
+            yield dict.fromkeys(checkouts, recipe)
+
+    command = f"benchmarks/pour_speed.py OLD . --study {given.study} --pours {given.pours}"
+    columns = ["seed", "checkout", "outcome", "simulated_s", "cpu_s", *TOLD]
+    in_turn(checkouts, recipes(), 1, columns, given.out, command, "pours")
 
 
 if __name__ == "__main__":

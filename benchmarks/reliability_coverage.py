@@ -10,19 +10,17 @@ Writes benchmarks/results/reliability_coverage.csv, and .json beside it; with --
 `subset_simulation` alone are made anew, and the others stay as they stand there.
 """
 
-import argparse
-import csv
 import json
 import math
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import lru_cache
-from pathlib import Path
+from itertools import chain
 from typing import Any
 
 import numpy as np
-from origin import origin
+from harness import RESULTS, Row, command_line, origin, read_rows, rounded, write_document, write_rows
 from scipy import stats
 
 from lithobrake import emulator
@@ -35,14 +33,13 @@ from lithobrake.analysis import (
 )
 from lithobrake.chaos import Normal, sobol_sequence
 
-RESULTS = Path(__file__).parent / "results" / "reliability_coverage.csv"
+TABLE = RESULTS / "reliability_coverage.csv"
 COLUMNS = ("quantity", "scatter", "probability", "repeats", "held", "too_high", "bias", "width", "by_emulator", "cost")
 INPUTS = {"strength": Normal(0.0, 1.0), "load": Normal(0.0, 1.0)}
 PROBABILITIES = (0.1, 0.02, 0.005)
 RUNS, BEDS, REFITS, DRAWS = 240, 24, 50, 2000
 # Of the variance of the response that is the inputs', and of the rest that is the bed's.
 EXPLAINED, BED = 0.3, 0.05
-Row = dict[str, Any]
 
 
 @dataclass(frozen=True)
@@ -188,37 +185,30 @@ def openturns_subset(
 
 def main() -> None:
     """Measure and write."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--studies", type=int, default=200)
+    parser = command_line(__doc__, studies=200)
     parser.add_argument("--subset", action="store_true", help="only the rows of subset_simulation")
     chosen, begin = parser.parse_args(), time.process_time()
-    count, facts = chosen.studies, {"studies": chosen.studies, "level": 0.9, "table": RESULTS.name}
+    count, facts = chosen.studies, {"studies": chosen.studies, "level": 0.9, "table": TABLE.name}
     parts = [
         *(study_rows(Truth(skewed), count) for skewed in (False, True)),
         *(subset_rows(count), openturns_rows(max(count // 10, 2))),
     ]
     command = f"benchmarks/reliability_coverage.py --studies {count}"
     if chosen.subset:
-        kept = list(csv.DictReader(RESULTS.read_text().splitlines()))
+        kept = read_rows(TABLE, {}, str)
         before, after = (
             [row for row in kept if row["quantity"].startswith("OpenTURNS") == is_last] for is_last in (False, True)
         )
         before = [row for row in before if not row["quantity"].startswith("subset simulation")]
         parts = [iter(before), subset_rows(count), iter(after)]
-    with RESULTS.open("w", newline="") as file:
-        writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
-        writer.writeheader()
-        for row in (row for part in parts for row in part):
-            rounded = {key: float(f"{value:.4g}") if isinstance(value, float) else value for key, value in row.items()}
-            writer.writerow(rounded)
-            file.flush()
+    write_rows(TABLE, COLUMNS, map(rounded, chain.from_iterable(parts)))
     measured = {"cpu_s": round(time.process_time() - begin)}
     if chosen.subset:
-        facts = json.loads(RESULTS.with_suffix(".json").read_text())
+        facts = json.loads(TABLE.with_suffix(".json").read_text())
         facts["subset"] = measured | origin(f"{command} --subset")
     else:
         facts |= measured | origin(command) | {"openturns": getattr(openturns(), "__version__", None)}
-    RESULTS.with_suffix(".json").write_text(json.dumps(facts, indent=1) + "\n")
+    write_document(TABLE.with_suffix(".json"), facts)
 
 
 if __name__ == "__main__":

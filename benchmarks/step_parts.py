@@ -6,16 +6,14 @@ CASE is any of hull1000, hull2000, hull4000, sph4000 (none: hull1000 and sph4000
 computed for one kind of pairs after the other, by the features listed for them. Medians of CPU times, one thread.
 """
 
-import argparse
-import json
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from grains_beds import bed, coordination, relaxed
-from grains_speed import RELAX_STEPS, cpu_seconds
-from origin import origin
+from grains_speed import RELAX_STEPS, REPEATS
+from harness import Row, command_line, cpu_seconds, origin, write_document
 
 from lithobrake.dem import World
 from lithobrake.dem.arrays import Pairs
@@ -51,7 +49,7 @@ def parts(world: World) -> Iterator[tuple[str, float, float]]:
 
     def nanoseconds(work: Any) -> float:
         work()
-        return 1e9 * cpu_seconds(lambda: [work() for _ in range(CALLS)]) / CALLS / count
+        return 1e9 * cpu_seconds(lambda: [work() for _ in range(CALLS)], REPEATS) / CALLS / count
 
     yield "two half kicks", 1.0, 2.0 * nanoseconds(lambda: kick(bodies, still, 0, count))
     yield "drift and rotation", 1.0, nanoseconds(lambda: drift(bodies, still, 0, count))
@@ -60,7 +58,7 @@ def parts(world: World) -> Iterator[tuple[str, float, float]]:
     yield "looks at margins", whole / count, looks
     kind = kinds_of(pairs)
     order = np.argsort(kind, kind="stable")
-    sorted_pairs = Pairs(*(getattr(pairs, name)[order] for name in Pairs._fields[:-1]), pairs.rest)
+    sorted_pairs = Pairs(*(getattr(pairs, name)[order] for name in Pairs._fields[:-1]), pairs.overflow)
     ends = np.searchsorted(kind[order], np.arange(len(KINDS) + 1))
     for name, start, stop in zip(KINDS, ends[:-1], ends[1:], strict=True):
         if start < stop:
@@ -73,12 +71,10 @@ def parts(world: World) -> Iterator[tuple[str, float, float]]:
 
 def main() -> None:
     """Time the parts of a step on the beds asked for."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("folder", type=Path)
+    parser = command_line(__doc__, "folder", out=Path(__file__).with_suffix(".json"))
     parser.add_argument("case", nargs="*", default=["hull1000", "sph4000"])
-    parser.add_argument("--out", type=Path, default=Path(__file__).with_suffix(".json"))
     chosen = parser.parse_args()
-    cases: dict[str, Any] = {}
+    cases: Row = {}
     for case in chosen.case:
         world = relaxed(bed(chosen.folder, case), RELAX_STEPS)
         rows = [{"part": name, "a_body": number, "ns_a_body": spent} for name, number, spent in parts(world)]
@@ -87,8 +83,7 @@ def main() -> None:
         for row in rows:
             print(f"{case}: {row['part']:45s} {row['a_body']:6.3f} a body {row['ns_a_body']:7.1f} ns a body "
                   f"{row['ns_a_body'] / total:6.1%}", flush=True)  # fmt: skip
-    document = {**origin("benchmarks/step_parts.py BED_FOLDER"), "cases": cases}
-    chosen.out.write_text(json.dumps(document, indent=1) + "\n")
+    write_document(chosen.out, {**origin("benchmarks/step_parts.py BED_FOLDER"), "cases": cases})
 
 
 if __name__ == "__main__":

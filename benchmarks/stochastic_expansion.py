@@ -6,25 +6,19 @@ fits both to that many studies of 300 runs a truth and keeps mean W2**2 / varian
 soils that were not run, in benchmarks/results/stochastic_expansion.csv, and beside it in .json how they were made.
 """
 
-import argparse
-import csv
-import json
 import sys
-import time
 from dataclasses import dataclass
-from pathlib import Path
-from typing import Any
 
 import numpy as np
-from origin import origin
+from harness import RESULTS, ROOT, Row, command_line, origin, timed, write_document, write_rows
 
-sys.path.insert(0, str(Path(__file__).parents[1]))
+sys.path.insert(0, str(ROOT))
 
 from lithobrake import emulator
 from tests.emulator.conditional_errors import DrawnRuns, fitted, law_errors
 from tests.synthetic_landings import INPUTS, SPEED_LIMIT, STRONG, WEAK, Truth
 
-RESULTS = Path(__file__).parent / "results" / "stochastic_expansion.csv"
+TABLE = RESULTS / "stochastic_expansion.csv"
 RUNS, BEDS, DRAWS = 300, 30, 4000
 
 
@@ -42,27 +36,23 @@ class SpeedAlone:
         return y
 
 
-def row(name: str, truth: Truth, seed: int) -> dict[str, Any]:
+def row(name: str, truth: Truth, seed: int) -> Row:
     """Errors of both, and of drawing runs, after fits to one study."""
     x, y, _, bed = truth.study(RUNS, BEDS, seed)
-    begin = time.process_time()
-    expansion = emulator.fit_stochastic_expansion(INPUTS, x, y[:, 0], groups=bed, lower=0.0, upper=SPEED_LIMIT)
-    middle = time.process_time()
-    model = fitted(truth, RUNS, BEDS, seed)
-    end = time.process_time()
+    options = {"groups": bed, "lower": 0.0, "upper": SPEED_LIMIT}
+    expansion, expansion_time = timed(lambda: emulator.fit_stochastic_expansion(INPUTS, x, y[:, 0], **options))
+    model, emulator_time = timed(lambda: fitted(truth, RUNS, BEDS, seed))
     laws = {"expansion": SpeedAlone(expansion, model), "emulator": model, "rows": DrawnRuns(model)}
     return {
         "truth": name, "seed": seed, "runs": RUNS, "degree": expansion.degree, "latent": expansion.latent,
         **{f"{key}_speed_w2": law_errors(truth, law, draw_count=DRAWS)[0] for key, law in laws.items()},
-        "expansion_cpu_s": middle - begin, "emulator_cpu_s": end - middle,
+        "expansion_cpu_s": expansion_time, "emulator_cpu_s": emulator_time,
     }  # fmt: skip
 
 
 def main() -> None:
     """Make all rows and write them."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--studies", type=int, default=5)
-    studies = parser.parse_args().studies
+    studies = command_line(__doc__, studies=5).parse_args().studies
     begin = origin(f"benchmarks/stochastic_expansion.py --studies {studies}")
     rows = []
     for name, truth in (("weak", WEAK), ("strong", STRONG)):
@@ -70,11 +60,8 @@ def main() -> None:
             found = row(name, truth, seed)
             rows.append({key: round(one, 4) if isinstance(one, float) else one for key, one in found.items()})
             print(rows[-1], flush=True)
-    with open(RESULTS, "w", newline="", encoding="utf-8") as file:
-        writer = csv.DictWriter(file, list(rows[0]))
-        writer.writeheader()
-        writer.writerows(rows)
-    RESULTS.with_suffix(".json").write_text(json.dumps(begin, indent=1) + "\n", encoding="utf-8")
+    write_rows(TABLE, rows[0], rows)
+    write_document(TABLE.with_suffix(".json"), begin)
 
 
 if __name__ == "__main__":

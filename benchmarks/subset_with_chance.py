@@ -8,20 +8,16 @@ of them. Chains do not know the noise, so they move less than where it is an inp
 Writes benchmarks/results/subset_with_chance.csv, and .json beside it.
 """
 
-import argparse
-import csv
-import json
 import math
-import time
-from pathlib import Path
+from collections.abc import Iterator
 
 import numpy as np
-from origin import origin
+from harness import RESULTS, Row, command_line, write_made, write_rows
 from scipy import stats
 
 from lithobrake.analysis import SubsetResult, subset_simulation
 
-RESULTS = Path(__file__).parent / "results" / "subset_with_chance.csv"
+TABLE = RESULTS / "subset_with_chance.csv"
 COLUMNS = ("noise_share", "bed_share", "beds", "points_per_level", "seeds", "held", "bias", "scatter", "told", "width")
 EXACT, DIMENSION = 1e-3, 12
 # Parts of the variance that are noise and the bed's, and number of beds; then points at each level.
@@ -47,29 +43,27 @@ def one(noise_share: float, bed_share: float, bed_count: int, points_per_level: 
     return subset_simulation(margin, DIMENSION, **options)
 
 
+def rows(count: int) -> Iterator[Row]:
+    """A row a case, over so many seeds."""
+    for case in CASES:
+        found = [one(*case, seed) for seed in range(count)]
+        probability = np.array([each.probability for each in found])
+        numbers = {
+            "held": np.mean([each.lower <= EXACT <= each.upper for each in found]),
+            "bias": probability.mean() / EXACT - 1.0,
+            "scatter": probability.std() / EXACT,
+            "told": np.median([each.coefficient_of_variation for each in found]),
+            "width": np.median([each.upper / each.lower if each.reached else math.inf for each in found]),
+        }
+        row = dict(zip(COLUMNS, (*case, count), strict=False))
+        yield row | {key: round(float(value), 3) for key, value in numbers.items()}
+
+
 def main() -> None:
     """Measure and write."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--seeds", type=int, default=200)
-    count, begin = parser.parse_args().seeds, time.process_time()
-    with RESULTS.open("w", newline="") as file:
-        writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
-        writer.writeheader()
-        for case in CASES:
-            found = [one(*case, seed) for seed in range(count)]
-            probability = np.array([each.probability for each in found])
-            numbers = {
-                "held": np.mean([each.lower <= EXACT <= each.upper for each in found]),
-                "bias": probability.mean() / EXACT - 1.0,
-                "scatter": probability.std() / EXACT,
-                "told": np.median([each.coefficient_of_variation for each in found]),
-                "width": np.median([each.upper / each.lower if each.reached else math.inf for each in found]),
-            }
-            row = dict(zip(COLUMNS, (*case, count), strict=False))
-            writer.writerow(row | {key: round(float(value), 3) for key, value in numbers.items()})
-    facts = {"seeds": count, "level": 0.9, "cpu_s": round(time.process_time() - begin), "table": RESULTS.name}
-    facts |= origin(f"benchmarks/subset_with_chance.py --seeds {count}")
-    RESULTS.with_suffix(".json").write_text(json.dumps(facts, indent=1) + "\n")
+    count = command_line(__doc__, seeds=200).parse_args().seeds
+    write_rows(TABLE, COLUMNS, rows(count))
+    write_made(TABLE, f"benchmarks/subset_with_chance.py --seeds {count}", seeds=count, level=0.9)
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
 """Friction of a lander that slides on a bed of hulls about as large as itself, as landers pushed along beds show it.
 
 It lies among stones and has to come over them, which friction of its contacts adds to: an edge that catches holds it
-even where contacts are smooth. Measured by docs/validation/sliding_law.py; docs/validation/sliding_law.md has the
+even where contacts are smooth. Measured by validation/sliding_law.py; docs/validation/sliding_law.md has the
 pushes, and sliding_law.json there the numbers.
 """
 

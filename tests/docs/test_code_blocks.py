@@ -101,7 +101,7 @@ def test_scripts_that_are_named_exist() -> None:
     named |= {
         word
         for page in PAGES
-        for word in re.findall(r"`python ((?:benchmarks|docs|examples)/[\w/]+\.py)", page.read_text("utf-8"))
+        for word in re.findall(r"`python ((?:benchmarks|docs|examples|validation)/[\w/]+\.py)", page.read_text("utf-8"))
     }
     assert named
     assert [name for name in sorted(named) if not (ROOT / name).is_file()] == []

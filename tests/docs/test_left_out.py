@@ -7,7 +7,7 @@ import pytest
 from blocks import ROOT
 
 PAGE = (ROOT / "docs" / "what_the_model_leaves_out.md").read_text(encoding="utf-8")
-SCRIPT = runpy.run_path(str(ROOT / "docs" / "validation" / "experiments" / "left_out.py"))
+SCRIPT = runpy.run_path(str(ROOT / "validation" / "experiments" / "left_out.py"))
 
 
 @pytest.mark.parametrize("table", ["contact_lines", "yield_lines", "cohesion_lines", "force_lines"])

@@ -9,7 +9,7 @@ from types import ModuleType
 import pytest
 from blocks import ROOT
 
-FOLDER = ROOT / "docs" / "validation" / "experiments"
+FOLDER = ROOT / "validation" / "experiments"
 
 
 @pytest.fixture(scope="module")

@@ -10,7 +10,7 @@ from blocks import ROOT
 
 @pytest.mark.parametrize("study", ["paper", "efficient", "mission"])
 def test_kept_ledgers_have_the_runs_of_their_summaries(study: str) -> None:
-    folder = ROOT / "results" / study
+    folder = ROOT / "showcase" / study
     results = json.loads((folder / "summary.json").read_text(encoding="utf-8"))["results"]
     designs = results.get("designs") or {"sequence": results["runs"]}
     for name, design in designs.items():

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-EXPERIMENTS = Path(__file__).parents[2] / "docs" / "validation" / "experiments"
+EXPERIMENTS = Path(__file__).parents[2] / "validation" / "experiments"
 
 
 @pytest.fixture(autouse=True)

@@ -1,4 +1,4 @@
-"""A ball on a bed of beads: what the experiments of docs/validation/experiments ask for, in small."""
+"""A ball on a bed of beads: what the experiments of validation/experiments ask for, in small."""
 
 import math
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""Loose grains and grains that pull on each other: what docs/validation/experiments asks for, in small."""
+"""Loose grains and grains that pull on each other: what validation/experiments asks for, in small."""
 
 import sys
 from dataclasses import replace
@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-EXPERIMENTS = Path(__file__).parents[2] / "docs" / "validation" / "experiments"
+EXPERIMENTS = Path(__file__).parents[2] / "validation" / "experiments"
 
 
 @pytest.fixture(autouse=True)

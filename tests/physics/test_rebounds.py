@@ -1,4 +1,4 @@
-"""Who rebounds from coarse grains: what docs/validation/experiments/who_rebounds.py asks for, in small."""
+"""Who rebounds from coarse grains: what validation/experiments/who_rebounds.py asks for, in small."""
 
 import sys
 from dataclasses import replace
@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-EXPERIMENTS = Path(__file__).parents[2] / "docs" / "validation" / "experiments"
+EXPERIMENTS = Path(__file__).parents[2] / "validation" / "experiments"
 
 
 @pytest.fixture(autouse=True)

@@ -267,7 +267,7 @@ def test_stones_as_large_as_the_lander_hold_it_more_than_its_contacts_do() -> No
 
 
 def test_the_law_of_sliding_is_that_of_its_measurement() -> None:
-    found = json.loads((ROOT / "docs" / "validation" / "sliding_law.json").read_text(encoding="utf-8"))["law"]
+    found = json.loads((ROOT / "validation" / "sliding_law.json").read_text(encoding="utf-8"))["law"]
     assert pytest.approx((found["intercept"], found["slope"]), abs=0.005) == (INTERCEPT, SLOPE)
     low, high = FRICTIONS
     assert found["scatter"] < found["scatter_about_coulomb"]

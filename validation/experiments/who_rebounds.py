@@ -1,0 +1,287 @@
+"""Who rebounds, slow or fast? A 2 cm ball on coarse grains, over the Froude number (Y1, Y2).
+
+    python validation/experiments/who_rebounds.py --work FOLDER [--drops 10] [--kinds sand ...]
+
+Froude number: speed at the first touch over sqrt(g D), D the ball's diameter. By similarity it alone tells drops on
+stiff grains without cohesion apart, so one drop stands for every gravity and the speed that goes with it; where grains
+pull on each other, gravity is a second number. Beds are poured under Earth's gravity, as those of the experiments were,
+and brought slowly to their own. Drops draw bed and place, the same in every cell. Rows that stand in who_rebounds.csv
+are not run again.
+
+Sources: [Brisset-2018], [Colwell-2003] (a quartz ball on sand), [Brisset-2020] (a ball on irregular grains of mm, cm).
+"""
+
+import itertools
+import math
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from sphere_bed import Floats, Row, add_box, note, read_rows, work_folder
+
+from lithobrake.dem import Material, Shape, Sphere, World
+from lithobrake.touchdown import settling
+from lithobrake.touchdown.grains import make_grain
+from lithobrake.touchdown.pouring import rain
+
+TABLE = Path(__file__).parent / "who_rebounds.csv"
+EARTH, DIAMETER = 9.81, 0.02  # m/s2; m, of the ball
+FROUDE = (1.0, 3.0, 10.0, 30.0, 100.0)
+BEDS = 3
+AIM = 0.008  # m from the middle along x and y, at most
+# Contact parameters are ours: the sources have none. Rolling resistance stands for the edges of sand.
+QUARTZ = Material(
+    young_modulus=1e7, poisson_ratio=0.25, restitution=0.6, friction=0.5, density=2650.0, rolling_friction=0.1
+)
+# Modulus over density v^2 and over density g D, at least. At 2000 the ball, of the mass of many grains, presses one in
+# by a quarter, and comes deeper.
+STIFF = 20_000.0
+PULLED = 9000.0  # modulus over surface energy over grain, at least: a pull then presses in by a hundredth of a grain
+FALL_SPEED = 3.0  # sqrt(g d), the most at which grains fall while they are poured
+LOCAL = 20.0  # steps of its own that each contact takes while grains fall
+STEPS = 30.0  # in the shortest contact while the ball comes down
+# A bed is at rest where all but a twentieth of its grains are below so much of the ball's speed.
+CALM = 1e-3
+PATIENCE = 2000  # looks
+LOOKS = 100  # in the time in which the ball would go its diameter
+# Stopped: for half of the time since its first touch the ball has been below this share of its speed.
+STOPPED = 5e-3
+LONGEST = 4.0  # diameters over speed, after which a ball is given up
+FLOWN = 5e-4  # m that a ball has risen freely where it is let go
+
+
+@dataclass(frozen=True, kw_only=True)
+class Kind:
+    """Grains, the box they fill, and the ball."""
+
+    grain: float = 0.004  # m, mean diameter; from .85 to 1.15 of it
+    hulls: bool = False
+    width: float = 0.06  # m, of the square box
+    depth: float = 0.02  # m, if they fill .58 of it
+    material: Material = QUARTZ
+    ball_density: float = 2650.0  # kg/m3, quartz
+    stiff: float = STIFF
+    surface_energy: float = 0.0  # J/m2
+    share: float = 1.0  # of Earth's gravity; of no account where nothing pulls
+    steps: float = STEPS
+    froude: tuple[float, ...] = FROUDE
+
+    def scaled(self, froude: float) -> tuple[float, float, Material]:
+        """Return the speed [m/s], gravity [m/s2] and material of the similar drop on grains of the given modulus."""
+        gravity, stuff = EARTH * self.share, self.material
+        speed = froude * math.sqrt(gravity * DIAMETER)
+        needed = max(
+            self.stiff * stuff.density * max(speed**2, gravity * DIAMETER), PULLED * self.surface_energy / self.grain
+        )
+        scale = stuff.young_modulus / needed
+        return speed * math.sqrt(scale), gravity * scale, replace(stuff, surface_energy=self.surface_energy * scale)
+
+
+OF_THE_POUR = ("grain", "hulls", "width", "depth", "material")
+FEW = (3.0, 30.0)
+HULLS = (3.0, 10.0, 30.0, 100.0, 300.0)
+COARSE = 0.006  # m, of all spheres but the first: they cost a fifth
+LUNAR = 0.0029  # J/m2, of clean lunar soil [Perko-2001]
+KINDS = {
+    "sand": Kind(),
+    "coarser": Kind(grain=COARSE),
+    "pebbles": Kind(grain=0.01, hulls=True, width=0.09, depth=0.035, froude=HULLS),
+    "gravel": Kind(grain=0.006, hulls=True, width=0.066, depth=0.025, froude=HULLS),
+    "lunar_0.0001": Kind(grain=COARSE, surface_energy=LUNAR, share=1e-4, steps=40.0, froude=(3.0, 10.0, 30.0)),
+    "lunar_0.01": Kind(grain=COARSE, surface_energy=LUNAR, share=1e-2, steps=40.0, froude=FEW),
+    "restitution_0.9": Kind(grain=COARSE, material=replace(QUARTZ, restitution=0.9), froude=FEW),
+    "friction_0.2": Kind(grain=COARSE, material=replace(QUARTZ, friction=0.2, rolling_friction=0.0), froude=FEW),
+    "softer": Kind(grain=COARSE, stiff=0.1 * STIFF),
+    "stiffer": Kind(grain=COARSE, stiff=10.0 * STIFF, froude=FEW),
+    "wider": Kind(grain=COARSE, width=0.08, froude=FEW),
+    "deeper": Kind(grain=COARSE, depth=0.03, froude=FEW),
+    "teflon": Kind(grain=COARSE, ball_density=2200.0, froude=FEW),
+}
+
+
+def poured(kind: Kind, seed: int) -> World:
+    """Return grains at rest under Earth's gravity in a box."""
+    generator = np.random.default_rng([seed, 29])
+    count = round(0.58 * kind.width**2 * kind.depth / (math.pi / 6.0 * kind.grain**3))
+    sizes = kind.grain * generator.uniform(0.85, 1.15, count)
+    grains: list[Shape] = [make_grain(generator, 14, d) if kind.hulls else Sphere(0.5 * d) for d in map(float, sizes)]
+    world = World((0.0, 0.0, -EARTH), None)
+    for grain, place, turn in zip(grains, *rain(generator, grains, (kind.width, kind.width)), strict=True):
+        world.add_body(grain, kind.material, place, orientation=tuple(turn))
+    add_box(world, kind.width, 0.0, kind.material)
+    world.drag = math.sqrt(EARTH / kind.grain) / FALL_SPEED
+    world.run_locally(3.0 * math.sqrt(2.0 * float(world.position[:, 2].max()) / EARTH), LOCAL)
+    unit = math.sqrt(kind.grain / EARTH)
+    for _ in range(PATIENCE):
+        settling.run_quietly(world, 0.1 * unit)
+        calm = settling.kinetic_ratio(world, kind.grain, EARTH) < settling.KINETIC_RATIO
+        if calm and settling.unbalanced_force(world) < settling.UNBALANCED_FORCE:
+            return world
+    raise ValueError(f"{count} grains were not at rest after {world.time:.3g} s: raise PATIENCE")
+
+
+def bed(work: Path, name: str, froude: float, seed: int) -> World:
+    """Return a bed at rest under the gravity of a Froude number, from the work folder where it is there."""
+    kind = KINDS[name]
+    path = work / f"rebounds_{name}_{froude:g}_{seed}.h5"
+    if not path.exists():
+        poured_as = replace(KINDS["sand"], **{key: getattr(kind, key) for key in OF_THE_POUR})
+        own = next(key for key, other in KINDS.items() if like(other, poured_as))
+        under_earth = work / f"rebounds_{own}_{seed}.h5"
+        if not under_earth.exists():
+            poured(poured_as, seed).save(under_earth)
+        brought(World.load(under_earth), kind, froude).save(path)
+    return World.load(path)
+
+
+def like(one: Kind, other: Kind) -> bool:
+    """Return whether two kinds are poured alike."""
+    return all(getattr(one, key) == getattr(other, key) for key in OF_THE_POUR)
+
+
+def brought(pressed: World, kind: Kind, froude: float) -> World:
+    """Return a bed that was at rest under Earth's gravity, at rest under that of a Froude number."""
+    speed, gravity, stuff = kind.scaled(froude)
+    period = settling.rest_period(stuff, kind.grain, gravity)
+    pressed.drag = settling.contact_drag(period)
+    settling.ramp(pressed, np.array([0.0, 0.0, -gravity]), period)
+    world, look = pressed, 0.25 * period
+    if stuff != kind.material:
+        world = of_material(pressed, stuff, kind.width)
+        # A pull of 4 pi R* surface energy, R* of two grains, is a heavier grain.
+        pull = math.pi * kind.grain * stuff.surface_energy
+        weight = gravity + pull / (math.pi / 6.0 * stuff.density * kind.grain**3)
+        period = settling.rest_period(stuff, kind.grain, weight)
+        look = 0.05 * period  # overlaps grow at once: steps must keep up
+    world.drag = settling.contact_drag(period)
+    for _ in range(PATIENCE):
+        settling.run_quietly(world, look)
+        if np.quantile(np.linalg.norm(world.velocity, axis=1), 0.95) < CALM * speed:
+            world.drag = 0.0
+            return world
+    raise ValueError(f"grains were not at rest at a Froude number of {froude:g}: raise PATIENCE")
+
+
+def of_material(world: World, stuff: Material, width: float) -> World:
+    """Return a box of the same grains at their places, of another material."""
+    other = World(tuple(world.gravity), None)
+    for body, place, turn in zip(world.bodies, world.position, world.orientation, strict=True):
+        other.add_body(body.shape, stuff, place, orientation=tuple(turn))
+    add_box(other, width, 0.0, stuff)
+    return other
+
+
+def aimed(world: World, kind: Kind, place: Floats, speed: float) -> int:
+    """Put the ball where it touches the first grain below it, or its bounding sphere; return its number."""
+    radius = 0.5 * DIAMETER
+    reach = radius + np.array([body.shape.bounding_radius for body in world.bodies])
+    span = reach**2 - ((world.position[:, :2] - place) ** 2).sum(axis=1)
+    height = float((world.position[:, 2] + np.sqrt(np.maximum(span, 0.0)))[span > 0.0].max()) * (1.0 + 1e-9)
+    stuff = replace(world.bodies[0].material, density=kind.ball_density)
+    return world.add_body(Sphere(radius), stuff, (*place, height), velocity=(0.0, 0.0, -speed))
+
+
+def touching(world: World) -> np.ndarray:
+    """Return of each body whether it touches another or a wall, shape [bodies]."""
+    contacts = world.contacts()
+    found = np.zeros(len(world.bodies), dtype=bool)
+    found[contacts["body_a"]] = True
+    found[contacts["body_b"][contacts["body_b"] >= 0]] = True
+    return found
+
+
+class Ejecta:
+    """How high grains fly above where they lay, once nothing touches them."""
+
+    def __init__(self, world: World) -> None:
+        self.lay, self.gravity = world.position[:, 2], -float(world.gravity[2])
+
+    def told(self, world: World, grain: float, speed: float) -> Row:
+        """Return how many grains rise by more than their mean diameter [m], and how fast, over a speed [m/s]."""
+        count = len(self.lay)
+        free, velocity = ~touching(world)[:count], world.velocity[:count]
+        up = np.maximum(velocity[:, 2], 0.0)
+        high = world.position[:count, 2] - self.lay + up**2 / (2.0 * self.gravity)
+        fast = np.linalg.norm(velocity[free & (high > grain)], axis=1) / speed
+        return {
+            "ejecta": len(fast), "ejecta_speed": float(fast.mean()) if len(fast) else 0.0,
+            "fastest": float(fast.max()) if len(fast) else 0.0,
+        }  # fmt: skip
+
+
+def followed(world: World, ball: int, speed: float, steps: float) -> Row:
+    """Follow a ball until it flies off, or stops; return how deep it comes and how high and fast it leaves.
+
+    Its rise is that above its deepest place, by free flight to its end where nothing touches it. Its speed out is the
+    one at which it goes up fastest.
+    """
+    gravity, begun = -float(world.gravity[2]), world.time
+    # Not local steps: they keep a bed at rest jittering, at a rate that a slow ball would feel.
+    world.time_step = world.shortest_contact(max(speed, math.sqrt(gravity * DIAMETER))) / steps
+    pace = max(round(DIAMETER / (LOOKS * speed) / world.time_step), 1) * world.time_step
+    start = deepest = float(world.position[ball, 2])
+    struck, slow_since, top, out, status = False, math.inf, deepest, np.zeros(3), "longest"
+    while world.time - begun < LONGEST * DIAMETER / speed:
+        world.run(duration=pace)
+        now, height, velocity = world.time - begun, float(world.position[ball, 2]), world.velocity[ball]
+        free = not touching(world)[ball]
+        struck = struck or not free
+        if height < deepest:
+            deepest, top, out = height, height, np.zeros(3)
+        if struck and velocity[2] > 0.0:
+            out = velocity if velocity[2] > out[2] else out
+            top = max(top, height + (float(velocity[2]) ** 2 / (2.0 * gravity) if free else 0.0))
+            if free and height - deepest > FLOWN:
+                status = "left"
+                break
+        slow_since = min(slow_since, now) if struck and np.linalg.norm(velocity) < STOPPED * speed else math.inf
+        if now - slow_since > 0.5 * now:
+            status = "stopped"
+            break
+    return {
+        "status": status, "depth": start - deepest, "rise": top - deepest,
+        "speed_out": float(np.linalg.norm(out)) / speed,
+        "upward_out": float(out[2]) / speed, "time": (world.time - begun) * speed / DIAMETER,
+    }  # fmt: skip
+
+
+def drop(work: Path, name: str, froude: float, number: int) -> Row:
+    """Let one ball meet a bed and return its row: lengths as they are, speeds over the ball's at its first touch."""
+    kind, seed = KINDS[name], number % BEDS + 1
+    start = time.process_time()
+    speed = kind.scaled(froude)[0]
+    world = bed(work, name, froude, seed)
+    place = np.random.default_rng([7, number]).uniform(-AIM, AIM, 2)
+    ejecta = Ejecta(world)
+    ball = aimed(world, kind, place, speed)
+    row = followed(world, ball, speed, kind.steps)
+    return {
+        "kind": name, "froude": froude, "drop": number, "bed": seed, "grains": ball, **row,
+        **ejecta.told(world, kind.grain, speed), "cpu_s": time.process_time() - start,
+    }  # fmt: skip
+
+
+def missing(names: list[str], drops: int) -> Iterator[tuple[str, float, int]]:
+    """Yield kind, Froude number and number of the drops that have no row; cells fill evenly."""
+    ran = {(row["kind"], row["froude"], row["drop"]) for row in read_rows(TABLE)}
+    for number, name in itertools.product(range(drops), names):
+        for froude in KINDS[name].froude:
+            if (name, froude, number) not in ran:
+                yield name, froude, number
+
+
+def main() -> None:
+    """Run what has no row yet."""
+    parser = work_folder(__doc__)
+    parser.add_argument("--drops", type=int, default=10, help="in each cell of speed and gravity")
+    parser.add_argument("--kinds", nargs="*", default=list(KINDS), choices=list(KINDS))
+    given = parser.parse_args()
+    given.work.mkdir(parents=True, exist_ok=True)
+    for cell in missing(given.kinds, given.drops):
+        note(TABLE, drop(given.work, *cell), "who_rebounds.py --work FOLDER")
+
+
+if __name__ == "__main__":
+    main()

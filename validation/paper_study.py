@@ -1,0 +1,145 @@
+"""The paper's way on ten other beds, and what the numbers of mission.toml depend on in the model of the soil.
+
+    python validation/paper_study.py [--work FOLDER] [--kinds twin "other beds" ...] [--out validation]
+
+"twin": scenarios/paper.toml a tenth of a millimetre beside, at order 3: what of its errors no expansion can take away.
+"other beds": scenarios/paper.toml with seeds from 2 on, each with a bed of its own, as deep and wide as those of
+scenarios/mission.toml, at order 3 in both steps. "numerics": RUNS landings of scenarios/mission.toml on BEDS beds, with
+one number of the model halved and doubled after the other. "grain sizes": SIZE_RUNS landings on as many beds of smaller
+grains (SIZES), poured under so much more gravity that they overlap as much. paper_study.json gets an entry a study as
+it ends; a study that stands in it is not run again: delete it to start anew. validation/paper_study_figures.py
+draws them.
+"""
+
+import json
+import sys
+import tempfile
+import time
+import tomllib
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import lithobrake
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
+from harness import SCENARIOS, command_line, origin, write_document
+
+Tables = dict[str, Any]
+OTHER_SEEDS = range(2, 12)
+RUNS, BEDS = 640, 8
+# Longest edge of the lander over the diameter of a grain: grains of a bed, and its width [m].
+SIZES = {2.0: (500, 1.65), 5.0: (1200, 1.1)}
+SIZE_RUNS = 320
+ROOT_2 = 2.0**0.5
+BESIDE = 1e-4  # m
+PAIRED = ("speed_out", "elevation_out", "spin_out")
+
+
+def scenario(name: str) -> Tables:
+    """The tables of a study of the repository."""
+    return tomllib.loads((SCENARIOS / f"{name}.toml").read_text())
+
+
+def changed(tables: Tables, section: str, **values: Any) -> Tables:
+    """The tables with some values of a section changed."""
+    return tables | {section: tables[section] | values}
+
+
+def at_order_3() -> Tables:
+    """The paper's way with its first step alone, for the second is made of the same runs."""
+    return changed(scenario("paper"), "design", refined_level=3, refined_degree=3, kept_share=1.0, test_count=10)
+
+
+def twin() -> Iterator[tuple[str, Tables]]:
+    """The paper's study where its lander comes down beside."""
+    tables = at_order_3()
+    yield "beside", changed(tables, "impact", place={"x": BESIDE})
+
+
+def other_beds() -> Iterator[tuple[str, Tables]]:
+    """The paper's way, bed by bed."""
+    size = {name: scenario("mission")["bed"][name] for name in ("grain_count", "width")}
+    tables = changed(at_order_3(), "bed", **size)
+    for seed in OTHER_SEEDS:
+        yield f"seed {seed}", tables | {"seed": seed}
+
+
+def numerics() -> Iterator[tuple[str, Tables]]:
+    """The drawn study with one number halved and doubled after the other; the dearest last."""
+    base = changed(changed(scenario("mission"), "design", run_count=RUNS), "bed", bed_count=BEDS)
+    base = changed(base, "monte_carlo", sample_count=10_000)
+    grains, (width, _), points = base["bed"]["grain_count"], base["bed"]["width"], base["bed"]["cloud_point_count"]
+    yield "as it is", base
+    yield "steps a contact halved", changed(base, "contact", steps_per_contact=12.5)
+    yield "steps a contact doubled", changed(base, "contact", steps_per_contact=50.0)
+    yield "depth halved", changed(base, "bed", grain_count=grains // 2)
+    yield "area halved", changed(base, "bed", grain_count=grains // 2, width=[width / ROOT_2] * 2)
+    yield "points a hull halved", changed(base, "bed", cloud_point_count=points // 2)
+    yield "points a hull doubled", changed(base, "bed", cloud_point_count=2 * points)
+    yield "depth doubled", changed(base, "bed", grain_count=2 * grains)
+    yield "area doubled", changed(base, "bed", grain_count=2 * grains, width=[width * ROOT_2] * 2)
+    yield "no grain held", changed(base, "contact", held_speed=0.0)
+
+
+def grain_sizes() -> Iterator[tuple[str, Tables]]:
+    """The drawn study on smaller grains."""
+    base = changed(scenario("mission"), "monte_carlo", sample_count=10_000)
+    base = changed(base, "design", run_count=SIZE_RUNS)
+    coarse, gravity = base["bed"]["diameter"]["value"], base["bed"]["pour_gravity"]
+    for ratio, (grains, width) in SIZES.items():
+        size = max(base["lander"]["edges"]) / ratio
+        soil = {"grain_count": grains, "width": [width] * 2, "bed_count": BEDS}
+        sizes = {"distribution": "constant", "value": size}
+        yield (
+            f"lander {ratio:g} grains",
+            changed(base, "bed", **soil, diameter=sizes, pour_gravity=gravity * coarse / size),
+        )
+
+
+def told(found: Tables) -> Tables:
+    """What the tables and figures need of a study's results."""
+    entry = {name: found[name] for name in ("returns", "headline", "shares")} | {
+        "samples": found["monte_carlo"]["outputs"],
+        "outputs": found.get("outputs"),
+        "variance_shares": found.get("variance_shares"),
+    }
+    if "refined" in found:
+        designs = {name: design["outcomes"] for name, design in found["designs"].items()}
+        return entry | {name: found[name] for name in ("screening", "refined", "scores")} | {"outcomes": designs}
+    return entry | {"outcomes": found["runs"]["outcomes"]}
+
+
+KINDS = {"twin": twin, "other beds": other_beds, "numerics": numerics, "grain sizes": grain_sizes}
+
+
+def main() -> None:
+    """Run what is missing."""
+    work = Path(tempfile.gettempdir()) / "lithobrake_paper_study"
+    parser = command_line(__doc__, work=work, out=Path(__file__).parent)
+    parser.add_argument("--kinds", nargs="+", choices=KINDS, default=list(KINDS))
+    parser.add_argument("--workers", type=int, default=None)
+    given = parser.parse_args()
+    path = given.out / "paper_study.json"
+    entries = json.loads(path.read_text())["studies"] if path.exists() else []
+    done = {(one["kind"], one["name"]) for one in entries}
+    for kind in given.kinds:
+        for name, tables in KINDS[kind]():
+            if (kind, name) in done:
+                continue
+            start = time.perf_counter()
+            folder = given.work / f"{kind} {name}".replace(" ", "_")
+            results = lithobrake.run(tables, folder, workers=given.workers, report=False)
+            wall = time.perf_counter() - start
+            entry = {"kind": kind, "name": name, "wall_s": wall} | told(results.summary["results"])
+            if kind == "twin":
+                runs = dict(results.runs)
+                first = [row for row, design in enumerate(runs["design"]) if design == "screening"]
+                entry["screening_runs"] = {output: [float(runs[output][row]) for row in first] for output in PAIRED}
+            entries.append(entry)
+            write_document(path, {**origin("validation/paper_study.py"), "studies": entries})
+            print(kind, name, f"{wall:.0f} s", results.summary["results"]["headline"][0], flush=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,252 @@
+"""Draw and tabulate the paper's study, the drawn ones beside it, and what they depend on: paper_study.md.
+
+    python validation/paper_study_figures.py
+
+Reads showcase/paper, showcase/mission, showcase/efficient (validation/keep_results.py), paper_study.json and
+paper_fits.json; writes paper_study_*.png and paper_study.md to docs/validation.
+"""
+
+import csv
+import json
+import math
+import shutil
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import matplotlib
+
+matplotlib.use("agg")
+import matplotlib.pyplot as plt
+import numpy as np
+
+from lithobrake.report.style import INK, QUIET, STYLE, TEST, TRAINING
+
+HERE = Path(__file__).parent
+PAGES = HERE.parent / "docs" / "validation"
+SHOWCASE = HERE.parent / "showcase"
+SPEED, ELEVATION, SPIN = OUTPUTS = "speed_out", "elevation_out", "spin_out"
+SYMBOLS = {SPEED: "V+", ELEVATION: "theta+", SPIN: "omega+"}
+# Factor and unit of the tables.
+UNITS = {SPEED: (100.0, "cm/s"), ELEVATION: (math.degrees(1.0), "deg"), SPIN: (1.0, "rad/s")}
+PAPER_MAPE = {SPEED: 1.73, ELEVATION: 0.52, SPIN: 4.59}  # %, the paper's Figure 5
+PAPER_SHARE = 48.26  # %, the paper's, of trajectories that remain
+WAYS = {"paper": "the paper's way, 1500 grains", "efficient": "drawn, few runs", "mission": "drawn"}
+Entry = dict[str, Any]
+
+
+def kept(name: str) -> Entry:
+    """The results of a study that the repository keeps, as `told` of paper_study.py has them."""
+    found: Entry = json.loads((SHOWCASE / name / "summary.json").read_text())["results"]
+    if "designs" in found:
+        outcomes = {design: runs["outcomes"] for design, runs in found["designs"].items()}
+    else:
+        outcomes = found["runs"]["outcomes"]
+    return found | {"samples": found["monte_carlo"]["outputs"], "outcomes": outcomes}
+
+
+def entries(kind: str) -> list[Entry]:
+    """What paper_study.py found of a kind."""
+    path = HERE / "paper_study.json"
+    return [one for one in json.loads(path.read_text())["studies"] if one["kind"] == kind]
+
+
+def share(one: Entry) -> tuple[float, float, float]:
+    """Share that comes down again [%] and its interval; of one bed, the sampling of flights alone."""
+    returns = one["returns"]
+    half = returns.get("flight_sampling") or 0.0
+    low = returns["share"] - half if returns.get("lower") is None else returns["lower"]
+    high = returns["share"] + half if returns.get("upper") is None else returns["upper"]
+    return 100.0 * returns["share"], 100.0 * low, 100.0 * high
+
+
+def drivers(one: Entry) -> str:
+    """What the variance of V+ comes from, the largest first."""
+    if "screening" in one:
+        total = one["screening"]["sobol_total"][SPEED]
+        return "; ".join(f"{name} {total[name]:.2f}" for name in sorted(total, key=lambda key: -total[key])[:3])
+    words = {"soil": "soil", "bed": "bed", "place_and_attitude": "place and attitude"}
+    parts = {word: one["variance_shares"][SPEED][part] for part, word in words.items()}
+    return "; ".join(
+        f"{word} {part['share']:.2f} ({part['lower']:.2f} to {part['upper']:.2f})" for word, part in parts.items()
+    )
+
+
+def every_study() -> Iterator[tuple[str, Entry]]:
+    """All studies that answer the same question."""
+    yield WAYS["paper"], kept("paper")
+    yield from ((f"the paper's way, {one['name']}", one) for one in entries("other beds"))
+    yield from ((WAYS[name], kept(name)) for name in ("efficient", "mission"))
+
+
+def answer_table() -> list[str]:
+    """A line a study."""
+    heads = [f"{SYMBOLS[output]} [{UNITS[output][1]}]" for output in OUTPUTS]
+    lines = [f"| study | {' | '.join(heads)} | down again [%] | variance of V+ |", "|---" * 6 + "|"]
+    for name, one in every_study():
+        cells = []
+        for output in OUTPUTS:
+            factor, sample = UNITS[output][0], one["samples"][output]
+            cells.append(f"{factor * sample['mean']:.3g} ± {factor * sample['std']:.2g}")
+        value, low, high = share(one)
+        lines.append(f"| {name} | {' | '.join(cells)} | {value:.1f} ({low:.1f} to {high:.1f}) | {drivers(one)} |")
+    return lines
+
+
+def draw_answers() -> None:
+    """The share that comes down again and the outgoing speed, study by study."""
+    studies = list(every_study())
+    with plt.rc_context(STYLE):
+        figure, axes = plt.subplots(1, 2, figsize=(9.0, 4.4), constrained_layout=True, sharey=True)
+        for place, (_, one) in enumerate(studies):
+            colour = TEST if "screening" in one else TRAINING
+            value, low, high = share(one)
+            bars = [[max(value - low, 0.0)], [max(high - value, 0.0)]]
+            axes[0].errorbar(value, place, xerr=bars, fmt="o", color=colour, capsize=3, ms=4.5)
+            sample = one["samples"][SPEED]
+            ends = [100.0 * sample[f"quantile_{level}"] for level in ("0.05", "0.95")]
+            axes[1].plot(ends, [place, place], color=colour)
+            axes[1].plot(100.0 * sample["mean"], place, "o", color=colour, ms=4.5)
+        axes[0].axvline(PAPER_SHARE, color=QUIET, ls="--", lw=0.8, zorder=0)
+        axes[0].text(PAPER_SHARE + 0.5, 0.5 * len(studies), "the paper's 48.26 %", color=INK, rotation=90, va="center")
+        axes[0].set_yticks(range(len(studies)), [name for name, _ in studies])
+        axes[0].set_xlabel("landers that come down again within 12 h [%]")
+        axes[1].set_xlabel("outgoing speed [cm/s]: mean, 5 to 95 %")
+        figure.savefig(PAGES / "paper_study_answers.png", dpi=150)
+
+
+def true_values(design: str, output: str) -> np.ndarray:
+    """Values of an output in the runs of a design, NaN for those that have none."""
+    with (SHOWCASE / "paper" / "runs" / f"{design}.csv").open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    name = next(column for column in rows[0] if column.startswith(f"output:{output} ["))
+    return np.array([float(row[name] or "nan") for row in rows])
+
+
+def from_normal(design: str) -> np.ndarray:
+    """Absolute errors of theta+ [%] where it counts from the normal of the surface."""
+    elevation = true_values(design, ELEVATION)
+    elevation = elevation[np.isfinite(elevation)]
+    ape = np.array(json.loads((SHOWCASE / "paper" / "scores.json").read_text())[design][ELEVATION]["ape"])
+    return ape * elevation / (0.5 * math.pi - elevation)
+
+
+def floor(output: str) -> tuple[float, float]:
+    """Error of a run as the foretelling of one beside it: in the unit of the output, and in %, means.
+
+    Both runs have the scatter, so a law without error is off by 1/sqrt(2) of their difference.
+    """
+    beside = np.array(entries("twin")[0]["screening_runs"][output])
+    here = true_values("screening", output)
+    apart = np.abs(beside - here) / math.sqrt(2.0)
+    return math.sqrt(float(np.nanmean(apart**2))), 100.0 * float(np.nanmean(apart / np.abs(here)))
+
+
+def error_table() -> list[str]:
+    """Errors of the refined expansion beside the paper's."""
+    scores = json.loads((SHOWCASE / "paper" / "scores.json").read_text())
+    lines = [
+        "| output | the paper's MAPE [%] | ours on its own runs | on fresh runs, kept inputs | on fresh runs, all "
+        "inputs | Q2 of both | error of both | scatter of runs beside |",
+        "|---" * 8 + "|",
+    ]
+    for output in OUTPUTS:
+        factor, unit = UNITS[output]
+        own, kept_inputs, every = (scores[name][output] for name in ("refined", "test_kept", "test_all"))
+        low, high = kept_inputs["mape_interval"]
+        error, percent = floor(output)
+        lines.append(
+            f"| {SYMBOLS[output]} | {PAPER_MAPE[output]} | {own['mape']:.3g} | {kept_inputs['mape']:.3g} ({low:.3g} to "
+            f"{high:.3g}) | {every['mape']:.3g} | {kept_inputs['q2']:.2f}; {every['q2']:.2f} | "
+            f"{factor * kept_inputs['rmse']:.2g}; {factor * every['rmse']:.2g} {unit} | {factor * error:.2g} {unit}, "
+            f"{percent:.2g} % |"
+        )
+    angles = [float(from_normal(name).mean()) for name in ("refined", "test_kept", "test_all")]
+    cells = " | ".join(f"{angle:.3g}" for angle in angles)
+    return [*lines, f"| theta+ from the normal | {PAPER_MAPE[ELEVATION]} | {cells} | | | |"]
+
+
+def fit_table() -> list[str]:
+    """Other fits of the same runs, and of fewer."""
+    content = json.loads((HERE / "paper_fits.json").read_text())
+    heads = " | ".join(f"{SYMBOLS[output]}: MAPE [%], Q2" for output in OUTPUTS)
+    lines = [f"| runs | fit | {heads} |", "|---" * 5 + "|"]
+    for row in content["fits"]:
+        cells = [f"{row['scores'][output]['mape']:.3g}, {row['scores'][output]['q2']:.2f}" for output in OUTPUTS]
+        lines.append(f"| {row['count']}, {row['runs']} | {row['fit']} | {' | '.join(cells)} |")
+    return lines
+
+
+def numerics_table() -> list[str]:
+    """Means of the drawn study with one number of the model changed after the other, over those before any change."""
+    heads = " | ".join(f"{SYMBOLS[output]} [{UNITS[output][1]}] | over as it is" for output in OUTPUTS)
+    lines = [f"| study | outcomes | {heads} |", "|---" * (2 + 2 * len(OUTPUTS)) + "|"]
+    as_it_is: Entry = {}
+    for one in entries("numerics"):
+        as_it_is = one if one["name"].startswith("as it is") else as_it_is
+        cells = []
+        for output in OUTPUTS:
+            factor, mean, first = UNITS[output][0], one["outputs"][output]["mean"], as_it_is["outputs"][output]["mean"]
+            ends = f"{factor * mean['lower']:.3g} to {factor * mean['upper']:.3g}"
+            cells += [f"{factor * mean['value']:.3g} ({ends})", f"{mean['value'] / first['value']:.2f}"]
+        outcomes = ", ".join(f"{name} {count}" for name, count in one["outcomes"].items())
+        lines.append(f"| {one['name']} | {outcomes} | {' | '.join(cells)} |")
+    return lines
+
+
+def grain_size_table() -> list[str]:
+    """What decides on smaller grains: outcomes, V+, and the parts of its variance."""
+    lines = ["| study | outcomes | V+ [cm/s] | down again [%] | variance of V+ |", "|---" * 5 + "|"]
+    for name, one in [
+        ("lander 1.2 grains (drawn)", kept("mission")),
+        *((e["name"], e) for e in entries("grain sizes")),
+    ]:
+        mean, factor = one["outputs"][SPEED]["mean"], UNITS[SPEED][0]
+        speed = f"{factor * mean['value']:.3g} ({factor * mean['lower']:.3g} to {factor * mean['upper']:.3g})"
+        value, low, high = share(one)
+        outcomes = ", ".join(f"{outcome} {count}" for outcome, count in one["outcomes"].items())
+        lines.append(f"| {name} | {outcomes} | {speed} | {value:.0f} ({low:.0f} to {high:.0f}) | {drivers(one)} |")
+    return lines
+
+
+def time_table() -> list[str]:
+    """What each study cost."""
+    lines = ["| study | runs | wall [min] | CPU [min] | load |", "|---" * 5 + "|"]
+    for name in WAYS:
+        noted = json.loads((SHOWCASE / name / "origin.json").read_text())
+        keys = {row["key"] for path in (SHOWCASE / name / "runs").glob("*.csv") for row in csv.DictReader(path.open())}
+        times = f"{noted['wall_s'] / 60.0:.0f} | {noted['cpu_s'] / 60.0:.0f} | {noted['load']:.1f}"
+        lines.append(f"| `{noted['command']}` | {len(keys)} | {times} |")
+    return lines
+
+
+# Pictures of the kept study that the page shows: a page can show none from outside docs/.
+SHOWN = {
+    "landing/landing.png": "landing", "figures/figure_6_outputs.png": "outputs", "figures/figure_7_map.png": "map",
+}  # fmt: skip
+PARTS = {
+    "What each study says": answer_table,
+    "Errors of the expansion": error_table,
+    "Other fits of the same runs": fit_table,
+    "What numbers of the model change": numerics_table,
+    "Smaller grains": grain_size_table,
+    "Cost": time_table,
+}
+HEAD = """# The paper's study: the tables
+
+Written by `python validation/paper_study_figures.py`; [The paper's
+study](../paper_study.md) says what they mean.
+"""
+
+
+def main() -> None:
+    """Draw and write."""
+    draw_answers()
+    for source, name in SHOWN.items():
+        shutil.copy(SHOWCASE / "paper" / source, PAGES / f"paper_study_{name}.png")
+    parts = [f"## {title}\n\n" + "\n".join(table()) + "\n" for title, table in PARTS.items()]
+    (PAGES / "paper_study.md").write_text("\n".join([HEAD, *parts]))
+
+
+if __name__ == "__main__":
+    main()
