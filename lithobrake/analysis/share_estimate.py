@@ -42,7 +42,7 @@ class ShareEstimate:
     lower, upper  its confidence interval, which assumes nothing of the landings without an outcome; None where the
                   landings cannot give one, and `why` has the reason
     level         confidence of each interval
-    source        how many landings on how many beds it comes from, and how many have no outcome
+    source        how many landings with an outcome it comes from, of how many, on how many beds
     next_bed      prediction interval of the fraction on a new bed; None without an interval, where all landings end
                   alike, or with one landing a bed
     if_missing    the fraction if it is 0, and if it is 1, for all landings without an outcome; without sampling error
@@ -241,9 +241,7 @@ def _outer(*bounds: Bounds) -> Bounds:
 
 
 def _source(answered: NDArray[np.bool_], bed_count: int) -> str:
-    """How many landings on how many beds, and how many of them have no outcome."""
+    """How many landings with an outcome, of how many, on how many beds."""
     known, total = int(answered.sum()), len(answered)
     on_beds = f"landing{'s' if total > 1 else ''} on {bed_count} bed{'s' if bed_count > 1 else ''}"
-    if known == total:
-        return f"{total} {on_beds}"
-    return f"{known} of {total} {on_beds}; {total - known} {'have' if total - known > 1 else 'has'} no outcome"
+    return f"{total} {on_beds}" if known == total else f"{known} of {total} {on_beds}"

@@ -142,9 +142,7 @@ def variance_shares(
     of_terms = _left_out(terms, values, beds, np.array(list(groups.values())), found, total)
     parts = dict(zip(groups, of_terms, strict=True)) | {"bed": _of_beds(components, 1.0 - explained / total)}
     if twins is not None:
-        chaos = chaos_variance(twins)
-        bounds = chaos.lower / total, chaos.upper / total
-        parts["chaos"] = _Part(chaos.value / total, *bounds, bounds)
+        parts["chaos"] = _of_chaos(chaos_variance(twins), total)
     return _printed(total, parts, [name for name in inputs if name in soil])
 
 
@@ -237,13 +235,24 @@ def _of_beds(components: BedComponents, rest: float) -> _Part:
     return _Part(value, lower, upper, (lower, most))
 
 
+def _of_chaos(chaos: IntervalEstimate, total: float) -> _Part:
+    """Share of chaos in the whole; one above 1 has the bounds to print of 1: chi-square intervals scale with values."""
+    value, bounds = chaos.value / total, (chaos.lower / total, chaos.upper / total)
+    excess = max(value, 1.0)
+    return _Part(value, *bounds, (bounds[0] / excess, bounds[1] / excess))
+
+
 def _remainder(parts: list[_Part]) -> _Part:
-    """What parts leave of 1, its bounds from theirs. Source: [Zou-2008] (recovered variances)."""
+    """What parts leave of 1, its bounds from theirs, and outside [0, 1] those to print of the nearest end.
+
+    Twins may show more than the whole variance; that is no certainty that nothing else has a part in it.
+    Source: [Zou-2008] (recovered variances).
+    """
     share = 1.0 - sum(part.value for part in parts)
     down = np.sqrt(sum((part.upper - part.value) ** 2 for part in parts))
     up = np.sqrt(sum((part.value - part.lower) ** 2 for part in parts))
-    bounds = share - float(down), share + float(up)
-    return _Part(share, *bounds, bounds)
+    nearest = min(max(share, 0.0), 1.0)
+    return _Part(share, share - float(down), share + float(up), (nearest - float(down), nearest + float(up)))
 
 
 def _completing(rest: _Part, others: list[IntervalEstimate]) -> IntervalEstimate:

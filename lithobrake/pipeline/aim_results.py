@@ -21,9 +21,11 @@ from lithobrake.study.units import input_units
 
 SETTLED = JourneyStatus.SETTLED.value
 FAR = 0.95
-# Nobody knows where these landers are.
+# The outcome of these landers is unknown.
 UNKNOWN = (JourneyStatus.OUTSIDE, JourneyStatus.BOUNCING)
 HOUR = 3600.0
+# More aims than these make no sentence.
+NAMED = 3
 
 
 @dataclass(frozen=True)
@@ -139,7 +141,8 @@ def _best(
     shares = np.where(allowed, [part[SETTLED]["share"] for part in parts], -1.0)
     if shares.max() <= 0.0:
         return None
-    table: dict[str, Any] = {"aim": int(shares.argmax()), "share_of_refits": None, "next": None, "difference": None}
+    unknown = dict.fromkeys(("share_of_refits", "own", "not_worse", "next", "difference"))
+    table: dict[str, Any] = {"aim": int(shares.argmax()), **unknown}
     if bed_count is None:
         return table
     order = np.argsort(landers.refit[0], kind="stable")
@@ -147,6 +150,9 @@ def _best(
     for part, share in zip(parts, found.shares.tolist(), strict=True):
         part["share_of_refits"] = share
     table |= {"aim": found.best, "share_of_refits": float(found.shares[found.best]), "next": found.runner_up}
+    own = found.own
+    table["own"] = {"share": own.value, "lower": own.lower, "upper": own.upper}
+    table["not_worse"] = [aim for aim in found.not_worse if aim != found.best]
     if found.difference is not None:
         one = found.difference
         table["difference"] = {"value": one.value, "lower": one.lower, "upper": one.upper}
@@ -161,23 +167,18 @@ def _statement(table: dict[str, Any]) -> str:
     if best is None:
         return f"Of {len(aims)} aims {count} are allowed{within}, and at none of these a lander settles."
     part = aims[best["aim"]]["soil"]
+    # The largest of many shares is too high by its selection, so the sentence has the share without it.
+    share = best["own"] or part[SETTLED]
     said = [
-        f"Of {count} aims{within} landers settle most often at {_words(table, best['aim'])}: {_span(part[SETTLED])}"
+        f"Of {count} aims{within} landers settle most often at {_words(table, best['aim'])}: {_span(share, level=True)}"
     ]
     if part["distance_p95"] is not None:
         far, late = part["distance_p95"]["value"], part["time_p95"]["value"] / HOUR
         said[0] += f", 95 % of these within {far:.3g} m and {late:.3g} h"
     if part["missing"] >= 0.005:
-        said[0] += f"; of {100 * part['missing']:.0f} % nobody knows where they end{_rivals(table, best['aim'])}"
-    if best["share_of_refits"] is not None:
-        sure = f"It is the best in {100 * best['share_of_refits']:.0f} % of the refits"
-        if best["difference"] is not None:
-            one = {name: 100 * value for name, value in best["difference"].items()}
-            sure += (
-                f", {one['value']:.1f} points above {_words(table, best['next'])} "
-                f"({100 * LEVEL:.0f} % interval {one['lower']:.1f} to {one['upper']:.1f})"
-            )
-        said.append(sure)
+        said[0] += f"; {100 * part['missing']:.0f} % have an unknown outcome{_rivals(table, best['aim'])}"
+    if best["not_worse"] is not None:
+        said.append(_alike(table, best["not_worse"], count - 1))
     if hard is not None:
         share = _span(aims[hard["aim"]]["hard"][SETTLED])
         where = "this one, too" if best["aim"] == hard["aim"] else _words(table, hard["aim"])
@@ -185,8 +186,19 @@ def _statement(table: dict[str, Any]) -> str:
     return ". ".join(said) + "."
 
 
+def _alike(table: dict[str, Any], places: list[int], others: int) -> str:
+    """Which of the other allowed aims cannot be told from the best, all of them together."""
+    if not others:
+        return "No other aim is allowed"
+    surely = f"with {100 * LEVEL:.0f} % confidence"
+    if not places:
+        return f"It is better than every other, {surely}"
+    named = f": {'; '.join(_words(table, place) for place in places)}" if len(places) <= NAMED else ""
+    return f"{len(places)} of the other {others} cannot be distinguished from it {surely}{named}"
+
+
 def _rivals(table: dict[str, Any], best: int) -> str:
-    """How many other aims would be better if all settled there of which nobody knows where they end."""
+    """How many other aims would be better if all landers of unknown outcome settled there."""
     least = table["aims"][best]["soil"][SETTLED]["share"]
     most = [one["soil"][SETTLED]["share"] + one["soil"]["missing"] for one in table["aims"] if one["soil"]["allowed"]]
     count = sum(share > least for share in most) - 1
@@ -199,8 +211,9 @@ def _words(table: dict[str, Any], place: int) -> str:
     return ", ".join(f"{name} = {value:g}" for name, value in zip(table["names"], values, strict=True))
 
 
-def _span(share: dict[str, Any]) -> str:
-    """A share with its interval in words."""
+def _span(share: dict[str, Any], *, level: bool = False) -> str:
+    """A share with its interval in words, and that of the interval where it is to be named."""
     if share["lower"] is None:
         return f"{100 * share['share']:.0f} %"
-    return f"{100 * share['share']:.0f} % ({100 * share['lower']:.0f} to {100 * share['upper']:.0f})"
+    named = f"{100 * LEVEL:.0f} % interval " if level else ""
+    return f"{100 * share['share']:.0f} % ({named}{100 * share['lower']:.0f}-{100 * share['upper']:.0f} %)"

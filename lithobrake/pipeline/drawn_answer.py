@@ -122,7 +122,8 @@ def _missing(runs: Mapping[str, Any], returns: Mapping[str, Any]) -> list[str]:
     lost = runs["missing"]
     if not lost["count"]:
         return []
-    low, high = (_percent(bound, 1) for bound in returns["if_missing"])
+    ends = returns["if_missing"]
+    low, high = (_percent(bound, 1 if ends[1] - ends[0] < NARROW else 0) for bound in ends)
     covers = "" if returns["lower"] is None else "; the interval covers both"
     return [
         f"{lost['count']} of {runs['count']} landings have no outcome ({missing_words(lost['outcomes'])}): {low} "

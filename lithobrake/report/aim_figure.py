@@ -71,7 +71,7 @@ ROWS = (
 def aim_figure(table: Mapping[str, Any]) -> Figure:
     """Draw results.aim: a row of maps for each number, a map for each value of the third name.
 
-    What limits rule out is crossed; a frame marks the best on each ground.
+    What limits rule out is crossed; a frame marks the best on each ground, a dotted one what cannot be told from it.
     """
     values = np.array([aim["values"] for aim in table["aims"]])
     labels = [input_label(name, unit) for name, unit in zip(table["names"], table["units"], strict=True)]
@@ -181,7 +181,7 @@ def _draw(
 
 
 def _mark(axes: Axes, cells: _Cells, table: Mapping[str, Any], shown: NDArray[np.int64], ground: str) -> None:
-    """Cross out what limits rule out, and frame the best."""
+    """Cross out what limits rule out, and frame the best and what cannot be told from it."""
     best = table[f"best_on_{ground}"]
     for (column, row), aim in zip(cells.places, shown.tolist(), strict=True):
         if not table["aims"][aim][ground]["allowed"]:
@@ -189,6 +189,9 @@ def _mark(axes: Axes, cells: _Cells, table: Mapping[str, Any], shown: NDArray[np
         if best is not None and best["aim"] == aim:
             # Inside of the cell, where no neighbour covers it.
             frame = Rectangle((column - 0.47, row - 0.45), 0.94, 0.9, fill=False, edgecolor=SITE, linewidth=1.8)
+            axes.add_patch(frame)
+        elif best is not None and aim in (best["not_worse"] or ()):
+            frame = Rectangle((column - 0.47, row - 0.45), 0.94, 0.9, fill=False, edgecolor=SITE, linestyle=":")
             axes.add_patch(frame)
 
 

@@ -5,7 +5,7 @@ from typing import Any
 
 from lithobrake.outcomes import TouchdownOutcome
 from lithobrake.report.captions import hours, listing
-from lithobrake.report.percentages import percent, span
+from lithobrake.report.percentages import interval_digits, percent, span
 from lithobrake.report.rare_tables import rare_warnings
 from lithobrake.report.results import Results, SequenceResults
 
@@ -67,7 +67,8 @@ def missing_sentence(data: SequenceResults) -> str:
     if not missing["count"]:
         return ""
     kinds = listing([f"{number} {outcome_label(word)}" for word, number in missing["outcomes"].items()])
-    low, high = (percent(end, 1) for end in returns["if_missing"])
+    ends = returns["if_missing"]
+    low, high = (percent(end, interval_digits(*ends)) for end in ends)
     return (
         f"{missing['count']} of {data.results['runs']['count']} landings have no outcome ({kinds}): the return "
         f"fraction is {low} if none of these return, {high} if all do."

@@ -161,5 +161,6 @@ def aims(data: SequenceResults) -> str:
     crossed = " Aims that the limits rule out are crossed." if table["within"] else ""
     return (
         f"{thousands(table['lander_count'])} landers at each aim, followed until they rest; below each number its "
-        f"{percent(data.level)} interval, a frame about the best.{crossed} {table['statement']}"
+        f"{percent(data.level)} interval, a frame about the best, dotted about "
+        f"those that cannot be distinguished from it.{crossed} {table['statement']}"
     )

@@ -132,7 +132,7 @@ DRAWN_TABLES = (
                     "settled.share": "landers that rest where the ground holds them, after all bounces",
                     "settled.lower": f"lower bound, {bounds}; null where there is none",
                     "settled.upper": "upper bound likewise",
-                    "missing": "share of the landers of which nobody knows where they end",
+                    "missing": "share of the landers with an unknown outcome",
                     "distance_p95": "null where no lander settles",
                     "distance_p95.value": "95 % of those that settle lie within this way over the ground [m]",
                     "time_p95": "null where no lander settles",
@@ -152,7 +152,14 @@ DRAWN_TABLES = (
                 for key, words in {
                     "": "null where no aim is allowed, or at none of them a lander settles",
                     ".aim": "place of the best among the aims, from 0",
-                    ".share_of_refits": "share of the refits in which it is the best; null on hard ground",
+                    ".share_of_refits": "share of the refits in which it is the best, no probability that it is; null "
+                    "on hard ground",
+                    ".own": "null on hard ground, and where refits tell nothing",
+                    ".own.share": "settled share of the best less what its selection among the aims adds",
+                    ".own.lower": "lower bound of that, over refits",
+                    ".own.upper": "upper bound likewise",
+                    ".not_worse": "places of the other allowed aims that cannot be distinguished from the best at the "
+                    "level, all of them together; null on hard ground, and where refits tell nothing",
                     ".next": "place of the second best likewise",
                     ".difference": "null where there is no second, and on hard ground",
                     ".difference.value": "settled share of the best less that of the second",

@@ -135,6 +135,16 @@ def test_beds_that_differ_less_than_chance_have_an_upper_bound_above_0() -> None
     assert found.bed.upper == pytest.approx(chance / (1.0 + chance), rel=0.25)
 
 
+def test_twins_that_differ_by_more_than_the_whole_leave_no_interval_without_width() -> None:
+    twins = 3.0 * np.random.default_rng(0).standard_normal(12)
+    found = split(0, twins)
+    assert found.unbiased["chaos"] > 1.0 == found.chaos.value == found.chaos.upper
+    # Chi-square of 12.
+    assert found.chaos.lower == pytest.approx(12.0 / stats.chi2.ppf(0.95, 12))
+    assert found.unbiased["place_and_attitude"] < 0.0 == found.place_and_attitude.value
+    assert found.place_and_attitude.lower == 0.0 < found.place_and_attitude.upper
+
+
 def test_few_runs_drop_terms_and_then_the_answer() -> None:
     rng = np.random.default_rng(0)
     answers = []

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import lithobrake
+from lithobrake.pipeline.aim_results import _statement
 from lithobrake.pipeline.aiming import _distances
 from lithobrake.pipeline.fitted_emulator import REFIT_COUNT
 from lithobrake.reading import read_rows
@@ -74,7 +75,21 @@ def test_the_best_keeps_the_limits_and_says_how_sure_it_is(found: dict[str, Any]
     gap = shares[best["aim"]] - shares[best["next"]]
     assert best["difference"]["value"] == pytest.approx(gap)
     assert best["difference"]["lower"] < gap < best["difference"]["upper"]
-    assert found["best_on_hard"]["share_of_refits"] is None
+    assert best["own"]["lower"] <= best["own"]["share"] <= best["own"]["upper"]
+    # What the choice of the best of several adds is taken off its share.
+    assert best["own"]["share"] < shares[best["aim"]]
+    assert set(best["not_worse"]) <= set(allowed) - {best["aim"]}
+    assert all(found["best_on_hard"][key] is None for key in ("share_of_refits", "own", "not_worse"))
+
+
+def test_the_statement_has_the_share_without_selection_and_names_what_is_alike(found: dict[str, Any]) -> None:
+    best, others = found["best_on_soil"], sum(aim["soil"]["allowed"] for aim in found["aims"]) - 1
+    assert f": {100 * best['own']['share']:.0f} % (90 % interval " in found["statement"]
+    assert "of the refits" not in found["statement"]
+    told = _statement({**found, "best_on_soil": {**best, "not_worse": [1]}})
+    assert f"1 of the other {others} cannot be distinguished from it with 90 % confidence: impact.speed = 0.1, " in told
+    told = _statement({**found, "best_on_soil": {**best, "not_worse": []}})
+    assert "It is better than every other, with 90 % confidence." in told
 
 
 def test_every_key_is_described_and_the_page_shows_the_aims(results: StudyResults, found: dict[str, Any]) -> None:

@@ -71,7 +71,10 @@ def _finish(folder: Path, changes: Mapping[str, Any], model: Callable[..., Any],
     for name in bed_files(study):
         bed().save(folder / name)
     write_landing(folder / "landing.h5")
-    write(Job(study, tables, StudyFolder(folder), None, Silent()))  # type: ignore[arg-type]
+    made = StudyFolder(folder)
+    key = made.key_of("summary.json") or ""
+    write(Job(study, tables, made, None, Silent()))  # type: ignore[arg-type]
+    made.note("summary", ["summary.json"], key, made.wall_times()["summary"])
 
 
 def sinking(count: int) -> dict[str, np.ndarray]:

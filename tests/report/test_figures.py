@@ -297,8 +297,8 @@ def test_aims_share_one_scale_and_have_colour_bars() -> None:
     aims = [
         {"values": [speed], "soil": ground(share), "hard": ground(0.2)} for speed, share in ((0.1, 0.2), (0.2, 0.3))
     ]
-    table = {"names": ["impact.speed"], "units": ["m/s"], "aims": aims, "best_on_soil": {"aim": 1},
-             "best_on_hard": None}  # fmt: skip
+    table = {"names": ["impact.speed"], "units": ["m/s"], "aims": aims, "best_on_hard": None,
+             "best_on_soil": {"aim": 1, "not_worse": [0]}}  # fmt: skip
     with figure_style():
         figure = aim_figure(table)
     maps = [axes.images[0] for axes in figure.axes if axes.images]
@@ -308,6 +308,8 @@ def test_aims_share_one_scale_and_have_colour_bars() -> None:
     assert len(figure.axes) == 10
     assert figure.get_figwidth() == 9.2
     assert {"20", "30"} <= {text.get_text() for text in figure.axes[0].texts}
+    # The best is framed, and dotted what cannot be told from it.
+    assert sorted(patch.get_linestyle() for patch in figure.axes[0].patches) == [":", "solid"]
 
 
 def test_shares_without_intervals_speak_of_none() -> None:
