@@ -113,8 +113,8 @@ BEDS = {
     "coordination_number": Quantity("", "contacts of a grain in the mean"),
     "surface_height_m": Quantity("m", "mean height of the surface above the floor"),
     "mean_diameter_m": Quantity("m", "mean diameter of the grains, as spheres of equal volume"),
-    "smallest_width_m": Quantity("m", "width that keeps the walls out of the first blow"),
-    "smallest_depth_m": Quantity("m", "depth that keeps the floor out of the first blow"),
+    "smallest_width_m": Quantity("m", "smallest width without boundary reflections during the first impact"),
+    "smallest_depth_m": Quantity("m", "smallest depth without boundary reflections during the first impact"),
     "large_enough": Quantity("", "whether the bed has that width and depth"),
 }
 # Data sets of the HDF5 files of beds and landings; the history is that of the settling.

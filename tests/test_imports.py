@@ -23,6 +23,7 @@ LEAVES = {
         "kernel_process",
         "outputs",
         "outcomes",
+        "percentages",
         "plain",
         "reading",
         "given_numbers",

@@ -5,14 +5,13 @@ from collections.abc import Mapping
 from typing import Any
 
 from lithobrake.outcomes import FlightStatus, JourneyStatus, TouchdownOutcome
+from lithobrake.percentages import interval_digits, percent, span
 from lithobrake.pipeline.missing_landings import missing_words
 from lithobrake.pipeline.run_shares import CAPTURED
 from lithobrake.pipeline.scope import scope
 from lithobrake.study import Study
 
 CENTIMETRES = 100.0
-# An interval narrower than this is told in tenths of a per cent.
-NARROW = 0.02
 # Parts of the variance, as they stand in a sentence; of those in FLOORS only terms of first and second degree are seen.
 PARTS = {
     "soil": "soil",
@@ -75,7 +74,7 @@ def limit_statement(name: str, found: Mapping[str, Any]) -> str:
 def _small(share: float) -> str:
     """A share in words, to two digits where it is rare or nearly certain."""
     away = min(share, 1.0 - share)
-    return _percent(share) if away >= 0.1 or away == 0.0 else f"{100 * share:.{_digits(away)}f} %"
+    return percent(share) if away >= 0.1 or away == 0.0 else f"{100 * share:.{_digits(away)}f} %"
 
 
 def _digits(away: float) -> int:
@@ -110,7 +109,7 @@ def _at_rest(study: Study, rest: Mapping[str, Any], *, holds: bool) -> str:
         return "" if holds else "None of the landings stays at the site; "
     table = rest[ground]
     settled, unknown = table[JourneyStatus.SETTLED], table[JourneyStatus.OUTSIDE]["share"]
-    lost = f" (of {_percent(unknown)} the outcome is unknown)" if unknown > 0.0 else ""
+    lost = f" (of {percent(unknown)} the outcome is unknown)" if unknown > 0.0 else ""
     return (
         f"{_interval(settled | {'level': table['level']})} of the landings come to rest {GROUNDS[ground]} within "
         f"{_hours(study.rest.duration)}{lost}; "
@@ -123,7 +122,7 @@ def _missing(runs: Mapping[str, Any], returns: Mapping[str, Any]) -> list[str]:
     if not lost["count"]:
         return []
     ends = returns["if_missing"]
-    low, high = (_percent(bound, 1 if ends[1] - ends[0] < NARROW else 0) for bound in ends)
+    low, high = (percent(bound, interval_digits(*ends)) for bound in ends)
     covers = "" if returns["lower"] is None else "; the interval covers both"
     return [
         f"{lost['count']} of {runs['count']} landings have no outcome ({missing_words(lost['outcomes'])}): {low} "
@@ -182,27 +181,17 @@ def _scatter(parts: Mapping[str, Any] | None) -> list[str]:
 def _part(part: Mapping[str, float], name: str) -> str:
     """A part of a variance within what it can be; estimates without bias may lie a little outside."""
     share, lower, upper = (min(max(part[key], 0.0), 1.0) for key in ("share", "lower", "upper"))
-    shown = f"{'at least ' if name in FLOORS else ''}{_percent(share)}" if share > 0.0 else "not detected"
-    return f"{shown} ({_span(lower, upper)})"
+    shown = f"{'at least ' if name in FLOORS else ''}{percent(share)}" if share > 0.0 else "not detected"
+    return f"{shown} ({span(lower, upper)})"
 
 
 def _interval(found: Mapping[str, Any]) -> str:
     """A share with its interval, where it has one: "75 % (90 % interval 71-77 %)"."""
     if found["lower"] is None:
-        return _percent(found["share"])
-    digits = 1 if found["upper"] - found["lower"] < NARROW else 0
+        return percent(found["share"])
+    digits = interval_digits(found["lower"], found["upper"])
     level = f"{100 * found['level']:.0f} % interval " if "level" in found else ""
-    return f"{_percent(found['share'], digits)} ({level}{_span(found['lower'], found['upper'], digits)})"
-
-
-def _span(lower: float, upper: float, digits: int = 0) -> str:
-    return f"{_percent(lower, digits).removesuffix(' %')}-{_percent(upper, digits)}"
-
-
-def _percent(share: float, digits: int = 0) -> str:
-    """A share in words, to a tenth only near its ends, or as many digits as asked."""
-    near = share not in (0.0, 1.0) and not 0.01 <= share <= 0.99
-    return f"{100 * share:.{max(digits, int(near))}f} %"
+    return f"{percent(found['share'], digits)} ({level}{span(found['lower'], found['upper'], digits)})"
 
 
 def _hours(seconds: float) -> str:

@@ -4,10 +4,10 @@ import math
 from typing import Any
 
 from lithobrake.outcomes import FlightStatus, JourneyStatus, TouchdownOutcome
+from lithobrake.percentages import percent, with_interval
 from lithobrake.report.ellipse_line import follows_gaussian
 from lithobrake.report.error_figure import Score
 from lithobrake.report.page import fixed, number
-from lithobrake.report.percentages import percent, with_interval
 from lithobrake.report.results import PaperResults, Results
 from lithobrake.report.scatter_figure import DRAWN_COUNT
 from lithobrake.report.style import PAPER_OUTPUTS, output

@@ -4,10 +4,10 @@ from collections.abc import Mapping
 from typing import Any
 
 from lithobrake.outcomes import FlightStatus, JourneyStatus, SampleOutcome
+from lithobrake.percentages import percent, with_interval
 from lithobrake.report.captions import hours, thousands
 from lithobrake.report.ellipse_line import follows_gaussian
 from lithobrake.report.page import PageTable, fixed, flat, number
-from lithobrake.report.percentages import percent, with_interval
 from lithobrake.report.results import PaperResults, Results
 
 OUTCOME_WORDS: dict[str, str] = {

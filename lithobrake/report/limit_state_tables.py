@@ -3,9 +3,9 @@
 from collections.abc import Mapping
 from typing import Any
 
+from lithobrake.percentages import percent
 from lithobrake.report.captions import input_words
 from lithobrake.report.page import PageTable, fixed, number
-from lithobrake.report.percentages import percent
 from lithobrake.report.results import SequenceResults
 from lithobrake.report.tables import table_cell
 

@@ -12,9 +12,9 @@ from matplotlib.patches import Rectangle
 from numpy.typing import NDArray
 from scipy.interpolate import LinearNDInterpolator
 
+from lithobrake.percentages import percent, with_interval
 from lithobrake.report.density import WHOLE, Window, close_window, draw_density, near
 from lithobrake.report.ellipse_line import draw_ellipses, fitting, follows_gaussian
-from lithobrake.report.percentages import percent, with_interval
 from lithobrake.report.site_mark import draw_legend, mark_site
 from lithobrake.report.style import INK, QUIET, TRAINING
 

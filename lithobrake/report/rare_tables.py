@@ -5,8 +5,8 @@ from itertools import accumulate
 from operator import mul
 from typing import Any
 
+from lithobrake.percentages import percent
 from lithobrake.report.page import PageTable, fixed, number
-from lithobrake.report.percentages import percent
 
 RareResults = Mapping[str, Mapping[str, Any]]
 

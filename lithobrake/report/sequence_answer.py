@@ -4,8 +4,8 @@ from collections.abc import Mapping
 from typing import Any
 
 from lithobrake.outcomes import TouchdownOutcome
+from lithobrake.percentages import interval_digits, percent, span
 from lithobrake.report.captions import hours, listing
-from lithobrake.report.percentages import interval_digits, percent, span
 from lithobrake.report.rare_tables import rare_warnings
 from lithobrake.report.results import Results, SequenceResults
 

@@ -4,10 +4,10 @@ from collections.abc import Mapping
 from typing import Any
 
 from lithobrake.outcomes import TouchdownOutcome
+from lithobrake.percentages import part, percent
 from lithobrake.report.calibration_figure import band_luck, histograms, unlucky
 from lithobrake.report.captions import input_words, listing, thousands
 from lithobrake.report.page import number
-from lithobrake.report.percentages import part, percent
 from lithobrake.report.results import SequenceResults
 from lithobrake.report.scatter_figure import DRAWN_COUNT
 from lithobrake.report.sequence_answer import drawn_things, emulator_outside, left_out, missing_sentence

@@ -5,11 +5,11 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 from lithobrake.outcomes import JourneyStatus, TouchdownOutcome
+from lithobrake.percentages import interval_digits, part, percent, span, with_interval
 from lithobrake.report.captions import hours, input_words
 from lithobrake.report.dispersion_tables import GROUND_WORDS, dispersion_tables, followed
 from lithobrake.report.limit_state_tables import limit_state_tables
 from lithobrake.report.page import PageTable, Tile, number
-from lithobrake.report.percentages import interval_digits, part, percent, span, with_interval
 from lithobrake.report.rare_tables import rare_tables
 from lithobrake.report.results import SequenceResults
 from lithobrake.report.sequence_answer import (

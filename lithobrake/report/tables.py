@@ -3,10 +3,10 @@
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+from lithobrake.percentages import percent
 from lithobrake.report.captions import input_words
 from lithobrake.report.dispersion_tables import dispersion_tables
 from lithobrake.report.page import PageTable, Tile, fixed, flat, number, show, unit_scales
-from lithobrake.report.percentages import percent
 from lithobrake.report.results import PaperResults, Results
 from lithobrake.report.sequence_answer import action
 from lithobrake.report.style import PAPER_OUTPUTS, output

@@ -9,8 +9,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from lithobrake.report.percentages import part as shown
-from lithobrake.report.percentages import percent
+from lithobrake.percentages import part as shown
+from lithobrake.percentages import percent
 from lithobrake.report.style import INK, INTERACTIONS, QUIET, input_colours, input_label, output
 
 Share = Mapping[str, float]

@@ -12,10 +12,10 @@ from typing import Any
 import h5py
 import pytest
 
+from lithobrake.percentages import with_interval
 from lithobrake.report import captions, sequence_captions, sequence_tables, write_report
 from lithobrake.report.dispersion_tables import parts
 from lithobrake.report.page import PageTable
-from lithobrake.report.percentages import with_interval
 from lithobrake.report.rare_tables import rare_tables
 from lithobrake.report.results import SequenceResults, page_results
 from lithobrake.report.sequence_answer import warnings

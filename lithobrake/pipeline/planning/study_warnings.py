@@ -43,8 +43,8 @@ def _bed(soil: ExpectedSoil) -> Iterator[str]:
     here = min(soil.recipe.width)
     if here < width or soil.depth < depth:
         yield (
-            f"The bed will be about {soil.depth:.2g} m deep and is {here:g} m wide, and so that walls and floor do not "
-            f"answer the first blow {depth:.2g} m and {width:.2g} m are needed: add grains, or widen the bed."
+            f"The bed will be about {soil.depth:.2g} m deep and is {here:g} m wide; it must be at least {depth:.2g} m deep "
+            f"and {width:.2g} m wide to avoid boundary reflections during the first impact: add grains, or widen the bed."
         )
 
 

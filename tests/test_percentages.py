@@ -2,7 +2,7 @@
 
 import pytest
 
-from lithobrake.report.percentages import part, percent, span, with_interval
+from lithobrake.percentages import part, percent, span, with_interval
 
 
 def entry(share: float, lower: float | None = None, upper: float | None = None) -> dict[str, float | None]:
@@ -18,6 +18,8 @@ def entry(share: float, lower: float | None = None, upper: float | None = None) 
         (entry(0.004, 0.0, 0.03), "0.4 % (0-3 %)"),
         (entry(0.0, 0.0, 0.17), "0 % (0-17 %)"),
         (entry(1.0, 0.83, 1.0), "100 % (83-100 %)"),
+        (entry(0.0113, 0.0098, 0.038), "1 % (1-4 %)"),
+        (entry(0.0, 0.0, 0.00027), "0 % (0-0.03 %)"),
     ],
 )
 def test_tenths_stand_only_where_the_interval_is_narrower_than_two_points(

@@ -1,16 +1,16 @@
-"""Shares in per cent, the same everywhere on the page: as many digits as the interval deserves."""
+"""Shares in per cent, the same in every sentence and table: as many digits as the interval deserves."""
 
 from collections.abc import Mapping
 from typing import Any
 
 # Of an interval narrower than this tenths of a per cent say something.
 NARROW = 0.02
-# Within this of 0 or 1 whole per cent would say that there is nothing, or nothing else.
-NEAR = 0.01
+# More digits than these say nothing of a share next to 0 or 1.
+MOST_DIGITS = 2
 
 
 def percent(share: float, digits: int = 0) -> str:
-    """A share of one in per cent, to tenths at least where it is next to 0 or 1."""
+    """A share of one in per cent, with more digits where it is next to 0 or 1."""
     return f"{_number(share, digits)} %"
 
 
@@ -49,5 +49,9 @@ def part(entry: Mapping[str, float], more: str = "") -> str:
 
 
 def _number(share: float, digits: int) -> str:
-    is_near = 0.0 < share < NEAR or 1.0 - NEAR < share < 1.0
-    return f"{100.0 * share:.{max(digits, 1 if is_near else 0)}f}"
+    """A share in per cent, with more digits where it would else read as nothing, or as the whole, and is neither."""
+    if share in (0.0, 1.0):
+        return f"{100.0 * share:.0f}"
+    while digits < MOST_DIGITS and round(100.0 * share, digits) in (0.0, 100.0):
+        digits += 1
+    return f"{100.0 * share:.{digits}f}"
