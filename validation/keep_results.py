@@ -7,6 +7,7 @@ ledger as CSV and a contact sheet of the landing that the study shows; and notes
 on what machine and in which time it was made (from the log of the run, as bash's `time` ends it).
 """
 
+import json
 import re
 import shutil
 import sys
@@ -16,7 +17,7 @@ import numpy as np
 from scipy.stats import spearmanr
 
 import lithobrake
-from lithobrake.export import export_study
+from lithobrake.export import ExportOptions, export_study
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
 from harness import ROOT, command_line, origin, write_document
@@ -69,18 +70,26 @@ def keep(study: Path, out: Path, motion: bool) -> None:
         shutil.copy(figure, out / "figures" / figure.name)
     results = lithobrake.StudyResults(study)
     write_document(out / "rank_correlations.json", rank_correlations(results))
-    export_study(results, out / "landing", ["vtkhdf", "sheet"] if motion else ["sheet"])
+    export_study(results, out / "landing", ["vtkhdf", "sheet"] if motion else ["sheet"], ExportOptions(replaces=True))
 
 
 def main() -> None:
     """Keep one study."""
     parser = command_line(__doc__, "study", command=str, log=Path, out=ROOT / "showcase")
     parser.add_argument("--motion", action="store_true", help="the landing as VTKHDF too, some megabytes")
+    parser.add_argument(
+        "--kept-landings", action="store_true", help="the landings are those of the origin that is there (kept_runs.py)"
+    )
     given = parser.parse_args()
     out = given.out / given.study.name
+    earlier = json.loads((out / "origin.json").read_text()) if given.kept_landings else {}
     keep(given.study, out, given.motion)
     log = given.log.read_text()
     made = {**origin(""), "command": given.command, **times(log), "stages": stages(log)}
+    if earlier:
+        made["landings"] = earlier.get("landings") or {
+            key: earlier[key] for key in ("date", "command", "wall_s", "cpu_s")
+        }
     write_document(out / "origin.json", made)
 
 
