@@ -64,7 +64,9 @@ def direction_estimate(angle: ArrayLike, bed: ArrayLike, *, why: str | None = No
     across, along = (quantile * standard_error(wave(values - direction), beds) for wave in (np.sin, np.cos))
     # Where the error of the mean vector is as long as the vector itself it may point anywhere.
     half = math.asin(across / length) if across < length else math.pi
-    lengths = _length_bounds(length, along / normal_quantile())
+    # Which way a vector points that may be 0 is chance, and so is which error is the one along it.
+    error = max(across, along) if half == math.pi else along
+    lengths = _length_bounds(length, error / normal_quantile())
     return DirectionEstimate(direction, (direction - half, direction + half), length, lengths)
 
 
@@ -78,14 +80,17 @@ def _length_bounds(length: float, error: float) -> Bounds:
 
     if error == 0.0:
         return length, length
-    square = (length / error) ** 2
 
-    def bound(probability: float) -> float:
+    def bound(length: float, probability: float) -> float:
+        square = (length / error) ** 2
+
         def excess(ratio: float) -> float:
             return float(special.chndtr(square, 2.0, ratio**2)) - probability
 
         # Six errors beyond the length nothing is left of the tail.
         return error * float(optimize.brentq(excess, 0.0, length / error + 6.0)) if excess(0.0) > 0.0 else 0.0
 
-    lower, upper = (bound(0.5 + side * LEVEL) for side in (0.5, -0.5))
+    lower = bound(length, 0.5 + 0.5 * LEVEL)
+    # A length that chance alone made so short is no proof of none: the upper end is that of its median without any.
+    upper = bound(max(length, error * math.sqrt(2.0 * math.log(2.0))), 0.5 - 0.5 * LEVEL)
     return min(lower, length), min(max(upper, length), 1.0)
