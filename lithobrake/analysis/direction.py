@@ -48,7 +48,9 @@ def direction_estimate(angle: ArrayLike, bed: ArrayLike, *, why: str | None = No
     why: a reason why these runs give no interval, as one impact point; on one bed there is none either. The interval of
     the direction m is m -+ arcsin(t se / R), with R the resultant length and se the standard error of the mean of
     sin(angle - m) from beds; that of R comes from the noncentral chi-square distribution with the error of the mean of
-    cos(angle - m), so it reaches 0 where no direction is preferred. Raises ValueError where no run has the angle.
+    cos(angle - m), or the larger of both where m may be any direction, so it reaches 0 where none is preferred. Its
+    upper end is at least that of the median length without a preferred direction.
+    Raises ValueError where no run has the angle.
     Source: [Mardia-2000], sections 2.3 (mean direction, resultant length) and 4.8.1 (their large-sample distribution);
     [Cameron-2008] (errors from few clusters).
     """

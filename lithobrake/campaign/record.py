@@ -134,7 +134,7 @@ def read_records(path: str | PathLike[str]) -> list[Record]:
     """Read all runs of a ledger in the order in which they ended, unended ones last; a campaign may be writing to it.
 
     Ended runs whose row was changed since are left out, and a warning says so. Raises ValueError when the path holds no
-    ledger, or a damaged one.
+    ledger, a damaged one, or one of a later format.
     """
     path = Path(path)
     if not path.is_file():
