@@ -19,6 +19,7 @@ from pathlib import Path
 
 from lithobrake.atomic import atomic_path
 from lithobrake.cache_key import user_key
+from lithobrake.reading import open_regular
 
 log = logging.getLogger(__name__)
 
@@ -84,13 +85,14 @@ class DiskCache:
             return None
         path = self.folder / name
         try:
-            with path.open("rb") as file:
+            with open_regular(path) as file:
                 # Asked of the open file: what has this name may change meanwhile.
                 ours, whole = _is_ours(os.fstat(file.fileno())), file.read()
         except FileNotFoundError:
             return None
-        except OSError as error:
-            log.warning("%s cannot be read (%s): it is made again.", path, error.strerror)
+        except (OSError, ValueError) as error:
+            reason = error.strerror if isinstance(error, OSError) else "it is no regular file"
+            log.warning("%s cannot be read (%s): it is made again.", path, reason)
             return None
         content, signature = whole[:-_SIGNATURE_LENGTH], whole[-_SIGNATURE_LENGTH:]
         if ours and hmac.compare_digest(signature, self._signature(name, content)):

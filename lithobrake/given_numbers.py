@@ -42,8 +42,10 @@ def finite_number(
     above, below: limits that it may not reach; at_least, at_most: limits that it may.
     """
     # A whole number beyond all floats would overflow; none of the ranges reaches so far.
-    real = isinstance(value, Real) and not isinstance(value, bool) and bool(abs(value) < 1e308)  # type: ignore[operator]
-    number = float(value) if real else math.nan  # type: ignore[arg-type]
+    # A number of NumPy would take the limit into its own precision.
+    plain = value.item() if isinstance(value, Real) and hasattr(value, "item") else value
+    real = isinstance(value, Real) and not isinstance(value, bool) and bool(abs(plain) < 1e308)  # type: ignore[arg-type]
+    number = float(plain) if real else math.nan  # type: ignore[arg-type]
     low_enough = (below is None or number < below) and (at_most is None or number <= at_most)
     high_enough = (above is None or number > above) and (at_least is None or number >= at_least)
     if not (math.isfinite(number) and low_enough and high_enough):
@@ -88,6 +90,12 @@ def labels(name: str, values: "ArrayLike", count: int, of_what: str) -> "NDArray
     if array.shape != (count,):
         raise ValueError(f"{name} has shape {array.shape}, but must be [{count}]: one label for {of_what}")
     given = np.asarray(array)
+    if given.dtype.kind == "O":
+        # Labels of several kinds, or none, have no order.
+        try:
+            given.argsort()
+        except TypeError as error:
+            raise ValueError(f"{name} hold labels that cannot be told apart ({error}): number them") from None
     nothing = ~np.isfinite(given) if given.dtype.kind == "f" else np.zeros(count, dtype=bool)
     if (nothing | np.ma.getmaskarray(array)).any():
         raise ValueError(

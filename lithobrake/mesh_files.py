@@ -32,7 +32,7 @@ def _read_obj(path: Path) -> Mesh:
     """Wavefront OBJ: `v` and `f` lines; a polygon is cut into a fan of triangles from its first corner."""
     vertices: list[list[float]] = []
     faces: list[list[int]] = []
-    for number, line in enumerate(path.read_text(encoding="utf-8", errors="replace").splitlines(), 1):
+    for number, line in enumerate(path.read_text(encoding="utf-8-sig", errors="replace").splitlines(), 1):
         words = line.split()
         if not words or words[0].lower() not in ("v", "f"):
             continue
@@ -98,7 +98,9 @@ def _read_plates(path: Path) -> Mesh:
     its first line, then a line a vertex, the number of plates if it was not given, and a line a plate with vertices
     counted from 1; each of these lines may begin with its own number, by which they are then ordered.
     """
-    rows = [line.replace(",", " ").split() for line in path.read_text(encoding="ascii", errors="replace").splitlines()]
+    rows = [
+        line.replace(",", " ").split() for line in path.read_text(encoding="utf-8-sig", errors="replace").splitlines()
+    ]
     rows = [row for row in rows if row]
     rows = [row for row in rows if not row[0].startswith("#")]
     if rows and rows[0][0].lower() == "v":

@@ -1,5 +1,6 @@
 """The unit of the lengths in a mesh, as its header or the label of an archive beside it states it."""
 
+import codecs
 import re
 from pathlib import Path
 
@@ -20,22 +21,26 @@ _WORDS = {
     **dict.fromkeys(("au", "astronomical unit", "astronomical units"), "au"),
     **dict.fromkeys(("parsecs", "parsec", "pc"), "parsecs"),
     **dict.fromkeys(("dm", "decimeter", "decimeters", "decimetre", "decimetres"), "dm"),
-    **dict.fromkeys(("um", "µm", "micrometer", "micrometers", "micrometre", "micrometres", "microns"), "um"),
+    **dict.fromkeys(
+        ("um", "\u00b5m", "\u03bcm", "micrometer", "micrometers", "micrometre", "micrometres", "microns"), "um"
+    ),
     **dict.fromkeys(("nm", "nanometer", "nanometers", "nanometre", "nanometres"), "nm"),
     **dict.fromkeys(("megameter", "megameters", "megametre", "megametres"), "Mm"),
 }
 _NAMED = "|".join(sorted(_WORDS, key=len, reverse=True))
 _LENGTHS = r"(?:vertices|vertex coordinates|coordinates|positions|lengths|distances|dimensions)"
+# "units", "length_unit", "LengthUnits", "unit_length".
+_UNIT = r"(?:\b|_|length)units?(?:_of)?(?:_lengths?)?\b"
 # "units: km", "UNIT = KILOMETER", "the units are kilometers", "vertices in km", "all lengths are in km", "x [km]".
 _STATED = re.compile(
-    rf"(?:\bunits?\b\W*(?:1(?:\.0*)?\s+)?(?:(?:are|is|in|of|length|vertices|coordinates)\W+){{0,3}}"
+    rf"(?:{_UNIT}\W*(?:1(?:\.0*)?\s+)?(?:(?:are|is|in|of|length|vertices|coordinates)\W+){{0,3}}"
     rf"|\b{_LENGTHS}\s+(?:(?:are|given)\s+)*in\s+|\b[xyz]\s*[\[(]\s*)"
     rf"({_NAMED})(?![\w/^*])",
     flags=re.IGNORECASE,
 )
 # Whatever a header names as the unit: "units: parasangs", "the unit is 0.3 m".
 _ANY_STATED = re.compile(
-    r"\bunits?[ \t]*(?:[:=]|(?:are|is|in)\b)[ \t]*(?:(?:are|is|in|of|length)[ \t]+)*([^\s,;]+)", flags=re.IGNORECASE
+    rf"{_UNIT}[ \t]*(?:[:=]|(?:are|is|in)\b)[ \t]*(?:(?:are|is|in|of|length)[ \t]+)*([^\s,;]+)", flags=re.IGNORECASE
 )
 # Labels of PDS4 name the unit of each field; those of PDS3 are found by the pattern above.
 _FIELD = re.compile(rf"<unit>\s*({_NAMED})\s*</unit>", flags=re.IGNORECASE)
@@ -108,6 +113,7 @@ def _header(path: Path) -> str:
         for line in file:
             if _VERTEX.match(line):
                 break
-            if line.lstrip().startswith(b"#"):
-                lines.append(line.decode("utf-8", errors="replace"))
+            text = line.removeprefix(codecs.BOM_UTF8).decode("utf-8", errors="replace")
+            if text.lstrip().startswith("#"):
+                lines.append(text)
     return "".join(lines)

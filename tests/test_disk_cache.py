@@ -151,3 +151,15 @@ def test_room_is_made_of_what_the_library_keeps_alone(home):
     assert (folder / ours[2]).is_dir()
     assert not (folder / ours[0]).exists()
     assert library.read(ours[1]) == b"x" * 1000
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="this system has no pipes")
+def test_a_pipe_or_a_device_in_place_of_a_file_is_not_waited_for(home, caplog):
+    cache = DiskCache("dem-1")
+    cache.write(NAME, b"a kernel")
+    path = home / ".cache" / "lithobrake" / "dem-1" / NAME
+    for put in (lambda: os.mkfifo(path), lambda: path.symlink_to("/dev/zero")):
+        path.unlink()
+        put()
+        assert cache.read(NAME) is None
+        assert "cannot be read (it is no regular file): it is made again" in caplog.messages[-1]

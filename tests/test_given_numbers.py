@@ -1,5 +1,7 @@
 """What a public function was given is checked in one place, in one sentence."""
 
+import warnings
+
 import numpy as np
 import pytest
 
@@ -70,3 +72,17 @@ def test_labels_are_one_for_each_run(given: object) -> None:
     with pytest.raises(ValueError, match=r"groups .* one label for each run"):
         labels("groups", given, 2, "each run")  # type: ignore[arg-type]
     assert labels("groups", ["a", "b"], 2, "each run").tolist() == ["a", "b"]
+
+
+@pytest.mark.parametrize("given", [[None, None], [1, "a", None]])
+def test_labels_without_an_order_are_refused(given: list[object]) -> None:
+    with pytest.raises(ValueError, match="groups hold labels that cannot be told apart"):
+        labels("groups", np.array(given, dtype=object), len(given), "each run")
+
+
+def test_numbers_of_single_precision_are_checked_without_a_warning() -> None:
+    with np.errstate(all="raise"), warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert finite_number("level", np.float32(0.5), above=0.0, below=1.0) == 0.5
+    with pytest.raises(ValueError, match=r"level is .*inf.*, but must be a finite number"):
+        finite_number("level", np.float32("inf"))

@@ -67,6 +67,12 @@ def test_the_unit_is_what_header_or_label_state(
         ("# units = inches\n", "", None, "gives lengths in inches"),
         ("# units: in\n", "", "m", "gives lengths in in;"),
         ("# unit: mi\n", "", None, "gives lengths in miles"),
+        ("# unit: \u00b5m\n", "", None, "gives lengths in um"),
+        ("# unit: \u03bcm\n", "", None, "gives lengths in um"),
+        ("# length_unit: ft\n", "", None, "gives lengths in feet"),
+        ("# LENGTH_UNIT = FT\n", "", None, "gives lengths in feet"),
+        ("# unit_length = furlongs\n", "", None, "gives lengths in furlongs"),
+        ("\ufeff# units: km\n", "", "m", "says km, and unit is 'm'"),
         ("# vertices in furlongs\n", "", None, "gives lengths in furlongs"),
         ("# UNIT: AU\n", "", "km", "gives lengths in au"),
         ("# unit: au\n", "", None, "gives lengths in au"),
@@ -241,3 +247,20 @@ def test_a_label_of_another_file_is_no_mesh(tmp_path: Path, file: str) -> None:
     label = mesh(tmp_path, label=PRODUCT.format(file=file)).with_suffix(".xml")
     with pytest.raises(ValueError, match=f"this label names {file}; allowed: one file beside it that is named rock"):
         labelled_mesh(label)
+
+
+@pytest.mark.parametrize(
+    "header", ["# length_unit: km\n", "# LengthUnits: km\n", "# unit_length = km\n", "# units: km\n"]
+)
+@pytest.mark.parametrize("mark", ["", "\ufeff"])
+def test_a_unit_is_found_by_each_of_its_names_and_behind_a_byte_order_mark(
+    tmp_path: Path, header: str, mark: str
+) -> None:
+    (tmp_path / "rock.obj").write_text(f"{mark}{header}\n{OCTAHEDRON}", encoding="utf-8")
+    assert read_mesh(tmp_path / "rock.obj")[0].max() == 1000.0
+
+
+@pytest.mark.parametrize("name", ["rock.obj", "rock.tab"])
+def test_a_byte_order_mark_hides_no_vertex(tmp_path: Path, name: str) -> None:
+    (tmp_path / name).write_text("\ufeff" + OCTAHEDRON, encoding="utf-8")
+    assert volume_of(*read_mesh(tmp_path / name)) == pytest.approx(4.0 / 3.0)

@@ -48,7 +48,9 @@ def direction_estimate(angle: ArrayLike, bed: ArrayLike, *, why: str | None = No
     why: a reason why these runs give no interval, as one impact point; on one bed there is none either. The interval of
     the direction m is m -+ arcsin(t se / R), with R the resultant length and se the standard error of the mean of
     sin(angle - m) from beds; that of R comes from the noncentral chi-square distribution with the error of the mean of
-    cos(angle - m), so it reaches 0 where no direction is preferred. Raises ValueError where no run has the angle.
+    cos(angle - m), or the larger of both where m may be any direction, so it reaches 0 where none is preferred. Its
+    upper end is at least that of the median length without a preferred direction.
+    Raises ValueError where no run has the angle.
     Source: [Mardia-2000], sections 2.3 (mean direction, resultant length) and 4.8.1 (their large-sample distribution);
     [Cameron-2008] (errors from few clusters).
     """
@@ -64,7 +66,9 @@ def direction_estimate(angle: ArrayLike, bed: ArrayLike, *, why: str | None = No
     across, along = (quantile * standard_error(wave(values - direction), beds) for wave in (np.sin, np.cos))
     # Where the error of the mean vector is as long as the vector itself it may point anywhere.
     half = math.asin(across / length) if across < length else math.pi
-    lengths = _length_bounds(length, along / normal_quantile())
+    # Which way a vector points that may be 0 is chance, and so is which error is the one along it.
+    error = max(across, along) if half == math.pi else along
+    lengths = _length_bounds(length, error / normal_quantile())
     return DirectionEstimate(direction, (direction - half, direction + half), length, lengths)
 
 
@@ -78,14 +82,17 @@ def _length_bounds(length: float, error: float) -> Bounds:
 
     if error == 0.0:
         return length, length
-    square = (length / error) ** 2
 
-    def bound(probability: float) -> float:
+    def bound(length: float, probability: float) -> float:
+        square = (length / error) ** 2
+
         def excess(ratio: float) -> float:
             return float(special.chndtr(square, 2.0, ratio**2)) - probability
 
         # Six errors beyond the length nothing is left of the tail.
         return error * float(optimize.brentq(excess, 0.0, length / error + 6.0)) if excess(0.0) > 0.0 else 0.0
 
-    lower, upper = (bound(0.5 + side * LEVEL) for side in (0.5, -0.5))
+    lower = bound(length, 0.5 + 0.5 * LEVEL)
+    # A length that chance alone made so short is no proof of none: the upper end is that of its median without any.
+    upper = bound(max(length, error * math.sqrt(2.0 * math.log(2.0))), 0.5 - 0.5 * LEVEL)
     return min(lower, length), min(max(upper, length), 1.0)

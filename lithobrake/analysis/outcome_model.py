@@ -7,13 +7,15 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from lithobrake.analysis.confidence import LEVEL
-from lithobrake.given_numbers import finite_number, whole_number
+from lithobrake.given_numbers import finite_number, labels, whole_number
 
 if TYPE_CHECKING:
     from lithobrake.chaos import Distribution
 
 # Points whose probabilities are worked out at once: bounds the memory of the polynomial features.
 _BLOCK = 65_536
+# More units than any study has; a float holds their number.
+MOST_UNITS = 2**53
 
 
 class OutcomeModel:
@@ -102,7 +104,7 @@ def upper_limit(unit_count: int, level: float = 0.95) -> float:
     """
     finite_number("level", level, above=0.0, below=1.0)
     # Without any unit the event may have every probability.
-    if whole_number("unit_count", unit_count, 0) == 0:
+    if whole_number("unit_count", unit_count, 0, MOST_UNITS) == 0:
         return 1.0
     return float(1.0 - (1.0 - level) ** (1.0 / unit_count))
 
@@ -111,6 +113,8 @@ def unseen_limit(bed: ArrayLike) -> float:
     """Largest probability, at `LEVEL`, of an event that none of the runs on these beds [run_count] has met.
 
     bed: labels of the beds of the runs of which it is known that they have not met it. The unit is the bed, as in every
-    interval of the estimates: runs on one bed may all miss what the runs on another meet. Source: [Clopper-1934].
+    interval of the estimates: runs on one bed may all miss what the runs on another meet. Raises ValueError for what is
+    no label for each run. Source: [Clopper-1934].
     """
-    return upper_limit(len(np.unique(np.asarray(bed))), LEVEL)
+    beds = labels("bed", bed, np.size(np.asanyarray(bed)), "each run")
+    return upper_limit(len(np.unique(beds)), LEVEL)

@@ -165,16 +165,16 @@ def _checked(
 ) -> tuple[Array, Array, NDArray[np.bool_]]:
     h = numbers_or_nan("shares", shares)
     w = np.ones_like(h) if weights is None else numbers("weights", weights)
-    like = np.zeros(h.shape, dtype=bool) if like_missing is None else np.asarray(like_missing, dtype=bool)
+    like = np.zeros(h.shape) if like_missing is None else numbers("like_missing", like_missing)
     if h.ndim != 1 or not np.isfinite(h).any():
         raise ValueError(f"shares has shape {h.shape} and no outcome; give one for each run, some of them known")
     if np.nanmin(h) < 0.0 or np.nanmax(h) > 1.0:
         raise ValueError(f"shares reaches from {np.nanmin(h):g} to {np.nanmax(h):g}; each must lie between 0 and 1")
     if w.shape != h.shape or not np.all((w > 0.0) & np.isfinite(w)):
         raise ValueError(f"weights have shape {w.shape}; give one finite number above 0 for each of {len(h)} runs")
-    if like.shape != h.shape:
+    if like.shape != h.shape or not np.isin(like, (0.0, 1.0)).all():
         raise ValueError(f"like_missing has shape {like.shape}; give true or false for each of {len(h)} runs")
-    return h, w, like
+    return h, w, like == 1.0
 
 
 def _less_inputs(h: Array, terms: tuple[Array, Labels] | None, weights: Array, beds: Labels) -> Array:

@@ -19,6 +19,7 @@ from lithobrake.campaign.record import (
     CHECKSUM,
     COLUMNS,
     ENDED,
+    FORMAT_VERSION,
     HASHED,
     LEFT,
     OF_FIRST,
@@ -28,12 +29,12 @@ from lithobrake.campaign.record import (
     intact_records,
     lock_path,
     reading_ledger,
+    refuse_other_formats,
     row_hash,
     utc_now,
 )
 from lithobrake.plain import one_line
 
-FORMAT_VERSION = 3
 # Characters of a reason, of a word for an outcome: more would be the whole log of a program.
 _REASON_LENGTH, _OUTCOME_LENGTH = 1000, 100
 
@@ -95,11 +96,7 @@ class Ledger:
     def _format(self) -> int:
         """The format of the ledger, 0 for a new one. Raises ValueError for a file that is no ledger."""
         version: int = self._database.execute("PRAGMA user_version").fetchone()[0]
-        if not 0 <= version <= FORMAT_VERSION:
-            raise ValueError(
-                f"{self.path} has ledger format {version}; this version reads 1 to {FORMAT_VERSION}: "
-                "move the file away, or use the version of lithobrake that wrote it"
-            )
+        refuse_other_formats(self.path, version)
         tables = self._database.execute("SELECT name FROM sqlite_master WHERE type = 'table'").fetchall()
         columns = {row[1] for row in self._database.execute("PRAGMA table_info(runs)")}
         absent = {1: {*OF_FIRST, CHECKSUM}, 2: {CHECKSUM}}.get(version, set())

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from lithobrake.atomic import lock_holder
-from lithobrake.reading import NUMBER, check, parsed, reading
+from lithobrake.reading import NUMBER, DamagedFileError, check, parsed, reading
 
 log = logging.getLogger(__name__)
 
@@ -60,6 +60,7 @@ CHECKSUM = "sha256"
 HASHED = tuple(name for name in COLUMNS if name != "attempts")
 # What stands for the columns that a ledger of the first format lacks: its runs were each tried once.
 OF_FIRST = {"attempts": "1", "started": "NULL"}
+FORMAT_VERSION = 3
 # Ledgers of earlier formats have no hashes: their rows are taken as they stand.
 FIRST_HASHED = 3
 # Characters of a key that are shown; two runs of a campaign that share them are not met.
@@ -77,6 +78,15 @@ _FORM = {
 def reading_ledger(path: Path) -> AbstractContextManager[None]:
     """Turn whatever a damaged ledger makes its reader raise into DamagedFileError."""
     return reading(path, LEFT, sqlite3.Error)
+
+
+def refuse_other_formats(path: Path, version: int) -> None:
+    """Raise DamagedFileError for a ledger of a format that this version does not know."""
+    if not 0 <= version <= FORMAT_VERSION:
+        raise DamagedFileError(
+            f"{path} has ledger format {version}; this version reads 1 to {FORMAT_VERSION}: "
+            "move the file away, or use the version of lithobrake that wrote it"
+        )
 
 
 def row_hash(*values: Any) -> str:
@@ -124,7 +134,7 @@ def read_records(path: str | PathLike[str]) -> list[Record]:
     """Read all runs of a ledger in the order in which they ended, unended ones last; a campaign may be writing to it.
 
     Ended runs whose row was changed since are left out, and a warning says so. Raises ValueError when the path holds no
-    ledger, or a damaged one.
+    ledger, a damaged one, or one of a later format.
     """
     path = Path(path)
     if not path.is_file():
@@ -137,6 +147,7 @@ def read_records(path: str | PathLike[str]) -> list[Record]:
         closing(sqlite3.connect(f"{path.absolute().as_uri()}?mode=ro{whole}", uri=True)) as database,
     ):
         version = database.execute("PRAGMA user_version").fetchone()[0]
+        refuse_other_formats(path, version)
         columns = ", ".join(OF_FIRST.get(name, name) if version == 1 else name for name in COLUMNS)
         if version < FIRST_HASHED:
             rows = database.execute(f"SELECT {columns} FROM runs ORDER BY {order}", UNENDED)

@@ -78,7 +78,7 @@ def run(
     stands in the ledger. executor: with the interface of concurrent.futures (None: the cores of this machine). limits:
     of one run. progress: called as the campaign goes on.
     A run that raises, or whose process dies, is recorded as failed with its reason, and the campaign goes on.
-    Raises ValueError when the first ten of more than ten new runs all fail, so that nothing is known to work.
+    Raises ValueError for a model that is none, and when the first ten of more than ten new runs all fail.
     """
     rows, context, options = _inputs_of(x, names), context or {}, options or RunOptions()
     keys = [run_key(row, options.seed, options.replicate, context) for row in rows]
@@ -90,7 +90,7 @@ def run(
     }
     pending = {
         key: PendingRun(
-            model,
+            _callable(model),
             row,
             run_seed(row, options.seed, options.replicate),
             options.log_folder and options.log_folder / f"{key}.log",
@@ -120,6 +120,13 @@ def _state(keys: Sequence[str], known: Mapping[str, Record]) -> Tally:
 
 def _silent(state: Tally) -> None:
     """Show nothing."""
+
+
+def _callable(model: Model) -> Model:
+    """The model. Raises ValueError for what cannot be called."""
+    if not callable(model):
+        raise ValueError(f"model is {model!r}; allowed: a function of the inputs by name and a seed")
+    return model
 
 
 def _inputs_of(x: "np.ndarray", names: Sequence[str]) -> list[dict[str, float]]:

@@ -134,7 +134,7 @@ def _changed(change: str, values: dict[str, float]) -> tuple[str, float]:
         known = f"{closest(key, values)}; it reads {', '.join(values)}"
         raise ValueError(f"--set names {key!r}, which no landing of this study reads{known}")
     if not _NUMBER.fullmatch(text):
-        raise ValueError(f"--set {key} is {text!r}; allowed: a number, in the unit of the study file")
+        raise ValueError(f"--set {key} is {text!r}; allowed: a number as a study file has it, say 0.4")
     value = float(text)
     if not math.isfinite(value):
         raise ValueError(f"--set {key} is {value:g}; allowed: a finite number")

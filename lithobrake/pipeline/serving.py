@@ -101,6 +101,7 @@ class ServedStudy:
                     f"config.inputs: {name} is {show(given[name])}, and the emulator has it at {show(values[name])}; "
                     "leave it out, or serve the study that has it"
                 )
+        _refuse(self.study, {name: value for name, value in given.items() if name != "bed"})
         x = np.array([point])
         bound = energy_bound(self.study, self._bed_height, dict(zip(self.inputs, x.T, strict=True)), 1)
         drawn = DrawnLandings.of(self._emulator, x, bound, seed)

@@ -15,9 +15,12 @@ def intact_file(folder: Path, name: str, remedy: str) -> Path:
 
     A file of which the folder notes nothing, as in an archive, is taken as it stands, and so is any other while a study
     is at work there and may be making it. Raises DamagedFileError, with the remedy, for one that changed after it was
-    made.
+    made, and for a folder, a pipe or a device in its place.
     """
     path, keys = folder / name, folder / KEYS
+    # Reading a pipe waits for whoever writes to it, and some devices have no end.
+    if path.exists() and not path.is_file():
+        raise DamagedFileError(f"{path} cannot be read (it is no regular file); {remedy}")
     if not (path.is_file() and keys.is_file()) or lock_holder(folder / LOCK):
         return path
     notes = read_json(keys, dict, remedy)

@@ -99,6 +99,8 @@ class NamedEmulator:
         lengths = {column.shape for column in columns} - {()}
         if len(lengths) > 1 or any(len(shape) > 1 for shape in lengths):
             raise ValueError(f"inputs have the shapes {sorted(lengths)}, but must be numbers, or arrays of one length")
+        if (0,) in lengths:
+            raise ValueError(f"inputs have no point: an array is empty; {self._all()}")
         return np.column_stack(np.broadcast_arrays(*(np.atleast_1d(column) for column in columns)))
 
     def _all(self) -> str:

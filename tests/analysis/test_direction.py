@@ -64,3 +64,12 @@ def test_one_bed_or_a_reason_gives_values_without_an_interval() -> None:
     assert direction_estimate(y, bed).summary()["resultant_length"]["upper"] > 0.5
     with pytest.raises(ValueError, match="no run has the angle"):
         direction_estimate([math.nan], [0])
+
+
+@pytest.mark.parametrize("angle", [np.tile([0.0, math.pi], 60), 2.0 * math.pi * np.arange(120) / 120])
+@pytest.mark.parametrize("bed", [np.arange(120) % 12, np.arange(120) // 10])
+def test_a_length_of_0_is_no_proof_that_there_is_no_direction(angle: np.ndarray, bed: np.ndarray) -> None:
+    lower, upper = direction_estimate(angle, bed).resultant_length_bounds
+    assert lower == 0.0
+    # The bound of 120 independent runs at the length that half of all such studies stay below.
+    assert upper > math.sqrt(2.0 * math.log(2.0) / 240.0)

@@ -53,3 +53,14 @@ def test_the_unit_of_what_no_run_had_is_the_bed() -> None:
     bed = np.repeat(["a", "b", "c"], 40)
     assert (1.0 - unseen_limit(bed)) ** 3 == pytest.approx(1.0 - LEVEL)
     assert unseen_limit([]) == 1.0
+
+
+@pytest.mark.parametrize("bed", [None, "abc", 3, [np.nan, 1.0], [None, None], [[1, 2], [3, 4]]])
+def test_what_is_no_label_for_each_run_has_no_limit(bed: object) -> None:
+    with pytest.raises(ValueError, match=r"bed h(as shape|old)"):
+        unseen_limit(bed)  # type: ignore[arg-type]
+
+
+def test_more_units_than_a_float_counts_are_refused() -> None:
+    with pytest.raises(ValueError, match="must be a whole number from 0 to 9007199254740992"):
+        upper_limit(10**400)

@@ -254,6 +254,8 @@ def test_the_next_bed_of_a_share_near_one_is_a_share_and_is_held() -> None:
     [
         ({"terms": (np.zeros((3, 1)), np.zeros((1, 1), dtype=np.int64))}, "terms are of 3 runs and shares of 4"),
         ({"like_missing": [True]}, r"like_missing has shape \(1,\); give true or false for each of 4 runs"),
+        ({"like_missing": [np.nan] * 4}, "give true or false for each of 4 runs"),
+        ({"like_missing": ["False"] * 4}, "like_missing must be an array of real numbers"),
     ],
 )
 def test_what_is_not_of_the_runs_is_refused(given: dict[str, Any], words: str) -> None:

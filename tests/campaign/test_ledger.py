@@ -158,6 +158,18 @@ def test_a_ledger_of_the_first_format_keeps_its_runs(tmp_path: Path) -> None:
     assert [entry.attempts for entry in runs.records] == [1, 1, 1]
 
 
+@pytest.mark.parametrize("version", [-1, 4])
+def test_a_ledger_of_a_later_format_is_neither_read_nor_written(tmp_path: Path, version: int) -> None:
+    path = tmp_path / "runs.sqlite"
+    fill(path)
+    with sqlite3.connect(path) as database:
+        database.execute(f"PRAGMA user_version = {version}")
+    database.close()
+    for look in (read_records, Ledger):
+        with pytest.raises(ValueError, match=f"has ledger format {version}; this version reads 1 to 3: move the file"):
+            look(path)
+
+
 def test_a_row_has_one_of_four_statuses(tmp_path: Path) -> None:
     path = tmp_path / "runs.sqlite"
     fill(path)

@@ -112,6 +112,12 @@ def test_x_must_fit_the_names_and_be_finite(tmp_path: Path) -> None:
         run(models.parabola, np.ones((2, 2)), names=("a", "a"), ledger=ledger, executor=HereExecutor())
 
 
+@pytest.mark.parametrize("model", [5, None, "bounce", {"a": 1}])
+def test_what_cannot_be_called_is_no_model(tmp_path: Path, model: Any) -> None:
+    with pytest.raises(ValueError, match=r"model is .*; allowed: a function of the inputs by name and a seed"):
+        campaign(tmp_path, model, HereExecutor())
+
+
 def test_the_ledger_reads_as_plain_sql(tmp_path: Path) -> None:
     campaign(tmp_path, models.parabola, HereExecutor())
     with sqlite3.connect(tmp_path / "runs.sqlite") as database:

@@ -14,10 +14,11 @@ import pytest
 from lithobrake.atomic import locked
 from lithobrake.pipeline.state import read_state
 from lithobrake.results import StudyResults, open_study
+from lithobrake.results.intact import intact_file
 
 BODY = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
 SUMMARY = {
-    "format_version": 2,
+    "format_version": 3,
     "study": {},
     "results": {"headline": ["75 % return"], "answer": ["75 % return"], "beds": [{"mass": 1.0}]},
     "provenance": {},
@@ -115,6 +116,17 @@ def test_pipes_are_not_waited_for(folder: Path) -> None:
         os.mkfifo(folder / name)
         with pytest.raises(ValueError, match="no regular file"):
             ASKED[name][1](open_study(folder))
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="this system has no pipes")
+@pytest.mark.parametrize("name", ["study.toml", "emulator.json", "body.obj"])
+def test_a_file_of_a_study_is_no_pipe_device_or_folder(folder: Path, name: str) -> None:
+    path = folder / name
+    for put in (lambda: os.mkfifo(path), lambda: path.symlink_to("/dev/zero"), lambda: path.symlink_to(folder)):
+        path.unlink()
+        put()
+        with pytest.raises(ValueError, match=rf"{name} cannot be read \(it is no regular file\); make it again"):
+            intact_file(folder, name, "make it again")
 
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="this system has no pipes")

@@ -105,6 +105,7 @@ def test_no_sample_leaves_with_more_than_energy_allows_at_its_inputs() -> None:
         (SOIL | {"grain.friction": "much"}, "grain.friction must be an array of real numbers"),
         (SOIL | {"grain.friction": float("nan")}, "grain.friction is nan"),
         (SOIL | {"grain.friction": [0.3, 0.4], "impact.speed": [0.1, 0.2, 0.3]}, "arrays of one length"),
+        (SOIL | {"grain.friction": []}, "inputs have no point: an array is empty; give all of: grain.friction"),
         ([[0.5, 1e7, 0.2]], "must be a dict by name; give all of: grain.friction, grain.young_modulus"),
     ],
 )

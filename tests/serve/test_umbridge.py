@@ -265,3 +265,17 @@ def test_a_whole_study_takes_its_landings_from_a_server_and_serves_its_emulator(
     # The law has a mean of 0.06 m/s and scatters by 10 %; the emulator has it of 60 runs.
     assert draws[:, LANDING.index("speed_out")].mean() == pytest.approx(0.06, abs=0.01)
     assert len(np.unique(draws, axis=0)) > 25
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("lander.fricton", "lander.fricton is not a known key; did you mean friction"),
+        ("mass", "mass is not a known key"),
+    ],
+)
+def test_a_key_that_no_run_reads_is_refused_by_the_emulator_too(name: str, said: str, tmp_path: Path) -> None:
+    (tmp_path / "emulator.json").touch()
+    emulator = served_models(BALL, tmp_path)[2]
+    with pytest.raises(ValueError, match=said):
+        emulator.evaluate([0.6, 0.2, 35.0, 0.0], {"inputs": {name: 0.9}})
