@@ -43,8 +43,9 @@ def _bed(soil: ExpectedSoil) -> Iterator[str]:
     here = min(soil.recipe.width)
     if here < width or soil.depth < depth:
         yield (
-            f"The bed will be about {soil.depth:.2g} m deep and is {here:g} m wide; it must be at least {depth:.2g} m deep "
-            f"and {width:.2g} m wide to avoid boundary reflections during the first impact: add grains, or widen the bed."
+            f"The bed will be about {soil.depth:.2g} m deep and is {here:g} m wide; it must be at least {depth:.2g} m "
+            f"deep and {width:.2g} m wide to avoid boundary reflections during the first impact: add grains, or widen "
+            "the bed."
         )
 
 
