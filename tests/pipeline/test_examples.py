@@ -68,9 +68,9 @@ def test_the_runs_are_told_from_another_terminal(plate: Path) -> None:
         rows[0]
     )
     sections, names, units, *lines = lithobrake("runs", plate).stdout.splitlines()
-    assert sections.split() == ["lander", "lander", "impact", "solver.inputs"]
-    assert names.split() == ["wall", "restitution", "friction", "incidence_deg", "plate_tilt_deg"]
-    assert units.split() == ["key", "status", "[s]", "[-]", "[-]", "[deg]", "outcome", "or", "reason"]
+    assert sections.split() == ["rebound", "lander", "lander", "impact"]
+    assert names.split() == ["wall", "speed", "restitution", "friction", "incidence_deg"]
+    assert units.split() == ["key", "status", "[s]", "[m/s]", "[-]", "[-]", "[deg]", "outcome", "or", "reason"]
     assert [line.split()[0] for line in lines] == [entry.key[:12] for entry in records]
 
 
