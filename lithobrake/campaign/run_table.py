@@ -77,7 +77,7 @@ def run_lines(
     lines = [(_GAP.join(row) + _GAP + reason).rstrip() for *row, reason in zip(*columns, last, strict=True)]
     left_out = differing[len(shown) :]
     if left_out:
-        words = f"Not shown, though they differ: {', '.join(left_out)} (--csv has every column)"
+        words = f"Differ too: {', '.join(left_out)} (--csv has every column)"
         lines += [words] if width is None else wrap(words, width, break_on_hyphens=False)
     # No input stands in the first line where none is shown.
     return lines if lines[0] else lines[1:]

@@ -41,19 +41,19 @@ def test_a_table_fits_its_terminal_and_names_what_it_leaves_out(records: list[Re
     assert wide[-1].endswith("...")
     narrow = run_lines(records, UNITS, 66)
     assert "friction" not in "".join(narrow[:-1])
-    assert narrow[-1] == "Not shown, though they differ: grain.friction (--csv has every column)"
+    assert narrow[-1] == "Differ too: grain.friction (--csv has every column)"
     heads = {"height": ("rebound", "height"), "grain.friction": ("", "friction"), "grain.density": ("", "the same")}
     shown = run_lines(records, UNITS, 72, heads)
     assert [line.split() for line in shown[:4]] == [
         ["rebound"], ["wall", "height", "friction"], ["key", "status", "[s]", "[m]", "[-]", "outcome", "or", "reason"],
         ["first", "done", "0.04321", "0.1", "0.5", "clear"],
     ]  # fmt: skip
-    assert shown[-1].startswith("Not shown, though they differ: grain.young_modulus")
+    assert shown[-1].startswith("Differ too: grain.young_modulus")
     assert max(map(len, shown)) <= 72
     assert max(map(len, narrow)) <= 66
     none = run_lines(records, UNITS, 40)
     assert none[0].split() == ["wall"]
-    assert " ".join(none[-3:]).startswith("Not shown, though they differ: grain.young_modulus, grain.friction")
+    assert " ".join(none[-3:]).startswith("Differ too: grain.young_modulus, grain.friction")
     assert max(map(len, none[-3:])) <= 40
 
 
