@@ -29,7 +29,7 @@ SHADE_WORDS = {"speed": "speed", "force": "the size of the sum of contact forces
 FATE_WORDS = {
     FlightStatus.IMPACT: ("blue", "impact"),
     FlightStatus.FLYING: ("grey", "still flying"),
-    FlightStatus.ESCAPED: ("orange", "escaped"),
+    FlightStatus.ESCAPED: ("orange", FlightStatus.ESCAPED.label),
     FlightStatus.PARTNER: ("violet", "impact on the partner"),
 }
 # A view takes in a sphere when its middle is so many radii away.

@@ -10,12 +10,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from lithobrake.analysis import OutcomeModel
+from lithobrake.analysis import OutcomeModel, wilson_interval
 from lithobrake.chaos import Uniform, fit, smolyak
 from lithobrake.outcomes import JourneyStatus, TouchdownOutcome
 from lithobrake.outputs import ARC, OUTPUTS
 from lithobrake.pipeline import Job, StudyFolder
-from lithobrake.pipeline.dispersion_statistics import dispersion_results, proportion
+from lithobrake.pipeline.dispersion_statistics import NORMAL_QUANTILE_90, dispersion_results, proportion
 from lithobrake.pipeline.flights import COLUMNS, read_table, write_table
 from lithobrake.pipeline.job import Silent
 from lithobrake.pipeline.journey_arcs import arc_rows
@@ -169,7 +169,8 @@ def test_hard_ground_is_followed_from_the_first_impact_and_the_summary_adds_up(t
     assert table["soil"] is None
     assert table["hard"]["sample_count"] == 60
     assert sum(table["hard"][name]["count"] for name in JourneyStatus) == 60
-    assert table["hard"]["settled"] == proportion(60, 60)
+    lower, upper = wilson_interval(60, 60, NORMAL_QUANTILE_90)
+    assert table["hard"]["settled"] == proportion(60, 60) | {"lower": lower, "upper": upper}
     assert (folder / "rest.csv").read_text().splitlines()[0] == (
         "ground,sample,status,time_s,latitude_deg,longitude_deg,rebounds,path_length [m],slid_length [m],slid_time_s,"
         "impact_speed [m/s],impact_incidence_deg"
