@@ -88,7 +88,7 @@ def main() -> None:
     made = {**origin(""), "command": given.command, **times(log), "stages": stages(log)}
     if earlier:
         made["landings"] = earlier.get("landings") or {
-            key: earlier[key] for key in ("date", "command", "wall_s", "cpu_s")
+            key: earlier[key] for key in ("date", "command", "load", "wall_s", "cpu_s")
         }
     write_document(out / "origin.json", made)
 

@@ -97,10 +97,23 @@ def grain_sizes() -> Iterator[tuple[str, Tables]]:
         )
 
 
+def spread_of(found: Tables) -> Tables:
+    """Mean, standard deviation and quantiles by output: of samples of an expansion, of landings of a drawn study."""
+    if "outputs" in found["monte_carlo"]:
+        of_samples: Tables = found["monte_carlo"]["outputs"]
+        return of_samples
+    return {
+        name: {"mean": one["mean"]["value"], "std": one["standard_deviation"]}
+        | {f"quantile_{level}": entry["value"] for level, entry in one["quantiles"].items()}
+        for name, one in found["outputs"].items()
+        if "quantiles" in one
+    }
+
+
 def told(found: Tables) -> Tables:
     """What the tables and figures need of a study's results."""
     entry = {name: found[name] for name in ("returns", "headline", "shares")} | {
-        "samples": found["monte_carlo"]["outputs"],
+        "samples": spread_of(found),
         "outputs": found.get("outputs"),
         "variance_shares": found.get("variance_shares"),
     }
