@@ -216,7 +216,7 @@ def time_table() -> list[str]:
     lines = ["| study | runs | wall [min] | CPU [min] | load |", "|---" * 5 + "|"]
     for name in WAYS:
         noted = json.loads((SHOWCASE / name / "origin.json").read_text())
-        # Where landings were kept and only what follows them was made again, the whole took as long as it did with them.
+        # Where landings were kept and only what follows them was made again, the whole took as long as with them.
         noted |= noted.get("landings", {})
         keys = {row["key"] for path in (SHOWCASE / name / "runs").glob("*.csv") for row in csv.DictReader(path.open())}
         times = f"{noted['wall_s'] / 60.0:.0f} | {noted['cpu_s'] / 60.0:.0f} | {noted['load']:.1f}"
