@@ -16,12 +16,11 @@ CENTIMETRES = 100.0
 PARTS = {
     "soil": "soil",
     "arrival": "speed, angle and spin of the impact",
-    "attitude": "attitude",
     "bed": "the bed",
     "place_and_attitude": "everything else",
     "chaos": "chaos",
 }
-FLOORS = ("soil", "arrival", "attitude")
+FLOORS = ("soil", "arrival")
 GROUNDS = {"soil": "on the soil", "hard": "on hard ground"}
 
 
