@@ -20,7 +20,6 @@ Record = Mapping[str, Any]
 PARTS = {
     "arrival": ("impact, at least", QUIET, ""),
     "bed": ("bed", "#f1e6d0", "////"),
-    "attitude": ("attitude, at least", "#8fb7a8", "xxxx"),
     "place_and_attitude": ("everything else", INTERACTIONS, ""),
     "chaos": ("chaos", INK, ""),
 }
@@ -55,8 +54,7 @@ def long_part_words(record: Record, name: str) -> str:
     words = part_words(record, name)
     if name != "place_and_attitude":
         return words
-    held = REMAINDER if record.get("attitude") is None else REMAINDER.replace("attitude, ", "")
-    return f"{PARTS[name][0]} ({held}{words.removeprefix(PARTS[name][0])})"
+    return f"{PARTS[name][0]} ({REMAINDER}{words.removeprefix(PARTS[name][0])})"
 
 
 def known_parts(record: Record) -> dict[str, Share]:
