@@ -286,7 +286,7 @@ class StudyResults:
     def _refuse_drawn(self, name: str, what: str) -> None:
         """Say that a study whose runs were drawn has no such thing, where this is one."""
         if (self.folder / "emulator.json").is_file() and not (self.folder / "refined.json").is_file():
-            raise ValueError(f"{self.folder} is of a drawn study, which has no {what}: ask for emulator, not {name}")
+            raise ValueError(f"{self.folder} is of a drawn study, without {what}: ask for emulator, not {name}")
 
     @cached_property
     def _units(self) -> dict[str, str]:

@@ -110,8 +110,8 @@ def test_samples_that_claim_more_than_there_is_memory_are_one_sentence(folder: P
 def test_pipes_are_not_waited_for(folder: Path) -> None:
     (folder / "keys.json").unlink()
     (folder / "runs.sqlite").touch()
-    # A design that is no file counts as one that has not been run yet.
-    for name in ASKED.keys() - {"designs/sequence.csv"}:
+    # A design that is no file counts as one that has not been run yet; without an emulator no study counts as drawn.
+    for name in (name for name in ASKED if name != "designs/sequence.csv"):
         (folder / name).unlink()
         os.mkfifo(folder / name)
         with pytest.raises(ValueError, match="no regular file"):
