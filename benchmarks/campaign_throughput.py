@@ -24,7 +24,7 @@ from harness import SCENARIOS, command_line
 from lithobrake.campaign import DaskExecutor, Ledger, LocalExecutor, Runs, run
 from lithobrake.pipeline import run_study
 from lithobrake.study import StudySource, read_study
-from lithobrake.touchdown_model import TouchdownModel, draw, engine_hash, medians
+from lithobrake.study.touchdown_model import TouchdownModel, draw, engine_hash, medians
 
 STUDY = SCENARIOS / "quick.toml"
 

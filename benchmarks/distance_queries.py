@@ -9,7 +9,7 @@ import numba
 import numpy as np
 from distance_pairs import Floats, Integers, Library, Poses, units
 
-from lithobrake.compiled import disk_cache
+from lithobrake.compilation.compiled import disk_cache
 from lithobrake.dem import Material, World
 from lithobrake.dem.arrays import Bodies, Cores, Pairs, Planes
 from lithobrake.dem.assembly import bodies_of

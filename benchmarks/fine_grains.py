@@ -19,7 +19,7 @@ from harness import Row, command_line, origin, timed, write_document
 from landing_ensembles import draws
 
 from lithobrake.dem import ConvexHull
-from lithobrake.pipeline.beds import bed_recipe
+from lithobrake.pipeline.runs.beds import bed_recipe
 from lithobrake.pipeline.site import with_site_gravity
 from lithobrake.study import Study, check_tables
 from lithobrake.touchdown import Bed, BedRecipe, land, pour_bed, pouring

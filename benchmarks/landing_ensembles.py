@@ -21,12 +21,12 @@ from harness import Row, command_line, origin, table, timed, write_document
 from scipy.stats import ks_2samp
 
 from lithobrake.chaos import sobol_sequence
-from lithobrake.pipeline.beds import bed_recipe
-from lithobrake.pipeline.designs import design_inputs
+from lithobrake.pipeline.runs.beds import bed_recipe
+from lithobrake.pipeline.runs.designs import design_inputs
 from lithobrake.pipeline.site import with_site_gravity
 from lithobrake.study import Study, check_tables
+from lithobrake.study.touchdown_model import draw, lander, landing, medians
 from lithobrake.touchdown import Bed, Lander, Landing, land, pour_bed
-from lithobrake.touchdown_model import draw, lander, landing, medians
 
 COMPARED = ("speed_out", "elevation_out", "spin_out", "contact_duration", "penetration", "peak_acceleration")
 

@@ -23,7 +23,7 @@ COMPILED_BY = 8  # grains
 
 def recipe_of(study: Path, seed: int) -> Row:
     """The recipe of a study's first bed with another seed, as plain numbers."""
-    from lithobrake.pipeline.beds import bed_recipe
+    from lithobrake.pipeline.runs.beds import bed_recipe
     from lithobrake.pipeline.site import with_site_gravity
     from lithobrake.study import read_study
 

@@ -9,8 +9,8 @@ from rich.console import Console, RenderableType
 from rich.progress import BarColumn, Progress, Task, TaskID, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 from rich.text import Text
 
-from lithobrake.plain import plain
 from lithobrake.progress_log import ProgressLog, counted
+from lithobrake.vocabulary.plain_text import plain
 
 
 class _TimeLeft(TimeRemainingColumn):

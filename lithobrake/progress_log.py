@@ -8,7 +8,7 @@ from types import TracebackType
 from typing import Self, TextIO
 
 from lithobrake.campaign import duration, per_time
-from lithobrake.plain import plain
+from lithobrake.vocabulary.plain_text import plain
 
 # A stage is soon seen to be at work, and a night of it does not fill the file: first line, then the others [s].
 FIRST, EVERY = 5.0, 30.0

@@ -12,7 +12,7 @@ for name in ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS"):
 os.environ["LITHOBRAKE_BED_LIBRARY_GB"] = "0"
 
 # Files that take minutes, the longest first: at the end one process would work on them while the other waits.
-LONGEST = ("test_killed.py", "test_whole_study.py", "test_drawn_study.py", "test_folder_state.py", "test_pouring.py")
+LONGEST = ("test_killed.py", "test_whole_study.py", "test_drawn_study.py", "test_state.py", "test_pouring.py")
 
 
 def pytest_configure(config: pytest.Config) -> None:

@@ -20,7 +20,7 @@ LOOKED_FOR = {
     "tangential_spring": "dem", "rolling_resistance": "dem", "gjk": "dem", "penetration": "dem",
     "settling": "touchdown", "outcome_judge": "touchdown", "bootstrap": "chaos", "smolyak": "chaos",
     "polyhedron_gravity": "smallbody", "impact_search": "smallbody", "ledger": "campaign", "refusals": "study",
-    "captions": "report",
+    "captions": "report/words",
 }  # fmt: skip
 
 

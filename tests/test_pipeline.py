@@ -10,13 +10,15 @@ import numpy as np
 import pytest
 
 from lithobrake.chaos import Uniform, fit, smolyak
-from lithobrake.outputs import ARC, OUTPUTS
-from lithobrake.pipeline import StudyFolder, rest, stage_keys, stages_of
-from lithobrake.pipeline.designs import design_inputs, kept_inputs, points
-from lithobrake.pipeline.dispersion_statistics import return_fraction, shares
-from lithobrake.pipeline.flights import COLUMNS, partner_time, starts
-from lithobrake.pipeline.samples import SAMPLE_OUTCOMES, Samples
-from lithobrake.pipeline.scope import scope
+from lithobrake.pipeline import StudyFolder, stage_keys, stages_of
+from lithobrake.pipeline.answer.dispersion_statistics import return_fraction, shares
+from lithobrake.pipeline.answer.scope import scope
+from lithobrake.pipeline.emulate.samples import SAMPLE_OUTCOMES, Samples
+from lithobrake.pipeline.fly.flights import COLUMNS, partner_time, starts
+from lithobrake.pipeline.paper.paper_designs import kept_inputs, points
+from lithobrake.pipeline.paper.paper_summary import study_tables
+from lithobrake.pipeline.rest import journeys as rest
+from lithobrake.pipeline.runs.designs import design_inputs
 from lithobrake.pipeline.site import (
     effective_acceleration_at_site,
     frames,
@@ -26,10 +28,10 @@ from lithobrake.pipeline.site import (
     site_warning,
     with_site_gravity,
 )
-from lithobrake.pipeline.summary import study_tables
 from lithobrake.smallbody.restitution_table import COUNTS, EDGES
 from lithobrake.study import Study, StudyError, check_tables
-from lithobrake.touchdown_model import ORIENTATION, PLACE, acceleration, draw, in_words_of_the_study, medians
+from lithobrake.study.touchdown_model import ORIENTATION, PLACE, acceleration, draw, in_words_of_the_study, medians
+from lithobrake.vocabulary.quantities import ARC, OUTPUTS
 
 from .paper_tables import paper_tables
 

@@ -17,14 +17,15 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from lithobrake.campaign import Ledger
-from lithobrake.outputs import DESIGNS, SEQUENCE_DESIGNS
 from lithobrake.pipeline import StudyFolder
-from lithobrake.pipeline.designs import design_inputs, points
-from lithobrake.pipeline.sequence import design_rows
+from lithobrake.pipeline.paper.paper_designs import points
+from lithobrake.pipeline.runs.designs import design_inputs
+from lithobrake.pipeline.runs.drawn_design import design_rows
+from lithobrake.pipeline.runs.touchdown_runs import drawn_rows, touchdown_keys
 from lithobrake.pipeline.site import with_site_gravity
-from lithobrake.pipeline.touchdown_runs import drawn_rows, touchdown_keys
 from lithobrake.study import Study, read_study
-from lithobrake.touchdown_model import touchdown_version
+from lithobrake.study.touchdown_model import touchdown_version
+from lithobrake.vocabulary.quantities import DESIGNS, SEQUENCE_DESIGNS
 
 ROUNDING = 1e-12
 Numbers = dict[str, float]

@@ -17,7 +17,7 @@ matplotlib.use("agg")
 import matplotlib.pyplot as plt
 from one_bed import ELEVATION, SPEED
 
-from lithobrake.report.style import INK, INPUT_COLOURS, QUIET, STYLE, TEST, TRAINING
+from lithobrake.report.figures.style import INK, INPUT_COLOURS, QUIET, STYLE, TEST, TRAINING
 
 HERE = Path(__file__).parent
 PAGES = HERE.parent / "docs" / "validation"

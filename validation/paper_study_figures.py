@@ -21,7 +21,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from paper_study import spread_of
 
-from lithobrake.report.style import INK, QUIET, STYLE, TEST, TRAINING
+from lithobrake.report.figures.style import INK, QUIET, STYLE, TEST, TRAINING
 
 HERE = Path(__file__).parent
 PAGES = HERE.parent / "docs" / "validation"

@@ -17,7 +17,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from sliding_law import ATTITUDES, CAPTURED_FROUDE, Row, as_usual, noted
 
-from lithobrake.report.style import INK, INPUT_COLOURS, QUIET, SITE, STYLE
+from lithobrake.report.figures.style import INK, INPUT_COLOURS, QUIET, SITE, STYLE
 
 HERE = Path(__file__).parent
 PAGES = HERE.parent / "docs" / "validation"

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lithobrake.analysis.confidence import LEVEL, Array, IntervalEstimate, t_quantile
-from lithobrake.given_numbers import finite_number, numbers, whole_number
+from lithobrake.vocabulary.given_numbers import finite_number, numbers, whole_number
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lithobrake.given_numbers import LARGEST, labels, numbers_or_nan
+from lithobrake.vocabulary.given_numbers import LARGEST, labels, numbers_or_nan
 
 Array = NDArray[np.float64]
 Labels = NDArray[np.int64]

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lithobrake.given_numbers import numbers
+from lithobrake.vocabulary.given_numbers import numbers
 
 # Places whose directions cancel more than this have no middle that means anything.
 SMALLEST_RESULTANT = 0.7

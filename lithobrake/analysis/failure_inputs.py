@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from lithobrake.analysis.confidence import LEVEL, Array, answers, numbered_beds
 from lithobrake.chaos.basis import checked_points
-from lithobrake.given_numbers import random_numbers
+from lithobrake.vocabulary.given_numbers import random_numbers
 
 if TYPE_CHECKING:
     from lithobrake.chaos import Distribution

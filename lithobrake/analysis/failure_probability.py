@@ -17,7 +17,7 @@ from lithobrake.analysis.outcome_model import unseen_limit
 from lithobrake.analysis.refit_interval import refit_interval
 from lithobrake.analysis.sampling import sample_inputs
 from lithobrake.analysis.share_estimate import ShareEstimate, share_estimate
-from lithobrake.given_numbers import numbers_or_nan, whole_number
+from lithobrake.vocabulary.given_numbers import numbers_or_nan, whole_number
 
 if TYPE_CHECKING:
     from lithobrake.emulator import Draws, Emulator

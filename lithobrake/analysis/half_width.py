@@ -3,7 +3,7 @@
 import math
 
 from lithobrake.analysis.confidence import t_quantile
-from lithobrake.given_numbers import LARGEST, finite_number, whole_number
+from lithobrake.vocabulary.given_numbers import LARGEST, finite_number, whole_number
 
 # Standard deviation of a run's share of flights that return, as measured on three studies with randomised impact points
 # (0.148, 0.211, 0.212): the range, and the larger one, which promises no more than a study keeps.

@@ -12,7 +12,7 @@ from scipy.special import logsumexp, ndtr, ndtri
 from lithobrake.analysis.confidence import LEVEL, Array, IntervalEstimate
 from lithobrake.analysis.ensemble_walk import ENDLESS, INSTALL, WALKER_COUNT, can_walk, walk
 from lithobrake.analysis.sampling import sample_inputs
-from lithobrake.given_numbers import random_numbers, sample_count, whole_number
+from lithobrake.vocabulary.given_numbers import random_numbers, sample_count, whole_number
 
 if TYPE_CHECKING:
     from lithobrake.chaos import Distribution

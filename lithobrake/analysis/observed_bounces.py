@@ -10,7 +10,7 @@ from scipy.special import logsumexp
 from lithobrake.analysis.confidence import Array
 from lithobrake.analysis.inference import Bounds, Observation, Posterior, posterior_of
 from lithobrake.analysis.sampling import sample_inputs
-from lithobrake.given_numbers import random_numbers, whole_number
+from lithobrake.vocabulary.given_numbers import random_numbers, whole_number
 
 if TYPE_CHECKING:
     from lithobrake.emulator import Emulator

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from lithobrake.analysis.confidence import LEVEL
-from lithobrake.given_numbers import finite_number, labels, whole_number
+from lithobrake.vocabulary.given_numbers import finite_number, labels, whole_number
 
 if TYPE_CHECKING:
     from lithobrake.chaos import Distribution

@@ -2,7 +2,7 @@
 
 import math
 
-from lithobrake.given_numbers import finite_number, whole_number
+from lithobrake.vocabulary.given_numbers import finite_number, whole_number
 
 NORMAL_QUANTILE_95 = 1.959963984540054
 # Probabilities beyond this quantile are below the smallest float.

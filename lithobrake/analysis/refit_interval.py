@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 
 from lithobrake.analysis.confidence import LEVEL, IntervalEstimate, share_interval, t_quantile
 from lithobrake.analysis.outcome_model import upper_limit
-from lithobrake.given_numbers import numbers, whole_number
+from lithobrake.vocabulary.given_numbers import numbers, whole_number
 
 
 def refit_interval(counts: ArrayLike, totals: ArrayLike, bed_count: int) -> IntervalEstimate:

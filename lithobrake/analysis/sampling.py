@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lithobrake.given_numbers import sample_count, whole_number
+from lithobrake.vocabulary.given_numbers import sample_count, whole_number
 
 if TYPE_CHECKING:
     from lithobrake.chaos import Distribution

@@ -12,7 +12,7 @@ from lithobrake.analysis.bed_components import bed_components
 from lithobrake.analysis.confidence import answered_runs, answers
 from lithobrake.analysis.half_width import expected_half_width
 from lithobrake.analysis.share_estimate import share_estimate
-from lithobrake.given_numbers import finite_number, whole_number
+from lithobrake.vocabulary.given_numbers import finite_number, whole_number
 
 # Each look at the runs is a chance to stop by luck, so looks are a tenth of the runs apart; and what the first runs say
 # of their scatter is rough, so no look asks for more than twice the runs.

@@ -23,7 +23,7 @@ from lithobrake.analysis.control_variate import control_variate
 from lithobrake.analysis.next_bed import next_bed_deviation
 from lithobrake.analysis.outcome_model import upper_limit
 from lithobrake.chaos.threads import one_thread
-from lithobrake.given_numbers import numbers, numbers_or_nan
+from lithobrake.vocabulary.given_numbers import numbers, numbers_or_nan
 
 ONE_BED = (
     "all runs came down on one bed; another bed gives another share, and these runs cannot say how different: set "

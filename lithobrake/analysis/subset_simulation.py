@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lithobrake.analysis.confidence import LEVEL, Array, Labels, t_quantile
-from lithobrake.given_numbers import labels, numbers, random_numbers, whole_number
+from lithobrake.vocabulary.given_numbers import labels, numbers, random_numbers, whole_number
 
 # Share of the points of a level that make the next one.
 LEVEL_SHARE = 0.1

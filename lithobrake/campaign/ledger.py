@@ -13,7 +13,6 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
 
-from lithobrake.atomic import locked
 from lithobrake.campaign.main_module import refuse_while_importing
 from lithobrake.campaign.record import (
     CHECKSUM,
@@ -33,7 +32,8 @@ from lithobrake.campaign.record import (
     row_hash,
     utc_now,
 )
-from lithobrake.plain import one_line
+from lithobrake.files.atomic import locked
+from lithobrake.vocabulary.plain_text import one_line
 
 # Characters of a reason, of a word for an outcome: more would be the whole log of a program.
 _REASON_LENGTH, _OUTCOME_LENGTH = 1000, 100

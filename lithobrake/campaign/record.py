@@ -13,8 +13,8 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
-from lithobrake.atomic import lock_holder
-from lithobrake.reading import NUMBER, DamagedFileError, check, parsed, reading
+from lithobrake.files.atomic import lock_holder
+from lithobrake.files.reading import NUMBER, DamagedFileError, check, parsed, reading
 
 log = logging.getLogger(__name__)
 

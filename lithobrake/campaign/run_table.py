@@ -6,7 +6,7 @@ from textwrap import wrap
 from typing import Any, TextIO
 
 from lithobrake.campaign.record import COLUMNS, KEY_LENGTH, OBJECTS, Record
-from lithobrake.plain import plain
+from lithobrake.vocabulary.plain_text import plain
 
 # What a terminal is left with for the outcome or the reason at least.
 _REASON_WIDTH = 24

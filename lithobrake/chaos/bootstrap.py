@@ -18,7 +18,7 @@ from lithobrake.chaos.scores import absolute_percentage_error
 from lithobrake.chaos.surrogate import Surrogate
 from lithobrake.chaos.threads import one_thread
 from lithobrake.chaos.training import Training, checked_training
-from lithobrake.given_numbers import finite_number, random_numbers, sample_count, whole_number
+from lithobrake.vocabulary.given_numbers import finite_number, random_numbers, sample_count, whole_number
 
 # With more terms for each point than this the residuals say too little about the error.
 TERMS_PER_POINT = 0.7

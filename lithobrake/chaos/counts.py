@@ -2,7 +2,7 @@
 
 from math import comb
 
-from lithobrake.given_numbers import whole_number
+from lithobrake.vocabulary.given_numbers import whole_number
 
 
 def term_count(input_count: int, degree: int) -> int:

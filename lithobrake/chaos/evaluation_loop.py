@@ -70,6 +70,6 @@ def compiled_loop() -> Loop | None:
     """The compiled `expansion_loop`, or None without Numba."""
     if find_spec("numba") is None:
         return None
-    from lithobrake.compiled import compiled
+    from lithobrake.compilation.compiled import compiled
 
     return compiled(expansion_loop)

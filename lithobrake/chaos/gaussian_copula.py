@@ -17,7 +17,7 @@ from lithobrake.chaos.storage import inputs_from_json, inputs_to_json, read, wri
 from lithobrake.chaos.surrogate import Surrogate
 from lithobrake.chaos.threads import one_thread
 from lithobrake.chaos.unbounded_distributions import Normal
-from lithobrake.given_numbers import numbers
+from lithobrake.vocabulary.given_numbers import numbers
 
 FORMAT = "lithobrake expansion of dependent inputs"
 

@@ -6,7 +6,7 @@ from numbers import Real
 import numpy as np
 from numpy.typing import NDArray
 
-from lithobrake.given_numbers import whole_number
+from lithobrake.vocabulary.given_numbers import whole_number
 
 Indices = NDArray[np.int64]
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lithobrake.chaos.polynomials import Array
-from lithobrake.given_numbers import finite_number
+from lithobrake.vocabulary.given_numbers import finite_number
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ from lithobrake.chaos.design import checked_count
 from lithobrake.chaos.multi_index import Indices, multi_index_set
 from lithobrake.chaos.polynomials import Array
 from lithobrake.chaos.threads import one_thread
-from lithobrake.given_numbers import random_numbers
+from lithobrake.vocabulary.given_numbers import random_numbers
 
 # Gauss nodes that stand for the density of one input when points are drawn from it times a squared polynomial.
 RULE_NODES = 200

@@ -12,7 +12,7 @@ from lithobrake.chaos.moments import SAMPLE_COUNT, skewness_and_kurtosis
 from lithobrake.chaos.polynomials import Array
 from lithobrake.chaos.surrogate import Surrogate
 from lithobrake.chaos.threads import one_thread
-from lithobrake.given_numbers import numbers, random_numbers, whole_number
+from lithobrake.vocabulary.given_numbers import numbers, random_numbers, whole_number
 
 
 def shape_moments(surrogate: Surrogate, *, count: int = SAMPLE_COUNT, seed: int = 0) -> dict[str, Any]:

@@ -17,7 +17,7 @@ from lithobrake.chaos.polynomials import Array
 from lithobrake.chaos.storage import numbers_from_json, read, write
 from lithobrake.chaos.surrogate import Surrogate
 from lithobrake.chaos.training import checked_training
-from lithobrake.given_numbers import random_numbers
+from lithobrake.vocabulary.given_numbers import random_numbers
 
 FORMAT = "lithobrake stochastic surrogate"
 

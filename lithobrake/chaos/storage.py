@@ -9,12 +9,12 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from lithobrake.atomic import atomic_path
 from lithobrake.chaos.abstract_distribution import Distribution
 from lithobrake.chaos.distribution_registry import distribution
 from lithobrake.chaos.multi_index import LOOKED_AT, Indices
 from lithobrake.chaos.polynomials import Array
-from lithobrake.reading import UNREADABLE
+from lithobrake.files.atomic import atomic_path
+from lithobrake.files.reading import UNREADABLE
 
 Kept = TypeVar("Kept")
 

@@ -26,7 +26,7 @@ from lithobrake.chaos.storage import (
     write,
 )
 from lithobrake.chaos.threads import one_thread
-from lithobrake.given_numbers import numbers
+from lithobrake.vocabulary.given_numbers import numbers
 
 FORMAT = "lithobrake expansion"
 

@@ -11,7 +11,7 @@ from lithobrake.chaos.abstract_distribution import Distribution, checked_inputs
 from lithobrake.chaos.basis import checked_weights, outside_count, points_of
 from lithobrake.chaos.noise import equal_rows
 from lithobrake.chaos.polynomials import Array
-from lithobrake.given_numbers import LARGEST, numbers_or_nan
+from lithobrake.vocabulary.given_numbers import LARGEST, numbers_or_nan
 
 
 @dataclass(frozen=True)

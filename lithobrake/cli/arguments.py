@@ -53,6 +53,6 @@ def given_folder(out: str) -> Path:
 
 def refuse_written(path: Path, force: bool) -> None:
     """Raise ValueError for a file that exists, unless it may be replaced."""
-    from lithobrake.atomic import refuse_existing
+    from lithobrake.files.atomic import refuse_existing
 
     refuse_existing(() if force else (path,), "choose another name with --out, or replace it with --force")

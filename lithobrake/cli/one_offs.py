@@ -11,7 +11,7 @@ from lithobrake.cli.application import app
 from lithobrake.cli.arguments import Force, Json, OutPath, StudyPath, refuse_written, study_folder
 from lithobrake.cli.refusals import one_sentence
 from lithobrake.cli.telling import tell, tell_json
-from lithobrake.plain import plain
+from lithobrake.vocabulary.plain_text import plain
 
 if TYPE_CHECKING:
     from lithobrake.pipeline import OneLanding

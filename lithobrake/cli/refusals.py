@@ -12,7 +12,7 @@ from typing import NoReturn, TextIO
 
 import typer
 
-from lithobrake.plain import plain, wrapped
+from lithobrake.vocabulary.plain_text import plain, wrapped
 
 BAD_INPUT, INTERRUPTED = 2, 130
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from lithobrake.cli.refusals import BAD_INPUT, fitted, leave, one_sentence
-from lithobrake.plain import plain
+from lithobrake.vocabulary.plain_text import plain
 
 
 def tell(lines: Iterable[str]) -> None:

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from lithobrake.compiled import kernel
+from lithobrake.compilation.compiled import kernel
 from lithobrake.dem.arrays import Floats, Integers
 
 

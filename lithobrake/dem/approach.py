@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from lithobrake.compiled import kernel
+from lithobrake.compilation.compiled import kernel
 from lithobrake.dem.arrays import Bodies, Cores, Pairs, Planes
 from lithobrake.dem.contact_patch import measure_feature
 from lithobrake.dem.feature_id import SPHERES, feature_indices, feature_kind, listed_feature

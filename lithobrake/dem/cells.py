@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from lithobrake.compiled import kernel, large_kernel
+from lithobrake.compilation.compiled import kernel, large_kernel
 from lithobrake.dem.arrays import Bodies, Floats, Integers
 from lithobrake.dem.vectors import Vector, minus, plus, row
 

@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 
-from lithobrake.atomic import atomic_path
 from lithobrake.dem.arrays import Step
 from lithobrake.dem.assembly import material_numbers, materials_of, shape_numbers, shapes_of
 from lithobrake.dem.engine import MOVING, Engine
@@ -15,6 +14,7 @@ from lithobrake.dem.material import Material
 from lithobrake.dem.rigid_body import Plane, RigidBody
 from lithobrake.dem.shape import Box, ConvexHull, Shape, Sphere
 from lithobrake.dem.world_state import WorldState
+from lithobrake.files.atomic import atomic_path
 
 FORMAT_VERSION = 4
 

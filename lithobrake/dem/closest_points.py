@@ -6,7 +6,7 @@ are almost parallel. Then every feature is looked at.
 
 import math
 
-from lithobrake.compiled import kernel, large_kernel
+from lithobrake.compilation.compiled import kernel, large_kernel
 from lithobrake.dem.arrays import Cores, Floats
 from lithobrake.dem.feature_distance import edge_of, point_to_core
 from lithobrake.dem.gjk import APART, CLOSE, PENETRATING, UNSURE, closest_simplex

@@ -6,7 +6,7 @@ the damping that makes up for it, see material.restitution_of.
 
 from typing import NamedTuple
 
-from lithobrake.compiled import kernel
+from lithobrake.compilation.compiled import kernel
 from lithobrake.dem.arrays import Bodies, Floats, Pairs
 from lithobrake.dem.effective_mass import inverse_mass_at
 from lithobrake.dem.patch_energy import DEEP_EDGES

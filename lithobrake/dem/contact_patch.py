@@ -6,7 +6,7 @@ Cores that penetrate go on so: the distance of a corner changes its sign, and pa
 
 from typing import NamedTuple
 
-from lithobrake.compiled import kernel, large_kernel
+from lithobrake.compilation.compiled import kernel, large_kernel
 from lithobrake.dem.arrays import Bodies, Cores, Pairs, Planes
 from lithobrake.dem.deep_edges import add_deep_edges
 from lithobrake.dem.feature_distance import edge_of, edge_to_edge, point_to_core, stands_above, write_relative

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from lithobrake.compiled import kernel
+from lithobrake.compilation.compiled import kernel
 from lithobrake.dem.agenda import Agenda, put_on
 from lithobrake.dem.approach import Approach, closing_speed
 from lithobrake.dem.arrays import Bodies, Floats, Integers, Pairs

@@ -7,7 +7,7 @@ radii when the signed distances of these points are taken off, and the overlap o
 the distance of the edges leaves.
 """
 
-from lithobrake.compiled import kernel, large_kernel
+from lithobrake.compilation.compiled import kernel, large_kernel
 from lithobrake.dem.arrays import Cores, Floats
 from lithobrake.dem.feature_distance import closest_fractions, edge_of, lowest_height, point_to_core
 from lithobrake.dem.patch_energy import DEEP_EDGES, add_point

@@ -1,6 +1,6 @@
 """What forces and couples meet of bodies at a contact: one over a mass or a moment of inertia."""
 
-from lithobrake.compiled import kernel
+from lithobrake.compilation.compiled import kernel
 from lithobrake.dem.arrays import Bodies
 from lithobrake.dem.vectors import Vector, cross, dot, times
 

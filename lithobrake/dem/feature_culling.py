@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from lithobrake.compiled import kernel, large_kernel
+from lithobrake.compilation.compiled import kernel, large_kernel
 from lithobrake.dem.arrays import Cores, Floats, Pairs
 from lithobrake.dem.feature_distance import edge_of, edge_to_edge, lowest_height, point_to_core
 from lithobrake.dem.feature_id import CORNER_OF_FIRST, CORNER_OF_SECOND, EDGES, add_feature

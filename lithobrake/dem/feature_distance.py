@@ -1,6 +1,6 @@
 """Closed forms: how far a point is from a core, and two edges from each other."""
 
-from lithobrake.compiled import kernel, large_kernel
+from lithobrake.compilation.compiled import kernel, large_kernel
 from lithobrake.dem.arrays import Cores, Floats
 from lithobrake.dem.vectors import Vector, cross, dot, minus, plus, row, scaled
 

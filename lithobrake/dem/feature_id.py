@@ -3,7 +3,7 @@
 A pair has room for a few; the few pairs that need more have a row of their own beside it.
 """
 
-from lithobrake.compiled import kernel
+from lithobrake.compilation.compiled import kernel
 from lithobrake.dem.arrays import Pairs
 
 # Kinds of features: a corner of the first on the second, of the second on the first (i, and one more than the number of

@@ -4,7 +4,7 @@ Distances are computed anew in each step (contact_patch.py), and features that d
 difference to any bit when, or how often, a list is renewed.
 """
 
-from lithobrake.compiled import kernel, large_kernel
+from lithobrake.compilation.compiled import kernel, large_kernel
 from lithobrake.dem.arrays import Bodies, Cores, Floats, Pairs, Planes
 from lithobrake.dem.closest_points import find_closest_points
 from lithobrake.dem.feature_culling import band_along, is_point, list_corners, list_edges

@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from lithobrake.compiled import kernel, large_kernel
+from lithobrake.compilation.compiled import kernel, large_kernel
 from lithobrake.dem.arrays import Bodies, Cores, Laws, Pairs, Partition, Planes, Reactions, Step
 from lithobrake.dem.contact_law import (
     DAMPING,

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from lithobrake.compiled import kernel, large_kernel
+from lithobrake.compilation.compiled import kernel, large_kernel
 from lithobrake.dem.arrays import Bodies, Flags, Floats, Integers
 from lithobrake.dem.motion import turn_by
 from lithobrake.dem.vectors import Vector, add, cross, dot, minus, plus, put, row, scaled, times

@@ -4,7 +4,7 @@ Source: [Gilbert-1988]. Positions are relative to the first body's centroid, so 
 not depend on where in the world the pair stands. All tolerances are relative to the sizes met on the way.
 """
 
-from lithobrake.compiled import kernel, large_kernel
+from lithobrake.compilation.compiled import kernel, large_kernel
 from lithobrake.dem.arrays import Cores, Floats
 from lithobrake.dem.scratch import Simplex
 from lithobrake.dem.simplex import simplex_weights

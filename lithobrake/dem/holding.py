@@ -7,7 +7,7 @@ What touches nothing is never held.
 
 import numpy as np
 
-from lithobrake.compiled import kernel, large_kernel
+from lithobrake.compilation.compiled import kernel, large_kernel
 from lithobrake.dem.agenda import Agenda, put_on
 from lithobrake.dem.arrays import Bodies, Pairs, Reactions
 from lithobrake.dem.contact_plans import Plans, replan, touches

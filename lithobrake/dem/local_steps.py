@@ -8,7 +8,7 @@ cannot touch yet is not looked at.
 Source: [Lew-2003], asynchronous variational integrators.
 """
 
-from lithobrake.compiled import kernel, large_kernel
+from lithobrake.compilation.compiled import kernel, large_kernel
 from lithobrake.dem.agenda import Agenda, put_on
 from lithobrake.dem.approach import Approach, approach_of, closing_speed
 from lithobrake.dem.arrays import Bodies, Cores, Floats, Laws, Pairs, Planes, Reactions, Step

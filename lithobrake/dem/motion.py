@@ -1,6 +1,6 @@
 """Motion of rigid bodies: half kick, drift, half kick, with the angular momentum in the world frame as state."""
 
-from lithobrake.compiled import kernel, large_kernel
+from lithobrake.compilation.compiled import kernel, large_kernel
 from lithobrake.dem.arrays import Bodies, Floats, Step
 from lithobrake.dem.vectors import Vector, add, cross, dot, plus, put, row, scaled, times, transposed_times
 

@@ -5,7 +5,7 @@ Every body has a list of its pairs: entries 2 k and 2 k + 1 stand for the first 
 
 import numpy as np
 
-from lithobrake.compiled import kernel, large_kernel
+from lithobrake.compilation.compiled import kernel, large_kernel
 from lithobrake.dem.agenda import Agenda, put_on, take_off
 from lithobrake.dem.arrays import Bodies, Cores, Floats, Laws, Pairs, Planes
 from lithobrake.dem.cells import Cells, gather_near, move_to_cell

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from lithobrake.compiled import kernel, large_kernel
+from lithobrake.compilation.compiled import kernel, large_kernel
 from lithobrake.dem.arrays import Bodies, Cores, Flags, Floats, Integers, Pairs, Planes
 from lithobrake.dem.closest_points import find_closest_points
 from lithobrake.dem.feature_id import INLINE_FEATURES

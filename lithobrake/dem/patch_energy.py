@@ -7,7 +7,7 @@ pose, move smoothly from corner to corner, and hold a face by all of its corners
 
 from typing import NamedTuple
 
-from lithobrake.compiled import kernel
+from lithobrake.compilation.compiled import kernel
 from lithobrake.dem.scratch import Patch
 from lithobrake.dem.vectors import Vector, dot, minus, plus, put, row, scaled
 

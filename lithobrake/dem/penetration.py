@@ -2,7 +2,7 @@
 
 import math
 
-from lithobrake.compiled import large_kernel
+from lithobrake.compilation.compiled import large_kernel
 from lithobrake.dem.arrays import Bodies, Cores, Floats
 from lithobrake.dem.closest_points import find_closest_points
 from lithobrake.dem.gjk import PENETRATING, weighted

@@ -1,6 +1,6 @@
 """Rolling resistance of a contact, and its resistance to twisting and spinning: couples on the bodies."""
 
-from lithobrake.compiled import kernel
+from lithobrake.compilation.compiled import kernel
 from lithobrake.dem.arrays import Pairs
 from lithobrake.dem.tangential_spring import spring_force, stored, tangential_part, turned_spring, unloaded
 from lithobrake.dem.vectors import Vector, dot, put, row, scaled

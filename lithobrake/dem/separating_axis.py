@@ -6,7 +6,7 @@ edge pairs whose arcs on the sphere of normals intersect. Source: [Gregorius-201
 
 import math
 
-from lithobrake.compiled import kernel, large_kernel
+from lithobrake.compilation.compiled import kernel, large_kernel
 from lithobrake.dem.arrays import Cores, Floats
 from lithobrake.dem.feature_distance import lowest_height, write_relative
 from lithobrake.dem.scratch import TurnedFeatures

@@ -1,6 +1,6 @@
 """The point of a simplex closest to the origin, as weights of its corners that add up to one."""
 
-from lithobrake.compiled import kernel
+from lithobrake.compilation.compiled import kernel
 from lithobrake.dem.vectors import Vector, cross, dot, minus, plus, scaled
 
 Weights = tuple[float, float, float, float]

@@ -11,7 +11,7 @@ Source: [Anderson-1985], for the bound by two neighbours.
 import math
 from typing import NamedTuple
 
-from lithobrake.compiled import kernel, large_kernel
+from lithobrake.compilation.compiled import kernel, large_kernel
 from lithobrake.dem.arrays import Bodies, Floats, Laws, Pairs, Planes, Step
 from lithobrake.dem.effective_mass import inverse_inertia_across, inverse_mass_at
 from lithobrake.dem.scratch import Patch

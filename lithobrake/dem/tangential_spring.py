@@ -6,7 +6,7 @@ keep: by sliding, and by changes of its stiffness.
 
 from typing import NamedTuple
 
-from lithobrake.compiled import kernel
+from lithobrake.compilation.compiled import kernel
 from lithobrake.dem.vectors import Vector, cross, dot, minus, plus, scaled
 
 

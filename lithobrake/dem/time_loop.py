@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from lithobrake.compiled import kernel, large_kernel
+from lithobrake.compilation.compiled import kernel, large_kernel
 from lithobrake.dem.arrays import Bodies, Cores, Floats, Laws, Pairs, Partition, Planes, Reactions, Step
 from lithobrake.dem.feature_list import update_feature_lists
 from lithobrake.dem.force import forces_within_partition

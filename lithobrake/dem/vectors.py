@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from lithobrake.compiled import kernel
+from lithobrake.compilation.compiled import kernel
 
 Vector = tuple[float, float, float]
 

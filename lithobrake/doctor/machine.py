@@ -22,9 +22,9 @@ class FoundCache:
     @classmethod
     def look(cls) -> "FoundCache":
         """Look at it, which takes NumPy and the compiler."""
-        from lithobrake.compiled import lies_on_disk
+        from lithobrake.compilation.compiled import lies_on_disk
+        from lithobrake.compilation.disk_cache import DiskCache
         from lithobrake.dem.time_loop import advance
-        from lithobrake.disk_cache import DiskCache
         from lithobrake.smallbody.integration import integrate_flights
 
         cache = DiskCache("beds", "beds")

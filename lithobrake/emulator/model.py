@@ -21,8 +21,8 @@ from lithobrake.emulator.outcome_classes import fit_classes
 from lithobrake.emulator.residual_rows import BANDWIDTHS, drawn_rows, row_weights, smoothed, smoothing
 from lithobrake.emulator.significance import found_inputs
 from lithobrake.emulator.storage import FORMAT, Parts, content_of, parts_of
-from lithobrake.given_numbers import finite_number, random_numbers, sample_count
-from lithobrake.html_table import html_table
+from lithobrake.vocabulary.given_numbers import finite_number, random_numbers, sample_count
+from lithobrake.vocabulary.html_table import html_table
 
 # Draws that are made at once: bounds the memory, and belongs to what a seed gives.
 _BLOCK = 1 << 18

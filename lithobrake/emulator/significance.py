@@ -12,7 +12,7 @@ from scipy import stats
 from lithobrake.chaos.polynomials import Array
 from lithobrake.emulator.mean_law import RUNS_PER_TERM
 from lithobrake.emulator.terms import Terms
-from lithobrake.given_numbers import finite_number, random_numbers
+from lithobrake.vocabulary.given_numbers import finite_number, random_numbers
 
 PERMUTATIONS = 399
 

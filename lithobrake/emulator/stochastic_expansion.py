@@ -23,7 +23,7 @@ from lithobrake.emulator.latent_likelihood import LatentProblem, branches, probl
 from lithobrake.emulator.latent_terms import LATENT_DEGREE, LATENTS, LatentTerms
 from lithobrake.emulator.storage import column_from_json, runs_from_json, runs_to_json
 from lithobrake.emulator.training import TrainingRuns
-from lithobrake.given_numbers import numbers, random_numbers, sample_count
+from lithobrake.vocabulary.given_numbers import numbers, random_numbers, sample_count
 
 FORMAT = "lithobrake stochastic expansion"
 # Halvings after which an interval of quantiles is no wider than rounding.

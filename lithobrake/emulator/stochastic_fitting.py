@@ -17,7 +17,7 @@ from lithobrake.emulator.latent_terms import LATENTS, LatentTerms, latent_terms
 from lithobrake.emulator.stochastic_expansion import StochasticExpansion
 from lithobrake.emulator.training import TrainingRuns, checked_runs
 from lithobrake.emulator.validation import folds_of
-from lithobrake.given_numbers import whole_number
+from lithobrake.vocabulary.given_numbers import whole_number
 
 HIGHEST_DEGREE = 3
 # With fewer runs to a term, likelihood would follow single runs: such degrees are not looked at.

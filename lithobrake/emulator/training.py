@@ -12,7 +12,7 @@ from lithobrake.chaos.basis import checked_points
 from lithobrake.chaos.polynomials import Array
 from lithobrake.chaos.training import check_magnitude
 from lithobrake.emulator.coordinates import from_coordinate, to_coordinate
-from lithobrake.given_numbers import LARGEST, labels, numbers, numbers_or_nan, random_numbers, whole_number
+from lithobrake.vocabulary.given_numbers import LARGEST, labels, numbers, numbers_or_nan, random_numbers, whole_number
 
 WITH_OUTPUTS, WITHOUT_OUTPUTS = "with_outputs", "without_outputs"
 # Fewer residuals than this are no distribution to draw from.

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lithobrake.atomic import atomic_path
 from lithobrake.export.fits import write_fits_table
 from lithobrake.export.flown import Flown
+from lithobrake.files.atomic import atomic_path
 from lithobrake.results import Column, StudyResults, Table
 
 if TYPE_CHECKING:

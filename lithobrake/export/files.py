@@ -4,13 +4,13 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from lithobrake.atomic import refuse_existing
 from lithobrake.export.ephemerides import flight_names, write_ephemerides
 from lithobrake.export.facet_table import write_facet_csv, write_facet_fits
 from lithobrake.export.geojson import write_geojson, write_rest_geojson
 from lithobrake.export.geotiff import RESOLUTION_DEG, write_geotiff
 from lithobrake.export.motions import named_landing
 from lithobrake.export.plate_text import write_plates
+from lithobrake.files.atomic import refuse_existing
 from lithobrake.results import StudyResults
 from lithobrake.view import contact_sheet, write_vtkhdf
 

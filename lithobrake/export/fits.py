@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from lithobrake.atomic import atomic_path
+from lithobrake.files.atomic import atomic_path
 from lithobrake.results import Column
 
 # Files come in blocks of this many bytes; headers in cards of so many characters.

@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from lithobrake.atomic import atomic_path
 from lithobrake.export.map_frame import WORDS, MapFrame
-from lithobrake.outcomes import FlightStatus, JourneyStatus
+from lithobrake.files.atomic import atomic_path
 from lithobrake.results import StudyResults, Table
+from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus
 
 PROPERTIES = ("time_s", "impact_speed", "impact_incidence_deg")
 REST_PROPERTIES = ("time_s", "rebounds", "path_length")

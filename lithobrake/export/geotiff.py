@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lithobrake.atomic import atomic_path
 from lithobrake.export.map_frame import WORDS, MapFrame
-from lithobrake.outcomes import FlightStatus
+from lithobrake.files.atomic import atomic_path
 from lithobrake.results import StudyResults
+from lithobrake.vocabulary.outcomes import FlightStatus
 
 if TYPE_CHECKING:
     from PIL.TiffImagePlugin import ImageFileDirectory_v2

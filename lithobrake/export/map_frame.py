@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 
 from lithobrake.export.flown import body_name
-from lithobrake.mesh import volume_of
+from lithobrake.geometry.mesh import volume_of
 from lithobrake.results import StudyResults
 
 WORDS = "latitude planetocentric, longitude east positive, both of the body-fixed frame"

@@ -12,7 +12,7 @@ from textwrap import wrap
 import numpy as np
 from numpy.typing import NDArray
 
-from lithobrake.atomic import atomic_path
+from lithobrake.files.atomic import atomic_path
 
 VERSION = "2.0"
 # Of a line; the standard allows 254 characters.

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
-from lithobrake.atomic import atomic_path
+from lithobrake.files.atomic import atomic_path
 from lithobrake.results import StudyResults
 
 

@@ -4,43 +4,43 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from lithobrake.pipeline.folder import StudyFolder
-    from lithobrake.pipeline.inferring import InferredStudy, infer_study
+    from lithobrake.pipeline.commands.inferring import InferredStudy, infer_study
+    from lithobrake.pipeline.commands.one_landing import OneLanding, land_one, landing_inputs
+    from lithobrake.pipeline.commands.rare_landings import rare_failure
+    from lithobrake.pipeline.commands.serving import ServedStudy, served_models
+    from lithobrake.pipeline.commands.serving_process import EvaluationProcess
+    from lithobrake.pipeline.commands.status import study_status
+    from lithobrake.pipeline.folder.state import report_page
+    from lithobrake.pipeline.folder.study_folder import StudyFolder
     from lithobrake.pipeline.job import Job
-    from lithobrake.pipeline.one_landing import OneLanding, land_one, landing_inputs
     from lithobrake.pipeline.planning.plan import Plan
     from lithobrake.pipeline.planning.plan_in_words import plan_lines
     from lithobrake.pipeline.planning.planner import plan_study
-    from lithobrake.pipeline.rare_landings import rare_failure
-    from lithobrake.pipeline.serving import ServedStudy, served_models
-    from lithobrake.pipeline.serving_process import EvaluationProcess
     from lithobrake.pipeline.stages import Stage, make, stage_keys, stages_of
-    from lithobrake.pipeline.state import report_page
-    from lithobrake.pipeline.status import study_status
     from lithobrake.pipeline.study_run import run_study, write_report_again
 
 _HOME = {
-    "EvaluationProcess": "serving_process",
-    "InferredStudy": "inferring",
+    "EvaluationProcess": "commands.serving_process",
+    "InferredStudy": "commands.inferring",
     "Job": "job",
-    "OneLanding": "one_landing",
+    "OneLanding": "commands.one_landing",
     "Plan": "planning.plan",
-    "ServedStudy": "serving",
+    "ServedStudy": "commands.serving",
     "Stage": "stages",
-    "StudyFolder": "folder",
-    "infer_study": "inferring",
-    "land_one": "one_landing",
-    "landing_inputs": "one_landing",
+    "StudyFolder": "folder.study_folder",
+    "infer_study": "commands.inferring",
+    "land_one": "commands.one_landing",
+    "landing_inputs": "commands.one_landing",
     "make": "stages",
     "plan_lines": "planning.plan_in_words",
     "plan_study": "planning.planner",
-    "rare_failure": "rare_landings",
-    "report_page": "state",
+    "rare_failure": "commands.rare_landings",
+    "report_page": "folder.state",
     "run_study": "study_run",
-    "served_models": "serving",
+    "served_models": "commands.serving",
     "stage_keys": "stages",
     "stages_of": "stages",
-    "study_status": "status",
+    "study_status": "commands.status",
     "write_report_again": "study_run",
 }
 __all__ = [

@@ -5,7 +5,7 @@ from concurrent.futures import Executor
 from dataclasses import dataclass
 from typing import Any, Protocol
 
-from lithobrake.pipeline.folder import StudyFolder
+from lithobrake.pipeline.folder.study_folder import StudyFolder
 from lithobrake.study import Study
 
 

@@ -5,37 +5,38 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
-from lithobrake.hashing import json_hash, source_hash
-from lithobrake.pipeline.aiming import aim_files, aim_reads, follow_aims
-from lithobrake.pipeline.beds import bed_files, bed_reads, pour_beds
-from lithobrake.pipeline.design_runs import file_of
-from lithobrake.pipeline.designs import design_reads
-from lithobrake.pipeline.drawn_summary import write_drawn_summary
-from lithobrake.pipeline.emulator_samples import draw_emulator_samples
-from lithobrake.pipeline.expansion_tables import write_expansion_explorer
-from lithobrake.pipeline.expansions import fit_refined, fit_screening, score_all
-from lithobrake.pipeline.explorer_tables import FILE as EXPLORER
-from lithobrake.pipeline.explorer_tables import write_explorer
-from lithobrake.pipeline.fitted_emulator import fit_emulator
-from lithobrake.pipeline.flight_paths import FILE as PATHS_FILE
-from lithobrake.pipeline.flights import flight_reads, fly_expansion_samples, fly_samples
+from lithobrake.files.hashing import json_hash, source_hash
+from lithobrake.pipeline.answer.drawn_summary import write_drawn_summary
+from lithobrake.pipeline.answer.run_estimates import estimate
+from lithobrake.pipeline.emulate.emulator_samples import draw_emulator_samples
+from lithobrake.pipeline.emulate.explorer_tables import FILE as EXPLORER
+from lithobrake.pipeline.emulate.explorer_tables import write_explorer
+from lithobrake.pipeline.emulate.fitted_emulator import fit_emulator
+from lithobrake.pipeline.fly.flight_paths import FILE as PATHS_FILE
+from lithobrake.pipeline.fly.flights import flight_reads, fly_expansion_samples, fly_samples
+from lithobrake.pipeline.fly.run_flights import fly_runs, run_flight_reads
 from lithobrake.pipeline.job import Job
-from lithobrake.pipeline.making_runs import (
-    make_drawn_runs,
-    make_refined_runs,
-    make_screening_runs,
-    make_side_runs,
-    make_test_runs,
+from lithobrake.pipeline.paper.expansion_samples import draw_samples
+from lithobrake.pipeline.paper.expansion_tables import write_expansion_explorer
+from lithobrake.pipeline.paper.expansions import fit_refined, fit_screening, score_all
+from lithobrake.pipeline.paper.paper_runs import make_refined_runs, make_screening_runs, make_test_runs
+from lithobrake.pipeline.paper.paper_summary import summary_reads, write_summary
+from lithobrake.pipeline.rest.aiming import aim_files, aim_reads, follow_aims
+from lithobrake.pipeline.rest.journeys import FILES as REST_FILES
+from lithobrake.pipeline.rest.journeys import follow_samples, rest_files, rest_reads
+from lithobrake.pipeline.runs.beds import bed_files, bed_reads, pour_beds
+from lithobrake.pipeline.runs.designs import design_reads
+from lithobrake.pipeline.runs.drawn_design import SIDE_DESIGNS, beds_of_runs
+from lithobrake.pipeline.runs.making_runs import make_drawn_runs, make_side_runs
+from lithobrake.pipeline.runs.place_region import place_region
+from lithobrake.pipeline.runs.run_table import file_of
+from lithobrake.pipeline.runs.shown_landing import (
+    land_once,
+    land_tellingly,
+    landing_files,
+    landing_reads,
+    telling_files,
 )
-from lithobrake.pipeline.place_region import place_region
-from lithobrake.pipeline.rest import FILES as REST_FILES
-from lithobrake.pipeline.rest import follow_samples, rest_files, rest_reads
-from lithobrake.pipeline.run_estimates import estimate
-from lithobrake.pipeline.run_flights import fly_runs, run_flight_reads
-from lithobrake.pipeline.samples import draw_samples
-from lithobrake.pipeline.sequence import SIDE_DESIGNS, beds_of_runs
-from lithobrake.pipeline.shown_landing import land_once, land_tellingly, landing_files, landing_reads, telling_files
-from lithobrake.pipeline.summary import summary_reads, write_summary
 from lithobrake.study import Study
 
 

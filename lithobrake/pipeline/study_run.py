@@ -10,18 +10,18 @@ from lithobrake.campaign import DaskExecutor, LocalExecutor
 from lithobrake.campaign.main_module import refuse_while_importing
 from lithobrake.campaign.model_server import PREFIX
 from lithobrake.chaos.threads import one_thread
-from lithobrake.pipeline.answers import ANSWERED_AFTER
-from lithobrake.pipeline.folder import StudyFolder
-from lithobrake.pipeline.growing_sequence import grow, grown, sequence_keys
+from lithobrake.pipeline.answer.answer_of_run import ANSWERED_AFTER
+from lithobrake.pipeline.folder.notes import NAME
+from lithobrake.pipeline.folder.owner import refuse_others_folder
+from lithobrake.pipeline.folder.state import grouped, read_state
+from lithobrake.pipeline.folder.study_folder import StudyFolder
 from lithobrake.pipeline.job import Job, Progress, Silent
-from lithobrake.pipeline.notes import NAME
-from lithobrake.pipeline.owner import refuse_others_folder
 from lithobrake.pipeline.planning.plan_in_words import brief_lines
 from lithobrake.pipeline.planning.planner import plan_of
+from lithobrake.pipeline.runs.solver import Model, function_identity
+from lithobrake.pipeline.sequential_sampling import grow, grown, sequence_keys
 from lithobrake.pipeline.site import with_site_gravity
-from lithobrake.pipeline.solver import Model, function_identity
 from lithobrake.pipeline.stages import make, setting, stages_until
-from lithobrake.pipeline.state import grouped, read_state
 from lithobrake.results import StudyResults
 from lithobrake.study import StudySource
 

@@ -23,6 +23,6 @@ def write_corner(posterior: Path, picture: Path) -> None:
 
     Raises ValueError for another file.
     """
-    from lithobrake.report.corner_figure import write_corner as write
+    from lithobrake.report.figures.corner_figure import write_corner as write
 
     write(posterior, picture)

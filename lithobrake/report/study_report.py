@@ -5,15 +5,15 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from lithobrake.atomic import atomic_path
-from lithobrake.report import captions
-from lithobrake.report.page import Panel, Plot, page
-from lithobrake.report.paper_page import paper_content
-from lithobrake.report.results import SequenceResults, page_results
-from lithobrake.report.sequence_page import sequence_content
-from lithobrake.report.study_files import data_files, picture_files
-from lithobrake.report.style import figure_style
-from lithobrake.report.tables import provenance
+from lithobrake.files.atomic import atomic_path
+from lithobrake.report.figures.style import figure_style
+from lithobrake.report.pages.drawn_page import sequence_content
+from lithobrake.report.pages.html import Panel, Plot, page
+from lithobrake.report.pages.page_data import SequenceResults, page_results
+from lithobrake.report.pages.paper_page import paper_content
+from lithobrake.report.pages.study_files import data_files, picture_files
+from lithobrake.report.tables.paper_tables import provenance
+from lithobrake.report.words import captions
 from lithobrake.results import open_study
 
 if TYPE_CHECKING:

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from lithobrake.reading import reading
+from lithobrake.files.reading import reading
 
 if TYPE_CHECKING:
     import numpy as np

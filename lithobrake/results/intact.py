@@ -2,9 +2,9 @@
 
 from pathlib import Path
 
-from lithobrake.atomic import lock_holder
-from lithobrake.hashing import content_hash
-from lithobrake.reading import DamagedFileError, read_json, reading
+from lithobrake.files.atomic import lock_holder
+from lithobrake.files.hashing import content_hash
+from lithobrake.files.reading import DamagedFileError, read_json, reading
 
 # What the folder notes about its files, what is held while a study is at work there, and the copy of its file.
 KEYS, LOCK, STUDY_FILE = "keys.json", ".lock", "study.toml"

@@ -5,10 +5,10 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from lithobrake.reading import read_json
+from lithobrake.files.reading import read_json
 from lithobrake.results.moving_bodies import MovingBodies
 from lithobrake.study import Study, check_tables, load_tables
-from lithobrake.touchdown_model import (
+from lithobrake.study.touchdown_model import (
     TouchdownModel,
     engine_hash,
     lander,

@@ -6,7 +6,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
-from lithobrake.reading import reading
+from lithobrake.files.reading import reading
 
 if TYPE_CHECKING:
     import numpy as np

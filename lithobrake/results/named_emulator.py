@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lithobrake.given_numbers import numbers, whole_number
-from lithobrake.html_table import html_table
-from lithobrake.outputs import OUTPUTS, RUN, SPIN_OUT, TOUCHDOWN, Quantity, quantity
 from lithobrake.results.table import Table
+from lithobrake.vocabulary.given_numbers import numbers, whole_number
+from lithobrake.vocabulary.html_table import html_table
+from lithobrake.vocabulary.quantities import OUTPUTS, RUN, SPIN_OUT, TOUCHDOWN, Quantity, quantity
 
 if TYPE_CHECKING:
     from lithobrake.emulator import Emulator

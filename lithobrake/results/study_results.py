@@ -8,9 +8,19 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from lithobrake.outputs import ARC, BEDS, DESIGNS, FLIGHT, RUN, SEQUENCE_DESIGNS, TOUCHDOWN, Quantity, quantity
-from lithobrake.reading import NUMBER, DamagedFileError, read_json, read_rows, reading
+from lithobrake.files.reading import NUMBER, DamagedFileError, read_json, read_rows, reading
 from lithobrake.results.intact import KEYS, STUDY_FILE, intact_file
+from lithobrake.vocabulary.quantities import (
+    ARC,
+    BEDS,
+    DESIGNS,
+    FLIGHT,
+    RUN,
+    SEQUENCE_DESIGNS,
+    TOUCHDOWN,
+    Quantity,
+    quantity,
+)
 
 if TYPE_CHECKING:
     import numpy as np
@@ -381,7 +391,7 @@ def _html(results: StudyResults) -> str:
     """What came out, and what can be asked for."""
     from html import escape
 
-    from lithobrake.html_table import html_table
+    from lithobrake.vocabulary.html_table import html_table
 
     rows = [(name, what) for name, (file, what) in _ASKED.items() if (results.folder / file).exists()]
     table = html_table(f"Results of {results.folder}", ("ask for", "and get"), rows)

@@ -6,7 +6,7 @@ their own: `results.beds.solid_fraction` is that of each bed. SI, where no unit 
 
 from dataclasses import dataclass
 
-from lithobrake.outputs import BEDS
+from lithobrake.vocabulary.quantities import BEDS
 
 SUMMARY = "summary.json"
 

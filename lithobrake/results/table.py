@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from lithobrake.outputs import Quantity
+from lithobrake.vocabulary.quantities import Quantity
 
 if TYPE_CHECKING:
     import pandas

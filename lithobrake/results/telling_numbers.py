@@ -4,7 +4,7 @@ from collections import Counter
 from dataclasses import dataclass
 from typing import Any
 
-from lithobrake.outcomes import TouchdownOutcome
+from lithobrake.vocabulary.outcomes import TouchdownOutcome
 
 SPEED = "speed_out"
 

@@ -1,6 +1,5 @@
 """Small bodies: shape, gravity, rotation and flight."""
 
-from lithobrake.outcomes import FlightStatus, JourneyStatus
 from lithobrake.smallbody.arcs import Arcs
 from lithobrake.smallbody.body import Body, Partner
 from lithobrake.smallbody.bounce import Bounce, HardSurface, Impacts, Rebounds
@@ -11,6 +10,7 @@ from lithobrake.smallbody.hopping import Journeys, Launch, hop
 from lithobrake.smallbody.restitution_table import RestitutionTable
 from lithobrake.smallbody.shape import Shape
 from lithobrake.smallbody.spice_kernels import PartnerPlace, SpinState, read_partner, read_spin
+from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus
 
 __all__ = [
     "Arcs",

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from lithobrake.compiled import kernel, large_kernel
+from lithobrake.compilation.compiled import kernel, large_kernel
 from lithobrake.smallbody.arrays import Floats, Integers
 from lithobrake.smallbody.attraction import Gravity, Workspace, attract
 from lithobrake.smallbody.orbit import Orbit

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from lithobrake.compiled import compiled, kernel, large_kernel
+from lithobrake.compilation.compiled import compiled, kernel, large_kernel
 from lithobrake.smallbody.arrays import Floats, Integers
 from lithobrake.smallbody.gravity_table import GravityTable, level_of, read_table
 from lithobrake.smallbody.multipole import SCRATCH, Multipole, series_block

@@ -6,11 +6,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lithobrake.given_numbers import finite_number, numbers
 from lithobrake.smallbody import attraction
 from lithobrake.smallbody.gravity_gradient import gradient
 from lithobrake.smallbody.orbit import Entry, Orbit
 from lithobrake.smallbody.shape import Shape
+from lithobrake.vocabulary.given_numbers import finite_number, numbers
 
 GRAVITATIONAL_CONSTANT = 6.67430e-11  # m3/(kg s2), CODATA 2018
 

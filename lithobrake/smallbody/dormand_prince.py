@@ -8,7 +8,7 @@ A state is x, y, z [m] and their rates [m/s]; `derivative` holds that of each st
 
 import numpy as np
 
-from lithobrake.compiled import kernel
+from lithobrake.compilation.compiled import kernel
 from lithobrake.smallbody.arrays import Floats
 
 STAGES = 7

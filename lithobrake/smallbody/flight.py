@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lithobrake.given_numbers import finite_number, numbers, whole_number
 from lithobrake.smallbody.acceleration import Dynamics, Forces
 from lithobrake.smallbody.arrays import Floats
 from lithobrake.smallbody.attraction import Gravity
@@ -19,6 +18,7 @@ from lithobrake.smallbody.integration import FAILED, MOST_STEPS, FlightEnds, int
 from lithobrake.smallbody.orbit import Orbit
 from lithobrake.smallbody.shape import Shape
 from lithobrake.smallbody.signed_distance import near_heights
+from lithobrake.vocabulary.given_numbers import finite_number, numbers, whole_number
 
 CHUNK = 1024  # flights that a thread takes at a time
 FARTHEST = 1e20  # of a start, in m and in m/s

@@ -6,9 +6,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from lithobrake.html_table import html_table
-from lithobrake.outcomes import FlightStatus
 from lithobrake.smallbody.body import GRAVITATIONAL_CONSTANT, Body
+from lithobrake.vocabulary.html_table import html_table
+from lithobrake.vocabulary.outcomes import FlightStatus
 
 STATUSES = np.array([status.value for status in FlightStatus])
 ESCAPE_RADII = 10.0  # radii of the body beyond which a flight with positive energy has escaped

@@ -7,7 +7,7 @@ solid angles); far away the harmonics of multipole.py, whose derivative is a ser
 import numpy as np
 from numpy.typing import NDArray
 
-from lithobrake.compiled import compiled
+from lithobrake.compilation.compiled import compiled
 from lithobrake.smallbody.arrays import Floats
 from lithobrake.smallbody.multipole import Multipole
 from lithobrake.smallbody.polyhedron_gravity import PolyhedronTerms

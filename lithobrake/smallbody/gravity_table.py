@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from lithobrake.compiled import kernel
+from lithobrake.compilation.compiled import kernel
 from lithobrake.smallbody.arrays import Floats
 
 # Edge of the cells and reach of each grid in radii of the body; the first reaches MARGIN cells beyond the bounding box.

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from lithobrake.compiled import compiled, disk_cache
+from lithobrake.compilation.compiled import compiled, disk_cache
 from lithobrake.smallbody import attraction
 from lithobrake.smallbody.arrays import Floats
 from lithobrake.smallbody.attraction import Gravity

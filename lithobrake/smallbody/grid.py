@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import distance_transform_cdt
 
-from lithobrake.compiled import compiled, kernel
+from lithobrake.compilation.compiled import compiled, kernel
 from lithobrake.smallbody.arrays import Floats, Indices, Integers
 
 LARGEST = 160  # cells along the longest side: 20 MB of indices, and few facets in a cell

@@ -7,8 +7,6 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lithobrake.given_numbers import numbers, whole_number
-from lithobrake.outcomes import FlightStatus, JourneyStatus
 from lithobrake.smallbody.arcs import Arcs
 from lithobrake.smallbody.body import Body
 from lithobrake.smallbody.bounce import Bounce, Impacts
@@ -16,6 +14,8 @@ from lithobrake.smallbody.flight import fly
 from lithobrake.smallbody.flight_results import Flights
 from lithobrake.smallbody.signed_distance import near_heights
 from lithobrake.smallbody.sliding import OnGround, slide
+from lithobrake.vocabulary.given_numbers import numbers, whole_number
+from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus
 
 GRAZE = 1e-5  # cosine of the incidence below which a lander does not hit the ground but slides along it
 

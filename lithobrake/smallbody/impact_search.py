@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from lithobrake.compiled import kernel, large_kernel
+from lithobrake.compilation.compiled import kernel, large_kernel
 from lithobrake.smallbody.arrays import Floats
 from lithobrake.smallbody.dormand_prince import dense_output
 from lithobrake.smallbody.grid import Grid, clearance

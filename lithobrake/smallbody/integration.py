@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from lithobrake.compiled import compiled, kernel, large_kernel
+from lithobrake.compilation.compiled import compiled, kernel, large_kernel
 from lithobrake.smallbody.acceleration import Dynamics, Forces, accelerate, has_escaped
 from lithobrake.smallbody.arrays import Floats, Integers
 from lithobrake.smallbody.attraction import Workspace, workspace

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from lithobrake.compiled import compiled
+from lithobrake.compilation.compiled import compiled
 from lithobrake.smallbody.arrays import Floats
 from lithobrake.smallbody.polyhedron_gravity import POTENTIAL, PULL_X, PULL_Y, PULL_Z, PolyhedronTerms
 from lithobrake.smallbody.simd import LANES

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from lithobrake.compiled import compiled
+from lithobrake.compilation.compiled import compiled
 from lithobrake.smallbody.arrays import Floats
 from lithobrake.smallbody.simd import LANES, angle, fma, log_ratio
 

@@ -5,7 +5,7 @@ Source: [Moeller-1997].
 
 import numpy as np
 
-from lithobrake.compiled import compiled, kernel, large_kernel
+from lithobrake.compilation.compiled import compiled, kernel, large_kernel
 from lithobrake.smallbody.arrays import Floats, Integers
 from lithobrake.smallbody.grid import Grid, cell_of
 

@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from lithobrake.atomic import atomic_path
-from lithobrake.outcomes import TouchdownOutcome
-from lithobrake.reading import read_rows
+from lithobrake.files.atomic import atomic_path
+from lithobrake.files.reading import read_rows
 from lithobrake.smallbody.bounce import Impacts, Rebounds
+from lithobrake.vocabulary.outcomes import TouchdownOutcome
 
 Array = NDArray[np.float64]
 # Levels of the quantiles of each cell; the outermost are the smallest and largest value.

@@ -8,10 +8,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lithobrake.given_numbers import numbers
-from lithobrake.mesh import closed_faces, mass_properties
-from lithobrake.mesh_files import read_mesh
-from lithobrake.mesh_labels import labelled_mesh
+from lithobrake.geometry.mesh import closed_faces, mass_properties
+from lithobrake.geometry.mesh_files import read_mesh
+from lithobrake.geometry.mesh_labels import labelled_mesh
 from lithobrake.smallbody.attraction import Gravity
 from lithobrake.smallbody.gravity_table import LEVELS, GravityTable
 from lithobrake.smallbody.gravity_table_build import TableError, gravity_table_of
@@ -21,6 +20,7 @@ from lithobrake.smallbody.polyhedron_gravity import PolyhedronTerms
 from lithobrake.smallbody.ray_facet import outermost_hit
 from lithobrake.smallbody.signed_distance import heights, pseudonormals
 from lithobrake.smallbody.thinning import thinned
+from lithobrake.vocabulary.given_numbers import numbers
 
 FEWEST_FACETS = 100
 OFF_CENTRE = 1e-3  # of the radius: how far the centre of mass may lie from the origin without a word

@@ -6,7 +6,7 @@ Sources: [Ericson-2005], section 5.1.5 (closest point of a triangle); [Baerentze
 import numpy as np
 from numpy.typing import NDArray
 
-from lithobrake.compiled import compiled, kernel, large_kernel
+from lithobrake.compilation.compiled import compiled, kernel, large_kernel
 from lithobrake.smallbody.arrays import Floats, Integers
 from lithobrake.smallbody.grid import Grid, cell_of
 

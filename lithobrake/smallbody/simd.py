@@ -12,7 +12,7 @@ from llvmlite import ir  # type: ignore[import-untyped]
 from numba import types
 from numba.extending import intrinsic
 
-from lithobrake.compiled import compiled
+from lithobrake.compilation.compiled import compiled
 
 LANES = 32  # points that share one pass over the facets; 1000 vertex distances of 32 points fit the second-level cache
 WIDTH = 8  # doubles in the widest registers

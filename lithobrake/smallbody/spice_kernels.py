@@ -5,8 +5,8 @@ from collections.abc import Callable, Sequence
 from functools import lru_cache
 from typing import Any, NamedTuple
 
-from lithobrake import body_kernels
-from lithobrake.kernel_process import Reply, read_apart
+from lithobrake.geometry import body_kernels
+from lithobrake.geometry.kernel_process import Reply, read_apart
 
 
 class SpinState(NamedTuple):

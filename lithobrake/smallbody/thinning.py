@@ -5,7 +5,7 @@ import importlib
 import numpy as np
 from numpy.typing import NDArray
 
-from lithobrake.mesh import mass_properties
+from lithobrake.geometry.mesh import mass_properties
 
 INSTALL = 'pip install "lithobrake[thin]"'
 

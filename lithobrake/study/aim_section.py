@@ -8,9 +8,9 @@ from typing import Annotated
 
 from pydantic import Field
 
-from lithobrake.outcomes import JourneyStatus
 from lithobrake.study.quantity import Number, Whole
 from lithobrake.study.section import Section
+from lithobrake.vocabulary.outcomes import JourneyStatus
 
 # What comes of an aim, and may be limited as the aim itself is.
 SETTLED = JourneyStatus.SETTLED.value

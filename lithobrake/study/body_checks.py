@@ -7,7 +7,7 @@ import warnings
 from collections.abc import Iterator
 from pathlib import Path
 
-from lithobrake.mesh_labels import labelled_mesh
+from lithobrake.geometry.mesh_labels import labelled_mesh
 from lithobrake.study.flight_sections import BUILT_IN_BODIES
 from lithobrake.study.quantity import Scalar, usual_reach
 from lithobrake.study.refusals import closest, show
@@ -98,8 +98,8 @@ def _volume(study: Study) -> float:
 
         return float(getattr(smallbody, site.body)(partner=False).shape.volume)
     # Only a mesh needs arrays: whatever else is refused is refused before they are imported.
-    from lithobrake.mesh import closed_faces, holds_origin, volume_of
-    from lithobrake.mesh_files import read_mesh
+    from lithobrake.geometry.mesh import closed_faces, holds_origin, volume_of
+    from lithobrake.geometry.mesh_files import read_mesh
 
     vertices, faces = read_mesh(labelled_mesh(Path(site.body)), site.unit)
     with warnings.catch_warnings():
@@ -118,7 +118,7 @@ def _bulk_problems(study: Study, volume: float) -> Iterator[str]:
     """A body that is too light, too heavy, too small or too large, with the unit that was likely meant."""
     if study.site.mass is None:
         return
-    from lithobrake.mesh_units import UNITS, mesh_unit
+    from lithobrake.geometry.mesh_units import UNITS, mesh_unit
 
     low, high = (mass / volume for mass in usual_reach(study.site.mass))
     built_in = study.site.body in BUILT_IN_BODIES

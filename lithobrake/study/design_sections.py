@@ -4,9 +4,9 @@ from typing import Annotated, Literal
 
 from pydantic import Field, StrictBool, StrictStr
 
-from lithobrake.outputs import OUTPUTS, OutputName
 from lithobrake.study.quantity import Number, Whole
 from lithobrake.study.section import Section
+from lithobrake.vocabulary.quantities import OUTPUTS, OutputName
 
 Level = Annotated[int, Whole("", at_least=1, at_most=8)]
 Degree = Annotated[int, Whole("", at_least=1, at_most=15)]

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from pydantic_core import core_schema
 
-from lithobrake.outcomes import FlightStatus, JourneyStatus, TouchdownOutcome
-from lithobrake.outputs import TOUCHDOWN
 from lithobrake.study.quantity import refuse
 from lithobrake.study.refusals import closest
+from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus, TouchdownOutcome
+from lithobrake.vocabulary.quantities import TOUCHDOWN
 
 if TYPE_CHECKING:
     import numpy as np

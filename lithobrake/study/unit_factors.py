@@ -2,7 +2,7 @@
 
 import math
 
-from lithobrake.outputs import PURE
+from lithobrake.vocabulary.quantities import PURE
 
 _DEGREE = math.pi / 180.0
 # Each row one quantity: its units, and each in the first of them. Feet and inches are the international ones; rpm is

@@ -5,9 +5,9 @@ from typing import get_args
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
-from lithobrake.outputs import PURE, TOUCHDOWN
 from lithobrake.study.quantity import Number
 from lithobrake.study.study import Study
+from lithobrake.vocabulary.quantities import PURE, TOUCHDOWN
 
 
 def input_units() -> dict[str, str]:

@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lithobrake.atomic import atomic_path
 from lithobrake.dem import ConvexHull, Material, World, pair_law
-from lithobrake.outputs import describe
-from lithobrake.reading import reading
+from lithobrake.files.atomic import atomic_path
+from lithobrake.files.reading import reading
+from lithobrake.vocabulary.quantities import describe
 
 Floats = NDArray[np.float64]
 FORMAT_VERSION = 1

@@ -13,9 +13,9 @@ from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 
-from lithobrake.atomic import atomic_path
-from lithobrake.disk_cache import DiskCache
-from lithobrake.hashing import json_hash, source_hash
+from lithobrake.compilation.disk_cache import DiskCache
+from lithobrake.files.atomic import atomic_path
+from lithobrake.files.hashing import json_hash, source_hash
 from lithobrake.touchdown.bed import Bed
 from lithobrake.touchdown.pouring import BedRecipe
 

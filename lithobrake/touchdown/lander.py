@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lithobrake.dem import Box, ConvexHull, Material, Sphere, checked_inertia
-from lithobrake.mesh import refuse_malformed
-from lithobrake.mesh_files import read_mesh
+from lithobrake.geometry.mesh import refuse_malformed
+from lithobrake.geometry.mesh_files import read_mesh
 
 Floats = NDArray[np.float64]
 

@@ -7,13 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from lithobrake.atomic import atomic_path
 from lithobrake.dem import Box, ConvexHull, Sphere
-from lithobrake.outcomes import TouchdownOutcome
-from lithobrake.outputs import ORIENTATION_OUT, OVER_RIM, SPIN_OUT, describe
+from lithobrake.files.atomic import atomic_path
 from lithobrake.touchdown.bed import Bed, write_hulls
 from lithobrake.touchdown.lander import Lander
 from lithobrake.touchdown.landing import Landing
+from lithobrake.vocabulary.outcomes import TouchdownOutcome
+from lithobrake.vocabulary.quantities import ORIENTATION_OUT, OVER_RIM, SPIN_OUT, describe
 
 Floats = NDArray[np.float64]
 LEAVING = (

@@ -6,12 +6,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lithobrake.dem import World
-from lithobrake.outcomes import TouchdownOutcome
 from lithobrake.touchdown.bed import Bed
 from lithobrake.touchdown.lander import Lander
 from lithobrake.touchdown.landing import Landing
 from lithobrake.touchdown.outcome import LEAVING, Outcome, outgoing
 from lithobrake.touchdown.surface import rotation_matrix
+from lithobrake.vocabulary.outcomes import TouchdownOutcome
 
 Floats = NDArray[np.float64]
 CAPTURED_ENERGY = 1e-4  # of the energy of impact

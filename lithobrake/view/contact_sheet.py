@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from lithobrake.atomic import atomic_path
+from lithobrake.files.atomic import atomic_path
 
 if TYPE_CHECKING:
     from lithobrake.results.moving_bodies import MovingBodies
@@ -16,9 +16,9 @@ def contact_sheet(bodies: "MovingBodies", path: str | Path, picture_count: int =
 
     Raises ValueError for bodies that are no landing in a box.
     """
-    from lithobrake.report.landing_figure import landing_figure
-    from lithobrake.report.scene import scene
-    from lithobrake.report.style import figure_style
+    from lithobrake.report.figures.landing_figure import landing_figure
+    from lithobrake.report.figures.scene import scene
+    from lithobrake.report.figures.style import figure_style
 
     if bodies.attributes.get("format") != "lithobrake landing":
         raise ValueError(

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lithobrake.atomic import atomic_path
+from lithobrake.files.atomic import atomic_path
 from lithobrake.view.drawn_motion import INSTALL, DrawnMotion
 
 if TYPE_CHECKING:

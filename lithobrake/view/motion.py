@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lithobrake.attitude import rotation_matrices
+from lithobrake.geometry.attitude import rotation_matrices
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from lithobrake.atomic import atomic_path
+from lithobrake.files.atomic import atomic_path
 from lithobrake.view.motion import body_speeds, placed, triangles
 
 if TYPE_CHECKING:

@@ -11,7 +11,6 @@ import campaign_models as models
 import numpy as np
 import pytest
 
-from lithobrake.atomic import lock_holder
 from lithobrake.campaign import (
     Ledger,
     LocalExecutor,
@@ -24,6 +23,7 @@ from lithobrake.campaign import (
     write_csv,
 )
 from lithobrake.campaign.record import lock_path
+from lithobrake.files.atomic import lock_holder
 
 from ..ledger_rows import edit_rows
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from lithobrake.compiled import large_kernel
+from lithobrake.compilation.compiled import large_kernel
 from lithobrake.dem.agenda import Agenda, new_agenda, put_on, take_off
 
 

@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-import lithobrake.compiled as compiled
-import lithobrake.disk_cache as disk_cache
+import lithobrake.compilation.compiled as compiled
+import lithobrake.compilation.disk_cache as disk_cache
 from lithobrake.dem.motion import write_rotations
 
 QUARTER_TURN = np.array([[0.5, 0.5, -0.5, 0.5]])
@@ -44,12 +44,11 @@ def kept(cache: Path) -> list[Path]:
 
 def test_cache_folder_changes_with_any_source_of_the_part(tmp_path, monkeypatch):
     package = tmp_path / "package"
-    (package / "dem").mkdir(parents=True)
-    for name in ("compiled.py", "disk_cache.py"):
-        (package / name).write_text("")
+    for part in ("dem", "compilation"):
+        (package / part).mkdir(parents=True)
     callee = package / "dem" / "callee.py"
     callee.write_text("a = 1\n")
-    monkeypatch.setattr(compiled, "__file__", str(package / "compiled.py"))
+    monkeypatch.setattr(compiled, "__file__", str(package / "compilation" / "compiled.py"))
     monkeypatch.setenv("LITHOBRAKE_CACHE", str(tmp_path))
     compiled.disk_cache.cache_clear()
     before = compiled.disk_cache("dem").folder

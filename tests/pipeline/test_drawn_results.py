@@ -9,10 +9,10 @@ import pytest
 
 import lithobrake
 from lithobrake.pipeline import StudyFolder, write_report_again
-from lithobrake.pipeline.flights import Starts, fly_starts
+from lithobrake.pipeline.emulate.outgoing import VELOCITY
+from lithobrake.pipeline.fly.flights import Starts, fly_starts
+from lithobrake.pipeline.fly.run_flights import run_sites
 from lithobrake.pipeline.job import Job, Silent
-from lithobrake.pipeline.outgoing import VELOCITY
-from lithobrake.pipeline.run_flights import run_sites
 from lithobrake.pipeline.site import site_body
 from lithobrake.results import StudyResults
 from lithobrake.results.key_words import leaves, words_of
@@ -81,7 +81,7 @@ def test_the_share_of_the_explorer_over_the_whole_law_is_that_of_the_emulator(re
       const sum = (list) => list.reduce((all, one) => all + one, 0);
       return sum(returns) / sum(known);"""
     page = (results.folder / "report" / "index.html").read_text(encoding="utf-8")
-    found = answer_of(("law.js", "flown.js", "explore.js"), program, explorer_data(page))
+    found = answer_of(("live/law.js", "live/flown.js", "live/explore.js"), program, explorer_data(page))
     share, flown = results.summary["results"]["returns"]["emulator"], results.flights.row_count
     # Both stand on the same flights; the study's share has the chance of so many drawn velocities beside.
     assert abs(found - share) < 3.0 * np.sqrt(share * (1.0 - share) / flown)

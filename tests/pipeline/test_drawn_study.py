@@ -8,12 +8,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from lithobrake.outputs import ORIENTATION_OUT, OUTPUTS, SPIN_OUT
 from lithobrake.pipeline import StudyFolder, plan_study, run_study, study_status
-from lithobrake.pipeline.design_runs import DesignRuns
-from lithobrake.pipeline.shown_landing import telling_run
+from lithobrake.pipeline.runs.run_table import DesignRuns
+from lithobrake.pipeline.runs.shown_landing import telling_run
 from lithobrake.results import open_study
 from lithobrake.study import StudySource
+from lithobrake.vocabulary.quantities import ORIENTATION_OUT, OUTPUTS, SPIN_OUT
 
 from ..few_grains import few_grains
 from .ball_studies import FEW_RUNS, PAPERS, drawn, edit, write_ball

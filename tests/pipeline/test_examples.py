@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from lithobrake.pipeline.solver import completed, solver_reads
+from lithobrake.pipeline.runs.solver import completed, solver_reads
 from lithobrake.results import open_study
 from lithobrake.study import StudyError, read_study
 

@@ -13,7 +13,7 @@ from typing import Any
 
 import pytest
 
-from lithobrake.atomic import lock_holder
+from lithobrake.files.atomic import lock_holder
 from lithobrake.pipeline import stages_of
 from lithobrake.results import open_study
 from lithobrake.study import read_study

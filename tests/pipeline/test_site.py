@@ -8,16 +8,16 @@ from typing import Any
 import numpy as np
 import pytest
 
-from lithobrake.pipeline.flights import flight_reads
+from lithobrake.pipeline.answer.site_summary import site_results
+from lithobrake.pipeline.fly.flights import flight_reads
+from lithobrake.pipeline.paper.paper_summary import summary_reads
 from lithobrake.pipeline.site import escape_speed, frames, gravity_warning, site_body, site_slope_deg
-from lithobrake.pipeline.site_summary import site_results
-from lithobrake.pipeline.summary import summary_reads
 from lithobrake.smallbody import Body
 from lithobrake.smallbody.built_in_bodies import top_shape
 from lithobrake.study import Study, check_tables
 from lithobrake.study.template import template
 
-from ..test_mesh_files import PRODUCT, mesh, write_kernel
+from ..geometry.test_mesh_files import PRODUCT, mesh, write_kernel
 
 
 def changed(**sections: dict[str, Any]) -> Study:

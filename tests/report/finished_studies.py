@@ -13,15 +13,15 @@ import numpy as np
 import lithobrake
 from lithobrake.dem import ConvexHull
 from lithobrake.pipeline import StudyFolder
-from lithobrake.pipeline.beds import bed_files
-from lithobrake.pipeline.drawn_summary import write_drawn_summary
+from lithobrake.pipeline.answer.drawn_summary import write_drawn_summary
 from lithobrake.pipeline.job import Job, Silent
-from lithobrake.pipeline.summary import write_summary
+from lithobrake.pipeline.paper.paper_summary import write_summary
+from lithobrake.pipeline.runs.beds import bed_files
 from lithobrake.study import check_tables
 from lithobrake.touchdown import Bed
 
+from ..pipeline.paper.test_expansion_tables import TWO_STEPS, UNCERTAIN, land
 from ..pipeline.synthetic_lander import SyntheticLander, synthetic_tables
-from ..pipeline.test_expansion_tables import TWO_STEPS, UNCERTAIN, land
 from ..synthetic_landings import Truth
 
 OCTAHEDRON = 0.05 * np.array([(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1)], dtype=float)

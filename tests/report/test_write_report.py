@@ -12,12 +12,13 @@ import h5py
 import numpy as np
 import pytest
 
-from lithobrake.report import captions, write_report
-from lithobrake.report.page import PageTable, number
-from lithobrake.report.results import PaperResults
-from lithobrake.report.scene import scene
-from lithobrake.report.study_files import size
-from lithobrake.report.tables import tables
+from lithobrake.report import write_report
+from lithobrake.report.figures.scene import scene
+from lithobrake.report.pages.html import PageTable, number
+from lithobrake.report.pages.page_data import PaperResults
+from lithobrake.report.pages.study_files import size
+from lithobrake.report.tables.paper_tables import tables
+from lithobrake.report.words import captions
 from lithobrake.results import MovingBodies
 
 

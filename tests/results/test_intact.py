@@ -11,8 +11,8 @@ import h5py
 import numpy as np
 import pytest
 
-from lithobrake.atomic import locked
-from lithobrake.pipeline.state import read_state
+from lithobrake.files.atomic import locked
+from lithobrake.pipeline.folder.state import read_state
 from lithobrake.results import StudyResults, open_study
 from lithobrake.results.intact import intact_file
 

@@ -13,11 +13,11 @@ import pytest
 
 import lithobrake
 from lithobrake.campaign import ModelServer
-from lithobrake.outputs import OUTPUTS
-from lithobrake.pipeline.serving import FLIGHT, ServedStudy, served_models
-from lithobrake.pipeline.serving_process import EvaluationProcess
-from lithobrake.pipeline.solver import LANDING
+from lithobrake.pipeline.commands.serving import FLIGHT, ServedStudy, served_models
+from lithobrake.pipeline.commands.serving_process import EvaluationProcess
+from lithobrake.pipeline.runs.solver import LANDING
 from lithobrake.serve import ClientGoneError, ServedModel, model_server
+from lithobrake.vocabulary.quantities import OUTPUTS
 
 umbridge = pytest.importorskip("umbridge")
 
@@ -195,7 +195,7 @@ def test_an_evaluation_that_takes_too_long_is_ended_and_the_next_is_made(tmp_pat
 
 
 def test_a_study_solved_by_a_server_is_that_of_its_program(study_address: str, tmp_path: Path) -> None:
-    from lithobrake.pipeline.touchdown_runs import drawn_rows, model_of
+    from lithobrake.pipeline.runs.touchdown_runs import drawn_rows, model_of
     from lithobrake.study import StudySource
 
     own = StudySource.read(BALL).study
@@ -218,7 +218,7 @@ def umbridge_names(address: str) -> list[str]:
 
 
 def test_an_answer_that_is_no_landing_fails_the_run(address: str, tmp_path: Path) -> None:
-    from lithobrake.pipeline.solver import ServerModel
+    from lithobrake.pipeline.runs.solver import ServerModel
 
     model = ServerModel(ModelServer(address, "double"), ("a", "b"), {})
     with pytest.raises(ValueError, match=f"allowed: {len(LANDING)} numbers"):

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from lithobrake.disk_cache import DiskCache
+from lithobrake.compilation.disk_cache import DiskCache
 from lithobrake.smallbody import Shape, gravity_table_build
 from lithobrake.smallbody.gravity_table_build import gravity_table_of
 

@@ -7,10 +7,10 @@ from typing import Any
 
 import pytest
 
-from lithobrake.pipeline.flights import flight_reads
+from lithobrake.pipeline.answer.site_summary import site_results
+from lithobrake.pipeline.fly.flights import flight_reads
+from lithobrake.pipeline.paper.paper_summary import study_tables
 from lithobrake.pipeline.site import site_body, site_medians
-from lithobrake.pipeline.site_summary import site_results
-from lithobrake.pipeline.summary import study_tables
 from lithobrake.smallbody import read_partner
 from lithobrake.study import Study, check_tables
 from lithobrake.study.template import template

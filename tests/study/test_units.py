@@ -3,14 +3,16 @@
 import tomllib
 from pathlib import Path
 
-from lithobrake.outputs import BEDS, FLIGHT, OUTPUTS, RUN, TOUCHDOWN, quantity
-from lithobrake.pipeline import aiming, flights, rest
-from lithobrake.pipeline.design_runs import PLAIN_COLUMNS
+from lithobrake.pipeline.fly import flights
+from lithobrake.pipeline.rest import aiming
+from lithobrake.pipeline.rest import journeys as rest
+from lithobrake.pipeline.runs.run_table import PLAIN_COLUMNS
 from lithobrake.study import check_tables
 from lithobrake.study.template import template
+from lithobrake.study.touchdown_model import draw, medians
 from lithobrake.study.units import input_units, run_units
 from lithobrake.touchdown import OUTPUTS as OUTPUTS_OF_A_TOUCHDOWN
-from lithobrake.touchdown_model import draw, medians
+from lithobrake.vocabulary.quantities import BEDS, FLIGHT, OUTPUTS, RUN, TOUCHDOWN, quantity
 
 
 def test_every_input_of_a_run_has_its_unit() -> None:

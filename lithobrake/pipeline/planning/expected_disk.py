@@ -1,12 +1,12 @@
 """How much room the files of a study will take on the disk; sizes measured on scenarios/quick.toml and bounces.toml."""
 
-from lithobrake.outputs import OUTPUTS
-from lithobrake.pipeline.designs import design_inputs
 from lithobrake.pipeline.planning.expected_steps import ExpectedSoil
 from lithobrake.pipeline.planning.planned_runs import PlannedRuns
-from lithobrake.pipeline.shown_landing import landing_files, telling_files
+from lithobrake.pipeline.runs.designs import design_inputs
+from lithobrake.pipeline.runs.shown_landing import landing_files, telling_files
 from lithobrake.pipeline.site import site_body
 from lithobrake.study import Study
+from lithobrake.vocabulary.quantities import OUTPUTS
 
 NUMBER = 8
 # A bed: hulls, poses and frames of a grain, and the history, a row in every eight steps.
@@ -46,7 +46,7 @@ def flight_count(study: Study) -> int:
 
 def journey_count(study: Study) -> int:
     """Journeys from bounce to bounce, on hard ground and, where it can be asked, on the soil."""
-    from lithobrake.pipeline.surrogate_bounce import why_no_soil
+    from lithobrake.pipeline.rest.bounce_inputs import why_no_soil
 
     count = min(study.rest.count, study.monte_carlo.sample_count)
     return count if why_no_soil(study) else 2 * count

@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lithobrake.pipeline.beds import bed_recipe
 from lithobrake.pipeline.planning.planned_runs import planned_rows
-from lithobrake.pipeline.shown_landing import landing_values
+from lithobrake.pipeline.runs.beds import bed_recipe
+from lithobrake.pipeline.runs.shown_landing import landing_values
 from lithobrake.study import Study
-from lithobrake.touchdown_model import lander, landing
+from lithobrake.study.touchdown_model import lander, landing
 
 if TYPE_CHECKING:
     from lithobrake.dem import ConvexHull

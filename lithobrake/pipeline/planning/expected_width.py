@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from lithobrake.campaign import Record
-from lithobrake.pipeline.answers import answer_words, answers_of, flown_shares
-from lithobrake.pipeline.folder import StudyFolder
-from lithobrake.pipeline.growing_sequence import sequence_keys
+from lithobrake.pipeline.answer.answer_of_run import answer_words, answers_of, flown_shares
+from lithobrake.pipeline.folder.study_folder import StudyFolder
+from lithobrake.pipeline.sequential_sampling import sequence_keys
 from lithobrake.study import Study
 
 # Of a run that is all or nothing, as captured or not, at worst: half of them are.

@@ -2,11 +2,11 @@
 
 from dataclasses import dataclass
 
-from lithobrake.pipeline.beds import bed_files, bed_recipe
-from lithobrake.pipeline.folder import StudyFolder
+from lithobrake.pipeline.folder.study_folder import StudyFolder
+from lithobrake.pipeline.runs.beds import bed_files, bed_recipe
 from lithobrake.pipeline.stages import stage_keys
 from lithobrake.study import Study
-from lithobrake.touchdown_model import in_words_of_the_study
+from lithobrake.study.touchdown_model import in_words_of_the_study
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from lithobrake.study import Study
-from lithobrake.touchdown_model import grain_sizes
+from lithobrake.study.touchdown_model import grain_sizes
 
 # Of grains that are larger than the diameter that is told.
 LARGE_FRACTION = 0.1

@@ -5,14 +5,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from lithobrake.campaign import Record, read_records
-from lithobrake.outputs import DESIGNS
-from lithobrake.pipeline.designs import design_inputs, kept_inputs, points, replicate_count
-from lithobrake.pipeline.folder import StudyFolder
-from lithobrake.pipeline.sequence import SIDE_DESIGNS, design_rows, sequence_rows
-from lithobrake.pipeline.touchdown_runs import drawn_rows, touchdown_keys
+from lithobrake.pipeline.folder.study_folder import StudyFolder
+from lithobrake.pipeline.paper.paper_designs import kept_inputs, points, replicate_count
+from lithobrake.pipeline.runs.designs import design_inputs
+from lithobrake.pipeline.runs.drawn_design import SIDE_DESIGNS, design_rows, sequence_rows
+from lithobrake.pipeline.runs.touchdown_runs import drawn_rows, touchdown_keys
 from lithobrake.study import Study
-from lithobrake.touchdown_model import draw, medians
+from lithobrake.study.touchdown_model import draw, medians
+from lithobrake.vocabulary.quantities import DESIGNS
 
 # Designs with more runs are not gone through run by run: that would take longer than a second or two.
 MOST_NAMED = 10_000
@@ -43,21 +43,6 @@ class PlannedRuns:
     def new(self) -> int:
         """Those that are to be made."""
         return self.total - len(self.known)
-
-
-def known_runs(study: Study, folder: StudyFolder) -> dict[str, Record]:
-    """Runs of the folder's ledger, by key, that are not made again; none where there is no ledger.
-
-    Raises ValueError for a file that is no ledger.
-    """
-    path = folder / "runs.sqlite"
-    records = read_records(path) if path.is_file() else []
-    tries = study.campaign.retry_count
-    return {
-        entry.key: entry
-        for entry in records
-        if entry.status == "done" or (entry.status == "failed" and entry.attempts > tries)
-    }
 
 
 def possible_runs(study: Study, folder: StudyFolder, screened: bool, known: Iterable[str]) -> list[PlannedRuns]:

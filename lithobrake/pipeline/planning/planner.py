@@ -7,12 +7,11 @@ from dataclasses import replace
 from pathlib import Path
 
 from lithobrake.campaign import available_cores
-from lithobrake.pipeline.expected_inference import ExpectedInference
-from lithobrake.pipeline.folder import StudyFolder
-from lithobrake.pipeline.growing_sequence import grown
-from lithobrake.pipeline.inferring import InferredStudy
-from lithobrake.pipeline.owner import refuse_others_folder
+from lithobrake.pipeline.commands.inferring import InferredStudy
+from lithobrake.pipeline.folder.owner import refuse_others_folder
+from lithobrake.pipeline.folder.study_folder import StudyFolder
 from lithobrake.pipeline.planning.expected_disk import expected_bytes, flight_count, journey_count
+from lithobrake.pipeline.planning.expected_inference import ExpectedInference
 from lithobrake.pipeline.planning.expected_steps import ExpectedSoil
 from lithobrake.pipeline.planning.expected_time import basis, expected_seconds
 from lithobrake.pipeline.planning.expected_width import expected_width
@@ -20,8 +19,10 @@ from lithobrake.pipeline.planning.plan import Plan
 from lithobrake.pipeline.planning.plan_in_words import bytes_in_words
 from lithobrake.pipeline.planning.planned_beds import PlannedBeds, planned_beds
 from lithobrake.pipeline.planning.planned_grains import planned_grains
-from lithobrake.pipeline.planning.planned_runs import PlannedRuns, known_runs, possible_runs
+from lithobrake.pipeline.planning.planned_runs import PlannedRuns, possible_runs
 from lithobrake.pipeline.planning.study_warnings import study_warnings
+from lithobrake.pipeline.runs.known_runs import known_runs
+from lithobrake.pipeline.sequential_sampling import grown
 from lithobrake.pipeline.site import site_slope_deg, with_site_gravity
 from lithobrake.pipeline.stages import stage_keys, stages_of
 from lithobrake.study import Study, StudySource

@@ -2,16 +2,16 @@
 
 from collections.abc import Iterator
 
-from lithobrake.pipeline.designs import design_inputs
-from lithobrake.pipeline.place_region import place_region, smallest_width
 from lithobrake.pipeline.planning.expected_losses import UNKNOWN_JOURNEYS, expected_loss
 from lithobrake.pipeline.planning.expected_steps import ExpectedSoil
+from lithobrake.pipeline.rest.bounce_inputs import why_no_soil
+from lithobrake.pipeline.runs.designs import design_inputs
+from lithobrake.pipeline.runs.place_region import place_region, smallest_width
 from lithobrake.pipeline.site import gravity_warning, site_warning
-from lithobrake.pipeline.surrogate_bounce import why_no_soil
 from lithobrake.study import Study
 from lithobrake.study.quantity import Scalar, Uncertain, uncertain
 from lithobrake.study.study import FEWEST_BEDS
-from lithobrake.touchdown_model import PLACE
+from lithobrake.study.touchdown_model import PLACE
 
 # A share of touchdowns that may be cut off without a word [-].
 CUT_OFF = 0.05

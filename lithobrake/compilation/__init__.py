@@ -1,0 +1,1 @@
+"""Compiled kernels, and what is computed once for this machine and user."""

@@ -1,0 +1,158 @@
+"""Compilation of numerical kernels, with a disk cache that is never stale.
+
+Numba's own cache looks only at the file a function stands in, so an edited function in another file would go unnoticed.
+Here the cache folder is named by a hash of all sources of the part that it belongs to, and the compiler's version.
+Numba would also read what anybody wrote, fail on what is damaged, and write beside the sources where its folder cannot
+be written: see disk_cache.py.
+"""
+
+import hashlib
+import logging
+import pickle
+import sys
+from collections.abc import Callable
+from functools import cache, cached_property
+from pathlib import Path
+from typing import Any, TypeVar
+
+import numba
+from numba import types
+from numba.core.caching import NullCache
+from numba.core.compiler import CompileResult
+from numba.core.registry import CPUDispatcher
+from numba.core.serialize import dumps
+
+from lithobrake.compilation.disk_cache import DiskCache
+
+log = logging.getLogger(__name__)
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+# Parts that take long to compile, by what they are to a user, and how long.
+_WHAT = {"dem": ("the soft-surface engine", "a minute"), "smallbody": ("gravity and flights", "half a minute")}
+
+
+@cache
+def disk_cache(part: str) -> DiskCache:
+    """What is kept of one part (say "dem"), for exactly its sources and this compiler.
+
+    A kernel calls only kernels of its own part, so the sources of that part, and those that compile, are all that
+    matters.
+    """
+    package = Path(__file__).parents[1]
+    digest = hashlib.sha256(f"{numba.__version__} {sys.implementation.cache_tag}".encode())
+    for source in [*sorted((package / "compilation").rglob("*.py")), *sorted((package / part).rglob("*.py"))]:
+        digest.update(str(source.relative_to(package)).encode() + b"\0" + source.read_bytes())
+    return DiskCache(f"{part}-{digest.hexdigest()[:16]}")
+
+
+def compiled(function: Function) -> Function:
+    """Compile a function on its first call (IEEE arithmetic, no reassociation) and keep it on disk."""
+    return _compile(function, {})
+
+
+def kernel(function: Function) -> Function:
+    """Compile a function that allocates nothing into its callers.
+
+    Arrays then travel without reference counts and without copies of their descriptions: a step is 20 times faster.
+    """
+    return _compile(function, {"_nrt": False, "forceinline": True})
+
+
+def large_kernel(function: Function) -> Function:
+    """Compile a function that allocates nothing and is too large to be copied into each caller."""
+    return _compile(function, {"_nrt": False})
+
+
+def _compile(function: Function, options: dict[str, bool]) -> Function:
+    if numba.config.DISABLE_JIT:
+        return function
+    always = {"nopython": True, "error_model": "numpy", "nogil": True, "no_cfunc_wrapper": True}
+    result: Any = Kernel(function, targetoptions={**always, **options})
+    return result
+
+
+class Kernel(CPUDispatcher):
+    """A function compiled twice, if need be: for Python, and for other kernels.
+
+    What Python calls has a wrapper that takes a hundred arrays from their objects, and holds a copy of all that is
+    compiled into it. Most kernels are never called so, and half of the compilation would be for such wrappers.
+    """
+
+    def __init__(self, py_func: Callable[..., Any], *others: Any, **options: Any) -> None:
+        """Prepare a function, with arguments as Numba's."""
+        super().__init__(py_func, *others, **options)
+        self._cache = KernelCache(py_func, "python")
+
+    @cached_property
+    def within(self) -> CPUDispatcher:
+        """The same for kernels that call it."""
+        result = CPUDispatcher(self.py_func, targetoptions={**self.targetoptions, "no_cpython_wrapper": True})
+        result._cache = KernelCache(self.py_func, "kernel")
+        return result
+
+    def get_call_template(self, args: Any, kws: Any) -> Any:
+        """Tell a kernel what a call gives. Constants count as numbers: each would be compiled for itself otherwise."""
+        return self.within.get_call_template([types.unliteral(arg) for arg in args], kws)
+
+    def get_overload(self, sig: Any) -> Any:
+        """Give a kernel what it calls."""
+        return self.within.get_overload(sig)
+
+    def compile(self, sig: Any) -> Any:
+        """Compile for a call from Python, where neither this process nor another one has done so yet."""
+        if self._cache.has(sig, self.targetctx):
+            return super().compile(sig)
+        part = _part_of(self.py_func)
+        what, time = _WHAT.get(part, (f"kernels of {part}", "a moment"))
+        with disk_cache(part).turn(f"Waiting for another process that compiles {what}: about {time}."):
+            if part in _WHAT and not self._cache.has(sig, self.targetctx):
+                announce(part)
+            return super().compile(sig)
+
+
+class KernelCache(NullCache):
+    """The compiled forms of one function on disk, in Numba's eyes."""
+
+    def __init__(self, function: Callable[..., Any], caller: str) -> None:
+        self._disk = disk_cache(_part_of(function))
+        self._name = f"{function.__module__.partition('.')[2]}.{function.__qualname__}-{caller}"
+
+    def has(self, sig: Any, target_context: Any) -> bool:
+        """Whether a form lies on disk."""
+        return self._disk.has(self._file(sig, target_context.codegen()))
+
+    def has_any(self) -> bool:
+        """Whether any form lies on disk."""
+        folder = self._disk.folder
+        return folder is not None and any(folder.glob(f"{self._name}-*"))
+
+    def load_overload(self, sig: Any, target_context: Any) -> CompileResult | None:
+        """Read a form, if it lies on disk."""
+        target_context.refresh()
+        content = self._disk.read(self._file(sig, target_context.codegen()))
+        return None if content is None else CompileResult._rebuild(target_context, *pickle.loads(content))
+
+    def save_overload(self, sig: Any, data: CompileResult) -> None:
+        """Keep a form, unless it has addresses of this process in it."""
+        if not data.library.has_dynamic_globals:
+            self._disk.write(self._file(sig, data.codegen), dumps(data._reduce()))
+
+    def _file(self, sig: Any, codegen: Any) -> str:
+        form = hashlib.sha256(f"{sig} {codegen.magic_tuple()}".encode()).hexdigest()[:16]
+        return f"{self._name}-{form}"
+
+
+def lies_on_disk(function: Any) -> bool:
+    """Whether a compiled function, called from Python, lies on disk in some form."""
+    return isinstance(function, Kernel) and function._cache.has_any()
+
+
+@cache
+def announce(part: str) -> None:
+    """Say, once, that the kernels of a part are compiled now."""
+    what, time = _WHAT[part]
+    log.warning("Compiling %s for this processor%s: about %s.", what, ", once" if disk_cache(part).keeps else "", time)
+
+
+def _part_of(function: Callable[..., Any]) -> str:
+    return function.__module__.split(".")[1]

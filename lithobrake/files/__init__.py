@@ -1,0 +1,1 @@
+"""How a file is written whole, read with care, and recognised by its content."""

@@ -1,0 +1,1 @@
+"""Meshes as they are read from files, with their units, and attitudes as quaternions."""

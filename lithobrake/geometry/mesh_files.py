@@ -1,0 +1,178 @@
+"""Reading triangles from OBJ and STL files, plate models of the Planetary Data System, and Gaskell's quadrilaterals."""
+
+import os
+import struct
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lithobrake.geometry.mesh_units import UNITS, mesh_unit
+
+Mesh = tuple[NDArray[np.float64], NDArray[np.int64]]
+
+
+def read_mesh(path: str | os.PathLike[str], unit: str | None = None) -> Mesh:
+    """Vertices [m], shape [vertex_count, 3], and faces, shape [facet_count, 3], of a file whose ending READERS has.
+
+    unit: of its lengths; absent: what its header or label says, else m. Raises ValueError as mesh_unit does, and for an
+    unknown ending and a line or length that is not of the format.
+    """
+    path = Path(path)
+    if path.suffix.lower() not in READERS:
+        raise ValueError(f"{path}: the ending {path.suffix!r} is not read; convert to one of {', '.join(READERS)}.")
+    if not path.is_file():
+        raise ValueError(f"{path}: no such file.")
+    length = UNITS[mesh_unit(path, unit)]
+    vertices, faces = READERS[path.suffix.lower()](path)
+    return vertices * length, faces
+
+
+def _read_obj(path: Path) -> Mesh:
+    """Wavefront OBJ: `v` and `f` lines; a polygon is cut into a fan of triangles from its first corner."""
+    vertices: list[list[float]] = []
+    faces: list[list[int]] = []
+    for number, line in enumerate(path.read_text(encoding="utf-8-sig", errors="replace").splitlines(), 1):
+        words = line.split()
+        if not words or words[0].lower() not in ("v", "f"):
+            continue
+        try:
+            if words[0].lower() == "v":
+                vertices.append([float(word) for word in words[1:4]])
+                continue
+            given = np.array([int(word.split("/")[0]) for word in words[1:]], dtype=np.int64).tolist()
+        except (ValueError, OverflowError) as error:
+            raise ValueError(f"{path}: line {number}, {line.strip()!r} is not a vertex or a facet.") from error
+        # Negative numbers count back from the newest vertex; zero names none and is refused with the others later.
+        corners = [len(vertices) + corner if corner < 0 else corner - 1 for corner in given]
+        if len(corners) < 3:
+            raise ValueError(f"{path}: line {number}, {line.strip()!r} has fewer than three corners.")
+        faces += [[corners[0], corners[i], corners[i + 1]] for i in range(1, len(corners) - 1)]
+    if any(len(vertex) != 3 for vertex in vertices):
+        raise ValueError(f"{path}: a vertex has fewer than three coordinates.")
+    return np.array(vertices, dtype=np.float64).reshape(-1, 3), np.array(faces, dtype=np.int64).reshape(-1, 3)
+
+
+def _read_stl(path: Path) -> Mesh:
+    """STL, binary or text. Corners with the same coordinates become one vertex."""
+    data = path.read_bytes()
+    corners = _stl_binary(data)
+    if corners is None:
+        corners = _stl_text(path, data)
+    if not len(corners):
+        raise ValueError(
+            f"{path}: has no facets: neither 'vertex' lines of a text STL nor the length of a binary one; export anew."
+        )
+    vertices, index = np.unique(corners.reshape(-1, 3) + 0.0, axis=0, return_inverse=True)
+    return vertices, index.reshape(-1, 3).astype(np.int64)
+
+
+def _stl_binary(data: bytes) -> NDArray[np.float64] | None:
+    """Corners, shape [facet_count, 3, 3], or None where the length does not fit the count in the header."""
+    if len(data) < 84:
+        return None
+    (count,) = struct.unpack_from("<I", data, 80)
+    if len(data) != 84 + 50 * count:
+        return None
+    record = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+    facets = np.frombuffer(data, dtype=record, offset=84)
+    return np.asarray(facets["corners"], dtype=np.float64)
+
+
+def _stl_text(path: Path, data: bytes) -> NDArray[np.float64]:
+    words = data.decode("ascii", errors="replace").split()
+    if not words or words[0] != "solid":
+        raise ValueError(f"{path}: neither a text STL (starts with 'solid') nor a binary one of the length it states.")
+    places = [i for i, word in enumerate(words) if word == "vertex"]
+    try:
+        values = [[float(word) for word in words[i + 1 : i + 4]] for i in places]
+        return np.array(values, dtype=np.float64).reshape(-1, 3, 3)
+    except ValueError as error:
+        raise ValueError(f"{path}: its 'vertex' lines do not come in threes of three numbers.") from error
+
+
+def _read_plates(path: Path) -> Mesh:
+    """Plate model of the Planetary Data System, in either of its two layouts, or quadrilaterals (_quadrilaterals).
+
+    One has lines `v x y z` and `f i j k` as OBJ has. The other has the number of vertices (perhaps also of plates) on
+    its first line, then a line a vertex, the number of plates if it was not given, and a line a plate with vertices
+    counted from 1; each of these lines may begin with its own number, by which they are then ordered.
+    """
+    rows = [
+        line.replace(",", " ").split() for line in path.read_text(encoding="utf-8-sig", errors="replace").splitlines()
+    ]
+    rows = [row for row in rows if row]
+    rows = [row for row in rows if not row[0].startswith("#")]
+    if rows and rows[0][0].lower() == "v":
+        return _read_obj(path)
+    if rows and len(rows[0]) == 1 and rows[0][0].isdecimal() and len(rows) == 6 * (int(rows[0][0]) + 1) ** 2 + 1:
+        return _quadrilaterals(path, int(rows[0][0]), rows[1:])
+    layout = "give the number of vertices, a line a vertex, the number of plates, a line a plate"
+    try:
+        counts = [int(word) for word in rows[0]]
+        vertices = np.array(_in_order(rows[1 : counts[0] + 1], "vertices"), dtype=np.float64)
+        next_row = counts[0] + 1
+        if len(counts) == 1:
+            counts.append(int(rows[next_row][0]))
+            next_row += 1
+        plates = np.array(_in_order(rows[next_row : next_row + counts[1]], "plates"), dtype=np.int64) - 1
+    except IndexError as error:
+        raise ValueError(f"{path}: not a plate model, it ends after {len(rows)} lines; {layout}.") from error
+    except (ValueError, OverflowError) as error:
+        raise ValueError(f"{path}: not a plate model, {error}; {layout}.") from error
+    if (len(vertices), len(plates)) != tuple(counts[:2]) or len(rows) != next_row + counts[1]:
+        raise ValueError(f"{path}: {len(rows)} lines do not fit {counts[0]} vertices and {counts[1]} plates.")
+    return vertices.reshape(-1, 3), plates.reshape(-1, 3)
+
+
+def _in_order(rows: list[list[str]], what: str) -> list[list[str]]:
+    """The last three entries of rows, by the numbers from 1 on that all of them begin with, or none.
+
+    Raises ValueError for rows of other lengths, and numbers of which one is missing or there twice.
+    """
+    lengths = {len(row) for row in rows}
+    if lengths != {4}:
+        if lengths - {3}:
+            raise ValueError(f"lines of {what} have {', '.join(map(str, sorted(lengths)))} entries, not 3, or 4 each")
+        return rows
+    numbered = {int(row[0]): row[1:] for row in rows}
+    lacking = next((number for number in range(1, len(rows) + 1) if number not in numbered), None)
+    if lacking is not None:
+        raise ValueError(
+            f"the {len(rows)} lines of {what} are not numbered from 1 to {len(rows)}: {lacking} is missing"
+        )
+    return [numbered[number] for number in range(1, len(rows) + 1)]
+
+
+def _quadrilaterals(path: Path, size: int, rows: list[list[str]]) -> Mesh:
+    """Implicitly connected quadrilaterals: six faces of a cube, each a grid of (size + 1)**2 vertices.
+
+    Vertex I of row J of a face comes after I - 1 of the same row; a facet has the corners (I, J), (I, J + 1),
+    (I + 1, J + 1), (I + 1, J), counter-clockwise from outside. Faces share the vertices of their edges.
+    Source: [Gaskell-2008]
+    """
+    try:
+        grid = np.array(rows, dtype=np.float64).reshape(6, size + 1, size + 1, 3)
+    except ValueError as error:
+        raise ValueError(f"{path}: not {6 * (size + 1) ** 2} vertices of three numbers each ({error}).") from error
+    vertices, index = np.unique(grid.reshape(-1, 3) + 0.0, axis=0, return_inverse=True)
+    corner = index.reshape(6, size + 1, size + 1).astype(np.int64)
+    a, b, c, d = corner[:, :-1, :-1], corner[:, 1:, :-1], corner[:, 1:, 1:], corner[:, :-1, 1:]
+    faces = np.stack([a, b, c, a, c, d], axis=-1).reshape(-1, 3)
+    # The last plates of some models have shrunk to a line, where two of their corners are one vertex.
+    return vertices, faces[(faces != np.roll(faces, 1, axis=1)).all(axis=1)]
+
+
+def _read_kernel(path: Path) -> Mesh:
+    """Plates of a shape kernel (.bds) of SPICE."""
+    from lithobrake.geometry.shape_kernel import read_shape_kernel
+
+    return read_shape_kernel(path)
+
+
+READERS = {
+    ".obj": _read_obj,
+    ".stl": _read_stl,
+    **dict.fromkeys((".tab", ".txt", ".icq"), _read_plates),
+    **dict.fromkeys((".bds", ".dsk"), _read_kernel),
+}

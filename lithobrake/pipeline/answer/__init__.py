@@ -1,0 +1,1 @@
+"""The answer: estimates with intervals, shares, limit states, and their sentences."""

@@ -1,0 +1,127 @@
+"""What the study file asks for under [limit_states]: the probability of each, and which inputs make the failures."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from lithobrake.analysis import drawn_counts, failure_inputs, failure_probability, regression_terms
+from lithobrake.pipeline.answer.dispersion_statistics import Rows
+from lithobrake.pipeline.answer.failing_runs import CAPTURED, failing_runs
+from lithobrake.pipeline.answer.missing_landings import left_in_flight
+from lithobrake.pipeline.answer.scope import why_no_interval
+from lithobrake.pipeline.answer.shares_over_refits import sample_fates
+from lithobrake.pipeline.emulate.fitted_emulator import REFIT_COUNT
+from lithobrake.pipeline.emulate.samples import Samples
+from lithobrake.pipeline.fly.run_flights import RunFlights
+from lithobrake.pipeline.folder.study_folder import StudyFolder
+from lithobrake.pipeline.runs.designs import design_inputs
+from lithobrake.pipeline.runs.run_table import DesignRuns
+from lithobrake.study import Study
+from lithobrake.study.limit_state import LOFTED, RETURNS, SETTLED, LimitState
+from lithobrake.vocabulary.outcomes import FlightStatus, SampleOutcome
+
+
+def limit_state_results(
+    study: Study, folder: StudyFolder, flights: Rows, shares: Mapping[str, Any], *, holds: bool
+) -> dict[str, Any]:
+    """The results of every limit state of a study, by its name; holds: whether the site holds what lies there.
+
+    shares: the table of how landings end (`run_shares`), from which a limit state of one of its words has its numbers.
+
+    Raises ValueError for an output that no run has.
+    """
+    conditions = study.limit_states.conditions()
+    if not conditions:
+        return {}
+    runs, samples = DesignRuns.load(folder, "sequence"), Samples.load(folder)
+    fates = RunFlights.load(folder, "sequence").fates
+    of_samples = _values_of_samples(samples, sample_fates(samples, flights, holds=holds), holds=holds)
+    states = {name: LimitState.of(text) for name, text in conditions.items()}
+    found = {name: _one(study, name, state, runs, fates, of_samples) for name, state in states.items()}
+    for name, state in states.items():
+        of_word = _of_one_word(state, shares)
+        found[name] |= of_word
+        found[name]["runs"] |= {"share" if key == "probability" else key: one for key, one in of_word.items()}
+    return found
+
+
+def _one(
+    study: Study,
+    name: str,
+    state: LimitState,
+    runs: DesignRuns,
+    fates: np.ndarray,
+    of_samples: dict[str, np.ndarray],
+) -> dict[str, Any]:
+    """The results of one limit state."""
+    for output in state.outputs:
+        if not np.isfinite(runs.output(output)).any():
+            raise ValueError(
+                f"limit_states.{name} asks for {output}, which no run has; let the program that makes the touchdowns "
+                "give it, or leave the limit state out"
+            )
+    failing, inputs = failing_runs(state, runs, fates), design_inputs(study)
+    if not np.isfinite(failing).any():
+        raise ValueError(
+            f"limit_states.{name} is {state.text!r}, of which no run is known to meet it or not (runs.sqlite has how "
+            "each ended); ask for something else, or mend what the runs say"
+        )
+    x = runs.columns(list(inputs))
+    found = failure_probability(
+        failing,
+        runs.inputs["bed"],
+        terms=regression_terms(inputs, x),
+        drawn=_drawn(state, of_samples),
+        like_missing=left_in_flight(runs),
+        why=why_no_interval(study),
+    )
+    several = len(np.unique(runs.inputs["bed"][np.isfinite(failing)])) > 1
+    of_inputs = failure_inputs(inputs, x, failing, runs.inputs["bed"], study.seed) if several else {}
+    return {
+        "condition": state.text,
+        **found.summary(),
+        "failing_runs": float(np.nansum(failing)),
+        "inputs": {key: one.summary() for key, one in of_inputs.items()},
+    }
+
+
+def _of_one_word(state: LimitState, shares: Mapping[str, Any]) -> dict[str, Any]:
+    """Probability and bounds of a limit state that is a fate, or its opposite; none of another."""
+    if state.outputs or len(state.fates) != 1:
+        return {}
+    (word,) = state.fates
+    share, lower, upper = (shares[word][key] for key in ("share", "lower", "upper"))
+    so, otherwise = (state.met({CAPTURED: np.full(1, end), word: np.full(1, end)})[0] for end in (1.0, 0.0))
+    if so == otherwise:
+        return {}
+    if otherwise:
+        share, lower, upper = 1.0 - share, *(None if end is None else 1.0 - end for end in (upper, lower))
+    return {"probability": share, "lower": lower, "upper": upper}
+
+
+def _values_of_samples(samples: Samples, met: dict[str, np.ndarray], *, holds: bool) -> dict[str, np.ndarray]:
+    """What limit states may name, of the samples up to the last that was looked at, and which of them are known."""
+    total = len(met["returns"])
+    known = ~met["missing"]
+    words = {status.value: met[status] for status in FlightStatus}
+    captured = met[SampleOutcome.CAPTURED]
+    words |= {RETURNS: met["returns"], CAPTURED: captured, SETTLED: captured & holds, LOFTED: captured & (not holds)}
+    values = {name: samples.output(name)[:total] for name in samples.output_names}
+    return values | {word: np.where(known, one.astype(float), np.nan) for word, one in words.items()}
+
+
+def _drawn(state: LimitState, values: dict[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray] | None:
+    """How many samples of each refit meet a limit state, and how many are known; None where the runs alone are asked.
+
+    Of a fate alone the flights of the runs are an estimate already, that of results.shares. And the emulator samples no
+    outputs of landers that are captured: where one decides, only the runs can tell.
+    """
+    if not state.outputs or any(name not in values for name in state.outputs):
+        return None
+    met, refit = state.met(values), np.arange(len(values[CAPTURED])) % REFIT_COUNT
+    if np.isnan(met[values[CAPTURED] == 1.0]).any():
+        return None
+    drawn = drawn_counts(met, refit, REFIT_COUNT)
+    # Of so few samples no scatter between refits can be told.
+    return drawn if drawn[1].min() >= 2 else None

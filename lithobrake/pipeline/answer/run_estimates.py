@@ -1,0 +1,159 @@
+"""What the runs of a sequence say of themselves: shares, parts of the variance, means and quantiles, with intervals."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from lithobrake.analysis import (
+    IntervalEstimate,
+    chaos_variance,
+    direction_estimate,
+    mean_estimate,
+    quantile_estimates,
+    soil_total_effect,
+    variance_shares,
+)
+from lithobrake.pipeline.answer.missing_landings import described, missing_landings, missing_warning
+from lithobrake.pipeline.answer.run_shares import flight_estimates, return_fraction, run_shares
+from lithobrake.pipeline.answer.scope import why_no_interval
+from lithobrake.pipeline.fly.flights import QUANTILES
+from lithobrake.pipeline.fly.run_flights import RunFlights, RunImpacts
+from lithobrake.pipeline.job import Job
+from lithobrake.pipeline.runs.designs import design_inputs
+from lithobrake.pipeline.runs.drawn_design import AZIMUTH
+from lithobrake.pipeline.runs.run_table import DesignRuns
+from lithobrake.study import Study
+from lithobrake.study.touchdown_model import PLACE, SURFACE
+from lithobrake.vocabulary.outcomes import TouchdownOutcome
+from lithobrake.vocabulary.quantities import OVER_RIM, TOUCHDOWN
+
+FILE, AZIMUTH_OUT = "estimates.json", "azimuth_out"
+RETURNS = "returns"
+SPLIT = ("speed_out", "elevation_out", "spin_out", RETURNS)
+# Numbers that say what the ground is, the lander's side of its contacts among them; all others say how it arrives.
+SOIL = ("grain.", "surface.", "solver.inputs.", *(f"lander.{name}" for name in SURFACE))
+
+
+def estimate(job: Job) -> None:
+    """Write what the runs say of the return fraction, of where scatter comes from, and of their outputs."""
+    study, runs = job.study, DesignRuns.load(job.folder, "sequence")
+    flights = RunFlights.load(job.folder, "sequence")
+    returns = flights.returns
+    if not np.isfinite(returns).any():
+        raise ValueError(
+            f"none of the {runs.run_count} runs left the surface or was captured (runs.sqlite has how each ended), so "
+            "nothing can be said of the landers; mend what the runs say, or widen the bed"
+        )
+    bed, why = runs.inputs["bed"].astype(int), why_no_interval(study)
+    values = {name: runs.output(name) for name in SPLIT if name != RETURNS} | {RETURNS: returns}
+    found = return_fraction(study, runs, flights)
+    job.folder.write_json(
+        FILE,
+        {
+            "returns": found,
+            "shares": run_shares(study, runs, flights, found),
+            "flights": flight_estimates(RunImpacts.load(job.folder), runs, why),
+            "variance_shares": {name: _split(job, runs, name, y) for name, y in values.items()},
+            "outputs": {
+                name: _spread(name, y, bed, why) | {"of": described(np.isfinite(y), runs.outcomes)}
+                for name, y in _outputs(runs).items()
+            },
+            "runs": _counts(job, runs, values),
+        },
+    )
+
+
+def _outputs(runs: DesignRuns) -> dict[str, np.ndarray]:
+    """Outputs of which at least two runs have a number [run_count]."""
+    known = {name: runs.output(name) for name in TOUCHDOWN if not name.startswith(("orientation_out", OVER_RIM))}
+    return {name: y for name, y in known.items() if np.isfinite(y).sum() >= 2}
+
+
+def _spread(name: str, y: np.ndarray, bed: np.ndarray, why: str | None) -> dict[str, Any]:
+    """Mean and quantiles of an output over the runs that have it, with intervals where beds and places give them.
+
+    Of the azimuth, which has neither beginning nor end, mean direction and resultant length.
+    """
+    if name == AZIMUTH_OUT:
+        return direction_estimate(y, bed, why=why).summary()
+    known = y[np.isfinite(y)]
+    several = len(np.unique(bed[np.isfinite(y)])) > 1
+    if why is None and several:
+        mean, quantiles = mean_estimate(y, bed), quantile_estimates(y, bed, QUANTILES)
+        found = [_with_ends(one) for one in (mean, *quantiles)]
+    else:
+        points = [known.mean(), *np.quantile(known, QUANTILES, method="hazen")]
+        found = [{"value": float(point), "lower": None, "upper": None} for point in points]
+    levels = (f"{level:g}" for level in QUANTILES)
+    return {
+        "mean": found[0],
+        "quantiles": dict(zip(levels, found[1:], strict=True)),
+        "standard_deviation": float(known.std(ddof=1)),
+    }
+
+
+def _with_ends(one: IntervalEstimate) -> dict[str, float | None]:
+    # Few beds give no interval of a tail.
+    lower, upper = (bound if np.isfinite(bound) else None for bound in (one.lower, one.upper))
+    return {"value": one.value, "lower": lower, "upper": upper}
+
+
+def _part(one: IntervalEstimate) -> dict[str, float]:
+    return {"share": one.value, "lower": one.lower, "upper": one.upper}
+
+
+def _split(job: Job, runs: DesignRuns, name: str, y: np.ndarray) -> dict[str, Any] | None:
+    """Parts of the variance of an output; None where the runs cannot tell."""
+    # A place that is drawn by a law of its own is a place like any other.
+    inputs = {key: law for key, law in design_inputs(job.study).items() if key not in (*PLACE, AZIMUTH)}
+    if not inputs:
+        return None
+    soil = [key for key in inputs if key.startswith(SOIL)]
+    twins = _differences(job, "twins", name, y)
+    known = twins if np.isfinite(twins).any() else None
+    found = variance_shares(inputs, runs.columns(list(inputs)), y, runs.inputs["bed"], soil=soil, twins=known)
+    return None if found is None else found.summary() | {"of": described(np.isfinite(y), runs.outcomes)}
+
+
+def _differences(job: Job, design: str, name: str, y: np.ndarray) -> np.ndarray:
+    """What an output differs by between the runs of a side design and theirs of the sequence, [pair_count]."""
+    if not job.study.design.side_runs:
+        return np.empty(0)
+    beside = DesignRuns.load(job.folder, design).output(name) if name != RETURNS else None
+    other = RunFlights.load(job.folder, design).returns if beside is None else beside
+    difference: np.ndarray = other - y[: len(other)]
+    return difference
+
+
+def _counts(job: Job, runs: DesignRuns, values: Mapping[str, np.ndarray]) -> dict[str, Any]:
+    """How many runs ended how, and what the side runs say that the parts of the variance do not hold."""
+    left, outcomes = np.array(runs.outcomes) == TouchdownOutcome.CLEAR, runs.outcome_counts()
+    return {
+        "count": runs.run_count,
+        "beds": len(np.unique(runs.inputs["bed"])),
+        "outcomes": outcomes,
+        "missing": missing_landings(outcomes),
+        "warning": missing_warning(job.study, outcomes),
+        # A lander that clearly flies beyond the rim has left; one that does not is left_sideways.
+        "over_rim": int((runs.output(OVER_RIM) == 1.0)[left].sum()),
+        "side_runs": _side_runs(job, values) if job.study.design.side_runs else None,
+    }
+
+
+def _side_runs(job: Job, values: Mapping[str, np.ndarray]) -> dict[str, Any]:
+    """Numbers of pairs, the total effect of the soil, and the standard deviation that chaos gives an output."""
+    study: Study = job.study
+    found: dict[str, Any] = {
+        design: DesignRuns.load(job.folder, design).run_count for design in ("soil_pairs", "twins")
+    }
+    effects, chaos = {}, {}
+    for name, y in values.items():
+        pairs, twins = (_differences(job, design, name, y) for design in ("soil_pairs", "twins"))
+        known = np.isfinite(y)
+        if np.isfinite(pairs).sum() >= 2 and known.sum() >= 2 and np.ptp(y[known]) > 0.0:
+            effects[name] = _part(soil_total_effect(pairs, y))
+        if np.isfinite(twins).any():
+            one = chaos_variance(twins)
+            chaos[name] = {"value": one.value**0.5, "lower": one.lower**0.5, "upper": one.upper**0.5}
+    return {**found, "twin_shift": study.design.twin_shift, "soil_total_effect": effects, "chaos_deviation": chaos}

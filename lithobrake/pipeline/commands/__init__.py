@@ -1,0 +1,1 @@
+"""What one command of the command line does beside running a study, a file each."""

@@ -1,0 +1,143 @@
+"""One landing of a study file, made at once: to look at, or to see what one number changes."""
+
+import math
+import re
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Any
+
+from lithobrake.pipeline.runs.beds import bed_recipe
+from lithobrake.pipeline.runs.drawn_design import sequence_row
+from lithobrake.pipeline.site import with_site_gravity
+from lithobrake.study import Study, StudyError, fixed_study
+from lithobrake.study.refusals import closest
+from lithobrake.study.touchdown_model import draw, in_words_of_the_study, lander, landing, medians
+from lithobrake.vocabulary.quantities import TOUCHDOWN
+
+if TYPE_CHECKING:
+    from lithobrake.results.moving_bodies import MovingBodies
+    from lithobrake.touchdown import Bed, Lander, Landing, Outcome
+
+FRAMES = 120
+# A number of TOML, and nothing else of it: no truth values, no comments, no second line.
+_NUMBER = re.compile(r"[-+]?(inf|nan|\d+(_\d+)*(\.\d+(_\d+)*)?([eE][-+]?\d+)?)", re.ASCII)
+# Seeds of pours are told apart by the number of the bed in so many bits.
+LAST_BED = 2**32 - 1
+
+
+@dataclass(frozen=True)
+class OneLanding:
+    """A landing with all that it followed from.
+
+    values: every number that it read, by dotted key in the units of the study file, drawn ones included.
+    """
+
+    values: dict[str, float]
+    bed: "Bed"
+    lander: "Lander"
+    landing: "Landing"
+    outcome: "Outcome"
+
+    def lines(self) -> list[str]:
+        """What came out, in lines: how it ended, and every output with its unit."""
+        outcome = self.outcome
+        rows = [f"The landing ended as {outcome.status} after {outcome.simulated_time:.4g} s."]
+        for name, value in outcome.outputs.items():
+            if name in TOUCHDOWN and not math.isnan(value):
+                what = TOUCHDOWN[name]
+                rows.append(f"  {name:<18} {value:>12.5g} {what.units:<6} {what.long_name}")
+        return rows
+
+    def to_json(self) -> dict[str, Any]:
+        """The same for a program, with every number that was read; what is not known is null."""
+        outputs = {name: None if math.isnan(value) else value for name, value in self.outcome.outputs.items()}
+        return {
+            "outcome": str(self.outcome.status), "simulated_time": self.outcome.simulated_time, "outputs": outputs,
+            "inputs": self.values,
+        }  # fmt: skip
+
+    def bodies(self) -> "MovingBodies":
+        """The hulls and how they moved, the lander last."""
+        from lithobrake.results.moving_bodies import MovingBodies
+
+        return MovingBodies.of_landing(self.outcome, self.bed, self.lander, self.landing)
+
+    def save(self, path: Path) -> None:
+        """Write hulls and frames to an HDF5 file, as a study keeps its landing."""
+        self.outcome.save_frames(path, self.bed, self.lander, self.landing)
+
+
+def landing_inputs(study: Study, changes: Iterable[str] = (), number: int = 1) -> dict[str, float]:
+    """What the run of a number reads, counted from 1, but for changes such as "grain.friction=0.4".
+
+    By dotted key, in the units of the study file. A study in two stages lands at the medians, whatever the
+    number. Raises ValueError for a change of what a landing does not read or the study file may not have, a study
+    without soil, or a number that no run of it has.
+    """
+    if not study.has_soil:
+        raise ValueError("the study has a solver of its own and no soil to land on: ask that solver for its motion")
+    study = with_site_gravity(study, "the study")
+    values = _values(study, number)
+    changed = dict(_changed(change, values) for change in changes)
+    if changed:
+        values |= changed
+        _refuse(study, values)
+    return values
+
+
+def land_one(
+    study: Study, values: dict[str, float], progress: Callable[[float, str], None] = lambda fraction, what: None
+) -> OneLanding:
+    """Land once with all that a landing reads, see landing_inputs.
+
+    The bed is that of the study and the number that the values have, from the library or poured: another grain is
+    another soil that is landed on, and not another bed.
+    """
+    from lithobrake.touchdown import land, pour_bed, stored_or_poured
+    from lithobrake.touchdown.bed import Bed
+
+    study = with_site_gravity(study, "the study")
+    with in_words_of_the_study(), TemporaryDirectory(prefix="lithobrake-") as folder:
+        recipe, path = bed_recipe(study, round(values["bed"])), Path(folder) / "bed.h5"
+        stored_or_poured(recipe, path, lambda: pour_bed(recipe, progress=progress))
+        bed = Bed.load(path)
+        body, arrival = lander(study, values), landing(study, values)
+        return OneLanding(values, bed, body, arrival, land(bed, body, arrival, FRAMES, progress))
+
+
+def _values(study: Study, number: int) -> dict[str, float]:
+    """What the run of a number reads."""
+    if study.design.method == "paper":
+        return draw(study, medians(study), study.seed)
+    last = study.design.most_runs
+    if not 1 <= number <= last:
+        raise ValueError(f"the number of a run is {number}; allowed: 1 to {last}, the runs of the study")
+    return sequence_row(study, number - 1)
+
+
+def _refuse(study: Study, values: Mapping[str, float]) -> None:
+    """Raise ValueError for numbers that the study file may not have."""
+    try:
+        fixed_study(study, {key: value for key, value in values.items() if key != "bed"})
+    except StudyError as error:
+        raise ValueError(f"--set: {'; '.join(error.problems)}") from error
+
+
+def _changed(change: str, values: dict[str, float]) -> tuple[str, float]:
+    """The key and the number of a change. Raises ValueError where it is none."""
+    key, sign, text = (part.strip() for part in change.partition("="))
+    if not sign:
+        raise ValueError(f"--set is {change!r}; allowed: KEY=VALUE, say grain.friction=0.4")
+    if key not in values:
+        known = f"{closest(key, values)}; it reads {', '.join(values)}"
+        raise ValueError(f"--set names {key!r}, which no landing of this study reads{known}")
+    if not _NUMBER.fullmatch(text):
+        raise ValueError(f"--set {key} is {text!r}; allowed: a number as a study file has it, say 0.4")
+    value = float(text)
+    if not math.isfinite(value):
+        raise ValueError(f"--set {key} is {value:g}; allowed: a finite number")
+    if key == "bed" and not (value == round(value) and 0.0 <= value <= LAST_BED):
+        raise ValueError(f"--set {key} is {value:g}; allowed: a whole number from 0 to {LAST_BED}")
+    return key, value

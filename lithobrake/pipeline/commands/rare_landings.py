@@ -1,0 +1,227 @@
+"""A limit state too rare for the runs of a study: subset simulation whose landings are made, and kept in the ledger.
+
+Each landing is a point of independent standard normal numbers, which its soil, place, azimuth and attitude follow from,
+and its bed, which a chain keeps from its start. The points follow from the margins of those before them, so one that is
+stopped and begun again asks for the same landings, finds them in the ledger, and goes on where it was.
+"""
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from scipy.special import ndtr
+
+from lithobrake.analysis import SubsetResult, subset_simulation
+from lithobrake.campaign import DaskExecutor, LocalExecutor
+from lithobrake.files.hashing import hashed_seed
+from lithobrake.pipeline.answer.failing_runs import OF_TOUCHDOWN, values_of_runs
+from lithobrake.pipeline.answer.scope import why_no_interval
+from lithobrake.pipeline.folder.study_folder import StudyFolder
+from lithobrake.pipeline.job import Job, Progress, Silent
+from lithobrake.pipeline.runs.designs import design_inputs
+from lithobrake.pipeline.runs.drawn_design import coordinates, rows_at
+from lithobrake.pipeline.runs.run_table import DesignRuns
+from lithobrake.pipeline.runs.solver import Model
+from lithobrake.pipeline.runs.touchdown_runs import touchdown_keys, touchdowns
+from lithobrake.pipeline.sequential_sampling import grown
+from lithobrake.pipeline.site import with_site_gravity
+from lithobrake.pipeline.study_run import run_study
+from lithobrake.study import Study, StudySource
+from lithobrake.study.limit_state import LimitState
+
+# Landings of a level are made in chains of ten.
+CHAIN, FEWEST = 10, 20
+# A landing is dear, and a probability below 1e-6 is less sure than what a study assumes.
+MOST_LEVELS = 6
+# Landings that meet it descend from so few groups of one size: on a second go they may descend from quite others.
+FEW_ORIGINS = 3.0
+# Probabilities as near to 0 and 1 as a law without ends can take.
+LEAST = 2.0**-53
+
+
+def rare_failure(
+    source: StudySource,
+    out: Path,
+    name: str,
+    *,
+    landing_count: int = 500,
+    worker_count: int | None = None,
+    scheduler: str | None = None,
+    model: Model | None = None,
+    shown: Progress | None = None,
+) -> dict[str, Any]:
+    """Tell the probability of a rare limit state by subset simulation, and write it to rare_NAME.json of the folder.
+
+    landing_count: of a level, each a tenth as probable as the one before; all else: as for `run_study`, which pours
+    the beds first. Raises ValueError for a limit state that has no distance, and for what `run_study` refuses.
+    """
+    shown = shown or Silent()
+    state = _limit_state(source.study, name)
+    if landing_count < FEWEST or landing_count % CHAIN:
+        raise ValueError(f"--landings is {landing_count}; allowed: multiples of {CHAIN} from {FEWEST}; take 500")
+    run_study(source, out, until="bed", worker_count=worker_count, scheduler=scheduler, model=model, shown=shown)
+    folder = StudyFolder(out)
+    with folder.alone(), DaskExecutor(scheduler) if scheduler else LocalExecutor(worker_count) as executor:
+        study = grown(with_site_gravity(source.study, source.name), folder)
+        landings = Landings(Job(study, source.tables, folder, executor, shown, model), name, state)
+        if not study.has_soil:
+            shown.say("A program with chance of its own, beside its inputs, makes the interval wide.")
+        shown.begin(f"landings of {name}", 1, 1)
+        try:
+            found = landings.simulation(landing_count)
+        except BaseException:
+            executor.shutdown(cancel_futures=True)
+            raise
+        if landings.reused_count:
+            shown.say(f"{landings.reused_count} of {found.evaluation_count} landings were known and are reused")
+        content = landings.told(found, landing_count)
+        folder.write_json(f"rare_{name}.json", content)
+    return content
+
+
+@dataclass
+class Landings:
+    """The landings of a subset simulation, as margins of points.
+
+    scale: of the first level's outputs. keys: of all landings so far, in the ledger.
+    """
+
+    job: Job
+    name: str
+    state: LimitState
+    scale: dict[str, float] = field(default_factory=dict)
+    keys: list[str] = field(default_factory=list)
+    made_count: int = 0
+    reused_count: int = 0
+    unknown_count: int = 0
+
+    @property
+    def dimension(self) -> int:
+        """How many numbers a point has; the last picks the bed."""
+        return len(coordinates(self.job.study)) + 1
+
+    def simulation(self, landing_count: int) -> SubsetResult:
+        """Subset simulation with so many landings a level."""
+        return subset_simulation(
+            self.margins,
+            self.dimension,
+            points_per_level=landing_count,
+            kept=[self.dimension - 1],
+            groups=self.beds,
+            most_levels=MOST_LEVELS,
+            seed=hashed_seed(self.job.study.seed, "rare", self.name),
+        )
+
+    def beds(self, points: np.ndarray) -> np.ndarray:
+        """Beds of points [count, dimension], [count]."""
+        shares = np.clip(ndtr(points[:, -1]), LEAST, 1.0 - LEAST)
+        return (shares * self.job.study.bed_count).astype(int)
+
+    def margins(self, points: np.ndarray) -> np.ndarray:
+        """Land at standard normal points [count, dimension], and say how far each is from the limit state, [count].
+
+        Raises ValueError for an output that no landing has.
+        """
+        study = self.job.study
+        shares = np.clip(ndtr(points), LEAST, 1.0 - LEAST)
+        laws = coordinates(study).values()
+        x = np.column_stack([law.ppf(share) for law, share in zip(laws, shares.T, strict=False)])
+        rows = rows_at(study, self.beds(points).tolist(), x)
+        self.keys += touchdown_keys(study, rows, 0)
+        # Noted before they are made, so that whoever looks meanwhile can tell them from runs of the study.
+        self.job.folder.note_rare(self.name, self.keys)
+        made = touchdowns(self.job, rows, f"{self.name}, after {self.made_count}", 0)
+        self.made_count += len(made.records)
+        self.reused_count += made.reused_count
+        values = values_of_runs(DesignRuns.of(made))
+        self.scale = self.scale or {output: self._spread(output, values[output]) for output in self.state.outputs}
+        self.unknown_count += int(np.isnan(self.state.met(values)).sum())
+        return self.state.margin(values, self.scale)
+
+    def _spread(self, output: str, values: np.ndarray) -> float:
+        """Standard deviation of an output of the first level; 1 where it does not vary. Raises ValueError for none."""
+        if not np.isfinite(values).any():
+            raise ValueError(
+                f"limit_states.{self.name} asks for {output}, which no landing has; let the program that makes the "
+                "touchdowns give it, or ask for another limit state"
+            )
+        return float(np.nanstd(values)) or 1.0
+
+    def told(self, found: SubsetResult, landing_count: int) -> dict[str, Any]:
+        """What rare_NAME.json holds."""
+        study, why = self.job.study, why_no_interval(self.job.study)
+        content = {
+            "condition": self.state.text,
+            "probability": found.probability,
+            "lower": None if why else found.lower,
+            "upper": None if why else found.upper,
+            "why": why,
+            "level": found.level,
+            "coefficient_of_variation": found.coefficient_of_variation,
+            "origins": found.origins,
+            "warning": _few_origins(found.origins, study.bed_count) if found.reached else None,
+            "reached": found.reached,
+            "rarest": found.probability if found.reached else found.upper,
+            "levels": len(found.thresholds),
+            "thresholds": found.thresholds.tolist(),
+            "shares": found.shares.tolist(),
+            "landings_a_level": landing_count,
+            "landings": found.evaluation_count,
+            "without_known_end": self.unknown_count,
+            "beds": study.bed_count,
+            "inputs": self._medians(found.failing),
+        }
+        return content | {"statement": _statement(self.name, content)}
+
+    def _medians(self, failing: np.ndarray) -> dict[str, dict[str, float | None]]:
+        """Median of each input among points that fail [count, dimension], and by its law; None where there are none."""
+        laws = design_inputs(self.job.study)
+        return {
+            name: {"median": float(law.ppf(np.median(share))) if len(share) else None, "median_of_all": law.median}
+            for (name, law), share in zip(laws.items(), ndtr(failing).T, strict=False)
+        }
+
+
+def _limit_state(study: Study, name: str) -> LimitState:
+    """The limit state of a name. Raises ValueError where there is none, or landings have no distance from it."""
+    conditions = study.limit_states.conditions()
+    if name not in conditions:
+        known = ", ".join(conditions) or "none: the study has no [limit_states]"
+        raise ValueError(f"NAME is {name!r}; allowed: a name of [limit_states] ({known}); add it there")
+    state = LimitState.of(conditions[name])
+    words = [word for word in state.fates if word not in OF_TOUCHDOWN]
+    if words or not state.outputs:
+        word = (words or state.fates)[0]
+        raise ValueError(
+            f"limit_states.{name} asks for {word}, which is true or false, and levels need a distance from it; ask for "
+            "an output of the touchdown, as in speed_out > 0.1, or read its probability in the summary of the study"
+        )
+    return state
+
+
+def _statement(name: str, found: dict[str, Any]) -> str:
+    """The result in a sentence."""
+    said = f"probability {found['probability']:.2g}"
+    if found["lower"] is not None:
+        said += f" ({100 * found['level']:.0f} % interval {found['lower']:.2g} to {found['upper']:.2g})"
+    if not found["reached"]:
+        said = f"no landing met it down to the last level, which stands for {found['rarest']:.1g} of all landings"
+    unknown = found["without_known_end"]
+    lost = f"; {unknown} without a known end count as not meeting it" if unknown else ""
+    levels = f"{found['levels']} level{'s' * (found['levels'] != 1)}"
+    landings = f"{found['landings']} landings in {levels} on {found['beds']} beds"
+    why = f" {found['why']}" if found["why"] else ""
+    warning = f" {found['warning']}" if found["warning"] and found["lower"] is not None else ""
+    return f"{name} ({found['condition']}): {said}; by {landings}{lost}.{why}{warning}"
+
+
+def _few_origins(origins: float, bed_count: int) -> str | None:
+    """What to say where equal runs of the command would scatter much."""
+    if origins >= FEW_ORIGINS:
+        return None
+    what, more = ("beds", "bed.bed_count") if bed_count > 1 else ("first landings", "--landings")
+    return (
+        f"The landings that meet it descend from few {what}, as {origins:.1f} of one size would have it, so the same "
+        f"with another seed may give quite another probability: raise {more}."
+    )

@@ -1,0 +1,176 @@
+"""The models of a study as a server gives them: a landing, the emulator, a flight."""
+
+from collections.abc import Mapping, Sequence
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from lithobrake.pipeline.emulate.drawn_landings import DrawnLandings
+from lithobrake.pipeline.emulate.energy_bound import energy_bound, height_of_beds
+from lithobrake.pipeline.emulate.outgoing import VELOCITY
+from lithobrake.pipeline.fly.flights import partner_time
+from lithobrake.pipeline.folder.notes import REMEDY
+from lithobrake.pipeline.folder.study_folder import StudyFolder
+from lithobrake.pipeline.runs.beds import bed_files
+from lithobrake.pipeline.runs.designs import design_inputs
+from lithobrake.pipeline.runs.solver import LANDING
+from lithobrake.pipeline.runs.touchdown_runs import model_of
+from lithobrake.pipeline.site import SITE_KEYS, frames, site_body, site_medians, with_site_gravity
+from lithobrake.results.intact import intact_file
+from lithobrake.serve import ServedModel
+from lithobrake.study import Study, StudyError, StudySource, fixed_study
+from lithobrake.study.quantity import is_number
+from lithobrake.study.refusals import closest, show
+from lithobrake.study.touchdown_model import draw, medians
+from lithobrake.vocabulary.outcomes import FlightStatus, TouchdownOutcome
+from lithobrake.vocabulary.quantities import OUTPUTS
+
+# What a campaign that is solved by a server says of each run; the setting is that of the study which is served.
+RUN_KEYS = ("seed", "inputs", "setting")
+FLIGHT = ("status", "time_s", "latitude_deg", "longitude_deg", "impact_speed", "impact_incidence_deg")
+
+
+def served_models(study: Path, out: Path) -> list[ServedModel]:
+    """The models of a study that its folder has files for.
+
+    Raises ValueError for a study that is refused.
+    """
+    return ServedStudy(study, out).models()
+
+
+class ServedStudy:
+    """A study whose models are served; nothing is written but what a program of the study's own writes."""
+
+    def __init__(self, study: Path, out: Path) -> None:
+        """Read the study. Raises ValueError where it is refused."""
+        source = StudySource.read(study)
+        self.study, self.folder = with_site_gravity(source.study, source.name), StudyFolder.only_read(out)
+        self.inputs = tuple(design_inputs(self.study))
+
+    def models(self) -> list[ServedModel]:
+        """Those that there are files for."""
+        found = [ServedModel("flight", VELOCITY, FLIGHT, self.flight)]
+        beds = [self.folder / name for name in bed_files(self.study)] if self.study.has_soil else []
+        if self.inputs and all(bed.is_file() for bed in beds):
+            found.append(ServedModel("landing", self.inputs, LANDING, self.landing))
+        if (self.folder / "emulator.json").is_file():
+            found.append(ServedModel("emulator", self.inputs, LANDING, self.emulated))
+        return found
+
+    @cached_property
+    def _touchdown(self) -> Any:
+        return model_of(self.study, self.folder.path.absolute(), None)
+
+    def landing(self, point: list[float], config: Mapping[str, Any]) -> list[float]:
+        """Land once. config: seed, of what the landing draws; inputs, numbers of the run in their place by dotted key.
+
+        Raises ValueError for keys that a landing does not read, and numbers that the study file may not have.
+        """
+        seed, given = _seed(config), _inputs(config)
+        values = draw(self.study, medians(self.study) | dict(zip(self.inputs, point, strict=True)), seed) | dict(given)
+        self._refuse_bed(values["bed"])
+        _refuse(self.study, {name: value for name, value in values.items() if name != "bed"})
+        answer = self._touchdown({name: float(value) for name, value in values.items()}, seed)
+        return landing_vector(answer["outcome"], answer["outputs"])
+
+    def _refuse_bed(self, number: Any) -> None:
+        """Raise ValueError for the number of a bed that there is not; a program of the study's own has any."""
+        last = self.study.bed_count - 1 if self.study.has_soil else 2**53
+        if not is_number(number) or number != int(number) or not 0 <= number <= last:
+            raise ValueError(f"config.inputs: bed is {show(number)}; allowed: a whole number from 0 to {last}")
+
+    @cached_property
+    def _emulator(self) -> Any:
+        from lithobrake.emulator import load
+
+        return load(intact_file(self.folder.path, "emulator.json", REMEDY))
+
+    def emulated(self, point: list[float], config: Mapping[str, Any]) -> list[float]:
+        """Draw a landing from the emulator. config: seed of the draw; inputs must be what the emulator was made for.
+
+        Raises ValueError for other inputs, and numbers that the study file may not have.
+        """
+        seed, given = _seed(config), _inputs(config)
+        values = medians(self.study) | dict(zip(self.inputs, point, strict=True))
+        _refuse(self.study, values)
+        for name in values.keys() & given.keys():
+            if given[name] != values[name]:
+                raise ValueError(
+                    f"config.inputs: {name} is {show(given[name])}, and the emulator has it at {show(values[name])}; "
+                    "leave it out, or serve the study that has it"
+                )
+        _refuse(self.study, {name: value for name, value in given.items() if name != "bed"})
+        x = np.array([point])
+        bound = energy_bound(self.study, self._bed_height, dict(zip(self.inputs, x.T, strict=True)), 1)
+        drawn = DrawnLandings.of(self._emulator, x, bound, seed)
+        outcome = tuple(TouchdownOutcome)[int(drawn.outcome[0])]
+        return landing_vector(outcome, {name: float(values[0]) for name, values in drawn.table().items()})
+
+    @cached_property
+    def _bed_height(self) -> float:
+        return height_of_beds(self.study, self.folder)
+
+    def flight(self, point: list[float], config: Mapping[str, Any]) -> list[float]:
+        """Fly from the site to the next impact. config: numbers of the site by their keys, in place of the medians.
+
+        Raises ValueError for other keys, and numbers that the study file may not have.
+        """
+        _refuse_keys(config, SITE_KEYS)
+        from lithobrake.smallbody import fly
+
+        body, numbers = site_body(self.study), site_medians(self.study) | dict(config)
+        if config:
+            _refuse(self.study, {f"site.{key}": value for key, value in numbers.items()})
+        site = {key: np.array([float(value)]) for key, value in numbers.items()}
+        origin, axes = frames(body, site)
+        flown = fly(
+            *(body, origin, np.einsum("nij,ni->nj", axes, [point]), self.study.flight.duration),
+            gravity=self.study.flight.gravity,
+            start_time=partner_time(body, site),
+            mass=site["mass"],
+            spin_period=site["spin_period"],
+            threads=1,
+        )
+        ends = (flown.time, flown.latitude, flown.longitude, flown.impact_speed, np.degrees(flown.incidence))
+        # A number that there is not, as the speed of an impact where none was, is 0: JSON has no other.
+        numbers_of_end = np.nan_to_num(np.concatenate(ends)).tolist()
+        return [float(tuple(FlightStatus).index(FlightStatus(str(flown.status[0])))), *numbers_of_end]
+
+
+def landing_vector(outcome: str, outputs: Mapping[str, float]) -> list[float]:
+    """A landing as the numbers of LANDING; those of a lander that did not leave are 0."""
+    left = outcome == TouchdownOutcome.CLEAR
+    place = tuple(TouchdownOutcome).index(TouchdownOutcome(outcome))
+    return [float(place), *(float(outputs[name]) if left else 0.0 for name in OUTPUTS)]
+
+
+def _refuse(study: Study, values: Mapping[str, Any]) -> None:
+    """Raise ValueError, on one line, for numbers that the study file may not have."""
+    try:
+        fixed_study(study, values)
+    except StudyError as error:
+        raise ValueError("; ".join(error.problems)) from error
+
+
+def _refuse_keys(config: Mapping[str, Any], allowed: Sequence[str]) -> None:
+    for key in config:
+        if key not in allowed:
+            raise ValueError(f"config has {show(key)}{closest(key, allowed)}; allowed: {', '.join(allowed)}")
+
+
+def _inputs(config: Mapping[str, Any]) -> Mapping[str, Any]:
+    """The inputs of a configuration of RUN_KEYS."""
+    _refuse_keys(config, RUN_KEYS)
+    given = config.get("inputs", {})
+    if not isinstance(given, Mapping):
+        raise ValueError(f"config.inputs is {show(given)}; allowed: numbers by the dotted keys of the study file")
+    return given
+
+
+def _seed(config: Mapping[str, Any]) -> int:
+    seed = config.get("seed", 0)
+    if isinstance(seed, bool) or not isinstance(seed, int) or not 0 <= seed < 2**53:
+        raise ValueError(f"config.seed is {seed!r}; allowed: a whole number from 0 to 2^53")
+    return seed

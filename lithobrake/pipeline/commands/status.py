@@ -1,0 +1,204 @@
+"""Where a study is, as another process sees it while the study runs, or after."""
+
+import math
+from collections import Counter
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from lithobrake.campaign import RunStatus, Tally, campaign_began, ledger_tally
+from lithobrake.files.atomic import lock_holder
+from lithobrake.pipeline.commands.running_estimates import RunningEstimates, running_estimates
+from lithobrake.pipeline.folder.notes import NAME, Notes
+from lithobrake.pipeline.folder.state import STUDY_FILE, FolderState, StageState, grouped, read_state
+from lithobrake.pipeline.folder.study_folder import LOCK, FileState, StudyFolder
+from lithobrake.results import open_study
+from lithobrake.vocabulary.quantities import OUTPUTS
+
+
+@dataclass(frozen=True)
+class RunsStatus:
+    """The runs that a study asks for as it is now.
+
+    others: how many more its ledger has. rare: how many of the ledger's only a limit state asks for, by its name.
+    outcomes: how often each came. reasons: why runs failed, and how often. estimates: what they say so far, of a
+    sequence; None for another study, and before enough have ended.
+    """
+
+    tally: Tally
+    others: int
+    rare: dict[str, int]
+    outcomes: "Counter[str]"
+    reasons: "Counter[str]"
+    estimates: RunningEstimates | None
+
+    def lines(self) -> list[str]:
+        """The runs in words."""
+        lines = [self.tally.sentence()]
+        lines += [
+            f"{count} more runs in the ledger are landings of lithobrake rare: {name}"
+            for name, count in self.rare.items()
+        ]
+        if self.others:
+            lines.append(f"{self.others} more runs in the ledger are of earlier settings of the study")
+        if self.outcomes:
+            lines.append("outcomes: " + ", ".join(f"{count} {name}" for name, count in sorted(self.outcomes.items())))
+        lines += [f"failed: {count} x {reason}" for reason, count in self.reasons.most_common(3)]
+        found = self.tally.spreads
+        spreads = self.tally.spread_lines([name for name in OUTPUTS if name in found] or sorted(found))
+        lines += ["mean and standard deviation so far [SI]:", *spreads] if spreads else []
+        return lines + (self.estimates.lines() if self.estimates else [])
+
+    def to_json(self) -> dict[str, Any]:
+        """All of it as JSON values; rate [runs/s] and time left [s] are None where nobody knows them."""
+        state = self.tally
+        return {
+            "total": state.total,
+            "done": state.done,
+            "running": state.running,
+            "failed": state.failed,
+            "of_earlier_settings": self.others,
+            "of_rare": self.rare,
+            "rate": _finite(state.rate),
+            "seconds_left": _finite(state.time_left),
+            "outcomes": dict(sorted(self.outcomes.items())),
+            "reasons": dict(self.reasons),
+            "spreads": {
+                name: {"count": one.count, "mean": one.mean, "std": _finite(one.std)}
+                for name, one in state.spreads.items()
+            },
+            "estimates": self.estimates and self.estimates.to_json(),
+        }
+
+
+@dataclass(frozen=True)
+class StudyStatus:
+    """Where a study stands.
+
+    at_work: who is, and at which stage, as the lock of its folder says; None for nobody. campaign_began: when the
+    campaign did whose ledger this is, where the folder is none of a study. state: of its files; None likewise. runs:
+    None before there is a ledger.
+    """
+
+    folder: Path
+    at_work: dict[str, Any] | None
+    campaign_began: str | None
+    state: FolderState | None
+    runs: RunsStatus | None
+
+    def lines(self) -> list[str]:
+        """All of it in words."""
+        runs = self.runs.lines() if self.runs else []
+        if self.state is None:
+            return [f"{self.folder}: {'a campaign' if self.campaign_began else 'nobody'} is at work", *runs]
+        return [_work(self.folder, self.at_work, self.state), *_files(self.at_work, self.state), *runs]
+
+    def to_json(self) -> dict[str, Any]:
+        """All of it as JSON values."""
+        state = self.state
+        stages = [] if state is None else [_at_work(stage, self.at_work) for stage in state.stages if stage.number]
+        return {
+            "folder": str(self.folder),
+            "at_work": self.at_work,
+            "campaign_began": self.campaign_began,
+            "stages": [
+                {"name": stage.name, "title": stage.title, "is_current": stage.is_current, "files": stage.files}
+                for stage in stages
+            ],
+            "edited": None if state is None or state.edited is None else str(state.edited),
+            "unknown": None if state is None else state.unknown or None,
+            "runs": self.runs and self.runs.to_json(),
+        }
+
+
+def study_status(path: Path) -> StudyStatus:
+    """Say who is at work on a study, which stages are done, and the state of its runs.
+
+    A folder with only a ledger is that of a campaign. Raises ValueError when it has neither study nor ledger.
+    """
+    ledger, is_study = path / "runs.sqlite", any((path / name).is_file() for name in (STUDY_FILE, NAME))
+    if not (is_study or ledger.is_file()):
+        raise ValueError(f"{path} has neither study.toml nor runs.sqlite; name the folder of a study that ran, or runs")
+    if not is_study:
+        return StudyStatus(path, None, campaign_began(ledger), None, _runs(path, Notes(), {}))
+    # Who is at work is looked at first: a stage that ends in between is then one that is still to come.
+    holder = lock_holder(path / LOCK)
+    state = read_state(path)
+    return StudyStatus(
+        path, holder, None, state, _runs(path, state.notes, _flown(path, state)) if ledger.is_file() else None
+    )
+
+
+def _at_work(stage: StageState, holder: dict[str, Any] | None) -> StageState:
+    """A stage as it is while a process is at it: files that nothing is noted of yet are its own."""
+    if holder is None or holder.get("number") != stage.number:
+        return stage
+    own: dict[str, FileState] = {
+        name: FileState.NEW if state is FileState.FOREIGN else state for name, state in stage.files.items()
+    }
+    return replace(stage, files=own)
+
+
+def _work(path: Path, holder: dict[str, Any] | None, state: FolderState) -> str:
+    if holder:
+        stage = (
+            f"stage {holder['number']} of {holder['count']}, {holder['stage']}" if "stage" in holder else "beginning"
+        )
+        return f"{path}: {stage} (process {holder['process']} on {holder['host']})"
+    if not (path / "report" / "index.html").is_file():
+        return f"{path}: nobody is at work; there is no report yet"
+    fits = all(stage.is_current for stage in state.stages)
+    return f"{path}: nobody is at work; the report is there" + ("" if fits else ", but not of the files as they are")
+
+
+def _files(holder: dict[str, Any] | None, state: FolderState) -> list[str]:
+    """Which stages are current, and what is the matter with the files of the others."""
+    if state.unknown:
+        return [state.unknown]
+    done = [stage.title for stage in state.stages if stage.is_current and stage.number]
+    count = sum(stage.number > 0 for stage in state.stages)
+    lines = [f"{len(done)} of {count} stages are current" + (f": {', '.join(done)}" if done else "")]
+    others = [stage for stage in state.stages if not stage.is_current]
+    if holder:
+        # What is at work goes through its stages in order, and writes now what is still to come.
+        coming = [stage for stage in others if stage.number >= holder.get("number", 0)]
+        others = [stage for stage in others if stage not in coming]
+        lines += [f"to come: {', '.join(stage.title for stage in coming)}"] if coming else []
+    if others:
+        lines.append(f"{grouped(others)}; make them again with: {state.command}")
+    if state.edited:
+        lines.append(f"{state.edited} was edited since; bring the folder up to date with: {state.command}")
+    return lines
+
+
+def _runs(path: Path, notes: Notes, flown: dict[str, float]) -> RunsStatus:
+    """Where the runs stand that the study asks for as it is now, and how many others its ledger has."""
+    every = open_study(path).ledger
+    asked = {key for keys in notes.designs.values() for key in keys}
+    # A ledger of which nothing is noted is that of a campaign, or of an earlier format.
+    records = [entry for entry in every if entry.key in asked] if notes.stages else every
+    others = {entry.key for entry in every} - {entry.key for entry in records}
+    rare = {name: len(others.intersection(keys)) for name, keys in notes.rare.items()}
+    # Those beside the sequence are at places and soils of its runs, and say nothing new.
+    drawn = set(notes.designs.get("sequence", ()))
+    return RunsStatus(
+        tally=ledger_tally(records, campaign_began(path / "runs.sqlite")),
+        others=len(others.difference(*notes.rare.values())),
+        rare={name: count for name, count in rare.items() if count},
+        outcomes=Counter(entry.outcome or "" for entry in records if entry.status == RunStatus.DONE),
+        reasons=Counter(entry.reason or "" for entry in records if entry.status == RunStatus.FAILED),
+        estimates=running_estimates([entry for entry in records if entry.key in drawn], flown),
+    )
+
+
+def _flown(path: Path, state: FolderState) -> dict[str, float]:
+    """Which share of its flights each run of a sequence returns in, by key; none before they have flown."""
+    if not any(stage.name == "fly_runs" and stage.is_current for stage in state.stages):
+        return {}
+    from lithobrake.pipeline.answer.answer_of_run import read_shares
+
+    return read_shares(StudyFolder.only_read(path))
+
+
+def _finite(number: float) -> float | None:
+    return number if math.isfinite(number) else None

@@ -1,0 +1,1 @@
+"""The emulator of a study, and its samples."""

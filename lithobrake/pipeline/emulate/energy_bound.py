@@ -1,0 +1,126 @@
+"""The speed and spin that no lander leaves with: what energy allows."""
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from lithobrake.pipeline.folder.study_folder import StudyFolder
+from lithobrake.pipeline.runs.beds import bed_files
+from lithobrake.study import Study
+from lithobrake.study.touchdown_model import lander, medians, stored_bed
+from lithobrake.vocabulary.outcomes import TouchdownOutcome
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from lithobrake.campaign import Record
+
+# More energy than that of the bound, by what time steps and printed digits are off.
+SLACK = 0.01
+LEAVES = {"speed_out", "spin_out"}
+SPIN = ("impact.spin_x", "impact.spin_y", "impact.spin_z")
+
+
+class EnergyBound(NamedTuple):
+    """The most that landers can leave with, [count].
+
+    speed     m/s, of one that does not spin
+    gyration  smallest radius of gyration [m]: a lander spins fastest about its easiest axis
+    """
+
+    speed: "NDArray[np.float64]"
+    gyration: "NDArray[np.float64]"
+
+    def at(self, rows: "slice | NDArray[np.int64]") -> "EnergyBound":
+        """The bound of some of the landers."""
+        return EnergyBound(self.speed[rows], self.gyration[rows])
+
+    def spin(self, speed: "NDArray[np.float64] | float" = 0.0) -> "NDArray[np.float64]":
+        """Largest angular velocity [rad/s] of landers that leave at a speed [m/s], [count]."""
+        left: NDArray[np.float64] = np.sqrt(np.maximum(self.speed**2 - speed**2, 0.0)) / self.gyration
+        return left
+
+
+def energy_bound(
+    study: Study, bed_height: float, values: "Mapping[str, NDArray[np.float64]]", count: int
+) -> EnergyBound:
+    """Bound of a lander that keeps all its energy and gains what gravity may give it over the bed, [count].
+
+    bed_height: of the highest bed [m]. values: of uncertain inputs, [count] each, by dotted key; all others are as the
+    study has them. The bed is at rest and contacts only take energy away: v^2 + I w^2 / m + 2 g h, with h the height of
+    the bed, and its fall across.
+    """
+    known = {name: np.full(count, value) for name, value in medians(study).items()} | dict(values)
+    spin = sum(known[name] ** 2 for name in SPIN)
+    slope = np.radians(known["surface.slope_deg"])
+    # Gravity that points outwards lifts a lander as far as the other makes it fall.
+    gained = np.abs(known["surface.gravity"]) * (bed_height + np.hypot(*study.bed.width) * np.sin(slope))
+    smallest, largest = gyrations(study, known)
+    return EnergyBound(np.sqrt(known["impact.speed"] ** 2 + largest * spin + 2.0 * gained), np.sqrt(smallest))
+
+
+def bound_numbers(study: Study, bed_height: float) -> dict[str, float]:
+    """The numbers of `energy_bound`, for whoever follows the uncertain inputs alone.
+
+    height, across: of the bed [m]; smallest, largest: squared radii of gyration [m2] at the medians, which go with
+    these powers of mass and diameter; and the medians of whatever the bound depends on, by dotted key.
+    """
+    known = medians(study)
+    smallest, largest = (float(one[0]) for one in gyrations(study, {key: np.array([known[key]]) for key in known}))
+    has_inertia, is_ball = study.lander.inertia is not None, "lander.diameter" in known
+    names = ("impact.speed", *SPIN, "surface.slope_deg", "surface.gravity", "lander.mass", "lander.diameter")
+    return {
+        "height": bed_height,
+        "across": float(np.hypot(*study.bed.width)),
+        "smallest": smallest,
+        "largest": largest,
+        "mass_power": -1.0 if has_inertia else 0.0,
+        "diameter_power": 2.0 if is_ball and not has_inertia else 0.0,
+        **{name: float(known[name]) for name in names if name in known},
+    }
+
+
+def energy_warning(study: Study, records: "Sequence[Record]", bed_height: float) -> str | None:
+    """What it means that runs left with more energy than they came with and gravity may have given; None without any.
+
+    A model of the user's own may have a source of energy, a spring or a thruster, so nothing is refused. bed_height: of
+    the highest bed [m]; 0 where a program of the user's own has a ground of its own.
+    """
+    left = [one for one in records if one.outcome == TouchdownOutcome.CLEAR and not LEAVES.difference(one.outputs)]
+    if not left:
+        return None
+    inputs = {name: np.array([one.inputs[name] for one in left]) for name in medians(study)}
+    bound = energy_bound(study, bed_height, inputs, len(left))
+    speed, spin = (np.array([one.outputs[name] for one in left]) for name in ("speed_out", "spin_out"))
+    ratio = (speed**2 + (bound.gyration * spin) ** 2) / np.maximum(bound.speed**2, np.finfo(float).tiny)
+    over = ratio > 1.0 + SLACK
+    if not over.any():
+        return None
+    worst = int(np.argmax(ratio))
+    speeds = f"{speed[worst]:.3g} m/s after {inputs['impact.speed'][worst]:.3g} m/s"
+    return (
+        f"{int(over.sum())} of {len(left)} landers that left have more energy than impact and gravity give them, the "
+        f"worst {ratio[worst]:.3g} times as much ({speeds}): is there a source of energy, or a unit wrong?"
+    )
+
+
+def height_of_beds(study: Study, folder: StudyFolder) -> float:
+    """Height [m] of the highest bed; a program of the user's own tells of none."""
+    return max((float(stored_bed(folder / name).surface_height) for name in bed_files(study)), default=0.0)
+
+
+def gyrations(
+    study: Study, values: "Mapping[str, NDArray[np.float64]]"
+) -> "tuple[NDArray[np.float64], NDArray[np.float64]]":
+    """Smallest and largest principal moment of inertia over the mass [m2], [count] each."""
+    if study.lander.inertia is not None:
+        return min(study.lander.inertia) / values["lander.mass"], max(study.lander.inertia) / values["lander.mass"]
+    # A ball is the one shape whose size may be uncertain.
+    of_ball = values.get("lander.diameter")
+    if of_ball is not None:
+        return 0.1 * of_ball**2, 0.1 * of_ball**2
+    body = lander(study, medians(study))
+    own = np.linalg.eigvalsh(body.shape.inertia_per_density) / body.shape.volume
+    count = len(values["lander.mass"])
+    return np.full(count, own[0]), np.full(count, own[-1])

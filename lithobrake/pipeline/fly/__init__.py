@@ -1,0 +1,1 @@
+"""Flights of landings and samples to the next impact."""

@@ -1,0 +1,221 @@
+"""The flights of the samples that leave the surface, from the site to the next impact."""
+
+import csv
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from lithobrake.files.atomic import atomic_path
+from lithobrake.files.hashing import content_hash
+from lithobrake.files.reading import read_rows
+from lithobrake.geometry.mesh_labels import labelled_mesh
+from lithobrake.geometry.mesh_units import mesh_unit
+from lithobrake.pipeline.emulate.samples import Samples, sampling_seed
+from lithobrake.pipeline.fly.flight_paths import write_flight_paths
+from lithobrake.pipeline.folder.study_folder import AGAIN, StudyFolder
+from lithobrake.pipeline.job import Job
+from lithobrake.pipeline.site import SITE_KEYS, frames, site_body, site_medians, site_values, site_warning
+from lithobrake.study import BUILT_IN_BODIES, Study
+from lithobrake.study.quantity import uncertain
+from lithobrake.study.units import input_units
+from lithobrake.vocabulary.outcomes import FlightStatus
+from lithobrake.vocabulary.quantities import FLIGHT, Quantity, quantity
+
+if TYPE_CHECKING:
+    from lithobrake.smallbody import Body, Flights
+
+# Flights of which the Jacobi constant is looked at.
+CHECKED = 200
+QUANTILES = (0.05, 0.5, 0.95)
+# docs/flights.md says what each is.
+COLUMNS = (
+    "sample", "start_speed", "start_elevation_deg", "velocity_x", "velocity_y", "velocity_z",
+    *(f"site_{key}" for key in SITE_KEYS),
+    "status", "time_s", "latitude_deg", "longitude_deg", "facet", "impact_speed", "impact_incidence_deg",
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Starts:
+    """Samples that fly, shapes [flight_count, ...]: row of each, velocity in its local frame [m/s], its site by key."""
+
+    sample: np.ndarray
+    velocity: np.ndarray
+    site: dict[str, np.ndarray]
+
+
+def flight_reads(study: Study) -> dict[str, Any]:
+    """What the flights depend on beside the samples."""
+    built_in = study.site.body in BUILT_IN_BODIES
+    mesh = labelled_mesh(Path(study.site.body))
+    body = study.site.body if built_in else content_hash(mesh)
+    # A key that came later is left out where it says nothing, so that folders of before stay whole.
+    thinned = {} if study.site.gravity_facets is None else {"gravity_facets": study.site.gravity_facets}
+    return (
+        study.flight.model_dump()
+        | thinned
+        | {
+            "seed": study.seed,
+            "body": body,
+            "unit": "m" if built_in else mesh_unit(mesh, study.site.unit),
+            "partner": study.site.partner,
+            "site": {name: str(value) for name, value in study.site_values().items()},
+        }
+    )
+
+
+def starts(study: Study, samples: Samples) -> Starts:
+    """The first samples that leave the surface, as many as the study flies, each with its own site."""
+    rows = np.flatnonzero(samples.leaves)[: study.flight.flight_count]
+    velocity = np.column_stack([samples.output(f"velocity_out_{axis}") for axis in "xyz"])[rows]
+    site = {key: values[rows] for key, values in sample_sites(study, len(samples.outcome)).items()}
+    return Starts(rows, velocity, site)
+
+
+def sample_sites(study: Study, count: int) -> dict[str, np.ndarray]:
+    """The site of each sample by the keys of SITE_KEYS, each of shape [count]; a larger count changes no earlier one"""
+    from lithobrake.analysis import sample_inputs
+
+    site = {key: np.full(count, value) for key, value in site_medians(study).items()}
+    values = {f"site.{key}": value for key, value in site_values(study).items()}
+    drawn = {name: value.to_chaos() for name, value in uncertain(values).items()}
+    table = sample_inputs(drawn, count, sampling_seed(study, "site"))
+    for index, name in enumerate(drawn):
+        site[name.removeprefix("site.")] = table[:, index]
+    return site
+
+
+def fly_expansion_samples(job: Job) -> None:
+    """Fly the samples of an expansion; where these have the scatter from run to run, without it too.
+
+    flights_without_scatter.csv has the flights of the expansion alone; without scatter it is empty.
+    """
+    fly_samples(job)
+    study, body, samples = job.study, site_body(job.study), Samples.load(job.folder)
+    alone: Iterable[list[Any]] = ()
+    if samples.without_scatter is not None:
+        start = starts(study, samples.expansion_alone())
+        alone = _rows(start, fly_starts(body, start, study, job, "flights without scatter"))
+    write_table(job.folder, "flights_without_scatter.csv", COLUMNS, alone)
+
+
+def fly_samples(job: Job) -> None:
+    """Fly the samples that leave and write flights.csv in the order of the samples, and what the flights took."""
+    study, body, samples = job.study, site_body(job.study), Samples.load(job.folder)
+    start = starts(study, samples)
+    if study.flight.gravity == "table":
+        job.progress(0, 1, "gravity table")
+        error = body.shape.table_error
+        job.say(
+            f"Gravity table: {error.median:.1e} of the surface gravity off the facets' sum in the median, "
+            f"{error.p95:.1e} at the 95th percentile of {error.point_count} points."
+        )
+    warning = site_warning(study)
+    if warning:
+        job.say(warning)
+    job.folder.write_json("flights.json", _checks(body, start, study, job))
+    _write_shape(body, job.folder)
+    flown = fly_starts(body, start, study, job, "flights")
+    write_flight_paths(job, body, flown, start.sample)
+    write_table(job.folder, "flights.csv", COLUMNS, _rows(start, flown))
+
+
+def write_table(
+    folder: StudyFolder,
+    name: str,
+    columns: Sequence[str],
+    rows: Iterable[list[Any]],
+    known: Mapping[str, Quantity] = FLIGHT,
+) -> None:
+    """Write a CSV file of the folder, with the unit behind each name that does not hold it; known: its quantities."""
+    study_units = input_units()
+    units = {column: quantity(column, known, study_units).units for column in columns}
+    titles = [
+        column if not unit or column.endswith(f"_{unit}") else f"{column} [{unit}]" for column, unit in units.items()
+    ]
+    with atomic_path(folder / name) as draft, draft.open("w", newline="", encoding="utf-8") as file:
+        table = csv.writer(file)
+        table.writerow(titles)
+        table.writerows(rows)
+
+
+def fly_starts(body: "Body", start: Starts, study: Study, job: Job, what: str) -> "Flights":
+    """Fly on as many threads as the study has workers; the result does not depend on their number."""
+    from lithobrake.smallbody import fly
+
+    count = len(start.sample)
+    origin, axes = frames(body, start.site) if count else (np.empty((0, 3)), np.empty((0, 3, 3)))
+    return fly(
+        body,
+        origin,
+        np.einsum("nij,ni->nj", axes, start.velocity),
+        study.flight.duration,
+        gravity=study.flight.gravity,
+        start_time=partner_time(body, start.site),
+        mass=start.site["mass"],
+        spin_period=start.site["spin_period"],
+        threads=getattr(job.executor, "worker_count", None),
+        progress=lambda fraction: job.progress(round(fraction * count), count, what),
+    )
+
+
+def _checks(body: "Body", start: Starts, study: Study, job: Job) -> dict[str, Any]:
+    """How exact the flights are: the table's error, and the drift of the Jacobi constant of the first flights.
+
+    With a partner there is no such constant, so these flights are made once more without it.
+    """
+    part = Starts(start.sample[:CHECKED], start.velocity[:CHECKED], {k: v[:CHECKED] for k, v in start.site.items()})
+    drift = np.abs(fly_starts(replace(body, partner=None), part, study, job, "checks of flights").jacobi_drift)
+    table = study.flight.gravity == "table"
+    return {
+        "gravity": study.flight.gravity,
+        "gravity_table_error": dict(body.shape.table_error._asdict()) if table else None,
+        "jacobi_flight_count": len(drift),
+        "jacobi_drift_median_m2_s2": float(np.median(drift)) if len(drift) else None,
+        "jacobi_drift_largest_m2_s2": float(drift.max()) if len(drift) else None,
+    }
+
+
+def partner_time(body: "Body", site: dict[str, np.ndarray]) -> np.ndarray:
+    """Times [s] at which the partner stands over the longitudes of the samples; 0 where it does not move or is none."""
+    return body.partner_time(site["partner_longitude_deg"], site["spin_period"])
+
+
+def _write_shape(body: "Body", folder: StudyFolder) -> None:
+    """Write the body's shape beside the map, in metres, for whoever draws it."""
+    lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in body.shape.vertices.tolist()]
+    lines += [f"f {a} {b} {c}" for a, b, c in (body.shape.faces + 1).tolist()]
+    with atomic_path(folder / "body.obj") as draft:
+        draft.write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
+def _rows(start: Starts, flown: "Flights") -> Iterator[list[Any]]:
+    speed = np.linalg.norm(start.velocity, axis=1)
+    elevation = np.degrees(np.arcsin(start.velocity[:, 2] / speed))
+    before = np.column_stack([speed, elevation, start.velocity, *(start.site[key] for key in SITE_KEYS)]).tolist()
+    after = np.column_stack([flown.latitude, flown.longitude, flown.impact_speed, np.degrees(flown.incidence)]).tolist()
+    down = flown.facet >= 0
+    for row, sample in enumerate(start.sample.tolist()):
+        latitude, longitude, speed_there, incidence = after[row] if down[row] else [""] * 4
+        # The partner's facets are not those of body.obj.
+        facet = int(flown.facet[row]) if flown.status[row] == FlightStatus.IMPACT else ""
+        end = [str(flown.status[row]), float(flown.time[row]), latitude, longitude, facet, speed_there, incidence]
+        yield [sample, *before[row], *end]
+
+
+def flight_numbers(flights: Sequence[dict[str, str]]) -> dict[str, Any]:
+    """Median and the middle nine tenths of time of flight, speed and incidence of the impacts on the body."""
+    down = [row for row in flights if row["status"] == FlightStatus.IMPACT]
+    table: dict[str, Any] = {}
+    for name in ("time_s", "impact_speed", "impact_incidence_deg") if down else ():
+        values = np.array([float(row[name]) for row in down])
+        table[name] = {f"quantile_{level:g}": float(np.quantile(values, level)) for level in QUANTILES}
+    return table
+
+
+def read_table(folder: StudyFolder, name: str) -> list[dict[str, str]]:
+    """The rows of a CSV file of samples by column. Raises ValueError for a damaged file."""
+    return read_rows(folder / name, ("sample", "status"), AGAIN)

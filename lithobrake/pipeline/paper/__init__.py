@@ -1,0 +1,1 @@
+"""The published method: polynomial chaos at one impact point on one bed."""

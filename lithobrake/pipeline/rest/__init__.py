@@ -1,0 +1,1 @@
+"""Journeys from bounce to bounce until the lander rests."""

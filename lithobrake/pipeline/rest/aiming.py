@@ -1,0 +1,94 @@
+"""Landers at every aim of a study, followed until they rest: on the soil, and on hard ground beside it."""
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from lithobrake.analysis import sample_inputs
+from lithobrake.files.hashing import hashed_seed
+from lithobrake.pipeline.emulate.emulator_samples import drawn_samples
+from lithobrake.pipeline.emulate.fitted_emulator import REFIT_COUNT
+from lithobrake.pipeline.fly.flights import sample_sites, write_table
+from lithobrake.pipeline.job import Job
+from lithobrake.pipeline.rest.journeys import Sites, journey_reads, on_hard_ground, on_soil
+from lithobrake.pipeline.runs.designs import design_inputs
+from lithobrake.study import Study
+from lithobrake.vocabulary.outcomes import JourneyStatus
+
+if TYPE_CHECKING:
+    from lithobrake.smallbody import Body
+
+FILE = "aim.csv"
+# docs/aiming.md says what each is.
+COLUMNS = ("ground", "aim", "refit", "status", "time_s", "distance")
+SITE = "site."
+
+
+def aim_files(study: Study) -> list[str]:
+    """What the stage writes: nothing where the study has no aims to choose from."""
+    return [FILE] if study.aim.grid else []
+
+
+def aim_reads(study: Study) -> dict[str, Any]:
+    """What the landers at the aims depend on beside the emulator and the site."""
+    # Which aims are allowed is asked of what is already there.
+    return {"rest": journey_reads(study), "grid": study.aim.grid, "lander_count": study.aim.lander_count}
+
+
+def follow_aims(job: Job) -> None:
+    """Follow the landers of every aim on both grounds and write aim.csv, one aim after the other.
+
+    All aims have the same landers: soil, site and refit of each are drawn once, and only what is aimed at differs.
+    """
+    study, aims = job.study, job.study.aim.aims()
+    count = study.aim.lander_count * REFIT_COUNT
+    inputs, site = _aimed(study, aims, count)
+    samples = drawn_samples(job, inputs, "aims")
+    sites = Sites.of(study, samples, site)
+    rows: list[list[Any]] = []
+    for ground, bounce in (("soil", on_soil(job, samples)), ("hard", on_hard_ground(study, sites))):
+        ends = sites.follow(job, ground, *bounce)
+        distance = _distances(sites.body, site, ends)
+        for number, (end, way) in enumerate(zip(ends, distance.tolist(), strict=True)):
+            _, _, status, time, *_ = end
+            settled = status == JourneyStatus.SETTLED
+            rows.append([ground, number // count, number % REFIT_COUNT, status, time, way if settled else ""])
+    write_table(job.folder, FILE, COLUMNS, rows)
+
+
+def _aimed(study: Study, aims: list[dict[str, float]], count: int) -> tuple[np.ndarray, dict[str, np.ndarray]]:
+    """Inputs [aim_count * count, input_count] and sites of all landers, one aim after the other."""
+    names = list(design_inputs(study))
+    x = np.tile(sample_inputs(design_inputs(study), count, hashed_seed(study.seed, "aims")), (len(aims), 1))
+    site = {key: np.tile(values, len(aims)) for key, values in sample_sites(study, count).items()}
+    for number, aim in enumerate(aims):
+        own = slice(number * count, (number + 1) * count)
+        for name, value in aim.items():
+            if name.startswith(SITE):
+                site[name.removeprefix(SITE)][own] = value
+            else:
+                x[own, names.index(name)] = value
+    return x, site
+
+
+def _distances(body: "Body", site: dict[str, np.ndarray], ends: list[list[Any]]) -> np.ndarray:
+    """Ways over the ground [m] from the aims to where the journeys end, [count], NaN where that is not on the ground.
+
+    As if the body were a ball of the radius at the aim; what the delivery misses the aim by counts.
+    """
+    place = np.array([[np.nan, np.nan] if end[4] == "" else end[4:6] for end in ends], dtype=float)
+    there, aim = (_directions(*np.radians(one)) for one in (place.T, (site["latitude_deg"], site["longitude_deg"])))
+    aims, inverse = np.unique(
+        np.column_stack([site["latitude_deg"], site["longitude_deg"]]), axis=0, return_inverse=True
+    )
+    radius = np.array([np.linalg.norm(body.shape.surface_point(*one)) for one in aims.tolist()])
+    # The arctangent keeps the small angles that the arccosine loses.
+    angle = np.arctan2(np.linalg.norm(np.cross(aim, there), axis=1), np.einsum("ni,ni->n", aim, there))
+    ways: np.ndarray = radius[inverse.ravel()] * angle
+    return ways
+
+
+def _directions(latitude: np.ndarray, longitude: np.ndarray) -> np.ndarray:
+    """Unit vectors [count, 3] of angles [rad]."""
+    level = np.cos(latitude)
+    return np.column_stack([level * np.cos(longitude), level * np.sin(longitude), np.sin(latitude)])

@@ -1,0 +1,59 @@
+"""What of an impact a model of the bounce takes for its inputs, and within which ranges it was trained."""
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from lithobrake.pipeline.paper.paper_designs import points
+from lithobrake.pipeline.runs.designs import design_inputs
+from lithobrake.pipeline.runs.drawn_design import inputs_of, sequence_rows
+from lithobrake.study import Study
+
+if TYPE_CHECKING:
+    from lithobrake.smallbody import Impacts
+
+
+# Without these two among the uncertain inputs the expansion says nothing about an impact that differs from the first.
+NEEDED = ("impact.speed", "impact.incidence_deg")
+SPIN = ("impact.spin_x", "impact.spin_y", "impact.spin_z")
+
+
+def why_no_soil(study: Study) -> str | None:
+    """Why the soil cannot be asked about the impacts after the first; None where it can."""
+    absent = [name for name in NEEDED if name not in design_inputs(study)]
+    if not absent:
+        return None
+    return (
+        f"{' and '.join(absent)} {'is' if len(absent) == 1 else 'are'} no uncertain input, so the runs do not "
+        "tell of the impacts after the first; give it a distribution that reaches over the impacts to come"
+    )
+
+
+def trained_ranges(study: Study) -> dict[str, tuple[float, float]]:
+    """Smallest and largest value of each input in the runs in which all vary, in the file's units, by dotted key."""
+    inputs = design_inputs(study)
+    paper = study.design.method == "paper"
+    x = points(study, "screening", ()) if paper else inputs_of(sequence_rows(study), tuple(inputs))
+    columns = zip(inputs, x.min(axis=0).tolist(), x.max(axis=0).tolist(), strict=True)
+    return {name: (lower, upper) for name, lower, upper in columns}
+
+
+def inputs_at(
+    impacts: "Impacts", inputs: Mapping[str, np.ndarray], ranges: Mapping[str, tuple[float, float]]
+) -> tuple[np.ndarray, np.ndarray]:
+    """All inputs at the impacts, [count, input_count], and which of these are outside the ranges, [count].
+
+    inputs: of each lander. Those outside have the inputs of the first impact in place of theirs.
+    """
+    felt = {"impact.speed": impacts.speed, "impact.incidence_deg": np.degrees(impacts.incidence)}
+    felt |= dict(zip(SPIN, impacts.spin.T, strict=True)) | {"surface.gravity": -impacts.effective_acceleration}
+    x = np.column_stack([values[impacts.lander] for values in inputs.values()])
+    outside = np.zeros(len(x), dtype=bool)
+    for index, name in enumerate(inputs):
+        if name in felt:
+            lower, upper = ranges[name]
+            known = (felt[name] >= lower) & (felt[name] <= upper)
+            x[known, index] = felt[name][known]
+            outside |= ~known
+    return x, outside

@@ -1,0 +1,223 @@
+"""From bounce to bounce until the landers rest: on the soil, and on hard ground of two kinds beside it."""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from lithobrake.pipeline.emulate.outgoing import VELOCITY, rolling_spin
+from lithobrake.pipeline.emulate.samples import CAPTURED, Samples, sampling_seed, touchdown_values
+from lithobrake.pipeline.fly.flights import partner_time, sample_sites, write_table
+from lithobrake.pipeline.job import Job
+from lithobrake.pipeline.paper.expansion_bounce import soil_bounce
+from lithobrake.pipeline.rest import sliding_law
+from lithobrake.pipeline.rest.bounce_inputs import trained_ranges, why_no_soil
+from lithobrake.pipeline.rest.emulator_bounce import emulator_bounce
+from lithobrake.pipeline.rest.hard_equivalents import FILE as RESTITUTION
+from lithobrake.pipeline.rest.hard_equivalents import restitution_table
+from lithobrake.pipeline.rest.journey_arcs import FILE as ARCS
+from lithobrake.pipeline.rest.journey_arcs import arc_rows
+from lithobrake.pipeline.rest.slow_arrivals import slow_arrivals
+from lithobrake.pipeline.runs.run_table import DesignRuns
+from lithobrake.pipeline.site import frames, site_body
+from lithobrake.study import Study
+from lithobrake.vocabulary.outcomes import JourneyStatus
+from lithobrake.vocabulary.quantities import ARC, SPIN_OUT
+
+if TYPE_CHECKING:
+    from lithobrake.smallbody import Body, Bounce, HardSurface, Impacts, Journeys, Rebounds
+
+# docs/flights.md says what each is.
+COLUMNS = (
+    "ground", "sample", "status", "time_s", "latitude_deg", "longitude_deg", "rebounds", "path_length",
+    "slid_length", "slid_time_s", "impact_speed", "impact_incidence_deg",
+)  # fmt: skip
+FILES = ("rest.csv", ARCS, "rest.json")
+# Statuses of landers that lie on, or have just touched, the ground of the body.
+DOWN = (
+    *(JourneyStatus.SETTLED, JourneyStatus.LOFTED, JourneyStatus.OUTSIDE, JourneyStatus.SLIDING),
+    JourneyStatus.BOUNCING,
+)
+
+
+def rest_files(study: Study) -> list[str]:
+    """What the stage writes; the table of restitution where the emulator knows other impacts than the first."""
+    asks = study.design.method == "sequence" and why_no_soil(study) is None and bool(study.rest.count)
+    return [*FILES, *([RESTITUTION] if asks else [])]
+
+
+def journey_reads(study: Study) -> dict[str, Any]:
+    """What journeys depend on beside samples and flights; a table with other columns or law is made anew."""
+    law = sliding_law.INTERCEPT, sliding_law.SLOPE
+    own = study.rest.model_dump(exclude={"arc_count"}, exclude_none=True)
+    return own | {"columns": COLUMNS, "sliding_law": law}
+
+
+def rest_reads(study: Study) -> dict[str, Any]:
+    """What the files of the stage depend on beside that."""
+    return journey_reads(study) | {"arc_count": study.rest.arc_count, "arc_columns": tuple(ARC)}
+
+
+def follow_samples(job: Job) -> None:
+    """Follow the first samples from bounce to bounce and write rest.csv, arcs.csv and rest.json."""
+    study, why = job.study, why_no_soil(job.study)
+    rows: list[list[Any]] = []
+    arcs: list[list[Any]] = []
+    if study.rest.count:
+        samples = Samples.load(job.folder).first(study.rest.count)
+        sites = Sites.of(study, samples, sample_sites(study, len(samples.outcome)))
+        if why is None:
+            first, bounce = on_soil(job, samples)
+            journeys = sites.journeys(job, "soil", first, bounce, study.rest.arc_count)
+            rows += sites.rows("soil", first, journeys)
+            arcs = arc_rows(journeys.arcs, np.flatnonzero(~first.outside))
+        else:
+            job.say(f"Bounce after bounce on hard ground only: {why}.")
+        rows += sites.follow(job, "hard", *on_hard_ground(study, sites))
+        if RESTITUTION in rest_files(study):
+            rows += sites.follow(job, "equivalent", *_on_equivalent_ground(job, sites))
+    write_table(job.folder, "rest.csv", COLUMNS, rows)
+    write_table(job.folder, ARCS, tuple(ARC), arcs, ARC)
+    ranges = {name: list(ends) for name, ends in trained_ranges(study).items()}
+    job.folder.write_json("rest.json", {"why_no_soil": why, "trained_ranges": ranges})
+
+
+def hard_surface(study: Study) -> "HardSurface":
+    """The hard ground of a study."""
+    from lithobrake.smallbody import HardSurface
+
+    return HardSurface(**study.rest.model_dump(exclude={"count", "duration", "arc_count", "rolling_friction"}))
+
+
+def on_soil(job: Job, samples: Samples) -> tuple["Rebounds", "Bounce"]:
+    """What the samples say of the first impact, and what the soil says of those that follow."""
+    from lithobrake.smallbody import Rebounds
+
+    velocity, captured = np.column_stack([samples.output(name) for name in VELOCITY]), samples.outcome == CAPTURED
+    # The runs do not tell with which velocity a lander is captured, only that little is left.
+    velocity[captured] = 0.0
+    if job.study.design.method == "sequence":
+        spin = np.column_stack([samples.output(name) for name in SPIN_OUT])
+        bounce: Bounce = emulator_bounce(job, samples)
+    else:
+        spin = rolling_spin(velocity, np.maximum(samples.output("spin_out"), 0.0))
+        inputs = {name: samples.inputs[samples.known, index] for index, name in enumerate(samples.input_names)}
+        bounce = soil_bounce(job, inputs)
+    return Rebounds(velocity, spin, captured, ~samples.known), slow_arrivals(job.study, samples, bounce)
+
+
+def sliding_friction(study: Study, samples: Samples, ground: str) -> np.ndarray:
+    """Friction under each sample once it is captured, [sample_count]: on soil that of hull and grain, or their law."""
+    from lithobrake.dem.material import pair_value
+
+    rest, rule, hull = study.rest, study.contact.pair_rule, "grain" if study.lander.friction is None else "lander"
+    if rest.rolling_friction is not None or ground == "hard":
+        fixed = rest.friction if rest.rolling_friction is None else rest.rolling_friction
+        return np.full(len(samples.outcome), fixed)
+    of_grain, of_hull = (
+        touchdown_values(study, samples.input_names, samples.inputs, f"{part}.friction").tolist()
+        for part in ("grain", hull)
+    )
+    of_contacts = np.array([pair_value(one, other, rule) for one, other in zip(of_grain, of_hull, strict=True)])
+    return sliding_law.effective_friction(of_contacts) if sliding_law.has_measured_size(study) else of_contacts
+
+
+def on_hard_ground(study: Study, sites: "Sites") -> tuple["Rebounds", "Bounce"]:
+    """What hard ground says of the first impact, and of all that follow."""
+    bounce = hard_surface(study)
+    # Hard ground has no scatter, so no random number is drawn.
+    return bounce(_first_impacts(study, sites), np.random.default_rng(0)), bounce
+
+
+def _on_equivalent_ground(job: Job, sites: "Sites") -> tuple["Rebounds", "Bounce"]:
+    """What hard ground says that has the restitution the soil implies; its table is written beside."""
+    study = job.study
+    table = restitution_table(study, Samples.load(job.folder), DesignRuns.load(job.folder, "sequence"))
+    table.save(job.folder / RESTITUTION)
+    random = np.random.default_rng(sampling_seed(study, "equivalent ground"))
+    return table(_first_impacts(study, sites), random), table
+
+
+def _first_impacts(study: Study, sites: "Sites") -> "Impacts":
+    """The first impact of each lander."""
+    from lithobrake.smallbody import Impacts
+
+    samples = sites.samples
+    speed, incidence_deg, *spin = (
+        touchdown_values(study, samples.input_names, samples.inputs, f"impact.{name}")
+        for name in ("speed", "incidence_deg", "spin_x", "spin_y", "spin_z")
+    )
+    lander = np.arange(len(samples.outcome))
+    return Impacts(speed, np.radians(incidence_deg), np.column_stack(spin), sites.effective_acceleration, lander)
+
+
+@dataclass(frozen=True)
+class Sites:
+    """Where each of some samples touches down, all arrays [sample_count, ...].
+
+    origin [m] and axes, in rows, of the local frames, body-fixed; effective_acceleration: along the outward
+    normal [m/s2]; site: the numbers of SITE_KEYS.
+    """
+
+    body: "Body"
+    samples: Samples
+    site: dict[str, np.ndarray]
+    origin: np.ndarray
+    axes: np.ndarray
+    effective_acceleration: np.ndarray
+
+    @classmethod
+    def of(cls, study: Study, samples: Samples, site: dict[str, np.ndarray]) -> "Sites":
+        """Those of samples of a study at these places, by the keys of SITE_KEYS [sample_count]."""
+        body = site_body(study)
+        origin, axes = frames(body, site)
+        felt = body.effective_acceleration(origin, mass=site["mass"], spin_period=site["spin_period"])
+        return cls(body, samples, site, origin, axes, np.einsum("ni,ni->n", felt, axes[:, 2]))
+
+    def follow(self, job: Job, ground: str, first: "Rebounds", bounce: "Bounce") -> list[list[Any]]:
+        """A row of rest.csv for each sample, in their order: from how it leaves the first impact to where it ends."""
+        return self.rows(ground, first, self.journeys(job, ground, first, bounce))
+
+    def journeys(self, job: Job, ground: str, first: "Rebounds", bounce: "Bounce", arc_count: int = 0) -> "Journeys":
+        """Those of the samples of which `first` knows how they leave the first impact, in their order.
+
+        arc_count: of how many samples, the first ones, the flights are noted.
+        """
+        from lithobrake.smallbody import Launch, hop
+
+        going = np.flatnonzero(~first.outside)
+        site = {key: values[going] for key, values in self.site.items()}
+        velocity, spin = (np.einsum("nij,ni->nj", self.axes[going], v[going]) for v in (first.velocity, first.spin))
+        time, captured = partner_time(self.body, site), first.captured[going]
+        launch = Launch(self.origin[going], velocity, spin, time, captured, site["mass"], site["spin_period"])
+        return hop(
+            *(self.body, launch, bounce, job.study.rest.duration),
+            friction=sliding_friction(job.study, self.samples, ground)[going],
+            rolls=job.study.rest.rolling_friction is not None,
+            gravity=job.study.flight.gravity,
+            arc_landers=int(np.searchsorted(going, arc_count)),
+            seed=sampling_seed(job.study, f"rest on {ground} ground"),
+            threads=getattr(job.executor, "worker_count", None),
+            progress=lambda done: job.progress(round(done * len(going)), len(going), f"bounces, {ground} ground"),
+        )
+
+    def rows(self, ground: str, first: "Rebounds", ends: "Journeys") -> list[list[Any]]:
+        """A row of rest.csv for each sample, in their order."""
+        latitude, longitude = (one.tolist() for one in self.body.shape.latitude_longitude(self.origin))
+        rows: list[list[Any]] = [
+            [ground, sample, JourneyStatus.OUTSIDE.value, 0.0, *place, 0, 0.0, 0.0, 0.0, "", ""]
+            for sample, place in enumerate(zip(latitude, longitude, strict=True))
+        ]
+        for row, sample in enumerate(np.flatnonzero(~first.outside).tolist()):
+            rows[sample] = [ground, sample, *_end(ends, row, bounced=not first.captured[sample])]
+        return rows
+
+
+def _end(ends: "Journeys", row: int, *, bounced: bool) -> list[Any]:
+    """Where one journey ends, in the columns from the status on; bounced: it left the first impact."""
+    end, speed = str(ends.status[row]), float(ends.impact_speed[row])
+    place = [float(ends.latitude[row]), float(ends.longitude[row])] if end in DOWN else ["", ""]
+    last = ["", ""] if np.isnan(speed) else [speed, float(np.degrees(ends.incidence[row]))]
+    ways = [float(one[row]) for one in (ends.path_length, ends.slid_length, ends.slid_time)]
+    # The journey began with the first rebound, which is counted here.
+    return [end, float(ends.time[row]), *place, int(ends.bounce_count[row]) + bounced, *ways, *last]

@@ -1,0 +1,1 @@
+"""The figures of the report, a file each, and what they share."""

@@ -1,0 +1,209 @@
+"""The aims of a study as maps: how many landers settle there, how far and how late, on soil and on hard ground."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.image import AxesImage
+from matplotlib.patches import Rectangle
+from numpy.typing import NDArray
+
+from lithobrake.report.figures.style import QUIET, SITE, input_label
+from lithobrake.vocabulary.outcomes import JourneyStatus
+
+SETTLED = JourneyStatus.SETTLED.value
+HOUR = 3600.0
+# One for all maps; colours darker than this part of their scale have white figures.
+COLOURS, DARK = "Blues", 0.55
+
+
+@dataclass(frozen=True)
+class AimRow:
+    """A row of maps: words, ground, and the number of an aim with its bounds, in the unit that is drawn.
+
+    scale: its ends, None for those of the numbers.
+    """
+
+    title: str
+    ground: str
+    scale: tuple[float, float] | None
+    read: Callable[[Mapping[str, Any]], tuple[float, float | None, float | None]]
+
+
+def _share(ground: str) -> Callable[[Mapping[str, Any]], tuple[float, float | None, float | None]]:
+    def read(aim: Mapping[str, Any]) -> tuple[float, float | None, float | None]:
+        share = aim[ground][SETTLED]
+        low, high = (None if share[end] is None else 100 * share[end] for end in ("lower", "upper"))
+        return 100 * share["share"], low, high
+
+    return read
+
+
+def _far(name: str, unit: float) -> Callable[[Mapping[str, Any]], tuple[float, float | None, float | None]]:
+    def read(aim: Mapping[str, Any]) -> tuple[float, float | None, float | None]:
+        found = aim["soil"][name]
+        if found is None:
+            return float("nan"), None, None
+        value, low, high = (None if found[key] is None else found[key] / unit for key in ("value", "lower", "upper"))
+        return float("nan") if value is None else value, low, high
+
+    return read
+
+
+def _missing(aim: Mapping[str, Any]) -> tuple[float, float | None, float | None]:
+    return 100 * aim["soil"]["missing"], None, None
+
+
+# Maps in per cent share one scale, from nothing to all: colours differ as much as the shares do.
+WHOLE = (0.0, 100.0)
+ROWS = (
+    AimRow("at rest on soil [%]", "soil", WHOLE, _share("soil")),
+    AimRow("unknown outcome on soil [%]", "soil", WHOLE, _missing),
+    AimRow("95 % rest within [m]", "soil", None, _far("distance_p95", 1.0)),
+    AimRow("95 % rest within [h]", "soil", None, _far("time_p95", HOUR)),
+    AimRow("at rest on hard ground [%]", "hard", WHOLE, _share("hard")),
+)
+
+
+def aim_figure(table: Mapping[str, Any]) -> Figure:
+    """Draw results.aim: a row of maps for each number, a map for each value of the third name.
+
+    What limits rule out is crossed; a frame marks the best on each ground, a dotted one what cannot be told from it.
+    """
+    values = np.array([aim["values"] for aim in table["aims"]])
+    labels = [input_label(name, unit) for name, unit in zip(table["names"], table["units"], strict=True)]
+    # What is not chosen is the same everywhere.
+    places = np.column_stack([values, np.zeros((len(values), 3 - values.shape[1]))])
+    across, up, panels = (np.unique(column) for column in places.T)
+    room = (_Layout.least - _Layout.left - _Layout.right) / len(panels) - 0.2
+    layout = _Layout(max(room, 0.62 * len(across)), max(0.36 * len(up), 0.5), len(panels))
+    figure = Figure(figsize=layout.size)
+    for number, row in enumerate(ROWS):
+        read = [row.read(aim) for aim in table["aims"]]
+        scale = row.scale or _ends(np.array([one[0] for one in read]))
+        for column, panel in enumerate(panels.tolist()):
+            axes = figure.add_axes(layout.place(number, column))
+            shown = np.flatnonzero(places[:, 2] == panel)
+            cells = _Cells(places[shown, 0], places[shown, 1], across, up)
+            drawn = _draw(axes, cells, [read[one] for one in shown], scale)
+            _mark(axes, cells, table, shown, row.ground)
+            third = f"{labels[2].partition(' [')[0]} = {panel:g}" if len(labels) > 2 and number == 0 else ""
+            axes.set_title("\n".join(filter(None, [third, row.title if column == 0 else ""])))
+            _label(axes, cells, labels, is_last=number == len(ROWS) - 1, is_first=column == 0)
+        bar = figure.colorbar(drawn, cax=figure.add_axes(layout.bar(number)))
+        bar.ax.tick_params(labelsize=7.5)
+        outline: Any = bar.outline
+        outline.set_visible(False)
+    return figure
+
+
+def _ends(known: NDArray[np.float64]) -> tuple[float, float]:
+    """The ends of a scale from nothing to the largest of some numbers."""
+    return 0.0, float(np.nanmax(known)) if np.isfinite(known).any() else 1.0
+
+
+@dataclass(frozen=True)
+class _Layout:
+    """Where the maps stand, in inches: width and height of one, and how many stand beside each other.
+
+    The figure is as wide as every other, so that its letters are as large on the page.
+    """
+
+    width: float
+    height: float
+    count: int
+    left: ClassVar[float] = 0.85
+    right: ClassVar[float] = 0.7
+    top: ClassVar[float] = 0.5
+    gap: ClassVar[float] = 0.42
+    least: ClassVar[float] = 9.2
+
+    @property
+    def size(self) -> tuple[float, float]:
+        """Width and height of the figure."""
+        across = max(self.left + self.count * (self.width + 0.2) + self.right, self.least)
+        return across, self.top + len(ROWS) * (self.height + self.gap) + 0.2
+
+    def place(self, row: int, column: int) -> tuple[float, float, float, float]:
+        """Left, bottom, width and height of a map, in parts of the figure."""
+        whole, high = self.size
+        bottom = high - self.top - (row + 1) * self.height - row * self.gap
+        left = self.left + column * (self.width + 0.2)
+        return left / whole, bottom / high, self.width / whole, self.height / high
+
+    def bar(self, row: int) -> tuple[float, float, float, float]:
+        """The place of the colour bar of a row, to the right of its maps."""
+        _, bottom, _, height = self.place(row, 0)
+        whole, _ = self.size
+        right = self.left + self.count * (self.width + 0.2)
+        return right / whole, bottom, 0.12 / whole, height
+
+
+@dataclass(frozen=True)
+class _Cells:
+    """The cells of a map: values of each along both axes [cell_count], and the values that there are."""
+
+    x: NDArray[np.float64]
+    y: NDArray[np.float64]
+    across: NDArray[np.float64]
+    up: NDArray[np.float64]
+
+    @property
+    def places(self) -> list[tuple[int, int]]:
+        """Column and row of each cell."""
+        found = zip(np.searchsorted(self.across, self.x), np.searchsorted(self.up, self.y), strict=True)
+        return [(int(column), int(row)) for column, row in found]
+
+
+def _draw(
+    axes: Axes,
+    cells: _Cells,
+    read: Sequence[tuple[float, float | None, float | None]],
+    scale: tuple[float, float],
+) -> AxesImage:
+    """Colour the cells by their number, and write it there with its bounds."""
+    table = np.full((len(cells.up), len(cells.across)), np.nan)
+    for (column, row), (value, _, _) in zip(cells.places, read, strict=True):
+        table[row, column] = value
+    span = scale[1] - scale[0] or 1.0
+    drawn = axes.imshow(table, origin="lower", aspect="auto", cmap=COLOURS, vmin=scale[0], vmax=scale[0] + span)
+    for (column, row), (value, low, high) in zip(cells.places, read, strict=True):
+        ink = "white" if (value - scale[0]) / span > DARK else "black"
+        text = "none" if np.isnan(value) else f"{value:.0f}" if scale == WHOLE else f"{value:.3g}"
+        axes.text(column, row + 0.16, text, ha="center", va="center", fontsize=9, color=ink)
+        bounds = " to ".join("?" if end is None else f"{end:.2g}" if end < 1 else f"{end:.0f}" for end in (low, high))
+        if (low, high) != (None, None):
+            axes.text(column, row - 0.24, bounds, ha="center", va="center", fontsize=7, color=ink)
+    return drawn
+
+
+def _mark(axes: Axes, cells: _Cells, table: Mapping[str, Any], shown: NDArray[np.int64], ground: str) -> None:
+    """Cross out what limits rule out, and frame the best and what cannot be told from it."""
+    best = table[f"best_on_{ground}"]
+    for (column, row), aim in zip(cells.places, shown.tolist(), strict=True):
+        if not table["aims"][aim][ground]["allowed"]:
+            axes.plot([column - 0.5, column + 0.5], [row - 0.5, row + 0.5], color=QUIET, linewidth=0.8)
+        if best is not None and best["aim"] == aim:
+            # Inside of the cell, where no neighbour covers it.
+            frame = Rectangle((column - 0.47, row - 0.45), 0.94, 0.9, fill=False, edgecolor=SITE, linewidth=1.8)
+            axes.add_patch(frame)
+        elif best is not None and aim in (best["not_worse"] or ()):
+            frame = Rectangle((column - 0.47, row - 0.45), 0.94, 0.9, fill=False, edgecolor=SITE, linestyle=":")
+            axes.add_patch(frame)
+
+
+def _label(axes: Axes, cells: _Cells, labels: Sequence[str], *, is_last: bool, is_first: bool) -> None:
+    """Write the values along the axes, and their names where a row or column of maps ends."""
+    for side in axes.spines.values():
+        side.set_visible(False)
+    axes.tick_params(length=0)
+    axes.set_xticks(range(len(cells.across)), [f"{one:.3g}" for one in cells.across] if is_last else [])
+    is_shown = is_first and len(labels) > 1
+    axes.set_yticks(range(len(cells.up)), [f"{one:.3g}" for one in cells.up] if is_shown else [])
+    if is_last:
+        axes.set_xlabel(labels[0])
+    if is_shown:
+        axes.set_ylabel(labels[1])

@@ -1,0 +1,161 @@
+"""Pictures of rigid convex bodies, painted from far to near into one flat collection of shaded triangles.
+
+Faces that look away are dropped, large ones are cut up so that painting by distance is right where a lander stands
+among grains, and each face is lit by a sun from the side, less in the soft shadow of other bodies and deep in the bed.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
+from numpy.typing import NDArray
+
+from lithobrake.geometry.attitude import rotation_matrices
+from lithobrake.report.figures.shading import light_on_faces
+from lithobrake.report.figures.style import shade
+
+Array = NDArray[np.float64]
+Triangles = NDArray[np.int64]
+
+# A body this many times larger than the middle one is cut up before it is painted.
+LARGE = 1.5
+
+
+@dataclass(frozen=True)
+class Hull:
+    """A convex body: vertices [m], shape [vertex, 3], centroid at the origin; faces, shape [face, 3]; its colour."""
+
+    vertices: Array
+    faces: Triangles
+    colour: str
+
+
+@dataclass(frozen=True)
+class Camera:
+    """A perspective camera: where it looks [m], from which azimuth and elevation [deg], from how far [m]."""
+
+    target: tuple[float, float, float]
+    azimuth_deg: float
+    elevation_deg: float
+    distance: float
+
+    def axes(self) -> Array:
+        """Rows: right, up and towards the viewer, unit vectors, shape [3, 3]."""
+        azimuth, elevation = np.radians([self.azimuth_deg, self.elevation_deg])
+        toward = np.array([np.cos(elevation) * np.cos(azimuth), np.cos(elevation) * np.sin(azimuth), np.sin(elevation)])
+        right = np.array([-np.sin(azimuth), np.cos(azimuth), 0.0])
+        return np.stack([right, np.cross(toward, right), toward])
+
+    def project(self, points: Array) -> tuple[Array, Array]:
+        """Picture plane coordinates [m at the target], shape [..., 2], and nearness [m], shape [...]."""
+        seen = (points - np.array(self.target)) @ self.axes().T
+        scale = self.distance / (self.distance - seen[..., 2])
+        return seen[..., :2] * scale[..., None], seen[..., 2]
+
+
+def subdivide(triangles: Array, longest: float) -> Array:
+    """Cut triangles, shape [count, 3, 3], in four until no edge is longer than `longest` [m]."""
+    edges = np.linalg.norm(triangles - np.roll(triangles, 1, axis=1), axis=2).max(axis=1)
+    large = edges > longest
+    if not large.any():
+        return triangles
+    a, b, c = np.moveaxis(triangles[large], 1, 0)
+    ab, bc, ca = (a + b) / 2, (b + c) / 2, (c + a) / 2
+    pieces = [np.stack(corners, axis=1) for corners in ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))]
+    return np.concatenate([triangles[~large], subdivide(np.concatenate(pieces), longest)])
+
+
+def world_triangles(bodies: Sequence[Hull], position: Array, orientation: Array) -> tuple[Array, NDArray[np.int64]]:
+    """Faces of all bodies in the world, shape [face, 3, 3] [m], wound outwards, and the body each belongs to."""
+    turns = rotation_matrices(orientation)
+    large = _is_large(bodies)
+    longest = 1.3 * float(np.median([np.linalg.norm(body.vertices, axis=1).max() for body in bodies]))
+    pieces, owners = [], []
+    for index, body in enumerate(bodies):
+        corners = body.vertices[body.faces]
+        normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        # The centroid is inside, so a normal that points to it marks a face wound the other way.
+        inward = np.einsum("fk,fk->f", normals, corners.mean(axis=1)) < 0
+        corners = np.where(inward[:, None, None], corners[:, ::-1], corners)
+        if large[index]:
+            corners = subdivide(corners, longest)
+        pieces.append(corners @ turns[index].T + position[index])
+        owners.append(np.full(len(corners), index))
+    return np.concatenate(pieces), np.concatenate(owners)
+
+
+def paint(
+    axes: Axes,
+    bodies: Sequence[Hull],
+    position: Array,
+    orientation: Array,
+    camera: Camera,
+    surface_height: float | None = None,
+) -> None:
+    """Paint the bodies at position [m], shape [body, 3], orientation (w, x, y, z), shape [body, 4], onto flat axes.
+
+    `surface_height` [m]: what lies below it sees less sky; absent, all bodies see the same.
+    """
+    triangles, owners = world_triangles(bodies, position, orientation)
+    normals = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
+    normals /= np.linalg.norm(normals, axis=1)[:, None]
+    to_eye = np.array(camera.target) + camera.distance * camera.axes()[2] - triangles.mean(axis=1)
+    seen = np.flatnonzero(np.einsum("fk,fk->f", normals, to_eye) > 0)
+    order = seen[np.argsort(-np.linalg.norm(to_eye[seen], axis=1), kind="stable")]
+    triangles, owners, normals = triangles[order], owners[order], normals[order]
+
+    radius = np.array([0.85 * np.linalg.norm(body.vertices, axis=1).mean() for body in bodies])
+    light = light_on_faces(
+        triangles.mean(axis=1), normals, owners, position, radius, camera.azimuth_deg, surface_height
+    )
+    colours = np.empty((len(triangles), 3))
+    palette = np.array([body.colour for body in bodies])[owners]
+    for colour in np.unique(palette):
+        colours[palette == colour] = shade(str(colour), light[palette == colour])
+    # The edge closes the hairline that antialiasing leaves between two faces; a little darker it sets grains apart, but
+    # on a face that was cut up it would show the cuts.
+    edges = colours * np.where(_is_large(bodies), 1.0, 0.84)[owners][:, None]
+    # One array of triangles is drawn much faster than a list of polygons, and not all versions declare it.
+    stack: Any = camera.project(triangles)[0]
+    axes.add_collection(PolyCollection(stack, facecolors=colours, edgecolors=edges, linewidths=0.3))
+
+
+def _is_large(bodies: Sequence[Hull]) -> NDArray[np.bool_]:
+    """Which bodies are large beside the middle one, shape [body]."""
+    sizes = np.array([np.linalg.norm(body.vertices, axis=1).max() for body in bodies])
+    large: NDArray[np.bool_] = sizes > LARGE * np.median(sizes)
+    return large
+
+
+def frame_axes(axes: Axes, x_range: tuple[float, float], y_range: tuple[float, float]) -> None:
+    """Set the part of the picture plane [m] that is shown, to scale, without axes."""
+    axes.set_xlim(*x_range)
+    axes.set_ylim(*y_range)
+    axes.set_aspect("equal")
+    axes.set_axis_off()
+
+
+def draw_box(axes: Axes, width: tuple[float, float], height: float, camera: Camera, front: bool) -> None:
+    """Draw the edges of the open box (walls at +-width/2, floor at z = 0); front: those nearer than its middle."""
+    x, y = width[0] / 2, width[1] / 2
+    corners = np.array([(sx * x, sy * y, z) for z in (0.0, height) for sx, sy in ((-1, -1), (1, -1), (1, 1), (-1, 1))])
+    edges = (
+        [(k, (k + 1) % 4) for k in range(4)]
+        + [(4 + k, 4 + (k + 1) % 4) for k in range(4)]
+        + [(k, k + 4) for k in range(4)]
+    )
+    nearness = corners @ camera.axes()[2] * 0 + corners[:, :2] @ camera.axes()[2][:2]
+    flat, _ = camera.project(corners)
+    for a, b in edges:
+        if (nearness[a] + nearness[b] > 1e-9 * x) == front:
+            axes.plot(
+                *flat[[a, b]].T,
+                color="#55606b",
+                linewidth=0.8,
+                alpha=0.9,
+                solid_capstyle="round",
+                zorder=3 if front else 0,
+            )

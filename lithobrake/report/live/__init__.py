@@ -1,0 +1,1 @@
+"""What moves on the page: explorer and views in three dimensions."""

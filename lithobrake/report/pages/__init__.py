@@ -1,0 +1,1 @@
+"""The pages of both methods, and the document that holds them."""

@@ -1,0 +1,93 @@
+"""The page of a sequence: its figures in the order of the work, and what stands beside them."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from lithobrake.report.figures.aim_figure import aim_figure
+from lithobrake.report.figures.calibration_figure import calibration_figure
+from lithobrake.report.figures.rare_figure import rare_figure
+from lithobrake.report.figures.runs_figure import LandingsOfRuns, runs_figure
+from lithobrake.report.figures.scatter_figure import scatter_figure
+from lithobrake.report.figures.style import input_label
+from lithobrake.report.figures.variance_figure import variance_figure
+from lithobrake.report.live.explorer import explorer_sections
+from lithobrake.report.live.views import view_sections
+from lithobrake.report.pages import shared_plots as any_study
+from lithobrake.report.pages.html import Content, Plot
+from lithobrake.report.pages.page_data import SequenceResults
+from lithobrake.report.tables.drawn_tables import colour_input, tables, tiles
+from lithobrake.report.tables.rare_tables import rare_caption
+from lithobrake.report.words import captions
+from lithobrake.report.words import drawn_captions as sequence_captions
+from lithobrake.report.words.drawn_answer import warnings
+from lithobrake.vocabulary.outcomes import TouchdownOutcome
+from lithobrake.vocabulary.quantities import OVER_RIM
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+# The titles of the rows of figure 4 that are no outputs.
+RETURNS_ROW = {"returns": "return fraction"}
+
+
+def sequence_content(data: SequenceResults) -> Content:
+    """All that the page shows of the study."""
+    live = [*explorer_sections(data), *view_sections(data)]
+    return Content(captions.answer(data), warnings(data), tiles(data), _plots(data), tables(data), live)
+
+
+def _plots(data: SequenceResults) -> list[Plot]:
+    colour, words = colour_input(data), sequence_captions
+    plots = [
+        Plot("bed", "The surface", captions.bed(data), lambda: any_study.draw_bed(data)),
+        Plot("landing", "A landing", captions.landing(data), lambda: any_study.draw_landing(data)),
+        Plot("runs", "What the landings gave", words.runs(data), lambda: _runs(data)),
+        Plot("variance", "What decides", words.variance(data), lambda: _variance(data)),
+        Plot("calibration", "Whether to believe the emulator", words.calibration(data), lambda: _calibration(data)),
+        Plot("outputs", "What may come out", words.samples(data, colour), lambda: _samples(data, colour)),
+        Plot("map", "Where the lander comes down", captions.impact_map(data), lambda: any_study.draw_map(data)),
+        Plot("body", "The same on the body", captions.body(data), lambda: any_study.draw_body(data)),
+        Plot("rest", "Where it rests", captions.rest(data), lambda: any_study.draw_rest(data)),
+    ]
+    if data.results["aim"]:
+        plots.append(Plot("aim", "Where to aim", words.aims(data), lambda: aim_figure(data.results["aim"])))
+    if data.rare:
+        plots.append(Plot("rare", "What is rare", rare_caption(data.rare), lambda: rare_figure(data.rare)))
+    return plots
+
+
+def _runs(data: SequenceResults) -> "Figure":
+    runs = data.runs
+    nan = np.full(len(runs["key"]), np.nan)
+    column = {name: runs.get(name, nan) for name in ("speed_out", "elevation_out", OVER_RIM, "bed")}
+    landings = LandingsOfRuns(
+        column["speed_out"],
+        column["elevation_out"],
+        runs["outcome"],
+        column[OVER_RIM] == 1.0,
+        np.nan_to_num(column["bed"]).astype(np.int64),
+    )
+    quantiles = {
+        name: {level: entry["value"] for level, entry in data.table("outputs", name, "quantiles").items()}
+        for name in data.results["outputs"]
+    }
+    return runs_figure(landings, quantiles)
+
+
+def _variance(data: SequenceResults) -> "Figure | None":
+    shares = data.results["variance_shares"]
+    return variance_figure(shares, RETURNS_ROW, data.level) if any(shares.values()) else None
+
+
+def _calibration(data: SequenceResults) -> "Figure":
+    return calibration_figure(data.results["emulator"]["scores"])
+
+
+def _samples(data: SequenceResults, colour: str | None) -> "Figure | None":
+    samples = data.samples
+    leaves = samples["outcome"] == TouchdownOutcome.CLEAR
+    if colour is None or not leaves.any():
+        return None
+    column = samples.columns[colour]
+    return scatter_figure(samples, (input_label(colour, column.units), column.values), leaves)

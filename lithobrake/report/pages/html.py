@@ -1,0 +1,264 @@
+"""The page: one HTML file that needs nothing but itself."""
+
+import base64
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from html import escape
+from importlib.resources import files
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+# More rows or lines than this do not fit on a screen of a phone.
+LONG = 15
+# Of the largest number beside it: what the rounding of doubles may add up to over some million steps of time.
+ROUNDING = 1e-9
+# What every page can do; sections bring scripts of their own. Each is a file beside this one.
+SCRIPT = "pages/page.js"
+NO_SCRIPT = '<noscript><p class="warning">What follows needs JavaScript, which does not run here.</p></noscript>\n'
+
+
+@dataclass(frozen=True)
+class Panel:
+    """A figure of the page: title, one sentence that says what it shows, and the picture (PNG) if there is one."""
+
+    title: str
+    sentence: str
+    picture: bytes | None
+
+
+@dataclass(frozen=True)
+class Plot:
+    """A figure that is still to be drawn: name of its file, title, sentence, and what draws it, or None."""
+
+    name: str
+    title: str
+    sentence: str
+    draw: Callable[[], "Figure | None"]
+
+
+@dataclass(frozen=True)
+class Tile:
+    """One of the few numbers that a reader takes away."""
+
+    value: str
+    unit: str
+    words: str
+
+
+@dataclass(frozen=True)
+class PageTable:
+    """A table of the page; a column whose name stands in `numbers` is set to the right, a cell in `links` is one."""
+
+    title: str
+    columns: Sequence[str]
+    rows: Sequence[Sequence[str]]
+    note: str = ""
+    numbers: frozenset[str] = field(default_factory=frozenset)
+    links: Mapping[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class LiveSection:
+    """A part of the page that a reader moves, as HTML, under a heading that others may share, and its scripts."""
+
+    heading: str
+    html: str
+    scripts: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Content:
+    """What a page says of its study: the answer, what to beware of in sentences, and what stands below."""
+
+    answer: str
+    warnings: Sequence[str]
+    tiles: Sequence[Tile]
+    plots: Sequence[Plot]
+    tables: Sequence[PageTable]
+    live: Sequence[LiveSection] = ()
+
+
+def _header(title: str, content: Content, facts: str) -> str:
+    warnings = "".join(f'<p class="warning">{escape(warning)}</p>\n' for warning in content.warnings)
+    return f"""<header>
+<p class="kind">Landing study</p>
+<h1>{escape(title)}</h1>
+<p class="answer">{escape(content.answer)}</p>
+{warnings}<p class="facts">{escape(facts)}</p>
+</header>"""
+
+
+def page(
+    title: str,
+    facts: str,
+    content: Content,
+    panels: Sequence[Panel],
+    provenance: Sequence[PageTable],
+    study_text: str,
+) -> str:
+    """Put the page together, with the panels that the plots of the content gave; all words are plain text and are
+    escaped here.
+    """
+    style = _own_file("pages/style.css")
+    scripts = dict.fromkeys([SCRIPT, *(name for section in content.live for name in section.scripts)])
+    pictures = "\n".join(_figure(number, panel) for number, panel in enumerate(panels, start=1))
+    return f"""<!DOCTYPE html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<title>{escape(title)}</title>
+<style>
+{style}</style>
+</head>
+<body><main>
+{_header(title, content, facts)}
+<ul class="tiles">
+{"".join(_tile(tile) for tile in content.tiles)}</ul>
+<h2>Figures</h2>
+<p class="note hint">Click or tap a figure to let it fill the window; click again or press Esc to go back.</p>
+{pictures}
+{_live(content.live)}<h2>Tables</h2>
+{"".join(_table(table) for table in sorted(content.tables, key=_is_long))}
+<h2>Provenance</h2>
+{"".join(_table(table) for table in provenance)}
+{_folding("The study file", len(study_text.splitlines()), "lines", f"<pre>{escape(study_text)}</pre>")}
+<footer>Written by lithobrake from the files of the study's folder. SI units; degrees where a label says so.</footer>
+</main>
+<script>
+{"".join(_own_file(name) for name in scripts)}</script>
+</body>
+</html>
+"""
+
+
+def _live(sections: Sequence[LiveSection]) -> str:
+    """The sections that a reader moves, each heading once; without scripts none of them can be seen."""
+    text, heading = "", ""
+    for section in sections:
+        text += f"<h2>{escape(section.heading)}</h2>\n" if section.heading != heading else ""
+        text, heading = text + section.html, section.heading
+    return f'<div class="live">\n{NO_SCRIPT}{text}</div>\n' if text else ""
+
+
+def _own_file(name: str) -> str:
+    """The text of a file of this package that every page has inside."""
+    return files("lithobrake.report").joinpath(name).read_text(encoding="utf-8")
+
+
+def _tile(tile: Tile) -> str:
+    return f"<li><b>{escape(tile.value)} <small>{escape(tile.unit)}</small></b><span>{escape(tile.words)}</span></li>\n"
+
+
+def _figure(number: int, panel: Panel) -> str:
+    """One figure with the picture inside the page, or a place that says there is none."""
+    caption = f"<figcaption><b>Figure {number}. {escape(panel.title)}.</b> {escape(panel.sentence)}</figcaption>"
+    if panel.picture is None:
+        absent = '<div class="absent">No picture: the sentence says why.</div>'
+        return f'<figure id="figure-{number}">{absent}{caption}</figure>'
+    data = base64.b64encode(panel.picture).decode("ascii")
+    alternative = escape(f"{panel.title}. {panel.sentence}", quote=True)
+    # A picture is enlarged by a box that is ticked: no second copy of it, and nothing that a browser may block on disk.
+    return (
+        f'<figure id="figure-{number}"><label class="picture"><input type="checkbox" '
+        f'aria-label="Figure {number} in full size"><span><img alt="{alternative}" '
+        f'src="data:image/png;base64,{data}"></span></label>{caption}</figure>'
+    )
+
+
+def _table(table: PageTable) -> str:
+    kinds = [' class="number"' if name in table.numbers else "" for name in table.columns]
+    head = "".join(f"<th{kind}>{escape(name)}</th>" for name, kind in zip(table.columns, kinds, strict=True))
+    body = "".join(
+        "<tr>"
+        + "".join(f"<td{kind}>{_cell(cell, table.links)}</td>" for cell, kind in zip(row, kinds, strict=True))
+        + "</tr>\n"
+        for row in table.rows
+    )
+    note = f'<p class="note">{escape(table.note)}</p>' if table.note else ""
+    # With a tab stop, so that a box that scrolls sideways can be moved from the keyboard.
+    box = f'<div class="scroll" tabindex="0"><table><thead><tr>{head}</tr></thead><tbody>\n{body}</tbody></table></div>'
+    return _folding(table.title, len(table.rows), "rows", note + box)
+
+
+def _is_long(table: PageTable) -> bool:
+    """Whether a table is folded away, and stands behind those that are not."""
+    return len(table.rows) > LONG
+
+
+def _cell(cell: str, links: Mapping[str, str]) -> str:
+    words = escape(cell)
+    return f'<a href="{escape(links[cell], quote=True)}">{words}</a>' if cell in links else words
+
+
+def _folding(title: str, length: int, unit: str, content: str) -> str:
+    """Content under its title, folded away where it is long."""
+    is_long = length > LONG
+    count = f" <small>{length} {unit}</small>" if is_long else ""
+    opening = "<details>" if is_long else "<details open>"
+    return f"{opening}<summary><h3>{escape(title)}{count}</h3></summary>{content}</details>\n"
+
+
+def flat(tree: Mapping[str, object], prefix: str = "", alike: Sequence[Sequence[str]] = ()) -> list[tuple[str, str]]:
+    """A nested mapping as rows (dotted name, value in words), in its own order; alike: names that share one scale."""
+    scales = {name: largest([tree.get(one) for one in names]) for names in alike for name in names}
+    rows: list[tuple[str, str]] = []
+    for name, value in tree.items():
+        key = f"{prefix}.{name}" if prefix else str(name)
+        if isinstance(value, Mapping):
+            rows += flat(value, key)
+        else:
+            rows.append((key, show(value, scales.get(name, 0.0))))
+    return rows
+
+
+def show(value: object, scale: float = 0.0) -> str:
+    """A value of a results file in words: numbers to four digits, lists in one line and of one scale."""
+    if isinstance(value, bool) or value is None:
+        return {True: "yes", False: "no", None: "none"}[value]
+    if isinstance(value, float):
+        return number(value, 4, scale=scale)
+    if isinstance(value, list | tuple):
+        scale = max(scale, largest(value))
+        return ", ".join(show(entry, scale) for entry in value)
+    return str(value)
+
+
+def largest(value: object) -> float:
+    """The largest magnitude among the numbers of a value of a results file; 0 where it has none."""
+    if isinstance(value, list | tuple):
+        return max(map(largest, value), default=0.0)
+    return abs(value) if isinstance(value, int | float) else 0.0
+
+
+def unit_scales(numbers: Iterable[tuple[str, float]]) -> dict[str, float]:
+    """The largest magnitude of each unit among the numbers (unit, value) of a table."""
+    scales: dict[str, float] = {}
+    for unit, value in numbers:
+        scales[unit] = max(scales.get(unit, 0.0), abs(value))
+    return scales
+
+
+def fixed(value: float, digits: int = 2) -> str:
+    """A number to some digits behind the point, without a sign when they are all zeros."""
+    text = f"{value:.{digits}f}"
+    return text if float(text) else text.removeprefix("-")
+
+
+def number(value: float, digits: int = 3, *, zeros: bool = False, scale: float = 0.0) -> str:
+    """A number to some digits, very large and very small ones with a power of ten; zeros: keep those at the end.
+
+    scale: the largest magnitude of what it stands beside; what is rounding next to that is shown as 0.
+    """
+    if abs(value) <= ROUNDING * scale:
+        return "0"
+    if value == 0 or 1e-3 <= abs(value) < 1e5:
+        text = f"{value:#.{digits}g}" if zeros else f"{value:.{digits}g}"
+        return f"{value:.0f}" if "e" in text else text.removesuffix(".")
+    mantissa, exponent = f"{value:.{digits - 1}e}".split("e")
+    if not zeros and "." in mantissa:
+        mantissa = mantissa.rstrip("0").removesuffix(".")
+    raised = str(int(exponent)).translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))
+    return f"{mantissa} × 10{raised}"

@@ -1,0 +1,66 @@
+"""The files of a study's folder, as the page lists them: a link to each, what it holds, and its size."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from urllib.parse import quote
+
+from lithobrake.report.pages.html import PageTable
+
+CONTENTS = {
+    "study.toml": "the study as it was asked",
+    "summary.json": "every number of this page, with its unit",
+    "runs.sqlite": "every touchdown: inputs, outcome, outputs, seed, times",
+    "beds/bed_*.h5": "a settled bed: shapes, poses, and how they moved",
+    "designs/sequence.csv": "the landings of the sequence: what each drew, and what came out",
+    "designs/soil_pairs.csv": "landings of the sequence made again on a second soil",
+    "designs/twins.csv": "landings of the sequence made again a little beside",
+    "run_flights.csv": "how the flights of each run ended, from many sites",
+    "run_impacts.csv": "time, speed and incidence of the impacts that end these flights",
+    "estimates.json": "what the runs say, with intervals",
+    "landing.h5": "one landing, made before all runs: shapes, poses, and how they moved",
+    "telling_landing.h5": "the landing of this page, likewise: the run with the median speed of those that leave",
+    "emulator.json": "the emulator (lithobrake.emulator.load reads it)",
+    "explorer.h5": "what the explorer of this page evaluates: the emulator or the expansion, fitted anew many times",
+    "screening.json": "the expansion in all inputs",
+    "refined.json": "the expansion in the kept inputs",
+    "scores.json": "the errors of the expansions, run by run",
+    "samples.h5": "the Monte Carlo: inputs and outputs of every sample",
+    "flights.csv": "the flight of each sample that leaves the surface",
+    "flights_without_scatter.csv": "the same flights without the scatter from run to run, where the study has it",
+    "flights.json": "how exact the flights are",
+    "flight_paths.h5": "the ways of the first flights, as the page shows them about the body",
+    "rest.csv": "the journey of each lander that was followed from bounce to bounce",
+    "arcs.csv": "each flight of the first of those landers on the soil: where it begins, and when it ends",
+    "restitution.csv": "restitution, friction and scatter that the soil implies, by speed and incidence",
+    "rest.json": "which ground could be asked, and the range of the runs",
+    "rare_*.json": "a rare limit state: its probability and the levels down to it, from landings of its own",
+    "aim.csv": "the landers at every aim, on soil and on hard ground",
+    "body.obj": "the shape of the body that the flights used",
+}
+
+
+def data_files(folder: Path) -> PageTable:
+    """The data files that the folder has; the links hold as long as the page stays in it."""
+    found = [(path, words) for name, words in CONTENTS.items() for path in sorted(folder.glob(name))]
+    return _table("Data files", folder, found)
+
+
+def picture_files(folder: Path, pictures: Sequence[tuple[str, str]]) -> PageTable:
+    """The figures that stand beside the page: name of the file and title of each."""
+    return _table("Figures as files", folder, [(folder / "report" / name, title) for name, title in pictures])
+
+
+def _table(title: str, folder: Path, found: Sequence[tuple[Path, str]]) -> PageTable:
+    names = [path.relative_to(folder).as_posix() for path, _ in found]
+    rows = [[name, words, size(path.stat().st_size)] for name, (path, words) in zip(names, found, strict=True)]
+    # The page stands in the folder `report`.
+    links = {name: f"../{quote(name)}" for name in names}
+    return PageTable(title, ["file", "what it holds", "size"], rows, numbers=frozenset({"size"}), links=links)
+
+
+def size(byte_count: int) -> str:
+    """A file's size in words, by powers of a thousand."""
+    value, units = float(byte_count), ["B", "kB", "MB"]
+    while value >= 999.5 and units[1:]:
+        value, units = value / 1000.0, units[1:]
+    return f"{value:.0f} {units[0]}" if value >= 99.5 or units[0] == "B" else f"{value:.2g} {units[0]}"

@@ -1,0 +1,248 @@
+"""Tables of where the landers end."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from lithobrake.report.figures.ellipse_line import follows_gaussian
+from lithobrake.report.pages.html import PageTable, fixed, flat, number
+from lithobrake.report.pages.page_data import PaperResults, Results
+from lithobrake.report.words.captions import hours, thousands
+from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus, SampleOutcome
+from lithobrake.vocabulary.percentages import percent, with_interval
+
+OUTCOME_WORDS: dict[str, str] = {
+    FlightStatus.IMPACT: "impact the surface again within {hours}",
+    FlightStatus.FLYING: "still flying after {hours}",
+    FlightStatus.ESCAPED: FlightStatus.ESCAPED.label,
+    FlightStatus.PARTNER: "impact the partner within {hours}",
+    **{outcome: outcome.label for outcome in SampleOutcome if outcome != SampleOutcome.CLEAR},
+    "failed": "failed",
+    "returns": "return fraction (impact again, or captured where the ground holds them)",
+    "missing": "unknown outcome",
+}
+# Each holds others of the table.
+SUMS = ("returns", "missing")
+# Landings without an outcome, by reason.
+LOST = (SampleOutcome.LEFT_SIDEWAYS, SampleOutcome.TIME_LIMIT, SampleOutcome.OUTSIDE, "failed")
+JOURNEY_WORDS: dict[str, str] = {
+    JourneyStatus.SETTLED: "at rest",
+    JourneyStatus.LOFTED: "captured where the spin lifts it off again",
+    JourneyStatus.OUTSIDE: "unknown outcome: impact outside the training range of the {model}, or unphysical rebound",
+    "outside_too_slow": "(of these: slower than any run)",
+    JourneyStatus.SLIDING: "still sliding along the ground after {hours}",
+    JourneyStatus.BOUNCING: "still bouncing after a thousand bounces",
+    JourneyStatus.FLYING: "not at rest after {hours}",
+    JourneyStatus.ESCAPED: JourneyStatus.ESCAPED.label,
+    JourneyStatus.PARTNER: "on the partner",
+    "slid": "(of all: slid along the ground for a while)",
+}
+GROUND_WORDS = {"soil": "soil", "hard": "hard ground", "equivalent": "hard ground like the soil"}
+QUANTILES = ("quantile_0.05", "quantile_0.5", "quantile_0.95")
+ACCELERATIONS = ("effective_acceleration_outward", "effective_acceleration_along_heading")
+
+
+def outcome_words(data: Results) -> dict[str, str]:
+    """What may become of a landing, in words; the partner is left out where there is none.
+
+    So is the return fraction where the ground holds nothing: it is then the share of those that impact again.
+    """
+    site, known = data.results["site"], data.results["shares"]
+    absent: set[str] = set() if site["partner"] else {FlightStatus.PARTNER}
+    if site["effective_acceleration_outward"] >= 0.0:
+        absent.add("returns")
+    return {key: text for key, text in OUTCOME_WORDS.items() if key in known and key not in absent}
+
+
+def parts(data: Results) -> dict[str, str]:
+    """Those of the outcomes that add up to the whole, in words; `lost` landings of a drawn study are in no other."""
+    absent = SUMS if isinstance(data, PaperResults) else (*SUMS, *LOST)
+    return {key: words for key, words in outcome_words(data).items() if key not in absent}
+
+
+def dispersion_tables(data: Results) -> list[PageTable]:
+    """In the order of the journey, those that have a row."""
+    made = (_outcomes, _flights, _statuses, _journeys, _ellipses, _site)
+    return [table for table in (make(data) for make in made) if table.rows]
+
+
+def _outcomes(data: Results) -> PageTable:
+    return _outcomes_of_samples(data) if isinstance(data, PaperResults) else _outcomes_of_landings(data)
+
+
+def _outcomes_of_landings(data: Results) -> PageTable:
+    """Outcomes of the runs of a drawn study, beside what the emulator gives."""
+    shares, limit = data.results["shares"], hours(data.study["flight"]["duration"])
+    level = percent(data.level)
+    columns = ["outcome", f"share of the landings ({level} interval)", f"by the {data.model}"]
+    known, whole = outcome_words(data), parts(data)
+    shown = whole | {key: known[key] for key in SUMS if key in known}
+    shown |= {key: f"(of these: {known[key]})" for key in LOST if key in known and shares[key]["count"]}
+    rows = [
+        [words.format(hours=limit), with_interval(shares[key]), _by_emulator(shares["emulator"], key)]
+        for key, words in shown.items()
+    ]
+    note = (
+        f"Of all landings, by {thousands(shares['flight_count'])} flights of the runs themselves; the first "
+        f"{len(whole)} rows add up to 100 %. In the last column {thousands(shares['emulator']['flight_count'])} flown "
+        f"samples of the {data.model}."
+    )
+    if shares["missing"]["count"]:
+        note += (
+            " Landings of unknown outcome count as like those that left in flight across the edge of the bed, and "
+            "every interval covers whatever became of them."
+        )
+    note += f" {shares['why']}" if shares["why"] else ""
+    return PageTable("After the first bounce", columns, rows, note, frozenset(columns[1:]))
+
+
+def _by_emulator(shares: Mapping[str, Any], key: str) -> str:
+    """A share of the samples: unknown outcomes are shares of all, the others of those with an outcome, as by runs."""
+    if key not in shares:
+        return ""
+    known = shares["sample_count"] - shares["missing"]["count"]
+    total = shares["sample_count"] if key in (*LOST, "missing") else known
+    return percent(shares[key]["count"] / total) if total else ""
+
+
+def _outcomes_of_samples(data: PaperResults) -> PageTable:
+    """Outcomes of the samples of an expansion, which have no interval."""
+    shares, limit = data.results["shares"], hours(data.study["flight"]["duration"])
+    alone = data.results["without_scatter"]
+    columns = ["outcome", "samples", "share", *(["without scatter"] if alone else [])]
+    rows = []
+    for key, words in outcome_words(data).items():
+        row = [words.format(hours=limit), str(shares[key]["count"]), _share(shares[key], data.digits)]
+        rows.append(row + ([_share(alone["shares"][key], data.digits)] if alone else []))
+    note = f"Shares of {shares['sample_count']} samples; {shares['flight_count']} of them were flown. {shares['why']}"
+    if any(_is_unmet(shares[key]) for key in outcome_words(data)):
+        note += f' "At most": no run ended so, which such a probability allows ({percent(data.level)}).'
+    if alone:
+        note += (
+            " The first shares have the scatter from run to run; without it stand those of the expansion alone, of "
+            f"{alone['shares']['sample_count']} samples."
+        )
+    return PageTable("After the first bounce", columns, rows, note, frozenset(columns[1:]))
+
+
+def _share(entry: Mapping[str, Any], alone: int) -> str:
+    """A share, with its interval if it has one, or the largest that an outcome may have which no run had."""
+    return f"at most {percent(entry['upper_limit'], 1)}" if _is_unmet(entry) else with_interval(entry, alone)
+
+
+def _is_unmet(entry: Mapping[str, Any]) -> bool:
+    """Whether no run had an outcome, so that only a limit of its share is known."""
+    return entry.get("upper_limit") is not None
+
+
+def _flights(data: Results) -> PageTable:
+    """Times, speeds and incidences of the impacts, and how exact the flights are."""
+    flights, words = data.results["flights"], {"time_s": "time of flight [s]", "impact_speed": "impact speed [m/s]"}
+    words |= {"impact_incidence_deg": "incidence at the impact, from the normal [deg]"}
+    columns = ["flights that impact the surface again", "5 %", "median", "95 %"]
+    rows = [[words[key], *(_with_ends(flights[key], level) for level in QUANTILES)] for key in words if key in flights]
+    error, drift = flights.get("gravity_table_error"), flights.get("jacobi_drift_largest_m2_s2")
+    whose = next((f"Of {flights[key]['of']}. " for key in words if key in flights and "of" in flights[key]), "")
+    note = f"{whose}Gravity is summed over the facets."
+    if error:
+        note = (
+            f"{whose}Gravity is read from a table, {number(error['median'], 2)} of the surface gravity off the sum "
+            f"over the facets in the median, {number(error['p95'], 2)} at the 95th percentile of "
+            f"{error['point_count']} points."
+        )
+    if drift is not None:
+        note += (
+            f" The Jacobi constant of {flights['jacobi_flight_count']} flights changes by {number(drift, 2)} m2/s2 at "
+            "most, without the partner."
+        )
+    return PageTable("The flights to the next impact", columns, rows, note, frozenset(columns[1:]))
+
+
+def _with_ends(entry: Mapping[str, Any], level: str) -> str:
+    """A quantile, with its interval where it has one."""
+    ends = (entry.get("intervals") or {}).get(level)
+    shown = number(entry[level])
+    return shown if ends is None else f"{shown} ({number(ends[0])} to {number(ends[1])})"
+
+
+def followed(data: Results) -> dict[str, Mapping[str, Any]]:
+    """The grounds on which samples were followed, with what became of them."""
+    rest = data.results["rest"]
+    return {ground: rest[ground] for ground in GROUND_WORDS if rest[ground]}
+
+
+def _statuses(data: Results) -> PageTable:
+    found, limit = followed(data), hours(data.study["rest"]["duration"])
+    columns = ["after all bounces", *(GROUND_WORDS[ground] for ground in found)]
+    rows = []
+    for key, words in JOURNEY_WORDS.items():
+        if any(table[key]["count"] for table in found.values()):
+            rows.append(
+                [
+                    words.format(hours=limit, model=data.model),
+                    *(_share(table[key], data.digits) for table in found.values()),
+                ]
+            )
+    of = "; ".join(f"{GROUND_WORDS[ground]}: {table['of']}" for ground, table in found.items())
+    note = f"From the first impact. {of[:1].upper()}{of[1:]}."
+    why = data.results["rest"]["why_no_soil"]
+    note += f" The soil could not be asked: {why}." if why else ""
+    return PageTable("From bounce to bounce", columns, rows, note, frozenset(columns[1:]))
+
+
+def _journeys(data: Results) -> PageTable:
+    columns = ["landers that rest", "ground", "5 %", "median", "95 %"]
+    words = {"time_s": "time to rest [s]", "rebounds": "rebounds", "path_length": "path [m]"}
+    words |= {"slid_length": "slid along the ground [m]", "slid_time_s": "time of that [s]"}
+    rows = [
+        [words[key], GROUND_WORDS[ground], *(number(table[key][level]) for level in QUANTILES)]
+        for key in words
+        for ground, table in followed(data).items()
+        if key in table
+    ]
+    rest = data.study["rest"]
+    note = (
+        f"Hard ground: restitution {rest['normal_restitution']:g} along the normal, {rest['tangential_restitution']:g} "
+        f"along the ground, friction {rest['friction']:g}; at rest where a rebound rises less than "
+        f"{rest['rest_height']:g} m. Hard ground like the soil draws the restitution that the soil implies by "
+        "speed and incidence (restitution.csv). The path is the sum of straight lines between impacts. What is "
+        f"captured {_sliding(rest)} from facet to facet until it rests or leaves the ground again; no landing has been "
+        "fitted to that law, and on soil it starts from rest, as runs do not tell what speed is left."
+    )
+    return PageTable("Journeys to rest", columns, rows, note, frozenset(columns[2:]))
+
+
+def _sliding(rest: Mapping[str, Any]) -> str:
+    """The law by which a captured lander moves on, in words."""
+    if rest["rolling_friction"] is not None:
+        return f"rolls on like a ball against a resistance of {rest['rolling_friction']:g} of what presses it down,"
+    return "slides on by Coulomb friction, on soil that of hull and grain,"
+
+
+def _ellipses(data: Results) -> PageTable:
+    columns = ["places", "share inside", "latitude [deg]", "longitude [deg]", "semi-axes [m]", "heading [deg]", "shape"]
+    sets = {"next impact": (data.results["ellipses"], len(data.facet))}
+    if data.results["without_scatter"]:
+        alone = data.results["without_scatter"]
+        sets["next impact, without scatter"] = (alone["ellipses"], alone["shares"][FlightStatus.IMPACT]["count"])
+    sets |= {
+        f"at rest, {GROUND_WORDS[ground]}": (table["ellipses"], table[JourneyStatus.SETTLED]["count"])
+        for ground, table in followed(data).items()
+    }
+    rows = []
+    for name, (found, count) in sets.items():
+        shape = "as Gaussian" if follows_gaussian(found, count) else "not Gaussian"
+        for entry in found["shares"] if found else ():
+            axes = " x ".join(number(axis) for axis in entry["semi_axes_m"])
+            middle = [fixed(found[key]) for key in ("latitude_deg", "longitude_deg")]
+            rows.append([name, percent(entry["share"]), *middle, axes, f"{found['heading_deg']:.1f}", shape])
+    note = (
+        "Each holds that share of the places, which need follow no law; the heading is that of the longer axis, from "
+        "north toward east. Not Gaussian: the sizes of both differ from those of a Gaussian law by more than chance, "
+        "so an ellipse says little of where the places lie inside it."
+    )
+    return PageTable("Landing ellipses", columns, rows, note, frozenset(columns[1:6]))
+
+
+def _site(data: Results) -> PageTable:
+    rows = flat(data.results["site"], alike=(("extents_m", "centroid_m", "place_m"), ACCELERATIONS))
+    return PageTable("Site and body", ["name", "value"], rows, "m, kg, s, m/s2; degrees where named.")

@@ -1,0 +1,278 @@
+"""The tables of the page, from the numbers of the files."""
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from lithobrake.report.figures.style import PAPER_OUTPUTS, output
+from lithobrake.report.pages.html import PageTable, Tile, fixed, flat, number, show, unit_scales
+from lithobrake.report.pages.page_data import PaperResults, Results
+from lithobrake.report.tables.dispersion_tables import dispersion_tables
+from lithobrake.report.words.captions import input_words
+from lithobrake.report.words.drawn_answer import action
+from lithobrake.results.telling_numbers import TellingNumbers
+from lithobrake.vocabulary.percentages import percent
+
+STAGE_WORDS = {
+    "screening": "screening: its own runs",
+    "test_screening": "screening: test, all inputs vary",
+    "refined": "refined: its own runs",
+    "test_kept": "refined: test, kept inputs vary",
+    "test_all": "refined: test, all inputs vary",
+}
+INPUT_COLUMNS = ("input", "key in the study file", "distribution", "parameters")
+DESIGN_WORDS = {
+    "screening": "screening, all inputs",
+    "refined": "refined, kept inputs",
+    "test_kept": "test, kept inputs vary",
+    "test_all": "test, all inputs vary",
+}
+
+
+def tiles(data: PaperResults) -> list[Tile]:
+    """The return fraction, and the most telling numbers beside it."""
+    telling = TellingNumbers.of(data.results)
+    main, score, speed = telling.main_input, telling.score, telling.speed
+    low, high = main.interval
+    noise = main.noise_share
+    found = [
+        Tile(
+            percent(data.results["returns"]["share"], data.digits).removesuffix(" %"),
+            "%",
+            f"of the landings {action(data)}; {_scope(data)}",
+        ),
+        _touchdowns_tile(telling),
+        Tile(
+            f"{main.total:.2f}",
+            "Sobol",
+            f"({low:.2f} to {high:.2f}, 95 %) {input_words(main.name)}: largest total index of the rebound speed in "
+            "the refined expansion, without truncation error"
+            + ("" if noise is None else f"; {percent(noise, 0)} of the variance of the runs is scatter"),
+        ),
+        Tile(
+            "none" if score["q2"] is None else fixed(score["q2"]),
+            "Q2",
+            f"{_bounds(score, 'q2')}outgoing speed, fresh runs, all inputs vary: error {number(score['rmse'], 2)} m/s "
+            f"at a spread of {number(score['std'], 2)} m/s",
+        ),
+    ]
+    if speed:
+        words = (
+            f"outgoing speed, median (5 to 95 %: {number(speed['quantile_0.05'])} to {number(speed['quantile_0.95'])})"
+        )
+        found.insert(1, Tile(number(speed["quantile_0.5"]), "m/s", words))
+    return found
+
+
+def _scope(data: PaperResults) -> str:
+    """Over what the answer holds, in the words that it begins with."""
+    where, _, _ = data.results["answer"][0].partition(":")
+    return where[:1].lower() + where[1:]
+
+
+def _bounds(score: Mapping[str, Any], key: str) -> str:
+    """The 95 % interval of a score in words, or nothing where it has no end."""
+    low, high = score[f"{key}_interval"]
+    return "" if high is None else f"({'no bound' if low is None else fixed(low)} to {fixed(high)}, 95 %) "
+
+
+def _touchdowns_tile(telling: TellingNumbers) -> Tile:
+    """How many left the surface, of those that came to an end."""
+    beside = f"; {telling.failed} more runs failed" if telling.failed else ""
+    words = f"simulated touchdowns left the surface{beside}"
+    return Tile(str(telling.left_count), f"of {telling.ended.total()}", words)
+
+
+def tables(data: PaperResults) -> list[PageTable]:
+    """All tables, in the order of the stages."""
+    return [
+        _inputs(data),
+        _runs(data),
+        *([beds_table(data)] if data.results["beds"] else []),
+        _fits(data),
+        _scores(data),
+        _sobol(data),
+        _outputs(data),
+        *([touchdowns_table(data)] if data.results["outputs_of_runs"] else []),
+        *dispersion_tables(data),
+    ]
+
+
+def provenance(data: Results) -> list[PageTable]:
+    """Where the numbers come from: seed, times, versions."""
+    rows = [("seed", show(data.study["seed"])), *flat(data.provenance)]
+    return [
+        PageTable(
+            "Execution",
+            ["name", "value"],
+            rows,
+            "wall_s and cpu_s in seconds; a stage read from the folder keeps its time.",
+        )
+    ]
+
+
+def _inputs(data: PaperResults) -> PageTable:
+    kept = data.results["kept_inputs"]
+    rows = []
+    for name in data.results["screening"]["inputs"]:
+        value: Any = data.study
+        for key in name.split("."):
+            value = value[key]
+        rows.append([*input_cells(name, value), "yes" if name in kept else "no"])
+    return PageTable("Uncertain inputs", [*INPUT_COLUMNS, "kept"], rows)
+
+
+def input_cells(name: str, law: Mapping[str, Any]) -> list[str]:
+    """An uncertain input by dotted key, in the columns of INPUT_COLUMNS; law: as the summary has it."""
+    parameters = ", ".join(f"{key} {show(entry)}" for key, entry in law.items() if key != "distribution")
+    return [input_words(name), name, law["distribution"].replace("_", "-"), parameters]
+
+
+def _runs(data: PaperResults) -> PageTable:
+    rows = []
+    for name, design in data.results["designs"].items():
+        outcomes = ", ".join(f"{count} {outcome.replace('_', ' ')}" for outcome, count in design["outcomes"].items())
+        rows.append([DESIGN_WORDS.get(name, name), str(design["run_count"]), str(design["with_outputs"]), outcomes])
+    numbers = frozenset({"runs", "left the surface"})
+    return PageTable("Touchdowns", ["design", "runs", "left the surface", "outcomes"], rows, numbers=numbers)
+
+
+def beds_table(data: Results) -> PageTable:
+    columns = ["bed", "solid fraction", "contacts a grain", "surface height [m]", "mean diameter [m]"]
+    keys = ("solid_fraction", "coordination_number", "surface_height_m", "mean_diameter_m")
+    rows = [[str(index), *(table_cell(bed[key]) for key in keys)] for index, bed in enumerate(data.results["beds"])]
+    return PageTable("Beds", columns, rows, numbers=frozenset(columns[1:]))
+
+
+def _fits(data: PaperResults) -> PageTable:
+    columns = [
+        "expansion",
+        "output",
+        "unit",
+        "method",
+        "terms",
+        "condition number",
+        "expected error",
+        "scatter between equal runs",
+    ]
+    scale = _output_scales([data.results[stage]["fits"] for stage in ("screening", "refined")], "rmse_estimate")
+    rows = []
+    for stage in ("screening", "refined"):
+        for row, (name, fit) in enumerate(data.results[stage]["fits"].items()):
+            shown = output(name)
+            rows.append(
+                [
+                    stage if row == 0 else "",
+                    shown.row,
+                    shown.unit,
+                    fit["method"].replace("_", " "),
+                    str(fit["term_count"]),
+                    "-" if fit["condition_number"] is None else f"{fit['condition_number']:.3g}",
+                    table_cell(fit["rmse_estimate"] * shown.factor, scale[shown.unit]),
+                    "not known"
+                    if fit["noise_std"] is None
+                    else table_cell(fit["noise_std"] * shown.factor, scale[shown.unit]),
+                ]
+            )
+    note = (
+        "Expected error: at a new run, by cross-validation, scatter included; no expansion comes below the scatter, "
+        "which is known from points that were run several times, or from the nugget of a Gaussian process; where the "
+        "expected error is below the nugget, the scatter is no larger than that error, which stands in its place."
+    )
+    return PageTable("How the expansions were fitted", columns, rows, note, frozenset(columns[4:]))
+
+
+def _scores(data: PaperResults) -> PageTable:
+    columns = ["expansion and runs", "output", "unit", "MAPE [%]", "Q2", "RMSE", "spread (std)", "RMSE/spread"]
+    scale = _output_scales(data.results["scores"].values(), "std")
+    rows = []
+    for stage, table in data.results["scores"].items():
+        for row, (name, score) in enumerate(table.items()):
+            shown = output(name)
+            rows.append(
+                [
+                    STAGE_WORDS.get(stage, stage) if row == 0 else "",
+                    shown.row,
+                    shown.unit,
+                    _with_interval(score, "mape"),
+                    _with_interval(score, "q2"),
+                    table_cell(score["rmse"] * shown.factor, scale[shown.unit]),
+                    table_cell(score["std"] * shown.factor, scale[shown.unit]),
+                    _or_none(score["rrmse"]),
+                ]
+            )
+    note = (
+        "Q2: explained share of the variance. A MAPE is small wherever an output hardly varies, so read it with Q2. "
+        "In brackets: 95 % interval, by drawing the runs anew. Runs that were fitted flatter the expansion."
+    )
+    return PageTable("Errors of the expansions", columns, rows, note, frozenset(columns[3:]))
+
+
+def _sobol(data: PaperResults) -> PageTable:
+    table = data.results["screening"]
+    words = [output(name).sign for name in PAPER_OUTPUTS]
+    columns = ["input", *(f"{word} first" for word in words), *(f"{word} total" for word in words)]
+    rows = [
+        [
+            input_words(key),
+            *(_index(table, kind, name, key) for kind in ("sobol_first", "sobol_total") for name in PAPER_OUTPUTS),
+        ]
+        for key in table["inputs"]
+    ]
+    note = (
+        "Shares of the variance that the screening expansion explains, on the beds and at the places of its runs, "
+        "freed of what scatter adds. First: alone. Total: with all interactions. In brackets: 95 % interval, by "
+        "drawing the residuals of the runs anew."
+    )
+    return PageTable("Sobol indices", columns, rows, note, frozenset(columns[1:]))
+
+
+def _outputs(data: PaperResults) -> PageTable:
+    columns = ["output", "unit", "mean", "std", "5 %", "median", "95 %"]
+    keys = ("mean", "std", "quantile_0.05", "quantile_0.5", "quantile_0.95")
+    outputs = data.results["monte_carlo"]["outputs"]
+    scale = _output_scales([outputs], *keys)
+    rows = []
+    for name, table in outputs.items():
+        shown = output(name)
+        cells = (table_cell(table[key] * shown.factor, scale[shown.unit]) for key in keys)
+        rows.append([shown.row, shown.unit, *cells])
+    return PageTable("Outputs of the samples that leave", columns, rows, numbers=frozenset(columns[2:]))
+
+
+def touchdowns_table(data: Results) -> PageTable:
+    found, keys = data.results["outputs_of_runs"], ("smallest", "median", "largest")
+    scale = unit_scales((table["unit"], table[key]) for table in found.values() for key in keys)
+    rows = [
+        [name.replace("_", " "), table["unit"], *(table_cell(table[key], scale[table["unit"]]) for key in keys)]
+        for name, table in found.items()
+    ]
+    columns = ["quantity", "unit", "smallest", "median", "largest"]
+    return PageTable("What else the touchdowns gave", columns, rows, "Over all distinct runs.", frozenset(columns[2:]))
+
+
+def _output_scales(tables: Iterable[Mapping[str, Any]], *keys: str) -> dict[str, float]:
+    """The largest magnitude of each unit among these numbers of the outputs, as they are shown."""
+    outputs = [(output(name), entry) for table in tables for name, entry in table.items()]
+    return unit_scales((shown.unit, entry[key] * shown.factor) for shown, entry in outputs for key in keys)
+
+
+def _index(table: Mapping[str, Any], kind: str, name: str, key: str) -> str:
+    """One Sobol index with its interval."""
+    low, high = table[f"{kind}_interval"][name][key]
+    return f"{fixed(table[kind][name][key])} ({fixed(low)} to {fixed(high)})"
+
+
+def _with_interval(score: Mapping[str, Any], key: str) -> str:
+    """A score, with its interval where there is one."""
+    low, high = score.get(f"{key}_interval") or (None, None)
+    words = fixed(score[key], 3) if key == "q2" and score[key] is not None else _or_none(score[key])
+    return words if low is None or high is None else f"{words} ({number(low, 2)} to {number(high, 2)})"
+
+
+def _or_none(value: float | None) -> str:
+    return "undefined" if value is None else table_cell(value)
+
+
+def table_cell(value: float, scale: float = 0.0) -> str:
+    """A number in a column: three digits, zeros at the end kept; scale: the largest of its unit in the table."""
+    return number(value, zeros=True, scale=scale)

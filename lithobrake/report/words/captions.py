@@ -1,0 +1,272 @@
+"""The sentences of the page, built from the numbers of the files. They are plain text."""
+
+import math
+from typing import Any
+
+from lithobrake.report.figures.ellipse_line import follows_gaussian
+from lithobrake.report.figures.error_figure import Score
+from lithobrake.report.figures.scatter_figure import DRAWN_COUNT
+from lithobrake.report.figures.style import PAPER_OUTPUTS, output
+from lithobrake.report.pages.html import fixed, number
+from lithobrake.report.pages.page_data import PaperResults, Results
+from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus, TouchdownOutcome
+from lithobrake.vocabulary.percentages import percent, with_interval
+
+BODIES = {"didymos": "Didymos", "dimorphos": "Dimorphos"}
+FIELD_WORDS = {"young_modulus": "Young's modulus", "poisson_ratio": "Poisson's ratio"}
+POINT_WORDS = {
+    "smolyak": "on the Smolyak grid",
+    "sobol_sequence": "of a Sobol sequence",
+    "latin_hypercube": "of a Latin hypercube",
+    "fekete": "at approximate Fekete points",
+}
+
+
+def input_words(name: str) -> str:
+    """An input in words, without unit: "restitution of the grains"."""
+    section, _, field = name.partition(".")
+    words = FIELD_WORDS.get(
+        field, field.removeprefix("inputs.").removesuffix("_deg").replace("_", " ").replace(".", " ")
+    )
+    return words + {"grain": " of the grains", "lander": " of the lander", "impact": " at impact"}.get(section, "")
+
+
+def listing(words: list[str]) -> str:
+    """Words joined as a person would: a, b and c."""
+    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
+
+
+def hours(seconds: float) -> str:
+    """A length of time in hours."""
+    return f"{seconds / 3600:.3g} h"
+
+
+def answer(data: Results) -> str:
+    """The answer to the question of the study: where, and what the summary says of it."""
+    return " ".join([*place_words(data), *data.results["answer"]])
+
+
+def place_words(data: Results) -> list[str]:
+    """Where the study lands, in a sentence."""
+    site = data.results["site"]
+    place = f"latitude {site['latitude_deg']:g} deg, longitude {site['longitude_deg']:g} deg on {body_name(data)}"
+    # A product of an archive tells which shape "the body" is.
+    product = f" ({site['product_id']})" if site["product_id"] else ""
+    return [f"Landing at {place}{product}."]
+
+
+def body_name(data: Results) -> str:
+    """The body in words."""
+    site = data.study["site"]
+    return site.get("name") or BODIES.get(site["body"], "the body")
+
+
+def facts(data: Results) -> str:
+    """When the study was made, and what the body's gravity is known by."""
+    known, date = gravity_words(data), data.provenance["date"][:16].replace("T", ", ")
+    return f"Study of {date} UTC. {known[0].upper()}{known[1:]}."
+
+
+def gravity_words(data: Results) -> str:
+    """Escape speed at the site and bulk density of the body."""
+    site = data.results["site"]
+    return (
+        f"escape speed at the site {number(site['escape_speed_m_s'])} m/s, bulk density of the body "
+        f"{number(site['bulk_density_kg_m3'])} kg/m3"
+    )
+
+
+def bed(data: Results) -> str:
+    """Figure 1."""
+    if data.bed is None:
+        program = data.study["solver"]["command"]
+        return "The touchdowns were made by a " + (
+            f"program of the study's author: {program}" if program else "function."
+        )
+    study, (first, *others) = data.study["bed"], data.results["beds"]
+    which = f"the first of {len(others) + 1} beds," if others else "a bed"
+    width = " x ".join(f"{length:g}" for length in study["width"])
+    return (
+        f"{study['grain_count']} grains, convex hulls with a mean diameter of {number(first['mean_diameter_m'])} m, "
+        f"fall as a random cloud and settle in an open box of {width} m into {which} "
+        f"{number(first['surface_height_m'])} m deep with a solid fraction of {first['solid_fraction']:.2f} and "
+        f"{first['coordination_number']:.1f} contacts a grain. Grains are poured with the medians of their ranges, and "
+        "take on the soil of a landing at its touchdown. "
+        f"The bed must be at least {number(first['smallest_width_m'])} m wide and "
+        f"{number(first['smallest_depth_m'])} m deep to avoid boundary reflections during the first impact; this bed "
+        f"{'meets' if first['large_enough'] else 'does not meet'} that limit."
+    )
+
+
+def landing(data: Results) -> str:
+    """Figure 2."""
+    if data.landing is None:
+        return ""
+    attributes, time = data.landing.moving.attributes, data.landing.moving.time
+    ended = TouchdownOutcome(str(attributes["status"])).sentence.rstrip(".")
+    return (
+        f"{data.shown_landing}, the lander arrives at "
+        f"{number(_float(attributes['speed']))} m/s and "
+        f"{math.degrees(_float(attributes['incidence'])):.3g} deg from the normal. "
+        f"{ended} after {number(float(time[-1] - time[0]))} s of simulated time; "
+        "the line is the way of its centre."
+    )
+
+
+def counts(data: PaperResults) -> str:
+    """Figure 3."""
+    table, design, designs = data.results["node_counts"], data.study["design"], data.results["designs"]
+    level, inputs = design["screening_level"], len(data.results["screening"]["inputs"])
+    grid = design["points"] == "smolyak"
+    place = f"at level {level}" if grid else f"of degree {design['screening_degree']}"
+    words = (
+        f"The screening of {inputs} inputs {place} takes {_runs(designs['screening'])} {POINT_WORDS[design['points']]}"
+    )
+    if grid and inputs in table["input_counts"] and level in table["levels"]:
+        full = table["tensor"][table["input_counts"].index(inputs)][table["levels"].index(level)]
+        words += f", against {thousands(full)} on the full tensor grid"
+    place = f"at level {design['refined_level']}" if grid else f"of degree {design['refined_degree']}"
+    kept = len(data.results["kept_inputs"])
+    refined = "the kept input" if kept == 1 else f"the {kept} kept inputs"
+    return f"{words}; the refined design in {refined} {place} takes {_runs(designs['refined'])}."
+
+
+def _runs(design: dict[str, int]) -> str:
+    """How many runs a design takes, and how they come about."""
+    count, points = design["replicate_count"], design["point_count"]
+    return f"{design['run_count']} runs" + (f" ({points} points, {count} times each)" if count > 1 else "")
+
+
+def sobol(data: PaperResults) -> str:
+    """Figure 4."""
+    screening = data.results["screening"]
+    leaders = [_leader(name, screening) for name in PAPER_OUTPUTS]
+    shares = {name: screening["fits"][name]["noise_share"] for name in PAPER_OUTPUTS}
+    scatter = [f"{percent(share)} of {output(name).sign}" for name, share in shares.items() if share is not None]
+    rest = f"; of the variance of the runs {listing(scatter)} is scatter, which no input decides" if scatter else ""
+    kept = listing([input_words(name) for name in data.results["kept_inputs"]])
+    share = min(data.results["kept_share"][name] for name in data.study["design"]["kept_outputs"])
+    return (
+        f"{listing(leaders)}{rest}; the second step keeps {kept}, which together have at least {percent(share)} of "
+        "the explained variance of every output that decides."
+    )
+
+
+def _leader(name: str, screening: dict[str, Any]) -> str:
+    """The input that an output varies with most, if any was found, with its 95 % interval."""
+    first = screening["sobol_first"][name]
+    main = max(first, key=lambda key: first[key])
+    if first[main] <= 0.0:
+        return f"no input was found that {output(name).sign} varies with"
+    low, high = (percent(end) for end in screening["sobol_first_interval"][name][main])
+    return (
+        f"{output(name).sign} varies most with the {input_words(main)} ({percent(first[main])}, {low} to {high}, "
+        "of its explained variance)"
+    )
+
+
+def errors(data: PaperResults) -> str:
+    """Figure 5."""
+    kept, every = (_explained(data.scores[stage]) for stage in ("test_kept", "test_all"))
+    return (
+        f"On fresh runs in which the kept inputs vary the expansion reaches {kept}, and when all inputs vary {every} "
+        "(in brackets 95 % intervals; at a Q2 of 0 or less it explains nothing); dashed lines are mean errors, and a "
+        "small one beside a small Q2 only says that the output hardly varies."
+    )
+
+
+def _explained(table: dict[str, Score]) -> str:
+    """Explained share of the variance and mean error of the outputs of [Landings-PCE] on one set of runs."""
+    parts = []
+    for name in PAPER_OUTPUTS:
+        q2, mape = table[name].q2, table[name].mape
+        words = "an undefined share" if q2 is None else f"Q2 = {table[name].q2_words}"
+        parts.append(f"{words} of {output(name).sign} (MAPE {'undefined' if mape is None else f'{mape:.2g} %'})")
+    return listing(parts)
+
+
+def scatter(data: PaperResults, colour_name: str) -> str:
+    """Figure 6."""
+    table = data.results["monte_carlo"]
+    total, leaving = table["sample_count"], table["leaving_count"]
+    if not leaving:
+        return f"None of the {thousands(total)} samples leaves the surface, so there is nothing to draw."
+    speed, angle = table["outputs"]["speed_out"], table["outputs"]["elevation_out"]
+    degrees = output("elevation_out").factor
+    first = f" (the first {thousands(DRAWN_COUNT)} are drawn)" if leaving > DRAWN_COUNT else ""
+    return (
+        f"Of {thousands(total)} samples of the refined expansion {thousands(leaving)} leave the surface, the middle "
+        f"nine tenths of them at {number(speed['quantile_0.05'])} to {number(speed['quantile_0.95'])} m/s and "
+        f"{degrees * angle['quantile_0.05']:.3g} to {degrees * angle['quantile_0.95']:.3g} deg above the surface; "
+        f"the colour is the {input_words(colour_name)}{first}."
+    )
+
+
+def impact_map(data: Results) -> str:
+    """Figure 7."""
+    shares, site = data.results["shares"], data.results["site"]
+    extents = " x ".join(f"{length:.0f}" for length in site["extents_m"])
+    outward = site["effective_acceleration_outward"]
+    direction = "outward" if outward > 0 else "inward"
+    down = with_interval(shares[FlightStatus.IMPACT], data.digits)
+    return (
+        f"{down} of the landings impact the surface again within {hours(data.study['flight']['duration'])}. "
+        f"The map has the {thousands(len(data.facet))} impacts of {thousands(data.flights.row_count)} flown samples of "
+        f"the {data.model} (body: {number(site['mass_kg'])} kg, {extents} m, one turn in "
+        f"{site['spin_period_s'] / 3600:.4g} h; at the site gravity and spin together pull "
+        f"{number(abs(outward), 2)} m/s2 {direction}; {gravity_words(data)})."
+    )
+
+
+def body(data: Results) -> str:
+    """Figure 8."""
+    if not len(data.facet):
+        return ""
+    shared = f"{thousands(len(data.facet))} impacts on the shape that the flights used"
+    ellipse = data.table("ellipses")
+    large = [entry["semi_axes_m"] for entry in ellipse.get("shares", ()) if entry["share"] > 0.9]
+    if not large:
+        return f"{shared}; they lie too far around the body, or are too few, for an ellipse that holds 95 % of them."
+    long, short = large[0]
+    latitude, longitude = (fixed(ellipse[key], 1) for key in ("latitude_deg", "longitude_deg"))
+    return (
+        f"{shared}; an ellipse of {number(long)} by {number(short)} m (semi-axes) about latitude {latitude} deg, "
+        f"longitude {longitude} deg holds 95 % of them{_shape_words(data)}."
+    )
+
+
+def rest(data: Results) -> str:
+    """Figure 9."""
+    table = data.results["rest"]
+    soil, hard = table["soil"], table["hard"]
+    if hard is None:
+        return ""
+    limit = hours(data.study["rest"]["duration"])
+    settled = with_interval(hard[JourneyStatus.SETTLED], data.digits)
+    words = f"Followed from bounce to bounce for up to {limit}, {settled} come to rest on hard ground"
+    if soil is None:
+        return f"{words}; on the soil it is not known: {table['why_no_soil']}."
+    settled_on_soil, outside = (
+        with_interval(soil[status], data.digits) for status in (JourneyStatus.SETTLED, JourneyStatus.OUTSIDE)
+    )
+    return (
+        f"{words}, {settled_on_soil} on the soil. The outcome of {outside} on the soil is unknown: they were stopped "
+        f"because the impact was outside the training range of the {data.model} or the sampled rebound was unphysical."
+    )
+
+
+def _shape_words(data: Results) -> str:
+    """What to beware of where the places are not spread as the ellipses suggest."""
+    is_gaussian = follows_gaussian(data.results["ellipses"], len(data.facet))
+    return "" if is_gaussian else ", but the places are not Gaussian, and it says little of where they lie inside it"
+
+
+def thousands(count: int) -> str:
+    return f"{count:,}".replace(",", " ")
+
+
+def _float(value: object) -> float:
+    """An attribute that has to be a number."""
+    if not isinstance(value, int | float):
+        raise ValueError(f"landing.h5 has {value!r} where a number is needed; make the landing again")
+    return float(value)

@@ -1,0 +1,263 @@
+"""One touchdown as a model: from the numbers of the study file, by dotted key, to what came out."""
+
+import math
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from lithobrake import __version__
+from lithobrake.files.hashing import source_hash
+from lithobrake.geometry.attitude import pointed
+from lithobrake.study import Study
+from lithobrake.study.bed_section import Constant, PowerLaw
+from lithobrake.study.quantity import median
+
+if TYPE_CHECKING:
+    from lithobrake.dem import Material
+    from lithobrake.touchdown import Bed, ContactModel, GrainSizes, Lander, Landing, Outcome
+
+Values = Mapping[str, float]
+# What a material is to a contact, by the names of the study file and of dem.Material.
+SURFACE = (
+    "young_modulus", "poisson_ratio", "restitution", "friction", "rolling_friction", "spinning_friction",
+    "cohesion_force", "surface_energy",
+)  # fmt: skip
+PLACE = ("impact.place.x", "impact.place.y")
+ORIENTATION = ("impact.orientation.w", "impact.orientation.x", "impact.orientation.y", "impact.orientation.z")
+
+
+def medians(study: Study) -> dict[str, float]:
+    """Every scalar that the touchdown reads, uncertain ones at their median, by dotted key, in the file's units."""
+    return {name: median(value) for name, value in study.touchdown_values().items()}
+
+
+@dataclass(frozen=True)
+class TouchdownModel:
+    """A touchdown of a study, for any process: called with all its numbers, drawn ones included, it lands once.
+
+    engine: hash of the code that decides what a touchdown gives, where the study is coordinated.
+    """
+
+    study: Study
+    bed_paths: tuple[Path, ...]
+    engine: str
+
+    def __call__(self, values: dict[str, float], seed: int) -> dict[str, Any]:
+        """Land once and say the outcome and the outputs [SI]. Raises ValueError where the code is another one."""
+        outcome = self.land(values)
+        return {"outcome": outcome.status, "outputs": outcome.outputs}
+
+    def land(
+        self,
+        values: Mapping[str, float],
+        frame_count: int = 0,
+        progress: Callable[[float, str], None] = lambda fraction, what: None,
+    ) -> "Outcome":
+        """Land once, and record about so many frames. Raises ValueError where the code is another one."""
+        from lithobrake.touchdown import land
+
+        refuse_other_code(self.engine)
+        bed = stored_bed(self.bed_paths[round(values["bed"])])
+        with in_words_of_the_study():
+            return land(bed, lander(self.study, values), landing(self.study, values), frame_count, progress)
+
+
+# What the engine calls things by its own names, and what they are in a study file.
+STUDY_WORDS = {
+    "World time_step": "the time step (a contact has contact.steps_per_contact of them)",
+    ": make it smaller": ": raise contact.steps_per_contact",
+    "positions are no longer finite numbers": "positions are no longer finite numbers; raise contact.steps_per_contact",
+    "BedRecipe.gravity": "surface.gravity with surface.slope_deg",
+    "BedRecipe.": "bed.",
+    "Landing.incidence": "impact.incidence_deg, in radians,",
+    "Landing.azimuth": "impact.azimuth_deg, in radians,",
+    "Landing.gravity": "surface.gravity",
+    "Landing.time_limit": "landing.time_limit",
+    "Landing.": "impact.",
+    "Lander.": "lander.",
+    "add_body ": "lander.",
+    "Sphere radius": "half of lander.diameter",
+    "Box lengths": "lander.edges",
+}
+
+
+@contextmanager
+def in_words_of_the_study() -> Iterator[None]:
+    """Say what the engine refuses by the keys of the study file, which is all that its user has written."""
+    try:
+        yield
+    except (ValueError, FloatingPointError) as error:
+        text = str(error)
+        for engine, study in STUDY_WORDS.items():
+            text = text.replace(engine, study)
+        # Either may be a kind of its own that takes no text.
+        raise (ValueError if isinstance(error, ValueError) else FloatingPointError)(text) from error
+
+
+# Where the code stands that decides what a touchdown gives.
+ENGINE_PARTS = (
+    "dem",
+    "touchdown",
+    "geometry/mesh.py",
+    "geometry/mesh_files.py",
+    "geometry/mesh_units.py",
+    "study/touchdown_model.py",
+)
+
+
+@cache
+def engine_hash() -> str:
+    """Hash of the code that decides what a touchdown gives."""
+    return source_hash(*ENGINE_PARTS)
+
+
+def refuse_other_code(engine: str) -> None:
+    """Raise ValueError where the code of this process is not that of the coordinator, whose hash `engine` is."""
+    if engine_hash() != engine:
+        raise ValueError(
+            f"this worker has the code {engine_hash()} and the coordinator {engine}; install the same version of "
+            "lithobrake on both"
+        )
+
+
+def touchdown_version() -> str:
+    """The version of the package and of the code that decides what a touchdown gives, as the ledger keeps it."""
+    return f"{__version__}+{engine_hash()}"
+
+
+# In all beds that a process keeps: 1000 take 13 MB. Each run takes another bed, and reading one takes longer than to
+# land on it.
+GRAINS_KEPT = 40_000
+_beds: dict[tuple[Path, int, int], "Bed"] = {}
+
+
+def stored_bed(path: Path) -> "Bed":
+    """Read a bed, once for all runs of a process as long as the file stays the same and there is room for it."""
+    from lithobrake.touchdown import Bed
+
+    status = path.stat()
+    key = path, status.st_mtime_ns, status.st_size
+    # The last is the one that was used last.
+    _beds[key] = bed = _beds.pop(key, None) or Bed.load(path)
+    while len(_beds) > 1 and sum(len(one.grains) for one in _beds.values()) > GRAINS_KEPT:
+        del _beds[next(iter(_beds))]
+    return bed
+
+
+def draw(study: Study, values: Values, seed: int) -> dict[str, float]:
+    """The values of a run with what it draws by chance, or is given in its place.
+
+    bed: number of the bed; impact.place.x and .y [m], impact.azimuth_deg, impact.orientation.w to .z. All are drawn,
+    whether used or not, so that each has the same random numbers in every study. A run takes the bed with the largest
+    number of its own: one more bed takes its part of the runs over, and all others stay on theirs (rendezvous hashing).
+
+    Source: [Thaler-1998].
+    """
+    bed = int(np.argmax(np.random.Generator(np.random.PCG64([seed, 1])).random(study.bed_count)))
+    generator = np.random.Generator(np.random.PCG64(seed))
+    fractions, turn = generator.random(2), generator.random()
+    # Four normal numbers point evenly over the unit quaternions.
+    quaternion = generator.standard_normal(4)
+    impact = study.impact
+    if impact.region is None:
+        place = [values["impact.place.x"], values["impact.place.y"]]
+    else:
+        ends = (impact.region.x, impact.region.y)
+        place = [low + fraction * (high - low) for fraction, (low, high) in zip(fractions.tolist(), ends, strict=True)]
+    azimuth = 360 * turn if impact.azimuth_deg == "random" else values["impact.azimuth_deg"]
+    if impact.orientation != "random":
+        quaternion = given_attitude(study, *generator.random(2).tolist())
+    orientation = (quaternion / np.linalg.norm(quaternion)).tolist()
+    return {
+        **values,
+        "bed": float(bed),
+        **dict(zip(PLACE, place, strict=True)),
+        "impact.azimuth_deg": float(azimuth),
+        **dict(zip(ORIENTATION, orientation, strict=True)),
+    }
+
+
+def given_attitude(study: Study, distance: float, direction: float) -> np.ndarray:
+    """The attitude that the study gives, off by its error of pointing as two uniform numbers say."""
+    orientation = np.array(study.impact.orientation)
+    if study.impact.pointing_error_deg is None:
+        return orientation
+    return pointed(orientation, math.radians(study.impact.pointing_error_deg), distance, direction)
+
+
+def contact(study: Study) -> "ContactModel":
+    """The readings of the contact law."""
+    from lithobrake.touchdown import ContactModel
+
+    return ContactModel(**study.contact.model_dump())
+
+
+def grain_sizes(study: Study) -> "GrainSizes":
+    """The sizes of the grains."""
+    from lithobrake.touchdown import GrainSizes
+
+    sizes = study.bed.diameter
+    if isinstance(sizes, Constant):
+        return GrainSizes(distribution="constant", lower=sizes.value, upper=sizes.value)
+    if isinstance(sizes, PowerLaw):
+        exponent = sizes.differential_exponent
+        return GrainSizes(distribution="power_law", lower=sizes.lower, upper=sizes.upper, exponent=exponent)
+    return GrainSizes(**sizes.model_dump())
+
+
+def grain(values: Values) -> "Material":
+    """The rock of the grains."""
+    from lithobrake.dem import Material
+
+    return Material(**{name: values[f"grain.{name}"] for name in ("density", *SURFACE)})
+
+
+def lander(study: Study, values: Values) -> "Lander":
+    """The lander; what is not said about its material is that of the grains."""
+    from lithobrake.dem import Box, ConvexHull, Material, Sphere
+    from lithobrake.touchdown import Lander, read_hull
+
+    section = study.lander
+    shape: Box | Sphere | ConvexHull
+    if section.edges is not None:
+        shape = Box(section.edges)
+    elif section.file is not None:
+        shape = read_hull(Path(section.file), section.unit)
+    else:
+        shape = Sphere(values["lander.diameter"] / 2)
+    properties = {name: values.get(f"lander.{name}", values[f"grain.{name}"]) for name in SURFACE}
+    # The density of the material plays no part: the mass is given.
+    material = Material(density=values["lander.mass"] / shape.volume, **properties)
+    inertia = None if section.inertia is None else np.diag(section.inertia)
+    return Lander(shape=shape, mass=values["lander.mass"], inertia=inertia, material=material)
+
+
+def landing(study: Study, values: Values) -> "Landing":
+    """How the lander arrives, on which soil, under which acceleration; values with what was drawn."""
+    from lithobrake.touchdown import Landing
+
+    w, x, y, z = (values[name] for name in ORIENTATION)
+    return Landing(
+        grain=grain(values),
+        speed=values["impact.speed"],
+        incidence=math.radians(values["impact.incidence_deg"]),
+        azimuth=math.radians(values["impact.azimuth_deg"]),
+        place=(values[PLACE[0]], values[PLACE[1]]),
+        orientation=(w, x, y, z),
+        spin=(values["impact.spin_x"], values["impact.spin_y"], values["impact.spin_z"]),
+        gravity=acceleration(values, values["surface.gravity"]),
+        time_limit=study.landing.time_limit,
+        contact=contact(study),
+    )
+
+
+def acceleration(values: Values, size: float) -> tuple[float, float, float]:
+    """Acceleration of this size [m/s2] in the bed's frame, tilted as the slope says."""
+    slope, downhill = math.radians(values["surface.slope_deg"]), math.radians(values["surface.slope_azimuth_deg"])
+    along = size * math.sin(slope)
+    return along * math.cos(downhill), along * math.sin(downhill), -size * math.cos(slope)

@@ -1,0 +1,266 @@
+"""Meshes of archives: units that they state or do not, Gaskell's quadrilaterals, kernels of SPICE."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from lithobrake.geometry.mesh import closed_faces, volume_of
+from lithobrake.geometry.mesh_files import read_mesh
+from lithobrake.geometry.mesh_labels import labelled_mesh, product_id
+from lithobrake.smallbody import Shape
+
+OCTAHEDRON = "\n".join(
+    [
+        *("v 1 0 0", "v -1 0 0", "v 0 1 0", "v 0 -1 0", "v 0 0 1", "v 0 0 -1"),
+        *("f 1 3 5", "f 3 2 5", "f 2 4 5", "f 4 1 5", "f 3 1 6", "f 2 3 6", "f 4 2 6", "f 1 4 6"),
+    ]
+)
+PDS4_LABEL = "<Field_Character><name>x</name><unit>km</unit></Field_Character>"
+PDS3_LABEL = 'OBJECT = COLUMN\n  NAME = "VERTEX LOCATION ONE"\n  UNIT = "KILOMETER"\nEND_OBJECT = COLUMN\n'
+
+
+def mesh(folder: Path, header: str = "", label: str = "", ending: str = ".xml") -> Path:
+    """An octahedron with corners at a distance of 1, with a header and a label beside it."""
+    path = folder / "rock.obj"
+    path.write_text(f"{header}{OCTAHEDRON}\n")
+    if label:
+        path.with_suffix(ending).write_text(label)
+    return path
+
+
+@pytest.mark.parametrize(
+    ("header", "label", "ending", "length"),
+    [
+        ("", "", "", 1.0),
+        ("# Blender v2.9 OBJ File: ''\n", "", "", 1.0),
+        ("# Units: km\n", "", "", 1e3),
+        ("# PRODUCT_VERSION = 3\n#\n# The units are kilometers.\n", "", "", 1e3),
+        ("# vertices in meters\n", "", "", 1.0),
+        ("# File units = millimetres\n", "", "", 1e-3),
+        ("# UNITS: MM\n", "", "", 1e-3),
+        ("# 1 unit = 1 km\n", "", "", 1e3),
+        ("# all lengths are in km\n", "", "", 1e3),
+        ("# x [km] y [km] z [km]\n", "", "", 1e3),
+        ("mtllib rock.mtl\n\n# units: km\n", "", "", 1e3),
+        ("# GSD = 0.25\n", PDS4_LABEL, ".xml", 1e3),
+        ("", PDS3_LABEL, ".lbl", 1e3),
+    ],
+)
+def test_the_unit_is_what_header_or_label_state(
+    tmp_path: Path, header: str, label: str, ending: str, length: float
+) -> None:
+    vertices, _ = read_mesh(mesh(tmp_path, header, label, ending))
+    assert vertices.max() == length
+
+
+@pytest.mark.parametrize(
+    ("header", "label", "unit", "words"),
+    [
+        ("# GSD = TBD\n", "", None, "do not state the unit"),
+        ("", "<Product_Observational/>", None, "do not state the unit"),
+        ("# Units: km\n", "", "m", "says km, and unit is 'm'"),
+        ("# Units: km\n", "<unit>m</unit>", None, "name km, m"),
+        ("", "", "inch", "allowed are m, km, cm, mm"),
+        ("# Units: feet\n", "", None, "gives lengths in feet; allowed are m, km, cm, mm"),
+        ("# the units are Feet\n", "", "m", "gives lengths in feet"),
+        ("# units = inches\n", "", None, "gives lengths in inches"),
+        ("# units: in\n", "", "m", "gives lengths in in;"),
+        ("# unit: mi\n", "", None, "gives lengths in miles"),
+        ("# unit: \u00b5m\n", "", None, "gives lengths in um"),
+        ("# unit: \u03bcm\n", "", None, "gives lengths in um"),
+        ("# length_unit: ft\n", "", None, "gives lengths in feet"),
+        ("# LENGTH_UNIT = FT\n", "", None, "gives lengths in feet"),
+        ("# unit_length = furlongs\n", "", None, "gives lengths in furlongs"),
+        ("\ufeff# units: km\n", "", "m", "says km, and unit is 'm'"),
+        ("# vertices in furlongs\n", "", None, "gives lengths in furlongs"),
+        ("# UNIT: AU\n", "", "km", "gives lengths in au"),
+        ("# unit: au\n", "", None, "gives lengths in au"),
+        ("# units: Mm\n", "", None, "gives lengths in Mm"),
+        ("# units: parasangs\n", "", None, "gives lengths in parasangs"),
+        ("# units: 0.3 m\n", "", None, "gives lengths in 0.3"),
+        ("# units: km/s\n", "", "km", "gives lengths in km/s"),
+        ("", "<unit>AU</unit>", None, "gives lengths in au"),
+    ],
+)
+def test_a_unit_is_never_guessed(tmp_path: Path, header: str, label: str, unit: str | None, words: str) -> None:
+    with pytest.raises(ValueError, match=words):
+        read_mesh(mesh(tmp_path, header, label), unit)
+
+
+def test_a_unit_that_is_given_answers_a_silent_header(tmp_path: Path) -> None:
+    assert read_mesh(mesh(tmp_path, "# GSD = TBD\n"), "km")[0].max() == 1e3
+
+
+def test_a_unit_in_the_title_of_an_stl_file_is_read(tmp_path: Path) -> None:
+    (tmp_path / "rock.stl").write_text("solid rock UNITS=feet\nfacet\nvertex 0 0 0\n")
+    with pytest.raises(ValueError, match="gives lengths in feet"):
+        read_mesh(tmp_path / "rock.stl", "m")
+
+
+def plate_table(vertices: list[str], plates: list[str]) -> str:
+    return "\n".join([str(len(vertices)), *vertices, str(len(plates)), *plates]) + "\n"
+
+
+NUMBERED = [[f"{number} {line[2:]}" for number, line in enumerate(
+    (line for line in OCTAHEDRON.splitlines() if line[0] == kind), 1)] for kind in "vf"]  # fmt: skip
+
+
+def test_the_vertices_of_a_plate_table_have_their_numbers(tmp_path: Path) -> None:
+    vertices, plates = NUMBERED
+    path = tmp_path / "rock.tab"
+    path.write_text(plate_table(vertices, plates))
+    wanted = read_mesh(path)
+    assert volume_of(*wanted) == pytest.approx(4.0 / 3.0)
+    for order in ([1, 0, 2, 3, 4, 5], [5, 3, 1, 0, 2, 4]):
+        path.write_text(plate_table([vertices[i] for i in order], plates[::-1]))
+        assert all(np.array_equal(found, expected) for found, expected in zip(read_mesh(path), wanted, strict=True))
+    path.write_text(plate_table([line[2:] for line in vertices], [line[2:] for line in plates]))
+    assert np.array_equal(read_mesh(path)[0], wanted[0])
+
+
+@pytest.mark.parametrize(
+    ("line", "words"),
+    [
+        ("5 0 0 -1", "vertices are not numbered from 1 to 6: 6 is missing"),
+        ("7 0 0 -1", "vertices are not numbered from 1 to 6: 6 is missing"),
+        ("0 0 0 -1", "6 is missing"),
+        ("0 0 -1", "lines of vertices have 3, 4 entries"),
+        ("6 0 0 -1 1", "lines of vertices have 4, 5 entries"),
+        ("six 0 0 -1", "invalid literal"),
+    ],
+)
+def test_a_plate_table_with_gaps_between_its_numbers_is_refused(tmp_path: Path, line: str, words: str) -> None:
+    vertices, plates = NUMBERED
+    (tmp_path / "rock.tab").write_text(plate_table([*vertices[:-1], line], plates))
+    with pytest.raises(ValueError, match=words):
+        read_mesh(tmp_path / "rock.tab")
+
+
+def gaskell_cube(size: int) -> np.ndarray:
+    """Vertices of a cube as the format has them, [6, J, I, 3], from the corners that its faces share."""
+    corners = {
+        "a": (-1, -1, 1), "b": (1, -1, 1), "c": (1, 1, 1), "d": (-1, 1, 1),
+        "e": (-1, -1, -1), "f": (1, -1, -1), "g": (1, 1, -1), "h": (-1, 1, -1),
+    }  # fmt: skip
+    # Corners (0, 0), (Q, 0), (0, Q), (Q, Q) of each face.
+    faces = ("adbc", "bcfg", "abef", "dahe", "cdgh", "fgeh")
+    step = np.linspace(0.0, 1.0, size + 1)
+    i, j = step[None, :, None], step[:, None, None]
+    grids = []
+    for face in faces:
+        zero, right, down, both = (np.array(corners[name], dtype=float) for name in face)
+        grids.append((1 - i) * (1 - j) * zero + i * (1 - j) * right + (1 - i) * j * down + i * j * both)
+    return np.array(grids)
+
+
+@pytest.mark.parametrize("ending", ["icq", "tab", "txt"])
+def test_quadrilaterals_close_to_a_body_that_faces_outward(tmp_path: Path, ending: str) -> None:
+    grid = gaskell_cube(4)
+    lines = ["4", *(f"{x:.9f} {y:.9f} {z:.9f}" for x, y, z in grid.reshape(-1, 3))]
+    (tmp_path / f"cube.{ending}").write_text("\n".join(lines) + "\n")
+    vertices, faces = read_mesh(tmp_path / f"cube.{ending}", "km")
+    # Of 6 (Q + 1)^2 labelled vertices 6 Q^2 + 2 are independent.
+    assert (len(vertices), len(faces)) == (6 * 4**2 + 2, 12 * 4**2)
+    assert np.array_equal(closed_faces(vertices, faces, "cube"), faces)
+    assert volume_of(vertices, faces) == pytest.approx(8e9)
+
+
+def test_a_shape_kernel_is_read_in_kilometres(tmp_path: Path) -> None:
+    spice = pytest.importorskip("spiceypy")
+    write_kernel(spice, tmp_path / "rock.bds", 1)
+    vertices, faces = read_mesh(tmp_path / "rock.bds")
+    assert vertices.max() == 1e3
+    assert volume_of(vertices, faces) == pytest.approx(4.0 / 3.0 * 1e9)
+    with pytest.raises(ValueError, match="says km"):
+        read_mesh(tmp_path / "rock.bds", "m")
+
+
+def test_kernels_that_are_no_single_shape_are_refused(tmp_path: Path) -> None:
+    spice = pytest.importorskip("spiceypy")
+    write_kernel(spice, tmp_path / "two.bds", 2)
+    with pytest.raises(ValueError, match="2 segments"):
+        read_mesh(tmp_path / "two.bds")
+    (tmp_path / "text.bds").write_text("no kernel\n" * 200)
+    with pytest.raises(ValueError, match="not a kernel that SPICE opens"):
+        read_mesh(tmp_path / "text.bds")
+
+
+def test_a_damaged_shape_kernel_is_refused_and_ends_no_process(tmp_path: Path) -> None:
+    """SPICE aborts the process that reads one of zeros."""
+    spice = pytest.importorskip("spiceypy")
+    write_kernel(spice, tmp_path / "rock.bds", 1)
+    whole = (tmp_path / "rock.bds").read_bytes()
+    random = np.random.default_rng(1)
+    flipped = bytearray(whole)
+    for place in random.integers(8, 4000, 300):
+        flipped[place] = random.integers(256)
+    damaged = [b"DAS/DSK " + bytes(4000), whole[:1500], whole[:3000], bytes(flipped)]
+    for number, content in enumerate(damaged):
+        path = tmp_path / f"damaged{number}.bds"
+        path.write_bytes(content)
+        with pytest.raises(ValueError, match=f"{path}: (not a kernel that SPICE|a kernel without plates|.* cannot be)"):
+            read_mesh(path)
+
+
+def write_kernel(spice: object, path: Path, segments: int) -> None:
+    """An octahedron with corners at 1 km, in so many segments."""
+    vertices = np.array([[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]], dtype=float)
+    plates = np.array(
+        [[int(word) for word in line.split()[1:]] for line in OCTAHEDRON.splitlines() if line[0] == "f"], dtype=np.int32
+    )
+    handle = spice.dskopn(str(path), "test", 0)  # type: ignore[attr-defined]
+    index = spice.dskmi2(vertices, plates, 0.5, 1, 10000, 10000, 10000, True, 1000000)  # type: ignore[attr-defined]
+    bounds = (-np.pi, np.pi, -np.pi / 2, np.pi / 2, 0.0, 2.0)
+    for _ in range(segments):
+        spice.dskw02(  # type: ignore[attr-defined]
+            handle, 120065803, 1, 1, "J2000", 1, np.zeros(10), *bounds, -1e9, 1e9, vertices, plates, *index
+        )
+    spice.dskcls(handle, True)  # type: ignore[attr-defined]
+
+
+PRODUCT = """<Product_Observational xmlns="http://pds.nasa.gov/pds4/pds/v1"><Identification_Area>
+  <logical_identifier> urn:nasa:pds:rocks:data:rock </logical_identifier>
+  <version_id>3.0</version_id>
+  <Modification_History><version_id>1.0</version_id></Modification_History></Identification_Area>
+  <File_Area_Observational><File><file_name>{file}</file_name></File>
+  <Field_Character><unit>km</unit></Field_Character></File_Area_Observational></Product_Observational>
+"""
+
+
+def test_a_label_names_its_product_and_its_mesh(tmp_path: Path) -> None:
+    path = mesh(tmp_path, label=PRODUCT.format(file="rock.obj"))
+    label = path.with_suffix(".xml")
+    assert product_id(path) == "urn:nasa:pds:rocks:data:rock::3.0"
+    assert labelled_mesh(label) == labelled_mesh(path) == path
+    assert Shape.read(label).radius == 1e3
+    label.write_text(PDS4_LABEL)
+    assert product_id(path) is None
+    label.unlink()
+    assert product_id(path) is None
+    assert labelled_mesh(label) == label
+
+
+@pytest.mark.parametrize("file", ["other.obj", "rock.stl", "../rock.obj"])
+def test_a_label_of_another_file_is_no_mesh(tmp_path: Path, file: str) -> None:
+    """What is not beside it under its name may be in another unit than the label says."""
+    label = mesh(tmp_path, label=PRODUCT.format(file=file)).with_suffix(".xml")
+    with pytest.raises(ValueError, match=f"this label names {file}; allowed: one file beside it that is named rock"):
+        labelled_mesh(label)
+
+
+@pytest.mark.parametrize(
+    "header", ["# length_unit: km\n", "# LengthUnits: km\n", "# unit_length = km\n", "# units: km\n"]
+)
+@pytest.mark.parametrize("mark", ["", "\ufeff"])
+def test_a_unit_is_found_by_each_of_its_names_and_behind_a_byte_order_mark(
+    tmp_path: Path, header: str, mark: str
+) -> None:
+    (tmp_path / "rock.obj").write_text(f"{mark}{header}\n{OCTAHEDRON}", encoding="utf-8")
+    assert read_mesh(tmp_path / "rock.obj")[0].max() == 1000.0
+
+
+@pytest.mark.parametrize("name", ["rock.obj", "rock.tab"])
+def test_a_byte_order_mark_hides_no_vertex(tmp_path: Path, name: str) -> None:
+    (tmp_path / name).write_text("\ufeff" + OCTAHEDRON, encoding="utf-8")
+    assert volume_of(*read_mesh(tmp_path / name)) == pytest.approx(4.0 / 3.0)

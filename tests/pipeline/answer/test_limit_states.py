@@ -1,0 +1,104 @@
+"""Limit states of a drawn study, from its file to its report, against what is known of the synthetic landings."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import lithobrake
+from lithobrake.results import StudyResults
+from lithobrake.results.key_words import leaves, words_of
+
+from ...synthetic_landings import OUTPUT_NAMES, WEAK, random_soils
+from ..synthetic_lander import SyntheticLander, synthetic_tables
+
+# About a tenth and a two-hundredth of the landers that leave are faster [m/s].
+FAST, FASTEST = 0.14, 0.21
+CONDITIONS = {
+    "fast": f"speed_out > {FAST}",
+    "fastest": f"speed_out > {FASTEST}",
+    "gone": "returns == false",
+    "caught": "captured",
+    "fast_and_back": f"speed_out > {FAST} and returns",
+    "held": "settled",
+    "lifted": "lofted",
+}
+
+
+@pytest.fixture(scope="module")
+def results(tmp_path_factory: pytest.TempPathFactory) -> StudyResults:
+    """A study of 150 landings, to its page."""
+    tables = synthetic_tables(design={"run_count": 150}, limit_states=CONDITIONS)
+    return lithobrake.run(tables, tmp_path_factory.mktemp("limits") / "out", workers=1, model=SyntheticLander())
+
+
+@pytest.fixture(scope="module")
+def found(results: StudyResults) -> dict[str, Any]:
+    states: dict[str, Any] = results.summary["results"]["limit_states"]
+    return states
+
+
+def share_faster(speed: float) -> float:
+    """Share of the landers of the truth that leave faster."""
+    random = np.random.default_rng(5)
+    left = WEAK.draw(random_soils(200_000, random), random.standard_normal(200_000), random).left
+    return float((left[:, OUTPUT_NAMES.index("speed_out")] > speed).mean())
+
+
+def test_a_common_limit_state_is_told_by_the_runs_and_a_rare_one_by_the_emulator(found: dict[str, Any]) -> None:
+    assert list(found) == list(CONDITIONS)
+    assert (found["fast"]["source"], found["fastest"]["source"]) == ("runs", "emulator")
+    for name, speed in (("fast", FAST), ("fastest", FASTEST)):
+        truth = share_faster(speed)
+        assert found[name]["lower"] < truth < found[name]["upper"], (name, truth)
+    rare = found["fastest"]
+    assert rare["tail_limit"] == pytest.approx(1.0 - 0.1 ** (1.0 / 15.0))
+    assert rare["upper"] >= rare["tail_limit"]
+
+
+def test_words_agree_with_the_shares_of_the_study(results: StudyResults, found: dict[str, Any]) -> None:
+    returns = results.summary["results"]["returns"]
+    gone = found["gone"]["runs"]
+    assert 1.0 - gone["share"] == pytest.approx(returns["share"], abs=1e-9)
+    assert [1.0 - gone["upper"], 1.0 - gone["lower"]] == pytest.approx([returns["lower"], returns["upper"]], abs=1e-9)
+    # Of a fate alone the flights of the runs say more than samples of the emulator.
+    assert (found["gone"]["source"], found["gone"]["emulator"]) == ("runs", None)
+    captured = results.summary["results"]["runs"]["outcomes"]["captured"]
+    assert found["caught"]["failing_runs"] == captured
+    assert found["fast_and_back"]["failing_runs"] < found["fast"]["failing_runs"]
+    # At the equator of Didymos nothing lies on the ground.
+    assert (found["held"]["failing_runs"], found["lifted"]["failing_runs"]) == (0.0, captured)
+
+
+def test_inputs_stand_beside_what_luck_would_do(found: dict[str, Any]) -> None:
+    for state in found.values():
+        for one in state["inputs"].values():
+            assert 0.0 <= one["lower"] <= one["distance"] <= one["upper"] <= 1.0
+            assert one["found"] == (one["distance"] > one["luck"])
+    assert len(found["fast"]["inputs"]) == 5
+
+
+def test_every_key_is_described_and_the_page_has_the_sentences(results: StudyResults, found: dict[str, Any]) -> None:
+    for path in leaves(results.summary):
+        assert words_of("summary.json", path)
+    page = (results.folder / "report" / "index.html").read_text(encoding="utf-8")
+    for name, state in found.items():
+        assert state["statement"].startswith(f"{name} ({state['condition']}): ")
+        assert state["statement"] in results.headline
+    assert "Limit states" in page
+    assert "Inputs of the limit states" in page
+
+
+def test_one_bed_has_no_interval_and_says_why(tmp_path: Path) -> None:
+    tables = synthetic_tables(design={"run_count": 30}, bed={"bed_count": 1}, limit_states={"fast": "speed_out > 0.1"})
+    results = lithobrake.run(tables, tmp_path / "out", workers=1, model=SyntheticLander(), report=False)
+    state = results.summary["results"]["limit_states"]["fast"]
+    assert (state["lower"], state["upper"], state["source"], state["inputs"]) == (None, None, "runs", {})
+    assert "on one bed" in state["why"]
+
+
+def test_an_output_that_no_run_has_is_refused(tmp_path: Path) -> None:
+    tables = synthetic_tables(design={"run_count": 30}, limit_states={"hard": "peak_acceleration > 50"})
+    with pytest.raises(ValueError, match=r"limit_states\.hard asks for peak_acceleration, which no run has"):
+        lithobrake.run(tables, tmp_path / "out", workers=1, model=SyntheticLander(), report=False)

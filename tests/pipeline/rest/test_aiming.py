@@ -1,0 +1,139 @@
+"""Aims of a study, from its file to its page."""
+
+import dataclasses
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import lithobrake
+from lithobrake.files.reading import read_rows
+from lithobrake.pipeline.answer.aim_results import _statement
+from lithobrake.pipeline.emulate.fitted_emulator import REFIT_COUNT
+from lithobrake.pipeline.rest.aiming import _distances
+from lithobrake.results import StudyResults
+from lithobrake.results.key_words import leaves, words_of
+from lithobrake.smallbody import didymos
+from lithobrake.study import StudyError
+from lithobrake.study.reader import check_tables
+
+from ...synthetic_landings import WEAK
+from ..synthetic_lander import SyntheticLander, synthetic_tables
+
+ARRIVAL = {
+    "speed": {"distribution": "uniform", "lower": 0.005, "upper": 0.4},
+    "incidence_deg": {"distribution": "uniform", "lower": 0.0, "upper": 88.0},
+}
+AIM: dict[str, Any] = {
+    "grid": {"impact.speed": [0.1, 0.3], "impact.incidence_deg": [10.0, 40.0, 60.0]},
+    "within": ["incidence_deg < 45", "distance_p95 < 500"],
+    "lander_count": 4,
+}
+FEW = {"design": {"run_count": 48}, "monte_carlo": {"sample_count": 200}, "flight": {"flight_count": 100}}
+
+
+def tables(**aim: Any) -> dict[str, Any]:
+    return synthetic_tables(**FEW, impact=ARRIVAL, site={"latitude_deg": 75.0}, aim={**AIM, **aim})
+
+
+@pytest.fixture(scope="module")
+def results(tmp_path_factory: pytest.TempPathFactory) -> StudyResults:
+    model = SyntheticLander(dataclasses.replace(WEAK, capture=0.2), follows_speed=True)
+    return lithobrake.run(tables(), tmp_path_factory.mktemp("aims") / "out", workers=1, model=model)
+
+
+@pytest.fixture(scope="module")
+def found(results: StudyResults) -> dict[str, Any]:
+    table: dict[str, Any] = results.summary["results"]["aim"]
+    return table
+
+
+def test_every_aim_has_its_shares_on_both_grounds_with_intervals(results: StudyResults, found: dict[str, Any]) -> None:
+    assert [aim["values"] for aim in found["aims"]] == [[v, i] for v in (0.1, 0.3) for i in (10.0, 40.0, 60.0)]
+    rows = read_rows(results.folder / "aim.csv", ("ground", "aim", "status"), "")
+    assert len(rows) == 2 * 6 * found["lander_count"] == 2 * 6 * 4 * REFIT_COUNT
+    for number, aim in enumerate(found["aims"]):
+        for ground in ("soil", "hard"):
+            ends = [row["status"] for row in rows if row["ground"] == ground and int(row["aim"]) == number]
+            share = aim[ground]["settled"]
+            assert share["share"] == pytest.approx(ends.count("settled") / len(ends))
+            assert 0.0 <= share["lower"] <= share["share"] <= share["upper"] <= 1.0
+            assert 0.0 <= share["share"] + aim[ground]["missing"] <= 1.0
+    late = found["aims"][3]["soil"]["time_p95"]
+    assert 0.0 < late["value"] < 86_400.0
+    assert found["aims"][3]["hard"]["distance_p95"]["lower"] < found["aims"][3]["hard"]["distance_p95"]["value"]
+
+
+def test_the_best_keeps_the_limits_and_says_how_sure_it_is(found: dict[str, Any]) -> None:
+    best = found["best_on_soil"]
+    allowed = [number for number, aim in enumerate(found["aims"]) if aim["soil"]["allowed"]]
+    shares = {number: found["aims"][number]["soil"]["settled"]["share"] for number in allowed}
+    assert {number % 3 for number in allowed} <= {0, 1}
+    assert shares[best["aim"]] == max(shares.values())
+    assert sum(aim["soil"]["share_of_refits"] for aim in found["aims"]) == pytest.approx(1.0)
+    gap = shares[best["aim"]] - shares[best["next"]]
+    assert best["difference"]["value"] == pytest.approx(gap)
+    assert best["difference"]["lower"] < gap < best["difference"]["upper"]
+    assert best["own"]["lower"] <= best["own"]["share"] <= best["own"]["upper"]
+    # What the choice of the best of several adds is taken off its share.
+    assert best["own"]["share"] < shares[best["aim"]]
+    assert set(best["not_worse"]) <= set(allowed) - {best["aim"]}
+    assert all(found["best_on_hard"][key] is None for key in ("share_of_refits", "own", "not_worse"))
+
+
+def test_the_statement_has_the_share_without_selection_and_names_what_is_alike(found: dict[str, Any]) -> None:
+    best, others = found["best_on_soil"], sum(aim["soil"]["allowed"] for aim in found["aims"]) - 1
+    assert f": {100 * best['own']['share']:.0f} % (90 % interval " in found["statement"]
+    assert "of the refits" not in found["statement"]
+    told = _statement({**found, "best_on_soil": {**best, "not_worse": [1]}})
+    assert f"1 of the other {others} cannot be distinguished from it with 90 % confidence: impact.speed = 0.1, " in told
+    told = _statement({**found, "best_on_soil": {**best, "not_worse": []}})
+    assert "It is better than every other, with 90 % confidence." in told
+
+
+def test_every_key_is_described_and_the_page_shows_the_aims(results: StudyResults, found: dict[str, Any]) -> None:
+    for path in leaves(results.summary):
+        assert words_of("summary.json", path)
+    assert found["statement"] in results.headline
+    assert "landers settle most often at impact.speed = " in found["statement"]
+    page = (results.folder / "report" / "index.html").read_text(encoding="utf-8")
+    assert "Where to aim" in page
+    assert [path.name for path in (results.folder / "report").glob("*_aim.png")]
+
+
+def test_ways_over_the_ground_are_arcs_and_none_where_the_end_is_not_on_it() -> None:
+    body, site = didymos(), {"latitude_deg": np.zeros(3), "longitude_deg": np.zeros(3)}
+    ends: list[list[Any]] = [
+        ["", 0, "settled", 0.0, 0.0, 90.0],
+        ["", 1, "escaped", 0.0, "", ""],
+        ["", 2, "", 0.0, 0.0, 0],
+    ]
+    radius = float(np.linalg.norm(body.shape.surface_point(0.0, 0.0)))
+    assert _distances(body, site, ends) == pytest.approx([0.5 * np.pi * radius, np.nan, 0.0], nan_ok=True)
+
+
+@pytest.mark.parametrize(
+    ("aim", "words"),
+    [
+        ({"grid": {"impact.sped": [0.1]}}, r'aim\.grid\."impact\.sped" is no aim; .* did you mean impact\.speed'),
+        ({"grid": {"impact.speed": [0.1, 0.9]}}, r"ascending values from 0\.005 to 0\.4"),
+        ({"grid": {"impact.speed": [0.2, 0.1]}}, "ascending values"),
+        (
+            {"within": ["incidence_deg"]},
+            r'aim\.within has "incidence_deg"; allowed: one of speed, incidence_deg, settled',
+        ),
+        ({"within": ["latitude_deg < 3"]}, "allowed: one of speed, incidence_deg"),
+        ({"grid": {}}, r"aim\.within is given without aim\.grid"),
+        ({"grid": {"impact.speed": np.linspace(0.01, 0.4, 501).tolist()}}, "at most 3 and 500"),
+    ],
+)
+def test_aims_that_cannot_be_are_refused(aim: dict[str, Any], words: str) -> None:
+    with pytest.raises(StudyError, match=words):
+        check_tables(tables(**aim), Path())
+
+
+def test_aims_need_the_impacts_after_the_first_among_the_inputs() -> None:
+    given = synthetic_tables(aim={"grid": {"site.latitude_deg": [0.0, 50.0]}})
+    with pytest.raises(StudyError, match=r"impact\.speed and impact\.incidence_deg are no uncertain input"):
+        check_tables(given, Path())

@@ -1,0 +1,181 @@
+"""Runs drawn out of one sequence: their laws, their beds, and that more of them leave the others as they were."""
+
+import tomllib
+from collections import Counter
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from lithobrake.pipeline import stage_keys
+from lithobrake.pipeline.runs.beds import bed_files, pour_seed
+from lithobrake.pipeline.runs.drawn_design import beds_of_runs, sequence_rows, soil_pairs, twins
+from lithobrake.pipeline.runs.place_region import place_region, smallest_width
+from lithobrake.pipeline.runs.touchdown_runs import touchdown_keys
+from lithobrake.study import Study, check_tables
+from lithobrake.study.study import default_bed_count
+from lithobrake.study.template import template
+from lithobrake.study.touchdown_model import ORIENTATION, PLACE, draw, medians
+
+TABLES: dict[str, Any] = tomllib.loads(template()) | {"design": {"method": "sequence"}}
+SOIL = ("grain.young_modulus", "grain.friction", "lander.restitution")
+ARRIVAL = ("bed", *PLACE, "impact.azimuth_deg", *ORIENTATION)
+REGION = {"x": [-0.1, 0.05], "y": [0.0, 0.02]}
+
+
+def drawn(run_count: int = 240, seed: int = 1, **changes: dict[str, Any]) -> Study:
+    """The template with so many runs out of the sequence, and with other keys in its tables."""
+    tables = TABLES | {name: {**TABLES.get(name, {}), **keys} for name, keys in changes.items()}
+    tables["design"] = {**tables["design"], "run_count": run_count}
+    return check_tables(tables | {"seed": seed}, Path())
+
+
+def columns(rows: list[dict[str, float]], *names: str) -> np.ndarray:
+    return np.array([[row[name] for name in names] for row in rows])
+
+
+@pytest.mark.parametrize(("few", "many"), [(2, 13), (12, 144), (115, 240), (240, 241), (599, 1200)])
+@pytest.mark.parametrize("beds", [{}, {"bed": {"bed_count": 2}}], ids=["beds grow", "two beds"])
+def test_more_runs_leave_every_run_as_it_was_with_its_bed_and_its_key(
+    few: int, many: int, beds: dict[str, dict[str, Any]]
+) -> None:
+    first, second = drawn(few, **beds), drawn(many, **beds)
+    before, after = sequence_rows(first), sequence_rows(second)
+    assert (len(before), len(after)) == (few, many)
+    assert before == after[:few]
+    assert touchdown_keys(first, before, 0) == touchdown_keys(second, after[:few], 0)
+    assert set(bed_files(first)) <= set(bed_files(second))
+    # A bed is poured from the same seed, however many there are.
+    assert stage_keys(first)["bed"] == stage_keys(second)["bed"]
+    assert stage_keys(first)["runs"] != stage_keys(second)["runs"]
+
+
+@pytest.mark.parametrize("beds", [1, 5, 12, 24, 60])
+def test_beds_that_are_given_have_equally_many_runs(beds: int) -> None:
+    for run_count in (max(beds, 2), 60, 120, 143, 240):
+        counts = Counter(beds_of_runs(drawn(run_count, bed={"bed_count": beds}), run_count))
+        assert len(counts) == beds
+        assert max(counts.values()) - min(counts.values()) <= 1
+
+
+def test_beds_that_grow_with_the_runs_are_all_used_and_full_at_each_ten() -> None:
+    for run_count in range(2, 800):
+        counts = Counter(beds_of_runs(drawn(240), run_count))
+        assert set(counts) == set(range(default_bed_count(run_count)))
+        # The newest bed fills next, and only where one has yet to be filled are the others ahead of it.
+        *filled, newest = (counts[bed] for bed in range(len(counts)))
+        assert max(filled) - min(filled) <= 1
+        assert newest <= max(filled)
+        if run_count % 10 == 0 and 120 <= run_count <= 600:
+            assert set(counts.values()) == {10}
+
+
+def test_blocks_of_beds_have_an_order_of_their_own_that_the_seed_decides() -> None:
+    first, other = (np.array(beds_of_runs(drawn(96, seed), 96)).reshape(8, 12) for seed in (1, 2))
+    assert first[0].tolist() == list(range(12))
+    assert len({tuple(block) for block in first.tolist()}) == 8
+    assert not np.array_equal(first[1:], other[1:])
+
+
+def test_every_coordinate_is_spread_evenly_over_its_law() -> None:
+    study = drawn(256, impact={"region": REGION})
+    rows = sequence_rows(study)
+    names = (*SOIL, *PLACE, "impact.azimuth_deg")
+    laws = [study.grain.young_modulus, study.grain.friction, study.lander.restitution]
+    probability = [law.to_chaos().cdf(columns(rows, name)[:, 0]) for law, name in zip(laws, names, strict=False)]
+    probability += [(columns(rows, PLACE[0])[:, 0] + 0.1) / 0.15, columns(rows, PLACE[1])[:, 0] / 0.02]
+    probability += [columns(rows, "impact.azimuth_deg")[:, 0] / 360.0]
+    for one in probability:
+        # 256 points of a Sobol sequence: exactly one in each of 256 equal parts.
+        assert np.array_equal(np.sort(np.floor(one * 256)), np.arange(256))
+    assert np.abs(np.corrcoef(probability) - np.eye(len(names))).max() < 0.1
+    attitudes = columns(rows, *ORIENTATION)
+    assert np.linalg.norm(attitudes, axis=1) == pytest.approx(1.0, abs=1e-12)
+    assert np.abs(attitudes.T @ attitudes / 256 - np.eye(4) / 4).max() < 0.03
+
+
+def test_what_is_given_is_not_drawn_and_leaves_the_rest_as_it_was() -> None:
+    free = sequence_rows(drawn(40, impact={"region": REGION}))
+    held = {"azimuth_deg": 30.0, "place": {"x": 0.01, "y": 0.02}, "orientation": [2, 0, 0, 0]}
+    rows = sequence_rows(drawn(40, impact=held))
+    assert np.array_equal(columns(free, "bed", *SOIL), columns(rows, "bed", *SOIL))
+    expected = [0.01, 0.02, 30.0, 1.0, 0.0, 0.0, 0.0]
+    assert np.array_equal(columns(rows, *ARRIVAL[1:]), np.tile(expected, (40, 1)))
+
+
+def test_an_uncertain_place_or_azimuth_is_an_input_like_any_other() -> None:
+    law = {"distribution": "uniform", "lower": 0.0, "upper": 10.0}
+    rows = sequence_rows(drawn(64, impact={"azimuth_deg": law}))
+    assert np.array_equal(np.sort(np.floor(columns(rows, "impact.azimuth_deg")[:, 0] * 6.4)), np.arange(64))
+
+
+def test_an_error_of_pointing_tilts_each_run_within_its_cone() -> None:
+    rows = sequence_rows(drawn(64, impact={"orientation": [1, 0, 0, 0], "pointing_error_deg": 10.0}))
+    w = columns(rows, ORIENTATION[0])[:, 0]
+    tilt = np.degrees(2.0 * np.arccos(w))
+    assert 9.0 < tilt.max() <= 10.0
+    assert np.all(columns(rows, ORIENTATION[3]) == 0.0)
+
+
+def test_the_papers_runs_take_an_error_of_pointing_too() -> None:
+    arrival = {"orientation": [1, 0, 0, 0], "pointing_error_deg": 10.0}
+    study = check_tables(TABLES | {"design": {"method": "paper"}, "impact": {**TABLES["impact"], **arrival}}, Path())
+    draws = [draw(study, medians(study), seed) for seed in range(50)]
+    tilt = np.degrees(2.0 * np.arccos(columns(draws, ORIENTATION[0])[:, 0]))
+    assert 8.0 < tilt.max() <= 10.0
+    # The error is drawn after all else, which is as it was without it.
+    given = {**TABLES["impact"], "orientation": [1, 0, 0, 0]}
+    without = check_tables(TABLES | {"design": {"method": "paper"}, "impact": given}, Path())
+    before, no_attitude = draw(without, medians(without), 3), dict.fromkeys(ORIENTATION, 0.0)
+    assert before | no_attitude == draws[3] | no_attitude
+
+
+def test_places_are_drawn_where_the_smallest_bed_leaves_room() -> None:
+    study = drawn(64, bed={"width": [0.8, 1.0], "grain_count": 400})
+    region, width = place_region(study), smallest_width(study)
+    assert region == ((-0.5 * (0.8 - width), 0.5 * (0.8 - width)), (-0.5 * (1.0 - width), 0.5 * (1.0 - width)))
+    places = columns(sequence_rows(study), *PLACE)
+    assert np.all(np.abs(places) <= [region[0][1], region[1][1]])
+    # Half of 64 parts of the way to each end.
+    assert np.all(np.abs(places).max(axis=0) > 0.9 * np.array([region[0][1], region[1][1]]))
+
+
+def test_a_bed_that_is_too_narrow_for_its_rule_is_landed_on_in_the_middle() -> None:
+    # A heavy little ball is long in touch with a grain, and a wave goes far in that time.
+    ball = {"shape": "sphere", "diameter": 0.05, "mass": 50.0, "restitution": TABLES["lander"]["restitution"]}
+    study = check_tables(TABLES | {"lander": ball, "bed": {**TABLES["bed"], "width": [0.25, 2.0]}}, Path())
+    assert 0.25 < smallest_width(study) < 2.0
+    along, across = place_region(study) or ()
+    assert along == (0.0, 0.0)
+    assert across[0] < 0.0 < across[1]
+
+
+def test_two_seeds_share_no_pour_and_one_seed_repeats_its_own() -> None:
+    seeds = {(seed, bed): pour_seed(drawn(seed=seed), bed) for seed in range(40) for bed in range(60)}
+    assert len(set(seeds.values())) == len(seeds)
+    assert seeds == {(seed, bed): pour_seed(drawn(700, seed=seed), bed) for seed, bed in seeds}
+    assert all(0 <= seed < 2**53 for seed in seeds.values())
+
+
+def test_soil_pairs_have_another_soil_and_arrive_alike() -> None:
+    study = drawn(50)
+    rows, pairs = sequence_rows(study), soil_pairs(study)
+    assert len(pairs) == 20
+    assert np.array_equal(columns(rows[:20], *ARRIVAL), columns(pairs, *ARRIVAL))
+    assert np.all(columns(rows[:20], *SOIL) != columns(pairs, *SOIL))
+    assert len(soil_pairs(drawn(7))) == 7
+    assert soil_pairs(drawn(500)) == pairs
+
+
+def test_twins_come_down_a_little_beside_and_nothing_else_differs() -> None:
+    study = drawn(50, design={"method": "sequence", "side_runs": True, "twin_shift": 2e-4})
+    rows, pairs = sequence_rows(study)[:12], twins(study)
+    assert len(pairs) == 12
+    shift = columns(pairs, *PLACE) - columns(rows, *PLACE)
+    assert np.linalg.norm(shift, axis=1) == pytest.approx(2e-4)
+    # In all directions, but for those toward a wall.
+    assert len(np.unique(np.round(np.arctan2(shift[:, 1], shift[:, 0]), 6))) == 12
+    assert np.all((shift * columns(rows, *PLACE)).sum(axis=1) <= 0.0)
+    names = [name for name in rows[0] if name not in PLACE]
+    assert np.array_equal(columns(rows, *names), columns(pairs, *names))

@@ -1,0 +1,159 @@
+"""Studies that ask for a half width: how many runs they make, stopped or not, and what plan and folder say of them."""
+
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from lithobrake.analysis import half_width_of
+from lithobrake.pipeline import StudyFolder, plan_lines, study_status
+from lithobrake.pipeline.answer.answer_of_run import answers_of, read_shares
+from lithobrake.pipeline.job import Silent
+from lithobrake.pipeline.planning.planner import plan_of
+from lithobrake.pipeline.runs.run_table import DesignRuns
+from lithobrake.pipeline.runs.solver import function_identity
+from lithobrake.pipeline.sequential_sampling import grown
+from lithobrake.pipeline.study_run import run_study
+from lithobrake.results import open_study
+from lithobrake.study import StudySource
+
+from .ball_studies import BALL
+from .captured_model import land
+
+
+class Said(Silent):
+    """Keeps what is said, and ends the study at a word."""
+
+    def __init__(self, last: str = "") -> None:
+        self.sentences: list[str] = []
+        self.last = last
+
+    def say(self, sentence: str) -> None:
+        self.sentences.append(sentence)
+        if self.last and self.last in sentence:
+            raise KeyboardInterrupt
+
+
+def source(**design: Any) -> StudySource:
+    """The ball on a plate by a function, its runs out of the sequence."""
+    tables = tomllib.loads(BALL.read_text())
+    del tables["solver"]
+    # Where the ground holds what was captured; most of those that leave escape.
+    tables["site"] = {"latitude_deg": 50.0}
+    tables["impact"]["speed"] = 0.8
+    tables["design"] = {"method": "sequence", "run_count": 24} | design
+    return StudySource.of_tables(tables, function_identity(land))
+
+
+def run(folder: Path, shown: Said, **design: Any) -> DesignRuns:
+    run_study(source(**design), folder, until="fly_runs", worker_count=2, model=land, shown=shown)
+    return DesignRuns.load(StudyFolder.only_read(folder), "sequence")
+
+
+def answers(folder: Path) -> tuple[np.ndarray, np.ndarray]:
+    """What the runs of a folder answer, and their beds."""
+    known = {record.key: record for record in open_study(folder).ledger}
+    only_read = StudyFolder.only_read(folder)
+    return answers_of(DesignRuns.load(only_read, "sequence").keys, known, read_shares(only_read))
+
+
+@pytest.fixture(scope="module")
+def narrow(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, DesignRuns, list[str]]:
+    """A study that was asked for 6 points: its folder, its runs, what it said."""
+    folder, said = tmp_path_factory.mktemp("narrow"), Said()
+    return folder, run(folder, said, half_width=0.06), said.sentences
+
+
+def test_runs_are_made_until_the_half_width_is_met(narrow: tuple[Path, DesignRuns, list[str]]) -> None:
+    folder, runs, said = narrow
+    values, bed = answers(folder)
+    assert len(values) == runs.run_count
+    assert (half_width_of(values, bed) or 1.0) <= 0.06
+    # A quarter is captured: 1.7 sqrt(.1875 / N) is .06 at 150 runs; one stage more at the most.
+    assert 110 <= runs.run_count <= 240
+    assert len(set(bed)) == max(12, runs.run_count // 10)
+    steps = [sentence for sentence in said if sentence.startswith("the return fraction is known to +- ")]
+    assert "from 24 runs on 12 beds, and design.half_width asks for +- 6: going on to 50 runs on 12" in steps[0]
+    assert f"from {runs.run_count} runs on " in steps[-1]
+    assert steps[-1].endswith("asks for +- 6: that is enough")
+
+
+def test_a_half_width_may_be_that_of_a_limit_state(tmp_path: Path) -> None:
+    said, tables = Said(), dict(source(half_width=0.06).tables)
+    tables |= {"design": tables["design"] | {"half_width_of": "caught"}, "limit_states": {"caught": "captured"}}
+    asked = StudySource.of_tables(tables, function_identity(land))
+    run_study(asked, tmp_path, until="fly_runs", worker_count=2, model=land, shown=said)
+    steps = [one for one in said.sentences if one.startswith("the probability of caught is known to +- ")]
+    assert len(steps) >= 2
+    assert steps[-1].endswith("asks for +- 6: that is enough")
+    runs = DesignRuns.load(StudyFolder.only_read(tmp_path), "sequence")
+    caught = (np.array(runs.outcomes) == "captured").astype(float)
+    assert (half_width_of(caught, runs.inputs["bed"]) or 1.0) <= 0.06
+
+
+def test_what_ends_is_the_study_of_that_many_runs(narrow: tuple[Path, DesignRuns, list[str]]) -> None:
+    folder, runs, _ = narrow
+    files = {path: path.stat().st_mtime_ns for path in folder.glob("designs/*")}
+    again = Said()
+    assert run(folder, again, half_width=0.06).keys == runs.keys
+    # Nothing was made, not even the table of the runs.
+    assert {path: path.stat().st_mtime_ns for path in folder.glob("designs/*")} == files
+    assert not any("going on" in sentence for sentence in again.sentences)
+    study = source(half_width=0.06).study
+    only_read = StudyFolder.only_read(folder)
+    assert grown(study, only_read).design.run_count == runs.run_count
+    assert grown(study, only_read).with_run_count(24) == study.with_run_count(24)
+    plan = plan_of(grown(study, only_read), "ball", only_read, 2)
+    # What follows the runs was not asked for.
+    assert (plan.stages[0], len(plan.runs), plan.runs[0].drawn) == ("estimates", 1, runs.run_count)
+    answered = sum(outcome in ("clear", "captured") for outcome in runs.outcomes)
+    assert f"By the {answered} runs that have ended and flown: +- " in " ".join(plan_lines(plan))
+    assert f"{runs.run_count} runs: {runs.run_count} done" in " ".join(study_status(folder).lines())
+    assert run(folder, again, run_count=runs.run_count).keys == runs.keys
+    assert {path: path.stat().st_mtime_ns for path in folder.glob("designs/*")} == files
+
+
+def test_a_study_that_is_stopped_between_two_looks_ends_with_the_same_runs(
+    narrow: tuple[Path, DesignRuns, list[str]], tmp_path: Path
+) -> None:
+    with pytest.raises(KeyboardInterrupt):
+        run(tmp_path, Said("going on to 50"), half_width=0.06)
+    first = DesignRuns.load(StudyFolder.only_read(tmp_path), "sequence")
+    assert first.run_count == 24
+    said = Said()
+    assert run(tmp_path, said, half_width=0.06).keys == narrow[1].keys
+    assert any("sequence: 24 of 50 runs were known" in sentence for sentence in said.sentences)
+
+
+def test_a_study_that_goes_on_still_shows_the_runs_that_there_are(tmp_path: Path) -> None:
+    class Stopped(Said):
+        """Ends the study at its second look at the beds."""
+
+        def begin(self, title: str, number: int, count: int) -> None:
+            if title == "bed" and any("going on to 50 runs" in sentence for sentence in self.sentences):
+                raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        run(tmp_path, Stopped(), half_width=0.06)
+    lines = study_status(tmp_path).lines()
+    assert any(line.startswith("24 runs: 24 done, 0 running") for line in lines)
+    assert any(line.startswith("so far, from ") for line in lines)
+
+
+def test_there_is_an_end_to_runs_that_are_not_enough(tmp_path: Path) -> None:
+    said = Said()
+    assert run(tmp_path, said, half_width=0.01, largest_run_count=60).run_count == 60
+    assert said.sentences[-1].endswith("no more are made, since design.largest_run_count is 60")
+
+
+@pytest.mark.parametrize("asked", [{}, {"half_width": 0.3}], ids=["a count", "a half width"])
+def test_a_damaged_table_of_flights_is_made_again(asked: dict[str, float], tmp_path: Path) -> None:
+    run(tmp_path, Said(), **asked)
+    table, study, only_read = tmp_path / "run_flights.csv", source(**asked).study, StudyFolder.only_read(tmp_path)
+    whole = table.read_bytes()
+    table.write_text("nothing that could be read")
+    assert plan_of(grown(study, only_read), "ball", only_read, 2).stages[0] == "flights of the runs"
+    run(tmp_path, Said(), **asked)
+    assert table.read_bytes() == whole

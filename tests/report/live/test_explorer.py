@@ -1,0 +1,208 @@
+"""The explorer evaluates the emulator that Python evaluates, and its shares are those of the study."""
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from lithobrake import emulator
+from lithobrake.analysis import refit_interval
+from lithobrake.analysis.confidence import t_quantile
+from lithobrake.chaos import (
+    Beta,
+    Empirical,
+    Exponential,
+    Gamma,
+    LogNormal,
+    LogUniform,
+    Normal,
+    TruncatedNormal,
+    Uniform,
+)  # fmt: skip
+from lithobrake.emulator import Emulator, law_tables
+from lithobrake.pipeline.emulate.energy_bound import bound_numbers, energy_bound
+from lithobrake.report.live.packed import packed, script_data
+from lithobrake.report.pages.page_data import SequenceResults
+from lithobrake.study import check_tables
+
+from ...pipeline.synthetic_lander import synthetic_tables
+from ...synthetic_landings import ELEVATION_LIMIT, INPUTS, OUTPUT_NAMES, SPEED_LIMIT, STRONG
+from ..page_scripts import answer_of, explorer_data, needs_node
+
+EXACT = 1e-12
+LAW = ("live/law.js",)
+ALL = ("live/law.js", "live/flown.js", "live/explore.js")
+# What follows the arrays of a law: names, no energy bound, and no number of it.
+FACTS = {"inputNames": [], "bound": {}, "speed": 0, "elevation": 1, "spin": 2, "outputOutcome": "clear"}
+BEGIN = "const law = new Law(unpack(given.law), given.facts);"
+
+
+@pytest.fixture(scope="module")
+def model() -> Emulator:
+    """An emulator whose location, scale and outcomes follow the inputs."""
+    x, y, outcome, bed = STRONG.study(200, 20, 5)
+    upper = [SPEED_LIMIT, ELEVATION_LIMIT, np.inf, np.inf]
+    return emulator.fit(
+        dict(INPUTS), x, y, groups=bed, outcome=outcome, lower=[0.0, 0.0, -np.inf, 0.0], upper=upper,
+        riders=["azimuth_out"], output_names=list(OUTPUT_NAMES),
+    )  # fmt: skip
+
+
+def given_of(models: list[Emulator], **facts: Any) -> dict[str, Any]:
+    """What the page has of emulators. A speed without a bound of its own has that of the runs."""
+    tables = {name: np.asarray(table, dtype=float) for name, table in law_tables(models).items()}
+    names = list(models[0].outcome_names)
+    return {"law": packed(tables), "facts": FACTS | {"outcomeNames": names} | facts}
+
+
+@needs_node
+@pytest.mark.parametrize("bandwidth", [np.inf, 0.65])
+def test_a_draw_of_the_browser_is_that_of_python(model: Emulator, bandwidth: float) -> None:
+    wide = replace(model, choices=replace(model.choices, bandwidth=bandwidth))
+    models, random = [wide, *wide.refits(2, seed=3)], np.random.default_rng(2)
+    x = np.column_stack([law.ppf(random.random(40)) for law in INPUTS.values()])
+    given = given_of(models)
+    assert {rung for ladder in wide.choices.location for rung in ladder}, "the law has to follow the inputs"
+    columns = [OUTPUT_NAMES.index(name) for name in ("speed_out", "elevation_out", "spin_out")]
+    for number, one in enumerate(models):
+        drawn = one.draw(x, 5, seed=9)
+        # The same numbers in the same order as Emulator.draw takes them.
+        stream = np.random.default_rng(9)
+        numbers = {"outcome": stream.random((40, 5)), "row": stream.random((40, 5))}
+        numbers["normal"] = stream.standard_normal((40, 5, 3))
+        program = (
+            BEGIN
+            + """
+          law.energyBoundAt = () => [given.limit, 0];
+          return given.x.map((x, p) => {
+            const point = law.pointAt(Float64Array.from(x, (one, input) => law.germOf(input, one)));
+            point.upper.set(law.upper);
+            return given.outcome[p].map((one, d) => {
+              const y = new Float64Array(3);
+              const row = law.draw(given.refit, point, one, given.row[p][d], given.normal[p][d], 0, y);
+              return [row, ...y];
+            });
+          });"""
+        )
+        found = np.array(answer_of(LAW, program, given | {name: value.tolist() for name, value in numbers.items()} | {
+            "x": x.tolist(), "refit": number, "limit": SPEED_LIMIT}))  # fmt: skip
+        left = drawn.row >= 0
+        places = np.nonzero(one.runs.has_outputs)[0]
+        assert left.any()
+        assert not left.all()
+        assert np.array_equal(places[found[left][:, 0].astype(int)], drawn.row[left])
+        assert np.array_equal(-1 - found[~left][:, 0], drawn.outcome[~left])
+        assert found[left][:, 1:] == pytest.approx(drawn.y[left][:, columns], rel=EXACT, abs=0.0)
+
+
+@needs_node
+def test_terms_of_every_kind_of_input_are_those_of_python() -> None:
+    random = np.random.default_rng(1)
+    inputs = {
+        "a": Uniform(2.0, 5.0), "b": LogUniform(1e5, 1e8), "c": Normal(3.0, 0.2), "d": LogNormal(1.0, 0.3),
+        "e": TruncatedNormal(0.0, 1.0, -0.5, np.inf), "f": Beta(2.0, 3.0, 1.0, 4.0), "g": Gamma(2.0, 0.5),
+        "h": Exponential(3.0), "i": Empirical(random.normal(size=60)),
+    }  # fmt: skip
+    x = np.column_stack([law.ppf(random.random(400)) for law in inputs.values()])
+    y = x[:, :1] + np.log(x[:, 1:2]) * x[:, 2:3] + 0.1 * random.standard_normal((400, 1))
+    model = emulator.fit(inputs, x, y)
+    found = answer_of(LAW, BEGIN + """
+      law.used = Array.from({ length: law.terms }, (_, term) => term);
+      return given.x.map((x) => Array.from(
+        law.termsAt(x.map((one, input) => law.germOf(input, one)), new Float64Array(law.terms))));
+      """, given_of([model]) | {"x": x.tolist()})  # fmt: skip
+    matrix = model.terms.matrix(x)
+    assert np.abs(np.array(found) - matrix).max() < EXACT
+
+
+@needs_node
+def test_quantiles_of_inputs_are_those_of_their_laws(model: Emulator) -> None:
+    shares = [0.0, 0.1, 0.5, 0.83, 1.0]
+    program = (
+        BEGIN
+        + """return given.shares.map((share) => Array.from({ length: law.inputs },
+      (_, input) => law.valueOf(input, law.germAt(input, share))));"""
+    )
+    found = answer_of(LAW, program, given_of([model]) | {"shares": shares})
+    expected = np.column_stack([law.ppf(shares) for law in INPUTS.values()])
+    assert np.array(found) == pytest.approx(expected, rel=1e-12, abs=1e-12)
+
+
+@needs_node
+@pytest.mark.parametrize(
+    ("changes", "fixed"),
+    [
+        ({}, {}),
+        ({"lander": {"inertia": [1e-3, 2e-3, 2e-3], "mass": 2.0}}, {"lander.mass": 3.0}),
+        ({"lander": {"shape": "sphere", "diameter": 0.2, "mass": 2.0}}, {"lander.diameter": 0.15}),
+        ({"surface": {"slope_deg": 30.0, "gravity": 1e-2}}, {"impact.speed": 0.2, "impact.spin_y": 3.0}),
+    ],
+)
+def test_the_energy_bound_is_that_of_python(model: Emulator, changes: dict[str, Any], fixed: dict[str, float]) -> None:
+    study = check_tables(synthetic_tables(**changes), Path()).with_function("of a test")
+    bound = energy_bound(study, 0.3, {name: np.array([value]) for name, value in fixed.items()}, 1)
+    given = given_of([model], bound=bound_numbers(study, 0.3), inputNames=list(fixed))
+    found = answer_of(LAW, f"{BEGIN} return law.energyBoundAt(given.values);", given | {"values": [*fixed.values()]})
+    assert found == pytest.approx([bound.speed[0], bound.gyration[0]], rel=EXACT)
+
+
+@needs_node
+@pytest.mark.parametrize("share", [0.5, 0.96, 0.03])
+def test_an_interval_is_that_of_python(share: float) -> None:
+    random = np.random.default_rng(6)
+    known = random.integers(400, 500, 50)
+    for spread in (0.0, 0.02):
+        returns = random.binomial(known, np.clip(share + spread * random.standard_normal(50), 0.0, 1.0))
+        found = answer_of(
+            ALL,
+            "return refitInterval(Float64Array.from(given.returns), Float64Array.from(given.known), 12, given.reach);",
+            {"returns": returns.tolist(), "known": known.tolist(), "reach": t_quantile(11)},
+        )
+        known_to_python = refit_interval(returns, known, 12)
+        bounds = [known_to_python.value, known_to_python.lower, known_to_python.upper]
+        assert found == pytest.approx(bounds, rel=EXACT)
+
+
+@needs_node
+def test_bands_are_freed_of_what_few_draws_add() -> None:
+    random = np.random.default_rng(7)
+    truth = 0.3 + 0.03 * random.standard_normal(2000)
+    few = random.binomial(300, truth) / 300
+    chance = float(np.mean(few * (1.0 - few) / 299))
+    low, high = answer_of(ALL, "return middle(given.few, given.chance);", {"few": few.tolist(), "chance": chance})
+    # The standard error of the end of nine tenths, of 2000 draws of a normal law of this spread.
+    error = 0.03 * np.sqrt(0.05 * 0.95 / 2000) / 0.1031
+    assert [low, high] == pytest.approx([0.3 - 1.645 * 0.03, 0.3 + 1.645 * 0.03], abs=3.0 * error)
+
+
+@needs_node
+def test_every_flown_start_is_met_and_the_nearest_speeds_are_near() -> None:
+    random = np.random.default_rng(0)
+    starts = np.column_stack([random.random(3000), random.random(3000), random.uniform(-3.0, 3.0, 3000)])
+    given = {"starts": packed({"starts": starts.astype(np.float32)}), "at": random.random((4000, 4)).tolist()}
+    found = answer_of(ALL, """const { starts } = unpack(given.starts);
+      const flown = new Flown(starts, new Uint8Array(3000));
+      return given.at.map(([a, b, c, u]) => flown.near(a, b, 6 * c - 3, u));""", given)  # fmt: skip
+    at = np.array(given["at"])
+    assert np.abs(starts[found, 0] - at[:, 0]).mean() < 0.05
+    assert len(set(found)) > 1500
+
+
+def test_the_page_has_the_explorer_with_all_its_numbers(drawn_page: str, drawn: SequenceResults) -> None:
+    data = explorer_data(drawn_page)
+    assert data["law"]["location"]["shape"] == list(drawn.explorer.tables["location"].shape)
+    assert data["flown"]["starts"]["shape"] == [drawn.flights.row_count, 3]
+    assert data["facts"]["inputNames"] == list(drawn.explorer.input_names)
+    assert f"one of {drawn.flights.row_count} flown starts" in drawn_page
+    assert "startExplorer();" in drawn_page
+
+
+def test_words_in_numbers_end_no_script() -> None:
+    assert "</script>" not in script_data("x", {"words": "</script><b>"})[:-10]
+
+
+def test_an_array_that_a_browser_has_not_is_refused() -> None:
+    with pytest.raises(ValueError, match="bed has type int64, but must have one of float64"):
+        packed({"bed": np.arange(3)})

@@ -1,0 +1,290 @@
+"""The page of a drawn study: its figures, sentences and tables have the numbers of the summary."""
+
+import json
+import math
+import re
+import shutil
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import h5py
+import pytest
+
+from lithobrake.report import write_report
+from lithobrake.report.pages.drawn_page import sequence_content
+from lithobrake.report.pages.html import PageTable
+from lithobrake.report.pages.page_data import SequenceResults, page_results
+from lithobrake.report.tables import drawn_tables as sequence_tables
+from lithobrake.report.tables.dispersion_tables import parts
+from lithobrake.report.tables.rare_tables import rare_tables
+from lithobrake.report.words import captions
+from lithobrake.report.words import drawn_captions as sequence_captions
+from lithobrake.report.words.drawn_answer import warnings
+from lithobrake.results import open_study
+from lithobrake.vocabulary.percentages import with_interval
+
+ONE_BED: dict[str, Any] = {"lower": None, "upper": None, "next_bed": None, "why": "One bed was poured."}
+
+
+def changed(data: SequenceResults, **tables: Mapping[str, Any]) -> SequenceResults:
+    """The results with other entries in some of their tables."""
+    return replace(data, results=data.results | {name: data.results[name] | new for name, new in tables.items()})
+
+
+def table_of(data: SequenceResults, title: str) -> PageTable:
+    return next(table for table in sequence_tables.tables(data) if table.title.startswith(title))
+
+
+def percents(words: str) -> list[float]:
+    """The numbers before each per cent sign."""
+    return [float(one) for one in re.findall(r"(-?[\d.]+) %", words)]
+
+
+def test_the_product_of_an_archive_stands_beside_the_body(drawn: SequenceResults) -> None:
+    product = "urn:nasa:pds:rocks:data:rock::3.0"
+    assert product in captions.place_words(changed(drawn, site={"product_id": product}))[0]
+
+
+def test_every_figure_is_there_with_its_file(drawn_page: str, sequence_folder: Path) -> None:
+    names = ("bed", "landing", "runs", "variance", "calibration", "outputs", "map", "body", "rest")
+    files = sorted(path.name for path in (sequence_folder / "report").glob("*.png"))
+    assert files == [f"figure_{number}_{name}.png" for number, name in enumerate(names, start=1)]
+    assert len(re.findall(r'<img alt="[^"]+" src="data:image/png;base64,', drawn_page)) == len(names)
+
+
+def test_the_page_opens_with_the_answer_of_the_summary(drawn: SequenceResults) -> None:
+    words = captions.answer(drawn)
+    assert all(sentence in words for sentence in drawn.results["answer"])
+
+
+def test_the_share_has_its_interval_in_the_first_tile(drawn: SequenceResults) -> None:
+    tile, returns = sequence_tables.tiles(drawn)[0], drawn.results["returns"]
+    assert float(tile.value) == round(100 * returns["share"])
+    assert f"{100 * returns['lower']:.0f}-{100 * returns['upper']:.0f} %" in tile.words
+    narrow = returns | {"lower": returns["share"] - 0.004, "upper": returns["share"] + 0.004}
+    assert sequence_tables.tiles(changed(drawn, returns=narrow))[0].value == f"{100 * returns['share']:.1f}"
+
+
+def test_warnings_name_few_beds_and_what_the_summary_warns_of(drawn: SequenceResults) -> None:
+    gravity = drawn.results["site"]["gravity_warning"]
+    lost, last = warnings(changed(drawn, emulator={"warning": None}))
+    assert lost[:-1] == drawn.results["runs"]["warning"]
+    assert last[1:-1] in gravity
+    few = warnings(changed(drawn, emulator={"warning": "the emulator is off"}, runs={"beds": 6}))
+    assert [words[:20] for words in few[1:3]] == ["The study has 6 beds", "The emulator is off."]
+    calm = changed(drawn, site={"gravity_warning": None}, emulator={"warning": None}, runs={"warning": None})
+    assert warnings(calm) == []
+
+
+def test_the_first_warning_of_the_page_is_that_of_missing_landings(drawn: SequenceResults, drawn_page: str) -> None:
+    first = re.search(r'<p class="warning">(.*?)</p>', drawn_page)
+    assert first is not None
+    assert first[1][:-1] == drawn.results["runs"]["warning"]
+
+
+def test_tile_answer_tables_and_figure_have_one_value_of_the_return_fraction(drawn: SequenceResults) -> None:
+    returns = drawn.results["returns"]
+    share, held = f"{100 * returns['share']:.0f} %", f"{100 * returns['lower']:.0f}-{100 * returns['upper']:.0f} %"
+    tile = sequence_tables.tiles(drawn)[0]
+    rows = table_of(drawn, "The answer").rows
+    outcomes = {row[0]: row[1:] for row in table_of(drawn, "After the first bounce").rows}
+    assert f"{tile.value} %" == rows[0][1] == share
+    assert rows[1][1] == held
+    (one,) = [cells for words, cells in outcomes.items() if words.startswith("return fraction")]
+    assert one == [f"{share} ({held})", f"{100 * returns['emulator']:.0f} %"]
+    assert share in captions.answer(drawn)
+
+
+def test_the_outcomes_of_the_runs_add_up_and_each_stands_once(drawn: SequenceResults) -> None:
+    table, shares = table_of(drawn, "After the first bounce"), drawn.results["shares"]
+    assert len({row[0] for row in table.rows}) == len(table.rows)
+    whole = parts(drawn)
+    assert sum(shares[key]["share"] for key in whole) == pytest.approx(1.0)
+    assert [row[1] for row in table.rows[: len(whole)]] == [with_interval(shares[key]) for key in whole]
+    outward = changed(drawn, site={"effective_acceleration_outward": 1e-5})
+    assert not any(row[0].startswith("return fraction") for row in table_of(outward, "After the first bounce").rows)
+
+
+def test_a_prediction_interval_for_a_new_bed_has_the_size_of_the_bed(drawn: SequenceResults) -> None:
+    low, high = drawn.results["returns"]["next_bed"]
+    row = next(row for row in table_of(drawn, "The answer").rows if "new bed" in row[0])
+    assert row == ["prediction interval for a new bed of 0.55 x 0.55 m", f"{100 * low:.0f}-{100 * high:.0f} %"]
+    assert "new bed" not in captions.answer(drawn)
+
+
+def test_the_caption_of_what_decides_has_every_part_with_its_interval(drawn: SequenceResults) -> None:
+    words = sequence_captions.variance(changed(drawn, variance_shares={"speed_out": record(), "spin_out": record()}))
+    for shown in ("at least 6 % (1-11 %; most", "3 % (0-15 %)", "everything else 91 % (80-97 %)", "0.4 % (0.3-1.0 %)"):
+        assert shown in words
+    assert "friction of the grains" in words
+
+
+def rare(**changes: Any) -> dict[str, Any]:
+    """What the command writes of a limit state, of which the page reads a part."""
+    return {
+        "condition": "speed_out > 0.3", "probability": 0.0015, "lower": 4e-4, "upper": 0.005, "origins": 2.4,
+        "warning": "Few beds led to it: raise bed.bed_count.", "reached": True, "rarest": 0.0015,
+        "thresholds": [1.7, 0.9, 0.0], "shares": [0.1, 0.1, 0.15], "landings": 1400, "beds": 12,
+        "statement": "fast: probability .0015.",
+    } | changes  # fmt: skip
+
+
+def test_rare_limit_states_have_their_levels_a_figure_and_a_warning(sequence_folder: Path, tmp_path: Path) -> None:
+    never = rare(condition="speed_out > 9", probability=0.0, lower=None, upper=None, origins=0.0, warning=None,
+                 reached=False, rarest=2e-6, statement="never: no landing met it.")  # fmt: skip
+    folder = tmp_path / "study"
+    shutil.copytree(sequence_folder, folder, ignore=shutil.ignore_patterns("report"))
+    for name, content in (("fast", rare()), ("never", never)):
+        (folder / f"rare_{name}.json").write_text(json.dumps(content), encoding="utf-8")
+    found = page_results(open_study(folder))
+    assert isinstance(found, SequenceResults)
+    content = sequence_content(found)
+    assert "fast: Few beds led to it: raise bed.bed_count." in content.warnings
+    plot = content.plots[-1]
+    figure = plot.draw()
+    assert plot.name == "rare"
+    assert figure is not None
+    assert len(figure.axes[0].lines) >= 2
+    probabilities, levels = rare_tables(found.rare)
+    assert probabilities.rows[0][2:4] == ["0.0015", "4 × 10⁻⁴ to 0.005"]
+    assert probabilities.rows[1][2] == "below 2 × 10⁻⁶"
+    assert levels.rows[0] == ["fast", "1", "1.70", "10.0 %", "0.1"]
+    assert levels.rows[2] == ["", "3", "0.00", "15.0 %", "0.0015"]
+    (folder / "rare_fast.json").write_text("{}", encoding="utf-8")
+    with pytest.raises(ValueError, match=r"rare_fast\.json .*make it again with: lithobrake rare"):
+        write_report(folder, lambda done, total: None)
+
+
+def record() -> dict[str, Any]:
+    """Parts of the variance that add up to 1."""
+
+    def part(share: float, lower: float, upper: float) -> dict[str, float]:
+        return {"share": share, "lower": lower, "upper": upper}
+
+    alone = {"grain.friction": part(0.05, 0.01, 0.09), "grain.restitution": part(0.008, 0.0, 0.02)}
+    return {
+        "soil": part(0.06, 0.01, 0.11), "soil_by_input": alone, "arrival": None, "bed": part(0.03, 0.0, 0.15),
+        "place_and_attitude": part(0.906, 0.8, 0.97), "chaos": part(0.004, 0.003, 0.01),
+    }  # fmt: skip
+
+
+def test_the_caption_of_the_calibration_counts_what_luck_does_not_explain(drawn: SequenceResults) -> None:
+    narrow = {"pit": [60, 10, 10, 10, 10, 10, 10, 10, 10, 60], "band_90": 0.6}
+    scores = {"speed_out": narrow, "joint": {"energy_skill": 0.1}}
+    words = sequence_captions.calibration(changed(drawn, emulator={"scores": scores}))
+    assert percents(words)[:2] == [90.0, 60.0]
+    assert "10 of 10 bars" in words
+    assert words.endswith(drawn.results["emulator"]["statement"])
+
+
+def test_the_caption_of_the_runs_has_their_outcomes_and_quantiles(drawn: SequenceResults) -> None:
+    words, runs = sequence_captions.runs(drawn), drawn.results["runs"]
+    for number in (runs["count"], runs["beds"], *runs["outcomes"].values()):
+        assert re.search(rf"\b{number}\b", words)
+    median = drawn.results["outputs"]["speed_out"]["quantiles"]["0.5"]
+    for end in median.values():
+        assert f"{end:.3g}" in words
+
+
+def test_a_colour_that_says_nothing_is_called_so(drawn: SequenceResults) -> None:
+    colour = sequence_tables.colour_input(drawn)
+    follows, alone = (
+        sequence_captions.samples(changed(drawn, emulator={"follows_inputs": is_so}), colour) for is_so in (True, False)
+    )
+    assert len(alone) > len(follows)
+    assert "whatever the inputs" in alone
+
+
+def test_every_output_of_the_runs_has_its_numbers_and_their_intervals(drawn: SequenceResults) -> None:
+    table, speed = table_of(drawn, "Outputs of the landings"), drawn.results["outputs"]["speed_out"]
+    row = next(row for row in table.rows if row[1] == "m/s")
+    assert row[2] == f"{speed['mean']['value']:.3g} ({speed['mean']['lower']:.3g} to {speed['mean']['upper']:.3g})"
+    assert sum(" to " in cell for cell in row) == 4
+
+
+def test_an_azimuth_has_a_direction_and_a_resultant_length(drawn: SequenceResults) -> None:
+    azimuth = {
+        "mean_direction": {"value": math.radians(5.0), "lower": math.radians(-10.0), "upper": math.radians(20.0)},
+        "resultant_length": {"value": 0.2, "lower": 0.1, "upper": 0.3}, "of": "the landings",
+    }  # fmt: skip
+    table = table_of(changed(drawn, outputs={"azimuth_out": azimuth}), "Directions of the landings")
+    assert table.rows == [["azimuth out", "5.00 (-10 to 20)", "0.200 (0.1 to 0.3)"]]
+    assert not any(one.title.startswith("Directions") for one in sequence_tables.tables(drawn))
+
+
+def test_touchdowns_without_a_bed_have_a_page_without_one(drawn: SequenceResults) -> None:
+    alone = replace(drawn, bed=None, landing=None, results=drawn.results | {"beds": []})
+    content = sequence_content(alone)
+    assert "Beds" not in {table.title for table in content.tables}
+    assert next(row for row in content.tables[0].rows if "new bed" in row[0])[0] == "prediction interval for a new bed"
+    assert {plot.name for plot in content.plots if not plot.sentence} == {"landing"}
+
+
+def test_side_runs_have_their_numbers(drawn: SequenceResults) -> None:
+    table, side = table_of(drawn, "Side runs"), drawn.results["runs"]["side_runs"]
+    assert re.findall(r"\d+", table.note)[:2] == [str(side["soil_pairs"]), str(side["twins"])]
+    assert float(table.rows[0][2].split()[0]) == pytest.approx(side["chaos_deviation"]["speed_out"]["value"], rel=5e-3)
+    without = changed(drawn, runs={"side_runs": None})
+    assert not [one for one in sequence_tables.tables(without) if one.title == "Side runs"]
+
+
+def test_site_and_grain_sizes_are_no_inputs_of_a_run(drawn: SequenceResults) -> None:
+    law = {"distribution": "uniform", "lower": 0.0, "upper": 360.0}
+    study = drawn.study | {
+        "site": drawn.study["site"] | {"heading_deg": law}, "bed": drawn.study["bed"] | {"diameter": law},
+    }  # fmt: skip
+    inputs = table_of(replace(drawn, study=study), "Inputs")
+    assert [row[1] for row in inputs.rows][-3:] == ["impact.region", "impact.azimuth_deg", "impact.orientation"]
+    assert {row[1].partition(".")[0] for row in inputs.rows} == {"grain", "impact"}
+
+
+def test_what_the_emulator_found_stands_beside_the_inputs(drawn: SequenceResults) -> None:
+    found = changed(drawn, emulator={"found_inputs": ["grain.friction"]})
+    told = {row[1]: row[-1] for row in table_of(found, "Inputs").rows if row[-1]}
+    assert told.pop("grain.friction") == "yes"
+    assert set(told.values()) == {"no"}
+
+
+def test_one_bed_has_a_page_without_intervals(drawn: SequenceResults) -> None:
+    def bare(entry: dict[str, Any]) -> dict[str, Any]:
+        return entry | {"lower": None, "upper": None}
+
+    outputs = {
+        name: table | {
+            "mean": bare(table["mean"]),
+            "quantiles": {level: bare(one) for level, one in table["quantiles"].items()},
+        }
+        for name, table in drawn.results["outputs"].items() if "quantiles" in table
+    }  # fmt: skip
+    shares = dict.fromkeys(drawn.results["variance_shares"])
+    alone = changed(drawn, returns=ONE_BED, runs={"beds": 1}, variance_shares=shares)
+    content = sequence_content(replace(alone, results=alone.results | {"outputs": outputs}))
+    answer, outputs_table = content.tables[0], next(one for one in content.tables if one.title.startswith("Outputs"))
+    assert not any("interval" in row[0] for row in answer.rows)
+    assert answer.note.startswith(ONE_BED["why"])
+    assert not any(" to " in cell for row in outputs_table.rows for cell in row)
+    assert next(plot for plot in content.plots if plot.name == "variance").draw() is None
+    assert not any("held-out beds" in table.title for table in content.tables)
+
+
+def test_what_a_study_has_not_is_left_out(drawn: SequenceResults) -> None:
+    none = dict.fromkeys(("soil", "hard", "equivalent"))
+    alone = changed(drawn, rest=none | {"why_no_soil": "rest.count is 0"})
+    empty = replace(alone, landing=None, facet=drawn.facet[:0], results=alone.results | {"ellipses": None})
+    content = sequence_content(empty)
+    assert {plot.name for plot in content.plots if not plot.sentence} == {"landing", "body", "rest"}
+    assert all(table.rows for table in content.tables)
+    titles = {table.title for table in content.tables}
+    assert not titles & {"Journeys to rest", "From bounce to bounce", "Landing ellipses"}
+
+
+def test_the_landing_is_that_of_the_telling_run(sequence_folder: Path, tmp_path: Path) -> None:
+    folder = Path(shutil.copytree(sequence_folder, tmp_path / "study"))
+    shutil.copy(folder / "landing.h5", folder / "telling_landing.h5")
+    with h5py.File(folder / "telling_landing.h5", "a") as file:
+        file.attrs["run"] = "0123abcd4567"
+    words = captions.landing(page_results(open_study(folder)))
+    assert words.startswith("In run 0123abcd,")
+    assert "0.2 m/s" in words
