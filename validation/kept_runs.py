@@ -20,8 +20,9 @@ from lithobrake.campaign import Ledger
 from lithobrake.pipeline import StudyFolder
 from lithobrake.pipeline.paper.paper_designs import points
 from lithobrake.pipeline.runs.designs import design_inputs
-from lithobrake.pipeline.runs.drawn_design import design_rows
-from lithobrake.pipeline.runs.touchdown_runs import drawn_rows, touchdown_keys
+from lithobrake.pipeline.design.drawn_design import design_rows
+from lithobrake.pipeline.runs.touchdown_runs import drawn_rows
+from lithobrake.pipeline.design.dependencies import touchdown_keys
 from lithobrake.pipeline.site import with_site_gravity
 from lithobrake.study import Study, read_study
 from lithobrake.study.touchdown_model import touchdown_version

@@ -25,7 +25,10 @@ def hashed_seed(*values: Any) -> int:
 def source_hash(*parts: str) -> str:
     """Hash of the sources of parts or files of the package: results of other code are other results."""
     package = Path(__file__).parents[1]
-    roots = [package / part for part in parts]
+    roots = [package / part for part in dict.fromkeys(parts)]
+    absent = [str(root) for root in roots if not root.exists()]
+    if absent:
+        raise FileNotFoundError(f"{', '.join(absent)}: no part of the package")
     digest = hashlib.sha256()
     for source in sorted(path for root in roots for path in ([root] if root.is_file() else root.rglob("*.py"))):
         digest.update(str(source.relative_to(package)).encode() + b"\0" + source.read_bytes())

@@ -5,7 +5,9 @@ from concurrent.futures import Executor
 from dataclasses import dataclass
 from typing import Any, Protocol
 
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.folder.study_folder import StudyFolder
+from lithobrake.pipeline.site import Site
 from lithobrake.study import Study
 
 
@@ -39,12 +41,14 @@ class Silent:
 class Job:
     """A study, its folder, where runs are made, and where progress is shown.
 
+    design, site: the runs that the study asks for, and where it lands, each worked out once.
     tables: the study file as it was written, for the record. model: a function of the user's own that makes the
     touchdowns in place of the soil. keeps_logs: each run leaves a log in the folder. wanted: files of the present stage
     that are not there, or no longer good.
     """
 
-    study: Study
+    design: DrawnDesign
+    site: Site
     tables: Mapping[str, Any]
     folder: StudyFolder
     executor: Executor
@@ -52,6 +56,11 @@ class Job:
     model: Callable[[dict[str, float], int], Mapping[str, Any]] | None = None
     keeps_logs: bool = False
     wanted: tuple[str, ...] = ()
+
+    @property
+    def study(self) -> Study:
+        """The study, with as many runs as it has by now."""
+        return self.design.study
 
     def progress(self, done: float, total: float, what: str, detail: str = "", /) -> None:
         """Show how far a piece of work is; detail: more about it, in lines."""

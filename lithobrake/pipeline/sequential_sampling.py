@@ -8,35 +8,62 @@ runs it has by now.
 from collections.abc import Callable
 from dataclasses import replace
 
-from lithobrake.pipeline.answer.answer_of_run import answer_words, answers_of, flown_shares
+from lithobrake.pipeline.answer.answer_of_run import ANSWERED_AFTER, answer_words, answers_of, read_shares
+from lithobrake.pipeline.answer.failing_runs import failing_runs
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
+from lithobrake.pipeline.fly.run_flights import FILE, RunFlights
 from lithobrake.pipeline.folder.study_folder import StudyFolder
 from lithobrake.pipeline.job import Job
-from lithobrake.pipeline.runs.drawn_design import sequence_rows
 from lithobrake.pipeline.runs.known_runs import known_runs
-from lithobrake.pipeline.runs.touchdown_runs import touchdown_keys
+from lithobrake.pipeline.runs.run_table import DesignRuns, file_of
+from lithobrake.pipeline.stages import stage_keys
 from lithobrake.study import Study
+from lithobrake.study.limit_state import LimitState
 
 
-def sequence_keys(study: Study) -> list[str]:
-    """The keys in the ledger of the runs of a study's sequence, in order."""
-    return touchdown_keys(study, sequence_rows(study), 0)
+def flown_shares(study: Study, folder: StudyFolder) -> dict[str, float]:
+    """Share of its flights with which each run of a study's sequence answers, by key, NaN where it has no answer.
+
+    Of a study with more or fewer runs too: a run flies from the same sites in all of them. None at all where the file
+    is not there or not whole, or was made otherwise than the study says.
+    """
+    key = folder.key_of(FILE)
+    if key is None:
+        return {}
+    shares = read_shares(folder)
+    made_for = study.with_run_count(max(len(shares), 2))
+    if stage_keys(made_for)[ANSWERED_AFTER] != key:
+        return {}
+    return shares if study.design.half_width_of is None else _failing_shares(study, folder)
 
 
-def grown(study: Study, folder: StudyFolder) -> Study:
-    """The study with as many runs as its half width asks for, as far as the runs that have ended can tell."""
+def _failing_shares(study: Study, folder: StudyFolder) -> dict[str, float]:
+    """Share of its flights in which each run meets the limit state that the half width is asked of, by key."""
+    if folder.key_of(file_of("sequence")) is None:
+        return {}
+    runs, fates = DesignRuns.load(folder, "sequence"), RunFlights.load(folder, "sequence").fates
+    if runs.run_count != len(fates):
+        # More runs have been made since, which have not flown.
+        return {}
+    state = LimitState.of(study.limit_states.conditions()[str(study.design.half_width_of)])
+    return dict(zip(runs.keys, failing_runs(state, runs, fates).tolist(), strict=True))
+
+
+def grown(design: DrawnDesign, folder: StudyFolder) -> DrawnDesign:
+    """The design with as many runs as its half width asks for, as far as the runs that have ended can tell."""
     from lithobrake.analysis import next_run_count
 
-    design = study.design
-    if design.half_width is None:
-        return study
+    study, asked = design.study, design.study.design
+    if asked.half_width is None:
+        return design
     known, flown = known_runs(study, folder), flown_shares(study, folder)
-    while known.keys() & flown.keys() >= set(keys := sequence_keys(study)):
-        values, bed = answers_of(keys, known, flown)
-        count = next_run_count(values, bed, design.half_width, design.most_runs, _bed_count_of(study))
+    while known.keys() & flown.keys() >= set(design.keys):
+        values, bed = answers_of(design.keys, known, flown)
+        count = next_run_count(values, bed, asked.half_width, asked.most_runs, _bed_count_of(study))
         if count is None:
             break
-        study = study.with_run_count(count)
-    return study
+        design = design.with_run_count(count)
+    return design
 
 
 def grow(job: Job, make_runs: Callable[[Job], None]) -> Job:
@@ -45,9 +72,9 @@ def grow(job: Job, make_runs: Callable[[Job], None]) -> Job:
     make_runs: makes the runs of the study of a job, with all that they need.
     """
     make_runs(job)
-    while (study := grown(job.study, job.folder)).design.run_count > job.study.design.run_count:
-        job.say(f"{width_sentence(job)}: going on to {study.design.run_count} runs on {study.bed_count} beds")
-        job = replace(job, study=study)
+    while len((design := grown(job.design, job.folder)).beds) > len(job.design.beds):
+        job.say(f"{width_sentence(job)}: going on to {len(design.beds)} runs on {design.study.bed_count} beds")
+        job = replace(job, design=design)
         make_runs(job)
     job.say(f"{width_sentence(job)}: {_end(job)}")
     return job
@@ -74,7 +101,7 @@ def _width(job: Job) -> float | None:
     from lithobrake.analysis import half_width_of
 
     known, flown = known_runs(job.study, job.folder), flown_shares(job.study, job.folder)
-    return half_width_of(*answers_of(sequence_keys(job.study), known, flown))
+    return half_width_of(*answers_of(job.design.keys, known, flown))
 
 
 def _bed_count_of(study: Study) -> Callable[[int], int]:

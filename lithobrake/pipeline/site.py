@@ -2,8 +2,8 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import replace
-from functools import lru_cache
+from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -11,9 +11,10 @@ import numpy as np
 
 from lithobrake.study import BUILT_IN_BODIES, Study, StudyError
 from lithobrake.study.checks import settling_problems
-from lithobrake.study.quantity import Scalar, Uncertain, median, usual_reach
+from lithobrake.study.quantity import Scalar, Uncertain, median, uncertain, usual_reach
 
 if TYPE_CHECKING:
+    from lithobrake.chaos import Distribution
     from lithobrake.smallbody import Body, Shape
 
 # The numbers of a place, in the order of their columns in flights.csv.
@@ -27,42 +28,131 @@ NEARLY_NONE = 0.05
 UNLIKE = 3.0
 
 
-def site_values(study: Study) -> dict[str, Scalar]:
-    """All numbers of SITE_KEYS, fixed or uncertain; what the study leaves open is the built-in body's.
+@dataclass(frozen=True, eq=False)
+class Site:
+    """The landing site of a study, made once for it; each property is worked out when it is first asked for."""
 
-    Where the partner stands when the lander leaves is not known unless the study says so: drawn evenly.
-    """
-    given = {name.removeprefix("site."): value for name, value in study.site_values().items()}
-    body = _body(study)
-    values: dict[str, Scalar] = {"mass": body.mass, "spin_period": body.spin_period, "partner_longitude_deg": 0.0}
-    if body.partner is not None and body.orbit.rate != 0.0:
-        values["partner_longitude_deg"] = Uncertain("uniform", {"lower": -180.0, "upper": 180.0})
-    values |= given
-    return {key: values[key] for key in SITE_KEYS}
+    study: Study
 
+    @cached_property
+    def values(self) -> dict[str, Scalar]:
+        """All numbers of SITE_KEYS, fixed or uncertain; what the study leaves open is the built-in body's.
 
-def site_medians(study: Study) -> dict[str, float]:
-    """The same with uncertain numbers at their median."""
-    return {key: median(value) for key, value in site_values(study).items()}
+        Where the partner stands when the lander leaves is not known unless the study says so: drawn evenly.
+        """
+        given = {name.removeprefix("site."): value for name, value in self.study.site_values().items()}
+        body = _body(self.study)
+        values: dict[str, Scalar] = {"mass": body.mass, "spin_period": body.spin_period, "partner_longitude_deg": 0.0}
+        if body.partner is not None and body.orbit.rate != 0.0:
+            values["partner_longitude_deg"] = Uncertain("uniform", {"lower": -180.0, "upper": 180.0})
+        values |= given
+        return {key: values[key] for key in SITE_KEYS}
 
+    @cached_property
+    def medians(self) -> dict[str, float]:
+        """The same with uncertain numbers at their median."""
+        return {key: median(value) for key, value in self.values.items()}
 
-def has_heading(study: Study) -> bool:
-    """Whether the heading has a median: one that is uncertain over the circle has none.
+    @cached_property
+    def distributions(self) -> "dict[str, Distribution]":
+        """Those of the uncertain numbers among them."""
+        return {key: value.to_chaos() for key, value in uncertain(self.values).items()}
 
-    It has none where a draw points hardly anywhere in the mean (resultant length below a tenth; an even spread over
-    325 degrees has that). Source: [Mardia-2000], section 2.3.
-    """
-    heading = site_values(study)["heading_deg"]
-    if not isinstance(heading, Uncertain):
-        return True
-    draws = np.radians(heading.to_chaos().ppf((np.arange(1000) + 0.5) / 1000))
-    return bool(np.hypot(np.cos(draws).mean(), np.sin(draws).mean()) > 0.1)
+    @cached_property
+    def has_heading(self) -> bool:
+        """Whether the heading has a median: one that is uncertain over the circle has none.
 
+        It has none where a draw points hardly anywhere in the mean (resultant length below a tenth; an even spread over
+        325 degrees has that). Source: [Mardia-2000], section 2.3.
+        """
+        if "heading_deg" not in self.distributions:
+            return True
+        draws = np.radians(self.distributions["heading_deg"].ppf((np.arange(1000) + 0.5) / 1000))
+        return bool(np.hypot(np.cos(draws).mean(), np.sin(draws).mean()) > 0.1)
 
-def site_body(study: Study) -> "Body":
-    """The body of the study with its shape and partner, at the medians of its mass and spin period."""
-    values = site_medians(study)
-    return replace(_body(study), mass=values["mass"], spin_period=values["spin_period"])
+    @cached_property
+    def body(self) -> "Body":
+        """The body of the study with its shape and partner, at the medians of its mass and spin period."""
+        return replace(_body(self.study), mass=self.medians["mass"], spin_period=self.medians["spin_period"])
+
+    def frames(self, columns: Mapping[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+        """Origins on the surface [m], shape [count, 3], and axes in rows, [count, 3, 3], for columns of SITE_KEYS.
+
+        The delivery error moves the place north and east; the frame is that of where it ends.
+        """
+        if not len(columns["mass"]):
+            return np.empty((0, 3)), np.empty((0, 3, 3))
+        names = ("latitude_deg", "longitude_deg", "heading_deg", "north_error", "east_error")
+        return self.body.delivered_frame(*(columns[name] for name in names))
+
+    def columns(self, shape: int | tuple[int, ...]) -> dict[str, np.ndarray]:
+        """The medians as columns of SITE_KEYS, each of this shape."""
+        return {key: np.full(shape, value) for key, value in self.medians.items()}
+
+    @cached_property
+    def _frame(self) -> tuple[np.ndarray, np.ndarray]:
+        """Origin [m] and axes in their rows, [3, 3], at the medians."""
+        origin, axes = self.frames(self.columns(1))
+        return origin[0], axes[0]
+
+    @cached_property
+    def acceleration(self) -> np.ndarray:
+        """Acceleration [m/s2] of a point at rest on the ground there, at medians: along heading, left of it, out."""
+        origin, axes = self._frame
+        felt: np.ndarray = axes @ self.body.effective_acceleration(origin)
+        return felt
+
+    @property
+    def holds(self) -> bool:
+        """Whether the ground there holds what lies on it."""
+        return bool(self.acceleration[2] < 0.0)
+
+    @cached_property
+    def slope_deg(self) -> float:
+        """Slope of the ground there against the plumb line of gravity and rotation together, at medians [deg]."""
+        return math.degrees(float(self.body.slope(self.medians["latitude_deg"], self.medians["longitude_deg"])))
+
+    @cached_property
+    def escape_speed(self) -> float:
+        """Speed [m/s], in axes that do not turn, with which a point there escapes the body alone, at medians."""
+        return math.sqrt(2.0 * float(self.body.potential(self._frame[0])))
+
+    @cached_property
+    def warning(self) -> str | None:
+        """What it means that the ground there does not hold what lies on it, or hardly; None where it does."""
+        outward, pull = float(self.acceleration[2]), float(np.linalg.norm(self.body.acceleration(self._frame[0])))
+        if outward < -NEARLY_NONE * pull:
+            return None
+        where = f"At the site gravity ({pull:.2g} m/s2) and rotation together"
+        end = "a lander that impacts again within the time of flight does not remain there."
+        if outward > NEARLY_NONE * pull:
+            return f"{where} push outwards by {outward:.2g} m/s2: what lies there is thrown off, so {end}"
+        words = "push outwards" if outward > 0.0 else "hold"
+        # Metres that a fall or a drift covers in an hour say more than micrometres per second squared.
+        hour = 0.5 * abs(outward) * 3600.0**2
+        return (
+            f"{where} nearly cancel: they {words} by only {abs(outward):.2g} m/s2, {hour:.2g} m in the first hour from "
+            f"rest. The least uncertainty of mass, spin or shape turns that round, so {end}"
+        )
+
+    @cached_property
+    def gravity_warning(self) -> str | None:
+        """What it means that touchdowns and flights feel another acceleration; None where the two are alike."""
+        at_site = -float(self.acceleration[2])
+        given = self.study.surface.gravity
+        lower, upper = (at_site, at_site) if isinstance(given, str) else usual_reach(given)
+        # That end of surface.gravity which is nearest to the acceleration at the site.
+        nearest = min(max(at_site, lower), upper)
+        if nearest == at_site or (nearest * at_site > 0.0 and 1.0 / UNLIKE < nearest / at_site < UNLIKE):
+            return None
+        reached = f"{lower:.3g}" if lower == upper else f"{lower:.3g} to {upper:.3g}"
+        settle = "" if at_site > 0.0 else " and bed.settle_gravity an inward value"
+        return (
+            f"surface.gravity is {reached} m/s2 inwards, and at the site gravity and rotation together are "
+            f"{abs(at_site):.3g} m/s2 {'inwards' if at_site > 0.0 else 'outwards'}: touchdowns and flights are made "
+            'under different accelerations; write surface.gravity = "site"'
+            f"{settle}, or choose the site that the touchdown is meant for"
+        )
 
 
 def _body(study: Study) -> "Body":
@@ -90,75 +180,6 @@ def _read_shape(path: Path, unit: str | None, gravity_facets: int | None) -> "Sh
     return Shape.read(path, unit, gravity_facets=gravity_facets)
 
 
-def frames(body: "Body", site: Mapping[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
-    """Origins on the surface [m], shape [count, 3], and axes in their rows, [count, 3, 3], for columns of SITE_KEYS.
-
-    The delivery error moves the place north and east; the frame is that of where it ends.
-    """
-    names = ("latitude_deg", "longitude_deg", "heading_deg", "north_error", "east_error")
-    return body.delivered_frame(*(site[name] for name in names))
-
-
-def effective_acceleration_at_site(study: Study) -> np.ndarray:
-    """Acceleration [m/s2] of a point at rest on the ground at the site, at medians: along heading, left of it, out."""
-    body, values = site_body(study), site_medians(study)
-    origin, axes = frames(body, {key: np.array([value]) for key, value in values.items()})
-    felt: np.ndarray = axes[0] @ body.effective_acceleration(origin[0])
-    return felt
-
-
-def site_slope_deg(study: Study) -> float:
-    """Slope of the ground at the site against the plumb line of gravity and rotation together, at medians [deg]."""
-    values = site_medians(study)
-    return math.degrees(float(site_body(study).slope(values["latitude_deg"], values["longitude_deg"])))
-
-
-def site_warning(study: Study) -> str | None:
-    """What it means that the ground at the site does not hold what lies on it, or hardly; None where it does."""
-    body, values = site_body(study), site_medians(study)
-    origin, _ = frames(body, {key: np.array([value]) for key, value in values.items()})
-    outward, pull = float(effective_acceleration_at_site(study)[2]), float(np.linalg.norm(body.acceleration(origin[0])))
-    if outward < -NEARLY_NONE * pull:
-        return None
-    where = f"At the site gravity ({pull:.2g} m/s2) and rotation together"
-    end = "a lander that impacts again within the time of flight does not remain there."
-    if outward > NEARLY_NONE * pull:
-        return f"{where} push outwards by {outward:.2g} m/s2: what lies there is thrown off, so {end}"
-    words = "push outwards" if outward > 0.0 else "hold"
-    # Metres that a fall or a drift covers in an hour say more than micrometres per second squared.
-    hour = 0.5 * abs(outward) * 3600.0**2
-    return (
-        f"{where} nearly cancel: they {words} by only {abs(outward):.2g} m/s2, {hour:.2g} m in the first hour from "
-        f"rest. The least uncertainty of mass, spin or shape turns that round, so {end}"
-    )
-
-
-def gravity_warning(study: Study) -> str | None:
-    """What it means that touchdowns and flights feel another acceleration; None where the two are alike."""
-    at_site = -float(effective_acceleration_at_site(study)[2])
-    given = study.surface.gravity
-    lower, upper = (at_site, at_site) if isinstance(given, str) else usual_reach(given)
-    # That end of surface.gravity which is nearest to the acceleration at the site.
-    nearest = min(max(at_site, lower), upper)
-    if nearest == at_site or (nearest * at_site > 0.0 and 1.0 / UNLIKE < nearest / at_site < UNLIKE):
-        return None
-    reached = f"{lower:.3g}" if lower == upper else f"{lower:.3g} to {upper:.3g}"
-    settle = "" if at_site > 0.0 else " and bed.settle_gravity an inward value"
-    return (
-        f"surface.gravity is {reached} m/s2 inwards, and at the site gravity and rotation together are "
-        f"{abs(at_site):.3g} m/s2 {'inwards' if at_site > 0.0 else 'outwards'}: touchdowns and flights are made under "
-        'different accelerations; write surface.gravity = "site"'
-        f"{settle}, or choose the site that the touchdown is meant for"
-    )
-
-
-def escape_speed(study: Study) -> float:
-    """Speed [m/s], in axes that do not turn, with which a point at the site escapes the body alone, at medians."""
-    body, values = site_body(study), site_medians(study)
-    origin, _ = frames(body, {key: np.array([value]) for key, value in values.items()})
-    return math.sqrt(2.0 * float(body.potential(origin[0])))
-
-
 def with_site_gravity(study: Study, name: str = "study.toml") -> Study:
     """The study with surface.gravity = "site" replaced by the acceleration there; negative points outward.
 
@@ -166,7 +187,7 @@ def with_site_gravity(study: Study, name: str = "study.toml") -> Study:
     """
     if study.surface.gravity != "site":
         return study
-    gravity = -float(effective_acceleration_at_site(study)[2])
+    gravity = -float(Site(study).acceleration[2])
     problems = [f"{name}: {text}" for text in settling_problems(study, gravity)]
     if not math.isfinite(gravity):
         problems = [f"{name}: surface.gravity: the acceleration at the site is not finite; mend site.mass or its mesh"]

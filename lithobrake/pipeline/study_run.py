@@ -11,6 +11,7 @@ from lithobrake.campaign.main_module import refuse_while_importing
 from lithobrake.campaign.model_server import PREFIX
 from lithobrake.chaos.threads import one_thread
 from lithobrake.pipeline.answer.answer_of_run import ANSWERED_AFTER
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.folder.notes import NAME
 from lithobrake.pipeline.folder.owner import refuse_others_folder
 from lithobrake.pipeline.folder.state import grouped, read_state
@@ -19,8 +20,8 @@ from lithobrake.pipeline.job import Job, Progress, Silent
 from lithobrake.pipeline.planning.plan_in_words import brief_lines
 from lithobrake.pipeline.planning.planner import plan_of
 from lithobrake.pipeline.runs.solver import Model, function_identity
-from lithobrake.pipeline.sequential_sampling import grow, grown, sequence_keys
-from lithobrake.pipeline.site import with_site_gravity
+from lithobrake.pipeline.sequential_sampling import grow, grown
+from lithobrake.pipeline.site import Site, with_site_gravity
 from lithobrake.pipeline.stages import make, setting, stages_until
 from lithobrake.results import StudyResults
 from lithobrake.study import StudySource
@@ -110,15 +111,15 @@ def run_study(
         folder.alone() as note,
         DaskExecutor(scheduler) if scheduler else LocalExecutor(worker_count) as executor,
     ):
-        study = grown(study, folder)
-        folder.begin(source.path, source.content, setting(study), shown.say)
+        site, design = Site(study), grown(DrawnDesign(study), folder)
+        folder.begin(source.path, source.content, setting(design.study), shown.say)
         if until == "report":
-            plan = plan_of(study, source.stem, folder, worker_count, on_cluster=scheduler is not None)
+            plan = plan_of(design, site, source.stem, folder, worker_count, on_cluster=scheduler is not None)
             command = f"lithobrake plan {source.path or 'STUDY.toml'} --out {folder.path}"
             for line in brief_lines(plan, command) if plan.stages else ():
                 shown.say(line)
         try:
-            _make_all(Job(study, source.tables, folder, executor, shown, model, keeps_logs), source, until, note)
+            _make_all(Job(design, site, source.tables, folder, executor, shown, model, keeps_logs), source, until, note)
         except BaseException:
             # What is under way would be waited for otherwise; every finished run is in the ledger already.
             executor.shutdown(cancel_futures=True)
@@ -131,7 +132,7 @@ def _make_all(job: Job, source: StudySource, until: str, note: Callable[..., Non
     def make_runs(job: Job) -> None:
         job.folder.begin(source.path, source.content, setting(job.study), job.say)
         # While further beds are poured, whoever looks still finds the runs that there are.
-        job.folder.note_runs("sequence", sequence_keys(job.study))
+        job.folder.note_runs("sequence", job.design.keys)
         make(job, ANSWERED_AFTER, note)
 
     names = [stage.name for stage in stages_until(job.study, until)]

@@ -16,7 +16,7 @@ from lithobrake.pipeline import StudyFolder
 from lithobrake.pipeline.answer.drawn_summary import write_drawn_summary
 from lithobrake.pipeline.job import Job, Silent
 from lithobrake.pipeline.paper.paper_summary import write_summary
-from lithobrake.pipeline.runs.beds import bed_files
+from lithobrake.pipeline.design.dependencies import bed_files
 from lithobrake.study import check_tables
 from lithobrake.touchdown import Bed
 

@@ -9,7 +9,7 @@ from lithobrake.pipeline.answer.scope import scope
 from lithobrake.pipeline.emulate.samples import MISSING, SAMPLE_OUTCOMES, Samples
 from lithobrake.pipeline.fly.flights import QUANTILES, flight_numbers, read_table
 from lithobrake.pipeline.job import Job
-from lithobrake.pipeline.site import effective_acceleration_at_site, site_body
+from lithobrake.pipeline.site import Site
 from lithobrake.study import Study
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus, SampleOutcome, TouchdownOutcome
 
@@ -22,7 +22,7 @@ Rows = Sequence[dict[str, str]]
 def dispersion_results(job: Job, samples: Samples, flights: Rows, run_outcomes: Mapping[str, int]) -> dict[str, Any]:
     """The parts of the summary that come from flights and journeys; run_outcomes: how often each came in the runs."""
     study = job.study
-    holds = bool(effective_acceleration_at_site(study)[2] < 0.0)
+    holds = Site(study).holds
     results: dict[str, Any] = {}
     results["shares"] = shares(samples, flights, run_outcomes, holds=holds) | {"why": scope(study).why}
     results["returns"] = return_fraction(study, results["shares"], sum(run_outcomes.values()))
@@ -96,7 +96,7 @@ def ellipses(study: Study, rows: Rows, status: str) -> dict[str, Any] | None:
     found = dispersion_ellipses(latitude, longitude)
     if found is None:
         return None
-    centre = site_body(study).shape.surface_point(found.latitude_deg, found.longitude_deg)
+    centre = Site(study).body.shape.surface_point(found.latitude_deg, found.longitude_deg)
     radius = float(np.linalg.norm(centre))
     return {
         "latitude_deg": found.latitude_deg,

@@ -12,6 +12,7 @@ from lithobrake.pipeline.answer.run_estimates import FILE as ESTIMATES
 from lithobrake.pipeline.answer.shares_over_refits import Refits, journey_ends, sample_fates
 from lithobrake.pipeline.answer.site_summary import site_results
 from lithobrake.pipeline.answer.statements import drawn_answer, drawn_headline, limit_statement
+from lithobrake.pipeline.design.dependencies import bed_files
 from lithobrake.pipeline.emulate.fitted_emulator import FILE as EMULATOR
 from lithobrake.pipeline.emulate.samples import Samples
 from lithobrake.pipeline.fly.flights import read_table
@@ -23,9 +24,8 @@ from lithobrake.pipeline.paper.paper_summary import (
     provenance,
     study_tables,
 )
-from lithobrake.pipeline.runs.beds import bed_files
 from lithobrake.pipeline.runs.run_table import DesignRuns
-from lithobrake.pipeline.site import effective_acceleration_at_site
+from lithobrake.pipeline.site import Site
 from lithobrake.results.study_results import SUMMARY_FORMAT
 from lithobrake.vocabulary.outcomes import FlightStatus, TouchdownOutcome
 from lithobrake.vocabulary.quantities import OUTPUTS, SEQUENCE_DESIGNS, TOUCHDOWN
@@ -43,7 +43,7 @@ def write_drawn_summary(job: Job) -> None:
         "beds": [bed_results(job, name) for name in bed_files(job.study)],
         **estimates,
         "outputs_of_runs": outputs_of_runs(distinct),
-        "site": site_results(job.study),
+        "site": site_results(job.site),
         **_dispersion(job, estimates),
     }
     results["limit_states"] = _limit_states(job, results["shares"])
@@ -67,7 +67,7 @@ def write_drawn_summary(job: Job) -> None:
 
 def _limit_states(job: Job, shares: dict[str, Any]) -> dict[str, Any]:
     """What the study file asks for, by name, each with a sentence."""
-    holds = bool(effective_acceleration_at_site(job.study)[2] < 0.0)
+    holds = job.site.holds
     found = limit_state_results(job.study, job.folder, read_table(job.folder, "flights.csv"), shares, holds=holds)
     return {name: one | {"statement": limit_statement(name, one)} for name, one in found.items()}
 
@@ -85,7 +85,7 @@ def _refits(estimates: dict[str, Any]) -> Refits:
 def _dispersion(job: Job, estimates: dict[str, Any]) -> dict[str, Any]:
     """What became of the samples of the emulator, with intervals from refits, beside what the runs say."""
     study, samples, flights = job.study, Samples.load(job.folder), read_table(job.folder, "flights.csv")
-    holds, refits = bool(effective_acceleration_at_site(study)[2] < 0.0), _refits(estimates)
+    holds, refits = Site(study).holds, _refits(estimates)
     table = _emulator_shares(samples, flights, _ended(estimates), refits, holds=holds)
     known = table["sample_count"] - table["missing"]["count"]
     rest = rest_results(job)

@@ -11,11 +11,11 @@ from lithobrake.pipeline.answer.failing_runs import CAPTURED, failing_runs
 from lithobrake.pipeline.answer.missing_landings import left_in_flight
 from lithobrake.pipeline.answer.scope import why_no_interval
 from lithobrake.pipeline.answer.shares_over_refits import sample_fates
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.emulate.fitted_emulator import REFIT_COUNT
 from lithobrake.pipeline.emulate.samples import Samples
 from lithobrake.pipeline.fly.run_flights import RunFlights
 from lithobrake.pipeline.folder.study_folder import StudyFolder
-from lithobrake.pipeline.runs.designs import design_inputs
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.study import Study
 from lithobrake.study.limit_state import LOFTED, RETURNS, SETTLED, LimitState
@@ -61,7 +61,7 @@ def _one(
                 f"limit_states.{name} asks for {output}, which no run has; let the program that makes the touchdowns "
                 "give it, or leave the limit state out"
             )
-    failing, inputs = failing_runs(state, runs, fates), design_inputs(study)
+    failing, inputs = failing_runs(state, runs, fates), DrawnDesign(study).inputs
     if not np.isfinite(failing).any():
         raise ValueError(
             f"limit_states.{name} is {state.text!r}, of which no run is known to meet it or not (runs.sqlite has how "

@@ -20,11 +20,9 @@ from lithobrake.pipeline.answer.scope import why_no_interval
 from lithobrake.pipeline.fly.flights import QUANTILES
 from lithobrake.pipeline.fly.run_flights import RunFlights, RunImpacts
 from lithobrake.pipeline.job import Job
-from lithobrake.pipeline.runs.designs import design_inputs
-from lithobrake.pipeline.runs.drawn_design import AZIMUTH
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.study import Study
-from lithobrake.study.touchdown_model import PLACE, SURFACE
+from lithobrake.study.touchdown_model import SURFACE
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
 from lithobrake.vocabulary.quantities import OVER_RIM, TOUCHDOWN
 
@@ -106,7 +104,7 @@ def _part(one: IntervalEstimate) -> dict[str, float]:
 def _split(job: Job, runs: DesignRuns, name: str, y: np.ndarray) -> dict[str, Any] | None:
     """Parts of the variance of an output; None where the runs cannot tell."""
     # A place that is drawn by a law of its own is a place like any other.
-    inputs = {key: law for key, law in design_inputs(job.study).items() if key not in (*PLACE, AZIMUTH)}
+    inputs = job.design.soil_inputs
     if not inputs:
         return None
     soil = [key for key in inputs if key.startswith(SOIL)]

@@ -7,9 +7,9 @@ import numpy as np
 from lithobrake.analysis import LEVEL, IntervalEstimate, quantile_estimates, regression_terms, share_estimate
 from lithobrake.pipeline.answer.missing_landings import KNOWN, LOST, left_in_flight
 from lithobrake.pipeline.answer.scope import why_no_interval
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.fly.flights import QUANTILES
 from lithobrake.pipeline.fly.run_flights import FATES, FLIGHT_COUNT, RunFlights, RunImpacts
-from lithobrake.pipeline.runs.designs import design_inputs
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.study import Study
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus, TouchdownOutcome
@@ -108,7 +108,7 @@ def _move(entry: dict[str, Any], share: float) -> None:
 
 def _share(study: Study, runs: DesignRuns, share: np.ndarray) -> dict[str, Any]:
     """The estimate of an event from its share of the flights of each run [run_count], NaN where that is not known."""
-    inputs = design_inputs(study)
+    inputs = DrawnDesign(study).inputs
     terms = regression_terms(inputs, runs.columns(list(inputs)))
     bed, why = runs.inputs["bed"], why_no_interval(study)
     return share_estimate(share, bed, terms=terms, like_missing=left_in_flight(runs), why=why).summary()

@@ -2,9 +2,8 @@
 
 from dataclasses import dataclass
 
-from lithobrake.pipeline.runs.place_region import place_region
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.study import Study
-from lithobrake.study.quantity import Uncertain
 
 
 @dataclass(frozen=True)
@@ -26,7 +25,7 @@ def scope(study: Study) -> Scope:
         )
     count = study.bed_count
     fixed = ["on this bed"] if count == 1 else []
-    fixed += ["at this place"] if one_place(study) else []
+    fixed += ["at this place"] if DrawnDesign(study).one_place else []
     beds = "on 1 bed" if count == 1 else f"on {count} beds"
     if fixed or study.impact.orientation != "random":
         where = ", ".join(fixed or ["in this attitude"]).capitalize()
@@ -43,22 +42,14 @@ def scope(study: Study) -> Scope:
 
 def why_no_interval(study: Study) -> str | None:
     """Why the runs of a sequence say nothing of other beds and places; None where they do."""
-    if study.bed_count > 1 and not one_place(study):
+    if study.bed_count > 1 and not DrawnDesign(study).one_place:
         return None
     where, remedies = [], []
     if study.bed_count == 1:
         where, remedies = ["on one bed"], ["bed.bed_count to 12 or more"]
-    if one_place(study):
+    if DrawnDesign(study).one_place:
         where, remedies = [*where, "at one place"], [*remedies, "impact.region to where it may come down"]
     return (
         f"All runs came down {' and '.join(where)}. Another bed, place or attitude gives another figure; this study "
         f"cannot say how different: set {' and '.join(remedies)}."
     )
-
-
-def one_place(study: Study) -> bool:
-    """Whether all runs come down at the same place of their bed."""
-    place = study.impact.place
-    if place is not None and (isinstance(place.x, Uncertain) or isinstance(place.y, Uncertain)):
-        return False
-    return not any(low < high for low, high in place_region(study) or ())

@@ -6,23 +6,15 @@ from typing import Any
 import numpy as np
 
 from lithobrake.geometry.mesh_labels import labelled_mesh, product_id
-from lithobrake.pipeline.site import (
-    effective_acceleration_at_site,
-    escape_speed,
-    gravity_warning,
-    has_heading,
-    site_body,
-    site_medians,
-    site_warning,
-)
+from lithobrake.pipeline.site import Site
 from lithobrake.study import BUILT_IN_BODIES, Study
 from lithobrake.study.site_kernels import kernel_partner, kernel_spin
 
 
-def site_results(study: Study) -> dict[str, Any]:
+def site_results(site: Site) -> dict[str, Any]:
     """The body at the medians, and the acceleration of a point at rest on the ground at the site."""
-    body, site, effective = site_body(study), site_medians(study), effective_acceleration_at_site(study)
-    built_in, heads = study.site.body in BUILT_IN_BODIES, has_heading(study)
+    study, body, medians, effective = site.study, site.body, site.medians, site.acceleration
+    built_in, heads = study.site.body in BUILT_IN_BODIES, site.has_heading
     partner = None if body.partner is None else body.partner.body.name
     return {
         "body": study.site.body if built_in else "mesh",
@@ -36,15 +28,15 @@ def site_results(study: Study) -> dict[str, Any]:
         "centroid_m": body.shape.centroid.tolist(),
         "partner": partner,
         "partner_distance_m": None if partner is None else float(body.orbit.distance),
-        **{key: site[key] for key in ("latitude_deg", "longitude_deg")},
-        "heading_deg": site["heading_deg"] if heads else None,
-        "place_m": body.shape.surface_point(site["latitude_deg"], site["longitude_deg"]).tolist(),
+        **{key: medians[key] for key in ("latitude_deg", "longitude_deg")},
+        "heading_deg": medians["heading_deg"] if heads else None,
+        "place_m": body.shape.surface_point(medians["latitude_deg"], medians["longitude_deg"]).tolist(),
         "effective_acceleration_outward": float(effective[2]),
         "effective_acceleration_along_heading": float(effective[0]) if heads else None,
         # In axes that do not turn, from the body alone.
-        "escape_speed_m_s": escape_speed(study),
-        "warning": site_warning(study),
-        "gravity_warning": gravity_warning(study),
+        "escape_speed_m_s": site.escape_speed,
+        "warning": site.warning,
+        "gravity_warning": site.gravity_warning,
     }
 
 

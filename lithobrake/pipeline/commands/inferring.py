@@ -21,14 +21,14 @@ from lithobrake.analysis import (
 )
 from lithobrake.files.atomic import atomic_path
 from lithobrake.files.reading import DamagedFileError, read_json, read_table
-from lithobrake.pipeline.emulate.energy_bound import energy_bound, height_of_beds
+from lithobrake.pipeline.design.dependencies import bed_files
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.emulate.fitted_emulator import FILE as EMULATOR
 from lithobrake.pipeline.emulate.fitted_emulator import SPEED, SPIN
 from lithobrake.pipeline.folder.notes import REMEDY
 from lithobrake.pipeline.folder.study_folder import StudyFolder
 from lithobrake.pipeline.planning.expected_inference import ExpectedInference, ExpectedInput
-from lithobrake.pipeline.runs.beds import bed_files
-from lithobrake.pipeline.runs.designs import design_inputs
+from lithobrake.pipeline.runs.energy_bound import energy_bound, height_of_beds
 from lithobrake.pipeline.site import with_site_gravity
 from lithobrake.results.intact import STUDY_FILE, intact_file
 from lithobrake.study import Study, StudySource
@@ -88,9 +88,9 @@ class InferredStudy:
         lower, upper = np.tile(runs.lower[0], (len(x), 1)), np.tile(runs.upper[0], (len(x), 1))
         speed, spin = (self.model.output_names.index(name) for name in (SPEED, SPIN))
         if np.isfinite(upper[0, speed]):
-            names = design_inputs(self.study)
+            design = DrawnDesign(self.study)
             height = height_of_beds(self.study, self.folder)
-            bound = energy_bound(self.study, height, dict(zip(names, x.T, strict=True)), len(x))
+            bound = energy_bound(design, height, dict(zip(design.inputs, x.T, strict=True)), len(x))
             upper[:, speed], upper[:, spin] = bound.speed, bound.spin()
         return lower, upper
 

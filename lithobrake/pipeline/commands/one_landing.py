@@ -8,12 +8,12 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.runs.beds import bed_recipe
-from lithobrake.pipeline.runs.drawn_design import sequence_row
 from lithobrake.pipeline.site import with_site_gravity
 from lithobrake.study import Study, StudyError, fixed_study
 from lithobrake.study.refusals import closest
-from lithobrake.study.touchdown_model import draw, in_words_of_the_study, lander, landing, medians
+from lithobrake.study.touchdown_model import draw, in_words_of_the_study, lander, landing
 from lithobrake.vocabulary.quantities import TOUCHDOWN
 
 if TYPE_CHECKING:
@@ -110,11 +110,11 @@ def land_one(
 def _values(study: Study, number: int) -> dict[str, float]:
     """What the run of a number reads."""
     if study.design.method == "paper":
-        return draw(study, medians(study), study.seed)
+        return draw(study, DrawnDesign(study).medians, study.seed)
     last = study.design.most_runs
     if not 1 <= number <= last:
         raise ValueError(f"the number of a run is {number}; allowed: 1 to {last}, the runs of the study")
-    return sequence_row(study, number - 1)
+    return DrawnDesign(study).row(number - 1)
 
 
 def _refuse(study: Study, values: Mapping[str, float]) -> None:

@@ -17,15 +17,15 @@ from lithobrake.campaign import DaskExecutor, LocalExecutor
 from lithobrake.files.hashing import hashed_seed
 from lithobrake.pipeline.answer.failing_runs import OF_TOUCHDOWN, values_of_runs
 from lithobrake.pipeline.answer.scope import why_no_interval
+from lithobrake.pipeline.design.dependencies import touchdown_keys
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.folder.study_folder import StudyFolder
 from lithobrake.pipeline.job import Job, Progress, Silent
-from lithobrake.pipeline.runs.designs import design_inputs
-from lithobrake.pipeline.runs.drawn_design import coordinates, rows_at
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.runs.solver import Model
-from lithobrake.pipeline.runs.touchdown_runs import touchdown_keys, touchdowns
+from lithobrake.pipeline.runs.touchdown_runs import touchdowns
 from lithobrake.pipeline.sequential_sampling import grown
-from lithobrake.pipeline.site import with_site_gravity
+from lithobrake.pipeline.site import Site, with_site_gravity
 from lithobrake.pipeline.study_run import run_study
 from lithobrake.study import Study, StudySource
 from lithobrake.study.limit_state import LimitState
@@ -63,8 +63,9 @@ def rare_failure(
     run_study(source, out, until="bed", worker_count=worker_count, scheduler=scheduler, model=model, shown=shown)
     folder = StudyFolder(out)
     with folder.alone(), DaskExecutor(scheduler) if scheduler else LocalExecutor(worker_count) as executor:
-        study = grown(with_site_gravity(source.study, source.name), folder)
-        landings = Landings(Job(study, source.tables, folder, executor, shown, model), name, state)
+        study = with_site_gravity(source.study, source.name)
+        design = grown(DrawnDesign(study), folder)
+        landings = Landings(Job(design, Site(study), source.tables, folder, executor, shown, model), name, state)
         if not study.has_soil:
             shown.say("A program with chance of its own, beside its inputs, makes the interval wide.")
         shown.begin(f"landings of {name}", 1, 1)
@@ -99,7 +100,7 @@ class Landings:
     @property
     def dimension(self) -> int:
         """How many numbers a point has; the last picks the bed."""
-        return len(coordinates(self.job.study)) + 1
+        return len(self.job.design.coordinates) + 1
 
     def simulation(self, landing_count: int) -> SubsetResult:
         """Subset simulation with so many landings a level."""
@@ -125,9 +126,9 @@ class Landings:
         """
         study = self.job.study
         shares = np.clip(ndtr(points), LEAST, 1.0 - LEAST)
-        laws = coordinates(study).values()
+        laws = self.job.design.coordinates.values()
         x = np.column_stack([law.ppf(share) for law, share in zip(laws, shares.T, strict=False)])
-        rows = rows_at(study, self.beds(points).tolist(), x)
+        rows = self.job.design.rows_at(self.beds(points).tolist(), x)
         self.keys += touchdown_keys(study, rows, 0)
         # Noted before they are made, so that whoever looks meanwhile can tell them from runs of the study.
         self.job.folder.note_rare(self.name, self.keys)
@@ -176,7 +177,7 @@ class Landings:
 
     def _medians(self, failing: np.ndarray) -> dict[str, dict[str, float | None]]:
         """Median of each input among points that fail [count, dimension], and by its law; None where there are none."""
-        laws = design_inputs(self.job.study)
+        laws = self.job.design.inputs
         return {
             name: {"median": float(law.ppf(np.median(share))) if len(share) else None, "median_of_all": law.median}
             for (name, law), share in zip(laws.items(), ndtr(failing).T, strict=False)

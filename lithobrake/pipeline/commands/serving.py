@@ -7,23 +7,23 @@ from typing import Any
 
 import numpy as np
 
+from lithobrake.pipeline.design.dependencies import bed_files
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.emulate.drawn_landings import DrawnLandings
-from lithobrake.pipeline.emulate.energy_bound import energy_bound, height_of_beds
 from lithobrake.pipeline.emulate.outgoing import VELOCITY
 from lithobrake.pipeline.fly.flights import partner_time
 from lithobrake.pipeline.folder.notes import REMEDY
 from lithobrake.pipeline.folder.study_folder import StudyFolder
-from lithobrake.pipeline.runs.beds import bed_files
-from lithobrake.pipeline.runs.designs import design_inputs
+from lithobrake.pipeline.runs.energy_bound import energy_bound, height_of_beds
 from lithobrake.pipeline.runs.solver import LANDING
 from lithobrake.pipeline.runs.touchdown_runs import model_of
-from lithobrake.pipeline.site import SITE_KEYS, frames, site_body, site_medians, with_site_gravity
+from lithobrake.pipeline.site import SITE_KEYS, Site, with_site_gravity
 from lithobrake.results.intact import intact_file
 from lithobrake.serve import ServedModel
 from lithobrake.study import Study, StudyError, StudySource, fixed_study
 from lithobrake.study.quantity import is_number
 from lithobrake.study.refusals import closest, show
-from lithobrake.study.touchdown_model import draw, medians
+from lithobrake.study.touchdown_model import draw
 from lithobrake.vocabulary.outcomes import FlightStatus, TouchdownOutcome
 from lithobrake.vocabulary.quantities import OUTPUTS
 
@@ -47,7 +47,8 @@ class ServedStudy:
         """Read the study. Raises ValueError where it is refused."""
         source = StudySource.read(study)
         self.study, self.folder = with_site_gravity(source.study, source.name), StudyFolder.only_read(out)
-        self.inputs = tuple(design_inputs(self.study))
+        self.design, self.site = DrawnDesign(self.study), Site(self.study)
+        self.inputs = tuple(self.design.inputs)
 
     def models(self) -> list[ServedModel]:
         """Those that there are files for."""
@@ -69,7 +70,7 @@ class ServedStudy:
         Raises ValueError for keys that a landing does not read, and numbers that the study file may not have.
         """
         seed, given = _seed(config), _inputs(config)
-        values = draw(self.study, medians(self.study) | dict(zip(self.inputs, point, strict=True)), seed) | dict(given)
+        values = draw(self.study, self.design.medians | dict(zip(self.inputs, point, strict=True)), seed) | dict(given)
         self._refuse_bed(values["bed"])
         _refuse(self.study, {name: value for name, value in values.items() if name != "bed"})
         answer = self._touchdown({name: float(value) for name, value in values.items()}, seed)
@@ -93,7 +94,7 @@ class ServedStudy:
         Raises ValueError for other inputs, and numbers that the study file may not have.
         """
         seed, given = _seed(config), _inputs(config)
-        values = medians(self.study) | dict(zip(self.inputs, point, strict=True))
+        values = self.design.medians | dict(zip(self.inputs, point, strict=True))
         _refuse(self.study, values)
         for name in values.keys() & given.keys():
             if given[name] != values[name]:
@@ -103,7 +104,7 @@ class ServedStudy:
                 )
         _refuse(self.study, {name: value for name, value in given.items() if name != "bed"})
         x = np.array([point])
-        bound = energy_bound(self.study, self._bed_height, dict(zip(self.inputs, x.T, strict=True)), 1)
+        bound = energy_bound(self.design, self._bed_height, dict(zip(self.inputs, x.T, strict=True)), 1)
         drawn = DrawnLandings.of(self._emulator, x, bound, seed)
         outcome = tuple(TouchdownOutcome)[int(drawn.outcome[0])]
         return landing_vector(outcome, {name: float(values[0]) for name, values in drawn.table().items()})
@@ -120,11 +121,11 @@ class ServedStudy:
         _refuse_keys(config, SITE_KEYS)
         from lithobrake.smallbody import fly
 
-        body, numbers = site_body(self.study), site_medians(self.study) | dict(config)
+        body, numbers = self.site.body, self.site.medians | dict(config)
         if config:
             _refuse(self.study, {f"site.{key}": value for key, value in numbers.items()})
         site = {key: np.array([float(value)]) for key, value in numbers.items()}
-        origin, axes = frames(body, site)
+        origin, axes = self.site.frames(site)
         flown = fly(
             *(body, origin, np.einsum("nij,ni->nj", axes, [point]), self.study.flight.duration),
             gravity=self.study.flight.gravity,

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lithobrake.pipeline.emulate.energy_bound import EnergyBound
 from lithobrake.pipeline.emulate.fitted_emulator import AZIMUTH, ELEVATION, SPEED, SPIN
 from lithobrake.pipeline.emulate.outgoing import VELOCITY, outgoing_velocity, rolling_spin
+from lithobrake.pipeline.runs.energy_bound import EnergyBound
 from lithobrake.vocabulary.quantities import OUTPUTS, SPIN_OUT
 
 if TYPE_CHECKING:

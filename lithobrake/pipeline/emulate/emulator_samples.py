@@ -5,11 +5,10 @@ import numpy as np
 from lithobrake.analysis import sample_inputs
 from lithobrake.files.hashing import hashed_seed
 from lithobrake.pipeline.emulate.drawn_landings import DrawnLandings
-from lithobrake.pipeline.emulate.energy_bound import energy_bound, height_of_beds
 from lithobrake.pipeline.emulate.fitted_emulator import REFIT_COUNT, refits
 from lithobrake.pipeline.emulate.samples import Samples
 from lithobrake.pipeline.job import Job
-from lithobrake.pipeline.runs.designs import design_inputs
+from lithobrake.pipeline.runs.energy_bound import energy_bound, height_of_beds
 
 
 def draw_emulator_samples(job: Job) -> None:
@@ -18,7 +17,7 @@ def draw_emulator_samples(job: Job) -> None:
     So every share of the samples has its scatter over refits in itself, and no flight is made for an interval alone.
     """
     study = job.study
-    x = sample_inputs(design_inputs(study), study.monte_carlo.sample_count, hashed_seed(study.seed, "samples"))
+    x = sample_inputs(job.design.inputs, study.monte_carlo.sample_count, hashed_seed(study.seed, "samples"))
     drawn_samples(job, x, "draws").save(job.folder)
 
 
@@ -27,8 +26,8 @@ def drawn_samples(job: Job, x: np.ndarray, purpose: str) -> Samples:
 
     purpose: of the random numbers.
     """
-    study, inputs = job.study, design_inputs(job.study)
-    bound = energy_bound(study, height_of_beds(study, job.folder), dict(zip(inputs, x.T, strict=True)), len(x))
+    study, inputs = job.study, job.design.inputs
+    bound = energy_bound(job.design, height_of_beds(study, job.folder), dict(zip(inputs, x.T, strict=True)), len(x))
     models = refits(job)
     names: list[str] = []
     outputs, outcome = np.empty((len(x), 0)), np.empty(len(x), dtype=np.uint8)

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lithobrake.files.atomic import atomic_path
-from lithobrake.pipeline.emulate.energy_bound import bound_numbers, height_of_beds
 from lithobrake.pipeline.emulate.fitted_emulator import AZIMUTH, refits
 from lithobrake.pipeline.job import Job
+from lithobrake.pipeline.runs.energy_bound import bound_numbers, height_of_beds
 from lithobrake.results.explorer_tables import FORMAT_VERSION, NAMES, ExplorerTables
 
 if TYPE_CHECKING:
@@ -20,7 +20,7 @@ FILE = "explorer.h5"
 
 def write_explorer(job: Job) -> None:
     """Write explorer.h5, of the refits that samples are drawn of."""
-    bound = bound_numbers(job.study, height_of_beds(job.study, job.folder))
+    bound = bound_numbers(job.design, height_of_beds(job.study, job.folder))
     save_explorer(job.folder / FILE, tables_of_refits(refits(job), bound))
 
 

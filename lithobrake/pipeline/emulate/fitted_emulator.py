@@ -6,10 +6,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lithobrake.files.hashing import hashed_seed
-from lithobrake.pipeline.emulate.energy_bound import EnergyBound, energy_bound, height_of_beds
 from lithobrake.pipeline.emulate.outgoing import VELOCITY
 from lithobrake.pipeline.job import Job
-from lithobrake.pipeline.runs.designs import design_inputs
+from lithobrake.pipeline.runs.energy_bound import EnergyBound, energy_bound, height_of_beds
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
 from lithobrake.vocabulary.quantities import SPIN_OUT
@@ -33,8 +32,8 @@ def fit_emulator(job: Job) -> None:
     from lithobrake import emulator
     from lithobrake.emulator.training import FEWEST
 
-    study, runs = job.study, DesignRuns.load(job.folder, "sequence")
-    inputs, outcomes = design_inputs(study), tuple(TouchdownOutcome)
+    runs = DesignRuns.load(job.folder, "sequence")
+    inputs, outcomes = job.design.inputs, tuple(TouchdownOutcome)
     ended = np.isin(runs.outcomes, outcomes)
     left = int(runs.has_outputs.sum())
     if left < FEWEST:
@@ -65,8 +64,8 @@ def fit_emulator(job: Job) -> None:
 
 def _kept_bound(job: Job, runs: DesignRuns) -> EnergyBound | None:
     """What energy allows each run; None, said aloud, where some left with more."""
-    values = {name: runs.inputs[name] for name in design_inputs(job.study)}
-    bound = energy_bound(job.study, height_of_beds(job.study, job.folder), values, runs.run_count)
+    values = {name: runs.inputs[name] for name in job.design.inputs}
+    bound = energy_bound(job.design, height_of_beds(job.study, job.folder), values, runs.run_count)
     # At the bound of the speed nothing is left for a spin.
     beyond = int((runs.output(SPIN) >= bound.spin(runs.output(SPEED))).sum())
     if not beyond:

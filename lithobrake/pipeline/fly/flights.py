@@ -17,9 +17,8 @@ from lithobrake.pipeline.emulate.samples import Samples, sampling_seed
 from lithobrake.pipeline.fly.flight_paths import write_flight_paths
 from lithobrake.pipeline.folder.study_folder import AGAIN, StudyFolder
 from lithobrake.pipeline.job import Job
-from lithobrake.pipeline.site import SITE_KEYS, frames, site_body, site_medians, site_values, site_warning
+from lithobrake.pipeline.site import SITE_KEYS, Site
 from lithobrake.study import BUILT_IN_BODIES, Study
-from lithobrake.study.quantity import uncertain
 from lithobrake.study.units import input_units
 from lithobrake.vocabulary.outcomes import FlightStatus
 from lithobrake.vocabulary.quantities import FLIGHT, Quantity, quantity
@@ -67,45 +66,26 @@ def flight_reads(study: Study) -> dict[str, Any]:
     )
 
 
-def starts(study: Study, samples: Samples) -> Starts:
+def starts(site: Site, samples: Samples) -> Starts:
     """The first samples that leave the surface, as many as the study flies, each with its own site."""
-    rows = np.flatnonzero(samples.leaves)[: study.flight.flight_count]
+    rows = np.flatnonzero(samples.leaves)[: site.study.flight.flight_count]
     velocity = np.column_stack([samples.output(f"velocity_out_{axis}") for axis in "xyz"])[rows]
-    site = {key: values[rows] for key, values in sample_sites(study, len(samples.outcome)).items()}
-    return Starts(rows, velocity, site)
+    sites = {key: values[rows] for key, values in sample_sites(site, len(samples.outcome)).items()}
+    return Starts(rows, velocity, sites)
 
 
-def sample_sites(study: Study, count: int) -> dict[str, np.ndarray]:
+def sample_sites(site: Site, count: int) -> dict[str, np.ndarray]:
     """The site of each sample by the keys of SITE_KEYS, each of shape [count]; a larger count changes no earlier one"""
     from lithobrake.analysis import sample_inputs
 
-    site = {key: np.full(count, value) for key, value in site_medians(study).items()}
-    values = {f"site.{key}": value for key, value in site_values(study).items()}
-    drawn = {name: value.to_chaos() for name, value in uncertain(values).items()}
-    table = sample_inputs(drawn, count, sampling_seed(study, "site"))
-    for index, name in enumerate(drawn):
-        site[name.removeprefix("site.")] = table[:, index]
-    return site
-
-
-def fly_expansion_samples(job: Job) -> None:
-    """Fly the samples of an expansion; where these have the scatter from run to run, without it too.
-
-    flights_without_scatter.csv has the flights of the expansion alone; without scatter it is empty.
-    """
-    fly_samples(job)
-    study, body, samples = job.study, site_body(job.study), Samples.load(job.folder)
-    alone: Iterable[list[Any]] = ()
-    if samples.without_scatter is not None:
-        start = starts(study, samples.expansion_alone())
-        alone = _rows(start, fly_starts(body, start, study, job, "flights without scatter"))
-    write_table(job.folder, "flights_without_scatter.csv", COLUMNS, alone)
+    table = sample_inputs(site.distributions, count, sampling_seed(site.study, "site"))
+    return site.columns(count) | dict(zip(site.distributions, table.T, strict=True))
 
 
 def fly_samples(job: Job) -> None:
     """Fly the samples that leave and write flights.csv in the order of the samples, and what the flights took."""
-    study, body, samples = job.study, site_body(job.study), Samples.load(job.folder)
-    start = starts(study, samples)
+    study, body, samples = job.study, job.site.body, Samples.load(job.folder)
+    start = starts(job.site, samples)
     if study.flight.gravity == "table":
         job.progress(0, 1, "gravity table")
         error = body.shape.table_error
@@ -113,14 +93,13 @@ def fly_samples(job: Job) -> None:
             f"Gravity table: {error.median:.1e} of the surface gravity off the facets' sum in the median, "
             f"{error.p95:.1e} at the 95th percentile of {error.point_count} points."
         )
-    warning = site_warning(study)
-    if warning:
-        job.say(warning)
-    job.folder.write_json("flights.json", _checks(body, start, study, job))
+    if job.site.warning:
+        job.say(job.site.warning)
+    job.folder.write_json("flights.json", _checks(job, start))
     _write_shape(body, job.folder)
-    flown = fly_starts(body, start, study, job, "flights")
+    flown = fly_starts(job, start, "flights")
     write_flight_paths(job, body, flown, start.sample)
-    write_table(job.folder, "flights.csv", COLUMNS, _rows(start, flown))
+    write_table(job.folder, "flights.csv", COLUMNS, flight_rows(start, flown))
 
 
 def write_table(
@@ -142,12 +121,16 @@ def write_table(
         table.writerows(rows)
 
 
-def fly_starts(body: "Body", start: Starts, study: Study, job: Job, what: str) -> "Flights":
-    """Fly on as many threads as the study has workers; the result does not depend on their number."""
+def fly_starts(job: Job, start: Starts, what: str, body: "Body | None" = None) -> "Flights":
+    """Fly on as many threads as the study has workers; the result does not depend on their number.
+
+    body: None for that of the site.
+    """
     from lithobrake.smallbody import fly
 
-    count = len(start.sample)
-    origin, axes = frames(body, start.site) if count else (np.empty((0, 3)), np.empty((0, 3, 3)))
+    study, count = job.study, len(start.sample)
+    body = job.site.body if body is None else body
+    origin, axes = job.site.frames(start.site)
     return fly(
         body,
         origin,
@@ -162,17 +145,17 @@ def fly_starts(body: "Body", start: Starts, study: Study, job: Job, what: str) -
     )
 
 
-def _checks(body: "Body", start: Starts, study: Study, job: Job) -> dict[str, Any]:
+def _checks(job: Job, start: Starts) -> dict[str, Any]:
     """How exact the flights are: the table's error, and the drift of the Jacobi constant of the first flights.
 
     With a partner there is no such constant, so these flights are made once more without it.
     """
     part = Starts(start.sample[:CHECKED], start.velocity[:CHECKED], {k: v[:CHECKED] for k, v in start.site.items()})
-    drift = np.abs(fly_starts(replace(body, partner=None), part, study, job, "checks of flights").jacobi_drift)
-    table = study.flight.gravity == "table"
+    body, gravity = job.site.body, job.study.flight.gravity
+    drift = np.abs(fly_starts(job, part, "checks of flights", replace(body, partner=None)).jacobi_drift)
     return {
-        "gravity": study.flight.gravity,
-        "gravity_table_error": dict(body.shape.table_error._asdict()) if table else None,
+        "gravity": gravity,
+        "gravity_table_error": dict(body.shape.table_error._asdict()) if gravity == "table" else None,
         "jacobi_flight_count": len(drift),
         "jacobi_drift_median_m2_s2": float(np.median(drift)) if len(drift) else None,
         "jacobi_drift_largest_m2_s2": float(drift.max()) if len(drift) else None,
@@ -192,7 +175,8 @@ def _write_shape(body: "Body", folder: StudyFolder) -> None:
         draft.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
-def _rows(start: Starts, flown: "Flights") -> Iterator[list[Any]]:
+def flight_rows(start: Starts, flown: "Flights") -> Iterator[list[Any]]:
+    """Rows of COLUMNS."""
     speed = np.linalg.norm(start.velocity, axis=1)
     elevation = np.degrees(np.arcsin(start.velocity[:, 2] / speed))
     before = np.column_stack([speed, elevation, start.velocity, *(start.site[key] for key in SITE_KEYS)]).tolist()

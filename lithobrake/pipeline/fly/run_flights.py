@@ -14,9 +14,8 @@ from lithobrake.pipeline.fly.flights import Starts, flight_reads, fly_starts, wr
 from lithobrake.pipeline.folder.study_folder import AGAIN, StudyFolder
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.runs.run_table import DesignRuns
-from lithobrake.pipeline.site import SITE_KEYS, frames, site_body, site_medians, site_values
+from lithobrake.pipeline.site import SITE_KEYS, Site
 from lithobrake.study import Study
-from lithobrake.study.quantity import uncertain
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus, TouchdownOutcome
 from lithobrake.vocabulary.quantities import FLIGHT, RUN, SEQUENCE_DESIGNS
 
@@ -89,19 +88,17 @@ def fly_runs(job: Job) -> None:
     write_table(job.folder, FILE, COLUMNS, rows)
 
 
-def run_sites(study: Study, run_count: int, flight_count: int = FLIGHT_COUNT) -> dict[str, np.ndarray]:
+def run_sites(site: Site, run_count: int, flight_count: int = FLIGHT_COUNT) -> dict[str, np.ndarray]:
     """Sites of the flights of runs by the keys of SITE_KEYS, each [run_count, flight_count].
 
     Each uncertain number goes through its law in equal steps from a random first one of the run, the heading in order,
     the others so that together they fill all that may be evenly (a lattice of powers of one generator): a share of
     these flights hardly scatters. More runs change no earlier site.
     """
-    site = {key: np.full((run_count, flight_count), value) for key, value in site_medians(study).items()}
-    values = {f"site.{key}": value for key, value in site_values(study).items()}
-    laws = {name.removeprefix("site."): value.to_chaos() for name, value in uncertain(values).items()}
+    sites, laws = site.columns((run_count, flight_count)), site.distributions
     generator = _generator(flight_count)
     for run in range(run_count):
-        random = np.random.Generator(np.random.PCG64(hashed_seed(study.seed, "flights of runs", run)))
+        random = np.random.Generator(np.random.PCG64(hashed_seed(site.study.seed, "flights of runs", run)))
         # All keys take their random numbers, whether uncertain or not, so that one more leaves the others as they were.
         for key in SITE_KEYS:
             first = random.random()
@@ -109,8 +106,8 @@ def run_sites(study: Study, run_count: int, flight_count: int = FLIGHT_COUNT) ->
                 steps = np.arange(flight_count) * pow(generator, LATTICE.index(key), flight_count)
                 share = (steps / flight_count + first) % 1.0
                 # Half a unit in the last place off the ends, where an unbounded law is infinite.
-                site[key][run] = laws[key].ppf(np.clip(share, 2.0**-54, 1.0 - 2.0**-53))
-    return site
+                sites[key][run] = laws[key].ppf(np.clip(share, 2.0**-54, 1.0 - 2.0**-53))
+    return sites
 
 
 def _generator(count: int) -> int:
@@ -124,11 +121,11 @@ def _flown(job: Job, runs: DesignRuns, design: str) -> tuple[np.ndarray, list[li
 
     The impacts are rows of IMPACT_COLUMNS.
     """
-    sites = run_sites(job.study, runs.run_count)
+    sites = run_sites(job.site, runs.run_count)
     fates = np.zeros((runs.run_count, len(FATES)), dtype=np.int64)
     captured = np.array(runs.outcomes) == TouchdownOutcome.CAPTURED
     if captured.any():
-        held = _held(job.study, {key: values[captured] for key, values in sites.items()}).sum(axis=1)
+        held = _held(job.site, {key: values[captured] for key, values in sites.items()}).sum(axis=1)
         fates[captured, FATES.index(JourneyStatus.SETTLED)] = held
         fates[captured, FATES.index(JourneyStatus.LOFTED)] = FLIGHT_COUNT - held
     left = np.flatnonzero(runs.has_outputs)
@@ -136,7 +133,7 @@ def _flown(job: Job, runs: DesignRuns, design: str) -> tuple[np.ndarray, list[li
     site = {key: values[left].ravel() for key, values in sites.items()}
     row = np.repeat(left, FLIGHT_COUNT)
     start = Starts(row, np.repeat(velocity, FLIGHT_COUNT, axis=0), site)
-    flown = fly_starts(site_body(job.study), start, job.study, job, f"flights of the {design.replace('_', ' ')}")
+    flown = fly_starts(job, start, f"flights of the {design.replace('_', ' ')}")
     for column, fate in enumerate(FATES[:4]):
         fates[:, column] = np.bincount(row[flown.status == fate], minlength=runs.run_count)
     down = flown.status == FlightStatus.IMPACT
@@ -144,12 +141,11 @@ def _flown(job: Job, runs: DesignRuns, design: str) -> tuple[np.ndarray, list[li
     return fates, [[run, *one] for run, one in zip(row[down].tolist(), numbers, strict=True)]
 
 
-def _held(study: Study, sites: dict[str, np.ndarray]) -> np.ndarray:
+def _held(site: Site, sites: dict[str, np.ndarray]) -> np.ndarray:
     """Whether the ground holds what lies at these sites [count, flight_count]."""
-    body, shape = site_body(study), sites["mass"].shape
-    flat = {key: values.ravel() for key, values in sites.items()}
-    origin, axes = frames(body, flat)
-    felt = body.effective_acceleration(origin, mass=flat["mass"], spin_period=flat["spin_period"])
+    shape, flat = sites["mass"].shape, {key: values.ravel() for key, values in sites.items()}
+    origin, axes = site.frames(flat)
+    felt = site.body.effective_acceleration(origin, mass=flat["mass"], spin_period=flat["spin_period"])
     held: np.ndarray = (np.einsum("ni,ni->n", felt, axes[:, 2]) < 0.0).reshape(shape)
     return held
 

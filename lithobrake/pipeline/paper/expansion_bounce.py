@@ -15,7 +15,8 @@ if TYPE_CHECKING:
     from lithobrake.analysis import OutcomeModel
     from lithobrake.chaos import Surrogate
     from lithobrake.smallbody import Impacts, Rebounds
-from lithobrake.pipeline.rest.bounce_inputs import inputs_at, trained_ranges
+from lithobrake.pipeline.rest.bounce_inputs import inputs_at
+from lithobrake.pipeline.runs.run_table import DesignRuns
 
 
 @dataclass(frozen=True)
@@ -66,6 +67,7 @@ def soil_bounce(job: Job, inputs: dict[str, np.ndarray]) -> SoilBounce:
     """The bounce of a study for landers with these inputs, each of shape [lander_count]."""
     from lithobrake.chaos import load
 
-    study, refined = job.study, load(job.folder / "refined.json")
-    scatter = Scatter.of(job, refined) if study.monte_carlo.scatter else None
-    return SoilBounce(refined, outcome_model(job), inputs, trained_ranges(study), scatter)
+    refined = load(job.folder / "refined.json")
+    ranges = DesignRuns.load(job.folder, "screening").ranges(inputs)
+    scatter = Scatter.of(job, refined) if job.study.monte_carlo.scatter else None
+    return SoilBounce(refined, outcome_model(job), inputs, ranges, scatter)

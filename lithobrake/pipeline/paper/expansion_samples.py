@@ -6,7 +6,6 @@ import numpy as np
 
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.paper.run_noise import Scatter
-from lithobrake.pipeline.runs.designs import design_inputs
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
 from lithobrake.vocabulary.quantities import DESIGNS
@@ -25,7 +24,7 @@ def draw_samples(job: Job) -> None:
     from lithobrake.analysis import sample_inputs
     from lithobrake.chaos import load
 
-    study, inputs = job.study, design_inputs(job.study)
+    study, inputs = job.study, job.design.inputs
     refined = load(job.folder / "refined.json")
     x = sample_inputs(inputs, study.monte_carlo.sample_count, sampling_seed(study, "samples"))
     smooth = _evaluate(refined, x[:, [list(inputs).index(name) for name in refined.input_names]], job)
@@ -47,7 +46,7 @@ def outcome_model(job: Job) -> "OutcomeModel":
     """
     from lithobrake.analysis import OutcomeModel
 
-    inputs = design_inputs(job.study)
+    inputs = job.design.inputs
     runs = [DesignRuns.load(job.folder, design) for design in DESIGNS]
     x = np.concatenate([one.columns(list(inputs)) for one in runs])
     outcomes = [outcome for one in runs for outcome in one.outcomes]

@@ -12,7 +12,6 @@ from lithobrake.pipeline.emulate.samples import CLEAR
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.paper.expansion_samples import outcome_model
 from lithobrake.pipeline.paper.run_noise import Scatter
-from lithobrake.pipeline.runs.designs import design_inputs
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.results.explorer_tables import ExplorerTables
 from lithobrake.study.quantity import median
@@ -43,8 +42,8 @@ def write_expansion_explorer(job: Job) -> None:
     save_explorer(
         job.folder / FILE,
         ExplorerTables(
-            expansion_tables(design_inputs(job.study), refined, changes, outcome, scatter),
-            input_names=tuple(design_inputs(job.study)),
+            expansion_tables(job.design.inputs, refined, changes, outcome, scatter),
+            input_names=tuple(job.design.inputs),
             output_names=tuple(refined.output_names),
             outcome_names=tuple(map(str, outcome.names)),
             output_outcome=str(outcome.names[CLEAR]),

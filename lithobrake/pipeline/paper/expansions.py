@@ -7,7 +7,6 @@ import numpy as np
 
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.paper.paper_designs import kept_inputs
-from lithobrake.pipeline.runs.designs import design_inputs
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.vocabulary.quantities import DESIGNS, OUTPUTS
 
@@ -18,7 +17,7 @@ if TYPE_CHECKING:
 def fit_screening(job: Job) -> None:
     """Fit all inputs at medium order."""
     runs = DesignRuns.load(job.folder, "screening")
-    _fit(job, "screening", runs, list(design_inputs(job.study))).save(job.folder / "screening.json")
+    _fit(job, "screening", runs, list(job.design.inputs)).save(job.folder / "screening.json")
 
 
 def fit_refined(job: Job) -> None:
@@ -51,7 +50,7 @@ def _fit(job: Job, design: str, runs: DesignRuns, names: Sequence[str]) -> "Surr
             f"fitted; raise design.{design}_{measure}, lower design.{design}_degree, or choose an impact that rebounds"
             f"{reason}"
         )
-    inputs, what = design_inputs(study), f"{design} fit, outputs"
+    inputs, what = job.design.inputs, f"{design} fit, outputs"
     job.progress(0, len(OUTPUTS), what)
     chosen = {name: inputs[name] for name in names}
     method = None if study.design.fit == "best" else study.design.fit

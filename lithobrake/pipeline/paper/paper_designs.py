@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lithobrake.files.hashing import hashed_seed
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.study import Study
 
 if TYPE_CHECKING:
     from lithobrake.chaos import Distribution, Surrogate
-from lithobrake.pipeline.runs.designs import design_inputs
 
 
 def kept_inputs(study: Study, screening: "Surrogate") -> tuple[str, ...]:
@@ -30,11 +30,11 @@ def kept_inputs(study: Study, screening: "Surrogate") -> tuple[str, ...]:
     raise AssertionError("a design has at least one input")
 
 
-def points(study: Study, design: str, kept: Sequence[str]) -> np.ndarray:
+def points(drawn: DrawnDesign, design: str, kept: Sequence[str]) -> np.ndarray:
     """The points of a design, shape [point_count, input_count]; inputs that do not vary are at their median."""
     from lithobrake.analysis import sample_inputs
 
-    inputs = design_inputs(study)
+    study, inputs = drawn.study, drawn.inputs
     varied = inputs if design in ("screening", "test_all") else {name: inputs[name] for name in kept}
     seed = hashed_seed(study.seed, design)
     if design.startswith("test"):

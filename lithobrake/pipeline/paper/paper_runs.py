@@ -5,14 +5,13 @@ from collections.abc import Sequence
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.paper.expansions import screened_inputs
 from lithobrake.pipeline.paper.paper_designs import points, replicate_count
-from lithobrake.pipeline.runs.designs import design_inputs
-from lithobrake.pipeline.runs.making_runs import _make_rows, _say_gravity
+from lithobrake.pipeline.runs.making_runs import make_rows, say_gravity
 from lithobrake.pipeline.runs.touchdown_runs import drawn_rows
 
 
 def make_screening_runs(job: Job) -> None:
     """Make the runs in which all inputs vary, at the nodes of the screening design."""
-    _say_gravity(job)
+    say_gravity(job)
     make_runs(job, "screening")
 
 
@@ -34,6 +33,6 @@ def make_runs(job: Job, design: str, kept: Sequence[str] = ()) -> None:
     Which runs they are is noted before they are made, so that whoever looks can tell them from all others.
     Raises ValueError when too many have failed, or those that failed lie together.
     """
-    inputs, x = tuple(design_inputs(job.study)), points(job.study, design, kept)
+    x = points(job.design, design, kept)
     replicates = range(replicate_count(job.study, design))
-    _make_rows(job, design, [drawn_rows(job.study, inputs, x, replicate) for replicate in replicates])
+    make_rows(job, design, [drawn_rows(job.design, x, replicate) for replicate in replicates])

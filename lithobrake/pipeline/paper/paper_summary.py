@@ -16,12 +16,12 @@ from lithobrake.pipeline.answer.dispersion_statistics import dispersion_results
 from lithobrake.pipeline.answer.missing_landings import described
 from lithobrake.pipeline.answer.run_estimates import SPLIT
 from lithobrake.pipeline.answer.site_summary import body_product, site_results
+from lithobrake.pipeline.design.dependencies import bed_files
 from lithobrake.pipeline.emulate.samples import Samples
 from lithobrake.pipeline.fly.flights import read_table
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.paper.paper_designs import kept_inputs, replicate_count
 from lithobrake.pipeline.paper.paper_statements import answer, headline
-from lithobrake.pipeline.runs.beds import bed_files
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.results.study_results import SUMMARY_FORMAT
 from lithobrake.study import Study
@@ -61,7 +61,7 @@ def write_summary(job: Job) -> None:
         "kept_share": _by_output(screening, np.asarray(screening.sobol_group(kept))),
         "scores": {stage: _without_runs(table) for stage, table in scores.items()},
         "monte_carlo": monte_carlo_results(samples),
-        "site": site_results(job.study),
+        "site": site_results(job.site),
         # One bed, one place and one attitude have no parts.
         "variance_shares": dict.fromkeys(SPLIT),
         **dispersion_results(job, samples, flights, ended),
@@ -102,10 +102,10 @@ def _plain(value: Any) -> Any:
 
 
 def bed_results(job: Job, name: str) -> dict[str, Any]:
-    from lithobrake.study.touchdown_model import grain, lander, medians, stored_bed
+    from lithobrake.study.touchdown_model import grain, lander, stored_bed
     from lithobrake.touchdown import smallest_bed
 
-    bed, values = stored_bed(job.folder / name), medians(job.study)
+    bed, values = stored_bed(job.folder / name), job.design.medians
     width, depth = smallest_bed(
         lander(job.study, values), grain(values), float(bed.grain_diameter), values["impact.speed"]
     )  # fmt: skip

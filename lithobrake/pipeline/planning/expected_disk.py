@@ -1,10 +1,10 @@
 """How much room the files of a study will take on the disk; sizes measured on scenarios/quick.toml and bounces.toml."""
 
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.planning.expected_steps import ExpectedSoil
 from lithobrake.pipeline.planning.planned_runs import PlannedRuns
-from lithobrake.pipeline.runs.designs import design_inputs
 from lithobrake.pipeline.runs.shown_landing import landing_files, telling_files
-from lithobrake.pipeline.site import site_body
+from lithobrake.pipeline.site import Site
 from lithobrake.study import Study
 from lithobrake.vocabulary.quantities import OUTPUTS
 
@@ -18,16 +18,16 @@ SHAPE_FACET = 45
 REPORT = 7_500_000  # page and figures, with expansions, scores and summary
 
 
-def expected_bytes(study: Study, runs: PlannedRuns, soil: ExpectedSoil | None) -> dict[str, int]:
+def expected_bytes(design: DrawnDesign, site: Site, runs: PlannedRuns, soil: ExpectedSoil | None) -> dict[str, int]:
     """Bytes at most of the files of a finished study, by what they hold; what a program of one's own leaves apart."""
+    study = design.study
     samples, flights, journeys = study.monte_carlo, flight_count(study), journey_count(study)
-    # Captured and staying are a byte each.
     # The outcome takes one byte.
-    row = NUMBER * (len(design_inputs(study)) + len(OUTPUTS) * (1 + samples.scatter)) + 1
+    row = NUMBER * (len(design.inputs) + len(OUTPUTS) * (1 + samples.scatter)) + 1
     found = {
         "runs": LEDGER_RUN * runs.total,
         "samples": samples.sample_count * row,
-        "flights": FLIGHT_ROW * flights + JOURNEY_ROW * journeys + SHAPE_FACET * len(site_body(study).shape.faces),
+        "flights": FLIGHT_ROW * flights + JOURNEY_ROW * journeys + SHAPE_FACET * len(site.body.shape.faces),
         "report": REPORT,
     }
     if soil is not None:

@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.planning.planned_runs import planned_rows
 from lithobrake.pipeline.runs.beds import bed_recipe
 from lithobrake.pipeline.runs.shown_landing import landing_values
-from lithobrake.study import Study
 from lithobrake.study.touchdown_model import lander, landing
 
 if TYPE_CHECKING:
@@ -51,15 +51,15 @@ class ExpectedSoil:
     landings: "tuple[tuple[Lander, Landing], ...]"
 
     @classmethod
-    def of(cls, study: Study, kept_count: int) -> "ExpectedSoil":
+    def of(cls, design: DrawnDesign, kept_count: int) -> "ExpectedSoil":
         """That of a study in which so many inputs are kept."""
         from lithobrake.touchdown.grains import make_grain
 
-        recipe = bed_recipe(study, 0)
+        study, recipe = design.study, bed_recipe(design.study, 0)
         generator = np.random.default_rng(recipe.seed)
         diameters = recipe.sizes.draw((np.arange(GRAIN_COUNT) + 0.5) / GRAIN_COUNT).tolist()
         grains = tuple(make_grain(generator, recipe.cloud_point_count, size) for size in diameters)
-        drawn = [landing_values(study), *planned_rows(study, kept_count, LANDING_COUNT)]
+        drawn = [landing_values(design), *planned_rows(design, kept_count, LANDING_COUNT)]
         return cls(recipe, grains, tuple((lander(study, one), landing(study, one)) for one in drawn))
 
     @property

@@ -14,8 +14,7 @@ from lithobrake.campaign import Record, available_cores
 from lithobrake.pipeline.planning.expected_disk import flight_count, journey_count
 from lithobrake.pipeline.planning.expected_steps import ExpectedSoil
 from lithobrake.pipeline.planning.pace import engine_is_compiled, machine_pace
-from lithobrake.pipeline.site import site_body
-from lithobrake.study import Study
+from lithobrake.pipeline.site import Site
 
 if TYPE_CHECKING:
     from lithobrake.touchdown import Lander, Landing
@@ -42,7 +41,7 @@ BUSY = 0.7  # of the cores: a load above this is other work
 
 
 def expected_seconds(
-    study: Study,
+    site: Site,
     made: Mapping[str, tuple[int, int]],
     soil: ExpectedSoil | None,
     ended: Sequence[Record],
@@ -64,8 +63,8 @@ def expected_seconds(
     if made["touchdowns"][1]:
         one, (fewest, most) = run_time(soil, ended, pace), made["touchdowns"]
         found["touchdowns"] = (fewest * one[0] / cores, most * one[1] / cores) if one and workers else None
-    flying = flights_time(study) if made["flights"][1] else 0.0
-    flying += journeys_time(study) if made["journeys"][1] else 0.0
+    flying = flights_time(site) if made["flights"][1] else 0.0
+    flying += journeys_time(site) if made["journeys"][1] else 0.0
     if flying:
         found["flights and bounces"] = spread(pace * flying / cores)
     found["fits, samples and report"] = spread(pace * REPORT)
@@ -168,18 +167,19 @@ def landing_time(soil: ExpectedSoil, lander: "Lander", landing: "Landing") -> fl
     return steps / contact.steps_per_contact * moving * (LOCAL_GRAIN + LOCAL_LOOK * contact.steps_per_contact)
 
 
-def flights_time(study: Study) -> float:
+def flights_time(site: Site) -> float:
     """Time [s] of all flights, with the table of gravity where it has to be built."""
-    facets = len(site_body(study).shape.faces) / FACETS
+    study, facets = site.study, len(site.body.shape.faces) / FACETS
     if study.flight.gravity == "exact":
         return facets * EXACT_FLIGHT * flight_count(study)
     return facets * TABLE + FLIGHT * flight_count(study)
 
 
-def journeys_time(study: Study) -> float:
+def journeys_time(site: Site) -> float:
     """Time [s] of all journeys from bounce to bounce."""
+    study = site.study
     if study.flight.gravity == "exact":
-        return len(site_body(study).shape.faces) / FACETS * EXACT_JOURNEY * journey_count(study)
+        return len(site.body.shape.faces) / FACETS * EXACT_JOURNEY * journey_count(study)
     return JOURNEY * journey_count(study)
 
 

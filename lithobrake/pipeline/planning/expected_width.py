@@ -6,10 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from lithobrake.campaign import Record
-from lithobrake.pipeline.answer.answer_of_run import answer_words, answers_of, flown_shares
+from lithobrake.pipeline.answer.answer_of_run import answer_words, answers_of
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.folder.study_folder import StudyFolder
-from lithobrake.pipeline.sequential_sampling import sequence_keys
-from lithobrake.study import Study
+from lithobrake.pipeline.sequential_sampling import flown_shares
 
 # Of a run that is all or nothing, as captured or not, at worst: half of them are.
 YES_OR_NO = 0.5
@@ -59,18 +59,19 @@ class ExpectedHalfWidth:
         return lines
 
 
-def expected_width(study: Study, known: Mapping[str, Record], folder: StudyFolder) -> ExpectedHalfWidth | None:
+def expected_width(design: DrawnDesign, known: Mapping[str, Record], folder: StudyFolder) -> ExpectedHalfWidth | None:
     """What to expect of a sequence; None for another method, and for one bed, which gives no interval.
 
     known: runs that have ended, by key; folder: where they may have flown.
     """
+    study = design.study
     if study.design.method != "sequence" or study.bed_count == 1:
         return None
     from lithobrake.analysis import LEVEL, expected_half_width, expected_half_widths
     from lithobrake.analysis.half_width import CORRELATION, SPREAD_RANGE
 
     counts = study.design.run_count, study.bed_count
-    values, bed = answers_of(sequence_keys(study), known, flown_shares(study, folder))
+    values, bed = answers_of(design.keys, known, flown_shares(study, folder))
     return ExpectedHalfWidth(
         *counts,
         at_worst=expected_half_width(*counts, spread=YES_OR_NO) or np.inf,

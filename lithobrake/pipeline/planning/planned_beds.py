@@ -2,8 +2,9 @@
 
 from dataclasses import dataclass
 
+from lithobrake.pipeline.design.dependencies import bed_files
 from lithobrake.pipeline.folder.study_folder import StudyFolder
-from lithobrake.pipeline.runs.beds import bed_files, bed_recipe
+from lithobrake.pipeline.runs.beds import bed_recipe
 from lithobrake.pipeline.stages import stage_keys
 from lithobrake.study import Study
 from lithobrake.study.touchdown_model import in_words_of_the_study

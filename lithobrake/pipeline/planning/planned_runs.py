@@ -5,13 +5,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from lithobrake.pipeline.design.dependencies import touchdown_keys
+from lithobrake.pipeline.design.drawn_design import SIDE_DESIGNS, DrawnDesign
 from lithobrake.pipeline.folder.study_folder import StudyFolder
 from lithobrake.pipeline.paper.paper_designs import kept_inputs, points, replicate_count
-from lithobrake.pipeline.runs.designs import design_inputs
-from lithobrake.pipeline.runs.drawn_design import SIDE_DESIGNS, design_rows, sequence_rows
-from lithobrake.pipeline.runs.touchdown_runs import drawn_rows, touchdown_keys
-from lithobrake.study import Study
-from lithobrake.study.touchdown_model import draw, medians
+from lithobrake.pipeline.runs.touchdown_runs import drawn_rows
+from lithobrake.study.touchdown_model import draw
 from lithobrake.vocabulary.quantities import DESIGNS
 
 # Designs with more runs are not gone through run by run: that would take longer than a second or two.
@@ -45,16 +44,16 @@ class PlannedRuns:
         return self.total - len(self.known)
 
 
-def possible_runs(study: Study, folder: StudyFolder, screened: bool, known: Iterable[str]) -> list[PlannedRuns]:
+def possible_runs(drawn: DrawnDesign, folder: StudyFolder, screened: bool, known: Iterable[str]) -> list[PlannedRuns]:
     """The touchdowns with the inputs that the screening keeps; before it, those with one input and with all of them.
 
     Of a sequence those of its count; with a half width that is not met yet, also the most that there may be.
 
     screened: the folder has the screening of this study. known: keys of runs that have ended.
     """
-    inputs = tuple(design_inputs(study))
+    study, inputs = drawn.study, tuple(drawn.inputs)
     if study.design.method == "sequence":
-        return _possible_sequence(study, set(known))
+        return _possible_drawn(drawn, set(known))
     if screened:
         from lithobrake.chaos import load
 
@@ -62,71 +61,73 @@ def possible_runs(study: Study, folder: StudyFolder, screened: bool, known: Iter
     else:
         choices = [inputs[:1], inputs] if len(inputs) > 1 else [inputs]
     ended = set(known)
-    return [_planned(study, kept, ended) for kept in choices]
+    return [_planned(drawn, kept, ended) for kept in choices]
 
 
-def planned_rows(study: Study, kept_count: int, most: int) -> list[dict[str, float]]:
+def planned_rows(drawn: DrawnDesign, kept_count: int, most: int) -> list[dict[str, float]]:
     """All inputs of up to `most` of the touchdowns, drawn by chance."""
+    study = drawn.study
     if study.design.method == "sequence":
-        return sequence_rows(study, min(most, study.design.run_count))
-    middle, inputs = medians(study), design_inputs(study)
-    points_of_runs = _planned_points(study, kept_count, most).tolist()
-    return [draw(study, middle | dict(zip(inputs, row, strict=True)), study.seed) for row in points_of_runs]
+        return drawn.rows[:most]
+    points_of_runs = _planned_points(drawn, kept_count, most).tolist()
+    return [
+        draw(study, drawn.medians | dict(zip(drawn.inputs, row, strict=True)), study.seed) for row in points_of_runs
+    ]
 
 
-def _planned_points(study: Study, kept_count: int, most: int) -> np.ndarray:
+def _planned_points(drawn: DrawnDesign, kept_count: int, most: int) -> np.ndarray:
     """Up to `most` of the points at which touchdowns are made, drawn by chance, shape [point_count, input_count]."""
     from lithobrake.analysis import sample_inputs
 
-    kept = tuple(design_inputs(study))[:kept_count]
-    parts = [points(study, one, kept) for one in DESIGNS if _point_count(study, one, kept_count) <= MOST_NAMED]
+    kept = tuple(drawn.inputs)[:kept_count]
+    parts = [points(drawn, one, kept) for one in DESIGNS if _point_count(drawn, one, kept_count) <= MOST_NAMED]
     if not parts:
-        return sample_inputs(design_inputs(study), most, seed=0)
+        return sample_inputs(drawn.inputs, most, seed=0)
     return np.random.default_rng(0).permutation(np.concatenate(parts))[:most]
 
 
-def _possible_sequence(study: Study, ended: set[str]) -> list[PlannedRuns]:
-    """The runs of a sequence, and the most that its half width may ask for where that is not known yet."""
-    fewest, most = _planned_sequence(study, ended), study.design.most_runs
-    if not fewest.new or most == study.design.run_count:
+def _possible_drawn(drawn: DrawnDesign, ended: set[str]) -> list[PlannedRuns]:
+    """The runs that are drawn, and the most that the half width may ask for where that is not known yet."""
+    fewest, most = _planned_drawn(drawn, ended), drawn.study.design.most_runs
+    if not fewest.new or most == drawn.study.design.run_count:
         return [fewest]
-    return [fewest, _planned_sequence(study.with_run_count(most), ended)]
+    return [fewest, _planned_drawn(drawn.with_run_count(most), ended)]
 
 
-def _planned_sequence(study: Study, ended: set[str]) -> PlannedRuns:
-    side = SIDE_DESIGNS if study.design.side_runs else ()
-    drawn, *beside = (touchdown_keys(study, design_rows(study, design), 0) for design in ("sequence", *side))
-    side_keys = {key for keys in beside for key in keys} - set(drawn)
-    known = frozenset((set(drawn) | side_keys) & ended)
-    count = len(design_inputs(study))
-    return PlannedRuns(count, 0, 0, 0, known, drawn=len(set(drawn)), side=len(side_keys))
+def _planned_drawn(drawn: DrawnDesign, ended: set[str]) -> PlannedRuns:
+    side = SIDE_DESIGNS if drawn.study.design.side_runs else ()
+    keys = set(drawn.keys)
+    side_keys = {key for design in side for key in touchdown_keys(drawn.study, drawn.rows_of(design), 0)} - keys
+    known = frozenset((keys | side_keys) & ended)
+    return PlannedRuns(len(drawn.inputs), 0, 0, 0, known, drawn=len(keys), side=len(side_keys))
 
 
-def _planned(study: Study, kept: Sequence[str], ended: set[str]) -> PlannedRuns:
-    inputs, seen = tuple(design_inputs(study)), set[str]()
+def _planned(drawn: DrawnDesign, kept: Sequence[str], ended: set[str]) -> PlannedRuns:
+    study, seen = drawn.study, set[str]()
     counts = dict.fromkeys(DESIGNS, 0)
     for design in DESIGNS:
         replicates = range(replicate_count(study, design))
-        counts[design] = len(replicates) * _point_count(study, design, len(kept))
+        counts[design] = len(replicates) * _point_count(drawn, design, len(kept))
         if counts[design] > MOST_NAMED:
             continue
-        x = points(study, design, kept)
-        rows = [(drawn_rows(study, inputs, x, replicate), replicate) for replicate in replicates]
-        keys = {key for drawn, replicate in rows for key in touchdown_keys(study, drawn, replicate)} - seen
+        x = points(drawn, design, kept)
+        keys = {
+            key for replicate in replicates for key in touchdown_keys(study, drawn_rows(drawn, x, replicate), replicate)
+        } - seen
         counts[design] = len(keys)
         seen |= keys
     test = counts["test_kept"] + counts["test_all"]
     return PlannedRuns(len(kept), counts["screening"], counts["refined"], test, frozenset(seen & ended))
 
 
-def _point_count(study: Study, design: str, kept_count: int) -> int:
+def _point_count(drawn: DrawnDesign, design: str, kept_count: int) -> int:
     """Points of a design, counted without making them."""
     from lithobrake.chaos import smolyak_count
 
-    section = study.design
+    section = drawn.study.design
     if design.startswith("test"):
         return section.test_count
     if section.points != "smolyak":
         return int(getattr(section, f"{design}_count"))
-    input_count = kept_count if design == "refined" else len(design_inputs(study))
+    input_count = kept_count if design == "refined" else len(drawn.inputs)
     return smolyak_count(input_count, getattr(section, f"{design}_level"))

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from lithobrake.campaign import available_cores
 from lithobrake.pipeline.commands.inferring import InferredStudy
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.folder.owner import refuse_others_folder
 from lithobrake.pipeline.folder.study_folder import StudyFolder
 from lithobrake.pipeline.planning.expected_disk import expected_bytes, flight_count, journey_count
@@ -23,7 +24,7 @@ from lithobrake.pipeline.planning.planned_runs import PlannedRuns, possible_runs
 from lithobrake.pipeline.planning.study_warnings import study_warnings
 from lithobrake.pipeline.runs.known_runs import known_runs
 from lithobrake.pipeline.sequential_sampling import grown
-from lithobrake.pipeline.site import site_slope_deg, with_site_gravity
+from lithobrake.pipeline.site import Site, with_site_gravity
 from lithobrake.pipeline.stages import stage_keys, stages_of
 from lithobrake.study import Study, StudySource
 
@@ -43,7 +44,7 @@ def plan_study(path: Path, out: Path, worker_count: int | None = None, *, infers
     source = StudySource.read(path)
     study, folder = with_site_gravity(source.study, source.name), StudyFolder.only_read(out)
     refuse_others_folder(source, out)
-    plan = plan_of(grown(study, folder), study.title or path.stem, folder, worker_count)
+    plan = plan_of(grown(DrawnDesign(study), folder), Site(study), study.title or path.stem, folder, worker_count)
     return replace(plan, inference=_expected_inference(plan, study, path)) if infers else plan
 
 
@@ -61,24 +62,30 @@ def _expected_inference(plan: Plan, study: Study, path: Path) -> ExpectedInferen
 
 
 def plan_of(
-    study: Study, name: str, folder: StudyFolder, worker_count: int | None, *, on_cluster: bool = False
+    design: DrawnDesign,
+    site: Site,
+    name: str,
+    folder: StudyFolder,
+    worker_count: int | None,
+    *,
+    on_cluster: bool = False,
 ) -> Plan:
     """The plan of a study that has been read."""
-    keys = stage_keys(study)
+    study, keys = design.study, stage_keys(design.study)
     stale = {
         stage.name: stage.title
         for stage in stages_of(study)
         if not folder.is_current(stage.files(study), keys[stage.name])
     }
     known = known_runs(study, folder)
-    runs = tuple(possible_runs(study, folder, "screen" not in stale, known))
-    largest = study.with_run_count(study.design.most_runs) if runs[-1].drawn > runs[0].drawn else study
-    beds = tuple(planned_beds(one, folder) for one in ((study,) if largest is study else (study, largest)))
+    runs = tuple(possible_runs(design, folder, "screen" not in stale, known))
+    largest = design.with_run_count(study.design.most_runs) if runs[-1].drawn > runs[0].drawn else design
+    beds = tuple(planned_beds(one.study, folder) for one in ((design,) if largest is design else (design, largest)))
     made = _made(study, stale.keys(), runs, beds)
-    soil = None if not study.has_soil else ExpectedSoil.of(study, runs[-1].kept_count)
+    soil = None if not study.has_soil else ExpectedSoil.of(design, runs[-1].kept_count)
     workers = None if on_cluster else worker_count or available_cores()
     ended = [known[key] for key in runs[-1].known]
-    sizes, free = expected_bytes(largest, runs[-1], soil), _free(folder.path)
+    sizes, free = expected_bytes(largest, site, runs[-1], soil), _free(folder.path)
     room = _no_room(sum(sizes.values()), free) if stale else []
     return Plan(
         study=name,
@@ -87,14 +94,14 @@ def plan_of(
         made=made,
         beds=beds,
         runs=runs,
-        half_width=expected_width(study, known, folder),
+        half_width=expected_width(design, known, folder),
         process_count=workers,
-        seconds=expected_seconds(study, made, soil, ended, workers) if stale else {},
+        seconds=expected_seconds(site, made, soil, ended, workers) if stale else {},
         basis=basis(made, soil, ended),
         bytes=sizes,
         free_bytes=free,
-        warnings=(*room, *study_warnings(study, soil)),
-        site_slope_deg=site_slope_deg(study),
+        warnings=(*room, *study_warnings(design, site, soil)),
+        site_slope_deg=site.slope_deg,
         grains=planned_grains(study),
     )
 

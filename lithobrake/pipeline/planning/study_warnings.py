@@ -2,12 +2,12 @@
 
 from collections.abc import Iterator
 
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
+from lithobrake.pipeline.design.place_region import smallest_width
 from lithobrake.pipeline.planning.expected_losses import UNKNOWN_JOURNEYS, expected_loss
 from lithobrake.pipeline.planning.expected_steps import ExpectedSoil
 from lithobrake.pipeline.rest.bounce_inputs import why_no_soil
-from lithobrake.pipeline.runs.designs import design_inputs
-from lithobrake.pipeline.runs.place_region import place_region, smallest_width
-from lithobrake.pipeline.site import gravity_warning, site_warning
+from lithobrake.pipeline.site import Site
 from lithobrake.study import Study
 from lithobrake.study.quantity import Scalar, Uncertain, uncertain
 from lithobrake.study.study import FEWEST_BEDS
@@ -23,15 +23,23 @@ RUNS_A_TERM = 1.5
 SHARED = ("restitution", "friction", "rolling_friction", "spinning_friction", "cohesion_force", "surface_energy")
 
 
-def study_warnings(study: Study, soil: ExpectedSoil | None) -> list[str]:
+def study_warnings(design: DrawnDesign, site: Site, soil: ExpectedSoil | None) -> list[str]:
     """What to know before the study runs, in sentences, the most important first."""
-    site = [warning for warning in (site_warning(study), gravity_warning(study)) if warning]
+    study, ground = design.study, [warning for warning in (site.warning, site.gravity_warning) if warning]
     touchdown = (
         []
         if soil is None
-        else [*_bed(soil), *_rim(study, soil), *_lost(soil), *_time_limit(study, soil), *_never_count(study)]
+        else [*_bed(soil), *_rim(design, soil), *_lost(soil), *_time_limit(study, soil), *_never_count(study)]
     )
-    return [*site, *touchdown, *_wide(study), *_terms(study), *_bounces(study), *_few_beds(study), *_one_place(study)]
+    return [
+        *ground,
+        *touchdown,
+        *_wide(study),
+        *_terms(design),
+        *_bounces(study),
+        *_few_beds(study),
+        *_one_place(design),
+    ]
 
 
 def _bed(soil: ExpectedSoil) -> Iterator[str]:
@@ -49,11 +57,11 @@ def _bed(soil: ExpectedSoil) -> Iterator[str]:
         )
 
 
-def _rim(study: Study, soil: ExpectedSoil) -> Iterator[str]:
+def _rim(design: DrawnDesign, soil: ExpectedSoil) -> Iterator[str]:
     """A lander that comes down over the edge of the bed."""
-    reach, region = soil.landings[0][0].shape.bounding_radius, place_region(study)
+    reach, region = soil.landings[0][0].shape.bounding_radius, design.region
     for number, (axis, name, width) in enumerate(zip("xy", PLACE, soil.recipe.width, strict=True)):
-        low, high = region[number] if region else _reach(study.touchdown_values()[name])
+        low, high = region[number] if region else _reach(design.study.touchdown_values()[name])
         room = 0.5 * width - reach
         if max(-low, high) > room:
             yield (
@@ -109,11 +117,11 @@ def _wide(study: Study) -> Iterator[str]:
             )
 
 
-def _terms(study: Study) -> Iterator[str]:
+def _terms(drawn: DrawnDesign) -> Iterator[str]:
     """Fits with hardly more runs than terms."""
     from lithobrake.chaos import smolyak_count, term_count
 
-    design, count = study.design, len(design_inputs(study))
+    design, count = drawn.study.design, len(drawn.inputs)
     if design.method != "paper" or design.fit != "ols":
         return
     runs = design.screening_count or smolyak_count(count, design.screening_level)
@@ -160,16 +168,17 @@ def _few_beds(study: Study) -> Iterator[str]:
     )
 
 
-def _one_place(study: Study) -> Iterator[str]:
+def _one_place(design: DrawnDesign) -> Iterator[str]:
     """An answer that holds for one place of one bed."""
-    places = any(isinstance(study.touchdown_values().get(name), Uncertain) for name in PLACE)
-    places = places or any(low < high for low, high in place_region(study) or ())
-    if study.design.method == "sequence" and not places:
+    study = design.study
+    if not design.one_place:
+        return
+    if study.design.method == "sequence":
         yield (
             "All runs come down at the same place of their beds: give impact.region, or a bed wider than "
             f"{smallest_width(study):.2g} m, on whose middle places are drawn."
         )
-    elif study.bed_count == 1 and not places and study.has_soil:
+    elif study.bed_count == 1 and study.has_soil:
         yield (
             "All runs come down on the same place of the same bed, so the answer holds for these stones only: raise "
             "bed.bed_count, or draw the place in impact.region."

@@ -11,7 +11,6 @@ from lithobrake.pipeline.emulate.fitted_emulator import REFIT_COUNT
 from lithobrake.pipeline.fly.flights import sample_sites, write_table
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.rest.journeys import Sites, journey_reads, on_hard_ground, on_soil
-from lithobrake.pipeline.runs.designs import design_inputs
 from lithobrake.study import Study
 from lithobrake.vocabulary.outcomes import JourneyStatus
 
@@ -42,9 +41,9 @@ def follow_aims(job: Job) -> None:
     """
     study, aims = job.study, job.study.aim.aims()
     count = study.aim.lander_count * REFIT_COUNT
-    inputs, site = _aimed(study, aims, count)
+    inputs, site = _aimed(job, aims, count)
     samples = drawn_samples(job, inputs, "aims")
-    sites = Sites.of(study, samples, site)
+    sites = Sites.of(job.site, samples, site)
     rows: list[list[Any]] = []
     for ground, bounce in (("soil", on_soil(job, samples)), ("hard", on_hard_ground(study, sites))):
         ends = sites.follow(job, ground, *bounce)
@@ -56,11 +55,11 @@ def follow_aims(job: Job) -> None:
     write_table(job.folder, FILE, COLUMNS, rows)
 
 
-def _aimed(study: Study, aims: list[dict[str, float]], count: int) -> tuple[np.ndarray, dict[str, np.ndarray]]:
+def _aimed(job: Job, aims: list[dict[str, float]], count: int) -> tuple[np.ndarray, dict[str, np.ndarray]]:
     """Inputs [aim_count * count, input_count] and sites of all landers, one aim after the other."""
-    names = list(design_inputs(study))
-    x = np.tile(sample_inputs(design_inputs(study), count, hashed_seed(study.seed, "aims")), (len(aims), 1))
-    site = {key: np.tile(values, len(aims)) for key, values in sample_sites(study, count).items()}
+    names = list(job.design.inputs)
+    x = np.tile(sample_inputs(job.design.inputs, count, hashed_seed(job.study.seed, "aims")), (len(aims), 1))
+    site = {key: np.tile(values, len(aims)) for key, values in sample_sites(job.site, count).items()}
     for number, aim in enumerate(aims):
         own = slice(number * count, (number + 1) * count)
         for name, value in aim.items():

@@ -5,10 +5,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lithobrake.pipeline.paper.paper_designs import points
-from lithobrake.pipeline.runs.designs import design_inputs
-from lithobrake.pipeline.runs.drawn_design import inputs_of, sequence_rows
 from lithobrake.study import Study
+from lithobrake.study.quantity import uncertain
 
 if TYPE_CHECKING:
     from lithobrake.smallbody import Impacts
@@ -21,22 +19,13 @@ SPIN = ("impact.spin_x", "impact.spin_y", "impact.spin_z")
 
 def why_no_soil(study: Study) -> str | None:
     """Why the soil cannot be asked about the impacts after the first; None where it can."""
-    absent = [name for name in NEEDED if name not in design_inputs(study)]
+    absent = [name for name in NEEDED if name not in uncertain(study.touchdown_values())]
     if not absent:
         return None
     return (
         f"{' and '.join(absent)} {'is' if len(absent) == 1 else 'are'} no uncertain input, so the runs do not "
         "tell of the impacts after the first; give it a distribution that reaches over the impacts to come"
     )
-
-
-def trained_ranges(study: Study) -> dict[str, tuple[float, float]]:
-    """Smallest and largest value of each input in the runs in which all vary, in the file's units, by dotted key."""
-    inputs = design_inputs(study)
-    paper = study.design.method == "paper"
-    x = points(study, "screening", ()) if paper else inputs_of(sequence_rows(study), tuple(inputs))
-    columns = zip(inputs, x.min(axis=0).tolist(), x.max(axis=0).tolist(), strict=True)
-    return {name: (lower, upper) for name, lower, upper in columns}
 
 
 def inputs_at(

@@ -7,11 +7,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lithobrake.pipeline.emulate.drawn_landings import DrawnLandings
-from lithobrake.pipeline.emulate.energy_bound import EnergyBound, energy_bound, height_of_beds
 from lithobrake.pipeline.emulate.fitted_emulator import REFIT_COUNT, refits
 from lithobrake.pipeline.emulate.samples import CAPTURED, CLEAR, Samples
 from lithobrake.pipeline.job import Job
-from lithobrake.pipeline.rest.bounce_inputs import inputs_at, trained_ranges
+from lithobrake.pipeline.rest.bounce_inputs import inputs_at
+from lithobrake.pipeline.runs.energy_bound import EnergyBound, energy_bound, height_of_beds
+from lithobrake.pipeline.runs.run_table import DesignRuns
 
 if TYPE_CHECKING:
     from lithobrake.emulator import Emulator
@@ -62,6 +63,7 @@ def emulator_bounce(job: Job, samples: Samples) -> EmulatorBounce:
     height = height_of_beds(job.study, job.folder)
 
     def bound(x: np.ndarray) -> EnergyBound:
-        return energy_bound(job.study, height, dict(zip(names, x.T, strict=True)), len(x))
+        return energy_bound(job.design, height, dict(zip(names, x.T, strict=True)), len(x))
 
-    return EmulatorBounce(refits(job), known % REFIT_COUNT, inputs, trained_ranges(job.study), bound)
+    ranges = DesignRuns.load(job.folder, "sequence").ranges(names)
+    return EmulatorBounce(refits(job), known % REFIT_COUNT, inputs, ranges, bound)

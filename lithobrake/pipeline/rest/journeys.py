@@ -1,17 +1,18 @@
 """From bounce to bounce until the landers rest: on the soil, and on hard ground of two kinds beside it."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from lithobrake.pipeline.emulate.outgoing import VELOCITY, rolling_spin
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
+from lithobrake.pipeline.emulate.outgoing import VELOCITY
 from lithobrake.pipeline.emulate.samples import CAPTURED, Samples, sampling_seed, touchdown_values
 from lithobrake.pipeline.fly.flights import partner_time, sample_sites, write_table
 from lithobrake.pipeline.job import Job
-from lithobrake.pipeline.paper.expansion_bounce import soil_bounce
 from lithobrake.pipeline.rest import sliding_law
-from lithobrake.pipeline.rest.bounce_inputs import trained_ranges, why_no_soil
+from lithobrake.pipeline.rest.bounce_inputs import why_no_soil
 from lithobrake.pipeline.rest.emulator_bounce import emulator_bounce
 from lithobrake.pipeline.rest.hard_equivalents import FILE as RESTITUTION
 from lithobrake.pipeline.rest.hard_equivalents import restitution_table
@@ -19,13 +20,16 @@ from lithobrake.pipeline.rest.journey_arcs import FILE as ARCS
 from lithobrake.pipeline.rest.journey_arcs import arc_rows
 from lithobrake.pipeline.rest.slow_arrivals import slow_arrivals
 from lithobrake.pipeline.runs.run_table import DesignRuns
-from lithobrake.pipeline.site import frames, site_body
+from lithobrake.pipeline.site import Site
 from lithobrake.study import Study
 from lithobrake.vocabulary.outcomes import JourneyStatus
 from lithobrake.vocabulary.quantities import ARC, SPIN_OUT
 
 if TYPE_CHECKING:
     from lithobrake.smallbody import Body, Bounce, HardSurface, Impacts, Journeys, Rebounds
+
+    # Spin after the first impact [rad/s], [sample_count, 3], and the bounce of what follows.
+    Soil = tuple[np.ndarray, Bounce]
 
 # docs/flights.md says what each is.
 COLUMNS = (
@@ -59,15 +63,23 @@ def rest_reads(study: Study) -> dict[str, Any]:
 
 
 def follow_samples(job: Job) -> None:
-    """Follow the first samples from bounce to bounce and write rest.csv, arcs.csv and rest.json."""
+    """Follow the first samples of the emulator from bounce to bounce and write the files of the stage."""
+    follow(job, "sequence", emulated_soil)
+
+
+def follow(job: Job, design: str, soil: "Callable[[Job, Samples], Soil]") -> None:
+    """Follow the first samples from bounce to bounce and write rest.csv, arcs.csv and rest.json.
+
+    design: the runs in which all inputs vary. soil: what the model that was fitted to them says of these samples.
+    """
     study, why = job.study, why_no_soil(job.study)
     rows: list[list[Any]] = []
     arcs: list[list[Any]] = []
     if study.rest.count:
         samples = Samples.load(job.folder).first(study.rest.count)
-        sites = Sites.of(study, samples, sample_sites(study, len(samples.outcome)))
+        sites = Sites.of(job.site, samples, sample_sites(job.site, len(samples.outcome)))
         if why is None:
-            first, bounce = on_soil(job, samples)
+            first, bounce = on_soil(job, samples, soil)
             journeys = sites.journeys(job, "soil", first, bounce, study.rest.arc_count)
             rows += sites.rows("soil", first, journeys)
             arcs = arc_rows(journeys.arcs, np.flatnonzero(~first.outside))
@@ -78,7 +90,7 @@ def follow_samples(job: Job) -> None:
             rows += sites.follow(job, "equivalent", *_on_equivalent_ground(job, sites))
     write_table(job.folder, "rest.csv", COLUMNS, rows)
     write_table(job.folder, ARCS, tuple(ARC), arcs, ARC)
-    ranges = {name: list(ends) for name, ends in trained_ranges(study).items()}
+    ranges = DesignRuns.load(job.folder, design).ranges(job.design.inputs)
     job.folder.write_json("rest.json", {"why_no_soil": why, "trained_ranges": ranges})
 
 
@@ -89,27 +101,35 @@ def hard_surface(study: Study) -> "HardSurface":
     return HardSurface(**study.rest.model_dump(exclude={"count", "duration", "arc_count", "rolling_friction"}))
 
 
-def on_soil(job: Job, samples: Samples) -> tuple["Rebounds", "Bounce"]:
+def first_velocity(samples: Samples) -> np.ndarray:
+    """Velocity after the first impact [m/s], [sample_count, 3]; the runs do not tell that of a captured lander."""
+    velocity = np.column_stack([samples.output(name) for name in VELOCITY])
+    velocity[samples.outcome == CAPTURED] = 0.0
+    return velocity
+
+
+def emulated_soil(job: Job, samples: Samples) -> "Soil":
+    """Spin after the first impact, of the emulator's samples, and the emulator as a bounce."""
+    spin = np.column_stack([samples.output(name) for name in SPIN_OUT])
+    return spin, emulator_bounce(job, samples)
+
+
+def on_soil(
+    job: Job, samples: Samples, soil: "Callable[[Job, Samples], Soil]" = emulated_soil
+) -> tuple["Rebounds", "Bounce"]:
     """What the samples say of the first impact, and what the soil says of those that follow."""
     from lithobrake.smallbody import Rebounds
 
-    velocity, captured = np.column_stack([samples.output(name) for name in VELOCITY]), samples.outcome == CAPTURED
-    # The runs do not tell with which velocity a lander is captured, only that little is left.
-    velocity[captured] = 0.0
-    if job.study.design.method == "sequence":
-        spin = np.column_stack([samples.output(name) for name in SPIN_OUT])
-        bounce: Bounce = emulator_bounce(job, samples)
-    else:
-        spin = rolling_spin(velocity, np.maximum(samples.output("spin_out"), 0.0))
-        inputs = {name: samples.inputs[samples.known, index] for index, name in enumerate(samples.input_names)}
-        bounce = soil_bounce(job, inputs)
-    return Rebounds(velocity, spin, captured, ~samples.known), slow_arrivals(job.study, samples, bounce)
+    spin, bounce = soil(job, samples)
+    first = Rebounds(first_velocity(samples), spin, samples.outcome == CAPTURED, ~samples.known)
+    return first, slow_arrivals(job.design, samples, bounce)
 
 
-def sliding_friction(study: Study, samples: Samples, ground: str) -> np.ndarray:
+def sliding_friction(design: DrawnDesign, samples: Samples, ground: str) -> np.ndarray:
     """Friction under each sample once it is captured, [sample_count]: on soil that of hull and grain, or their law."""
     from lithobrake.dem.material import pair_value
 
+    study = design.study
     rest, rule, hull = study.rest, study.contact.pair_rule, "grain" if study.lander.friction is None else "lander"
     if rest.rolling_friction is not None or ground == "hard":
         fixed = rest.friction if rest.rolling_friction is None else rest.rolling_friction
@@ -119,7 +139,7 @@ def sliding_friction(study: Study, samples: Samples, ground: str) -> np.ndarray:
         for part in ("grain", hull)
     )
     of_contacts = np.array([pair_value(one, other, rule) for one, other in zip(of_grain, of_hull, strict=True)])
-    return sliding_law.effective_friction(of_contacts) if sliding_law.has_measured_size(study) else of_contacts
+    return sliding_law.effective_friction(of_contacts) if sliding_law.has_measured_size(design) else of_contacts
 
 
 def on_hard_ground(study: Study, sites: "Sites") -> tuple["Rebounds", "Bounce"]:
@@ -167,10 +187,10 @@ class Sites:
     effective_acceleration: np.ndarray
 
     @classmethod
-    def of(cls, study: Study, samples: Samples, site: dict[str, np.ndarray]) -> "Sites":
+    def of(cls, centre: Site, samples: Samples, site: dict[str, np.ndarray]) -> "Sites":
         """Those of samples of a study at these places, by the keys of SITE_KEYS [sample_count]."""
-        body = site_body(study)
-        origin, axes = frames(body, site)
+        body = centre.body
+        origin, axes = centre.frames(site)
         felt = body.effective_acceleration(origin, mass=site["mass"], spin_period=site["spin_period"])
         return cls(body, samples, site, origin, axes, np.einsum("ni,ni->n", felt, axes[:, 2]))
 
@@ -192,7 +212,7 @@ class Sites:
         launch = Launch(self.origin[going], velocity, spin, time, captured, site["mass"], site["spin_period"])
         return hop(
             *(self.body, launch, bounce, job.study.rest.duration),
-            friction=sliding_friction(job.study, self.samples, ground)[going],
+            friction=sliding_friction(job.design, self.samples, ground)[going],
             rolls=job.study.rest.rolling_friction is not None,
             gravity=job.study.flight.gravity,
             arc_landers=int(np.searchsorted(going, arc_count)),

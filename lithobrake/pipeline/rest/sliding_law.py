@@ -7,8 +7,8 @@ pushes, and sliding_law.json there the numbers.
 
 import numpy as np
 
-from lithobrake.study import Study
-from lithobrake.study.touchdown_model import grain_sizes, lander, medians
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
+from lithobrake.study.touchdown_model import grain_sizes, lander
 
 # Effective friction over friction of the contacts: a line through pushes as slow as captured landers.
 INTERCEPT, SLOPE = 0.49, 0.32
@@ -18,13 +18,14 @@ FRICTIONS, EDGES = (0.2, 0.8), (0.55, 1.7)
 GRAINS = 1000
 
 
-def has_measured_size(study: Study) -> bool:
+def has_measured_size(design: DrawnDesign) -> bool:
     """Whether the study's lander is one that the law was measured for: no ball, and about as large as a grain."""
+    study = design.study
     if not study.has_soil or study.lander.shape == "sphere":
         return False
     sizes = grain_sizes(study).draw((np.arange(GRAINS) + 0.5) / GRAINS)
     least, largest = EDGES
-    return bool(least <= lander(study, medians(study)).smallest_edge / sizes.mean() <= largest)
+    return bool(least <= lander(study, design.medians).smallest_edge / sizes.mean() <= largest)
 
 
 def effective_friction(friction: np.ndarray) -> np.ndarray:

@@ -5,10 +5,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lithobrake.pipeline.emulate.energy_bound import gyrations
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.emulate.samples import Samples, touchdown_values
-from lithobrake.study import Study
-from lithobrake.study.touchdown_model import lander, medians
+from lithobrake.pipeline.runs.energy_bound import gyrations
+from lithobrake.study.touchdown_model import lander
 
 if TYPE_CHECKING:
     from lithobrake.smallbody import Bounce, Impacts, Rebounds
@@ -44,12 +44,12 @@ class SlowArrivals:
         return Rebounds(velocity, found.spin, found.captured | slow, found.outside & ~slow)
 
 
-def slow_arrivals(study: Study, samples: Samples, bounce: "Bounce") -> SlowArrivals:
+def slow_arrivals(design: DrawnDesign, samples: Samples, bounce: "Bounce") -> SlowArrivals:
     """The bounce of a study for the samples whose place is known, in their order, answering for `bounce`."""
-    known = medians(study)
+    study, known = design.study, design.medians
     drawn = {name: touchdown_values(study, samples.input_names, samples.inputs, name)[samples.known] for name in known}
     if "lander.diameter" in known:
         edge = drawn["lander.diameter"]
     else:
         edge = np.full(len(drawn["lander.mass"]), lander(study, known).smallest_edge)
-    return SlowArrivals(bounce, edge, gyrations(study, drawn)[1])
+    return SlowArrivals(bounce, edge, gyrations(design, drawn)[1])

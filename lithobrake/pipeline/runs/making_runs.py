@@ -5,28 +5,27 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from lithobrake.campaign import Runs, missing
-from lithobrake.pipeline.emulate.energy_bound import energy_warning, height_of_beds
+from lithobrake.pipeline.design.dependencies import touchdown_keys
+from lithobrake.pipeline.design.drawn_design import SIDE_DESIGNS, inputs_of
 from lithobrake.pipeline.job import Job
-from lithobrake.pipeline.runs.designs import design_inputs
-from lithobrake.pipeline.runs.drawn_design import SIDE_DESIGNS, inputs_of, sequence_rows, side_rows
+from lithobrake.pipeline.runs.energy_bound import energy_warning, height_of_beds
 from lithobrake.pipeline.runs.run_table import DesignRuns
-from lithobrake.pipeline.runs.touchdown_runs import touchdown_keys, touchdowns
-from lithobrake.pipeline.site import gravity_warning
+from lithobrake.pipeline.runs.touchdown_runs import touchdowns
 
 
 def make_drawn_runs(job: Job) -> None:
     """Make the runs of the sequence."""
-    _say_gravity(job)
-    _make_rows(job, "sequence", [sequence_rows(job.study)])
+    say_gravity(job)
+    make_rows(job, "sequence", [job.design.rows])
 
 
 def make_side_runs(job: Job) -> None:
     """Make the runs beside the sequence: on a second soil, and at places a little beside."""
     for design in SIDE_DESIGNS if job.study.design.side_runs else ():
-        _make_rows(job, design, [side_rows(job.study, design)])
+        make_rows(job, design, [job.design.rows_of(design)])
 
 
-def _make_rows(job: Job, design: str, rows: Sequence[Sequence[Mapping[str, float]]]) -> None:
+def make_rows(job: Job, design: str, rows: Sequence[Sequence[Mapping[str, float]]]) -> None:
     """Make runs with all their inputs, a list for each time that they are made, and write their table."""
     count, title = len(rows), f"{design.replace('_', ' ')} runs"
     titles = [f"{title}, {number} of {count} times" if count > 1 else title for number in range(1, count + 1)]
@@ -34,20 +33,19 @@ def _make_rows(job: Job, design: str, rows: Sequence[Sequence[Mapping[str, float
     job.folder.note_runs(design, keys)
     made = [touchdowns(job, rows[replicate], words, replicate) for replicate, words in enumerate(titles)]
     runs = Runs([record for one in made for record in one.records], sum(one.reused_count for one in made))
-    inputs = tuple(design_inputs(job.study))
+    inputs = tuple(job.design.inputs)
     every = [row for one in rows for row in one]
     _account(job, design, runs, inputs_of(every, inputs), inputs)
-    gained = energy_warning(job.study, runs.records, height_of_beds(job.study, job.folder))
+    gained = energy_warning(job.design, runs.records, height_of_beds(job.study, job.folder))
     if gained:
         job.say(f"{title}: {gained}")
     DesignRuns.of(runs).save(job.folder, design)
 
 
-def _say_gravity(job: Job) -> None:
+def say_gravity(job: Job) -> None:
     """Say that touchdowns and flights feel another acceleration, which may be a reason not to make the landings."""
-    warning = gravity_warning(job.study)
-    if warning:
-        job.say(warning)
+    if job.site.gravity_warning:
+        job.say(job.site.gravity_warning)
 
 
 def _account(job: Job, design: str, runs: Runs, x: np.ndarray, inputs: Sequence[str]) -> None:

@@ -5,7 +5,7 @@ that what comes after needs neither the ledger nor the model.
 """
 
 import csv
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -96,6 +96,10 @@ class DesignRuns:
     def columns(self, names: Sequence[str]) -> np.ndarray:
         """These inputs in columns, shape [run_count, len(names)]."""
         return np.column_stack([self.inputs[name] for name in names])
+
+    def ranges(self, names: Iterable[str]) -> dict[str, tuple[float, float]]:
+        """Smallest and largest value of each of these inputs, in the file's units, by dotted key."""
+        return {name: (float(self.inputs[name].min()), float(self.inputs[name].max())) for name in names}
 
     def outcome_counts(self) -> dict[str, int]:
         """How often each outcome came, by name in the order of the alphabet."""

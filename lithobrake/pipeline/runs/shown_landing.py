@@ -4,13 +4,13 @@ from typing import Any
 
 import numpy as np
 
+from lithobrake.pipeline.design.dependencies import bed_files, touchdown_reads
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.job import Job
-from lithobrake.pipeline.runs.beds import bed_files, touchdown_reads
-from lithobrake.pipeline.runs.drawn_design import sequence_rows
 from lithobrake.pipeline.runs.kernels import compile_kernels
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.study import Study
-from lithobrake.study.touchdown_model import draw, in_words_of_the_study, lander, landing, medians, stored_bed
+from lithobrake.study.touchdown_model import draw, in_words_of_the_study, lander, landing, stored_bed
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
 
 SNAPSHOT_FRAMES = 120
@@ -29,20 +29,20 @@ def telling_files(study: Study) -> list[str]:
 
 def landing_reads(study: Study) -> dict[str, Any]:
     """What the landing to look at depends on."""
-    return {"touchdown": touchdown_reads(study), "values": landing_values(study)}
+    return {"touchdown": touchdown_reads(study), "values": landing_values(DrawnDesign(study))}
 
 
-def landing_values(study: Study) -> dict[str, float]:
+def landing_values(design: DrawnDesign) -> dict[str, float]:
     """All inputs of the landing to look at: the first run of a sequence, or that at the medians of all inputs."""
-    if study.design.method == "paper":
-        return draw(study, medians(study), study.seed)
-    return sequence_rows(study, 1)[0]
+    if design.study.design.method == "paper":
+        return draw(design.study, design.medians, design.study.seed)
+    return design.row(0)
 
 
 def land_once(job: Job) -> None:
     """Land once before all runs and keep the pictures."""
     compile_kernels(job)
-    _land(job, landing_values(job.study), FIRST)
+    _land(job, landing_values(job.design), FIRST)
 
 
 def land_tellingly(job: Job) -> None:
@@ -52,7 +52,7 @@ def land_tellingly(job: Job) -> None:
     """
     runs = DesignRuns.load(job.folder, "sequence")
     row = telling_run(runs)
-    ended = _land(job, sequence_rows(job.study)[row], TELLING, run=runs.keys[row])
+    ended = _land(job, job.design.rows[row], TELLING, run=runs.keys[row])
     if ended != runs.outcomes[row]:
         job.say(
             f"the landing that is shown, run {runs.keys[row][:8]}, ended as {ended} here: {runs.outcomes[row]} as a run"

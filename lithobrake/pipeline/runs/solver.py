@@ -6,14 +6,10 @@ import pickle
 import reprlib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
-from lithobrake import __version__
 from lithobrake.campaign import Command, ModelServer
 from lithobrake.campaign.main_module import refuse_unreachable
-from lithobrake.files.hashing import content_hash
-from lithobrake.study import Study
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
 from lithobrake.vocabulary.quantities import ORIENTATION_OUT, OUTPUTS, SPIN_OUT
 
@@ -157,29 +153,3 @@ def _refuse_parts(what: str, outputs: Mapping[str, float]) -> None:
         raise ValueError(
             f"{what} has a quaternion orientation_out_w, _x, _y, _z of length {length:.8g}; allowed: 1; divide by it"
         )
-
-
-def solver_command(study: Study, folder: Path) -> Command:
-    """The program of a study, with its runs in a folder of the study."""
-    solver = study.solver
-    templates = tuple(Path(name) for name in solver.templates)
-    return Command(str(solver.command), folder / "solver", templates=templates, answer=solver.answer)
-
-
-def solver_setting(study: Study) -> dict[str, Any]:
-    """What a program is told beside the values of a run, as it stands in the study file."""
-    return {
-        "bed": study.bed.model_dump(exclude={"bed_count"}),
-        "lander": study.lander.model_dump(include={"shape", "edges", "inertia", "file", "unit"}),
-        "contact": study.contact.model_dump(),
-        "time_limit": study.landing.time_limit,
-    }
-
-
-def solver_reads(study: Study) -> dict[str, Any]:
-    """What a touchdown by a program depends on beside its values: the program's files, and what it is told."""
-    setting = solver_setting(study)
-    # A mesh counts with its content, wherever it lies.
-    setting["lander"]["file"] = None if study.lander.file is None else content_hash(Path(study.lander.file))
-    identity = [study.function] if study.function else solver_command(study, Path()).identity()
-    return {"solver": identity, "setting": setting, "version": __version__}

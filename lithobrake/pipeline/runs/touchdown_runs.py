@@ -3,44 +3,31 @@
 import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
-from lithobrake.campaign import Ledger, Limits, ModelServer, RunOptions, Runs, Tally, run_key, run_seed
+from lithobrake.campaign import Ledger, Limits, ModelServer, RunOptions, Runs, Tally, run_seed
 from lithobrake.campaign import run as run_campaign
 from lithobrake.campaign.model_server import PREFIX
+from lithobrake.pipeline.design.dependencies import bed_files, solver_command, solver_setting, touchdown_reads
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.job import Job
-from lithobrake.pipeline.runs.beds import bed_files, touchdown_reads
-from lithobrake.pipeline.runs.solver import (
-    FunctionModel,
-    Model,
-    ServerModel,
-    SolverModel,
-    solver_command,
-    solver_setting,
-)
+from lithobrake.pipeline.runs.solver import FunctionModel, Model, ServerModel, SolverModel
 from lithobrake.study import Study
 from lithobrake.study.quantity import uncertain
-from lithobrake.study.touchdown_model import TouchdownModel, draw, engine_hash, medians
+from lithobrake.study.touchdown_model import TouchdownModel, draw, engine_hash
 from lithobrake.vocabulary.quantities import OUTPUTS
 
 
-def drawn_rows(study: Study, names: Sequence[str], x: np.ndarray, replicate: int) -> list[dict[str, float]]:
-    """All inputs of the runs at the rows of x, shape [run_count, len(names)], with what each draws by chance.
+def drawn_rows(design: DrawnDesign, x: np.ndarray, replicate: int) -> list[dict[str, float]]:
+    """All inputs of the runs at these uncertain inputs, [run_count, input_count], with what each draws by chance.
 
     replicate: another number gives the same rows other draws.
 
     What a run draws is drawn here and counts among its inputs, so that a run depends on nothing else: another bed, or
     a wider region, leaves every run as it was whose draws remain.
     """
-    return [_drawn(study, names, row, replicate) for row in x.tolist()]
-
-
-def touchdown_keys(study: Study, rows: Sequence[Mapping[str, float]], replicate: int) -> list[str]:
-    """The keys of these runs in the ledger."""
-    context = touchdown_reads(study)
-    return [run_key(row, study.seed, replicate, context) for row in rows]
+    return [_drawn(design, row, replicate) for row in x.tolist()]
 
 
 def touchdowns(job: Job, rows: Sequence[Mapping[str, float]], title: str, replicate: int) -> Runs:
@@ -69,17 +56,8 @@ def touchdowns(job: Job, rows: Sequence[Mapping[str, float]], title: str, replic
         )
 
 
-def drawn_reads(study: Study) -> dict[str, Any]:
-    """What the draws of a run depend on, beside its seed."""
-    return {
-        "bed_count": study.bed_count,
-        "azimuth": "random" if study.impact.azimuth_deg == "random" else "fixed",
-        **study.impact.model_dump(include={"region", "orientation", "pointing_error_deg"}),
-    }
-
-
-def _drawn(study: Study, names: Sequence[str], row: Sequence[float], replicate: int) -> dict[str, float]:
-    values = medians(study) | dict(zip(names, row, strict=True))
+def _drawn(design: DrawnDesign, row: Sequence[float], replicate: int) -> dict[str, float]:
+    study, values = design.study, design.medians | dict(zip(design.inputs, row, strict=True))
     drawn = draw(study, values, run_seed(values, study.seed, replicate))
     return {name: float(value) for name, value in drawn.items()}
 

@@ -34,7 +34,7 @@ from lithobrake.pipeline.planning.planned_grains import planned_grains
 from lithobrake.pipeline.planning.planned_runs import PlannedRuns
 from lithobrake.pipeline.planning.planner import plan_of
 from lithobrake.pipeline.planning.study_warnings import study_warnings
-from lithobrake.pipeline.runs.beds import pour_seed
+from lithobrake.pipeline.design.dependencies import pour_seed
 from lithobrake.pipeline.runs.designs import design_inputs
 from lithobrake.pipeline.study_run import run_study
 from lithobrake.results import open_study

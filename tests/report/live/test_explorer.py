@@ -22,7 +22,7 @@ from lithobrake.chaos import (
     Uniform,
 )  # fmt: skip
 from lithobrake.emulator import Emulator, law_tables
-from lithobrake.pipeline.emulate.energy_bound import bound_numbers, energy_bound
+from lithobrake.pipeline.runs.energy_bound import bound_numbers, energy_bound
 from lithobrake.report.live.packed import packed, script_data
 from lithobrake.report.pages.page_data import SequenceResults
 from lithobrake.study import check_tables

@@ -5,10 +5,11 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from lithobrake.pipeline.design.dependencies import bed_files
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.folder.study_folder import StudyFolder
-from lithobrake.pipeline.runs.beds import bed_files
 from lithobrake.study import Study
-from lithobrake.study.touchdown_model import lander, medians, stored_bed
+from lithobrake.study.touchdown_model import lander, stored_bed
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
 
 if TYPE_CHECKING:
@@ -43,7 +44,7 @@ class EnergyBound(NamedTuple):
 
 
 def energy_bound(
-    study: Study, bed_height: float, values: "Mapping[str, NDArray[np.float64]]", count: int
+    design: DrawnDesign, bed_height: float, values: "Mapping[str, NDArray[np.float64]]", count: int
 ) -> EnergyBound:
     """Bound of a lander that keeps all its energy and gains what gravity may give it over the bed, [count].
 
@@ -51,23 +52,23 @@ def energy_bound(
     study has them. The bed is at rest and contacts only take energy away: v^2 + I w^2 / m + 2 g h, with h the height of
     the bed, and its fall across.
     """
-    known = {name: np.full(count, value) for name, value in medians(study).items()} | dict(values)
+    known = {name: np.full(count, value) for name, value in design.medians.items()} | dict(values)
     spin = sum(known[name] ** 2 for name in SPIN)
     slope = np.radians(known["surface.slope_deg"])
     # Gravity that points outwards lifts a lander as far as the other makes it fall.
-    gained = np.abs(known["surface.gravity"]) * (bed_height + np.hypot(*study.bed.width) * np.sin(slope))
-    smallest, largest = gyrations(study, known)
+    gained = np.abs(known["surface.gravity"]) * (bed_height + np.hypot(*design.study.bed.width) * np.sin(slope))
+    smallest, largest = gyrations(design, known)
     return EnergyBound(np.sqrt(known["impact.speed"] ** 2 + largest * spin + 2.0 * gained), np.sqrt(smallest))
 
 
-def bound_numbers(study: Study, bed_height: float) -> dict[str, float]:
+def bound_numbers(design: DrawnDesign, bed_height: float) -> dict[str, float]:
     """The numbers of `energy_bound`, for whoever follows the uncertain inputs alone.
 
     height, across: of the bed [m]; smallest, largest: squared radii of gyration [m2] at the medians, which go with
     these powers of mass and diameter; and the medians of whatever the bound depends on, by dotted key.
     """
-    known = medians(study)
-    smallest, largest = (float(one[0]) for one in gyrations(study, {key: np.array([known[key]]) for key in known}))
+    study, known = design.study, design.medians
+    smallest, largest = (float(one[0]) for one in gyrations(design, {key: np.array([known[key]]) for key in known}))
     has_inertia, is_ball = study.lander.inertia is not None, "lander.diameter" in known
     names = ("impact.speed", *SPIN, "surface.slope_deg", "surface.gravity", "lander.mass", "lander.diameter")
     return {
@@ -81,7 +82,7 @@ def bound_numbers(study: Study, bed_height: float) -> dict[str, float]:
     }
 
 
-def energy_warning(study: Study, records: "Sequence[Record]", bed_height: float) -> str | None:
+def energy_warning(design: DrawnDesign, records: "Sequence[Record]", bed_height: float) -> str | None:
     """What it means that runs left with more energy than they came with and gravity may have given; None without any.
 
     A model of the user's own may have a source of energy, a spring or a thruster, so nothing is refused. bed_height: of
@@ -90,8 +91,8 @@ def energy_warning(study: Study, records: "Sequence[Record]", bed_height: float)
     left = [one for one in records if one.outcome == TouchdownOutcome.CLEAR and not LEAVES.difference(one.outputs)]
     if not left:
         return None
-    inputs = {name: np.array([one.inputs[name] for one in left]) for name in medians(study)}
-    bound = energy_bound(study, bed_height, inputs, len(left))
+    inputs = {name: np.array([one.inputs[name] for one in left]) for name in design.medians}
+    bound = energy_bound(design, bed_height, inputs, len(left))
     speed, spin = (np.array([one.outputs[name] for one in left]) for name in ("speed_out", "spin_out"))
     ratio = (speed**2 + (bound.gyration * spin) ** 2) / np.maximum(bound.speed**2, np.finfo(float).tiny)
     over = ratio > 1.0 + SLACK
@@ -111,16 +112,17 @@ def height_of_beds(study: Study, folder: StudyFolder) -> float:
 
 
 def gyrations(
-    study: Study, values: "Mapping[str, NDArray[np.float64]]"
+    design: DrawnDesign, values: "Mapping[str, NDArray[np.float64]]"
 ) -> "tuple[NDArray[np.float64], NDArray[np.float64]]":
     """Smallest and largest principal moment of inertia over the mass [m2], [count] each."""
-    if study.lander.inertia is not None:
-        return min(study.lander.inertia) / values["lander.mass"], max(study.lander.inertia) / values["lander.mass"]
+    inertia = design.study.lander.inertia
+    if inertia is not None:
+        return min(inertia) / values["lander.mass"], max(inertia) / values["lander.mass"]
     # A ball is the one shape whose size may be uncertain.
     of_ball = values.get("lander.diameter")
     if of_ball is not None:
         return 0.1 * of_ball**2, 0.1 * of_ball**2
-    body = lander(study, medians(study))
+    body = lander(design.study, design.medians)
     own = np.linalg.eigvalsh(body.shape.inertia_per_density) / body.shape.volume
     count = len(values["lander.mass"])
     return np.full(count, own[0]), np.full(count, own[-1])

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from lithobrake.pipeline import stage_keys
-from lithobrake.pipeline.runs.beds import bed_files, pour_seed
-from lithobrake.pipeline.runs.drawn_design import beds_of_runs, sequence_rows, soil_pairs, twins
-from lithobrake.pipeline.runs.place_region import place_region, smallest_width
-from lithobrake.pipeline.runs.touchdown_runs import touchdown_keys
+from lithobrake.pipeline.design.dependencies import bed_files, pour_seed
+from lithobrake.pipeline.design.drawn_design import beds_of_runs, sequence_rows, soil_pairs, twins
+from lithobrake.pipeline.design.place_region import place_region, smallest_width
+from lithobrake.pipeline.design.dependencies import touchdown_keys
 from lithobrake.study import Study, check_tables
 from lithobrake.study.study import default_bed_count
 from lithobrake.study.template import template

@@ -1,0 +1,19 @@
+"""The stages of estimates and of the summary."""
+
+from lithobrake.pipeline.answer.drawn_summary import write_drawn_summary
+from lithobrake.pipeline.answer.run_estimates import FILE, estimate
+from lithobrake.pipeline.answer.summary_parts import summary_reads
+from lithobrake.pipeline.stage import Stage, same_files
+
+PARTS = ("pipeline/answer", "pipeline/site.py", "analysis", "chaos", "emulator", "results", "vocabulary")
+
+ESTIMATE = Stage("estimate", "estimates", same_files(FILE), estimate, ("fly_runs",), parts=PARTS)
+SUMMARY = Stage(
+    "summary",
+    "summary",
+    same_files("summary.json"),
+    write_drawn_summary,
+    ("landing", "telling_landing", "estimate", "rest", "aim"),
+    summary_reads,
+    PARTS,
+)

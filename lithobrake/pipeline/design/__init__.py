@@ -1,0 +1,1 @@
+"""What a study asks for: the runs that it draws, what they depend on, and their keys."""

@@ -1,0 +1,108 @@
+"""What beds and touchdowns of a study depend on, as JSON values, and the keys of its runs in the ledger."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from lithobrake import __version__
+from lithobrake.campaign import Command, run_key
+from lithobrake.files.hashing import content_hash, hashed_seed
+from lithobrake.study import Study
+from lithobrake.study.quantity import uncertain
+from lithobrake.study.touchdown_model import engine_hash, medians, touchdown_version
+
+
+def bed_files(study: Study) -> list[str]:
+    """Names of the bed files; a solver of the user's own has its own surface."""
+    if not study.has_soil:
+        return []
+    return [f"beds/bed_{index}.h5" for index in range(study.bed_count)]
+
+
+def bed_reads(study: Study) -> dict[str, Any]:
+    """What the beds depend on: uncertain quantities count with their medians."""
+    values = medians(study)
+    return {
+        "seed": pour_seed(study, 0),
+        "bed": study.bed.model_dump(exclude={"bed_count"}),
+        "values": {name: value for name, value in values.items() if name.startswith(("grain.", "surface."))},
+        "contact": study.contact.model_dump(exclude={"stepping", "held_speed"}),
+        "engine": engine_hash(),
+    }
+
+
+def pour_seed(study: Study, index: int) -> int:
+    """Seed of the pour of a bed: two seeds of studies share none."""
+    # Studies of this method keep the beds that they have always had.
+    if study.design.method == "paper":
+        return hashed_seed(study.seed, "bed", index)
+    state = np.random.SeedSequence(study.seed, spawn_key=(index,)).generate_state(1, np.uint64)
+    # Below 2**53, so that it is the same number in every file.
+    return int(state[0]) >> 11
+
+
+def touchdown_reads(study: Study) -> dict[str, Any]:
+    """What a touchdown depends on beside its values: the options, the lander's mesh, the beds, the engine."""
+    if not study.has_soil:
+        return solver_reads(study)
+    return {
+        "bed": bed_reads(study),
+        "lander": study.lander.model_dump(include={"shape", "edges", "inertia", "unit"}),
+        "mesh": None if study.lander.file is None else content_hash(Path(study.lander.file)),
+        "stepping": study.contact.stepping,
+        "held_speed": study.contact.held_speed,
+        "time_limit": study.landing.time_limit,
+        "version": touchdown_version(),
+    }
+
+
+def solver_reads(study: Study) -> dict[str, Any]:
+    """What a touchdown by a program depends on beside its values: the program's files, and what it is told."""
+    setting = solver_setting(study)
+    # A mesh counts with its content, wherever it lies.
+    setting["lander"]["file"] = None if study.lander.file is None else content_hash(Path(study.lander.file))
+    identity = [study.function] if study.function else solver_command(study, Path()).identity()
+    return {"solver": identity, "setting": setting, "version": __version__}
+
+
+def solver_setting(study: Study) -> dict[str, Any]:
+    """What a program is told beside the values of a run, as it stands in the study file."""
+    return {
+        "bed": study.bed.model_dump(exclude={"bed_count"}),
+        "lander": study.lander.model_dump(include={"shape", "edges", "inertia", "file", "unit"}),
+        "contact": study.contact.model_dump(),
+        "time_limit": study.landing.time_limit,
+    }
+
+
+def solver_command(study: Study, folder: Path) -> Command:
+    """The program of a study, with its runs in a folder of the study."""
+    solver = study.solver
+    templates = tuple(Path(name) for name in solver.templates)
+    return Command(str(solver.command), folder / "solver", templates=templates, answer=solver.answer)
+
+
+def design_reads(study: Study) -> dict[str, Any]:
+    """What the runs of any design depend on."""
+    values = study.touchdown_values()
+    inputs = uncertain(values)
+    fixed = {name: value for name, value in values.items() if name not in inputs}
+    laws = {name: value.to_chaos().to_json() for name, value in inputs.items()}
+    return {"touchdown": touchdown_reads(study), "drawn": _drawn_reads(study), "fixed": fixed, "inputs": laws}
+
+
+def _drawn_reads(study: Study) -> dict[str, Any]:
+    """What the draws of a run depend on, beside its seed."""
+    return {
+        "bed_count": study.bed_count,
+        "azimuth": "random" if study.impact.azimuth_deg == "random" else "fixed",
+        **study.impact.model_dump(include={"region", "orientation", "pointing_error_deg"}),
+    }
+
+
+def touchdown_keys(study: Study, rows: Sequence[Mapping[str, float]], replicate: int) -> list[str]:
+    """The keys of these runs in the ledger."""
+    context = touchdown_reads(study)
+    return [run_key(row, study.seed, replicate, context) for row in rows]
