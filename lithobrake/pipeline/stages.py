@@ -8,6 +8,7 @@ from typing import Any
 from lithobrake.files.hashing import json_hash, source_hash
 from lithobrake.pipeline.answer.drawn_summary import write_drawn_summary
 from lithobrake.pipeline.answer.run_estimates import estimate
+from lithobrake.pipeline.answer.summary_parts import summary_reads
 from lithobrake.pipeline.emulate.emulator_samples import draw_emulator_samples
 from lithobrake.pipeline.emulate.explorer_tables import FILE as EXPLORER
 from lithobrake.pipeline.emulate.explorer_tables import write_explorer
@@ -20,7 +21,7 @@ from lithobrake.pipeline.paper.expansion_samples import draw_samples
 from lithobrake.pipeline.paper.expansion_tables import write_expansion_explorer
 from lithobrake.pipeline.paper.expansions import fit_refined, fit_screening, score_all
 from lithobrake.pipeline.paper.paper_runs import make_refined_runs, make_screening_runs, make_test_runs
-from lithobrake.pipeline.paper.paper_summary import summary_reads, write_summary
+from lithobrake.pipeline.paper.paper_summary import write_summary
 from lithobrake.pipeline.rest.aiming import aim_files, aim_reads, follow_aims
 from lithobrake.pipeline.rest.journeys import FILES as REST_FILES
 from lithobrake.pipeline.rest.journeys import follow_samples, rest_files, rest_reads
