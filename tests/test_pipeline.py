@@ -13,10 +13,10 @@ from lithobrake.chaos import Uniform, fit, smolyak
 from lithobrake.pipeline import StudyFolder, stage_keys, stages_of
 from lithobrake.pipeline.answer.dispersion_statistics import return_fraction, shares
 from lithobrake.pipeline.answer.scope import scope
+from lithobrake.pipeline.answer.summary_parts import study_tables
 from lithobrake.pipeline.emulate.samples import SAMPLE_OUTCOMES, Samples
 from lithobrake.pipeline.fly.flights import COLUMNS, partner_time, starts
 from lithobrake.pipeline.paper.paper_designs import kept_inputs, points
-from lithobrake.pipeline.paper.paper_summary import study_tables
 from lithobrake.pipeline.rest import journeys as rest
 from lithobrake.pipeline.runs.designs import design_inputs
 from lithobrake.pipeline.site import (

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from lithobrake.pipeline.answer.site_summary import site_results
+from lithobrake.pipeline.answer.summary_parts import summary_reads
 from lithobrake.pipeline.fly.flights import flight_reads
-from lithobrake.pipeline.paper.paper_summary import summary_reads
 from lithobrake.pipeline.site import escape_speed, frames, gravity_warning, site_body, site_slope_deg
 from lithobrake.smallbody import Body
 from lithobrake.smallbody.built_in_bodies import top_shape

@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 
 from lithobrake.pipeline.answer.site_summary import site_results
+from lithobrake.pipeline.answer.summary_parts import study_tables
 from lithobrake.pipeline.fly.flights import flight_reads
-from lithobrake.pipeline.paper.paper_summary import study_tables
 from lithobrake.pipeline.site import site_body, site_medians
 from lithobrake.smallbody import read_partner
 from lithobrake.study import Study, check_tables

@@ -12,18 +12,18 @@ from lithobrake.pipeline.answer.run_estimates import FILE as ESTIMATES
 from lithobrake.pipeline.answer.shares_over_refits import Refits, journey_ends, sample_fates
 from lithobrake.pipeline.answer.site_summary import site_results
 from lithobrake.pipeline.answer.statements import drawn_answer, drawn_headline, limit_statement
-from lithobrake.pipeline.design.dependencies import bed_files
-from lithobrake.pipeline.emulate.fitted_emulator import FILE as EMULATOR
-from lithobrake.pipeline.emulate.samples import Samples
-from lithobrake.pipeline.fly.flights import read_table
-from lithobrake.pipeline.job import Job
-from lithobrake.pipeline.paper.paper_summary import (
+from lithobrake.pipeline.answer.summary_parts import (
     bed_results,
     monte_carlo_results,
     outputs_of_runs,
     provenance,
     study_tables,
 )
+from lithobrake.pipeline.design.dependencies import bed_files
+from lithobrake.pipeline.emulate.fitted_emulator import FILE as EMULATOR
+from lithobrake.pipeline.emulate.samples import Samples
+from lithobrake.pipeline.fly.flights import read_table
+from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.site import Site
 from lithobrake.results.study_results import SUMMARY_FORMAT
