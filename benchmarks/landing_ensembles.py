@@ -21,8 +21,8 @@ from harness import Row, command_line, origin, table, timed, write_document
 from scipy.stats import ks_2samp
 
 from lithobrake.chaos import sobol_sequence
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.runs.beds import bed_recipe
-from lithobrake.pipeline.runs.designs import design_inputs
 from lithobrake.pipeline.site import with_site_gravity
 from lithobrake.study import Study, check_tables
 from lithobrake.study.touchdown_model import draw, lander, landing, medians
@@ -53,7 +53,7 @@ def beds_of(study: Study, folder: Path) -> list[Bed]:
 
 def draws(study: Study, count: int) -> Iterator[tuple[int, Lander, Landing]]:
     """Number of the bed, lander and landing of each draw."""
-    inputs = design_inputs(study)
+    inputs = DrawnDesign(study).inputs
     for number, row in enumerate(sobol_sequence(inputs, count, seed=3).tolist()):
         values = draw(study, medians(study) | dict(zip(inputs, row, strict=True)), 1000 + number)
         yield round(values["bed"]), lander(study, values), landing(study, values)

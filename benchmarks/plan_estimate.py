@@ -15,6 +15,7 @@ from pathlib import Path
 
 from harness import SCENARIOS, Row, command_line, origin, timed, write_document
 
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.planning.expected_steps import ExpectedSoil
 from lithobrake.pipeline.planning.expected_time import landing_time, pour_time
 from lithobrake.pipeline.planning.pace import REFERENCE, probe
@@ -39,7 +40,7 @@ def landed(bed: Bed, soil: ExpectedSoil, held: float, count: int) -> dict[str, f
 def measure(name: str, bed_count: int, count: int) -> Row:
     """Pour beds of a study and make so many of its landings on the first."""
     study = read_study(SCENARIOS / f"{name}.toml")
-    soil = ExpectedSoil.of(study, len(study.touchdown_values()))
+    soil = ExpectedSoil.of(DrawnDesign(study), len(study.touchdown_values()))
     paces = [probe() / REFERENCE]
     small = max(math.sqrt(COMPILED_BY / soil.recipe.grain_count) * soil.recipe.width[0], 2.0 * soil.recipe.sizes.upper)
     pour_bed(replace(soil.recipe, grain_count=COMPILED_BY, width=(small, small)))

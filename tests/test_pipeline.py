@@ -14,20 +14,12 @@ from lithobrake.pipeline import StudyFolder, stage_keys, stages_of
 from lithobrake.pipeline.answer.dispersion_statistics import return_fraction, shares
 from lithobrake.pipeline.answer.scope import scope
 from lithobrake.pipeline.answer.summary_parts import study_tables
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.emulate.samples import SAMPLE_OUTCOMES, Samples
 from lithobrake.pipeline.fly.flights import COLUMNS, partner_time, starts
 from lithobrake.pipeline.paper.paper_designs import kept_inputs, points
 from lithobrake.pipeline.rest import journeys as rest
-from lithobrake.pipeline.runs.designs import design_inputs
-from lithobrake.pipeline.site import (
-    effective_acceleration_at_site,
-    frames,
-    has_heading,
-    site_body,
-    site_medians,
-    site_warning,
-    with_site_gravity,
-)
+from lithobrake.pipeline.site import Site, frames, with_site_gravity
 from lithobrake.smallbody.restitution_table import COUNTS, EDGES
 from lithobrake.study import Study, StudyError, check_tables
 from lithobrake.study.touchdown_model import ORIENTATION, PLACE, acceleration, draw, in_words_of_the_study, medians
@@ -169,9 +161,9 @@ def test_kept_is_the_smallest_set_that_explains_enough_of_every_deciding_output(
 
 def test_inputs_that_are_not_kept_stand_at_their_median_and_nodes_are_shared() -> None:
     study = changed()
-    inputs = design_inputs(study)
+    inputs = DrawnDesign(study).inputs
     names, kept = list(inputs), ["grain.friction", "grain.restitution"]
-    refined, screening = points(study, "refined", kept), points(study, "screening", ())
+    refined, screening = points(DrawnDesign(study), "refined", kept), points(DrawnDesign(study), "screening", ())
     for column, name in enumerate(names):
         assert (np.unique(refined[:, column]) == inputs[name].median).all() == (name not in kept)
     shared = {tuple(row) for row in refined.tolist()} & {tuple(row) for row in screening.tolist()}
@@ -269,7 +261,7 @@ def test_the_scope_names_what_all_runs_have_in_common(bed: dict[str, Any], impac
 def test_a_heading_over_the_circle_has_no_median() -> None:
     circle = {"distribution": "uniform", "lower": 0.0, "upper": 360.0}
     half = {"distribution": "uniform", "lower": 0.0, "upper": 180.0}
-    given = [has_heading(changed(site={"heading_deg": heading})) for heading in (30.0, half, circle)]
+    given = [Site(changed(site={"heading_deg": heading})).has_heading for heading in (30.0, half, circle)]
     assert given == [True, True, False]
 
 
@@ -307,20 +299,20 @@ RESTITUTION_NAMES = [
 def test_the_partner_stands_where_the_sample_says() -> None:
     study = changed(site={"partner_longitude_deg": 77.0, "spin_period": 8000.0})
     site = starts(study, made_samples("clear")).site
-    body = site_body(study)
+    body = Site(study).body
     time = partner_time(body, site)
     angle = body.orbit.angle + body.orbit.rate * time[0]
     assert math.degrees(angle) % 360.0 == pytest.approx(77.0)
     open_ended = starts(changed(), made_samples(*["clear"] * 40)).site["partner_longitude_deg"]
     assert np.ptp(open_ended) > 180.0
-    assert site_body(changed(site={"partner": False})).partner is None
+    assert Site(changed(site={"partner": False})).body.partner is None
 
 
 def test_the_delivery_error_moves_the_start_along_the_ground() -> None:
     study = changed(site={"latitude_deg": 20.0, "longitude_deg": 10.0, "north_error": 30.0, "east_error": -40.0})
-    body = site_body(study)
+    body = Site(study).body
     aim, axes = body.local_frame(20.0, 10.0)
-    origin, _ = frames(body, {key: np.array([value]) for key, value in site_medians(study).items()})
+    origin, _ = frames(body, {key: np.array([value]) for key, value in Site(study).medians.items()})
     moved = axes @ (origin[0] - aim)
     # The ground is not plane: it falls off by some metres over 50 m.
     assert moved[:2] == pytest.approx([30.0, 40.0], abs=3.0)
@@ -349,12 +341,12 @@ def test_the_acceleration_of_the_site_is_offered_to_the_touchdown() -> None:
     """At the published site the ground pushes outwards; near a pole it holds, and there is nothing to warn of."""
     site = {"surface": {"gravity": "site"}, "bed": {"settle_gravity": 2e-5}}
     equator = changed(**site, site={"latitude_deg": 0.0, "longitude_deg": 0.0})
-    assert equator.surface.gravity == pytest.approx(-effective_acceleration_at_site(equator)[2])
+    assert equator.surface.gravity == pytest.approx(-Site(equator).acceleration[2])
     assert equator.surface.gravity < 0.0
-    assert "push outwards" in site_warning(equator)
+    assert "push outwards" in Site(equator).warning
     pole = changed(**site, site={"latitude_deg": 80.0})
     assert 1.8e-4 < pole.surface.gravity < 2.6e-4
-    assert site_warning(pole) is None
+    assert Site(pole).warning is None
     assert medians(pole)["surface.gravity"] == pole.surface.gravity
     with pytest.raises(StudyError, match="settle_gravity"):
         changed(surface={"gravity": "site"}, site={"latitude_deg": 0.0})

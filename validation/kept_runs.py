@@ -18,11 +18,10 @@ from pathlib import Path
 
 from lithobrake.campaign import Ledger
 from lithobrake.pipeline import StudyFolder
-from lithobrake.pipeline.paper.paper_designs import points
-from lithobrake.pipeline.runs.designs import design_inputs
-from lithobrake.pipeline.design.drawn_design import design_rows
-from lithobrake.pipeline.runs.touchdown_runs import drawn_rows
 from lithobrake.pipeline.design.dependencies import touchdown_keys
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
+from lithobrake.pipeline.paper.paper_designs import points
+from lithobrake.pipeline.runs.touchdown_runs import drawn_rows
 from lithobrake.pipeline.site import with_site_gravity
 from lithobrake.study import Study, read_study
 from lithobrake.study.touchdown_model import touchdown_version
@@ -36,13 +35,13 @@ def rows_of(study: Study, kept: Path) -> Iterator[tuple[str, list[Numbers]]]:
     """Each kept design of a study with the inputs of its landings as today's code draws them."""
     if study.design.method == "paper":
         refined = json.loads((kept / "refined.json").read_text(encoding="utf-8"))
-        inputs, chosen = tuple(design_inputs(study)), [one["name"] for one in refined["inputs"]]
+        inputs, chosen = tuple(DrawnDesign(study).inputs), [one["name"] for one in refined["inputs"]]
         for design in DESIGNS:
-            yield design, drawn_rows(study, inputs, points(study, design, chosen), 0)
+            yield design, drawn_rows(study, inputs, points(DrawnDesign(study), design, chosen), 0)
         return
     for design in SEQUENCE_DESIGNS:
         if (kept / "runs" / f"{design}.csv").is_file():
-            yield design, design_rows(study, design)
+            yield design, DrawnDesign(study).rows_of(design)
 
 
 def kept_landings(path: Path) -> Iterator[tuple[str, Numbers, Numbers]]:

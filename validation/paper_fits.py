@@ -16,14 +16,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lithobrake.chaos import fit
-from lithobrake.pipeline.runs.designs import design_inputs
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.study import read_study
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
 from harness import ROOT, origin, timed, write_document
 
 RUNS = ROOT / "showcase" / "paper" / "runs"
-INPUTS = design_inputs(read_study(RUNS.parent / "study.toml"))
+INPUTS = DrawnDesign(read_study(RUNS.parent / "study.toml")).inputs
 OUTPUTS = ("speed_out", "elevation_out", "spin_out")
 HELD_BACK = 50  # test runs that every fit is scored on
 WAYS: dict[str, dict[str, Any]] = {

@@ -4,7 +4,6 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from lithobrake.pipeline.commands.inferring import InferredStudy, infer_study
     from lithobrake.pipeline.commands.one_landing import OneLanding, land_one, landing_inputs
     from lithobrake.pipeline.commands.rare_landings import rare_failure
     from lithobrake.pipeline.commands.serving import ServedStudy, served_models
@@ -12,6 +11,7 @@ if TYPE_CHECKING:
     from lithobrake.pipeline.commands.status import study_status
     from lithobrake.pipeline.folder.state import report_page
     from lithobrake.pipeline.folder.study_folder import StudyFolder
+    from lithobrake.pipeline.inference.inferred_study import InferredStudy, infer_study
     from lithobrake.pipeline.job import Job
     from lithobrake.pipeline.planning.plan import Plan
     from lithobrake.pipeline.planning.plan_in_words import plan_lines
@@ -21,14 +21,14 @@ if TYPE_CHECKING:
 
 _HOME = {
     "EvaluationProcess": "commands.serving_process",
-    "InferredStudy": "commands.inferring",
+    "InferredStudy": "inference.inferred_study",
     "Job": "job",
     "OneLanding": "commands.one_landing",
     "Plan": "planning.plan",
     "ServedStudy": "commands.serving",
     "Stage": "stages",
     "StudyFolder": "folder.study_folder",
-    "infer_study": "commands.inferring",
+    "infer_study": "inference.inferred_study",
     "land_one": "commands.one_landing",
     "landing_inputs": "commands.one_landing",
     "make": "stages",

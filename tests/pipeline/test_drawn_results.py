@@ -13,7 +13,7 @@ from lithobrake.pipeline.emulate.outgoing import VELOCITY
 from lithobrake.pipeline.fly.flights import Starts, fly_starts
 from lithobrake.pipeline.fly.run_flights import run_sites
 from lithobrake.pipeline.job import Job, Silent
-from lithobrake.pipeline.site import site_body
+from lithobrake.pipeline.site import Site
 from lithobrake.results import StudyResults
 from lithobrake.results.key_words import leaves, words_of
 from lithobrake.study import check_tables
@@ -38,9 +38,9 @@ def flown_share(count: int) -> float:
     landings = WEAK.draw(random_soils(count, random), random.standard_normal(count), random)
     left = np.flatnonzero(landings.outcome == "clear")
     velocity = np.array([[outputs_of(landings.y[run])[name] for name in VELOCITY] for run in left])
-    site = {key: values[:, 0] for key, values in run_sites(study, len(left), 1).items()}
+    site = {key: values[:, 0] for key, values in run_sites(Site(study), len(left), 1).items()}
     job = Job(study, {}, StudyFolder.only_read(Path()), None, Silent())  # type: ignore[arg-type]
-    flown = fly_starts(site_body(study), Starts(left, velocity, site), study, job, "")
+    flown = fly_starts(Site(study).body, Starts(left, velocity, site), study, job, "")
     return float((flown.status == "impact").sum()) / count
 
 

@@ -13,8 +13,8 @@ from pathlib import Path
 
 import pytest
 
-from lithobrake.pipeline.runs.solver import completed
 from lithobrake.pipeline.design.dependencies import solver_reads
+from lithobrake.pipeline.runs.solver import completed
 from lithobrake.results import open_study
 from lithobrake.study import StudyError, read_study
 

@@ -10,6 +10,7 @@ import pytest
 from lithobrake.analysis import half_width_of
 from lithobrake.pipeline import StudyFolder, plan_lines, study_status
 from lithobrake.pipeline.answer.answer_of_run import answers_of, read_shares
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.job import Silent
 from lithobrake.pipeline.planning.planner import plan_of
 from lithobrake.pipeline.runs.run_table import DesignRuns
@@ -103,9 +104,9 @@ def test_what_ends_is_the_study_of_that_many_runs(narrow: tuple[Path, DesignRuns
     assert not any("going on" in sentence for sentence in again.sentences)
     study = source(half_width=0.06).study
     only_read = StudyFolder.only_read(folder)
-    assert grown(study, only_read).design.run_count == runs.run_count
-    assert grown(study, only_read).with_run_count(24) == study.with_run_count(24)
-    plan = plan_of(grown(study, only_read), "ball", only_read, 2)
+    assert grown(DrawnDesign(study), only_read).design.run_count == runs.run_count
+    assert grown(DrawnDesign(study), only_read).with_run_count(24) == study.with_run_count(24)
+    plan = plan_of(grown(DrawnDesign(study), only_read), "ball", only_read, 2)
     # What follows the runs was not asked for.
     assert (plan.stages[0], len(plan.runs), plan.runs[0].drawn) == ("estimates", 1, runs.run_count)
     answered = sum(outcome in ("clear", "captured") for outcome in runs.outcomes)
@@ -154,6 +155,6 @@ def test_a_damaged_table_of_flights_is_made_again(asked: dict[str, float], tmp_p
     table, study, only_read = tmp_path / "run_flights.csv", source(**asked).study, StudyFolder.only_read(tmp_path)
     whole = table.read_bytes()
     table.write_text("nothing that could be read")
-    assert plan_of(grown(study, only_read), "ball", only_read, 2).stages[0] == "flights of the runs"
+    assert plan_of(grown(DrawnDesign(study), only_read), "ball", only_read, 2).stages[0] == "flights of the runs"
     run(tmp_path, Said(), **asked)
     assert table.read_bytes() == whole

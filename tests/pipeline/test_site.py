@@ -11,7 +11,7 @@ import pytest
 from lithobrake.pipeline.answer.site_summary import site_results
 from lithobrake.pipeline.answer.summary_parts import summary_reads
 from lithobrake.pipeline.fly.flights import flight_reads
-from lithobrake.pipeline.site import escape_speed, frames, gravity_warning, site_body, site_slope_deg
+from lithobrake.pipeline.site import Site, frames
 from lithobrake.smallbody import Body
 from lithobrake.smallbody.built_in_bodies import top_shape
 from lithobrake.study import Study, check_tables
@@ -50,13 +50,13 @@ def test_the_slope_at_a_site_of_a_mesh_is_known_before_a_run(tmp_path: Path) -> 
     """The middle of a facet of an octahedron lies plumb under its normal; a corner is acos(1 / sqrt 3) off."""
     body = {"body": str(mesh(tmp_path, "# Units: km\n")), "mass": 3e12, "spin_period": 1e9, "longitude_deg": 45.0}
     middle = math.degrees(math.asin(1.0 / math.sqrt(3.0)))
-    assert site_slope_deg(changed(site=body | {"latitude_deg": middle})) == pytest.approx(0.0, abs=1e-3)
-    assert 20.0 < site_slope_deg(changed(site=body | {"latitude_deg": 85.0})) < 55.0
+    assert Site(changed(site=body | {"latitude_deg": middle})).slope_deg == pytest.approx(0.0, abs=1e-3)
+    assert 20.0 < Site(changed(site=body | {"latitude_deg": 85.0})).slope_deg < 55.0
 
 
 def test_unlike_accelerations_of_touchdown_and_site_are_told() -> None:
     def warned(gravity: Any, latitude: float) -> str | None:
-        return gravity_warning(changed(surface={"gravity": gravity}, site={"latitude_deg": latitude}))
+        return Site(changed(surface={"gravity": gravity}, site={"latitude_deg": latitude})).gravity_warning
 
     # 1.4e-5 m/s2 outwards at the equator, 2.2e-4 m/s2 inwards near the pole.
     assert "5e-05 m/s2 inwards" in str(warned(5e-5, 0.0))
@@ -68,23 +68,23 @@ def test_unlike_accelerations_of_touchdown_and_site_are_told() -> None:
     assert "0.0008 m/s2 inwards" in str(warned(8e-4, 80.0))
     assert warned({"distribution": "uniform", "lower": 1e-5, "upper": 1e-4}, 80.0) is None
     site = changed(surface={"gravity": "site"}, bed={"settle_gravity": 2e-5}, site={"latitude_deg": 0.0})
-    assert gravity_warning(site) is None
+    assert Site(site).gravity_warning is None
 
 
 def test_the_escape_speed_is_that_of_the_potential_at_the_site() -> None:
     study = changed(site={"latitude_deg": 80.0, "partner": False})
-    body = site_body(study)
+    body = Site(study).body
     radius = float(np.linalg.norm(body.shape.surface_point(80.0, 0.0)))
     # Far from a point mass, and still within some per cent of it.
-    assert escape_speed(study) == pytest.approx(math.sqrt(2.0 * body.gravitational_parameter / radius), rel=0.08)
-    assert escape_speed(study) != escape_speed(changed(site={"latitude_deg": 0.0, "partner": False}))
+    assert Site(study).escape_speed == pytest.approx(math.sqrt(2.0 * body.gravitational_parameter / radius), rel=0.08)
+    assert Site(study).escape_speed != Site(changed(site={"latitude_deg": 0.0, "partner": False})).escape_speed
 
 
 def test_the_body_may_be_a_shape_kernel_of_spice(tmp_path: Path) -> None:
     spice = pytest.importorskip("spiceypy")
     write_kernel(spice, tmp_path / "rock.bds", 1)
     site = {"body": str(tmp_path / "rock.bds"), "mass": 2.6e12, "spin_period": 2e4}
-    body = site_body(changed(site=site))
+    body = Site(changed(site=site)).body
     # An octahedron with corners at a kilometre: kernels have no other unit.
     assert body.shape.volume == pytest.approx(4.0 / 3.0 * 1e9)
     with pytest.raises(ValueError, match="says km"):
@@ -97,7 +97,7 @@ def test_the_product_of_an_archive_is_named_by_the_label_of_its_mesh(tmp_path: P
     label = path.with_suffix(".xml")
     given, found = (changed(site={"body": str(one), "mass": 3e12, "spin_period": 1e4}) for one in (label, path))
     for study in (given, found):
-        told = site_results(study)
+        told = site_results(Site(study))
         assert (told["body"], told["product_id"]) == ("mesh", "urn:nasa:pds:rocks:data:rock::3.0")
         assert told["extents_m"] == [2e3, 2e3, 2e3]
     assert flight_reads(given) == flight_reads(found)
@@ -105,7 +105,7 @@ def test_the_product_of_an_archive_is_named_by_the_label_of_its_mesh(tmp_path: P
     label.write_text(label.read_text().replace("3.0", "4.0"))
     assert flight_reads(found) == before[0]
     assert summary_reads(found) != before[1]
-    assert site_results(changed())["product_id"] is None
+    assert site_results(Site(changed()))["product_id"] is None
     label.write_text(PRODUCT.format(file="other.obj"))
     with pytest.raises(ValueError, match=r"study\.toml: site\.body: .*rock\.xml: this label names other\.obj"):
         changed(site={"body": str(label), "mass": 3e12, "spin_period": 1e4})

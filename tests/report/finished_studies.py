@@ -14,9 +14,9 @@ import lithobrake
 from lithobrake.dem import ConvexHull
 from lithobrake.pipeline import StudyFolder
 from lithobrake.pipeline.answer.drawn_summary import write_drawn_summary
+from lithobrake.pipeline.design.dependencies import bed_files
 from lithobrake.pipeline.job import Job, Silent
 from lithobrake.pipeline.paper.paper_summary import write_summary
-from lithobrake.pipeline.design.dependencies import bed_files
 from lithobrake.study import check_tables
 from lithobrake.touchdown import Bed
 

@@ -10,7 +10,7 @@ import pytest
 from lithobrake.pipeline.answer.site_summary import site_results
 from lithobrake.pipeline.answer.summary_parts import study_tables
 from lithobrake.pipeline.fly.flights import flight_reads
-from lithobrake.pipeline.site import site_body, site_medians
+from lithobrake.pipeline.site import Site
 from lithobrake.smallbody import read_partner
 from lithobrake.study import Study, check_tables
 from lithobrake.study.template import template
@@ -42,10 +42,10 @@ def test_the_numbers_of_kernels_are_those_of_the_study_and_of_its_summary(folder
     found = study(folder, kernels=NAMES, epoch=EPOCH)
     place = read_partner([folder / name for name in NAMES], "didymos", "dimorphos", EPOCH)
     period = 360.0 / 3823.0 * 86_400.0
-    assert site_medians(found)["spin_period"] == period
-    assert site_medians(found)["partner_longitude_deg"] == place.longitude_deg
-    assert site_body(found).spin_period == period
-    told = site_results(found)
+    assert Site(found).medians["spin_period"] == period
+    assert Site(found).medians["partner_longitude_deg"] == place.longitude_deg
+    assert Site(found).body.spin_period == period
+    told = site_results(Site(found))
     assert told["kernels"] == {
         "spin_period_s": period,
         "pole_right_ascension_deg": 69.327,
@@ -59,12 +59,12 @@ def test_the_numbers_of_kernels_are_those_of_the_study_and_of_its_summary(folder
     assert told["spin_period_s"] == period
     # Paths stand in the summary as they were written.
     assert study_tables(found, {"site": {"kernels": NAMES}})["site"]["kernels"] == NAMES
-    assert site_results(study(folder))["kernels"] is None
+    assert site_results(Site(study(folder)))["kernels"] is None
 
 
 def test_a_mesh_turns_as_the_kernels_say(folder: Path) -> None:
     found = study(folder, body="cube.obj", mass=2e9, kernels=NAMES[:1], kernel_body="920065803")
-    assert site_medians(found)["spin_period"] == pytest.approx(8136.0, rel=1e-3)
+    assert Site(found).medians["spin_period"] == pytest.approx(8136.0, rel=1e-3)
 
 
 def test_another_spin_in_the_kernel_makes_the_flights_anew_and_another_comment_does_not(folder: Path) -> None:

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from lithobrake.pipeline.planning.expected_inference import ExpectedInference
+from lithobrake.pipeline.inference.expected_inference import ExpectedInference
 from lithobrake.pipeline.planning.expected_time import Span
 from lithobrake.pipeline.planning.expected_width import ExpectedHalfWidth
 from lithobrake.pipeline.planning.planned_beds import PlannedBeds

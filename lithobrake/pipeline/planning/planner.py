@@ -7,12 +7,12 @@ from dataclasses import replace
 from pathlib import Path
 
 from lithobrake.campaign import available_cores
-from lithobrake.pipeline.commands.inferring import InferredStudy
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.folder.owner import refuse_others_folder
 from lithobrake.pipeline.folder.study_folder import StudyFolder
+from lithobrake.pipeline.inference.expected_inference import ExpectedInference
+from lithobrake.pipeline.inference.inferred_study import InferredStudy
 from lithobrake.pipeline.planning.expected_disk import expected_bytes, flight_count, journey_count
-from lithobrake.pipeline.planning.expected_inference import ExpectedInference
 from lithobrake.pipeline.planning.expected_steps import ExpectedSoil
 from lithobrake.pipeline.planning.expected_time import basis, expected_seconds
 from lithobrake.pipeline.planning.expected_width import expected_width

@@ -9,10 +9,9 @@ import numpy as np
 import pytest
 
 from lithobrake.pipeline import stage_keys
-from lithobrake.pipeline.design.dependencies import bed_files, pour_seed
-from lithobrake.pipeline.design.drawn_design import beds_of_runs, sequence_rows, soil_pairs, twins
+from lithobrake.pipeline.design.dependencies import bed_files, pour_seed, touchdown_keys
+from lithobrake.pipeline.design.drawn_design import DrawnDesign, beds_of_runs
 from lithobrake.pipeline.design.place_region import place_region, smallest_width
-from lithobrake.pipeline.design.dependencies import touchdown_keys
 from lithobrake.study import Study, check_tables
 from lithobrake.study.study import default_bed_count
 from lithobrake.study.template import template
@@ -41,7 +40,7 @@ def test_more_runs_leave_every_run_as_it_was_with_its_bed_and_its_key(
     few: int, many: int, beds: dict[str, dict[str, Any]]
 ) -> None:
     first, second = drawn(few, **beds), drawn(many, **beds)
-    before, after = sequence_rows(first), sequence_rows(second)
+    before, after = DrawnDesign(first).rows, DrawnDesign(second).rows
     assert (len(before), len(after)) == (few, many)
     assert before == after[:few]
     assert touchdown_keys(first, before, 0) == touchdown_keys(second, after[:few], 0)
@@ -80,7 +79,7 @@ def test_blocks_of_beds_have_an_order_of_their_own_that_the_seed_decides() -> No
 
 def test_every_coordinate_is_spread_evenly_over_its_law() -> None:
     study = drawn(256, impact={"region": REGION})
-    rows = sequence_rows(study)
+    rows = DrawnDesign(study).rows
     names = (*SOIL, *PLACE, "impact.azimuth_deg")
     laws = [study.grain.young_modulus, study.grain.friction, study.lander.restitution]
     probability = [law.to_chaos().cdf(columns(rows, name)[:, 0]) for law, name in zip(laws, names, strict=False)]
@@ -96,9 +95,9 @@ def test_every_coordinate_is_spread_evenly_over_its_law() -> None:
 
 
 def test_what_is_given_is_not_drawn_and_leaves_the_rest_as_it_was() -> None:
-    free = sequence_rows(drawn(40, impact={"region": REGION}))
+    free = DrawnDesign(drawn(40, impact={"region": REGION})).rows
     held = {"azimuth_deg": 30.0, "place": {"x": 0.01, "y": 0.02}, "orientation": [2, 0, 0, 0]}
-    rows = sequence_rows(drawn(40, impact=held))
+    rows = DrawnDesign(drawn(40, impact=held)).rows
     assert np.array_equal(columns(free, "bed", *SOIL), columns(rows, "bed", *SOIL))
     expected = [0.01, 0.02, 30.0, 1.0, 0.0, 0.0, 0.0]
     assert np.array_equal(columns(rows, *ARRIVAL[1:]), np.tile(expected, (40, 1)))
@@ -106,12 +105,12 @@ def test_what_is_given_is_not_drawn_and_leaves_the_rest_as_it_was() -> None:
 
 def test_an_uncertain_place_or_azimuth_is_an_input_like_any_other() -> None:
     law = {"distribution": "uniform", "lower": 0.0, "upper": 10.0}
-    rows = sequence_rows(drawn(64, impact={"azimuth_deg": law}))
+    rows = DrawnDesign(drawn(64, impact={"azimuth_deg": law})).rows
     assert np.array_equal(np.sort(np.floor(columns(rows, "impact.azimuth_deg")[:, 0] * 6.4)), np.arange(64))
 
 
 def test_an_error_of_pointing_tilts_each_run_within_its_cone() -> None:
-    rows = sequence_rows(drawn(64, impact={"orientation": [1, 0, 0, 0], "pointing_error_deg": 10.0}))
+    rows = DrawnDesign(drawn(64, impact={"orientation": [1, 0, 0, 0], "pointing_error_deg": 10.0})).rows
     w = columns(rows, ORIENTATION[0])[:, 0]
     tilt = np.degrees(2.0 * np.arccos(w))
     assert 9.0 < tilt.max() <= 10.0
@@ -135,7 +134,7 @@ def test_places_are_drawn_where_the_smallest_bed_leaves_room() -> None:
     study = drawn(64, bed={"width": [0.8, 1.0], "grain_count": 400})
     region, width = place_region(study), smallest_width(study)
     assert region == ((-0.5 * (0.8 - width), 0.5 * (0.8 - width)), (-0.5 * (1.0 - width), 0.5 * (1.0 - width)))
-    places = columns(sequence_rows(study), *PLACE)
+    places = columns(DrawnDesign(study).rows, *PLACE)
     assert np.all(np.abs(places) <= [region[0][1], region[1][1]])
     # Half of 64 parts of the way to each end.
     assert np.all(np.abs(places).max(axis=0) > 0.9 * np.array([region[0][1], region[1][1]]))
@@ -160,17 +159,17 @@ def test_two_seeds_share_no_pour_and_one_seed_repeats_its_own() -> None:
 
 def test_soil_pairs_have_another_soil_and_arrive_alike() -> None:
     study = drawn(50)
-    rows, pairs = sequence_rows(study), soil_pairs(study)
+    rows, pairs = DrawnDesign(study).rows, DrawnDesign(study).rows_of("soil_pairs")
     assert len(pairs) == 20
     assert np.array_equal(columns(rows[:20], *ARRIVAL), columns(pairs, *ARRIVAL))
     assert np.all(columns(rows[:20], *SOIL) != columns(pairs, *SOIL))
-    assert len(soil_pairs(drawn(7))) == 7
-    assert soil_pairs(drawn(500)) == pairs
+    assert len(DrawnDesign(drawn(7)).rows_of("soil_pairs")) == 7
+    assert DrawnDesign(drawn(500)).rows_of("soil_pairs") == pairs
 
 
 def test_twins_come_down_a_little_beside_and_nothing_else_differs() -> None:
     study = drawn(50, design={"method": "sequence", "side_runs": True, "twin_shift": 2e-4})
-    rows, pairs = sequence_rows(study)[:12], twins(study)
+    rows, pairs = DrawnDesign(study).rows[:12], DrawnDesign(study).rows_of("twins")
     assert len(pairs) == 12
     shift = columns(pairs, *PLACE) - columns(rows, *PLACE)
     assert np.linalg.norm(shift, axis=1) == pytest.approx(2e-4)

@@ -11,7 +11,7 @@ from lithobrake.pipeline.emulate.outgoing import VELOCITY
 from lithobrake.pipeline.fly.flights import Starts, fly_starts
 from lithobrake.pipeline.fly.run_flights import FLIGHT_COUNT, run_sites
 from lithobrake.pipeline.job import Job, Silent
-from lithobrake.pipeline.site import SITE_KEYS, site_body
+from lithobrake.pipeline.site import SITE_KEYS, Site
 from lithobrake.study import Study, check_tables
 
 from ...synthetic_landings import WEAK
@@ -28,7 +28,7 @@ def study(**site: object) -> Study:
 
 
 def test_headings_of_a_run_are_in_equal_steps_from_a_first_one_of_its_own() -> None:
-    sites = run_sites(study(**UNCERTAIN), 30)
+    sites = run_sites(Site(study(**UNCERTAIN)), 30)
     assert set(sites) == set(SITE_KEYS)
     steps = np.diff(np.sort(sites["heading_deg"], axis=1), axis=1)
     assert steps == pytest.approx(np.full((30, FLIGHT_COUNT - 1), 360.0 / FLIGHT_COUNT))
@@ -43,9 +43,9 @@ def test_headings_of_a_run_are_in_equal_steps_from_a_first_one_of_its_own() -> N
 
 
 def test_more_runs_and_one_more_uncertain_number_change_no_site() -> None:
-    few, many = run_sites(study(**UNCERTAIN), 5), run_sites(study(**UNCERTAIN), 9)
+    few, many = run_sites(Site(study(**UNCERTAIN)), 5), run_sites(Site(study(**UNCERTAIN)), 9)
     assert all(np.array_equal(few[key], many[key][:5]) for key in SITE_KEYS)
-    alone = run_sites(study(mass=UNCERTAIN["mass"]), 5)
+    alone = run_sites(Site(study(mass=UNCERTAIN["mass"])), 5)
     assert all(np.array_equal(few[key], alone[key]) for key in ("mass", "heading_deg", "partner_longitude_deg"))
 
 
@@ -56,9 +56,9 @@ def test_ten_times_as_many_flights_leave_the_interval_as_it_is() -> None:
     job = Job(drawn, {}, StudyFolder.only_read(Path()), None, Silent())  # type: ignore[arg-type]
     width = []
     for count in (FLIGHT_COUNT, 10 * FLIGHT_COUNT):
-        sites = {key: values.ravel() for key, values in run_sites(drawn, len(left), count).items()}
+        sites = {key: values.ravel() for key, values in run_sites(Site(drawn), len(left), count).items()}
         start = Starts(np.repeat(left, count), np.repeat(velocity, count, axis=0), sites)
-        flown = fly_starts(site_body(drawn), start, drawn, job, "")
+        flown = fly_starts(Site(drawn).body, start, drawn, job, "")
         found = share_estimate((flown.status == "impact").reshape(-1, count).mean(axis=1), bed[left])
         assert found.upper is not None
         assert found.lower is not None

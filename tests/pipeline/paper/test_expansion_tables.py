@@ -12,10 +12,10 @@ import lithobrake
 from lithobrake.chaos import coefficient_changes, load
 from lithobrake.files.hashing import hashed_seed
 from lithobrake.pipeline import StudyFolder
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.job import Job, Silent
 from lithobrake.pipeline.paper.expansion_samples import outcome_model
 from lithobrake.pipeline.paper.run_noise import Scatter
-from lithobrake.pipeline.runs.designs import design_inputs
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.results import StudyResults
 from lithobrake.study import check_tables
@@ -80,7 +80,7 @@ def given(results: StudyResults) -> dict[str, Any]:
 
 @needs_node
 def test_draws_of_the_browser_are_the_expansion_and_a_row_of_its_scatter(job: Job, given: dict[str, Any]) -> None:
-    inputs, refined = design_inputs(job.study), load(job.folder / "refined.json")
+    inputs, refined = DrawnDesign(job.study).inputs, load(job.folder / "refined.json")
     assert set(refined.input_names) < set(inputs), "an input has to be left out by the screening"
     random, scatter = np.random.default_rng(2), Scatter.of(job, refined)
     x = np.column_stack([law.ppf(random.random(40)) for law in inputs.values()])

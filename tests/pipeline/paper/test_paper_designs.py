@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from lithobrake.pipeline import stage_keys
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.paper.paper_designs import points
 from lithobrake.results import open_study
 from lithobrake.study import Study, check_tables
@@ -83,11 +84,11 @@ def changed(**design: Any) -> Study:
 def test_designs_by_count_vary_what_they_should(points_at: str) -> None:
     study = changed(points=points_at, screening_count=60, refined_count=70)
     kept = ["grain.friction", "grain.restitution"]
-    screening, refined = points(study, "screening", ()), points(study, "refined", kept)
+    screening, refined = points(DrawnDesign(study), "screening", ()), points(DrawnDesign(study), "refined", kept)
     assert (len(screening), len(refined)) == (60, 70)
     assert (np.ptp(screening, axis=0) > 0.0).all()
     assert (np.ptp(refined, axis=0) > 0.0).tolist() == [False, False, True, True, False]
-    assert np.array_equal(screening, points(study, "screening", ()))
+    assert np.array_equal(screening, points(DrawnDesign(study), "screening", ()))
 
 
 def test_a_larger_sobol_sequence_keeps_the_points_of_a_smaller_one() -> None:
@@ -100,7 +101,7 @@ def test_a_grid_of_few_inputs_reuses_the_nodes_of_the_grid_of_all() -> None:
     tables["grain"]["friction"] = {"distribution": "uniform", "lower": 0.1, "upper": 0.7}
     study = check_tables(tables, Path())
     screening, refined = (
-        {tuple(row) for row in points(study, design, ["grain.friction", "grain.restitution"]).tolist()}
+        {tuple(row) for row in points(DrawnDesign(study), design, ["grain.friction", "grain.restitution"]).tolist()}
         for design in ("screening", "refined")
     )
     # Both grids have 13 nodes on which the inputs that are not kept stand at their medians.

@@ -16,6 +16,8 @@ from typer.testing import CliRunner
 from lithobrake.campaign import Record, RunStatus, available_cores
 from lithobrake.cli import app
 from lithobrake.pipeline import Plan, StudyFolder, plan_lines, plan_study, stage_keys
+from lithobrake.pipeline.design.dependencies import pour_seed
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.emulate.samples import Samples
 from lithobrake.pipeline.job import Silent
 from lithobrake.pipeline.planning import expected_time
@@ -34,8 +36,7 @@ from lithobrake.pipeline.planning.planned_grains import planned_grains
 from lithobrake.pipeline.planning.planned_runs import PlannedRuns
 from lithobrake.pipeline.planning.planner import plan_of
 from lithobrake.pipeline.planning.study_warnings import study_warnings
-from lithobrake.pipeline.design.dependencies import pour_seed
-from lithobrake.pipeline.runs.designs import design_inputs
+from lithobrake.pipeline.site import Site
 from lithobrake.pipeline.study_run import run_study
 from lithobrake.results import open_study
 from lithobrake.study import Study, StudySource, check_tables, load_tables, read_study
@@ -67,7 +68,7 @@ def soft(**changes: dict[str, Any]) -> Study:
 
 
 def soil_of(study: Study) -> ExpectedSoil:
-    return ExpectedSoil.of(study, len(design_inputs(study)))
+    return ExpectedSoil.of(DrawnDesign(study), len(DrawnDesign(study).inputs))
 
 
 def test_the_runs_that_are_counted_are_those_that_are_made(tmp_path: Path) -> None:
@@ -218,7 +219,7 @@ def test_what_an_analyst_should_know_is_said(changes: dict[str, Any], said: str 
         section: {key: value for key, value in keys.items() if value is not None} for section, keys in changes.items()
     }
     study = soft(**kept)
-    found = " ".join(study_warnings(study, soil_of(study)))
+    found = " ".join(study_warnings(DrawnDesign(study), Site(study), soil_of(study)))
     assert said in found if said else "The screening fits" not in found
 
 
@@ -251,7 +252,7 @@ def drawn(*, design: dict[str, Any] | None = None, **changes: dict[str, Any]) ->
 )
 def test_a_sequence_on_few_beds_or_at_one_place_is_warned_of(changes: dict[str, Any], said: str | None) -> None:
     study = drawn(**changes)
-    found = " ".join(study_warnings(study, soil_of(study)))
+    found = " ".join(study_warnings(DrawnDesign(study), Site(study), soil_of(study)))
     assert said in found if said else "All runs" not in found and "beds are what" not in found
 
 
@@ -262,8 +263,8 @@ def test_landings_that_will_leave_the_bed_laterally_are_warned_of_by_their_angle
         for angle, w in ((15.0, 0.7), (slanted, 0.7), (slanted, 3.0))
     )
     words = "may leave the bed laterally"
-    assert words not in " ".join(study_warnings(steep, soil_of(steep)))
-    assert words in " ".join(study_warnings(flat, soil_of(flat)))
+    assert words not in " ".join(study_warnings(DrawnDesign(steep), Site(steep), soil_of(steep)))
+    assert words in " ".join(study_warnings(DrawnDesign(flat), Site(flat), soil_of(flat)))
     # 22 % of 300 landings of scenarios/aim.toml, which this study is like.
     losses = [expected_loss(soil_of(one).landings[1:], min(one.bed.width)) for one in (steep, flat, wide)]
     assert losses == [pytest.approx(1 / 64), pytest.approx(0.22, abs=0.04), pytest.approx(0.07, abs=0.02)]
@@ -344,7 +345,7 @@ def test_a_disk_that_is_too_small_is_the_first_warning(tmp_path: Path, monkeypat
 
 def test_a_study_that_has_all_it_needs_is_warned_of_the_edge_of_its_beds_alone() -> None:
     study = read_study(SCENARIOS / "bounces.toml")
-    lost, unknown = study_warnings(study, soil_of(study))
+    lost, unknown = study_warnings(DrawnDesign(study), Site(study), soil_of(study))
     assert lost.startswith("About 13 % of the landings may leave the bed laterally")
     assert unknown.startswith("Many journeys on the soil will have an unknown outcome")
 
@@ -425,9 +426,9 @@ def test_without_a_compiled_engine_the_pace_is_that_of_the_reference_machine(tmp
 
 def test_the_samples_take_the_room_that_is_expected(tmp_path: Path) -> None:
     study = read_study(BALL)
-    names, count = list(design_inputs(study)), study.monte_carlo.sample_count
+    names, count = list(DrawnDesign(study).inputs), study.monte_carlo.sample_count
     inputs, outputs = np.zeros((count, len(names))), np.zeros((count, len(OUTPUTS)))
     Samples(names, list(OUTPUTS), inputs, outputs, np.zeros(count, dtype=np.uint8)).save(StudyFolder(tmp_path))
-    expected = expected_bytes(study, PlannedRuns(4, 41, 96, 20, frozenset()), None)["samples"]
+    expected = expected_bytes(DrawnDesign(study), PlannedRuns(4, 41, 96, 20, frozenset()), None)["samples"]
     # Names and the layout of the file come on top.
     assert 0.0 < (tmp_path / "samples.h5").stat().st_size - expected < 2e4

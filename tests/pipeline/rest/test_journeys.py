@@ -26,7 +26,7 @@ from lithobrake.pipeline.rest.journeys import COLUMNS as REST
 from lithobrake.pipeline.rest.journeys import Sites, follow_samples, rest_reads, sliding_friction
 from lithobrake.pipeline.rest.sliding_law import FRICTIONS, INTERCEPT, SLOPE, effective_friction
 from lithobrake.pipeline.rest.slow_arrivals import SlowArrivals
-from lithobrake.pipeline.site import site_medians
+from lithobrake.pipeline.site import Site
 from lithobrake.smallbody import Arcs, HardSurface, Impacts, Rebounds
 from lithobrake.study import Study, check_tables
 from lithobrake.vocabulary.outcomes import JourneyStatus, TouchdownOutcome
@@ -217,7 +217,7 @@ def captured_sites(study: Study, latitude: float) -> tuple[Sites, Rebounds]:
     names = ["captured", "captured", "time_limit"]
     outcome = np.array([SAMPLE_OUTCOMES.index(name) for name in names], dtype=np.uint8)
     samples = Samples(["grain.friction"], list(OUTPUTS), np.array([[0.9], [0.05], [0.9]]), np.zeros((3, 6)), outcome)
-    site = {key: np.full(3, value) for key, value in site_medians(study).items()} | {
+    site = {key: np.full(3, value) for key, value in Site(study).medians.items()} | {
         "latitude_deg": np.full(3, latitude)
     }
     first = Rebounds(np.zeros((3, 3)), np.zeros((3, 3)), np.array([True, True, False]), ~samples.known)

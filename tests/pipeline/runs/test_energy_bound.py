@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from lithobrake.campaign import Record
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.runs.energy_bound import energy_bound, energy_warning
 from lithobrake.study import Study, check_tables
 from lithobrake.study.touchdown_model import medians
@@ -18,7 +19,7 @@ NO_BED = 0.0
 
 def fastest(*given: Any) -> np.ndarray:
     """The bound of the speed."""
-    return energy_bound(*given).speed
+    return energy_bound(DrawnDesign(*given)).speed
 
 
 def study(**changes: dict[str, Any]) -> Study:
@@ -47,12 +48,14 @@ def test_the_bound_follows_an_uncertain_speed_and_the_fall_down_a_slope() -> Non
 
 def test_what_the_speed_takes_is_not_left_for_the_spin() -> None:
     # A ball of .1 m has a radius of gyration of .1 sqrt(.1) m, and a box spins fastest about its long axis.
-    ball = energy_bound(study(), NO_BED, {}, 3)
+    ball = energy_bound(DrawnDesign(study()), NO_BED, {}, 3)
     assert ball.spin() == pytest.approx(np.full(3, 0.4 / np.sqrt(1e-3)))
     assert ball.spin(np.array([0.0, 0.24, 0.4])) == pytest.approx(np.array([0.4, 0.32, 0.0]) / np.sqrt(1e-3))
-    box = energy_bound(study(lander={"shape": "box", "edges": [0.1, 0.1, 0.2], "diameter": None}), NO_BED, {}, 1)
+    box = energy_bound(
+        DrawnDesign(study(lander={"shape": "box", "edges": [0.1, 0.1, 0.2], "diameter": None})), NO_BED, {}, 1
+    )
     assert box.spin()[0] == pytest.approx(0.4 / np.sqrt((0.1**2 + 0.1**2) / 12))
-    known = energy_bound(study(lander={"inertia": [1e-3, 2e-3, 2e-3], "mass": 2.0}), NO_BED, {}, 1)
+    known = energy_bound(DrawnDesign(study(lander={"inertia": [1e-3, 2e-3, 2e-3], "mass": 2.0})), NO_BED, {}, 1)
     assert known.spin()[0] == pytest.approx(0.4 / np.sqrt(0.5e-3))
 
 
@@ -78,5 +81,5 @@ def landed(speed_out: float, spin_out: float, speed: float = 0.2, outcome: str =
     ],
 )
 def test_landers_that_gain_energy_are_told(records: list[Record], said: str | None) -> None:
-    found = energy_warning(study(impact={"speed": 0.2}), records, NO_BED)
+    found = energy_warning(DrawnDesign(study(impact={"speed": 0.2})), records, NO_BED)
     assert found is None if said is None else found is not None and found.startswith(said)

@@ -16,10 +16,10 @@ import pytest
 
 from lithobrake.campaign import DaskExecutor, LocalExecutor
 from lithobrake.pipeline import StudyFolder
+from lithobrake.pipeline.design.dependencies import bed_files
 from lithobrake.pipeline.job import Job, Silent
 from lithobrake.pipeline.runs import beds as module
 from lithobrake.pipeline.runs.beds import pour_beds
-from lithobrake.pipeline.design.dependencies import bed_files
 from lithobrake.study import Study, check_tables
 from lithobrake.touchdown import bed_library
 

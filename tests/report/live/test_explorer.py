@@ -22,6 +22,7 @@ from lithobrake.chaos import (
     Uniform,
 )  # fmt: skip
 from lithobrake.emulator import Emulator, law_tables
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.runs.energy_bound import bound_numbers, energy_bound
 from lithobrake.report.live.packed import packed, script_data
 from lithobrake.report.pages.page_data import SequenceResults
@@ -142,8 +143,8 @@ def test_quantiles_of_inputs_are_those_of_their_laws(model: Emulator) -> None:
 )
 def test_the_energy_bound_is_that_of_python(model: Emulator, changes: dict[str, Any], fixed: dict[str, float]) -> None:
     study = check_tables(synthetic_tables(**changes), Path()).with_function("of a test")
-    bound = energy_bound(study, 0.3, {name: np.array([value]) for name, value in fixed.items()}, 1)
-    given = given_of([model], bound=bound_numbers(study, 0.3), inputNames=list(fixed))
+    bound = energy_bound(DrawnDesign(study), 0.3, {name: np.array([value]) for name, value in fixed.items()}, 1)
+    given = given_of([model], bound=bound_numbers(DrawnDesign(study), 0.3), inputNames=list(fixed))
     found = answer_of(LAW, f"{BEGIN} return law.energyBoundAt(given.values);", given | {"values": [*fixed.values()]})
     assert found == pytest.approx([bound.speed[0], bound.gyration[0]], rel=EXACT)
 

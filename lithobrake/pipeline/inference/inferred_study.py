@@ -2,8 +2,6 @@
 
 import json
 import math
-import os
-from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -20,22 +18,20 @@ from lithobrake.analysis import (
     shared_bed_warning,
 )
 from lithobrake.files.atomic import atomic_path
-from lithobrake.files.reading import DamagedFileError, read_json, read_table
+from lithobrake.files.reading import read_json
 from lithobrake.pipeline.design.dependencies import bed_files
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.emulate.fitted_emulator import FILE as EMULATOR
 from lithobrake.pipeline.emulate.fitted_emulator import SPEED, SPIN
 from lithobrake.pipeline.folder.notes import REMEDY
 from lithobrake.pipeline.folder.study_folder import StudyFolder
-from lithobrake.pipeline.planning.expected_inference import ExpectedInference, ExpectedInput
+from lithobrake.pipeline.inference.bounce_table import read_bounces
+from lithobrake.pipeline.inference.expected_inference import ExpectedInference, ExpectedInput
 from lithobrake.pipeline.runs.energy_bound import energy_bound, height_of_beds
 from lithobrake.pipeline.site import with_site_gravity
 from lithobrake.results.intact import STUDY_FILE, intact_file
 from lithobrake.study import Study, StudySource
-from lithobrake.study.unit_factors import conversion
-from lithobrake.study.units import input_units, run_units
-from lithobrake.vocabulary.outcomes import TouchdownOutcome
-from lithobrake.vocabulary.quantities import PURE
+from lithobrake.study.units import input_units
 
 if TYPE_CHECKING:
     from lithobrake.emulator import Emulator
@@ -44,7 +40,7 @@ POSTERIOR, PICTURE = "posterior.json", "posterior.png"
 # Points of the posterior that the file keeps and the picture draws.
 DRAWN = 2000
 # What a bounce has of its own, whether known of it or not; all else is the soil and the lander of all bounces.
-OWN, ERROR, OUTCOME = "impact.", "error:", "outcome"
+OWN = "impact."
 
 
 @dataclass(frozen=True)
@@ -170,52 +166,3 @@ def infer_study(folder: Path, bounces: Path) -> dict[str, Any]:
         draft.write_text(json.dumps(content, indent=2, allow_nan=False) + "\n", encoding="utf-8")
     write_corner(folder / POSTERIOR, folder / PICTURE)
     return content
-
-
-def read_bounces(path: str | os.PathLike[str]) -> list[Observation]:
-    """Read bounces, one a row, from a CSV file; an empty cell was not observed.
-
-    Columns: outputs of the touchdown, `error:` and the name of one for its standard deviation, uncertain numbers of
-    [impact] by dotted key where they are known, and outcome. A unit in brackets behind a name is turned into that of
-    the study; without one numbers are in that unit. Raises ValueError for what is no number, a unit of another
-    quantity, two columns of one name, and no bounce.
-    """
-    table = read_table(path, (), "write a line of names, and a line for each bounce")
-    factors = {name: _factor(path, name, unit) for name, unit in table.units.items()}
-    found = [_bounce(path, number, row, factors) for number, row in enumerate(table.rows, start=1)]
-    if not found:
-        raise ValueError(f"{path} has no bounce; write one a line below the line of names")
-    return found
-
-
-def _factor(path: str | os.PathLike[str], name: str, unit: str) -> float:
-    """What the numbers of a column are multiplied by, to be in the unit of the study."""
-    own = (run_units() | {OUTCOME: PURE}).get(name.removeprefix(ERROR))
-    if own is None:
-        # The emulator refuses the name.
-        return 1.0
-    try:
-        return conversion(unit, own)
-    except ValueError as error:
-        raise ValueError(f"{path} has {name} in the {error}; convert the column") from error
-
-
-def _bounce(
-    path: str | os.PathLike[str], number: int, row: Mapping[str, str], factors: Mapping[str, float]
-) -> Observation:
-    given: dict[str, float] = {}
-    for name, text in row.items():
-        if name != OUTCOME and text.strip():
-            try:
-                given[name] = float(text) * factors.get(name, 1.0)
-            except ValueError as error:
-                raise DamagedFileError(
-                    f'{path} has "{text}" for {name} in row {number}; write a number, or nothing'
-                ) from error
-    outcome = (row.get(OUTCOME) or "").strip() or None
-    if outcome not in (None, *TouchdownOutcome):
-        raise ValueError(f'{path} has the outcome "{outcome}" in row {number}; allowed: {", ".join(TouchdownOutcome)}')
-    errors = {name.removeprefix(ERROR): value for name, value in given.items() if name.startswith(ERROR)}
-    known = {name: value for name, value in given.items() if "." in name and not name.startswith(ERROR)}
-    outputs = {name: value for name, value in given.items() if name not in known and not name.startswith(ERROR)}
-    return Observation(outputs, errors, known, outcome)

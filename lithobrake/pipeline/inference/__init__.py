@@ -1,0 +1,1 @@
+"""The soil inferred from observed bounces, by the emulator of a study."""
