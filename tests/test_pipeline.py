@@ -19,7 +19,7 @@ from lithobrake.pipeline.emulate.samples import SAMPLE_OUTCOMES, Samples
 from lithobrake.pipeline.fly.flights import COLUMNS, partner_time, starts
 from lithobrake.pipeline.paper.paper_designs import kept_inputs, points
 from lithobrake.pipeline.rest import journeys as rest
-from lithobrake.pipeline.site import Site, frames, with_site_gravity
+from lithobrake.pipeline.site import Site, with_site_gravity
 from lithobrake.smallbody.restitution_table import COUNTS, EDGES
 from lithobrake.study import Study, StudyError, check_tables
 from lithobrake.study.touchdown_model import ORIENTATION, PLACE, acceleration, draw, in_words_of_the_study, medians
@@ -181,11 +181,13 @@ def made_samples(*outcomes: str) -> Samples:
 
 def test_the_first_samples_that_leave_fly_each_from_its_own_site() -> None:
     study = changed(flight={"flight_count": 2}, site={"latitude_deg": UNIFORM})
-    one = starts(study, made_samples("clear", "captured", "clear", "clear"))
+    one = starts(Site(study), made_samples("clear", "captured", "clear", "clear"))
     assert one.sample.tolist() == [0, 2]
     assert one.velocity == pytest.approx(np.array([[4.0, 5.0, 6.0]] * 2))
     assert ((one.site["latitude_deg"] > 0.1) & (one.site["latitude_deg"] < 0.3)).all()
-    more = starts(changed(flight={"flight_count": 3}, site={"latitude_deg": UNIFORM}), made_samples(*["clear"] * 4))
+    more = starts(
+        Site(changed(flight={"flight_count": 3}, site={"latitude_deg": UNIFORM})), made_samples(*["clear"] * 4)
+    )
     assert more.site["latitude_deg"][[0, 2]].tolist() == one.site["latitude_deg"].tolist()
 
 
@@ -298,21 +300,21 @@ RESTITUTION_NAMES = [
 
 def test_the_partner_stands_where_the_sample_says() -> None:
     study = changed(site={"partner_longitude_deg": 77.0, "spin_period": 8000.0})
-    site = starts(study, made_samples("clear")).site
+    site = starts(Site(study), made_samples("clear")).site
     body = Site(study).body
     time = partner_time(body, site)
     angle = body.orbit.angle + body.orbit.rate * time[0]
     assert math.degrees(angle) % 360.0 == pytest.approx(77.0)
-    open_ended = starts(changed(), made_samples(*["clear"] * 40)).site["partner_longitude_deg"]
+    open_ended = starts(Site(changed()), made_samples(*["clear"] * 40)).site["partner_longitude_deg"]
     assert np.ptp(open_ended) > 180.0
     assert Site(changed(site={"partner": False})).body.partner is None
 
 
 def test_the_delivery_error_moves_the_start_along_the_ground() -> None:
     study = changed(site={"latitude_deg": 20.0, "longitude_deg": 10.0, "north_error": 30.0, "east_error": -40.0})
-    body = Site(study).body
+    site = Site(study)
+    body, (origin, _) = site.body, site.frames(site.columns(1))
     aim, axes = body.local_frame(20.0, 10.0)
-    origin, _ = frames(body, {key: np.array([value]) for key, value in Site(study).medians.items()})
     moved = axes @ (origin[0] - aim)
     # The ground is not plane: it falls off by some metres over 50 m.
     assert moved[:2] == pytest.approx([30.0, 40.0], abs=3.0)

@@ -35,9 +35,9 @@ def rows_of(study: Study, kept: Path) -> Iterator[tuple[str, list[Numbers]]]:
     """Each kept design of a study with the inputs of its landings as today's code draws them."""
     if study.design.method == "paper":
         refined = json.loads((kept / "refined.json").read_text(encoding="utf-8"))
-        inputs, chosen = tuple(DrawnDesign(study).inputs), [one["name"] for one in refined["inputs"]]
+        drawn, chosen = DrawnDesign(study), [one["name"] for one in refined["inputs"]]
         for design in DESIGNS:
-            yield design, drawn_rows(study, inputs, points(DrawnDesign(study), design, chosen), 0)
+            yield design, drawn_rows(drawn, points(drawn, design, chosen), 0)
         return
     for design in SEQUENCE_DESIGNS:
         if (kept / "runs" / f"{design}.csv").is_file():

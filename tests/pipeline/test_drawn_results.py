@@ -9,6 +9,7 @@ import pytest
 
 import lithobrake
 from lithobrake.pipeline import StudyFolder, write_report_again
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.emulate.outgoing import VELOCITY
 from lithobrake.pipeline.fly.flights import Starts, fly_starts
 from lithobrake.pipeline.fly.run_flights import run_sites
@@ -39,8 +40,8 @@ def flown_share(count: int) -> float:
     left = np.flatnonzero(landings.outcome == "clear")
     velocity = np.array([[outputs_of(landings.y[run])[name] for name in VELOCITY] for run in left])
     site = {key: values[:, 0] for key, values in run_sites(Site(study), len(left), 1).items()}
-    job = Job(study, {}, StudyFolder.only_read(Path()), None, Silent())  # type: ignore[arg-type]
-    flown = fly_starts(Site(study).body, Starts(left, velocity, site), study, job, "")
+    job = Job(DrawnDesign(study), Site(study), {}, StudyFolder.only_read(Path()), None, Silent())  # type: ignore[arg-type]
+    flown = fly_starts(job, Starts(left, velocity, site), "")
     return float((flown.status == "impact").sum()) / count
 
 

@@ -11,7 +11,7 @@ import pytest
 from lithobrake.pipeline.answer.site_summary import site_results
 from lithobrake.pipeline.answer.summary_parts import summary_reads
 from lithobrake.pipeline.fly.flights import flight_reads
-from lithobrake.pipeline.site import Site, frames
+from lithobrake.pipeline.site import Site
 from lithobrake.smallbody import Body
 from lithobrake.smallbody.built_in_bodies import top_shape
 from lithobrake.study import Study, check_tables
@@ -34,11 +34,9 @@ def test_an_error_goes_over_the_ground_by_its_length_however_long(latitude: floa
     """On a ball of 100 m an error of s metres is an arc of s / 100 rad, in the direction of its components."""
     body = Body(top_shape((200.0, 200.0, 200.0), ridge_height=0.0), 1e10, 1e5)
     site = {"latitude_deg": latitude, "longitude_deg": 25.0, "heading_deg": 0.0, "north_error": 0.0, "east_error": 0.0}
-    (aim, there), axes = frames(
-        body,
-        {key: np.array([value, value]) for key, value in site.items()}
-        | {"north_error": np.array([0.0, north]), "east_error": np.array([0.0, east])},
-    )
+    columns = {key: np.array([value, value]) for key, value in site.items()}
+    columns |= {"north_error": np.array([0.0, north]), "east_error": np.array([0.0, east])}
+    (aim, there), axes = body.delivered_frame(*columns.values())
     radius, length = float(np.linalg.norm(aim)), math.hypot(north, east)
     ahead = axes[0] @ there / np.linalg.norm(there)
     assert aim @ there / radius / np.linalg.norm(there) == pytest.approx(math.cos(length / radius), abs=1e-12)

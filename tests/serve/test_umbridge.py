@@ -195,6 +195,7 @@ def test_an_evaluation_that_takes_too_long_is_ended_and_the_next_is_made(tmp_pat
 
 
 def test_a_study_solved_by_a_server_is_that_of_its_program(study_address: str, tmp_path: Path) -> None:
+    from lithobrake.pipeline.design.drawn_design import DrawnDesign
     from lithobrake.pipeline.runs.touchdown_runs import drawn_rows, model_of
     from lithobrake.study import StudySource
 
@@ -202,8 +203,9 @@ def test_a_study_solved_by_a_server_is_that_of_its_program(study_address: str, t
     text = BALL.read_text().replace("python3 ball_on_plate.py", f"umbridge:{study_address}/landing")
     (tmp_path / "served.toml").write_text(text)
     served = StudySource.read(tmp_path / "served.toml").study
-    names = list(umbridge_names(study_address))
-    (values,) = drawn_rows(own, names, np.array([[0.5, 0.3, 40.0, 1.0]]), 0)
+    design = DrawnDesign(own)
+    assert umbridge_names(study_address) == list(design.inputs)
+    (values,) = drawn_rows(design, np.array([[0.5, 0.3, 40.0, 1.0]]), 0)
     here, there = model_of(own, tmp_path, None)(values, 5), model_of(served, tmp_path, None)(values, 5)
     assert there["outcome"] == here["outcome"] == "clear"
     assert there["outputs"] == {name: here["outputs"][name] for name in OUTPUTS}

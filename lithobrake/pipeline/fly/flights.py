@@ -76,9 +76,11 @@ def starts(site: Site, samples: Samples) -> Starts:
 
 def sample_sites(site: Site, count: int) -> dict[str, np.ndarray]:
     """The site of each sample by the keys of SITE_KEYS, each of shape [count]; a larger count changes no earlier one"""
-    from lithobrake.analysis import sample_inputs
+    from lithobrake.analysis.sampling import sample_inputs
 
-    table = sample_inputs(site.distributions, count, sampling_seed(site.study, "site"))
+    # The random numbers of an input follow from its name.
+    laws = {f"site.{key}": law for key, law in site.distributions.items()}
+    table = sample_inputs(laws, count, sampling_seed(site.study, "site"))
     return site.columns(count) | dict(zip(site.distributions, table.T, strict=True))
 
 

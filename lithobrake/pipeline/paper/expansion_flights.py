@@ -1,19 +1,11 @@
-"""The flights and journeys of the samples of an expansion."""
+"""The flights of the samples of an expansion."""
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-import numpy as np
-
-from lithobrake.pipeline.emulate.outgoing import rolling_spin
 from lithobrake.pipeline.emulate.samples import Samples
 from lithobrake.pipeline.fly.flights import COLUMNS, flight_rows, fly_samples, fly_starts, starts, write_table
 from lithobrake.pipeline.job import Job
-from lithobrake.pipeline.paper.expansion_bounce import soil_bounce
-from lithobrake.pipeline.rest.journeys import first_velocity, follow
-
-if TYPE_CHECKING:
-    from lithobrake.smallbody import Bounce
 
 
 def fly_expansion_samples(job: Job) -> None:
@@ -28,15 +20,3 @@ def fly_expansion_samples(job: Job) -> None:
         start = starts(job.site, samples.expansion_alone())
         alone = flight_rows(start, fly_starts(job, start, "flights without scatter"))
     write_table(job.folder, "flights_without_scatter.csv", COLUMNS, alone)
-
-
-def follow_expansion_samples(job: Job) -> None:
-    """Follow the first samples of the expansion from bounce to bounce."""
-    follow(job, "screening", _soil)
-
-
-def _soil(job: Job, samples: Samples) -> "tuple[np.ndarray, Bounce]":
-    """Spin after the first impact, of the size that the expansion gives about the axis of rolling, and the bounce."""
-    spin = rolling_spin(first_velocity(samples), np.maximum(samples.output("spin_out"), 0.0))
-    inputs = {name: samples.inputs[samples.known, index] for index, name in enumerate(samples.input_names)}
-    return spin, soil_bounce(job, inputs)

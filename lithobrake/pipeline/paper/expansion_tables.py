@@ -10,7 +10,7 @@ from lithobrake.pipeline.emulate.explorer_tables import FILE, save_explorer
 from lithobrake.pipeline.emulate.fitted_emulator import REFIT_COUNT
 from lithobrake.pipeline.emulate.samples import CLEAR
 from lithobrake.pipeline.job import Job
-from lithobrake.pipeline.paper.expansion_samples import outcome_model
+from lithobrake.pipeline.paper.expansion_samples import draw_samples, outcome_model
 from lithobrake.pipeline.paper.run_noise import Scatter
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.results.explorer_tables import ExplorerTables
@@ -23,6 +23,12 @@ if TYPE_CHECKING:
 SPEED = "impact.speed"
 # Points to a term at which a quadratic is read off: more than enough, as it has no scatter.
 POINTS_PER_TERM = 3
+
+
+def sample_expansion(job: Job) -> None:
+    """Draw the samples, and write what the explorer evaluates."""
+    draw_samples(job)
+    write_expansion_explorer(job)
 
 
 def write_expansion_explorer(job: Job) -> None:

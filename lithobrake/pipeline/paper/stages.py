@@ -12,10 +12,8 @@ from lithobrake.pipeline.emulate.stages import sample_reads
 from lithobrake.pipeline.fly.flights import flight_reads
 from lithobrake.pipeline.fly.stages import FILES as FLIGHT_FILES
 from lithobrake.pipeline.fly.stages import PARTS as FLIGHT_PARTS
-from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.paper.expansion_flights import fly_expansion_samples, follow_expansion_samples
-from lithobrake.pipeline.paper.expansion_samples import draw_samples
-from lithobrake.pipeline.paper.expansion_tables import write_expansion_explorer
+from lithobrake.pipeline.paper.expansion_tables import sample_expansion
 from lithobrake.pipeline.paper.expansions import fit_refined, fit_screening, score_all
 from lithobrake.pipeline.paper.paper_runs import make_refined_runs, make_screening_runs, make_test_runs
 from lithobrake.pipeline.paper.paper_summary import write_summary
@@ -38,11 +36,6 @@ def _screening_reads(study: Study) -> Any:
     # The points of one design are best for the degree that is fitted to them.
     own = _design("points", "replicate_count", "screening_level", "screening_count", "screening_degree")
     return [design_reads(study), study.seed, *own(study)]
-
-
-def _sample(job: Job) -> None:
-    draw_samples(job)
-    write_expansion_explorer(job)
 
 
 MEDIAN_LANDING = Stage("landing", "median landing", landing_files, land_once, ("bed",), landing_reads)
@@ -82,7 +75,7 @@ SAMPLE = Stage(
     "sample",
     "samples",
     same_files("samples.h5", EXPLORER),
-    _sample,
+    sample_expansion,
     ("refine", "test"),
     sample_reads,
     (*PARTS, *EMULATOR_PARTS),

@@ -22,6 +22,7 @@ from lithobrake.study import Study
 # and written down.
 PARTS = (
     "pipeline/design",
+    "pipeline/runs/energy_bound.py",
     "pipeline/runs/making_runs.py",
     "pipeline/runs/run_table.py",
     "pipeline/runs/touchdown_runs.py",

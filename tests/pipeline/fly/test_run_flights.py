@@ -7,6 +7,7 @@ import pytest
 
 from lithobrake.analysis import share_estimate
 from lithobrake.pipeline import StudyFolder
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.emulate.outgoing import VELOCITY
 from lithobrake.pipeline.fly.flights import Starts, fly_starts
 from lithobrake.pipeline.fly.run_flights import FLIGHT_COUNT, run_sites
@@ -53,12 +54,12 @@ def test_ten_times_as_many_flights_leave_the_interval_as_it_is() -> None:
     _, y, outcome, bed = WEAK.study(60, 12, 3)
     left, drawn = np.flatnonzero(outcome == "clear"), study()
     velocity = np.array([[outputs_of(y[run])[name] for name in VELOCITY] for run in left])
-    job = Job(drawn, {}, StudyFolder.only_read(Path()), None, Silent())  # type: ignore[arg-type]
+    job = Job(DrawnDesign(drawn), Site(drawn), {}, StudyFolder.only_read(Path()), None, Silent())  # type: ignore[arg-type]
     width = []
     for count in (FLIGHT_COUNT, 10 * FLIGHT_COUNT):
         sites = {key: values.ravel() for key, values in run_sites(Site(drawn), len(left), count).items()}
         start = Starts(np.repeat(left, count), np.repeat(velocity, count, axis=0), sites)
-        flown = fly_starts(Site(drawn).body, start, drawn, job, "")
+        flown = fly_starts(job, start, "")
         found = share_estimate((flown.status == "impact").reshape(-1, count).mean(axis=1), bed[left])
         assert found.upper is not None
         assert found.lower is not None

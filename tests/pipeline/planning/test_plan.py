@@ -67,6 +67,10 @@ def soft(**changes: dict[str, Any]) -> Study:
     return check_tables(tables, SCENARIOS)
 
 
+def plan_for(study: Study, folder: StudyFolder, workers: int | None, *, on_cluster: bool = False) -> Plan:
+    return plan_of(DrawnDesign(study), Site(study), "quick", folder, workers, on_cluster=on_cluster)
+
+
 def soil_of(study: Study) -> ExpectedSoil:
     return ExpectedSoil.of(DrawnDesign(study), len(DrawnDesign(study).inputs))
 
@@ -280,12 +284,12 @@ def test_the_beds_of_the_folder_and_of_the_library_are_not_to_be_poured(
 
     monkeypatch.setattr("lithobrake.touchdown.is_stored", is_stored)
     folder = StudyFolder(tmp_path / "out")
-    plans = [plan_of(study, "quick", folder, 2)]
+    plans = [plan_for(study, folder, 2)]
     kept |= {0, 1, 2, 3, 4}
     (folder.path / "beds").mkdir()
     (folder / "beds/bed_7.h5").touch()
     folder.note("bed", ["beds/bed_7.h5"], stage_keys(study)["bed"], 1.0)
-    plans.append(plan_of(study, "quick", folder, 2))
+    plans.append(plan_for(study, folder, 2))
     assert [(plan.beds[0].total, plan.beds[0].new) for plan in plans] == [(15, 15), (15, 9)]
     assert "Beds: 15; 1 in the folder, 5 in the library of beds, 9 to pour." in plan_lines(plans[1])
     assert "Site: gravity and rotation together throw off what lies on the ground." in plan_lines(plans[1])
@@ -297,13 +301,13 @@ def test_the_beds_of_the_folder_and_of_the_library_are_not_to_be_poured(
     times = [plan.seconds["beds"] for plan in plans]
     assert times[1][0] / times[0][0] == pytest.approx(5 / 8)
     # Where nobody knows how fast the workers are.
-    cluster = plan_of(study, "quick", folder, None, on_cluster=True)
+    cluster = plan_for(study, folder, None, on_cluster=True)
     assert "and the beds and touchdowns, whose time is not known on a cluster" in brief_lines(cluster, "")[1]
 
 
 def test_a_plan_says_the_half_width_to_expect_and_what_that_stands_on(tmp_path: Path) -> None:
     folder = StudyFolder.only_read(tmp_path / "out")
-    plan = plan_of(drawn(bed={"bed_count": 12}), "quick", folder, 2)
+    plan = plan_for(drawn(bed={"bed_count": 12}), folder, 2)
     found = plan.half_width
     assert found is not None
     # t(11) at .95 is 1.796; sd sqrt(.05 / 12 + .95 / 144).
@@ -311,13 +315,18 @@ def test_a_plan_says_the_half_width_to_expect_and_what_that_stands_on(tmp_path: 
     assert [*found.typical, found.at_worst] == pytest.approx(widths, rel=1e-3)
     assert "(144 runs on 12 beds): +- 2.8 to 3.9 points for the return fraction" in " ".join(plan_lines(plan))
     assert plan.to_json()["half_width"]["own"] is None
-    assert plan_of(drawn(bed={"bed_count": 1}), "quick", folder, 2).half_width is None
-    assert plan_of(soft(), "quick", folder, 2).half_width is None
+    assert (
+        plan_of(
+            DrawnDesign(drawn(bed={"bed_count": 1})), Site(drawn(bed={"bed_count": 1})), "quick", folder, 2
+        ).half_width
+        is None
+    )
+    assert plan_for(soft(), folder, 2).half_width is None
 
 
 def test_a_half_width_that_is_asked_for_may_take_runs_and_beds_up_to_the_most(tmp_path: Path) -> None:
     study = drawn(design={"half_width": 0.02, "largest_run_count": 400})
-    plan = plan_of(study, "quick", StudyFolder.only_read(tmp_path / "out"), 2)
+    plan = plan_for(study, StudyFolder.only_read(tmp_path / "out"), 2)
     assert (plan.made["touchdowns"], plan.made["beds"]) == ((144, 400), (15, 40))
     assert "Touchdowns: 144 to 400 drawn, until design.half_width is met;" in " ".join(plan_lines(plan))
 
@@ -382,9 +391,9 @@ def test_other_work_on_the_cores_raises_the_upper_ends_by_its_factor(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     folder, cores = StudyFolder.only_read(tmp_path / "out"), available_cores()
-    idle = plan_of(soft(), "quick", folder, 1)
+    idle = plan_for(soft(), folder, 1)
     monkeypatch.setattr(expected_time, "_load", lambda: 3.0 * cores)
-    busy = plan_of(soft(), "quick", folder, 1)
+    busy = plan_for(soft(), folder, 1)
     for what, span in idle.seconds.items():
         assert span is not None
         assert busy.seconds[what] == pytest.approx((span[0], 4.0 * span[1]))
@@ -408,10 +417,10 @@ def test_more_processes_than_cores_are_no_faster_and_a_cluster_has_no_known_time
     def touchdowns(plan: Plan) -> Any:
         return plan.seconds["touchdowns"]
 
-    one, all_cores, many = (plan_of(study, "quick", folder, count) for count in (1, cores, 8 * cores))
+    one, all_cores, many = (plan_for(study, folder, count) for count in (1, cores, 8 * cores))
     assert touchdowns(one)[1] == pytest.approx(cores * touchdowns(all_cores)[1])
     assert touchdowns(many) == touchdowns(all_cores)
-    cluster = plan_of(study, "quick", folder, None, on_cluster=True)
+    cluster = plan_for(study, folder, None, on_cluster=True)
     assert touchdowns(cluster) is None
     assert "whose time is not known on a cluster" in brief_lines(cluster, "")[1]
 
@@ -429,6 +438,6 @@ def test_the_samples_take_the_room_that_is_expected(tmp_path: Path) -> None:
     names, count = list(DrawnDesign(study).inputs), study.monte_carlo.sample_count
     inputs, outputs = np.zeros((count, len(names))), np.zeros((count, len(OUTPUTS)))
     Samples(names, list(OUTPUTS), inputs, outputs, np.zeros(count, dtype=np.uint8)).save(StudyFolder(tmp_path))
-    expected = expected_bytes(DrawnDesign(study), PlannedRuns(4, 41, 96, 20, frozenset()), None)["samples"]
+    expected = expected_bytes(DrawnDesign(study), Site(study), PlannedRuns(4, 41, 96, 20, frozenset()), None)["samples"]
     # Names and the layout of the file come on top.
     assert 0.0 < (tmp_path / "samples.h5").stat().st_size - expected < 2e4

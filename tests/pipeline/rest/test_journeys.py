@@ -14,18 +14,22 @@ from lithobrake.analysis import OutcomeModel, wilson_interval
 from lithobrake.chaos import Uniform, fit, smolyak
 from lithobrake.pipeline import Job, StudyFolder
 from lithobrake.pipeline.answer.dispersion_statistics import NORMAL_QUANTILE_90, dispersion_results, proportion
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.emulate.outgoing import rolling_spin
 from lithobrake.pipeline.emulate.samples import SAMPLE_OUTCOMES, Samples
 from lithobrake.pipeline.fly.flights import COLUMNS, read_table, write_table
 from lithobrake.pipeline.job import Silent
 from lithobrake.pipeline.paper.expansion_bounce import SoilBounce
+from lithobrake.pipeline.paper.expansion_journeys import follow_expansion_samples
+from lithobrake.pipeline.paper.paper_designs import points
 from lithobrake.pipeline.paper.run_noise import Scatter
-from lithobrake.pipeline.rest.bounce_inputs import trained_ranges, why_no_soil
+from lithobrake.pipeline.rest.bounce_inputs import why_no_soil
 from lithobrake.pipeline.rest.journey_arcs import arc_rows
 from lithobrake.pipeline.rest.journeys import COLUMNS as REST
-from lithobrake.pipeline.rest.journeys import Sites, follow_samples, rest_reads, sliding_friction
+from lithobrake.pipeline.rest.journeys import Sites, rest_reads, sliding_friction
 from lithobrake.pipeline.rest.sliding_law import FRICTIONS, INTERCEPT, SLOPE, effective_friction
 from lithobrake.pipeline.rest.slow_arrivals import SlowArrivals
+from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.site import Site
 from lithobrake.smallbody import Arcs, HardSurface, Impacts, Rebounds
 from lithobrake.study import Study, check_tables
@@ -146,7 +150,9 @@ def test_the_soil_is_asked_where_speed_and_incidence_are_uncertain() -> None:
     assert "impact.incidence_deg is no uncertain" in str(why_no_soil(changed(impact={"speed": speed})))
     both = changed(impact={"speed": speed, "incidence_deg": {"distribution": "uniform", "lower": 0.0, "upper": 70.0}})
     assert why_no_soil(both) is None
-    assert trained_ranges(both)["impact.speed"] == pytest.approx((0.05, 0.4))
+    design = DrawnDesign(both)
+    speeds = points(design, "screening", ())[:, list(design.inputs).index("impact.speed")]
+    assert (speeds.min(), speeds.max()) == pytest.approx((0.05, 0.4))
 
 
 def test_hard_ground_is_followed_from_the_first_impact_and_the_summary_adds_up(tmp_path: Path) -> None:
@@ -161,8 +167,11 @@ def test_hard_ground_is_followed_from_the_first_impact_and_the_summary_adds_up(t
     with ThreadPoolExecutor(1) as executor:
         shown = Silent()
         shown.say = said.append  # type: ignore[method-assign]
-        job = Job(study, {}, folder, executor, shown)
-        follow_samples(job)
+        job = Job(DrawnDesign(study), Site(study), {}, folder, executor, shown)
+        inputs = {name: np.array([1.0, 2.0]) for name in job.design.inputs}
+        DesignRuns(["a", "b"], ["clear"] * 2, [""] * 2, inputs, {}).save(folder, "screening")
+        follow_expansion_samples(job)
+        assert folder.read_json("rest.json")["trained_ranges"] == {key: [1.0, 2.0] for key in inputs}
         write_table(folder, "flights.csv", COLUMNS, [])
         folder.write_json("flights.json", {})
         table = dispersion_results(job, Samples.load(folder), [], {"captured": 40})["rest"]
@@ -221,7 +230,7 @@ def captured_sites(study: Study, latitude: float) -> tuple[Sites, Rebounds]:
         "latitude_deg": np.full(3, latitude)
     }
     first = Rebounds(np.zeros((3, 3)), np.zeros((3, 3)), np.array([True, True, False]), ~samples.known)
-    return Sites.of(study, samples, site), first
+    return Sites.of(Site(study), samples, site), first
 
 
 def test_a_captured_lander_rests_or_slides_by_the_friction_of_its_soil(tmp_path: Path) -> None:
@@ -232,7 +241,7 @@ def test_a_captured_lander_rests_or_slides_by_the_friction_of_its_soil(tmp_path:
     slope = float(sites.body.slope(40.0, 0.0))
     assert 0.05 < math.tan(slope) < 0.9
     with ThreadPoolExecutor(1) as executor:
-        job = Job(study, {}, StudyFolder(tmp_path / "out"), executor, Silent())
+        job = Job(DrawnDesign(study), Site(study), {}, StudyFolder(tmp_path / "out"), executor, Silent())
         rough, smooth, unknown = (
             dict(zip(REST, row, strict=True)) for row in sites.follow(job, "soil", first, HardSurface(0.0))
         )
@@ -250,22 +259,22 @@ def test_a_captured_lander_rests_or_slides_by_the_friction_of_its_soil(tmp_path:
 def test_the_friction_of_a_slide_is_that_of_hull_and_grain_or_of_rolling() -> None:
     samples = captured_sites(changed(), 40.0)[0].samples
     drawn = changed(lander={"friction": 0.4}, bed={"diameter": FINE})
-    assert sliding_friction(drawn, samples, "soil").tolist() == [0.4, 0.05, 0.4]
-    assert sliding_friction(drawn, samples, "hard").tolist() == [0.6] * 3
+    assert sliding_friction(DrawnDesign(drawn), samples, "soil").tolist() == [0.4, 0.05, 0.4]
+    assert sliding_friction(DrawnDesign(drawn), samples, "hard").tolist() == [0.6] * 3
     rolls = changed(rest={"rolling_friction": 0.1})
-    assert sliding_friction(rolls, samples, "soil").tolist() == [0.1] * 3
-    assert sliding_friction(rolls, samples, "hard").tolist() == [0.1] * 3
+    assert sliding_friction(DrawnDesign(rolls), samples, "soil").tolist() == [0.1] * 3
+    assert sliding_friction(DrawnDesign(rolls), samples, "hard").tolist() == [0.1] * 3
 
 
 def test_stones_as_large_as_the_lander_hold_it_more_than_its_contacts_do() -> None:
     samples, drawn = captured_sites(changed(), 40.0)[0].samples, changed(lander={"friction": 0.4})
     at_ends = INTERCEPT + SLOPE * np.array([0.4, 0.2, 0.4])
     for ground in ("soil", "equivalent"):
-        assert sliding_friction(drawn, samples, ground) == pytest.approx(at_ends)
-    assert sliding_friction(drawn, samples, "hard").tolist() == [0.6] * 3
+        assert sliding_friction(DrawnDesign(drawn), samples, ground) == pytest.approx(at_ends)
+    assert sliding_friction(DrawnDesign(drawn), samples, "hard").tolist() == [0.6] * 3
     assert rest_reads(drawn)["sliding_law"] == (INTERCEPT, SLOPE)
     ball = {"shape": "sphere", "diameter": 0.1, "edges": None, "friction": 0.4}
-    assert sliding_friction(changed(lander=ball), samples, "soil").tolist() == [0.4, 0.05, 0.4]
+    assert sliding_friction(DrawnDesign(changed(lander=ball)), samples, "soil").tolist() == [0.4, 0.05, 0.4]
 
 
 def test_the_law_of_sliding_is_that_of_its_measurement() -> None:

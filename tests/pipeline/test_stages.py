@@ -1,0 +1,126 @@
+"""Which code makes a file outdated: that which decides what stands in it, and no other."""
+
+import ast
+import tomllib
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from lithobrake.files import hashing
+from lithobrake.pipeline import stage_keys
+from lithobrake.pipeline.stage import Stage
+from lithobrake.pipeline.stages import DRAWN, PAPER
+from lithobrake.study import Study, check_tables
+from lithobrake.study.template import template
+
+from ..paper_tables import paper_tables
+
+PACKAGE = Path(hashing.__file__).parents[1]
+# What decides no content of a file, or is known to the study by another hash.
+ELSEWHERE = (
+    *("pipeline/folder", "pipeline/job.py", "pipeline/stage.py", "files", "progress"),  # how files are written
+    *("campaign", "compilation"),  # who makes runs, and how kernels are compiled
+    *("dem", "touchdown", "study/touchdown_model.py"),  # the hash of the engine
+    *("study", "vocabulary"),  # by their values, which each stage reads; words
+    *("pipeline/runs/beds.py", "pipeline/runs/pouring.py", "pipeline/runs/solver.py"),  # the keys of beds and runs
+    *("pipeline/runs/known_runs.py", "pipeline/runs/kernels.py"),
+    "__init__.py",
+)
+
+
+def imported(path: Path) -> Iterator[Path]:
+    """The files of the package that a file imports, also within functions, but not for its types alone."""
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    typed = {
+        id(node) for part in ast.walk(tree) if isinstance(part, ast.If) and "TYPE_CHECKING" in ast.unparse(part.test)
+        for node in ast.walk(part)
+    }  # fmt: skip
+    for node in ast.walk(tree):
+        if isinstance(node, ast.ImportFrom) and id(node) not in typed and (node.module or "").startswith("lithobrake"):
+            for name in (f"{node.module}.{alias.name}" for alias in node.names):
+                yield from file_of(name)
+
+
+def file_of(name: str) -> list[Path]:
+    """The file of a name: a module, or what holds the last part of the name."""
+    for module in (name, name.rpartition(".")[0]):
+        place = PACKAGE.parent.joinpath(*module.split("."))
+        found = [path for path in (place.with_suffix(".py"), place / "__init__.py") if path.exists()]
+        if found:
+            return found
+    return []
+
+
+def is_in(path: Path, parts: tuple[str, ...]) -> bool:
+    return any(path.is_relative_to(PACKAGE / part) for part in parts)
+
+
+def closure(start: Path) -> set[Path]:
+    """All files that decide what a file does, up to those that a study knows otherwise."""
+    found, left = set[Path](), [start]
+    while left:
+        path = left.pop()
+        if path not in found and not is_in(path, ELSEWHERE):
+            found.add(path)
+            left += imported(path)
+    return found
+
+
+def before(stages: tuple[Stage, ...], stage: Stage) -> tuple[str, ...]:
+    """Parts of a stage and of all that it follows."""
+    by_name = {one.name: one for one in stages}
+    return stage.parts + tuple(part for name in stage.after for part in before(stages, by_name[name]))
+
+
+@pytest.mark.parametrize("stages", [DRAWN, PAPER], ids=["drawn", "paper"])
+def test_each_stage_is_outdated_by_all_code_that_decides_its_files(stages: tuple[Stage, ...]) -> None:
+    for stage in stages[1:-1]:
+        if not stage.parts:
+            continue
+        start = file_of(stage.make.__module__)[0]
+        lacking = {path for path in closure(start) if not is_in(path, before(stages, stage))}
+        assert not {str(path.relative_to(PACKAGE)) for path in lacking if path.name != "__init__.py"}, stage.name
+
+
+def drawn_study() -> Study:
+    return check_tables(tomllib.loads(template()), Path())
+
+
+@pytest.fixture
+def edited(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A copy of the package's sources, of which the hashes are."""
+    copy = tmp_path / "lithobrake"
+    for path in PACKAGE.rglob("*.py"):
+        place = copy / path.relative_to(PACKAGE)
+        place.parent.mkdir(parents=True, exist_ok=True)
+        place.write_bytes(path.read_bytes())
+    monkeypatch.setattr(hashing, "__file__", str(copy / "files" / "hashing.py"))
+    return copy
+
+
+@pytest.mark.parametrize("study", [drawn_study(), check_tables(paper_tables(), Path())], ids=["drawn", "paper"])
+@pytest.mark.parametrize(
+    ("room", "outdated"),
+    [
+        ("pipeline/planning", set()),
+        ("pipeline/commands", set()),
+        ("pipeline/inference", set()),
+        ("cli", set()),
+        ("campaign", set()),
+        ("export", set()),
+        ("report/words", {"report"}),
+        ("results/study_results.py", {"summary", "report"}),
+        ("pipeline/rest", {"rest", "aim", "summary", "report"}),
+        ("pipeline/answer", {"estimate", "summary", "report"}),
+    ],
+)
+def test_a_comma_outdates_what_its_room_makes_and_nothing_else(
+    edited: Path, study: Study, room: str, outdated: set[str]
+) -> None:
+    keys = stage_keys(study)
+    place = edited / room
+    for path in [place] if place.is_file() else place.glob("*.py"):
+        path.write_text(path.read_text(encoding="utf-8").replace('."""', '.,"""', 1), encoding="utf-8")
+    changed = stage_keys(study)
+    assert {name for name in keys if keys[name] != changed[name]} == outdated & keys.keys()
