@@ -110,7 +110,7 @@ def edited(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
         ("campaign", set()),
         ("export", set()),
         ("report/words", {"report"}),
-        ("results/study_results.py", {"summary", "report"}),
+        ("results/study_results.py", {"estimate", "summary", "report"}),
         ("pipeline/rest", {"rest", "aim", "summary", "report"}),
         ("pipeline/answer", {"estimate", "summary", "report"}),
     ],

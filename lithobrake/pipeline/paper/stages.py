@@ -12,7 +12,8 @@ from lithobrake.pipeline.emulate.stages import sample_reads
 from lithobrake.pipeline.fly.flights import flight_reads
 from lithobrake.pipeline.fly.stages import FILES as FLIGHT_FILES
 from lithobrake.pipeline.fly.stages import PARTS as FLIGHT_PARTS
-from lithobrake.pipeline.paper.expansion_flights import fly_expansion_samples, follow_expansion_samples
+from lithobrake.pipeline.paper.expansion_flights import fly_expansion_samples
+from lithobrake.pipeline.paper.expansion_journeys import follow_expansion_samples
 from lithobrake.pipeline.paper.expansion_tables import sample_expansion
 from lithobrake.pipeline.paper.expansions import fit_refined, fit_screening, score_all
 from lithobrake.pipeline.paper.paper_runs import make_refined_runs, make_screening_runs, make_test_runs
