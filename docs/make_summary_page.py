@@ -1,8 +1,165 @@
-"""Write docs/summary.md, which says what every key of the summary, the scores and the expansions means."""
+"""Write docs/summary.md, which says what every key of the summary, the scores and the expansions means.
 
+The words are those beneath the fields of lithobrake/results, and of FILES here for files that other parts write.
+"""
+
+import ast
+import inspect
+from collections.abc import Iterator
+from dataclasses import dataclass, fields, is_dataclass
+from itertools import pairwise
 from pathlib import Path
+from textwrap import dedent, wrap
+from typing import Any, get_args
 
-from lithobrake.results.key_words import page
+from lithobrake.results.json_values import dataclass_in, is_inline, key_of
+from lithobrake.results.summary import DrawnResults, PaperResults, Provenance
+
+LINE = 100  # characters, as on every page of the documentation
+HEAD = """# The keys of summary.json, scores.json and the expansions
+
+<!-- Made by docs/make_summary_page.py from the fields of lithobrake/results. -->
+
+`*` stands for any one name: of an output, an input by its dotted key, a design, an outcome. In a
+list of tables every table has these keys. Numbers are in SI where no unit is named; `null`: there
+is no such number. In Python `lithobrake.open_study("DIR").results` has the same by attribute, with
+types; a key that is a word of Python has an underscore there (`from_`).
+
+## `summary.json`
+
+| key | meaning |
+|---|---|
+| `format_version` | of the file; another number, another set of keys |
+| `study` | the study with all defaults, as the tables of its file (every key: lithobrake new) |
+| `results` | what came out; two executions of one study have the same |
+| `provenance` | where it comes from; all that may differ between two executions of one study |
+"""
+# What the parts that write these files put there.
+EXPANSION_KEYS = {
+    "format": "says that this is an expansion",
+    "format_version": "of the file",
+    "written_by": "version of lithobrake",
+    "inputs.*": "name, kind and parameters of the distribution of each input, in the file's units",
+    "output_names": "columns of coefficients and residuals",
+    "one_dimensional": "whether y had one dimension",
+    "multi_indices": "degrees of each term, one column an input",
+    "coefficients": "of the orthonormal terms, one column an output",
+    "residuals": "what each run is off the expansion, one column an output",
+    "report.method": "asked for, or best of each output",
+    "report.rrmse_estimate": "of each output, in their order: report.outputs.*.rrmse_estimate",
+    "report.degree": "highest total degree of a term",
+    "report.train_count": "runs that were fitted",
+    "report.dropped_count": "runs left out, as they have no outputs",
+    "report.data_hash": "hash of the inputs and outputs that were fitted",
+    "report.candidates.*.*": "error that each way of fitting promises at a new run, in the unit of the output",
+    "report.challenger.model": "a Gaussian process that every other way is compared with",
+    "report.challenger.rmse_estimate.*": "error that it promises; null where it could not be fitted",
+    "report.outputs.*.method": "how the output was fitted",
+    "report.outputs.*.term_count": "its terms",
+    "report.outputs.*.rmse_estimate": "root-mean-square error expected at a new run, with scatter, in its unit",
+    "report.outputs.*.rrmse_estimate": "the same over the standard deviation of the runs; null where they do not vary",
+    "report.outputs.*.error_estimate": "how that error was found",
+    "report.outputs.*.condition_number": "of the least squares",
+    "report.outputs.*.candidate_degree": "total degree of the terms that omp or lars chose from",
+    "report.outputs.*.candidate_q_norm": "q-norm of the same terms",
+    "report.outputs.*.covariance": "covariance of the Gaussian process",
+    "report.outputs.*.noise_std": "standard deviation between equal runs, in the unit of the output",
+    "report.outputs.*.noise_from": "source of that, or null",
+}
+FILES = {
+    "scores.json": "Errors by set of runs and output: the keys of `results.scores.*.*` of a paper study, `ape` too.",
+    "screening.json` and `refined.json": "Each expansion (`lithobrake.chaos.load` reads it).",
+}
+
+
+@dataclass
+class Table:
+    """A table of a file: the places where it stands, what it is, and the meaning of each of its keys."""
+
+    places: list[str]
+    words: str
+    keys: dict[str, str]
+
+
+def field_words(kind: type) -> dict[str, str]:
+    """The words beneath each field of a dataclass, those that it inherits among them."""
+    found: dict[str, str] = {}
+    for one in reversed([one for one in kind.__mro__ if is_dataclass(one)]):
+        body = ast.parse(dedent(inspect.getsource(one))).body[0].body  # type: ignore[attr-defined]
+        for field, below in pairwise(body):
+            if isinstance(field, ast.AnnAssign) and isinstance(below, ast.Expr):
+                found[field.target.id] = " ".join(str(below.value.value).split())  # type: ignore[union-attr, attr-defined]
+    return found
+
+
+def tables_within(kind: Any, place: str) -> Iterator[tuple[Any, str]]:
+    """Each dataclass of a kind of value with its place, `*` for the names of a mapping."""
+    if is_dataclass(kind):
+        yield kind, place
+    star = f"{place}.*" if is_mapping(kind) else place
+    for inner in get_args(kind):
+        yield from tables_within(inner, star)
+
+
+def describe(kind: Any, place: str, found: dict[Any, Table]) -> None:
+    """Note a dataclass and those within it, each once with all its places."""
+    if kind in found:
+        found[kind].places += [place] if place not in found[kind].places else []
+    else:
+        found[kind] = Table([place], " ".join((kind.__doc__ or "").split()), keys_of(kind))
+    for field in fields(kind):
+        if is_inline(field) and not is_mapping(field.type):
+            _describe_inner(dataclass_in(field.type), place, found)
+        else:
+            for inner, where in tables_within(field.type, place if is_inline(field) else f"{place}.{key_of(field)}"):
+                describe(inner, where, found)
+
+
+def _describe_inner(kind: Any, place: str, found: dict[Any, Table]) -> None:
+    """Note what an inline dataclass holds; its own keys stand in the table around it."""
+    for field in fields(kind):
+        for inner, where in tables_within(field.type, f"{place}.{key_of(field)}"):
+            describe(inner, where, found)
+
+
+def is_mapping(kind: Any) -> bool:
+    """Whether a field holds values by name."""
+    return len(get_args(kind)) == 2 and get_args(kind)[0] is str
+
+
+def keys_of(kind: Any) -> dict[str, str]:
+    """The keys of a dataclass with their meaning, those of inline fields among them."""
+    words, keys = field_words(kind), {}
+    for field in fields(kind):
+        if not is_inline(field):
+            keys[key_of(field)] = words[field.name]
+        elif is_mapping(field.type):
+            keys["*"] = words[field.name]
+        else:
+            keys |= keys_of(dataclass_in(field.type))
+    return keys
+
+
+def key_table(keys: dict[str, str]) -> list[str]:
+    return ["", "| key | meaning |", "|---|---|", *(f"| `{key}` | {words} |" for key, words in keys.items())]
+
+
+def page() -> str:
+    """docs/summary.md."""
+    found: dict[Any, Table] = {}
+    for kind, place in ((DrawnResults, "results"), (PaperResults, "results"), (Provenance, "provenance")):
+        describe(kind, place, found)
+    lines = [HEAD.rstrip()]
+    for kind, table in found.items():
+        first, *others = (f"`{place}`" for place in table.places)
+        of = {DrawnResults: " of a drawn study", PaperResults: " of a paper study"}.get(kind, "")
+        also = f" Also {', '.join(others)}." if others else ""
+        lines += ["", f"### {first}{of}", "", *wrap(f"{table.words}{also}", LINE, break_on_hyphens=False)]
+        lines += key_table(table.keys)
+    for name, words in FILES.items():
+        lines += ["", f"## `{name}`", "", *wrap(words, LINE)]
+    return "\n".join([*lines, *key_table(EXPANSION_KEYS), ""])
+
 
 if __name__ == "__main__":
     Path(__file__).with_name("summary.md").write_text(page(), encoding="utf-8")

@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from lithobrake.results.moving_bodies import MovingBodies
     from lithobrake.results.named_emulator import NamedEmulator
     from lithobrake.results.named_surrogate import NamedSurrogate
+    from lithobrake.results.summary import DrawnResults, PaperResults
     from lithobrake.results.table import Table
     from lithobrake.touchdown import Outcome
 
@@ -89,6 +90,17 @@ class StudyResults:
                 f"{path} has format {content['format_version']}; this version reads {SUMMARY_FORMAT}; {self.remedy}"
             )
         return content
+
+    @cached_property
+    def results(self) -> "DrawnResults | PaperResults":
+        """The table "results" of the summary by attribute, with types."""
+        from lithobrake.results.json_values import from_json
+        from lithobrake.results.summary import DrawnResults, PaperResults
+
+        with reading(self.folder / "summary.json", self.remedy):
+            if self.study["design"]["method"] == "paper":
+                return from_json(PaperResults, self.summary["results"], "results")
+            return from_json(DrawnResults, self.summary["results"], "results")
 
     @property
     def study(self) -> dict[str, Any]:

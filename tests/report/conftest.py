@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from lithobrake.report import write_report
-from lithobrake.report.pages.page_data import PaperResults, SequenceResults, page_results
+from lithobrake.report.pages.page_data import DrawnPage, PaperPage, page_results
 from lithobrake.results import open_study
 
 from .finished_studies import drawn_study, paper_study
@@ -40,14 +40,14 @@ def drawn_page(sequence_folder: Path) -> str:
 
 
 @pytest.fixture(scope="session")
-def paper(study_folder: Path) -> PaperResults:
+def paper(study_folder: Path) -> PaperPage:
     found = page_results(open_study(study_folder))
-    assert isinstance(found, PaperResults)
+    assert isinstance(found, PaperPage)
     return found
 
 
 @pytest.fixture(scope="session")
-def drawn(sequence_folder: Path) -> SequenceResults:
+def drawn(sequence_folder: Path) -> DrawnPage:
     found = page_results(open_study(sequence_folder))
-    assert isinstance(found, SequenceResults)
+    assert isinstance(found, DrawnPage)
     return found

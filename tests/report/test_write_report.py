@@ -15,7 +15,7 @@ import pytest
 from lithobrake.report import write_report
 from lithobrake.report.figures.scene import scene
 from lithobrake.report.pages.html import PageTable, number
-from lithobrake.report.pages.page_data import PaperResults
+from lithobrake.report.pages.page_data import PaperPage
 from lithobrake.report.pages.study_files import size
 from lithobrake.report.tables.paper_tables import tables
 from lithobrake.report.words import captions
@@ -46,7 +46,7 @@ def test_page_has_the_nine_figures_inside_and_nothing_outside(paper_page: str, s
     assert [name.split("_")[1] for name in pictures] == ["1", "2", "3", "4", "5", "6", "7", "8", "9"]
 
 
-def test_captions_carry_the_numbers_of_the_summary(paper: PaperResults) -> None:
+def test_captions_carry_the_numbers_of_the_summary(paper: PaperPage) -> None:
     results = paper.results
     assert all(sentence in captions.answer(paper) for sentence in results["answer"])
     bed, design = results["beds"][0], results["designs"]["screening"]
@@ -62,7 +62,7 @@ def test_captions_carry_the_numbers_of_the_summary(paper: PaperResults) -> None:
     assert f"{long:.3g} by {short:.3g} m (semi-axes)" in captions.body(paper)
 
 
-def test_ground_that_could_not_be_asked_says_why(paper: PaperResults) -> None:
+def test_ground_that_could_not_be_asked_says_why(paper: PaperPage) -> None:
     why = paper.results["rest"]["why_no_soil"]
     assert why.startswith("impact.incidence_deg")
     assert why in captions.rest(paper)
@@ -71,26 +71,26 @@ def test_ground_that_could_not_be_asked_says_why(paper: PaperResults) -> None:
     assert "15.0 %" in captions.rest(replace(paper, results=paper.results | {"rest": both}))
 
 
-def test_every_score_and_every_sobol_index_has_its_interval(paper: PaperResults) -> None:
+def test_every_score_and_every_sobol_index_has_its_interval(paper: PaperPage) -> None:
     scores, indices = (table_of(paper, title) for title in ("Errors of the expansions", "Sobol indices"))
     assert {"MAPE [%]", "Q2", "RMSE", "spread (std)"} <= set(scores.columns)
     assert all(cell.endswith(")") for row in scores.rows for cell in row[3:5])
     assert all(cell.endswith(")") for row in indices.rows for cell in row[1:])
 
 
-def test_flights_without_scatter_stand_beside_those_with_it(paper: PaperResults) -> None:
+def test_flights_without_scatter_stand_beside_those_with_it(paper: PaperPage) -> None:
     table, alone = table_of(paper, "After the first bounce"), paper.results["without_scatter"]["shares"]
     assert table.columns[-1] == "without scatter"
     assert table.rows[0][-1] == f"{100 * alone['impact']['share']:.1f} %"
     assert [row[0] for row in table_of(paper, "Landing ellipses").rows][-1] == "next impact, without scatter"
 
 
-def test_an_outcome_that_no_run_had_has_its_upper_limit(paper: PaperResults) -> None:
+def test_an_outcome_that_no_run_had_has_its_upper_limit(paper: PaperPage) -> None:
     limit = paper.results["shares"]["time_limit"]["upper_limit"]
     assert f"at most {100 * limit:.1f} %" in [row[2] for row in table_of(paper, "After the first bounce").rows]
 
 
-def table_of(data: PaperResults, title: str) -> PageTable:
+def table_of(data: PaperPage, title: str) -> PageTable:
     return next(table for table in tables(data) if table.title == title)
 
 
@@ -100,7 +100,7 @@ def test_provenance_stands_at_the_end(paper_page: str) -> None:
     assert paper_page.index("packages.numpy") > order[-1]
 
 
-def test_page_says_when_the_study_was_made_and_what_its_body_is_like(paper: PaperResults) -> None:
+def test_page_says_when_the_study_was_made_and_what_its_body_is_like(paper: PaperPage) -> None:
     words, site = captions.facts(paper), paper.results["site"]
     assert re.match(r"Study of \d{4}-\d\d-\d\d, \d\d:\d\d UTC\. ", words)
     for key in ("escape_speed_m_s", "bulk_density_kg_m3"):
@@ -118,7 +118,7 @@ def test_page_links_the_files_that_are_there_and_no_others(study_folder: Path, p
     assert f'every sample</td><td class="number">{held}</td>' in paper_page
 
 
-def test_no_number_of_a_symmetric_study_is_rounding(paper: PaperResults, paper_page: str) -> None:
+def test_no_number_of_a_symmetric_study_is_rounding(paper: PaperPage, paper_page: str) -> None:
     assert "<td>centroid_m</td><td>0, 0, 0</td>" in paper_page
     spread = paper.results["monte_carlo"]["outputs"]
     across = {"velocity_out_y": {key: -2.2e-14 * value for key, value in spread["speed_out"].items()}}
@@ -188,7 +188,7 @@ def test_a_damaged_file_is_one_sentence(
     assert "\n" not in str(refused.value)
 
 
-def test_a_study_in_which_nothing_leaves_says_so(paper: PaperResults) -> None:
+def test_a_study_in_which_nothing_leaves_says_so(paper: PaperPage) -> None:
     table = paper.results["monte_carlo"] | {"leaving_count": 0, "outputs": {}}
     none = replace(paper, results=paper.results | {"monte_carlo": table}, facet=paper.facet[:0])
     count = captions.thousands(table["sample_count"])

@@ -8,7 +8,7 @@ import numpy as np
 from lithobrake.report.figures.style import output
 from lithobrake.report.live.packed import packed, script_data
 from lithobrake.report.pages.html import LiveSection
-from lithobrake.report.pages.page_data import PaperResults, Results, SequenceResults
+from lithobrake.report.pages.page_data import DrawnPage, PageData, PaperPage
 from lithobrake.report.words.captions import hours, input_words, listing, thousands
 from lithobrake.report.words.drawn_answer import action, has_interval
 from lithobrake.results import ExplorerTables, Table
@@ -23,7 +23,7 @@ LEVEL = ("velocity_out_x", "velocity_out_y")
 START = ("start_speed", "start_elevation_deg", "velocity_x", "velocity_y")
 
 
-def explorer_sections(data: PaperResults | SequenceResults) -> list[LiveSection]:
+def explorer_sections(data: PaperPage | DrawnPage) -> list[LiveSection]:
     """The explorer with all its numbers."""
     flown = _flown(data.flights)
     count = thousands(len(flown["status"]))
@@ -47,21 +47,21 @@ def explorer_sections(data: PaperResults | SequenceResults) -> list[LiveSection]
     return [LiveSection("Explorer", html, SCRIPTS)]
 
 
-def _fixed(data: Results, explorer: ExplorerTables) -> str:
+def _fixed(data: PageData, explorer: ExplorerTables) -> str:
     """What is said of the inputs without sliders."""
     others = [input_words(name) for name in explorer.input_names if name not in _moved(data, explorer)]
     return f"Not kept by the screening, and over the whole law at all times: {listing(others)}. " if others else ""
 
 
-def _moved(data: Results, explorer: ExplorerTables) -> list[str]:
+def _moved(data: PageData, explorer: ExplorerTables) -> list[str]:
     """The inputs with sliders: those of an expansion that the screening has kept, and all of an emulator."""
     return list(data.results.get("kept_inputs") or explorer.input_names)
 
 
-def _bands(data: PaperResults | SequenceResults, explorer: ExplorerTables) -> str:
+def _bands(data: PaperPage | DrawnPage, explorer: ExplorerTables) -> str:
     """What the bands are, in a sentence."""
     fits = f"Bands: the middle nine tenths of {explorer.tables['location'].shape[0]} fits of the {data.model} to "
-    if isinstance(data, PaperResults):
+    if isinstance(data, PaperPage):
         return fits + "residuals that fall on other runs; no other bed."
     return fits + (
         "beds drawn with replacement." if has_interval(data) else "runs drawn with replacement; no other bed."
@@ -73,7 +73,7 @@ def _law(explorer: ExplorerTables) -> dict[str, np.ndarray]:
     return {name: np.asarray(table, dtype=np.float64) for name, table in explorer.tables.items()}
 
 
-def _facts(data: PaperResults | SequenceResults, explorer: ExplorerTables) -> dict[str, Any]:
+def _facts(data: PaperPage | DrawnPage, explorer: ExplorerTables) -> dict[str, Any]:
     """Names, units and words beside the numbers."""
     names, site = list(explorer.output_names), data.results["site"]
     units = {name: one.units for name, one in data.samples.columns.items()}
@@ -99,7 +99,7 @@ def _facts(data: PaperResults | SequenceResults, explorer: ExplorerTables) -> di
         **{name.removesuffix("_out"): names.index(name) for name in SHOWN},
         "level": [names.index(name) for name in LEVEL if name in names] or None,
         # The study's share is of all samples, those without an answer among them.
-        "ofAll": isinstance(data, PaperResults),
+        "ofAll": isinstance(data, PaperPage),
         "fates": [str(fate) for fate in FlightStatus],
         "impact": list(FlightStatus).index(FlightStatus.IMPACT),
         "holds": site["effective_acceleration_outward"] < 0.0,

@@ -14,7 +14,7 @@ from lithobrake.report.figures.scene import Scene
 from lithobrake.report.figures.style import FATE_COLOURS
 from lithobrake.report.live.packed import deflated, script_data
 from lithobrake.report.pages.html import LiveSection, number
-from lithobrake.report.pages.page_data import Results
+from lithobrake.report.pages.page_data import PageData
 from lithobrake.vocabulary.outcomes import FlightStatus
 
 Array = NDArray[np.float64]
@@ -36,7 +36,7 @@ FATE_WORDS = {
 AWAY = 4.2
 
 
-def view_sections(data: Results) -> list[LiveSection]:
+def view_sections(data: PageData) -> list[LiveSection]:
     """The landing that was kept, and the body with where landers come down, as far as there are such."""
     found = []
     if data.landing is not None and len(data.landing.moving.time) > 1:
@@ -116,7 +116,7 @@ def _continuous(orientation: Array) -> Array:
     return orientation * np.concatenate([np.ones_like(signs[:1]), signs])[:, :, None]
 
 
-def _body(data: Results) -> LiveSection:
+def _body(data: PageData) -> LiveSection:
     """The body, facets coloured as in its figure, and the paths of some flights."""
     vertices, faces = data.body_vertices, data.body_faces
     density = facet_density(vertices[faces], data.facet)

@@ -15,7 +15,7 @@ from lithobrake.report.live.explorer import explorer_sections
 from lithobrake.report.live.views import view_sections
 from lithobrake.report.pages import shared_plots as any_study
 from lithobrake.report.pages.html import Content, Plot
-from lithobrake.report.pages.page_data import SequenceResults
+from lithobrake.report.pages.page_data import DrawnPage
 from lithobrake.report.tables.drawn_tables import colour_input, tables, tiles
 from lithobrake.report.tables.rare_tables import rare_caption
 from lithobrake.report.words import captions
@@ -31,13 +31,13 @@ if TYPE_CHECKING:
 RETURNS_ROW = {"returns": "return fraction"}
 
 
-def sequence_content(data: SequenceResults) -> Content:
+def sequence_content(data: DrawnPage) -> Content:
     """All that the page shows of the study."""
     live = [*explorer_sections(data), *view_sections(data)]
     return Content(captions.answer(data), warnings(data), tiles(data), _plots(data), tables(data), live)
 
 
-def _plots(data: SequenceResults) -> list[Plot]:
+def _plots(data: DrawnPage) -> list[Plot]:
     colour, words = colour_input(data), sequence_captions
     plots = [
         Plot("bed", "The surface", captions.bed(data), lambda: any_study.draw_bed(data)),
@@ -57,7 +57,7 @@ def _plots(data: SequenceResults) -> list[Plot]:
     return plots
 
 
-def _runs(data: SequenceResults) -> "Figure":
+def _runs(data: DrawnPage) -> "Figure":
     runs = data.runs
     nan = np.full(len(runs["key"]), np.nan)
     column = {name: runs.get(name, nan) for name in ("speed_out", "elevation_out", OVER_RIM, "bed")}
@@ -75,16 +75,16 @@ def _runs(data: SequenceResults) -> "Figure":
     return runs_figure(landings, quantiles)
 
 
-def _variance(data: SequenceResults) -> "Figure | None":
+def _variance(data: DrawnPage) -> "Figure | None":
     shares = data.results["variance_shares"]
     return variance_figure(shares, RETURNS_ROW, data.level) if any(shares.values()) else None
 
 
-def _calibration(data: SequenceResults) -> "Figure":
+def _calibration(data: DrawnPage) -> "Figure":
     return calibration_figure(data.results["emulator"]["scores"])
 
 
-def _samples(data: SequenceResults, colour: str | None) -> "Figure | None":
+def _samples(data: DrawnPage, colour: str | None) -> "Figure | None":
     samples = data.samples
     leaves = samples["outcome"] == TouchdownOutcome.CLEAR
     if colour is None or not leaves.any():

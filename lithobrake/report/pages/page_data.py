@@ -24,7 +24,7 @@ GROUNDS = ("soil", "hard")
 
 
 @dataclass(frozen=True)
-class Results:
+class PageData:
     """What the page shows of any study.
 
     study, results, provenance: the three tables of summary.json;
@@ -75,7 +75,7 @@ class Results:
 
 
 @dataclass(frozen=True)
-class PaperResults(Results):
+class PaperPage(PageData):
     """Results of the method in two steps; scores: stage, output, score."""
 
     model, digits = "expansion", 1
@@ -93,7 +93,7 @@ class PaperResults(Results):
 
 
 @dataclass(frozen=True)
-class SequenceResults(Results):
+class DrawnPage(PageData):
     """Results of a sequence; runs: its landings, without side runs; rare: what `lithobrake rare` found, by state."""
 
     model, digits = "emulator", 0
@@ -136,16 +136,16 @@ class SummaryTable(dict[str, Any]):
         raise DamagedFileError(self._lacks.format(key=key))
 
 
-def page_results(found: StudyResults) -> PaperResults | SequenceResults:
+def page_results(found: StudyResults) -> PaperPage | DrawnPage:
     """What the page shows of a study. Raises ValueError that names the file when one is missing or damaged."""
     _refuse_without(found.folder, FILES)
     summary = SummaryTable(found.summary, found.folder / "summary.json", found.remedy)
     if summary["study"]["design"]["method"] == "paper":
         _refuse_without(found.folder, PAPER_FILES)
-        return PaperResults(**_of_any_study(found, summary), scores=_scores(found))
+        return PaperPage(**_of_any_study(found, summary), scores=_scores(found))
     _refuse_without(found.folder, DRAWN_FILES)
     runs = found.runs.where(found.runs["design"] == "sequence")
-    return SequenceResults(**_of_any_study(found, summary), runs=runs, rare=found.rare)
+    return DrawnPage(**_of_any_study(found, summary), runs=runs, rare=found.rare)
 
 
 def _of_any_study(found: StudyResults, summary: SummaryTable) -> dict[str, Any]:

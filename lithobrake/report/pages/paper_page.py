@@ -13,7 +13,7 @@ from lithobrake.report.live.explorer import explorer_sections
 from lithobrake.report.live.views import view_sections
 from lithobrake.report.pages import shared_plots as any_study
 from lithobrake.report.pages.html import Content, Plot
-from lithobrake.report.pages.page_data import PaperResults
+from lithobrake.report.pages.page_data import PaperPage
 from lithobrake.report.tables.paper_tables import tables, tiles
 from lithobrake.report.words import captions
 from lithobrake.results.telling_numbers import TellingNumbers
@@ -23,13 +23,13 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-def paper_content(data: PaperResults) -> Content:
+def paper_content(data: PaperPage) -> Content:
     """All that the page shows of the study."""
     live = [*explorer_sections(data), *view_sections(data)]
     return Content(captions.answer(data), [], tiles(data), _plots(data), tables(data), live)
 
 
-def _plots(data: PaperResults) -> list[Plot]:
+def _plots(data: PaperPage) -> list[Plot]:
     colour = _colour_input(data)
     return [
         Plot("bed", "The surface", captions.bed(data), lambda: any_study.draw_bed(data)),
@@ -44,7 +44,7 @@ def _plots(data: PaperResults) -> list[Plot]:
     ]
 
 
-def _counts(data: PaperResults) -> "Figure":
+def _counts(data: PaperPage) -> "Figure":
     table, results, design = data.results["node_counts"], data.results, data.study["design"]
     measure = "level" if design["points"] == "smolyak" else "degree"
     designs = [
@@ -61,7 +61,7 @@ def _counts(data: PaperResults) -> "Figure":
     return count_figure(table["input_counts"], table["levels"], tensor, smolyak, designs)
 
 
-def _sobol(data: PaperResults) -> "Figure":
+def _sobol(data: PaperPage) -> "Figure":
     screening = data.results["screening"]
     names = tuple(screening["inputs"])
     first = {output: np.array([screening["sobol_first"][output][name] for name in names]) for output in PAPER_OUTPUTS}
@@ -69,18 +69,18 @@ def _sobol(data: PaperResults) -> "Figure":
     return sobol_figure(names, first, screening["std"], scatter)
 
 
-def _errors(data: PaperResults) -> "Figure":
+def _errors(data: PaperPage) -> "Figure":
     return error_figure(data.scores["refined"], data.scores["test_kept"], data.scores["test_all"])
 
 
-def _colour_input(data: PaperResults) -> str:
+def _colour_input(data: PaperPage) -> str:
     """The restitution of the grains, as in [Landings-PCE], or the input that decides the speed most."""
     if "grain.restitution" in data.samples:
         return "grain.restitution"
     return TellingNumbers.of(data.results).main_input.name
 
 
-def _outputs(data: PaperResults, colour_name: str) -> "Figure | None":
+def _outputs(data: PaperPage, colour_name: str) -> "Figure | None":
     samples = data.samples
     leaves = samples["outcome"] == TouchdownOutcome.CLEAR
     if not leaves.any():

@@ -11,7 +11,7 @@ from lithobrake.report.figures.landing_figure import landing_figure
 from lithobrake.report.figures.map_figure import Share, map_figure
 from lithobrake.report.figures.rest_figure import RestMap, rest_figure
 from lithobrake.report.figures.style import FATE_COLOURS
-from lithobrake.report.pages.page_data import PaperResults, Results
+from lithobrake.report.pages.page_data import PageData, PaperPage
 from lithobrake.report.tables.dispersion_tables import GROUND_WORDS, followed, parts
 from lithobrake.report.words.captions import hours, thousands
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus
@@ -38,7 +38,7 @@ SHORT_JOURNEY_WORDS = {
 }
 
 
-def draw_bed(data: Results) -> "Figure | None":
+def draw_bed(data: PageData) -> "Figure | None":
     if data.bed is None:
         return None
     moving, first = data.bed.moving, data.results["beds"][0]
@@ -49,14 +49,14 @@ def draw_bed(data: Results) -> "Figure | None":
     )
 
 
-def draw_landing(data: Results) -> "Figure | None":
+def draw_landing(data: PageData) -> "Figure | None":
     if data.landing is None:
         return None
     moving, width = data.landing.moving, tuple(data.study["bed"]["width"])
     return landing_figure(data.landing.bodies, moving.time, moving.position, moving.orientation, width)
 
 
-def draw_map(data: Results) -> "Figure":
+def draw_map(data: PageData) -> "Figure":
     table, site, limit = data.results["shares"], data.results["site"], hours(data.study["flight"]["duration"])
     words = {key: SHORT_OUTCOME_WORDS.get(key, long).format(hours=limit) for key, long in parts(data).items()}
     shares = [_share(data, key, short, table[key]) for key, short in words.items()]
@@ -65,27 +65,27 @@ def draw_map(data: Results) -> "Figure":
     return map_figure(data.latitude, data.longitude, where, shares, data.body_vertices, ellipses, _whole(data))
 
 
-def _share(data: Results, fate: str, words: str, entry: Mapping[str, Any]) -> Share:
+def _share(data: PageData, fate: str, words: str, entry: Mapping[str, Any]) -> Share:
     """A share of the summary, with its interval or its limit where it has one."""
     limit = entry.get("upper_limit")
     lower, upper = (entry["lower"], entry["upper"]) if limit is None else (None, limit)
     return Share(words, entry["share"], lower, upper, data.level, FATE_COLOURS[fate], data.digits)
 
 
-def _whole(data: Results) -> str:
+def _whole(data: PageData) -> str:
     """What the shares of the flights are shares of."""
-    if not isinstance(data, PaperResults):
+    if not isinstance(data, PaperPage):
         return "all landings"
     looked_at, count = (data.results[table]["sample_count"] for table in ("shares", "monte_carlo"))
     words = f"{thousands(looked_at)} samples"
     return f"all {words}" if looked_at == count else f"the {words} up to the last that was flown"
 
 
-def draw_body(data: Results) -> "Figure":
+def draw_body(data: PageData) -> "Figure":
     return body_figure(data.body_vertices, data.body_faces, data.facet, np.array(data.results["site"]["place_m"]))
 
 
-def draw_rest(data: Results) -> "Figure":
+def draw_rest(data: PageData) -> "Figure":
     found, site, limit = followed(data), data.results["site"], hours(data.study["rest"]["duration"])
     # The same statuses on both sides, so that rows and colours match.
     met = {key: words for key, words in SHORT_JOURNEY_WORDS.items() if any(one[key]["count"] for one in found.values())}

@@ -5,7 +5,7 @@ from typing import Any
 
 from lithobrake.report.figures.ellipse_line import follows_gaussian
 from lithobrake.report.pages.html import PageTable, fixed, flat, number
-from lithobrake.report.pages.page_data import PaperResults, Results
+from lithobrake.report.pages.page_data import PageData, PaperPage
 from lithobrake.report.words.captions import hours, thousands
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus, SampleOutcome
 from lithobrake.vocabulary.percentages import percent, with_interval
@@ -41,7 +41,7 @@ QUANTILES = ("quantile_0.05", "quantile_0.5", "quantile_0.95")
 ACCELERATIONS = ("effective_acceleration_outward", "effective_acceleration_along_heading")
 
 
-def outcome_words(data: Results) -> dict[str, str]:
+def outcome_words(data: PageData) -> dict[str, str]:
     """What may become of a landing, in words; the partner is left out where there is none.
 
     So is the return fraction where the ground holds nothing: it is then the share of those that impact again.
@@ -53,23 +53,23 @@ def outcome_words(data: Results) -> dict[str, str]:
     return {key: text for key, text in OUTCOME_WORDS.items() if key in known and key not in absent}
 
 
-def parts(data: Results) -> dict[str, str]:
+def parts(data: PageData) -> dict[str, str]:
     """Those of the outcomes that add up to the whole, in words; `lost` landings of a drawn study are in no other."""
-    absent = SUMS if isinstance(data, PaperResults) else (*SUMS, *LOST)
+    absent = SUMS if isinstance(data, PaperPage) else (*SUMS, *LOST)
     return {key: words for key, words in outcome_words(data).items() if key not in absent}
 
 
-def dispersion_tables(data: Results) -> list[PageTable]:
+def dispersion_tables(data: PageData) -> list[PageTable]:
     """In the order of the journey, those that have a row."""
     made = (_outcomes, _flights, _statuses, _journeys, _ellipses, _site)
     return [table for table in (make(data) for make in made) if table.rows]
 
 
-def _outcomes(data: Results) -> PageTable:
-    return _outcomes_of_samples(data) if isinstance(data, PaperResults) else _outcomes_of_landings(data)
+def _outcomes(data: PageData) -> PageTable:
+    return _outcomes_of_samples(data) if isinstance(data, PaperPage) else _outcomes_of_landings(data)
 
 
-def _outcomes_of_landings(data: Results) -> PageTable:
+def _outcomes_of_landings(data: PageData) -> PageTable:
     """Outcomes of the runs of a drawn study, beside what the emulator gives."""
     shares, limit = data.results["shares"], hours(data.study["flight"]["duration"])
     level = percent(data.level)
@@ -104,7 +104,7 @@ def _by_emulator(shares: Mapping[str, Any], key: str) -> str:
     return percent(shares[key]["count"] / total) if total else ""
 
 
-def _outcomes_of_samples(data: PaperResults) -> PageTable:
+def _outcomes_of_samples(data: PaperPage) -> PageTable:
     """Outcomes of the samples of an expansion, which have no interval."""
     shares, limit = data.results["shares"], hours(data.study["flight"]["duration"])
     alone = data.results["without_scatter"]
@@ -134,7 +134,7 @@ def _is_unmet(entry: Mapping[str, Any]) -> bool:
     return entry.get("upper_limit") is not None
 
 
-def _flights(data: Results) -> PageTable:
+def _flights(data: PageData) -> PageTable:
     """Times, speeds and incidences of the impacts, and how exact the flights are."""
     flights, words = data.results["flights"], {"time_s": "time of flight [s]", "impact_speed": "impact speed [m/s]"}
     words |= {"impact_incidence_deg": "incidence at the impact, from the normal [deg]"}
@@ -164,13 +164,13 @@ def _with_ends(entry: Mapping[str, Any], level: str) -> str:
     return shown if ends is None else f"{shown} ({number(ends[0])} to {number(ends[1])})"
 
 
-def followed(data: Results) -> dict[str, Mapping[str, Any]]:
+def followed(data: PageData) -> dict[str, Mapping[str, Any]]:
     """The grounds on which samples were followed, with what became of them."""
     rest = data.results["rest"]
     return {ground: rest[ground] for ground in GROUND_WORDS if rest[ground]}
 
 
-def _statuses(data: Results) -> PageTable:
+def _statuses(data: PageData) -> PageTable:
     found, limit = followed(data), hours(data.study["rest"]["duration"])
     columns = ["after all bounces", *(GROUND_WORDS[ground] for ground in found)]
     rows = []
@@ -189,7 +189,7 @@ def _statuses(data: Results) -> PageTable:
     return PageTable("From bounce to bounce", columns, rows, note, frozenset(columns[1:]))
 
 
-def _journeys(data: Results) -> PageTable:
+def _journeys(data: PageData) -> PageTable:
     columns = ["landers that rest", "ground", "5 %", "median", "95 %"]
     words = {"time_s": "time to rest [s]", "rebounds": "rebounds", "path_length": "path [m]"}
     words |= {"slid_length": "slid along the ground [m]", "slid_time_s": "time of that [s]"}
@@ -218,7 +218,7 @@ def _sliding(rest: Mapping[str, Any]) -> str:
     return "slides on by Coulomb friction, on soil that of hull and grain,"
 
 
-def _ellipses(data: Results) -> PageTable:
+def _ellipses(data: PageData) -> PageTable:
     columns = ["places", "share inside", "latitude [deg]", "longitude [deg]", "semi-axes [m]", "heading [deg]", "shape"]
     sets = {"next impact": (data.results["ellipses"], len(data.facet))}
     if data.results["without_scatter"]:
@@ -243,6 +243,6 @@ def _ellipses(data: Results) -> PageTable:
     return PageTable("Landing ellipses", columns, rows, note, frozenset(columns[1:6]))
 
 
-def _site(data: Results) -> PageTable:
+def _site(data: PageData) -> PageTable:
     rows = flat(data.results["site"], alike=(("extents_m", "centroid_m", "place_m"), ACCELERATIONS))
     return PageTable("Site and body", ["name", "value"], rows, "m, kg, s, m/s2; degrees where named.")

@@ -7,7 +7,7 @@ from typing import Any
 from lithobrake.report.figures.style import output
 from lithobrake.report.figures.variance_figure import PARTS, SOIL, long_part_words
 from lithobrake.report.pages.html import PageTable, Tile, number
-from lithobrake.report.pages.page_data import SequenceResults
+from lithobrake.report.pages.page_data import DrawnPage
 from lithobrake.report.tables.dispersion_tables import GROUND_WORDS, dispersion_tables, followed
 from lithobrake.report.tables.limit_state_tables import limit_state_tables
 from lithobrake.report.tables.paper_tables import INPUT_COLUMNS, beds_table, input_cells, table_cell, touchdowns_table
@@ -31,7 +31,7 @@ CENTIMETRES = 100.0
 LEVELS = {"0.05": "5 %", "0.5": "median", "0.95": "95 %"}
 
 
-def tiles(data: SequenceResults) -> list[Tile]:
+def tiles(data: DrawnPage) -> list[Tile]:
     """The return fraction, and the most informative numbers beside it."""
     results, returns = data.results, data.results["returns"]
     digits = interval_digits(returns["lower"], returns["upper"])
@@ -62,7 +62,7 @@ def tiles(data: SequenceResults) -> list[Tile]:
     return found
 
 
-def _at_rest(data: SequenceResults) -> list[Tile]:
+def _at_rest(data: DrawnPage) -> list[Tile]:
     """Which landers come to rest after all bounces, on the soil or else on hard ground; none where it was not asked."""
     found, limit = followed(data), hours(data.study["rest"]["duration"])
     for ground, table in found.items():
@@ -73,9 +73,9 @@ def _at_rest(data: SequenceResults) -> list[Tile]:
     return []
 
 
-def tables(data: SequenceResults) -> list[PageTable]:
+def tables(data: DrawnPage) -> list[PageTable]:
     """Those that have a row."""
-    made: tuple[Callable[[SequenceResults], PageTable], ...] = (
+    made: tuple[Callable[[DrawnPage], PageTable], ...] = (
         _answer, _inputs, _outputs, _directions, _variance, _runs, _emulator, beds_table, touchdowns_table
     )  # fmt: skip
     found = [table for table in (make(data) for make in made) if table.rows]
@@ -83,7 +83,7 @@ def tables(data: SequenceResults) -> list[PageTable]:
     return [*found, *side, *limit_state_tables(data), *rare_tables(data.rare), *dispersion_tables(data)]
 
 
-def _answer(data: SequenceResults) -> PageTable:
+def _answer(data: DrawnPage) -> PageTable:
     returns, missing = data.results["returns"], data.results["runs"]["missing"]["count"]
     digits = interval_digits(returns["lower"], returns["upper"])
     rows = [[f"return fraction: landings that {action(data)}", percent(returns["share"], digits)]]
@@ -105,14 +105,14 @@ def _answer(data: SequenceResults) -> PageTable:
     return PageTable("The answer", ["quantity", "value"], rows, note)
 
 
-def _bed_size(data: SequenceResults) -> str:
+def _bed_size(data: DrawnPage) -> str:
     """How much ground a bed is; nothing where touchdowns are made without one."""
     if not data.results["beds"]:
         return ""
     return f" of {' x '.join(f'{length:g}' for length in data.study['bed']['width'])} m"
 
 
-def _outputs(data: SequenceResults) -> PageTable:
+def _outputs(data: DrawnPage) -> PageTable:
     """Mean and quantiles of the landings that left."""
     columns = ["output", "unit", "mean", "standard deviation", *LEVELS.values()]
     rows = []
@@ -134,7 +134,7 @@ def _outputs(data: SequenceResults) -> PageTable:
     return PageTable("Outputs of the landings", columns, rows, note, frozenset(columns[2:]))
 
 
-def _directions(data: SequenceResults) -> PageTable:
+def _directions(data: DrawnPage) -> PageTable:
     """Mean direction and resultant length of the angles without beginning or end."""
     columns = ["output", "mean direction [deg]", "resultant length"]
     rows = [
@@ -163,7 +163,7 @@ def _estimate(entry: Mapping[str, Any] | None, factor: float) -> str:
     return f"{value} ({number(entry['lower'] * factor)} to {number(entry['upper'] * factor)})"
 
 
-def _variance(data: SequenceResults) -> PageTable:
+def _variance(data: DrawnPage) -> PageTable:
     """Every part of the variance of each output, soil by input."""
     records = data.results["variance_shares"]
     known = [record for record in records.values() if record]
@@ -198,7 +198,7 @@ def _part(record: Mapping[str, Any] | None, name: str) -> str:
     return "" if share is None else part(share)
 
 
-def _runs(data: SequenceResults) -> PageTable:
+def _runs(data: DrawnPage) -> PageTable:
     runs = data.results["runs"]
     total = max(sum(runs["outcomes"].values()), 1)
     rows = [[outcome_label(word), str(count), percent(count / total)] for word, count in runs["outcomes"].items()]
@@ -209,7 +209,7 @@ def _runs(data: SequenceResults) -> PageTable:
     return PageTable("Outcomes of the runs", ["outcome", "runs", "share"], rows, note, frozenset({"runs", "share"}))
 
 
-def _side_runs(data: SequenceResults) -> PageTable:
+def _side_runs(data: DrawnPage) -> PageTable:
     """What pairs of runs tell of soil and chaos."""
     side, rows = data.table("runs", "side_runs"), []
     effects, chaos = (data.table("runs", "side_runs", key) for key in ("soil_total_effect", "chaos_deviation"))
@@ -227,7 +227,7 @@ def _side_runs(data: SequenceResults) -> PageTable:
     return PageTable("Side runs", columns, rows, note, frozenset(columns[1:3]))
 
 
-def _emulator(data: SequenceResults) -> PageTable:
+def _emulator(data: DrawnPage) -> PageTable:
     """How the emulator does on beds left out."""
     emulator = data.results["emulator"]
     columns = ["output", "skill", "within the 90 % band"]
@@ -243,7 +243,7 @@ def _emulator(data: SequenceResults) -> PageTable:
     return PageTable(f"The emulator on {left_out(data)}", columns, rows, note, frozenset(columns[1:]))
 
 
-def _inputs(data: SequenceResults) -> PageTable:
+def _inputs(data: DrawnPage) -> PageTable:
     """What every run draws for itself, and which of the uncertain inputs the emulator found to matter."""
     found, rows = data.results["emulator"]["found_inputs"], []
     # Sizes of grains vary within a bed, and the site from flight to flight: neither is an input of a run.
@@ -271,7 +271,7 @@ def _uncertain(tables: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[st
             yield from _uncertain(value, f"{prefix}{key}.")
 
 
-def colour_input(data: SequenceResults) -> str | None:
+def colour_input(data: DrawnPage) -> str | None:
     """The input that figures of the samples are coloured by: the one that V+ varies most with, of those sampled."""
     sampled = [name for name, _ in _uncertain(data.study) if name in data.samples]
     parts = data.table("variance_shares", "speed_out", "soil_by_input")

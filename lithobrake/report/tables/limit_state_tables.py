@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from lithobrake.report.pages.html import PageTable, fixed, number
-from lithobrake.report.pages.page_data import SequenceResults
+from lithobrake.report.pages.page_data import DrawnPage
 from lithobrake.report.tables.paper_tables import table_cell
 from lithobrake.report.words.captions import input_words
 from lithobrake.vocabulary.percentages import percent
@@ -12,7 +12,7 @@ from lithobrake.vocabulary.percentages import percent
 SOURCES = {"runs": "runs", "emulator": "emulator: too few runs meet it"}
 
 
-def limit_state_tables(data: SequenceResults) -> list[PageTable]:
+def limit_state_tables(data: DrawnPage) -> list[PageTable]:
     """Probabilities, and inputs where runs tell of any; none where the study asks for no limit state."""
     states = data.table("limit_states")
     return [_probabilities(states), *_inputs(states)] if states else []

@@ -5,7 +5,7 @@ from typing import Any
 
 from lithobrake.report.figures.style import PAPER_OUTPUTS, output
 from lithobrake.report.pages.html import PageTable, Tile, fixed, flat, number, show, unit_scales
-from lithobrake.report.pages.page_data import PaperResults, Results
+from lithobrake.report.pages.page_data import PageData, PaperPage
 from lithobrake.report.tables.dispersion_tables import dispersion_tables
 from lithobrake.report.words.captions import input_words
 from lithobrake.report.words.drawn_answer import action
@@ -28,7 +28,7 @@ DESIGN_WORDS = {
 }
 
 
-def tiles(data: PaperResults) -> list[Tile]:
+def tiles(data: PaperPage) -> list[Tile]:
     """The return fraction, and the most telling numbers beside it."""
     telling = TellingNumbers.of(data.results)
     main, score, speed = telling.main_input, telling.score, telling.speed
@@ -63,7 +63,7 @@ def tiles(data: PaperResults) -> list[Tile]:
     return found
 
 
-def _scope(data: PaperResults) -> str:
+def _scope(data: PaperPage) -> str:
     """Over what the answer holds, in the words that it begins with."""
     where, _, _ = data.results["answer"][0].partition(":")
     return where[:1].lower() + where[1:]
@@ -82,7 +82,7 @@ def _touchdowns_tile(telling: TellingNumbers) -> Tile:
     return Tile(str(telling.left_count), f"of {telling.ended.total()}", words)
 
 
-def tables(data: PaperResults) -> list[PageTable]:
+def tables(data: PaperPage) -> list[PageTable]:
     """All tables, in the order of the stages."""
     return [
         _inputs(data),
@@ -97,7 +97,7 @@ def tables(data: PaperResults) -> list[PageTable]:
     ]
 
 
-def provenance(data: Results) -> list[PageTable]:
+def provenance(data: PageData) -> list[PageTable]:
     """Where the numbers come from: seed, times, versions."""
     rows = [("seed", show(data.study["seed"])), *flat(data.provenance)]
     return [
@@ -110,7 +110,7 @@ def provenance(data: Results) -> list[PageTable]:
     ]
 
 
-def _inputs(data: PaperResults) -> PageTable:
+def _inputs(data: PaperPage) -> PageTable:
     kept = data.results["kept_inputs"]
     rows = []
     for name in data.results["screening"]["inputs"]:
@@ -127,7 +127,7 @@ def input_cells(name: str, law: Mapping[str, Any]) -> list[str]:
     return [input_words(name), name, law["distribution"].replace("_", "-"), parameters]
 
 
-def _runs(data: PaperResults) -> PageTable:
+def _runs(data: PaperPage) -> PageTable:
     rows = []
     for name, design in data.results["designs"].items():
         outcomes = ", ".join(f"{count} {outcome.replace('_', ' ')}" for outcome, count in design["outcomes"].items())
@@ -136,14 +136,14 @@ def _runs(data: PaperResults) -> PageTable:
     return PageTable("Touchdowns", ["design", "runs", "left the surface", "outcomes"], rows, numbers=numbers)
 
 
-def beds_table(data: Results) -> PageTable:
+def beds_table(data: PageData) -> PageTable:
     columns = ["bed", "solid fraction", "contacts a grain", "surface height [m]", "mean diameter [m]"]
     keys = ("solid_fraction", "coordination_number", "surface_height_m", "mean_diameter_m")
     rows = [[str(index), *(table_cell(bed[key]) for key in keys)] for index, bed in enumerate(data.results["beds"])]
     return PageTable("Beds", columns, rows, numbers=frozenset(columns[1:]))
 
 
-def _fits(data: PaperResults) -> PageTable:
+def _fits(data: PaperPage) -> PageTable:
     columns = [
         "expansion",
         "output",
@@ -181,7 +181,7 @@ def _fits(data: PaperResults) -> PageTable:
     return PageTable("How the expansions were fitted", columns, rows, note, frozenset(columns[4:]))
 
 
-def _scores(data: PaperResults) -> PageTable:
+def _scores(data: PaperPage) -> PageTable:
     columns = ["expansion and runs", "output", "unit", "MAPE [%]", "Q2", "RMSE", "spread (std)", "RMSE/spread"]
     scale = _output_scales(data.results["scores"].values(), "std")
     rows = []
@@ -207,7 +207,7 @@ def _scores(data: PaperResults) -> PageTable:
     return PageTable("Errors of the expansions", columns, rows, note, frozenset(columns[3:]))
 
 
-def _sobol(data: PaperResults) -> PageTable:
+def _sobol(data: PaperPage) -> PageTable:
     table = data.results["screening"]
     words = [output(name).sign for name in PAPER_OUTPUTS]
     columns = ["input", *(f"{word} first" for word in words), *(f"{word} total" for word in words)]
@@ -226,7 +226,7 @@ def _sobol(data: PaperResults) -> PageTable:
     return PageTable("Sobol indices", columns, rows, note, frozenset(columns[1:]))
 
 
-def _outputs(data: PaperResults) -> PageTable:
+def _outputs(data: PaperPage) -> PageTable:
     columns = ["output", "unit", "mean", "std", "5 %", "median", "95 %"]
     keys = ("mean", "std", "quantile_0.05", "quantile_0.5", "quantile_0.95")
     outputs = data.results["monte_carlo"]["outputs"]
@@ -239,7 +239,7 @@ def _outputs(data: PaperResults) -> PageTable:
     return PageTable("Outputs of the samples that leave", columns, rows, numbers=frozenset(columns[2:]))
 
 
-def touchdowns_table(data: Results) -> PageTable:
+def touchdowns_table(data: PageData) -> PageTable:
     found, keys = data.results["outputs_of_runs"], ("smallest", "median", "largest")
     scale = unit_scales((table["unit"], table[key]) for table in found.values() for key in keys)
     rows = [

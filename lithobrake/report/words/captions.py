@@ -8,7 +8,7 @@ from lithobrake.report.figures.error_figure import Score
 from lithobrake.report.figures.scatter_figure import DRAWN_COUNT
 from lithobrake.report.figures.style import PAPER_OUTPUTS, output
 from lithobrake.report.pages.html import fixed, number
-from lithobrake.report.pages.page_data import PaperResults, Results
+from lithobrake.report.pages.page_data import PageData, PaperPage
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus, TouchdownOutcome
 from lithobrake.vocabulary.percentages import percent, with_interval
 
@@ -41,12 +41,12 @@ def hours(seconds: float) -> str:
     return f"{seconds / 3600:.3g} h"
 
 
-def answer(data: Results) -> str:
+def answer(data: PageData) -> str:
     """The answer to the question of the study: where, and what the summary says of it."""
     return " ".join([*place_words(data), *data.results["answer"]])
 
 
-def place_words(data: Results) -> list[str]:
+def place_words(data: PageData) -> list[str]:
     """Where the study lands, in a sentence."""
     site = data.results["site"]
     place = f"latitude {site['latitude_deg']:g} deg, longitude {site['longitude_deg']:g} deg on {body_name(data)}"
@@ -55,19 +55,19 @@ def place_words(data: Results) -> list[str]:
     return [f"Landing at {place}{product}."]
 
 
-def body_name(data: Results) -> str:
+def body_name(data: PageData) -> str:
     """The body in words."""
     site = data.study["site"]
     return site.get("name") or BODIES.get(site["body"], "the body")
 
 
-def facts(data: Results) -> str:
+def facts(data: PageData) -> str:
     """When the study was made, and what the body's gravity is known by."""
     known, date = gravity_words(data), data.provenance["date"][:16].replace("T", ", ")
     return f"Study of {date} UTC. {known[0].upper()}{known[1:]}."
 
 
-def gravity_words(data: Results) -> str:
+def gravity_words(data: PageData) -> str:
     """Escape speed at the site and bulk density of the body."""
     site = data.results["site"]
     return (
@@ -76,7 +76,7 @@ def gravity_words(data: Results) -> str:
     )
 
 
-def bed(data: Results) -> str:
+def bed(data: PageData) -> str:
     """Figure 1."""
     if data.bed is None:
         program = data.study["solver"]["command"]
@@ -98,7 +98,7 @@ def bed(data: Results) -> str:
     )
 
 
-def landing(data: Results) -> str:
+def landing(data: PageData) -> str:
     """Figure 2."""
     if data.landing is None:
         return ""
@@ -113,7 +113,7 @@ def landing(data: Results) -> str:
     )
 
 
-def counts(data: PaperResults) -> str:
+def counts(data: PaperPage) -> str:
     """Figure 3."""
     table, design, designs = data.results["node_counts"], data.study["design"], data.results["designs"]
     level, inputs = design["screening_level"], len(data.results["screening"]["inputs"])
@@ -137,7 +137,7 @@ def _runs(design: dict[str, int]) -> str:
     return f"{design['run_count']} runs" + (f" ({points} points, {count} times each)" if count > 1 else "")
 
 
-def sobol(data: PaperResults) -> str:
+def sobol(data: PaperPage) -> str:
     """Figure 4."""
     screening = data.results["screening"]
     leaders = [_leader(name, screening) for name in PAPER_OUTPUTS]
@@ -165,7 +165,7 @@ def _leader(name: str, screening: dict[str, Any]) -> str:
     )
 
 
-def errors(data: PaperResults) -> str:
+def errors(data: PaperPage) -> str:
     """Figure 5."""
     kept, every = (_explained(data.scores[stage]) for stage in ("test_kept", "test_all"))
     return (
@@ -185,7 +185,7 @@ def _explained(table: dict[str, Score]) -> str:
     return listing(parts)
 
 
-def scatter(data: PaperResults, colour_name: str) -> str:
+def scatter(data: PaperPage, colour_name: str) -> str:
     """Figure 6."""
     table = data.results["monte_carlo"]
     total, leaving = table["sample_count"], table["leaving_count"]
@@ -202,7 +202,7 @@ def scatter(data: PaperResults, colour_name: str) -> str:
     )
 
 
-def impact_map(data: Results) -> str:
+def impact_map(data: PageData) -> str:
     """Figure 7."""
     shares, site = data.results["shares"], data.results["site"]
     extents = " x ".join(f"{length:.0f}" for length in site["extents_m"])
@@ -218,7 +218,7 @@ def impact_map(data: Results) -> str:
     )
 
 
-def body(data: Results) -> str:
+def body(data: PageData) -> str:
     """Figure 8."""
     if not len(data.facet):
         return ""
@@ -235,7 +235,7 @@ def body(data: Results) -> str:
     )
 
 
-def rest(data: Results) -> str:
+def rest(data: PageData) -> str:
     """Figure 9."""
     table = data.results["rest"]
     soil, hard = table["soil"], table["hard"]
@@ -255,7 +255,7 @@ def rest(data: Results) -> str:
     )
 
 
-def _shape_words(data: Results) -> str:
+def _shape_words(data: PageData) -> str:
     """What to beware of where the places are not spread as the ellipses suggest."""
     is_gaussian = follows_gaussian(data.results["ellipses"], len(data.facet))
     return "" if is_gaussian else ", but the places are not Gaussian, and it says little of where they lie inside it"

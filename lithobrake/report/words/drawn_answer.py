@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
-from lithobrake.report.pages.page_data import Results, SequenceResults
+from lithobrake.report.pages.page_data import DrawnPage, PageData
 from lithobrake.report.tables.rare_tables import rare_warnings
 from lithobrake.report.words.captions import hours, listing
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
@@ -13,14 +13,14 @@ from lithobrake.vocabulary.percentages import interval_digits, percent, span
 FEW_BEDS = 12
 
 
-def action(data: Results) -> str:
+def action(data: PageData) -> str:
     """What the return fraction is of: landers that do this."""
     again = f"impact the surface again within {hours(data.study['flight']['duration'])}"
     holds = data.results["site"]["effective_acceleration_outward"] < 0.0
     return f"{again} or are captured where the ground holds them" if holds else again
 
 
-def has_interval(data: Results) -> bool:
+def has_interval(data: PageData) -> bool:
     """Whether the runs tell how sure the share is."""
     return data.results["returns"]["lower"] is not None
 
@@ -32,7 +32,7 @@ def interval(entry: Mapping[str, Any], level: float) -> str:
     return f"{percent(level)} interval {span(entry['lower'], entry['upper'])}"
 
 
-def drawn_things(data: SequenceResults) -> list[str]:
+def drawn_things(data: DrawnPage) -> list[str]:
     """What every run draws for itself beside its soil."""
     impact = data.study["impact"]
     place = impact["place"] or {}
@@ -51,7 +51,7 @@ def as_sentence(words: str) -> str:
     return f"{first}{words[1:].rstrip('.')}."
 
 
-def left_out(data: SequenceResults) -> str:
+def left_out(data: DrawnPage) -> str:
     """What the emulator was validated on: beds that it had not seen, or, where there is but one, runs."""
     return "held-out runs" if data.results["runs"]["beds"] == 1 else "held-out beds"
 
@@ -61,7 +61,7 @@ def outcome_label(word: str) -> str:
     return TouchdownOutcome(word).label if word in list(TouchdownOutcome) else word
 
 
-def missing_sentence(data: SequenceResults) -> str:
+def missing_sentence(data: DrawnPage) -> str:
     """How many runs have no outcome, and between which shares the truth then lies; empty where all have one."""
     missing, returns = data.results["runs"]["missing"], data.results["returns"]
     if not missing["count"]:
@@ -75,7 +75,7 @@ def missing_sentence(data: SequenceResults) -> str:
     )
 
 
-def warnings(data: SequenceResults) -> list[str]:
+def warnings(data: DrawnPage) -> list[str]:
     """What makes the numbers of the page weaker than they look."""
     found = [
         _said(data.results["runs"]["warning"]),
@@ -87,7 +87,7 @@ def warnings(data: SequenceResults) -> list[str]:
     return [words for words in found if words]
 
 
-def _few_beds(data: SequenceResults) -> str:
+def _few_beds(data: DrawnPage) -> str:
     beds = data.results["runs"]["beds"]
     if not has_interval(data) or beds >= FEW_BEDS:
         return ""
@@ -97,7 +97,7 @@ def _few_beds(data: SequenceResults) -> str:
     )
 
 
-def emulator_outside(data: SequenceResults) -> str:
+def emulator_outside(data: DrawnPage) -> str:
     """That the emulator contradicts the runs it was made from, if it does."""
     return _said(data.results["emulator"]["warning"])
 

@@ -8,7 +8,7 @@ from lithobrake.report.figures.scatter_figure import DRAWN_COUNT
 from lithobrake.report.figures.style import output
 from lithobrake.report.figures.variance_figure import SOIL, known_parts, part_words
 from lithobrake.report.pages.html import number
-from lithobrake.report.pages.page_data import SequenceResults
+from lithobrake.report.pages.page_data import DrawnPage
 from lithobrake.report.words.captions import input_words, listing, thousands
 from lithobrake.report.words.drawn_answer import drawn_things, emulator_outside, left_out, missing_sentence
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
@@ -25,7 +25,7 @@ def sign(name: str) -> str:
     return "the return fraction" if name == RETURNS else shown.sign or shown.words
 
 
-def runs(data: SequenceResults) -> str:
+def runs(data: DrawnPage) -> str:
     """Figure 3."""
     table = data.results["runs"]
     beds, outcomes = table["beds"], table["outcomes"]
@@ -49,7 +49,7 @@ def runs(data: SequenceResults) -> str:
     return " ".join(filter(None, said))
 
 
-def _quantiles(data: SequenceResults) -> str:
+def _quantiles(data: DrawnPage) -> str:
     """Median with its interval, and the middle nine tenths, of speed and elevation."""
     found = []
     for name in ("speed_out", "elevation_out"):
@@ -66,14 +66,14 @@ def _quantiles(data: SequenceResults) -> str:
     return f"{words[:1].upper()}{words[1:]}"
 
 
-def _ends(data: SequenceResults, entry: Mapping[str, Any], factor: float) -> str:
+def _ends(data: DrawnPage, entry: Mapping[str, Any], factor: float) -> str:
     """The interval of a number in brackets, where it has one."""
     if entry["lower"] is None:
         return ""
     return f" ({percent(data.level)} interval {number(entry['lower'] * factor)} to {number(entry['upper'] * factor)})"
 
 
-def variance(data: SequenceResults) -> str:
+def variance(data: DrawnPage) -> str:
     """Figure 4."""
     records = {name: record for name, record in data.results["variance_shares"].items() if record}
     if not records:
@@ -114,7 +114,7 @@ def _main_input(record: Mapping[str, Any]) -> str:
     return f"; most of it {input_words(name)}" if is_main else ""
 
 
-def calibration(data: SequenceResults) -> str:
+def calibration(data: DrawnPage) -> str:
     """Figure 5."""
     emulator = data.results["emulator"]
     scores = emulator["scores"]
@@ -139,7 +139,7 @@ def calibration(data: SequenceResults) -> str:
     return " ".join([*said, emulator["statement"]])
 
 
-def samples(data: SequenceResults, colour_name: str | None) -> str:
+def samples(data: DrawnPage, colour_name: str | None) -> str:
     """Figure 6."""
     if colour_name is None:
         return ""
@@ -155,7 +155,7 @@ def samples(data: SequenceResults, colour_name: str | None) -> str:
     return " ".join(filter(None, [f"{count}{first}; {colour}.", emulator_outside(data)]))
 
 
-def aims(data: SequenceResults) -> str:
+def aims(data: DrawnPage) -> str:
     """The figure of the aims."""
     table = data.results["aim"]
     crossed = " Aims that the limits rule out are crossed." if table["within"] else ""

@@ -23,7 +23,7 @@ from lithobrake.report.figures.rest_figure import RestMap, rest_figure
 from lithobrake.report.figures.scatter_figure import scatter_figure
 from lithobrake.report.figures.sobol_figure import sobol_figure
 from lithobrake.report.figures.style import FATE_COLOURS, INK, PAPER_OUTPUTS, figure_style, input_label
-from lithobrake.report.pages.page_data import SequenceResults
+from lithobrake.report.pages.page_data import DrawnPage
 from lithobrake.report.pages.shared_plots import draw_map, draw_rest
 
 ELLIPSES = {
@@ -248,7 +248,7 @@ def test_shares_end_at_the_whole_and_have_their_figures_beside_the_axis() -> Non
     assert axes.get_xlabel() == "share of all 100 000 samples [%], with 90 % interval"
 
 
-def test_one_fate_has_one_colour_in_every_figure(drawn: SequenceResults) -> None:
+def test_one_fate_has_one_colour_in_every_figure(drawn: DrawnPage) -> None:
     with figure_style():
         figures = draw_map(drawn), draw_rest(drawn)
     found: dict[str, set[str]] = {}

@@ -25,7 +25,7 @@ from lithobrake.emulator import Emulator, law_tables
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.runs.energy_bound import bound_numbers, energy_bound
 from lithobrake.report.live.packed import packed, script_data
-from lithobrake.report.pages.page_data import SequenceResults
+from lithobrake.report.pages.page_data import DrawnPage
 from lithobrake.study import check_tables
 
 from ...pipeline.synthetic_lander import synthetic_tables
@@ -191,7 +191,7 @@ def test_every_flown_start_is_met_and_the_nearest_speeds_are_near() -> None:
     assert len(set(found)) > 1500
 
 
-def test_the_page_has_the_explorer_with_all_its_numbers(drawn_page: str, drawn: SequenceResults) -> None:
+def test_the_page_has_the_explorer_with_all_its_numbers(drawn_page: str, drawn: DrawnPage) -> None:
     data = explorer_data(drawn_page)
     assert data["law"]["location"]["shape"] == list(drawn.explorer.tables["location"].shape)
     assert data["flown"]["starts"]["shape"] == [drawn.flights.row_count, 3]

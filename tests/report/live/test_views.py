@@ -8,7 +8,7 @@ import pytest
 
 from lithobrake.report.figures.scene import Scene
 from lithobrake.report.live.views import LARGEST, landing_arrays, view_sections
-from lithobrake.report.pages.page_data import PaperResults
+from lithobrake.report.pages.page_data import PaperPage
 from lithobrake.results import MovingBodies
 
 from ..finished_studies import OCTAHEDRON, OCTAHEDRON_FACES
@@ -67,7 +67,7 @@ def test_faces_count_from_the_first_vertex_of_all_and_have_the_colour_of_their_b
     assert (arrays["paint"][:8, 2] < arrays["paint"][:8, 0]).all()
 
 
-def test_the_page_says_how_far_places_are_rounded(paper: PaperResults) -> None:
+def test_the_page_says_how_far_places_are_rounded(paper: PaperPage) -> None:
     landing, body = view_sections(paper)
     assert "12 grains and the lander in 8 pictures" in landing.html
     assert "Places are rounded to" in landing.html

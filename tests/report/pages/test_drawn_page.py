@@ -15,7 +15,7 @@ import pytest
 from lithobrake.report import write_report
 from lithobrake.report.pages.drawn_page import sequence_content
 from lithobrake.report.pages.html import PageTable
-from lithobrake.report.pages.page_data import SequenceResults, page_results
+from lithobrake.report.pages.page_data import DrawnPage, page_results
 from lithobrake.report.tables import drawn_tables as sequence_tables
 from lithobrake.report.tables.dispersion_tables import parts
 from lithobrake.report.tables.rare_tables import rare_tables
@@ -28,12 +28,12 @@ from lithobrake.vocabulary.percentages import with_interval
 ONE_BED: dict[str, Any] = {"lower": None, "upper": None, "next_bed": None, "why": "One bed was poured."}
 
 
-def changed(data: SequenceResults, **tables: Mapping[str, Any]) -> SequenceResults:
+def changed(data: DrawnPage, **tables: Mapping[str, Any]) -> DrawnPage:
     """The results with other entries in some of their tables."""
     return replace(data, results=data.results | {name: data.results[name] | new for name, new in tables.items()})
 
 
-def table_of(data: SequenceResults, title: str) -> PageTable:
+def table_of(data: DrawnPage, title: str) -> PageTable:
     return next(table for table in sequence_tables.tables(data) if table.title.startswith(title))
 
 
@@ -42,7 +42,7 @@ def percents(words: str) -> list[float]:
     return [float(one) for one in re.findall(r"(-?[\d.]+) %", words)]
 
 
-def test_the_product_of_an_archive_stands_beside_the_body(drawn: SequenceResults) -> None:
+def test_the_product_of_an_archive_stands_beside_the_body(drawn: DrawnPage) -> None:
     product = "urn:nasa:pds:rocks:data:rock::3.0"
     assert product in captions.place_words(changed(drawn, site={"product_id": product}))[0]
 
@@ -54,12 +54,12 @@ def test_every_figure_is_there_with_its_file(drawn_page: str, sequence_folder: P
     assert len(re.findall(r'<img alt="[^"]+" src="data:image/png;base64,', drawn_page)) == len(names)
 
 
-def test_the_page_opens_with_the_answer_of_the_summary(drawn: SequenceResults) -> None:
+def test_the_page_opens_with_the_answer_of_the_summary(drawn: DrawnPage) -> None:
     words = captions.answer(drawn)
     assert all(sentence in words for sentence in drawn.results["answer"])
 
 
-def test_the_share_has_its_interval_in_the_first_tile(drawn: SequenceResults) -> None:
+def test_the_share_has_its_interval_in_the_first_tile(drawn: DrawnPage) -> None:
     tile, returns = sequence_tables.tiles(drawn)[0], drawn.results["returns"]
     assert float(tile.value) == round(100 * returns["share"])
     assert f"{100 * returns['lower']:.0f}-{100 * returns['upper']:.0f} %" in tile.words
@@ -67,7 +67,7 @@ def test_the_share_has_its_interval_in_the_first_tile(drawn: SequenceResults) ->
     assert sequence_tables.tiles(changed(drawn, returns=narrow))[0].value == f"{100 * returns['share']:.1f}"
 
 
-def test_warnings_name_few_beds_and_what_the_summary_warns_of(drawn: SequenceResults) -> None:
+def test_warnings_name_few_beds_and_what_the_summary_warns_of(drawn: DrawnPage) -> None:
     gravity = drawn.results["site"]["gravity_warning"]
     lost, last = warnings(changed(drawn, emulator={"warning": None}))
     assert lost[:-1] == drawn.results["runs"]["warning"]
@@ -78,13 +78,13 @@ def test_warnings_name_few_beds_and_what_the_summary_warns_of(drawn: SequenceRes
     assert warnings(calm) == []
 
 
-def test_the_first_warning_of_the_page_is_that_of_missing_landings(drawn: SequenceResults, drawn_page: str) -> None:
+def test_the_first_warning_of_the_page_is_that_of_missing_landings(drawn: DrawnPage, drawn_page: str) -> None:
     first = re.search(r'<p class="warning">(.*?)</p>', drawn_page)
     assert first is not None
     assert first[1][:-1] == drawn.results["runs"]["warning"]
 
 
-def test_tile_answer_tables_and_figure_have_one_value_of_the_return_fraction(drawn: SequenceResults) -> None:
+def test_tile_answer_tables_and_figure_have_one_value_of_the_return_fraction(drawn: DrawnPage) -> None:
     returns = drawn.results["returns"]
     share, held = f"{100 * returns['share']:.0f} %", f"{100 * returns['lower']:.0f}-{100 * returns['upper']:.0f} %"
     tile = sequence_tables.tiles(drawn)[0]
@@ -97,7 +97,7 @@ def test_tile_answer_tables_and_figure_have_one_value_of_the_return_fraction(dra
     assert share in captions.answer(drawn)
 
 
-def test_the_outcomes_of_the_runs_add_up_and_each_stands_once(drawn: SequenceResults) -> None:
+def test_the_outcomes_of_the_runs_add_up_and_each_stands_once(drawn: DrawnPage) -> None:
     table, shares = table_of(drawn, "After the first bounce"), drawn.results["shares"]
     assert len({row[0] for row in table.rows}) == len(table.rows)
     whole = parts(drawn)
@@ -107,14 +107,14 @@ def test_the_outcomes_of_the_runs_add_up_and_each_stands_once(drawn: SequenceRes
     assert not any(row[0].startswith("return fraction") for row in table_of(outward, "After the first bounce").rows)
 
 
-def test_a_prediction_interval_for_a_new_bed_has_the_size_of_the_bed(drawn: SequenceResults) -> None:
+def test_a_prediction_interval_for_a_new_bed_has_the_size_of_the_bed(drawn: DrawnPage) -> None:
     low, high = drawn.results["returns"]["next_bed"]
     row = next(row for row in table_of(drawn, "The answer").rows if "new bed" in row[0])
     assert row == ["prediction interval for a new bed of 0.55 x 0.55 m", f"{100 * low:.0f}-{100 * high:.0f} %"]
     assert "new bed" not in captions.answer(drawn)
 
 
-def test_the_caption_of_what_decides_has_every_part_with_its_interval(drawn: SequenceResults) -> None:
+def test_the_caption_of_what_decides_has_every_part_with_its_interval(drawn: DrawnPage) -> None:
     words = sequence_captions.variance(changed(drawn, variance_shares={"speed_out": record(), "spin_out": record()}))
     for shown in ("at least 6 % (1-11 %; most", "3 % (0-15 %)", "everything else 91 % (80-97 %)", "0.4 % (0.3-1.0 %)"):
         assert shown in words
@@ -139,7 +139,7 @@ def test_rare_limit_states_have_their_levels_a_figure_and_a_warning(sequence_fol
     for name, content in (("fast", rare()), ("never", never)):
         (folder / f"rare_{name}.json").write_text(json.dumps(content), encoding="utf-8")
     found = page_results(open_study(folder))
-    assert isinstance(found, SequenceResults)
+    assert isinstance(found, DrawnPage)
     content = sequence_content(found)
     assert "fast: Few beds led to it: raise bed.bed_count." in content.warnings
     plot = content.plots[-1]
@@ -170,7 +170,7 @@ def record() -> dict[str, Any]:
     }  # fmt: skip
 
 
-def test_the_caption_of_the_calibration_counts_what_luck_does_not_explain(drawn: SequenceResults) -> None:
+def test_the_caption_of_the_calibration_counts_what_luck_does_not_explain(drawn: DrawnPage) -> None:
     narrow = {"pit": [60, 10, 10, 10, 10, 10, 10, 10, 10, 60], "band_90": 0.6}
     scores = {"speed_out": narrow, "joint": {"energy_skill": 0.1}}
     words = sequence_captions.calibration(changed(drawn, emulator={"scores": scores}))
@@ -179,7 +179,7 @@ def test_the_caption_of_the_calibration_counts_what_luck_does_not_explain(drawn:
     assert words.endswith(drawn.results["emulator"]["statement"])
 
 
-def test_the_caption_of_the_runs_has_their_outcomes_and_quantiles(drawn: SequenceResults) -> None:
+def test_the_caption_of_the_runs_has_their_outcomes_and_quantiles(drawn: DrawnPage) -> None:
     words, runs = sequence_captions.runs(drawn), drawn.results["runs"]
     for number in (runs["count"], runs["beds"], *runs["outcomes"].values()):
         assert re.search(rf"\b{number}\b", words)
@@ -188,7 +188,7 @@ def test_the_caption_of_the_runs_has_their_outcomes_and_quantiles(drawn: Sequenc
         assert f"{end:.3g}" in words
 
 
-def test_a_colour_that_says_nothing_is_called_so(drawn: SequenceResults) -> None:
+def test_a_colour_that_says_nothing_is_called_so(drawn: DrawnPage) -> None:
     colour = sequence_tables.colour_input(drawn)
     follows, alone = (
         sequence_captions.samples(changed(drawn, emulator={"follows_inputs": is_so}), colour) for is_so in (True, False)
@@ -197,14 +197,14 @@ def test_a_colour_that_says_nothing_is_called_so(drawn: SequenceResults) -> None
     assert "whatever the inputs" in alone
 
 
-def test_every_output_of_the_runs_has_its_numbers_and_their_intervals(drawn: SequenceResults) -> None:
+def test_every_output_of_the_runs_has_its_numbers_and_their_intervals(drawn: DrawnPage) -> None:
     table, speed = table_of(drawn, "Outputs of the landings"), drawn.results["outputs"]["speed_out"]
     row = next(row for row in table.rows if row[1] == "m/s")
     assert row[2] == f"{speed['mean']['value']:.3g} ({speed['mean']['lower']:.3g} to {speed['mean']['upper']:.3g})"
     assert sum(" to " in cell for cell in row) == 4
 
 
-def test_an_azimuth_has_a_direction_and_a_resultant_length(drawn: SequenceResults) -> None:
+def test_an_azimuth_has_a_direction_and_a_resultant_length(drawn: DrawnPage) -> None:
     azimuth = {
         "mean_direction": {"value": math.radians(5.0), "lower": math.radians(-10.0), "upper": math.radians(20.0)},
         "resultant_length": {"value": 0.2, "lower": 0.1, "upper": 0.3}, "of": "the landings",
@@ -214,7 +214,7 @@ def test_an_azimuth_has_a_direction_and_a_resultant_length(drawn: SequenceResult
     assert not any(one.title.startswith("Directions") for one in sequence_tables.tables(drawn))
 
 
-def test_touchdowns_without_a_bed_have_a_page_without_one(drawn: SequenceResults) -> None:
+def test_touchdowns_without_a_bed_have_a_page_without_one(drawn: DrawnPage) -> None:
     alone = replace(drawn, bed=None, landing=None, results=drawn.results | {"beds": []})
     content = sequence_content(alone)
     assert "Beds" not in {table.title for table in content.tables}
@@ -222,7 +222,7 @@ def test_touchdowns_without_a_bed_have_a_page_without_one(drawn: SequenceResults
     assert {plot.name for plot in content.plots if not plot.sentence} == {"landing"}
 
 
-def test_side_runs_have_their_numbers(drawn: SequenceResults) -> None:
+def test_side_runs_have_their_numbers(drawn: DrawnPage) -> None:
     table, side = table_of(drawn, "Side runs"), drawn.results["runs"]["side_runs"]
     assert re.findall(r"\d+", table.note)[:2] == [str(side["soil_pairs"]), str(side["twins"])]
     assert float(table.rows[0][2].split()[0]) == pytest.approx(side["chaos_deviation"]["speed_out"]["value"], rel=5e-3)
@@ -230,7 +230,7 @@ def test_side_runs_have_their_numbers(drawn: SequenceResults) -> None:
     assert not [one for one in sequence_tables.tables(without) if one.title == "Side runs"]
 
 
-def test_site_and_grain_sizes_are_no_inputs_of_a_run(drawn: SequenceResults) -> None:
+def test_site_and_grain_sizes_are_no_inputs_of_a_run(drawn: DrawnPage) -> None:
     law = {"distribution": "uniform", "lower": 0.0, "upper": 360.0}
     study = drawn.study | {
         "site": drawn.study["site"] | {"heading_deg": law}, "bed": drawn.study["bed"] | {"diameter": law},
@@ -240,14 +240,14 @@ def test_site_and_grain_sizes_are_no_inputs_of_a_run(drawn: SequenceResults) -> 
     assert {row[1].partition(".")[0] for row in inputs.rows} == {"grain", "impact"}
 
 
-def test_what_the_emulator_found_stands_beside_the_inputs(drawn: SequenceResults) -> None:
+def test_what_the_emulator_found_stands_beside_the_inputs(drawn: DrawnPage) -> None:
     found = changed(drawn, emulator={"found_inputs": ["grain.friction"]})
     told = {row[1]: row[-1] for row in table_of(found, "Inputs").rows if row[-1]}
     assert told.pop("grain.friction") == "yes"
     assert set(told.values()) == {"no"}
 
 
-def test_one_bed_has_a_page_without_intervals(drawn: SequenceResults) -> None:
+def test_one_bed_has_a_page_without_intervals(drawn: DrawnPage) -> None:
     def bare(entry: dict[str, Any]) -> dict[str, Any]:
         return entry | {"lower": None, "upper": None}
 
@@ -269,7 +269,7 @@ def test_one_bed_has_a_page_without_intervals(drawn: SequenceResults) -> None:
     assert not any("held-out beds" in table.title for table in content.tables)
 
 
-def test_what_a_study_has_not_is_left_out(drawn: SequenceResults) -> None:
+def test_what_a_study_has_not_is_left_out(drawn: DrawnPage) -> None:
     none = dict.fromkeys(("soil", "hard", "equivalent"))
     alone = changed(drawn, rest=none | {"why_no_soil": "rest.count is 0"})
     empty = replace(alone, landing=None, facet=drawn.facet[:0], results=alone.results | {"ellipses": None})

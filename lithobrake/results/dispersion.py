@@ -1,0 +1,167 @@
+"""Where the landers end: flights to the next impact, ellipses, and journeys until they are at rest."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from lithobrake.results.json_values import INLINE
+from lithobrake.results.shares import CountedShare, Level, SampleShares
+
+
+@dataclass(frozen=True)
+class ImpactNumber:
+    """A number of the flights that end on the body: of the runs of a drawn study, or of samples."""
+
+    quantiles: Mapping[str, float] = field(metadata=INLINE)
+    """by level, as "quantile_0.5" """
+    intervals: Mapping[str, tuple[float, float] | None] | None = None
+    """of a drawn study: lower and upper bound (90 %) of each quantile over beds not in the study; null where there is
+    none"""
+    of: str | None = None
+    """of a drawn study: which landings it describes, in words"""
+
+
+@dataclass(frozen=True)
+class ImpactNumbers:
+    """The flights that end on the body; without keys where none does."""
+
+    time_s: ImpactNumber | None = None
+    """time of flight [s]"""
+    impact_speed: ImpactNumber | None = None
+    """speed of the impact against the ground [m/s]"""
+    impact_incidence_deg: ImpactNumber | None = None
+    """angle of that velocity from the inward normal [deg]"""
+
+
+@dataclass(frozen=True)
+class GravityTableError:
+    """Errors of the table of gravity over the mean gravity on the surface."""
+
+    median: float
+    """median over points"""
+    p95: float
+    """the same, 95th percentile"""
+    largest: float
+    """the same, largest"""
+    point_count: int
+    """points looked at"""
+
+
+@dataclass(frozen=True)
+class FlightChecks:
+    """How exact all flights are (flights.json)."""
+
+    gravity: str
+    """table or exact"""
+    gravity_table_error: GravityTableError | None
+    """null where the gravity is exact"""
+    jacobi_flight_count: int
+    """flights whose Jacobi constant was looked at, without the partner"""
+    jacobi_drift_median_m2_s2: float | None
+    """how far it drifts, in the median [m2/s2]; null without flights"""
+    jacobi_drift_largest_m2_s2: float | None
+    """the same, largest"""
+
+
+@dataclass(frozen=True)
+class FlightResults:
+    """The flights that end on the body, of the runs of a drawn study or of samples, and how exact all flights are."""
+
+    impacts: ImpactNumbers = field(metadata=INLINE)
+    """the flights that end on the body"""
+    checks: FlightChecks = field(metadata=INLINE)
+    """how exact all flights are"""
+
+
+@dataclass(frozen=True)
+class EllipseShare:
+    """An ellipse about the middle."""
+
+    share: float
+    """of the places inside"""
+    semi_axes_deg: tuple[float, float]
+    """longer and shorter half axis, as angles from the centre of the body"""
+    semi_axes_m: tuple[float, float]
+    """the same angles times the radius at the middle"""
+
+
+@dataclass(frozen=True)
+class LandingEllipses:
+    """Ellipses that hold the places of the impacts, or of the landers at rest; null where there are too few."""
+
+    latitude_deg: float
+    """of the middle"""
+    longitude_deg: float
+    """of the middle"""
+    heading_deg: float
+    """of the longer axis, from north toward east"""
+    shares: tuple[EllipseShare, ...]
+    """each ellipse"""
+
+
+@dataclass(frozen=True)
+class WithoutScatter:
+    """The samples of the expansion alone, without the scatter from run to run."""
+
+    shares: SampleShares
+    """what became of them"""
+    flights: ImpactNumbers
+    """those that end on the body"""
+    ellipses: LandingEllipses | None
+    """where they do"""
+
+
+@dataclass(frozen=True, kw_only=True)
+class GroundResults:
+    """Where the followed samples end on a ground (docs/flights.md).
+
+    settled, lofted, outside, flying, escaped, partner, sliding or bouncing; on soil, hard ground, and in a drawn study
+    hard ground with the restitution that the soil implies (equivalent). null where none were followed. Quantiles are of
+    the landers at rest, and absent where there is none.
+    """
+
+    sample_count: int
+    """samples followed"""
+    outcomes: Mapping[str, CountedShare] = field(metadata=INLINE)
+    """by outcome"""
+    slid: CountedShare
+    """moved along the ground at all, however they ended"""
+    time_s: Mapping[str, float] | None = None
+    """time until rest [s], by level, as "quantile_0.5" """
+    path_length: Mapping[str, float] | None = None
+    """sum of the straight lines between impacts [m], likewise"""
+    rebounds: Mapping[str, float] | None = None
+    """impacts after which the lander went on, likewise"""
+    slid_length: Mapping[str, float] | None = None
+    """distance along the ground, in contact with it [m], likewise"""
+    slid_time_s: Mapping[str, float] | None = None
+    """time of that [s], part of time_s, likewise"""
+    ellipses: LandingEllipses | None
+    """where the landers are at rest"""
+    outside_too_slow: CountedShare
+    """of those of unknown outcome: slower than any run"""
+    of: str
+    """which journeys the table describes and what they depend on, in words: hard ground takes no soil, bed or emulator
+    of the study"""
+    interval: Level | None = field(metadata=INLINE)
+    """of the shares; none on the equivalent ground, and on the soil of a paper study"""
+
+    @property
+    def counts(self) -> dict[str, CountedShare]:
+        """Every share of the table by its key."""
+        return {**self.outcomes, "slid": self.slid, "outside_too_slow": self.outside_too_slow}
+
+
+@dataclass(frozen=True)
+class RestResults:
+    """From bounce to bounce until the landers are at rest."""
+
+    why_no_soil: str | None
+    """why journeys on the soil end with the first impact, in a sentence, or null"""
+    trained_ranges: Mapping[str, tuple[float, float]]
+    """smallest and largest value of each input in runs in which all vary, in its unit"""
+    soil: GroundResults | None
+    """on the soil"""
+    hard: GroundResults | None
+    """on hard ground"""
+    equivalent: GroundResults | None
+    """on hard ground like the soil"""

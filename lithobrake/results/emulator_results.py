@@ -1,0 +1,54 @@
+"""How well the emulator of a drawn study predicts landings on beds that it has not seen."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from lithobrake.results.json_values import INLINE
+
+
+@dataclass(frozen=True)
+class JointScore:
+    """The score of all outputs together."""
+
+    energy_skill: float
+    """1 - energy score over that of drawing runs, whatever the inputs"""
+
+
+@dataclass(frozen=True)
+class OutputScore:
+    """The scores of an output on held-out beds."""
+
+    crps_skill: float
+    """1 - CRPS over that of drawing runs, whatever the inputs"""
+    band_90: float
+    """share of runs inside the middle 90 % of their predictive distribution"""
+    pit: tuple[int, ...]
+    """runs by where in its predictive distribution each lies (PIT value), in ten steps"""
+
+
+@dataclass(frozen=True)
+class EmulatorScores:
+    """Scores on held-out beds."""
+
+    joint: JointScore
+    """of all outputs together"""
+    outputs: Mapping[str, OutputScore] = field(metadata=INLINE)
+    """by output"""
+
+
+@dataclass(frozen=True)
+class EmulatorResults:
+    """The emulator of a drawn study, on held-out beds (docs/emulator.md)."""
+
+    of: str
+    """which landings it describes, in words"""
+    statement: str
+    """what it makes of the inputs, in a sentence"""
+    follows_inputs: bool
+    """whether samples depend on the inputs; else each is one of the runs"""
+    found_inputs: tuple[str, ...]
+    """significant inputs: they change a mean, alone or by products; one test of 90 % for all"""
+    scores: EmulatorScores
+    """how well it predicts"""
+    warning: str | None
+    """that its share lies outside the interval of the runs, in a sentence; null where it does not"""

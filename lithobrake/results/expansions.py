@@ -1,0 +1,147 @@
+"""The designs, expansions, scores and samples of a paper study."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from lithobrake.results.json_values import INLINE
+
+Ends = tuple[float | None, float | None]
+ByInput = Mapping[str, float]
+IntervalByInput = Mapping[str, tuple[float, float]]
+
+
+@dataclass(frozen=True)
+class NodeCounts:
+    """Nodes of grids, whatever design the study has."""
+
+    input_counts: tuple[int, ...]
+    """numbers of inputs, the rows of the two tables"""
+    levels: tuple[int, ...]
+    """levels, their columns"""
+    tensor: tuple[tuple[int, ...], ...]
+    """nodes of the full tensor grid"""
+    smolyak: tuple[tuple[int, ...], ...]
+    """nodes of the sparse grid"""
+
+
+@dataclass(frozen=True)
+class DesignCounts:
+    """The runs of a design: screening, refined, test_kept, test_all."""
+
+    point_count: int
+    """points, each run replicate_count times"""
+    replicate_count: int
+    """runs at every point"""
+    run_count: int
+    """runs, of which several may be one in the ledger"""
+    with_outputs: int
+    """runs after which the lander left, with all outputs"""
+    outcomes: Mapping[str, int]
+    """runs that ended so; failed: runs without an outcome"""
+
+
+@dataclass(frozen=True)
+class OutputFit:
+    """How an output was fitted."""
+
+    method: str
+    """ols, omp, lars or gaussian_process"""
+    term_count: int
+    """terms of this output"""
+    condition_number: float | None
+    """of the least squares; null for a Gaussian process"""
+    rmse_estimate: float
+    """root-mean-square error expected at a new run with scatter, in the output's unit"""
+    rrmse_estimate: float | None
+    """the same over the standard deviation of the runs; null where they do not vary"""
+    noise_std: float | None
+    """standard deviation between equal runs, in the output's unit; null where not known"""
+    noise_from: str | None
+    """source of that: repeated points, the nugget of a Gaussian process, or a smaller error"""
+    noise_share: float | None
+    """share of the variance of the runs that is scatter; null where not known"""
+
+
+@dataclass(frozen=True)
+class ExpansionResults:
+    """An expansion: screening in all inputs, refined in the kept ones."""
+
+    inputs: tuple[str, ...]
+    """inputs by dotted key, in the order of the study file"""
+    term_count: int
+    """terms that any output uses"""
+    degree: int
+    """highest total degree of a term"""
+    fits: Mapping[str, OutputFit]
+    """by output: how it was fitted"""
+    mean: Mapping[str, float]
+    """by output: mean over the distributions of the inputs"""
+    std: Mapping[str, float]
+    """by output: standard deviation likewise, without scatter from run to run"""
+    sobol_first: Mapping[str, ByInput]
+    """by output and input: share of the variance of the expansion that the input explains alone, freed of scatter"""
+    sobol_total: Mapping[str, ByInput]
+    """the same with all its interactions"""
+    sobol_first_interval: Mapping[str, IntervalByInput]
+    """its 95 % interval, by drawing residuals of the runs with replacement: lower, upper"""
+    sobol_total_interval: Mapping[str, IntervalByInput]
+    """likewise"""
+
+
+@dataclass(frozen=True, kw_only=True)
+class OutputErrors:
+    """Errors of an expansion on a set of runs, of one output.
+
+    screening and refined: on their own runs; test_screening, test_kept and test_all: on runs that they have not seen.
+    """
+
+    mape: float | None
+    """mean absolute percentage error [%]; null where a true value is 0"""
+    q2: float | None
+    """explained share of the variance, 1 - rrmse squared; null where the runs do not vary"""
+    rrmse: float | None
+    """rmse over std; null where the runs do not vary"""
+    rmse: float
+    """root-mean-square error, in the unit of the output"""
+    std: float
+    """standard deviation of the runs, in the unit of the output"""
+    ape: tuple[float | None, ...] | None = None
+    """absolute percentage error of every run [%], in scores.json alone; null where the true value is 0"""
+    mape_interval: Ends
+    """95 % interval, by drawing runs with replacement: lower, upper; null: no such end"""
+    rmse_interval: Ends
+    """likewise"""
+    rrmse_interval: Ends
+    """likewise"""
+    q2_interval: Ends
+    """likewise"""
+
+
+@dataclass(frozen=True)
+class SampledOutput:
+    """An output over the samples of the refined expansion that leave, in its unit."""
+
+    mean: float
+    """mean"""
+    std: float
+    """standard deviation"""
+    quantiles: Mapping[str, float] = field(metadata=INLINE)
+    """by level, as "quantile_0.5" """
+
+
+@dataclass(frozen=True)
+class MonteCarlo:
+    """The samples of the emulator; results.outputs has the outputs."""
+
+    sample_count: int
+    """samples"""
+    leaving_count: int
+    """samples that leave the surface"""
+
+
+@dataclass(frozen=True)
+class ExpansionSamples(MonteCarlo):
+    """The samples of the refined expansion."""
+
+    outputs: Mapping[str, SampledOutput]
+    """by output; empty where no sample leaves"""

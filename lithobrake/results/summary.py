@@ -1,0 +1,173 @@
+"""What came out of a study, as summary.json and estimates.json hold it: every key with its type, meaning and unit.
+
+docs/summary.md is made of the words beneath the fields. Numbers are in SI where no unit is named.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from lithobrake.results.aims import AimResults
+from lithobrake.results.dispersion import FlightResults, ImpactNumbers, LandingEllipses, RestResults, WithoutScatter
+from lithobrake.results.emulator_results import EmulatorResults
+from lithobrake.results.expansions import (
+    DesignCounts,
+    ExpansionResults,
+    ExpansionSamples,
+    MonteCarlo,
+    NodeCounts,
+    OutputErrors,
+)
+from lithobrake.results.limit_state_results import LimitStateResult
+from lithobrake.results.run_results import OutputDirection, OutputEstimate, OutputRange, RunResults, VarianceParts
+from lithobrake.results.shares import LandingShares, ReturnFraction, RunShares, SampleShares
+from lithobrake.results.site_results import BedNumbers, SiteResults
+
+
+@dataclass(frozen=True)
+class Estimates:
+    """What the runs of a drawn study say, as estimates.json holds it."""
+
+    returns: ReturnFraction
+    """the return fraction"""
+    shares: RunShares
+    """what became of the landings"""
+    flights: ImpactNumbers
+    """the flights of the runs that end on the body"""
+    variance_shares: Mapping[str, VarianceParts | None]
+    """by output: parts of its variance"""
+    outputs: Mapping[str, OutputEstimate | OutputDirection]
+    """each output over the runs"""
+    runs: RunResults
+    """how the runs ended"""
+
+
+@dataclass(frozen=True)
+class DrawnResults:
+    """What came out of a drawn study; two executions of one study have the same."""
+
+    units: Mapping[str, str]
+    """unit of each output of the emulator"""
+    beds: tuple[BedNumbers, ...]
+    """each bed"""
+    returns: ReturnFraction
+    """the return fraction"""
+    shares: LandingShares
+    """what became of the landings"""
+    flights: FlightResults
+    """the flights of the runs that end on the body"""
+    variance_shares: Mapping[str, VarianceParts | None]
+    """by output: parts of its variance"""
+    outputs: Mapping[str, OutputEstimate | OutputDirection]
+    """each output over the runs"""
+    runs: RunResults
+    """how the runs ended"""
+    outputs_of_runs: Mapping[str, OutputRange]
+    """what else the touchdowns gave"""
+    site: SiteResults
+    """body and site"""
+    monte_carlo: MonteCarlo
+    """the samples of the emulator"""
+    ellipses: LandingEllipses | None
+    """of the impacts of the samples"""
+    without_scatter: WithoutScatter | None
+    """null: samples of an emulator have no expansion alone"""
+    rest: RestResults
+    """where journeys end"""
+    limit_states: Mapping[str, LimitStateResult]
+    """each limit state of the study file; empty where it asks for none"""
+    aim: AimResults | None
+    """delivery options; null where the study file has none"""
+    emulator: EmulatorResults
+    """how well the emulator predicts"""
+    answer: tuple[str, ...]
+    """what becomes of the landers, over what that holds, and what is missing, in sentences"""
+    headline: tuple[str, ...]
+    """the answer, then the most informative numbers, in sentences"""
+
+
+@dataclass(frozen=True)
+class PaperResults:
+    """What came out of a paper study; two executions of one study have the same."""
+
+    units: Mapping[str, str]
+    """unit of each output of the expansions"""
+    beds: tuple[BedNumbers, ...]
+    """each bed"""
+    node_counts: NodeCounts
+    """what grids cost"""
+    designs: Mapping[str, DesignCounts]
+    """the runs of each design"""
+    outputs_of_runs: Mapping[str, OutputRange]
+    """what else the touchdowns gave"""
+    screening: ExpansionResults
+    """the expansion in all inputs"""
+    refined: ExpansionResults
+    """the expansion in the kept inputs"""
+    kept_inputs: tuple[str, ...]
+    """inputs that the refined design varies, by dotted key"""
+    kept_share: Mapping[str, float]
+    """by output: share of the variance of the screening expansion that the kept inputs explain together"""
+    scores: Mapping[str, Mapping[str, OutputErrors]]
+    """errors of the expansions by set of runs and output; scores.json has those of single runs beside them"""
+    monte_carlo: ExpansionSamples
+    """the samples of the refined expansion"""
+    site: SiteResults
+    """body and site"""
+    variance_shares: Mapping[str, VarianceParts | None]
+    """null: one bed, one impact point and one attitude have no parts"""
+    shares: SampleShares
+    """what became of the samples"""
+    returns: ReturnFraction
+    """the return fraction"""
+    flights: FlightResults
+    """the flights of the samples that end on the body"""
+    ellipses: LandingEllipses | None
+    """of their impacts"""
+    without_scatter: WithoutScatter | None
+    """null where the samples have no scatter from run to run"""
+    rest: RestResults
+    """where journeys end"""
+    answer: tuple[str, ...]
+    """what becomes of the landers, over what that holds, and what is missing, in sentences"""
+    headline: tuple[str, ...]
+    """the answer, then the most informative numbers, in sentences"""
+
+
+@dataclass(frozen=True)
+class RunTimes:
+    """What the runs took."""
+
+    asked: int
+    """runs of all designs"""
+    distinct: int
+    """those that differ, as the ledger has them"""
+    wall_s: float
+    """wall time of all of them together"""
+    cpu_s: float
+    """CPU time likewise"""
+    longest_wall_s: float
+    """wall time of the longest"""
+
+
+@dataclass(frozen=True)
+class Provenance:
+    """Where it comes from; all that may differ between two executions of one study."""
+
+    date: str
+    """when the summary was made, UTC"""
+    folder: str
+    """folder of the study, as it was given"""
+    host: str
+    """name of the machine"""
+    system: str
+    """its operating system"""
+    cores: int | None
+    """its cores"""
+    python: str
+    """version of Python"""
+    packages: Mapping[str, str]
+    """version of each package that numbers depend on"""
+    wall_s: Mapping[str, float]
+    """wall time of each stage when its files were made"""
+    runs: RunTimes
+    """what the runs took"""
