@@ -25,7 +25,7 @@ def aim_problems(study: Study) -> Iterator[str]:
         return
     inputs = uncertain(study.touchdown_values())
     if study.design.method == "paper":
-        yield 'aim.grid goes with design.method = "sequence", and it is "paper"; leave [aim] out, or draw the runs'
+        yield 'aim.grid goes with design.method = "drawn", and it is "paper"; leave [aim] out, or draw the runs'
     absent = [name for name in NEEDED if name not in inputs]
     if absent:
         yield (

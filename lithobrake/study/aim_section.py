@@ -27,7 +27,7 @@ _LIMIT = re.compile(r"\s*([a-z_0-9.]+)\s*(<=|>=|<|>)\s*([-+.0-9eE]+)\s*")
 class AimSection(Section):
     """Where to aim: speeds, angles and places to choose from, each tried with landers that go on until they rest.
 
-    docs/aiming.md. With design.method = "sequence" only, and impact.speed and impact.incidence_deg uncertain."""
+    docs/aiming.md. With design.method = "drawn" only, and impact.speed and impact.incidence_deg uncertain."""
 
     grid: dict[str, list[Annotated[float, Number("")]]] = Field(default={})
     """What is chosen, by dotted key, and the values to try, ascending: one to three uncertain numbers of [impact], or

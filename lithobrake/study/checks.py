@@ -124,7 +124,7 @@ def _limit_state_problems(study: Study) -> Iterator[str]:
             yield f"limit_states.{name} is no name; allowed: letters, digits, _ and -; rename it"
     if names and study.design.method == "paper":
         yield (
-            f'limit_states.{next(iter(names))} goes with design.method = "sequence", and it is "paper", whose runs are '
+            f'limit_states.{next(iter(names))} goes with design.method = "drawn", and it is "paper", whose runs are '
             "no draws from the laws of the inputs; leave [limit_states] out, or draw the runs"
         )
 

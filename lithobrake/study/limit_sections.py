@@ -12,7 +12,7 @@ class LimitStatesSection(Section):
     """Conditions whose probability the study tells, by names of your own: fast = "speed_out > 0.1 and not returns".
 
     Outputs of the touchdown [SI] stand in comparisons; returns, captured, impact, flying, escaped and partner are true
-    or false (docs/reliability.md). With design.method = "sequence" only."""
+    or false (docs/reliability.md). With design.method = "drawn" only."""
 
     model_config = ConfigDict(extra="allow")
     __pydantic_extra__: dict[str, Annotated[str, LimitStateText()]] = Field(init=False)

@@ -113,7 +113,7 @@ def test_other_things_than_texts_under_names_are_refused() -> None:
 
 def test_a_method_without_drawn_runs_is_refused() -> None:
     said = refusal({"fast": "returns"}, design={"method": "paper"})
-    assert 'limit_states.fast goes with design.method = "sequence", and it is "paper"' in said
+    assert 'limit_states.fast goes with design.method = "drawn", and it is "paper"' in said
 
 
 def test_a_study_keeps_its_conditions_by_name() -> None:

@@ -18,7 +18,7 @@ from lithobrake.pipeline.site import SITE_KEYS, frames, site_body, site_medians,
 from lithobrake.study import Study
 from lithobrake.study.quantity import uncertain
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus, TouchdownOutcome
-from lithobrake.vocabulary.quantities import FLIGHT, RUN, SEQUENCE_DESIGNS
+from lithobrake.vocabulary.quantities import DRAWN_DESIGNS, FLIGHT, RUN
 
 # Flights of each run. In equal steps of the heading so many leave nothing to gain from more.
 FLIGHT_COUNT = 64
@@ -78,7 +78,7 @@ class RunImpacts:
 
 def fly_runs(job: Job) -> None:
     """Fly every run that left, its pair and its twin, from the same sites, and write how their flights end."""
-    designs = SEQUENCE_DESIGNS if job.study.design.side_runs else SEQUENCE_DESIGNS[:1]
+    designs = DRAWN_DESIGNS if job.study.design.side_runs else DRAWN_DESIGNS[:1]
     rows: list[list[Any]] = []
     for design in designs:
         runs = DesignRuns.load(job.folder, design)

@@ -9,7 +9,7 @@ from lithobrake.pipeline.paper.run_noise import Scatter
 from lithobrake.pipeline.runs.designs import design_inputs
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
-from lithobrake.vocabulary.quantities import DESIGNS
+from lithobrake.vocabulary.quantities import PAPER_DESIGNS
 
 if TYPE_CHECKING:
     from lithobrake.analysis import OutcomeModel
@@ -48,7 +48,7 @@ def outcome_model(job: Job) -> "OutcomeModel":
     from lithobrake.analysis import OutcomeModel
 
     inputs = design_inputs(job.study)
-    runs = [DesignRuns.load(job.folder, design) for design in DESIGNS]
+    runs = [DesignRuns.load(job.folder, design) for design in PAPER_DESIGNS]
     x = np.concatenate([one.columns(list(inputs)) for one in runs])
     outcomes = [outcome for one in runs for outcome in one.outcomes]
     names = tuple(TouchdownOutcome)

@@ -64,7 +64,7 @@ def expected_width(study: Study, known: Mapping[str, Record], folder: StudyFolde
 
     known: runs that have ended, by key; folder: where they may have flown.
     """
-    if study.design.method != "sequence" or study.bed_count == 1:
+    if study.design.method != "drawn" or study.bed_count == 1:
         return None
     from lithobrake.analysis import LEVEL, expected_half_width, expected_half_widths
     from lithobrake.analysis.half_width import CORRELATION, SPREAD_RANGE

@@ -12,7 +12,7 @@ from lithobrake.pipeline.runs.drawn_design import SIDE_DESIGNS, design_rows, seq
 from lithobrake.pipeline.runs.touchdown_runs import drawn_rows, touchdown_keys
 from lithobrake.study import Study
 from lithobrake.study.touchdown_model import draw, medians
-from lithobrake.vocabulary.quantities import DESIGNS
+from lithobrake.vocabulary.quantities import PAPER_DESIGNS
 
 # Designs with more runs are not gone through run by run: that would take longer than a second or two.
 MOST_NAMED = 10_000
@@ -53,7 +53,7 @@ def possible_runs(study: Study, folder: StudyFolder, screened: bool, known: Iter
     screened: the folder has the screening of this study. known: keys of runs that have ended.
     """
     inputs = tuple(design_inputs(study))
-    if study.design.method == "sequence":
+    if study.design.method == "drawn":
         return _possible_sequence(study, set(known))
     if screened:
         from lithobrake.chaos import load
@@ -67,7 +67,7 @@ def possible_runs(study: Study, folder: StudyFolder, screened: bool, known: Iter
 
 def planned_rows(study: Study, kept_count: int, most: int) -> list[dict[str, float]]:
     """All inputs of up to `most` of the touchdowns, drawn by chance."""
-    if study.design.method == "sequence":
+    if study.design.method == "drawn":
         return sequence_rows(study, min(most, study.design.run_count))
     middle, inputs = medians(study), design_inputs(study)
     points_of_runs = _planned_points(study, kept_count, most).tolist()
@@ -79,7 +79,7 @@ def _planned_points(study: Study, kept_count: int, most: int) -> np.ndarray:
     from lithobrake.analysis import sample_inputs
 
     kept = tuple(design_inputs(study))[:kept_count]
-    parts = [points(study, one, kept) for one in DESIGNS if _point_count(study, one, kept_count) <= MOST_NAMED]
+    parts = [points(study, one, kept) for one in PAPER_DESIGNS if _point_count(study, one, kept_count) <= MOST_NAMED]
     if not parts:
         return sample_inputs(design_inputs(study), most, seed=0)
     return np.random.default_rng(0).permutation(np.concatenate(parts))[:most]
@@ -104,8 +104,8 @@ def _planned_sequence(study: Study, ended: set[str]) -> PlannedRuns:
 
 def _planned(study: Study, kept: Sequence[str], ended: set[str]) -> PlannedRuns:
     inputs, seen = tuple(design_inputs(study)), set[str]()
-    counts = dict.fromkeys(DESIGNS, 0)
-    for design in DESIGNS:
+    counts = dict.fromkeys(PAPER_DESIGNS, 0)
+    for design in PAPER_DESIGNS:
         replicates = range(replicate_count(study, design))
         counts[design] = len(replicates) * _point_count(study, design, len(kept))
         if counts[design] > MOST_NAMED:

@@ -142,7 +142,7 @@ def _bounces(study: Study) -> Iterator[str]:
 
 def _few_beds(study: Study) -> Iterator[str]:
     """Beds that give no interval, or a wide one."""
-    if study.design.method != "sequence" or study.bed_count >= FEWEST_BEDS:
+    if study.design.method != "drawn" or study.bed_count >= FEWEST_BEDS:
         return
     from lithobrake.analysis.confidence import t_quantile
 
@@ -164,7 +164,7 @@ def _one_place(study: Study) -> Iterator[str]:
     """An answer that holds for one place of one bed."""
     places = any(isinstance(study.touchdown_values().get(name), Uncertain) for name in PLACE)
     places = places or any(low < high for low, high in place_region(study) or ())
-    if study.design.method == "sequence" and not places:
+    if study.design.method == "drawn" and not places:
         yield (
             "All runs come down at the same place of their beds: give impact.region, or a bed wider than "
             f"{smallest_width(study):.2g} m, on whose middle places are drawn."

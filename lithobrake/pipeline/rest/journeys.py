@@ -42,7 +42,7 @@ DOWN = (
 
 def rest_files(study: Study) -> list[str]:
     """What the stage writes; the table of restitution where the emulator knows other impacts than the first."""
-    asks = study.design.method == "sequence" and why_no_soil(study) is None and bool(study.rest.count)
+    asks = study.design.method == "drawn" and why_no_soil(study) is None and bool(study.rest.count)
     return [*FILES, *([RESTITUTION] if asks else [])]
 
 
@@ -96,7 +96,7 @@ def on_soil(job: Job, samples: Samples) -> tuple["Rebounds", "Bounce"]:
     velocity, captured = np.column_stack([samples.output(name) for name in VELOCITY]), samples.outcome == CAPTURED
     # The runs do not tell with which velocity a lander is captured, only that little is left.
     velocity[captured] = 0.0
-    if job.study.design.method == "sequence":
+    if job.study.design.method == "drawn":
         spin = np.column_stack([samples.output(name) for name in SPIN_OUT])
         bounce: Bounce = emulator_bounce(job, samples)
     else:
