@@ -6,8 +6,8 @@ from itertools import pairwise
 
 from lithobrake.study.aim_section import AIM_RESULTS, AimLimit
 from lithobrake.study.quantity import reach, uncertain
-from lithobrake.study.refusals import closest
 from lithobrake.study.study import Study
+from lithobrake.vocabulary.plain_text import closest
 
 # A figure has two axes and a row of pictures; more aims than this nobody looks at.
 MOST_AXES, MOST_AIMS = 3, 500

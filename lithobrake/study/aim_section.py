@@ -1,7 +1,6 @@
 """The table of the study file that says between which aims there is to choose."""
 
 import re
-from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import product
 from typing import Annotated
@@ -10,17 +9,12 @@ from pydantic import Field
 
 from lithobrake.study.quantity import Number, Whole
 from lithobrake.study.section import Section
+from lithobrake.vocabulary.limit_state import COMPARED
 from lithobrake.vocabulary.outcomes import JourneyStatus
 
 # What comes of an aim, and may be limited as the aim itself is.
 SETTLED = JourneyStatus.SETTLED.value
 AIM_RESULTS = (SETTLED, "missing", "distance_p95", "time_p95")
-COMPARED: dict[str, Callable[[float, float], bool]] = {
-    "<": lambda a, b: a < b,
-    "<=": lambda a, b: a <= b,
-    ">": lambda a, b: a > b,
-    ">=": lambda a, b: a >= b,
-}
 _LIMIT = re.compile(r"\s*([a-z_0-9.]+)\s*(<=|>=|<|>)\s*([-+.0-9eE]+)\s*")
 
 
@@ -64,4 +58,4 @@ class AimLimit:
 
     def keeps(self, value: float | None) -> bool:
         """Whether a value keeps it; what is not known does not."""
-        return value is not None and COMPARED[self.sign](value, self.number)
+        return value is not None and bool(COMPARED[self.sign](value, self.number))

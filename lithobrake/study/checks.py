@@ -14,8 +14,8 @@ from lithobrake.study.body_checks import body_problems
 from lithobrake.study.contact_checks import contact_problems, inertia_problems, size_problems
 from lithobrake.study.design_checks import design_problems
 from lithobrake.study.quantity import reach
-from lithobrake.study.refusals import show
 from lithobrake.study.study import Study
+from lithobrake.vocabulary.plain_text import show
 
 # A bed narrower than this many lander diameters would hold the lander between its walls.
 BED_WIDTH_PER_LANDER = 2.0

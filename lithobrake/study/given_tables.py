@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from lithobrake.study.reader import StudyError
-from lithobrake.study.refusals import show
+from lithobrake.vocabulary.plain_text import show
 
 # No key takes more levels of tables and lists.
 DEEPEST = 10

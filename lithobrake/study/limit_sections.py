@@ -2,10 +2,21 @@
 
 from typing import Annotated, Any
 
-from pydantic import ConfigDict, Field
+from pydantic import BeforeValidator, ConfigDict, Field
 
-from lithobrake.study.limit_state import LimitStateText
+from lithobrake.study.quantity import refuse
 from lithobrake.study.section import Section
+from lithobrake.vocabulary.limit_state import ALLOWED, EXAMPLE, LimitState, NoLimitStateError
+
+
+def condition_text(given: object) -> str:
+    """Give back the text of a condition; refuse what is none."""
+    if not isinstance(given, str):
+        raise refuse(given, ALLOWED, f"write it in quotation marks, as in {EXAMPLE}")
+    try:
+        return LimitState.of(given).text
+    except NoLimitStateError as error:
+        raise refuse(given, ALLOWED, str(error)) from error
 
 
 class LimitStatesSection(Section):
@@ -15,7 +26,7 @@ class LimitStatesSection(Section):
     or false (docs/reliability.md). With design.method = "drawn" only."""
 
     model_config = ConfigDict(extra="allow")
-    __pydantic_extra__: dict[str, Annotated[str, LimitStateText()]] = Field(init=False)
+    __pydantic_extra__: dict[str, Annotated[str, BeforeValidator(condition_text)]] = Field(init=False)
 
     def conditions(self) -> dict[str, str]:
         """The conditions by their names."""

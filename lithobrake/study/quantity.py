@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic_core import PydanticCustomError, core_schema
 
-from lithobrake.study.refusals import closest, show
+from lithobrake.vocabulary.plain_text import closest, show
 
 if TYPE_CHECKING:
     from lithobrake.chaos import Distribution

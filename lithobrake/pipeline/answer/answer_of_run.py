@@ -16,7 +16,7 @@ from lithobrake.pipeline.fly.run_flights import FILE, RunFlights
 from lithobrake.pipeline.folder.study_folder import AGAIN, StudyFolder
 from lithobrake.pipeline.runs.run_table import DesignRuns, file_of
 from lithobrake.study import Study
-from lithobrake.study.limit_state import LimitState
+from lithobrake.vocabulary.limit_state import LimitState
 
 # The stage after which every run has its answer.
 ANSWERED_AFTER = "fly_runs"
