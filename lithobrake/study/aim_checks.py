@@ -4,8 +4,8 @@ import math
 from collections.abc import Iterator
 from itertools import pairwise
 
-from lithobrake.study.aim_section import AIM_RESULTS, AimLimit
 from lithobrake.study.quantity import reach, uncertain
+from lithobrake.study.question_sections import AIM_RESULTS, AimLimit
 from lithobrake.study.study import Study
 from lithobrake.vocabulary.plain_text import closest
 

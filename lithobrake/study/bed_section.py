@@ -4,8 +4,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from lithobrake.study.quantity import Number, Numbers, Whole
-from lithobrake.study.section import Section
+from lithobrake.study.quantity import Number, Numbers, Section, Whole
 
 Metres = Annotated[float, Number("m", above=0)]
 

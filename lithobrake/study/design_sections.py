@@ -1,11 +1,10 @@
-"""The tables of the study file that say which runs are made, what is fitted to them and how it is sampled."""
+"""The tables of the study file that say which runs are made and by what, what is fitted to them, how it is sampled."""
 
 from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, StrictBool, StrictStr
 
-from lithobrake.study.quantity import Number, Whole
-from lithobrake.study.section import Section
+from lithobrake.study.quantity import MaybeUncertain, Number, Scalar, Section, Whole
 from lithobrake.vocabulary.quantities import OUTPUTS, OutputName
 
 Level = Annotated[int, Whole("", at_least=1, at_most=8)]
@@ -110,3 +109,32 @@ class MonteCarloSection(Section):
     """With design.method = "paper" only: whether samples get the scatter from run to run on top of the expansion: what
     the expansion leaves of the refined runs, drawn jointly for all outputs; samples.h5 then has them without it too.
     (An emulator's always do.)"""
+
+
+class CampaignSection(Section):
+    """How runs are made, and how many may fail; nothing here changes what a run gives."""
+
+    wall_limit: Annotated[float, Number("s", above=0)] | None = None
+    """Longest time that one run may take on the clock; it is then ended and counts as failed. Absent: any time."""
+    memory_limit: Annotated[float, Number("bytes", above=0)] | None = None
+    """Most memory that one run may hold, with all that it starts; above that it is ended. Absent: any (Linux only)."""
+    retry_count: Annotated[int, Whole("", at_least=0, at_most=100)] = 1
+    """How often a run that failed is tried again."""
+    failed_share: Annotated[float, Number("", at_least=0, below=1)] = 0.05
+    """Largest share of failed runs of a design with which an expansion is still fitted."""
+
+
+class SolverSection(Section):
+    """A program of your own that makes the touchdowns in place of this one (docs/own_solver.md)."""
+
+    command: str | None = None
+    """Its command line, started in a folder for each run, where it reads inputs.json and writes outputs.json; words
+    that name files count from the study file. Or "umbridge:http://HOST:PORT/MODEL", the model of a server in its place.
+    Absent: this program's own soil."""
+    templates: list[str] = Field(default=[])
+    """Files, counted from the study file, in which {{ grain.friction }} becomes that number of a run and {{ seed }} its
+    seed; each is put into the run's folder under its own name."""
+    answer: str = "outputs.json"
+    """Name of the file that the program writes, with the ending .json, .csv, .yaml, .yml, .h5 or .hdf5."""
+    inputs: dict[str, Annotated[Scalar, MaybeUncertain("")]] = Field(default={})
+    """Numbers that only your program knows, by names of your own."""

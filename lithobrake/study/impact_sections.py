@@ -4,8 +4,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from lithobrake.study.quantity import Angle, MaybeUncertain, Number, Numbers, Scalar
-from lithobrake.study.section import Section
+from lithobrake.study.quantity import Angle, MaybeUncertain, Number, Numbers, Scalar, Section
 
 Interval = Annotated[tuple[float, float], Numbers("m", count=2, ascending=True)]
 Place = Annotated[Scalar, MaybeUncertain("m")]

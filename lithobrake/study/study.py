@@ -8,10 +8,15 @@ from typing import Annotated, Any
 
 from pydantic import BaseModel, PrivateAttr, model_validator
 
-from lithobrake.study.aim_section import AimSection
 from lithobrake.study.bed_section import BedSection
-from lithobrake.study.campaign_sections import CampaignSection, SolverSection
-from lithobrake.study.design_sections import DEFAULT_METHOD, DesignSection, MonteCarloSection, method_name
+from lithobrake.study.design_sections import (
+    DEFAULT_METHOD,
+    CampaignSection,
+    DesignSection,
+    MonteCarloSection,
+    SolverSection,
+    method_name,
+)
 from lithobrake.study.flight_sections import FlightSection, RestSection, SiteSection
 from lithobrake.study.impact_sections import (
     ContactSection,
@@ -20,10 +25,9 @@ from lithobrake.study.impact_sections import (
     PlaceSection,
     SurfaceSection,
 )
-from lithobrake.study.limit_sections import LimitStatesSection
 from lithobrake.study.material_sections import GrainSection, LanderSection
-from lithobrake.study.quantity import Scalar, Uncertain, Whole
-from lithobrake.study.section import Section
+from lithobrake.study.quantity import Scalar, Section, Uncertain, Whole
+from lithobrake.study.question_sections import AimSection, LimitStatesSection
 from lithobrake.study.site_kernels import kernel_values
 
 # Ten landings on a bed cost least for what they tell, where a bed costs some six landings; an interval needs a dozen.

@@ -32,8 +32,7 @@ from lithobrake.pipeline.runs.designs import design_inputs
 from lithobrake.pipeline.site import with_site_gravity
 from lithobrake.results.intact import STUDY_FILE, intact_file
 from lithobrake.study import Study, StudySource
-from lithobrake.study.unit_factors import conversion
-from lithobrake.study.units import input_units, run_units
+from lithobrake.study.units import conversion, input_units, run_units
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
 from lithobrake.vocabulary.quantities import PURE
 
