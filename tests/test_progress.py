@@ -6,8 +6,7 @@ import time
 
 from rich.console import Console
 
-from lithobrake.progress import ProgressBars
-from lithobrake.progress_log import ProgressLog
+from lithobrake.progress import ProgressBars, ProgressLog
 
 DETAIL = "61 runs: 22 done, 2 running, 1 failed, 2.1 runs/s, 19 s left\nspeed_out  0.2 +- 0.01"
 # Words of somebody's program: rich would take the first for a closing tag, a terminal would obey the others.

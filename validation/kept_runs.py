@@ -25,7 +25,7 @@ from lithobrake.pipeline.runs.touchdown_runs import drawn_rows
 from lithobrake.pipeline.site import with_site_gravity
 from lithobrake.study import Study, read_study
 from lithobrake.study.touchdown_model import touchdown_version
-from lithobrake.vocabulary.quantities import DESIGNS, SEQUENCE_DESIGNS
+from lithobrake.vocabulary.quantities import DRAWN_DESIGNS
 
 ROUNDING = 1e-12
 Numbers = dict[str, float]
@@ -36,10 +36,10 @@ def rows_of(study: Study, kept: Path) -> Iterator[tuple[str, list[Numbers]]]:
     if study.design.method == "paper":
         refined = json.loads((kept / "refined.json").read_text(encoding="utf-8"))
         drawn, chosen = DrawnDesign(study), [one["name"] for one in refined["inputs"]]
-        for design in DESIGNS:
+        for design in PAPER_DESIGNS:
             yield design, drawn_rows(drawn, points(drawn, design, chosen), 0)
         return
-    for design in SEQUENCE_DESIGNS:
+    for design in DRAWN_DESIGNS:
         if (kept / "runs" / f"{design}.csv").is_file():
             yield design, DrawnDesign(study).rows_of(design)
 

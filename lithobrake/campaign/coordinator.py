@@ -10,9 +10,8 @@ from pathlib import Path
 from typing import Any
 
 from lithobrake.campaign.ledger import Ledger
-from lithobrake.campaign.limited_calls import submit_limited
 from lithobrake.campaign.limits import Limits
-from lithobrake.campaign.local_executor import WorkerDiedError
+from lithobrake.campaign.local_executor import WorkerDiedError, submit_limited
 from lithobrake.campaign.main_module import MainModuleError
 from lithobrake.campaign.record import RunStatus
 from lithobrake.campaign.run_counts import Tally, common_reasons

@@ -14,6 +14,7 @@ import time
 from collections import deque
 from collections.abc import Callable
 from concurrent.futures import BrokenExecutor, Executor, Future
+from functools import cache
 from multiprocessing.connection import Pipe, wait
 from typing import Any
 
@@ -236,3 +237,22 @@ def _pickled(*call: Any) -> bytes:
 def available_cores() -> int:
     """Number of cores that this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def submit_limited(executor: Executor, limits: Limits, function: Callable[..., Any], *args: Any) -> "Future[Any]":
+    """Send a call that is ended when it goes over its limits; its future then has a WorkerDiedError."""
+    if limits == Limits():
+        return executor.submit(function, *args)
+    if isinstance(executor, LocalExecutor):
+        return executor.submit_limited(limits, function, *args)
+    return executor.submit(limited, limits, function, *args)
+
+
+def limited(limits: Limits, function: Callable[..., Any], *args: Any) -> Any:
+    """Make a call in a process of its own, from the worker that this is called in."""
+    return _own_executor().submit_limited(limits, function, *args).result()
+
+
+@cache
+def _own_executor() -> LocalExecutor:
+    return LocalExecutor(available_cores())

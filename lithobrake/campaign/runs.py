@@ -9,11 +9,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from lithobrake.campaign.coordinator import Coordinator, PendingRun
-from lithobrake.campaign.identity import run_key, run_seed
 from lithobrake.campaign.ledger import Ledger
 from lithobrake.campaign.limits import Limits
 from lithobrake.campaign.local_executor import LocalExecutor
-from lithobrake.campaign.record import Record, RunStatus
+from lithobrake.campaign.record import Record, RunStatus, run_key, run_seed
 from lithobrake.campaign.run_counts import Tally
 from lithobrake.campaign.single_run import Model
 

@@ -1,10 +1,12 @@
-"""The application that the commands add themselves to."""
+"""The application that the commands add themselves to, and the arguments that several of them take."""
 
+from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from lithobrake import __version__
+from lithobrake.cli.terminal import BAD_INPUT, leave
 
 app = typer.Typer(
     no_args_is_help=True,
@@ -26,3 +28,54 @@ def main(
     ] = False,
 ) -> None:
     """Where does a lander end up on a small body whose soil nobody knows, and how sure are we?"""
+
+
+# More processes than any machine runs at once.
+MOST_WORKERS = 10_000
+StudyPath = Annotated[Path, typer.Argument(metavar="STUDY.toml", help="The study file.", show_default=False)]
+OutPath = Annotated[
+    str | None, typer.Option("--out", metavar="DIR", help="Folder of the study; the default is runs/<study name>.")
+]
+ExecutorName = Annotated[
+    str, typer.Option("--executor", metavar="local|dask", help="Run on this machine or on a Dask cluster.")
+]
+Scheduler = Annotated[
+    str | None, typer.Option("--scheduler", metavar="tcp://HOST:PORT", help="Address of the Dask scheduler.")
+]
+Logs = Annotated[bool, typer.Option("--logs", help="Keep a log of each run in DIR/logs.")]
+Workers = Annotated[
+    int | None,
+    typer.Option(
+        "--workers", min=1, max=MOST_WORKERS, metavar="N", help="Number of processes; the default is all cores."
+    ),
+]
+Json = Annotated[bool, typer.Option("--json", help="Print JSON, all numbers in SI.")]
+Force = Annotated[bool, typer.Option("--force", help="Replace files that exist.")]
+StudyDirectory = Annotated[Path, typer.Argument(metavar="DIR", help="The folder of a study.", show_default=False)]
+
+
+def study_folder(study: Path, out: str | None) -> Path:
+    """The folder of a study: the one that is given, or runs/<study name>; a file in its place is refused."""
+    folder = Path("runs") / study.stem if out is None else given_folder(out)
+    there = next((path for path in (folder, *folder.parents) if path.exists()), None)
+    if there is not None and not there.is_dir():
+        leave(f"{folder} cannot be written ({there} is a file); choose another folder with --out", BAD_INPUT)
+    return folder
+
+
+def given_folder(out: str) -> Path:
+    """The folder that --out names; an empty one is refused."""
+    if not out.strip():
+        leave(
+            "--out is empty (an unset variable?) and would mean the current folder; "
+            "name a folder, or omit --out to use runs/<study name>",
+            BAD_INPUT,
+        )
+    return Path(out)
+
+
+def refuse_written(path: Path, force: bool) -> None:
+    """Raise ValueError for a file that exists, unless it may be replaced."""
+    from lithobrake.files.atomic import refuse_existing
+
+    refuse_existing(() if force else (path,), "choose another name with --out, or replace it with --force")

@@ -7,10 +7,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from lithobrake.cli.application import app
-from lithobrake.cli.arguments import Force, Json, OutPath, StudyPath, refuse_written, study_folder
-from lithobrake.cli.refusals import one_sentence
-from lithobrake.cli.telling import tell, tell_json
+from lithobrake.cli.application import Force, Json, OutPath, StudyPath, app, refuse_written, study_folder
+from lithobrake.cli.terminal import one_sentence, shown_progress, tell, tell_json
 from lithobrake.vocabulary.plain_text import plain
 
 if TYPE_CHECKING:
@@ -45,7 +43,6 @@ def land(
 
         checked = read_study(study)
         from lithobrake.pipeline import land_one, landing_inputs
-        from lithobrake.progress import study_progress
 
         values = landing_inputs(checked, change or (), number)
         if out is not None:
@@ -54,9 +51,8 @@ def land(
             if out.suffix != ".h5":
                 refuse_other_kinds(out)
             refuse_written(out, force)
-        with study_progress() as shown:
-            shown.begin("landing", 1, 1)
-            found = land_one(checked, values, lambda done, what: shown.progress(done, 1.0, what))
+        with shown_progress("landing") as progress:
+            found = land_one(checked, values, progress)
         _keep_motion(found, out, show)
     if json:
         tell_json(found.to_json())

@@ -2,18 +2,24 @@
 
 import shutil
 import sys
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from lithobrake.cli.application import app
-from lithobrake.cli.arguments import Force, Json, StudyDirectory, given_folder, refuse_written
-from lithobrake.cli.refusals import BAD_INPUT, leave, one_sentence
-from lithobrake.cli.telling import reader_may_leave, study_headline, tell, tell_json
+from lithobrake.cli.application import Force, Json, StudyDirectory, app, given_folder, refuse_written
+from lithobrake.cli.terminal import (
+    BAD_INPUT,
+    leave,
+    one_sentence,
+    reader_may_leave,
+    shown_progress,
+    study_headline,
+    tell,
+    tell_json,
+)  # fmt: skip
+from lithobrake.vocabulary.progress import Progress, silent
 
 if TYPE_CHECKING:
     from lithobrake.results.moving_bodies import MovingBodies
@@ -122,9 +128,9 @@ def film(
 
         refuse_other_kinds(path)
         refuse_written(path, force)
-        with _shown_progress("landing") as progress:
+        with shown_progress("landing") as progress:
             bodies = _landing(open_study(folder), run, progress)
-            write_motion(bodies, path, seconds, lambda done: progress(done, "drawing"))
+            write_motion(bodies, path, seconds, progress)
     tell([f"Film: {path.resolve()}"])
 
 
@@ -172,7 +178,7 @@ def export(
         results = open_study(folder)
         from lithobrake.export import ExportOptions, export_study
 
-        with _shown_progress("export") as progress:
+        with shown_progress("export") as progress:
             again = None if run is None else _run_of(run)
             choices = ExportOptions(flight or (), frame, epoch, step, resolution, again, force, progress)
             written = export_study(results, place, to, choices)
@@ -195,7 +201,7 @@ def infer(
         from lithobrake.pipeline import InferredStudy, infer_study
 
         study = InferredStudy.open(folder)
-        with _shown_progress("inference") as progress:
+        with shown_progress("inference") as progress:
             progress(0.0, "what bounces can say")
             plan = study.plan().lines()
             if bounce is not None:
@@ -207,9 +213,7 @@ def infer(
         tell([line for line in (found["statement"], found["warning"], written) if line])
 
 
-def _landing(
-    results: "StudyResults", run: str | None, progress: Callable[[float, str], None] = lambda done, what: None
-) -> "MovingBodies":
+def _landing(results: "StudyResults", run: str | None, progress: Progress = silent) -> "MovingBodies":
     """The landing of a run, made again, or the one that the study keeps."""
     if run is None:
         return results.median_landing
@@ -219,21 +223,3 @@ def _landing(
 def _run_of(text: str) -> str | int:
     """A row among the runs, or the key of one or how that begins, from what was written for either."""
     return int(text) if text.isascii() and text.isdigit() and len(text) < 6 else text
-
-
-@contextmanager
-def _shown_progress(title: str) -> Iterator[Callable[[float, str], None]]:
-    """How far something is that takes its time, as a landing made again; nothing is shown before it begins."""
-    from lithobrake.progress import study_progress
-
-    with study_progress() as shown:
-        begun = False
-
-        def tell_progress(done: float, what: str) -> None:
-            nonlocal begun
-            if not begun:
-                shown.begin(title, 1, 1)
-            begun = True
-            shown.progress(done, 1.0, what)
-
-        yield tell_progress

@@ -5,8 +5,7 @@ from typing import Annotated
 
 import typer
 
-from lithobrake.cli.application import app
-from lithobrake.cli.arguments import (
+from lithobrake.cli.application import (
     ExecutorName,
     Json,
     Logs,
@@ -15,10 +14,10 @@ from lithobrake.cli.arguments import (
     StudyDirectory,
     StudyPath,
     Workers,
+    app,
     study_folder,
 )
-from lithobrake.cli.refusals import BAD_INPUT, command_line, leave, one_sentence
-from lithobrake.cli.telling import study_headline, tell, tell_json
+from lithobrake.cli.terminal import BAD_INPUT, command_line, leave, one_sentence, study_headline, tell, tell_json
 
 
 @app.command(epilog="Example: lithobrake new bennu")

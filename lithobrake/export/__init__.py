@@ -1,11 +1,9 @@
 """What a study passes on to other programs: flights, the shape, numbers per facet, the map, in their formats."""
 
 from lithobrake.export.ephemerides import write_ephemerides
-from lithobrake.export.facet_table import write_facet_csv, write_facet_fits
 from lithobrake.export.files import KINDS, ExportOptions, export_study
-from lithobrake.export.geojson import write_geojson, write_rest_geojson
-from lithobrake.export.geotiff import write_geotiff
-from lithobrake.export.plate_text import write_plates
+from lithobrake.export.maps import write_geojson, write_geotiff, write_rest_geojson
+from lithobrake.export.shape_tables import write_facet_csv, write_facet_fits, write_plates
 
 __all__ = [
     "KINDS",

@@ -2,7 +2,7 @@
 
 import logging
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from lithobrake.export.flown import Flown, body_name
 from lithobrake.export.oem import Segment, parsed_epoch, write_oem
 from lithobrake.results import StudyResults
+from lithobrake.vocabulary.progress import Progress, silent
 
 log = logging.getLogger(__name__)
 
@@ -34,7 +35,7 @@ def write_ephemerides(
     frame: str = "inertial",
     epoch: str | None = None,
     step: float | None = None,
-    progress: Callable[[float, str], None] = lambda fraction, what: None,
+    progress: Progress = silent,
 ) -> list[Path]:
     """Write flight_mean.oem, of all first flights, and a file for each chosen sample; give their paths.
 
@@ -89,9 +90,7 @@ def _warn_of_size(flown: Flown, chosen: Flown, step: float) -> None:
         )
 
 
-def _paths(
-    chosen: Flown, name: str, frame: str, step: float, progress: Callable[[float, str], None]
-) -> Iterator[tuple[int, Segment]]:
+def _paths(chosen: Flown, name: str, frame: str, step: float, progress: Progress) -> Iterator[tuple[int, Segment]]:
     """The sample and the segment of each flight, from its beginning to its end, those of a sample in order."""
     keys = _keys(chosen)
     ends = _states(chosen, chosen.end_time, *chosen.ends(), frame) if keys else np.empty((0, 6))
@@ -130,7 +129,7 @@ def _path_sentence(sample: int, arc: int, count: int) -> str:
     return f"Flight {arc + 1} of {count} that are known of sample {sample}; its last state is its end{words}."
 
 
-def _cloud(flown: Flown, name: str, frame: str, step: float, progress: Callable[[float, str], None]) -> Segment:
+def _cloud(flown: Flown, name: str, frame: str, step: float, progress: Progress) -> Segment:
     """Mean and covariance of the flights that last, as long as there are enough of them."""
     if len(flown.sample) < FEWEST:
         raise ValueError(
@@ -154,9 +153,7 @@ def _cloud(flown: Flown, name: str, frame: str, step: float, progress: Callable[
     )
 
 
-def _epochs(
-    flown: Flown, step: float, fewest: int, progress: Callable[[float, str], None], what: str
-) -> Iterator[Flown]:
+def _epochs(flown: Flown, step: float, fewest: int, progress: Progress, what: str) -> Iterator[Flown]:
     """The flights that last at each step [s], as long as there are enough of them."""
     number, ends = 0, np.sort(flown.end_time)
     last = float(ends[-fewest]) if len(ends) >= fewest else 0.0

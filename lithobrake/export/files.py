@@ -2,17 +2,16 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
 
 from lithobrake.export.ephemerides import flight_names, write_ephemerides
-from lithobrake.export.facet_table import write_facet_csv, write_facet_fits
-from lithobrake.export.geojson import write_geojson, write_rest_geojson
-from lithobrake.export.geotiff import RESOLUTION_DEG, write_geotiff
-from lithobrake.export.motions import named_landing
-from lithobrake.export.plate_text import write_plates
+from lithobrake.export.maps import RESOLUTION_DEG, write_geojson, write_geotiff, write_rest_geojson
+from lithobrake.export.shape_tables import write_facet_csv, write_facet_fits, write_plates
 from lithobrake.files.atomic import refuse_existing
-from lithobrake.results import StudyResults
+from lithobrake.results import MovingBodies, StudyResults
 from lithobrake.view import contact_sheet, write_vtkhdf
+from lithobrake.vocabulary.progress import Progress, silent
 
 
 @dataclass(frozen=True)
@@ -31,7 +30,7 @@ class ExportOptions:
     resolution_deg: float = RESOLUTION_DEG
     run: str | int | None = None
     replaces: bool = False
-    progress: Callable[[float, str], None] = lambda fraction, what: None
+    progress: Progress = silent
 
 
 @dataclass(frozen=True)
@@ -67,18 +66,25 @@ def _has_rest(results: StudyResults) -> bool:
     return (results.folder / "rest.csv").is_file()
 
 
+# Two kinds of files show one landing, which may take minutes to make again.
+@lru_cache(maxsize=1)
+def _landing(results: StudyResults, run: str | int | None, progress: Progress) -> MovingBodies:
+    """The landing of a run, made again, or for None the one that the study keeps."""
+    return results.median_landing if run is None else results.landing_bodies(run, progress=progress)
+
+
 def _landing_name(chosen: ExportOptions) -> str:
     return "landing" if chosen.run is None else f"landing_{chosen.run}"
 
 
 def _vtkhdf(results: StudyResults, folder: Path, chosen: ExportOptions) -> None:
     # Of the other beds a study keeps no pictures.
-    write_vtkhdf(named_landing(results, chosen.run, chosen.progress), folder / f"{_landing_name(chosen)}.vtkhdf")
+    write_vtkhdf(_landing(results, chosen.run, chosen.progress), folder / f"{_landing_name(chosen)}.vtkhdf")
     write_vtkhdf(results.bed_bodies(0), folder / "bed_0.vtkhdf")
 
 
 def _sheet(results: StudyResults, folder: Path, chosen: ExportOptions) -> None:
-    contact_sheet(named_landing(results, chosen.run, chosen.progress), folder / f"{_landing_name(chosen)}.png")
+    contact_sheet(_landing(results, chosen.run, chosen.progress), folder / f"{_landing_name(chosen)}.png")
 
 
 IMPACTS, REST = "impacts.geojson", "rest.geojson"

@@ -18,7 +18,7 @@ from lithobrake.pipeline.runs.known_runs import known_runs
 from lithobrake.pipeline.runs.run_table import DesignRuns, file_of
 from lithobrake.pipeline.stages import stage_keys
 from lithobrake.study import Study
-from lithobrake.study.limit_state import LimitState
+from lithobrake.vocabulary.limit_state import LimitState
 
 
 def flown_shares(study: Study, folder: StudyFolder) -> dict[str, float]:

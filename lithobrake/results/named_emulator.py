@@ -83,7 +83,7 @@ class NamedEmulator:
 
     def _points(self, inputs: "Mapping[str, Value]") -> np.ndarray:
         """Inputs as points [point_count, input_count]. Raises ValueError for other names, and for no one length."""
-        from lithobrake.study.refusals import closest
+        from lithobrake.vocabulary.plain_text import closest
 
         if not isinstance(inputs, Mapping):
             raise ValueError(

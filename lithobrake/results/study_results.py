@@ -13,10 +13,10 @@ from lithobrake.results.intact import KEYS, STUDY_FILE, intact_file
 from lithobrake.vocabulary.quantities import (
     ARC,
     BEDS,
-    DESIGNS,
+    DRAWN_DESIGNS,
     FLIGHT,
+    PAPER_DESIGNS,
     RUN,
-    SEQUENCE_DESIGNS,
     TOUCHDOWN,
     Quantity,
     quantity,
@@ -318,7 +318,7 @@ class StudyResults:
 
     def _designs(self) -> dict[str, str]:
         """The files of the study's designs, by their names; a folder may also have those of an earlier method."""
-        found = {design: f"designs/{design}.csv" for design in (*DESIGNS, *SEQUENCE_DESIGNS)}
+        found = {design: f"designs/{design}.csv" for design in (*PAPER_DESIGNS, *DRAWN_DESIGNS)}
         # An early format notes no stages, and knows of one method only.
         asked = self._noted_files()
         found = {design: name for design, name in found.items() if name in asked or not asked}

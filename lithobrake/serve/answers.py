@@ -1,11 +1,30 @@
-"""What a request for a model is answered, whoever asks it and however the evaluation is made."""
+"""A model that is served, and what a request for one is answered, whoever asks and however it is evaluated."""
 
 import math
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from typing import Any
 
 from lithobrake.serve.clients import ClientGoneError
-from lithobrake.serve.served_model import ServedModel
+
+
+@dataclass(frozen=True)
+class ServedModel:
+    """A model by its name, the names of its inputs and outputs in their order, and the function.
+
+    evaluate: called with the inputs and what the client configures; it gives the outputs, all finite, and raises
+    ValueError for inputs or a configuration that it refuses.
+    """
+
+    name: str
+    inputs: tuple[str, ...]
+    outputs: tuple[str, ...]
+    evaluate: Callable[[list[float], Mapping[str, Any]], list[float]]
+
+    def __post_init__(self) -> None:
+        if not self.inputs or not self.outputs:
+            raise ValueError(f"model {self.name} has {len(self.inputs)} inputs and {len(self.outputs)} outputs")
+
 
 FEATURES = ("Evaluate", "Gradient", "ApplyJacobian", "ApplyHessian")
 # Evaluates a model at a point with a configuration; the last argument says whether the client has left meanwhile, and

@@ -8,9 +8,8 @@ from collections.abc import Mapping, Sequence
 from http.server import BaseHTTPRequestHandler
 from typing import Any
 
-from lithobrake.serve.answers import Evaluate, RequestError, answer, evaluate_here
+from lithobrake.serve.answers import Evaluate, RequestError, ServedModel, answer, evaluate_here
 from lithobrake.serve.clients import ClientGoneError, ClientServer, has_left
-from lithobrake.serve.served_model import ServedModel
 
 PORT = 4242
 PROTOCOL = 1.0

@@ -4,10 +4,10 @@ import math
 from collections.abc import Iterator
 from itertools import pairwise
 
-from lithobrake.study.aim_section import AIM_RESULTS, AimLimit
 from lithobrake.study.quantity import reach, uncertain
-from lithobrake.study.refusals import closest
+from lithobrake.study.question_sections import AIM_RESULTS, AimLimit
 from lithobrake.study.study import Study
+from lithobrake.vocabulary.plain_text import closest
 
 # A figure has two axes and a row of pictures; more aims than this nobody looks at.
 MOST_AXES, MOST_AIMS = 3, 500
@@ -25,7 +25,7 @@ def aim_problems(study: Study) -> Iterator[str]:
         return
     inputs = uncertain(study.touchdown_values())
     if study.design.method == "paper":
-        yield 'aim.grid goes with design.method = "sequence", and it is "paper"; leave [aim] out, or draw the runs'
+        yield 'aim.grid goes with design.method = "drawn", and it is "paper"; leave [aim] out, or draw the runs'
     absent = [name for name in NEEDED if name not in inputs]
     if absent:
         yield (

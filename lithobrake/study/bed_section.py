@@ -4,8 +4,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from lithobrake.study.quantity import Number, Numbers, Whole
-from lithobrake.study.section import Section
+from lithobrake.study.quantity import Number, Numbers, Section, Whole
 
 Metres = Annotated[float, Number("m", above=0)]
 
@@ -68,7 +67,7 @@ class BedSection(Section):
     upper) or power_law (exponent or cumulative_exponent, lower, upper): the number of grains per diameter D falls with
     D**-exponent, and that of grains larger than D with D**-cumulative_exponent, 1 less. Both are written positive."""
     bed_count: Annotated[int, Whole("", at_least=1, at_most=1000)] | None = None
-    """How many beds; with more than one, each run draws its bed. Absent: one; with design.method = "sequence", on whose
+    """How many beds; with more than one, each run draws its bed. Absent: one; with design.method = "drawn", on whose
     beds land equally many runs, a tenth of these (rounded up), at least 12 and at most 60."""
     cloud_point_count: Annotated[int, Whole("", at_least=4, at_most=100)] = 14
     """Points in the random cloud whose hull is a grain."""

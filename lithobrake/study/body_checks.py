@@ -10,9 +10,9 @@ from pathlib import Path
 from lithobrake.geometry.mesh_labels import labelled_mesh
 from lithobrake.study.flight_sections import BUILT_IN_BODIES
 from lithobrake.study.quantity import Scalar, usual_reach
-from lithobrake.study.refusals import closest, show
 from lithobrake.study.site_kernels import kernel_problems
 from lithobrake.study.study import Study
+from lithobrake.vocabulary.plain_text import closest, show
 
 # Bulk density [kg/m3]: nuclei of comets are near 500 (67P: 533, Paetzold et al. 2016, Nature 530), iron-nickel is 7900.
 LIGHTEST, HEAVIEST = 300.0, 8000.0

@@ -14,8 +14,8 @@ from lithobrake.study.body_checks import body_problems
 from lithobrake.study.contact_checks import contact_problems, inertia_problems, size_problems
 from lithobrake.study.design_checks import design_problems
 from lithobrake.study.quantity import reach
-from lithobrake.study.refusals import show
 from lithobrake.study.study import Study
+from lithobrake.vocabulary.plain_text import show
 
 # A bed narrower than this many lander diameters would hold the lander between its walls.
 BED_WIDTH_PER_LANDER = 2.0
@@ -124,7 +124,7 @@ def _limit_state_problems(study: Study) -> Iterator[str]:
             yield f"limit_states.{name} is no name; allowed: letters, digits, _ and -; rename it"
     if names and study.design.method == "paper":
         yield (
-            f'limit_states.{next(iter(names))} goes with design.method = "sequence", and it is "paper", whose runs are '
+            f'limit_states.{next(iter(names))} goes with design.method = "drawn", and it is "paper", whose runs are '
             "no draws from the laws of the inputs; leave [limit_states] out, or draw the runs"
         )
 

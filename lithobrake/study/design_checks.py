@@ -17,7 +17,7 @@ def design_problems(study: Study) -> Iterator[str]:
         )
         return
     yield from _method_problems(study)
-    if study.design.method == "sequence":
+    if study.design.method == "drawn":
         yield from _bed_count_problems(study)
         yield from _half_width_problems(study)
         return
@@ -29,17 +29,17 @@ def design_problems(study: Study) -> Iterator[str]:
 def _method_problems(study: Study) -> Iterator[str]:
     """Keys of the method that is not asked for."""
     method = study.design.method
-    other = "paper" if method == "sequence" else "sequence"
+    other = "paper" if method == "drawn" else "drawn"
     if stray := sorted(study.design.model_fields_set & study.design.keys_of_the_other_method):
         one = len(stray) == 1
         yield (
             f'design.{", design.".join(stray)} {"goes" if one else "go"} with design.method = "{other}", and it is '
             f'"{method}"; leave {"it" if one else "them"} out, or write design.method = "{other}"'
         )
-    if method == "sequence" and study.monte_carlo.scatter:
+    if method == "drawn" and study.monte_carlo.scatter:
         yield (
-            'monte_carlo.scatter is true and goes with design.method = "paper": samples of a sequence are draws of its '
-            "emulator, which have the scatter always; leave it out"
+            'monte_carlo.scatter is true and goes with design.method = "paper": the samples of a drawn study come from '
+            "its emulator and always have the scatter; leave it out"
         )
 
 

@@ -9,8 +9,9 @@ from lithobrake.study.body_checks import body_problems
 from lithobrake.study.checks import landing_problems
 from lithobrake.study.quantity import is_number
 from lithobrake.study.reader import StudyError, known_keys
-from lithobrake.study.refusals import closest, sentences, show
+from lithobrake.study.refusals import sentences
 from lithobrake.study.study import Study
+from lithobrake.vocabulary.plain_text import closest, show
 
 # An attitude stands in the study file as one list.
 ATTITUDE = tuple(f"impact.orientation.{part}" for part in "wxyz")

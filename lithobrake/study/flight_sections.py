@@ -4,8 +4,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, Strict
 
-from lithobrake.study.quantity import Angle, LengthUnit, MaybeUncertain, Number, Scalar, Whole
-from lithobrake.study.section import Section
+from lithobrake.study.quantity import Angle, LengthUnit, MaybeUncertain, Number, Scalar, Section, Whole
 
 BUILT_IN_BODIES = ("didymos", "dimorphos")
 

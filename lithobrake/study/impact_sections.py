@@ -4,8 +4,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from lithobrake.study.quantity import Angle, MaybeUncertain, Number, Numbers, Scalar
-from lithobrake.study.section import Section
+from lithobrake.study.quantity import Angle, MaybeUncertain, Number, Numbers, Scalar, Section
 
 Interval = Annotated[tuple[float, float], Numbers("m", count=2, ascending=True)]
 Place = Annotated[Scalar, MaybeUncertain("m")]
@@ -39,15 +38,15 @@ class ImpactSection(Section):
     """Angle between the velocity and the mean surface normal; 0 is straight down."""
     azimuth_deg: Annotated[Scalar | str, MaybeUncertain("deg", at_least=-360, at_most=360, word="random")] = 0.0
     """Direction of the horizontal velocity in the bed, from +x; "random" draws it anew for each run, which is the
-    default of design.method = "sequence"."""
+    default of design.method = "drawn"."""
     place: PlaceSection | None = None
     """The place of impact, the same for all runs; absent: the middle of the bed, or as `region` says."""
     region: RegionSection | None = None
-    """In place of `place`: each run draws its place in this rectangle. With design.method = "sequence" and neither of
+    """In place of `place`: each run draws its place in this rectangle. With design.method = "drawn" and neither of
     the two: wherever the lander is so far from the walls that they do not answer its first blow."""
     orientation: Annotated[tuple[float, ...] | str, Numbers("", count=4, word="random")] = (1.0, 0.0, 0.0, 0.0)
     """Attitude as a quaternion w, x, y, z; "random" draws it anew for each run, uniform over rotations, which is the
-    default of design.method = "sequence"."""
+    default of design.method = "drawn"."""
     pointing_error_deg: Annotated[float, Number("deg", above=0, at_most=180)] | None = None
     """Half the opening of a cone about the lander's z axis, as `orientation` turns it: each run draws where this axis
     points, evenly over the cone, and the lander turns there by the shortest way, without a roll about the axis."""

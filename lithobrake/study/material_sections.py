@@ -4,8 +4,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from lithobrake.study.quantity import LengthUnit, MaybeUncertain, Numbers, Scalar
-from lithobrake.study.section import Section
+from lithobrake.study.quantity import LengthUnit, MaybeUncertain, Numbers, Scalar, Section
 
 Density = Annotated[Scalar, MaybeUncertain("kg/m3", above=0)]
 YoungModulus = Annotated[Scalar, MaybeUncertain("Pa", above=0)]

@@ -1,4 +1,4 @@
-"""A number in a study file: with its unit and its allowed range, and fixed or uncertain.
+"""A table of the study file, and a number in one: with its unit and its allowed range, and fixed or uncertain.
 
 An uncertain number is written as a table in place of the number,
 `young_modulus = { distribution = "log_uniform", lower = 1e6, upper = 1e8 }`. The allowed range holds for the whole
@@ -11,9 +11,10 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
+from pydantic import BaseModel, ConfigDict
 from pydantic_core import PydanticCustomError, core_schema
 
-from lithobrake.study.refusals import closest, show
+from lithobrake.vocabulary.plain_text import closest, show
 
 if TYPE_CHECKING:
     from lithobrake.chaos import Distribution
@@ -220,3 +221,9 @@ def is_number(value: object) -> bool:
 
 Angle = Annotated[Scalar, MaybeUncertain("deg", at_least=-360, at_most=360)]
 LengthUnit = Literal["m", "km", "cm", "mm"]
+
+
+class Section(BaseModel):
+    """One table of the study file; a key that it does not know is refused."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, use_attribute_docstrings=True)

@@ -1,11 +1,10 @@
 """Sentences about a study file that is refused: the key, what stands there, what is allowed, what to write instead."""
 
-import difflib
-import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
-LONGEST = 200  # characters of a value that a sentence shows
+from lithobrake.vocabulary.plain_text import closest, show
+
 # What a key takes that holds no number, by the error of the schema.
 TYPES = {
     "string_type": "text; write it in quotation marks",
@@ -13,42 +12,6 @@ TYPES = {
     "list_type": "a list; write its entries in square brackets",
     "tuple_type": "a list; write its entries in square brackets",
 }
-
-
-def closest(word: object, known: Iterable[str]) -> str:
-    """Ask back with the nearest known word, all of which are of small letters, or say nothing when none is near."""
-    text = word if isinstance(word, str) else show(word)
-    near = difflib.get_close_matches(text.lower(), list(known), n=1, cutoff=0.5)
-    return f"; did you mean {near[0]}?" if near else ""
-
-
-def show(value: object) -> str:
-    """A value as the study file would show it; of a long one the beginning."""
-    text = _text(value)
-    return text if len(text) <= LONGEST else f"{text[:LONGEST]}... ({len(text)} characters)"
-
-
-def _text(value: object, levels: int = 4) -> str:
-    """The text of a value; what stands deeper in brackets than so many levels is left out."""
-    if isinstance(value, Mapping | list | tuple) and levels == 0:
-        return "..."
-    if isinstance(value, Mapping):
-        return "{ " + ", ".join(f"{key} = {_text(entry, levels - 1)}" for key, entry in value.items()) + " }"
-    if isinstance(value, list | tuple):
-        return "[" + ", ".join(_text(entry, levels - 1) for entry in value) + "]"
-    if isinstance(value, str):
-        return f'"{"".join(map(_visible, value))}"'
-    if isinstance(value, bool):
-        return str(value).lower()
-    if isinstance(value, int) and abs(value) >= 1e21:
-        # Python refuses to write out very long ones.
-        return f"about {'-' * (value < 0)}1e{value.bit_length() * math.log10(2.0):.0f}"
-    return f"{value:g}" if isinstance(value, float) else str(value)
-
-
-def _visible(character: str) -> str:
-    """A character as it is, or by its escape sequence where it is a line break or shows nothing."""
-    return character if character.isprintable() else character.encode("unicode_escape").decode("ascii")
 
 
 def sentences(errors: Sequence[Mapping[str, Any]], known_keys: Mapping[str, tuple[str, ...]]) -> list[str]:

@@ -8,10 +8,15 @@ from typing import Annotated, Any
 
 from pydantic import BaseModel, PrivateAttr, model_validator
 
-from lithobrake.study.aim_section import AimSection
 from lithobrake.study.bed_section import BedSection
-from lithobrake.study.campaign_sections import CampaignSection, SolverSection
-from lithobrake.study.design_sections import DEFAULT_METHOD, DesignSection, MonteCarloSection
+from lithobrake.study.design_sections import (
+    DEFAULT_METHOD,
+    CampaignSection,
+    DesignSection,
+    MonteCarloSection,
+    SolverSection,
+    method_name,
+)
 from lithobrake.study.flight_sections import FlightSection, RestSection, SiteSection
 from lithobrake.study.impact_sections import (
     ContactSection,
@@ -20,10 +25,9 @@ from lithobrake.study.impact_sections import (
     PlaceSection,
     SurfaceSection,
 )
-from lithobrake.study.limit_sections import LimitStatesSection
 from lithobrake.study.material_sections import GrainSection, LanderSection
-from lithobrake.study.quantity import Scalar, Uncertain, Whole
-from lithobrake.study.section import Section
+from lithobrake.study.quantity import Scalar, Section, Uncertain, Whole
+from lithobrake.study.question_sections import AimSection, LimitStatesSection
 from lithobrake.study.site_kernels import kernel_values
 
 # Ten landings on a bed cost least for what they tell, where a bed costs some six landings; an interval needs a dozen.
@@ -31,7 +35,7 @@ RUNS_A_BED, FEWEST_BEDS, MOST_BEDS = 10, 12, 60
 
 
 def default_bed_count(run_count: int) -> int:
-    """How many beds a sequence has of which nothing else is said: a tenth of the runs, within limits.
+    """How many beds a drawn study has of which nothing else is said: a tenth of the runs, within limits.
 
     Source: [Cochran-1977], section 10.6.
     """
@@ -65,10 +69,10 @@ class Study(Section):
 
     @model_validator(mode="before")
     @classmethod
-    def _defaults_of_the_sequence(cls, tables: Any) -> Any:
-        """Fill in what a study of the sequence leaves open; all that is wrong is left for the sections to refuse."""
+    def _defaults_of_the_drawn_method(cls, tables: Any) -> Any:
+        """Fill in what a drawn study leaves open; all that is wrong is left for the sections to refuse."""
         design = tables.get("design", {}) if isinstance(tables, Mapping) else None
-        if not isinstance(design, Mapping) or design.get("method", DEFAULT_METHOD) != "sequence":
+        if not isinstance(design, Mapping) or method_name(design.get("method", DEFAULT_METHOD)) != "drawn":
             return tables
         impact = tables.get("impact")
         if not isinstance(impact, Mapping):
@@ -83,7 +87,7 @@ class Study(Section):
         return study
 
     def with_run_count(self, run_count: int) -> "Study":
-        """The same study with so many runs of the sequence; those of a smaller count stay as they are."""
+        """The same study with so many drawn runs; those of a smaller count stay as they are."""
         # The most runs follow from the count of the file, and stay.
         most = None if self.design.half_width is None else self.design.most_runs
         counts = {"run_count": run_count, "largest_run_count": most}
@@ -104,7 +108,7 @@ class Study(Section):
         """How many beds are landed on."""
         if self.bed.bed_count is not None:
             return self.bed.bed_count
-        return default_bed_count(self.design.run_count) if self.design.method == "sequence" else 1
+        return default_bed_count(self.design.run_count) if self.design.method == "drawn" else 1
 
     def touchdown_values(self) -> dict[str, Scalar]:
         """Every scalar that the touchdown reads, by dotted key, in the units of the file; absent ones are left out."""

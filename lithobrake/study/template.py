@@ -1,6 +1,7 @@
 """A commented study file, written from the schema itself, so that the two never differ."""
 
 import textwrap
+from itertools import groupby
 from typing import Any
 
 from pydantic import BaseModel
@@ -31,13 +32,18 @@ def template() -> str:
 
 
 def _section(name: str, model: type[BaseModel]) -> str:
-    keys = "".join(_key(key, field) for key, field in model.model_fields.items())
-    return f"{_comment(model.__doc__ or '')}[{name}]\n{keys}"
+    """A table with its keys; those that it has from a base stand together below what the base says of them."""
+    lines = f"{_comment(model.__doc__ or '')}[{name}]\n"
+    owners = {key: base for base in model.__mro__ for key in getattr(base, "model_fields", ())}
+    for owner, keys in groupby(model.model_fields, key=owners.__getitem__):
+        heading = "" if owner is model else f"\n{_comment(owner.__doc__ or '')}\n"
+        lines += heading + "".join(_key(key, model.model_fields[key]) for key in keys)
+    return lines
 
 
 def _key(name: str, field: FieldInfo) -> str:
     allowed = limits(field)
-    notes = [" ".join((field.description or "").split())]
+    notes = [field.description or ""]
     if allowed is not None:
         notes.append(f"Allowed: {allowed}" + ("; number or table." if isinstance(allowed, MaybeUncertain) else "."))
     if not field.is_required() and field.default is not None:
@@ -60,7 +66,7 @@ def _is_pair(model: type[BaseModel], key: str) -> bool:
 
 
 def _comment(text: str) -> str:
-    return textwrap.fill(text, width=110, initial_indent="# ", subsequent_indent="# ") + "\n"
+    return textwrap.fill(" ".join(text.split()), width=110, initial_indent="# ", subsequent_indent="# ") + "\n"
 
 
 def _toml(value: Any) -> str:

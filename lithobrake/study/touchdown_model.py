@@ -1,7 +1,7 @@
 """One touchdown as a model: from the numbers of the study file, by dotted key, to what came out."""
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cache
@@ -16,6 +16,7 @@ from lithobrake.geometry.attitude import pointed
 from lithobrake.study import Study
 from lithobrake.study.bed_section import Constant, PowerLaw
 from lithobrake.study.quantity import median
+from lithobrake.vocabulary.progress import Progress, silent
 
 if TYPE_CHECKING:
     from lithobrake.dem import Material
@@ -56,7 +57,7 @@ class TouchdownModel:
         self,
         values: Mapping[str, float],
         frame_count: int = 0,
-        progress: Callable[[float, str], None] = lambda fraction, what: None,
+        progress: Progress = silent,
     ) -> "Outcome":
         """Land once, and record about so many frames. Raises ValueError where the code is another one."""
         from lithobrake.touchdown import land

@@ -1,5 +1,6 @@
-"""Units of the numbers that a study gives its runs, and of those that come back."""
+"""Units of the numbers that a study gives its runs and gets back, and factors between units of one quantity."""
 
+import math
 from typing import get_args
 
 from pydantic import BaseModel
@@ -8,6 +9,20 @@ from pydantic.fields import FieldInfo
 from lithobrake.study.quantity import Number
 from lithobrake.study.study import Study
 from lithobrake.vocabulary.quantities import PURE, TOUCHDOWN
+
+_DEGREE = math.pi / 180.0
+# Each row one quantity: its units, and each in the first of them. Feet and inches are the international ones; rpm is
+# 2 pi rad in 60 s.
+_QUANTITIES: tuple[dict[str, float], ...] = (
+    {PURE: 1.0, "1": 1.0, "%": 0.01},
+    {"m": 1.0, "km": 1e3, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "ft": 0.3048, "in": 0.0254},
+    {"m/s": 1.0, "km/s": 1e3, "cm/s": 1e-2, "mm/s": 1e-3, "um/s": 1e-6, "km/h": 1.0 / 3.6, "ft/s": 0.3048},
+    {"m/s2": 1.0, "km/s2": 1e3, "cm/s2": 1e-2, "mm/s2": 1e-3, "um/s2": 1e-6, "ft/s2": 0.3048},
+    {"rad": 1.0, "mrad": 1e-3, "deg": _DEGREE},
+    {"rad/s": 1.0, "mrad/s": 1e-3, "deg/s": _DEGREE, "deg/h": _DEGREE / 3600.0, "rpm": math.pi / 30.0},
+    {"s": 1.0, "ms": 1e-3, "us": 1e-6, "min": 60.0, "h": 3600.0},
+    {"J": 1.0, "kJ": 1e3, "mJ": 1e-3, "uJ": 1e-6},
+)
 
 
 def input_units() -> dict[str, str]:
@@ -48,3 +63,29 @@ def limits(field: FieldInfo) -> Number | None:
     for kind in get_args(field.annotation):
         found += [entry for entry in getattr(kind, "__metadata__", ()) if isinstance(entry, Number)]
     return found[0] if found else None
+
+
+def conversion(given: str, wanted: str) -> float:
+    """The factor from a number in the given unit to the wanted one, as 0.01 from "cm/s" to "m/s".
+
+    Units are written as in `known_units`; m/s^2, m/s**2 and m s-2 are m/s2, ° is deg, µ is u. Raises ValueError for
+    another unit, and for one of another quantity.
+    """
+    table = _quantity(wanted)
+    unit = _plain(given)
+    if unit not in table:
+        raise ValueError(f"unit [{given}]; allowed: {', '.join(table)}")
+    return 1.0 if unit == wanted else table[unit] / table[wanted]
+
+
+def _quantity(unit: str) -> dict[str, float]:
+    """The units of the quantity that one is of; of a unit that no row has it alone."""
+    return next((table for table in _QUANTITIES if unit in table), {unit: 1.0})
+
+
+def _plain(unit: str) -> str:
+    """A unit as the rows have it."""
+    compact = "".join(unit.split()) or PURE
+    for written, plain in (("**", ""), ("^", ""), ("²", "2"), ("°", "deg"), ("µ", "u"), ("μ", "u"), ("s-", "/s")):
+        compact = compact.replace(written, plain)
+    return compact.removesuffix("1") if compact.endswith("/s1") else compact

@@ -1,17 +1,19 @@
-"""A motion as a file of the kind that its name ends with."""
+"""A motion as a file of the kind that its name ends with, and the contact sheet, which needs nothing but Matplotlib."""
 
-from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from lithobrake.view.contact_sheet import contact_sheet
+from lithobrake.files.atomic import atomic_path
 from lithobrake.view.film import KINDS, film
 from lithobrake.view.vtkhdf import write_vtkhdf
+from lithobrake.vocabulary.progress import Progress, silent
 
 if TYPE_CHECKING:
     from lithobrake.results.moving_bodies import MovingBodies
 
 ALL_KINDS = (".vtkhdf", *KINDS, ".png")
+# Of a contact sheet.
+PICTURES = 12
 
 
 def refuse_other_kinds(path: Path, kinds: tuple[str, ...] = ALL_KINDS) -> None:
@@ -20,12 +22,7 @@ def refuse_other_kinds(path: Path, kinds: tuple[str, ...] = ALL_KINDS) -> None:
         raise ValueError(f"--out is {str(path)!r}; allowed: a name that ends in {', '.join(kinds)}")
 
 
-def write_motion(
-    bodies: "MovingBodies",
-    path: Path,
-    seconds: float = 8.0,
-    progress: Callable[[float], None] = lambda fraction: None,
-) -> None:
+def write_motion(bodies: "MovingBodies", path: Path, seconds: float = 8.0, progress: Progress = silent) -> None:
     """Write a motion for ParaView (.vtkhdf), as a film of so many seconds (.mp4, .webp), or on a sheet (.png)."""
     refuse_other_kinds(path)
     if path.suffix == ".vtkhdf":
@@ -34,3 +31,26 @@ def write_motion(
         contact_sheet(bodies, path)
     else:
         film(bodies, path, seconds, progress)
+
+
+def contact_sheet(bodies: "MovingBodies", path: str | Path, picture_count: int = PICTURES) -> None:
+    """Write a PNG with so many pictures of a landing, half of them up to its deepest point, each with its time [s].
+
+    Raises ValueError for bodies that are no landing in a box.
+    """
+    from lithobrake.report.figures.landing_figure import landing_figure
+    from lithobrake.report.figures.scene import scene
+    from lithobrake.report.figures.style import figure_style
+
+    if bodies.attributes.get("format") != "lithobrake landing":
+        raise ValueError(
+            f"{bodies.attributes.get('format', 'the motion')} is no landing, and a contact sheet shows one; "
+            "take a file that ends in .vtkhdf, .mp4 or .webp for other motions"
+        )
+    east, north = bodies.attributes["width"]
+    with figure_style(), atomic_path(path) as draft:
+        figure = landing_figure(
+            *(scene(bodies, has_lander=True).bodies, bodies.time, bodies.position, bodies.orientation),
+            *((east, north), picture_count),
+        )
+        figure.savefig(draft, format="png")

@@ -1,13 +1,14 @@
 """A motion as a film: MP4 where imageio-ffmpeg is installed, animated WebP else."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from lithobrake.files.atomic import atomic_path
-from lithobrake.view.drawn_motion import INSTALL, DrawnMotion
+from lithobrake.view.motion import INSTALL, DrawnMotion
+from lithobrake.vocabulary.progress import Progress, silent
 
 if TYPE_CHECKING:
     from lithobrake.results.moving_bodies import MovingBodies
@@ -16,12 +17,7 @@ SIZE = (960, 640)
 KINDS = (".mp4", ".webp")
 
 
-def film(
-    bodies: "MovingBodies",
-    path: Path,
-    seconds: float = 8.0,
-    progress: Callable[[float], None] = lambda fraction: None,
-) -> None:
+def film(bodies: "MovingBodies", path: Path, seconds: float = 8.0, progress: Progress = silent) -> None:
     """Write a film of all frames, evenly in simulated time, that lasts so many seconds; the path's end says which kind.
 
     Raises ValueError for another kind or duration, ImportError where PyVista, or imageio-ffmpeg for MP4, is absent.
@@ -36,14 +32,14 @@ def film(
         (_write_mp4 if path.suffix == ".mp4" else _write_webp)(draft, pictures, count / seconds)
 
 
-def _pictures(bodies: "MovingBodies", progress: Callable[[float], None]) -> Iterator[np.ndarray]:
+def _pictures(bodies: "MovingBodies", progress: Progress) -> Iterator[np.ndarray]:
     """The frames at even instants, one after the other."""
     drawn, count = DrawnMotion(bodies, size=SIZE, off_screen=True), len(bodies.time)
     instants = np.linspace(bodies.time[0], bodies.time[-1], count)
     for number, instant in enumerate(instants):
         drawn.go_to(int(np.argmin(np.abs(bodies.time - instant))))
         yield drawn.picture()
-        progress((number + 1) / count)
+        progress((number + 1) / count, "drawing")
 
 
 def _write_mp4(path: Path, pictures: Iterator[np.ndarray], rate: float) -> None:

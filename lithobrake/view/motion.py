@@ -1,6 +1,7 @@
-"""Where the hulls of a motion are at an instant, and how fast."""
+"""The hulls of a motion as one mesh: where they are and how fast, drawn by PyVista with a camera on the lander."""
 
-from typing import TYPE_CHECKING
+import os
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -13,6 +14,73 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
     Faces = NDArray[np.int64]
+
+INSTALL = 'pip install "lithobrake[view]"'
+# Colours of slow to fast: one that colour-blind people read, and that turns to grey in print.
+COLOURS = "YlGnBu"
+# What is slower than this part of the fastest is drawn as at rest: below it one colour serves.
+SLOWEST = 1e-3
+# Of a window [pixels].
+SIZE = (1280, 800)
+
+
+def pyvista() -> Any:
+    """Return the module. Raises ImportError with how to install it."""
+    try:
+        import pyvista
+    except ImportError as error:
+        raise ImportError(f"PyVista is not installed; install it with: {INSTALL}") from error
+    return pyvista
+
+
+class DrawnMotion:
+    """A window, shown or not, with the bodies of a motion; the lander is the last of them."""
+
+    def __init__(self, bodies: "MovingBodies", *, size: tuple[int, int], off_screen: bool) -> None:
+        """Set all up at the first frame; size of the picture in pixels."""
+        if off_screen and not os.environ.get("DISPLAY"):
+            # Without this VTK asks for a display first, and says so.
+            os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
+        pv = pyvista()
+        self.bodies, self.speeds = bodies, body_speeds(bodies)
+        faces, self.owner = triangles(bodies)
+        self.mesh = pv.PolyData.from_regular_faces(placed(bodies, 0), faces)
+        self.plotter = pv.Plotter(off_screen=off_screen, window_size=list(size))
+        self.fastest = float(self.speeds.max()) or 1.0
+        self.mesh.cell_data["speed"] = self._speeds_at(0)
+        self.plotter.add_mesh(
+            self.mesh, scalars="speed", cmap=COLOURS, clim=(SLOWEST * self.fastest, self.fastest), log_scale=True,
+            scalar_bar_args={
+                "title": "speed [m/s]", "fmt": "%.2g", "vertical": True, "position_x": 0.88, "position_y": 0.25,
+                "height": 0.5, "color": "black",
+            },
+        )  # fmt: skip
+        self._look()
+        self.clock = self.plotter.add_text(self._time(0), font_size=10, color="black")
+
+    def _speeds_at(self, frame: int) -> np.ndarray:
+        return np.maximum(self.speeds[frame, self.owner], SLOWEST * self.fastest)
+
+    def _time(self, frame: int) -> str:
+        return f"t = {self.bodies.time[frame] - self.bodies.time[0]:.3g} s"
+
+    def _look(self) -> None:
+        """Look at the middle of the lander's way from aslant and above, far enough for all of the bed."""
+        place = self.bodies.position
+        width = float(np.ptp(place[0, :, :2], axis=0).max())
+        middle = np.append(place[0, :, :2].mean(axis=0), np.quantile(place[0, :, 2], 0.9))
+        self.plotter.camera_position = [tuple(middle + width * np.array([0.8, -2.6, 1.5])), tuple(middle), (0, 0, 1)]
+
+    def go_to(self, frame: int) -> None:
+        """Move all bodies to where they were at a frame."""
+        self.mesh.points = placed(self.bodies, frame)
+        self.mesh.cell_data["speed"] = self._speeds_at(frame)
+        self.clock.set_text("upper_left", self._time(frame))
+
+    def picture(self) -> np.ndarray:
+        """Return what is seen now, shape [height, width, 3], 0 to 255."""
+        self.plotter.render()
+        return np.asarray(self.plotter.screenshot(return_img=True))
 
 
 def placed(bodies: "MovingBodies", frame: int) -> "Floats":
@@ -40,3 +108,14 @@ def body_speeds(bodies: "MovingBodies") -> "Floats":
     passed = np.diff(bodies.time)[:, None]
     speed = np.divide(way, passed, out=np.zeros_like(way), where=passed > 0.0)
     return np.concatenate([speed[:1], speed])
+
+
+def show(bodies: "MovingBodies") -> None:
+    """Open a window on the motion, and return when it is closed. Raises ImportError without PyVista."""
+    drawn = DrawnMotion(bodies, size=SIZE, off_screen=False)
+    last = len(bodies.time) - 1
+    if last > 0:
+        drawn.plotter.add_slider_widget(
+            lambda value: drawn.go_to(round(value)), [0, last], value=0, title="frame", fmt="%.0f", style="modern"
+        )
+    drawn.plotter.show(title="lithobrake")

@@ -11,8 +11,8 @@ OutputName = Literal["speed_out", "elevation_out", "spin_out", "velocity_out_x",
 # What every touchdown gives that leaves the surface, and an expansion is fitted to.
 OUTPUTS: tuple[OutputName, ...] = get_args(OutputName)
 # The designs of a study in two stages, in the order in which their runs are made, and of a drawn one.
-DESIGNS = ("screening", "refined", "test_kept", "test_all")
-SEQUENCE_DESIGNS = ("sequence", "soil_pairs", "twins")
+PAPER_DESIGNS = ("screening", "refined", "test_kept", "test_all")
+DRAWN_DESIGNS = ("sequence", "soil_pairs", "twins")
 # The unit of a number that has none, where a header has to say so.
 PURE = "-"
 

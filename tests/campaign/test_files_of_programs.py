@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from lithobrake.campaign import Command
+from lithobrake.campaign.command import fill_template
 from lithobrake.campaign.decoders import read_answer
-from lithobrake.campaign.template_files import fill_template
 
 ANSWER = {"outcome": "clear", "outputs": {"velocity_out_x": 0.05, "spin_out": 1.25e-3}}
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from lithobrake.export import write_geojson, write_geotiff, write_rest_geojson
-from lithobrake.export.map_frame import MapFrame
+from lithobrake.export.maps import MapFrame
 from lithobrake.results import StudyResults
 
 

@@ -88,8 +88,8 @@ def test_impacts_lie_on_the_facets_that_the_flights_name(results: StudyResults, 
 
 
 def test_slopes_are_those_of_the_body(results: StudyResults, tmp_path: Path) -> None:
-    from lithobrake.export.facet_table import facet_table
     from lithobrake.export.flown import Flown
+    from lithobrake.export.shape_tables import facet_table
 
     table, body = facet_table(results), Flown.of(results).body
     # The middle of a facet, seen from the origin, lies in that facet where the body is convex.

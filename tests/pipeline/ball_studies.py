@@ -47,4 +47,4 @@ def edit(path: Path, changes: dict[str, str]) -> Path:
 
 def drawn(run_count: int, more: str = "") -> str:
     """The design of a study that draws so many runs, and more lines of that table."""
-    return f'method = "sequence"\nrun_count = {run_count}\n{more}'
+    return f'method = "drawn"\nrun_count = {run_count}\n{more}'

@@ -71,7 +71,7 @@ def test_what_is_counted_before_is_what_is_made(grown: tuple[Path, DesignRuns, s
 def test_a_stage_of_the_other_method_is_told_so(grown: tuple[Path, DesignRuns, str], tmp_path: Path) -> None:
     source = StudySource.read(grown[0] / "study.toml")
     with pytest.raises(
-        ValueError, match=r'"screen" is no stage of a study with design.method = "sequence"; allowed: bed,'
+        ValueError, match=r'"screen" is no stage of a study with design.method = "drawn"; allowed: bed,'
     ):
         run_study(source, tmp_path / "out", until="screen")
     assert not (tmp_path / "out").exists()

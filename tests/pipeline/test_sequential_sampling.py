@@ -45,7 +45,7 @@ def source(**design: Any) -> StudySource:
     # Where the ground holds what was captured; most of those that leave escape.
     tables["site"] = {"latitude_deg": 50.0}
     tables["impact"]["speed"] = 0.8
-    tables["design"] = {"method": "sequence", "run_count": 24} | design
+    tables["design"] = {"method": "drawn", "run_count": 24} | design
     return StudySource.of_tables(tables, function_identity(land))
 
 

@@ -1,4 +1,4 @@
-"""Keys of a study whose runs are drawn out of one sequence: its defaults, and what is refused."""
+"""Keys of a drawn study: its defaults, and what is refused."""
 
 import tomllib
 from pathlib import Path
@@ -10,19 +10,25 @@ from lithobrake.study import Study, StudyError, check_tables
 from lithobrake.study.study import default_bed_count
 from lithobrake.study.template import template
 
-TABLES: dict[str, Any] = tomllib.loads(template()) | {"design": {"method": "sequence"}}
+TABLES: dict[str, Any] = tomllib.loads(template()) | {"design": {"method": "drawn"}}
 
 
 def study(changes: dict[str, dict[str, Any]]) -> Study:
-    """The template under the sequence, with other keys in its tables."""
+    """The template by the drawn method, with other keys in its tables."""
     tables = TABLES | {name: {**TABLES.get(name, {}), **keys} for name, keys in changes.items()}
     return check_tables(tables, Path())
 
 
-def test_a_sequence_draws_what_is_left_open() -> None:
+def test_the_drawn_method_draws_what_is_left_open() -> None:
     found = study({})
     assert (found.impact.azimuth_deg, found.impact.orientation) == ("random", "random")
     assert (found.design.run_count, found.bed_count, found.design.side_runs) == (240, 24, False)
+
+
+def test_sequence_is_an_alias_of_the_drawn_method() -> None:
+    alias = study({"design": {"method": "sequence"}})
+    assert alias == study({})
+    assert alias.model_dump()["design"]["method"] == "drawn"
 
 
 def test_what_is_given_is_kept() -> None:
@@ -50,7 +56,7 @@ def test_beds_are_a_tenth_of_the_runs_within_limits() -> None:
 REFUSED: list[tuple[dict[str, dict[str, Any]], list[str]]] = [
     (
         {"design": {"refined_level": 3, "fit": "ols"}},
-        ['design.fit, design.refined_level go with design.method = "paper", and it is "sequence"'],
+        ['design.fit, design.refined_level go with design.method = "paper", and it is "drawn"'],
     ),
     ({"monte_carlo": {"scatter": True}}, ['monte_carlo.scatter is true and goes with design.method = "paper"']),
     ({"design": {"run_count": 20}, "bed": {"bed_count": 21}}, ["bed.bed_count is 21, and design.run_count 20"]),
@@ -68,7 +74,7 @@ REFUSED: list[tuple[dict[str, dict[str, Any]], list[str]]] = [
     ({"design": {"half_width": 0.02}, "bed": {"bed_count": 1}}, ["design.half_width is 0.02, and runs on one bed"]),
     (
         {"design": {"method": "paper", "half_width": 0.02}},
-        ['design.half_width goes with design.method = "sequence", and it is "paper"'],
+        ['design.half_width goes with design.method = "drawn", and it is "paper"'],
     ),
     ({"design": {"run_count": "many"}}, ["design.run_count is", "whole number"]),
     ({"design": {"side_runs": "yes"}}, ["design.side_runs is", "true or false"]),
@@ -82,7 +88,7 @@ REFUSED: list[tuple[dict[str, dict[str, Any]], list[str]]] = [
 
 
 @pytest.mark.parametrize(("changes", "words"), REFUSED, ids=[words[0] for _, words in REFUSED])
-def test_what_does_not_go_with_the_sequence_is_refused_in_one_sentence(
+def test_what_does_not_go_with_the_drawn_method_is_refused_in_one_sentence(
     changes: dict[str, dict[str, Any]], words: list[str]
 ) -> None:
     with pytest.raises(StudyError) as refusal:

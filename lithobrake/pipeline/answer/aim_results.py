@@ -14,7 +14,7 @@ from lithobrake.pipeline.emulate.fitted_emulator import REFIT_COUNT
 from lithobrake.pipeline.folder.study_folder import AGAIN, StudyFolder
 from lithobrake.pipeline.rest.aiming import COLUMNS, FILE
 from lithobrake.study import Study
-from lithobrake.study.aim_section import AimLimit
+from lithobrake.study.question_sections import AimLimit
 from lithobrake.study.units import input_units
 from lithobrake.vocabulary.outcomes import JourneyStatus
 from lithobrake.vocabulary.quantities import PURE

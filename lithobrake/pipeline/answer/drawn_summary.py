@@ -28,7 +28,7 @@ from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.site import Site
 from lithobrake.results.study_results import SUMMARY_FORMAT
 from lithobrake.vocabulary.outcomes import FlightStatus, TouchdownOutcome
-from lithobrake.vocabulary.quantities import OUTPUTS, SEQUENCE_DESIGNS, TOUCHDOWN
+from lithobrake.vocabulary.quantities import DRAWN_DESIGNS, OUTPUTS, TOUCHDOWN
 
 PIT_BINS = 10
 
@@ -36,7 +36,7 @@ PIT_BINS = 10
 def write_drawn_summary(job: Job) -> None:
     """Write summary.json: study, results, provenance. Times, host, folders and versions stand in provenance only."""
     side = job.study.design.side_runs
-    runs = [DesignRuns.load(job.folder, design) for design in (SEQUENCE_DESIGNS if side else SEQUENCE_DESIGNS[:1])]
+    runs = [DesignRuns.load(job.folder, design) for design in (DRAWN_DESIGNS if side else DRAWN_DESIGNS[:1])]
     distinct, estimates = DesignRuns.distinct(runs), job.folder.read_json(ESTIMATES)
     results: dict[str, Any] = {
         "units": {name: TOUCHDOWN[name].units for name in OUTPUTS},

@@ -2,10 +2,11 @@
 
 import numpy as np
 
+from lithobrake.analysis.limit_state_evaluation import limit_state_met
 from lithobrake.pipeline.fly.run_flights import FATES as RUN_FATES
 from lithobrake.pipeline.fly.run_flights import RETURNS as RETURNING
 from lithobrake.pipeline.runs.run_table import DesignRuns
-from lithobrake.study.limit_state import FATES, RETURNS, LimitState
+from lithobrake.vocabulary.limit_state import FATES, RETURNS, LimitState
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
 from lithobrake.vocabulary.quantities import TOUCHDOWN
 
@@ -21,11 +22,11 @@ def failing_runs(state: LimitState, runs: DesignRuns, fates: np.ndarray) -> np.n
     """
     values = values_of_runs(runs)
     unflown = {word: np.full(runs.run_count, np.nan) for word in FATES if word != CAPTURED}
-    found = state.met(values | unflown)
+    found = limit_state_met(state, values | unflown)
     counts = fates.sum(axis=1)
     if set(state.fates) <= set(OF_TOUCHDOWN) or not counts.any():
         return found
-    by_fate = np.column_stack([state.met(values | _words(fate, runs.run_count)) for fate in RUN_FATES])
+    by_fate = np.column_stack([limit_state_met(state, values | _words(fate, runs.run_count)) for fate in RUN_FATES])
     met = np.where(fates > 0, fates * by_fate, 0.0).sum(axis=1)
     return np.where(counts > 0, met / np.maximum(counts, 1), found)
 

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from lithobrake.analysis import drawn_counts, failure_inputs, failure_probability, regression_terms
+from lithobrake.analysis.limit_state_evaluation import limit_state_met
 from lithobrake.pipeline.answer.dispersion_statistics import Rows
 from lithobrake.pipeline.answer.failing_runs import CAPTURED, failing_runs
 from lithobrake.pipeline.answer.missing_landings import left_in_flight
@@ -18,7 +19,7 @@ from lithobrake.pipeline.fly.run_flights import RunFlights
 from lithobrake.pipeline.folder.study_folder import StudyFolder
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.study import Study
-from lithobrake.study.limit_state import LOFTED, RETURNS, SETTLED, LimitState
+from lithobrake.vocabulary.limit_state import LOFTED, RETURNS, SETTLED, LimitState
 from lithobrake.vocabulary.outcomes import FlightStatus, SampleOutcome
 
 
@@ -92,7 +93,9 @@ def _of_one_word(state: LimitState, shares: Mapping[str, Any]) -> dict[str, Any]
         return {}
     (word,) = state.fates
     share, lower, upper = (shares[word][key] for key in ("share", "lower", "upper"))
-    so, otherwise = (state.met({CAPTURED: np.full(1, end), word: np.full(1, end)})[0] for end in (1.0, 0.0))
+    so, otherwise = (
+        limit_state_met(state, {CAPTURED: np.full(1, end), word: np.full(1, end)})[0] for end in (1.0, 0.0)
+    )
     if so == otherwise:
         return {}
     if otherwise:
@@ -119,7 +122,7 @@ def _drawn(state: LimitState, values: dict[str, np.ndarray]) -> tuple[np.ndarray
     """
     if not state.outputs or any(name not in values for name in state.outputs):
         return None
-    met, refit = state.met(values), np.arange(len(values[CAPTURED])) % REFIT_COUNT
+    met, refit = limit_state_met(state, values), np.arange(len(values[CAPTURED])) % REFIT_COUNT
     if np.isnan(met[values[CAPTURED] == 1.0]).any():
         return None
     drawn = drawn_counts(met, refit, REFIT_COUNT)

@@ -12,8 +12,8 @@ from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.runs.beds import bed_recipe
 from lithobrake.pipeline.site import with_site_gravity
 from lithobrake.study import Study, StudyError, fixed_study
-from lithobrake.study.refusals import closest
 from lithobrake.study.touchdown_model import draw, in_words_of_the_study, lander, landing
+from lithobrake.vocabulary.plain_text import closest
 from lithobrake.vocabulary.quantities import TOUCHDOWN
 
 if TYPE_CHECKING:

@@ -13,6 +13,7 @@ import numpy as np
 from scipy.special import ndtr
 
 from lithobrake.analysis import SubsetResult, subset_simulation
+from lithobrake.analysis.limit_state_evaluation import limit_state_margin, limit_state_met
 from lithobrake.campaign import DaskExecutor, LocalExecutor
 from lithobrake.files.hashing import hashed_seed
 from lithobrake.pipeline.answer.failing_runs import OF_TOUCHDOWN, values_of_runs
@@ -28,7 +29,7 @@ from lithobrake.pipeline.sequential_sampling import grown
 from lithobrake.pipeline.site import Site, with_site_gravity
 from lithobrake.pipeline.study_run import run_study
 from lithobrake.study import Study, StudySource
-from lithobrake.study.limit_state import LimitState
+from lithobrake.vocabulary.limit_state import LimitState
 
 # Landings of a level are made in chains of ten.
 CHAIN, FEWEST = 10, 20
@@ -137,8 +138,8 @@ class Landings:
         self.reused_count += made.reused_count
         values = values_of_runs(DesignRuns.of(made))
         self.scale = self.scale or {output: self._spread(output, values[output]) for output in self.state.outputs}
-        self.unknown_count += int(np.isnan(self.state.met(values)).sum())
-        return self.state.margin(values, self.scale)
+        self.unknown_count += int(np.isnan(limit_state_met(self.state, values)).sum())
+        return limit_state_margin(self.state, values, self.scale)
 
     def _spread(self, output: str, values: np.ndarray) -> float:
         """Standard deviation of an output of the first level; 1 where it does not vary. Raises ValueError for none."""

@@ -22,9 +22,9 @@ from lithobrake.results.intact import intact_file
 from lithobrake.serve import ServedModel
 from lithobrake.study import Study, StudyError, StudySource, fixed_study
 from lithobrake.study.quantity import is_number
-from lithobrake.study.refusals import closest, show
 from lithobrake.study.touchdown_model import draw
 from lithobrake.vocabulary.outcomes import FlightStatus, TouchdownOutcome
+from lithobrake.vocabulary.plain_text import closest, show
 from lithobrake.vocabulary.quantities import OUTPUTS
 
 # What a campaign that is solved by a server says of each run; the setting is that of the study which is served.

@@ -21,7 +21,7 @@ def place_region(study: Study) -> tuple[Interval, Interval] | None:
     impact = study.impact
     if impact.region is not None:
         return impact.region.x, impact.region.y
-    if impact.place is not None or study.design.method != "sequence":
+    if impact.place is not None or study.design.method != "drawn":
         return None
     along, across = (max(0.0, 0.5 * (width - smallest_width(study))) for width in study.bed.width)
     return (-along, along), (-across, across)

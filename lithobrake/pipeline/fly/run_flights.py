@@ -17,7 +17,7 @@ from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.site import SITE_KEYS, Site
 from lithobrake.study import Study
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus, TouchdownOutcome
-from lithobrake.vocabulary.quantities import FLIGHT, RUN, SEQUENCE_DESIGNS
+from lithobrake.vocabulary.quantities import DRAWN_DESIGNS, FLIGHT, RUN
 
 # Flights of each run. In equal steps of the heading so many leave nothing to gain from more.
 FLIGHT_COUNT = 64
@@ -77,7 +77,7 @@ class RunImpacts:
 
 def fly_runs(job: Job) -> None:
     """Fly every run that left, its pair and its twin, from the same sites, and write how their flights end."""
-    designs = SEQUENCE_DESIGNS if job.study.design.side_runs else SEQUENCE_DESIGNS[:1]
+    designs = DRAWN_DESIGNS if job.study.design.side_runs else DRAWN_DESIGNS[:1]
     rows: list[list[Any]] = []
     for design in designs:
         runs = DesignRuns.load(job.folder, design)

@@ -5,8 +5,7 @@ from collections.abc import Mapping
 
 from lithobrake.analysis import Observation
 from lithobrake.files.reading import DamagedFileError, read_table
-from lithobrake.study.unit_factors import conversion
-from lithobrake.study.units import run_units
+from lithobrake.study.units import conversion, run_units
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
 from lithobrake.vocabulary.quantities import PURE
 

@@ -58,7 +58,7 @@ class InferredStudy:
 
         folder = StudyFolder.only_read(path)
         if not (folder / EMULATOR).is_file():
-            raise ValueError(f"{path} has no {EMULATOR}; run a drawn study there first (design.method = sequence)")
+            raise ValueError(f"{path} has no {EMULATOR}; run a drawn study there first (design.method = drawn)")
         source = StudySource.read(intact_file(path, STUDY_FILE, REMEDY))
         study = with_site_gravity(source.study, source.name)
         # The file does not say that a Python function made the touchdowns; then there are no beds.

@@ -8,7 +8,6 @@ from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.paper.run_noise import Scatter
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
-from lithobrake.vocabulary.quantities import DESIGNS
 
 if TYPE_CHECKING:
     from lithobrake.analysis import OutcomeModel
@@ -47,7 +46,7 @@ def outcome_model(job: Job) -> "OutcomeModel":
     from lithobrake.analysis import OutcomeModel
 
     inputs = job.design.inputs
-    runs = [DesignRuns.load(job.folder, design) for design in DESIGNS]
+    runs = [DesignRuns.load(job.folder, design) for design in PAPER_DESIGNS]
     x = np.concatenate([one.columns(list(inputs)) for one in runs])
     outcomes = [outcome for one in runs for outcome in one.outcomes]
     names = tuple(TouchdownOutcome)

@@ -8,7 +8,7 @@ import numpy as np
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.paper.paper_designs import kept_inputs
 from lithobrake.pipeline.runs.run_table import DesignRuns
-from lithobrake.vocabulary.quantities import DESIGNS, OUTPUTS
+from lithobrake.vocabulary.quantities import OUTPUTS, PAPER_DESIGNS
 
 if TYPE_CHECKING:
     from lithobrake.chaos import Surrogate
@@ -70,9 +70,9 @@ def score_all(job: Job) -> None:
     from lithobrake.chaos import load
 
     screening, refined = load(job.folder / "screening.json"), load(job.folder / "refined.json")
-    runs = {design: DesignRuns.load(job.folder, design) for design in DESIGNS}
+    runs = {design: DesignRuns.load(job.folder, design) for design in PAPER_DESIGNS}
     job.progress(0, 1, "scores with their intervals")
-    scores = {design: _score(screening if design == "screening" else refined, runs[design]) for design in DESIGNS}
+    scores = {design: _score(screening if design == "screening" else refined, runs[design]) for design in PAPER_DESIGNS}
     scores["test_screening"] = _score(screening, runs["test_all"])
     job.folder.write_json("scores.json", scores)
 

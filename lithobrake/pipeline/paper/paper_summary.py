@@ -26,7 +26,7 @@ from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.results.study_results import SUMMARY_FORMAT
 from lithobrake.study import Study
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
-from lithobrake.vocabulary.quantities import DESIGNS, OUTPUTS, TOUCHDOWN
+from lithobrake.vocabulary.quantities import OUTPUTS, PAPER_DESIGNS, TOUCHDOWN
 
 if TYPE_CHECKING:
     from lithobrake.chaos import Surrogate
@@ -42,7 +42,7 @@ def write_summary(job: Job) -> None:
     from lithobrake.chaos import load
 
     screening, refined = load(job.folder / "screening.json"), load(job.folder / "refined.json")
-    runs = {design: DesignRuns.load(job.folder, design) for design in DESIGNS}
+    runs = {design: DesignRuns.load(job.folder, design) for design in PAPER_DESIGNS}
     distinct = DesignRuns.distinct(list(runs.values()))
     ended = Counter(outcome for outcome in distinct.outcomes if outcome in list(TouchdownOutcome))
     samples, scores = Samples.load(job.folder), job.folder.read_json("scores.json")
@@ -51,7 +51,7 @@ def write_summary(job: Job) -> None:
         "units": {name: TOUCHDOWN[name].units for name in OUTPUTS},
         "beds": [bed_results(job, name) for name in bed_files(job.study)],
         "node_counts": _node_counts(job.study, len(screening.input_names)),
-        "designs": {design: _design(runs[design], replicate_count(job.study, design)) for design in DESIGNS},
+        "designs": {design: _design(runs[design], replicate_count(job.study, design)) for design in PAPER_DESIGNS},
         "outputs_of_runs": outputs_of_runs(distinct),
         "screening": _expansion(job, "screening", screening, runs["screening"]),
         "refined": _expansion(job, "refined", refined, runs["refined"]),

@@ -65,7 +65,7 @@ def expected_width(design: DrawnDesign, known: Mapping[str, Record], folder: Stu
     known: runs that have ended, by key; folder: where they may have flown.
     """
     study = design.study
-    if study.design.method != "sequence" or study.bed_count == 1:
+    if study.design.method != "drawn" or study.bed_count == 1:
         return None
     from lithobrake.analysis import LEVEL, expected_half_width, expected_half_widths
     from lithobrake.analysis.half_width import CORRELATION, SPREAD_RANGE

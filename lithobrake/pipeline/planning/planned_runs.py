@@ -11,7 +11,7 @@ from lithobrake.pipeline.folder.study_folder import StudyFolder
 from lithobrake.pipeline.paper.paper_designs import kept_inputs, points, replicate_count
 from lithobrake.pipeline.runs.touchdown_runs import drawn_rows
 from lithobrake.study.touchdown_model import draw
-from lithobrake.vocabulary.quantities import DESIGNS
+from lithobrake.vocabulary.quantities import PAPER_DESIGNS
 
 # Designs with more runs are not gone through run by run: that would take longer than a second or two.
 MOST_NAMED = 10_000
@@ -52,7 +52,7 @@ def possible_runs(drawn: DrawnDesign, folder: StudyFolder, screened: bool, known
     screened: the folder has the screening of this study. known: keys of runs that have ended.
     """
     study, inputs = drawn.study, tuple(drawn.inputs)
-    if study.design.method == "sequence":
+    if study.design.method == "drawn":
         return _possible_drawn(drawn, set(known))
     if screened:
         from lithobrake.chaos import load
@@ -67,7 +67,7 @@ def possible_runs(drawn: DrawnDesign, folder: StudyFolder, screened: bool, known
 def planned_rows(drawn: DrawnDesign, kept_count: int, most: int) -> list[dict[str, float]]:
     """All inputs of up to `most` of the touchdowns, drawn by chance."""
     study = drawn.study
-    if study.design.method == "sequence":
+    if study.design.method == "drawn":
         return drawn.rows[:most]
     points_of_runs = _planned_points(drawn, kept_count, most).tolist()
     return [
@@ -80,7 +80,7 @@ def _planned_points(drawn: DrawnDesign, kept_count: int, most: int) -> np.ndarra
     from lithobrake.analysis import sample_inputs
 
     kept = tuple(drawn.inputs)[:kept_count]
-    parts = [points(drawn, one, kept) for one in DESIGNS if _point_count(drawn, one, kept_count) <= MOST_NAMED]
+    parts = [points(drawn, one, kept) for one in PAPER_DESIGNS if _point_count(drawn, one, kept_count) <= MOST_NAMED]
     if not parts:
         return sample_inputs(drawn.inputs, most, seed=0)
     return np.random.default_rng(0).permutation(np.concatenate(parts))[:most]
@@ -104,8 +104,8 @@ def _planned_drawn(drawn: DrawnDesign, ended: set[str]) -> PlannedRuns:
 
 def _planned(drawn: DrawnDesign, kept: Sequence[str], ended: set[str]) -> PlannedRuns:
     study, seen = drawn.study, set[str]()
-    counts = dict.fromkeys(DESIGNS, 0)
-    for design in DESIGNS:
+    counts = dict.fromkeys(PAPER_DESIGNS, 0)
+    for design in PAPER_DESIGNS:
         replicates = range(replicate_count(study, design))
         counts[design] = len(replicates) * _point_count(drawn, design, len(kept))
         if counts[design] > MOST_NAMED:

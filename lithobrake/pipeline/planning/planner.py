@@ -52,7 +52,7 @@ def _expected_inference(plan: Plan, study: Study, path: Path) -> ExpectedInferen
     """What observed bounces would say, or what is to be run before that can be told."""
     why = None
     if study.design.method == "paper":
-        why = 'what they would say is told by an emulator, which design.method = "sequence" makes'
+        why = 'what they would say is told by an emulator, which design.method = "drawn" makes'
     elif EMULATOR in plan.stages:
         why = (
             "what they would say is told by the emulator, which is not there yet; make it with: "

@@ -150,7 +150,7 @@ def _bounces(study: Study) -> Iterator[str]:
 
 def _few_beds(study: Study) -> Iterator[str]:
     """Beds that give no interval, or a wide one."""
-    if study.design.method != "sequence" or study.bed_count >= FEWEST_BEDS:
+    if study.design.method != "drawn" or study.bed_count >= FEWEST_BEDS:
         return
     from lithobrake.analysis.confidence import t_quantile
 
@@ -173,7 +173,7 @@ def _one_place(design: DrawnDesign) -> Iterator[str]:
     study = design.study
     if not design.one_place:
         return
-    if study.design.method == "sequence":
+    if study.design.method == "drawn":
         yield (
             "All runs come down at the same place of their beds: give impact.region, or a bed wider than "
             f"{smallest_width(study):.2g} m, on whose middle places are drawn."

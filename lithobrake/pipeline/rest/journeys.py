@@ -46,7 +46,7 @@ DOWN = (
 
 def rest_files(study: Study) -> list[str]:
     """What the stage writes; the table of restitution where the emulator knows other impacts than the first."""
-    asks = study.design.method == "sequence" and why_no_soil(study) is None and bool(study.rest.count)
+    asks = study.design.method == "drawn" and why_no_soil(study) is None and bool(study.rest.count)
     return [*FILES, *([RESTITUTION] if asks else [])]
 
 

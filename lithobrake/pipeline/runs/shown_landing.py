@@ -24,7 +24,7 @@ def landing_files(study: Study) -> list[str]:
 
 def telling_files(study: Study) -> list[str]:
     """Name of the file of the landing that the runs have shown to be telling."""
-    return [TELLING] if study.has_soil and study.design.method == "sequence" else []
+    return [TELLING] if study.has_soil and study.design.method == "drawn" else []
 
 
 def landing_reads(study: Study) -> dict[str, Any]:

@@ -17,7 +17,7 @@ from lithobrake.study.study import default_bed_count
 from lithobrake.study.template import template
 from lithobrake.study.touchdown_model import ORIENTATION, PLACE, draw, medians
 
-TABLES: dict[str, Any] = tomllib.loads(template()) | {"design": {"method": "sequence"}}
+TABLES: dict[str, Any] = tomllib.loads(template()) | {"design": {"method": "drawn"}}
 SOIL = ("grain.young_modulus", "grain.friction", "lander.restitution")
 ARRIVAL = ("bed", *PLACE, "impact.azimuth_deg", *ORIENTATION)
 REGION = {"x": [-0.1, 0.05], "y": [0.0, 0.02]}
@@ -168,7 +168,7 @@ def test_soil_pairs_have_another_soil_and_arrive_alike() -> None:
 
 
 def test_twins_come_down_a_little_beside_and_nothing_else_differs() -> None:
-    study = drawn(50, design={"method": "sequence", "side_runs": True, "twin_shift": 2e-4})
+    study = drawn(50, design={"method": "drawn", "side_runs": True, "twin_shift": 2e-4})
     rows, pairs = DrawnDesign(study).rows[:12], DrawnDesign(study).rows_of("twins")
     assert len(pairs) == 12
     shift = columns(pairs, *PLACE) - columns(rows, *PLACE)

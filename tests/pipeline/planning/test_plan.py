@@ -227,7 +227,7 @@ def test_what_an_analyst_should_know_is_said(changes: dict[str, Any], said: str 
     assert said in found if said else "The screening fits" not in found
 
 
-SEQUENCE = {"method": "sequence", "run_count": 144}
+SEQUENCE = {"method": "drawn", "run_count": 144}
 
 
 def drawn(*, design: dict[str, Any] | None = None, **changes: dict[str, Any]) -> Study:

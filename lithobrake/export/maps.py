@@ -1,17 +1,22 @@
-"""The density of the impacts as a GeoTIFF over latitude and longitude of the body.
+"""Where flights end as maps of other programs: GeoTIFF and GeoJSON in a geographic frame of the body's own.
 
 Source: [GeoTIFF-2019], keys of user-defined geographic frames.
 """
 
+import json
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from lithobrake.export.map_frame import WORDS, MapFrame
+from lithobrake.export.flown import body_name
 from lithobrake.files.atomic import atomic_path
-from lithobrake.results import StudyResults
-from lithobrake.vocabulary.outcomes import FlightStatus
+from lithobrake.geometry.mesh import volume_of
+from lithobrake.results import StudyResults, Table
+from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus
 
 if TYPE_CHECKING:
     from PIL.TiffImagePlugin import ImageFileDirectory_v2
@@ -23,6 +28,39 @@ GDAL_NODATA = 42113
 # Finer cells than the second would take gigabytes of memory, and are smaller than what any study knows of a place.
 RESOLUTION_DEG, FINEST_DEG = 1.0, 0.05
 BAND, BAND_UNIT = "impact density", "1/m2"
+WORDS = "latitude planetocentric, longitude east positive, both of the body-fixed frame"
+PROPERTIES = ("time_s", "impact_speed", "impact_incidence_deg")
+REST_PROPERTIES = ("time_s", "rebounds", "path_length")
+
+
+@dataclass(frozen=True)
+class MapFrame:
+    """A geographic frame on the sphere that has the volume of a body.
+
+    On a sphere alone the latitude of a map is the planetocentric one, which an ellipsoid's is not.
+    """
+
+    body: str
+    radius: float  # [m]
+
+    @classmethod
+    def of(cls, results: StudyResults) -> "MapFrame":
+        """That of the body of a study."""
+        volume = volume_of(*results.body_shape)
+        return cls(body_name(results), (0.75 * volume / math.pi) ** (1.0 / 3.0))
+
+    @property
+    def name(self) -> str:
+        """Name of the frame."""
+        return f"{self.body} sphere, planetocentric, east positive"
+
+    @property
+    def wkt(self) -> str:
+        """The frame as well-known text."""
+        return (
+            f'GEOGCS["{self.name}",DATUM["{self.body}",SPHEROID["{self.body} sphere",{self.radius!r},0]],'
+            f'PRIMEM["Longitude 0 of {self.body}_FIXED",0],UNIT["degree",0.017453292519943295]]'
+        )
 
 
 def write_geotiff(results: StudyResults, path: Path, *, resolution_deg: float = RESOLUTION_DEG) -> None:
@@ -93,3 +131,63 @@ def _tags(frame: MapFrame, resolution_deg: float) -> "ImageFileDirectory_v2":
         tags.tagtype[tag] = kind
         tags[tag] = value
     return tags
+
+
+def write_geojson(results: StudyResults, path: Path) -> None:
+    """Write a point for each flight that ends on the body, with its sample, facet, time and velocity of impact."""
+    flights = results.flights
+    down = flights.where(np.flatnonzero(flights["status"] == FlightStatus.IMPACT))
+    properties = [
+        {
+            "sample": int(down["sample"][row]),
+            "facet": int(down["facet"][row]),
+            **{name: float(down[name][row]) for name in PROPERTIES},
+        }
+        for row in range(down.row_count)
+    ]
+    _write_points(results, path, "impacts", down, properties)
+
+
+def write_rest_geojson(results: StudyResults, path: Path) -> None:
+    """Write a point for each journey that ends at rest, with its sample and the ground that it was followed on."""
+    journeys = results.rest
+    settled = journeys.where(np.flatnonzero(journeys["status"] == JourneyStatus.SETTLED))
+    # Journeys of an earlier version may lack some of these.
+    known = [name for name in REST_PROPERTIES if name in settled.columns]
+    properties = [
+        {
+            "sample": int(settled["sample"][row]),
+            "ground": str(settled["ground"][row]),
+            **{name: float(settled[name][row]) for name in known},
+        }
+        for row in range(settled.row_count)
+    ]
+    _write_points(results, path, "places of rest", settled, properties)
+
+
+def _write_points(
+    results: StudyResults, path: Path, what: str, table: Table, properties: Sequence[Mapping[str, Any]]
+) -> None:
+    """Write the places of a table, one point a row, in the frame of the body."""
+    frame = MapFrame.of(results)
+    features = [
+        {
+            "type": "Feature",
+            "geometry": {
+                "type": "Point",
+                "coordinates": [float(table["longitude_deg"][row]), float(table["latitude_deg"][row])],
+            },
+            "properties": one,
+        }
+        for row, one in enumerate(properties)
+    ]
+    # The newest standard knows the Earth alone; the member of the one before says which body this is.
+    content: dict[str, Any] = {
+        "type": "FeatureCollection",
+        "name": f"{what} on {frame.body}",
+        "crs": {"type": "name", "properties": {"name": frame.wkt}},
+        "note": f"{WORDS}; coordinates in degrees, longitude first",
+        "features": features,
+    }
+    with atomic_path(path) as draft:
+        draft.write_text(json.dumps(content, allow_nan=False) + "\n", encoding="utf-8")

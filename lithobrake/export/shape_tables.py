@@ -1,4 +1,4 @@
-"""Numbers of each facet of the body, in the order of its facets: programs that colour a shape by them read that."""
+"""The shape of the body as tables of other programs: its plates, and numbers of each facet in their order."""
 
 import csv
 from pathlib import Path
@@ -72,3 +72,14 @@ def _slope(body: "Body", centre: np.ndarray) -> np.ndarray:
     along = -np.einsum("fi,fi->f", felt, body.shape.normals) / np.linalg.norm(felt, axis=1)
     slope: np.ndarray = np.arccos(np.clip(along, -1.0, 1.0))
     return slope
+
+
+def write_plates(results: StudyResults, path: Path) -> None:
+    """Write vertices [km] and plates, each with its number from 1, in the order of body.obj."""
+    vertices, faces = results.body_shape
+    lines = [str(len(vertices))]
+    lines += [f"{number} {x!r} {y!r} {z!r}" for number, (x, y, z) in enumerate((vertices * 1e-3).tolist(), 1)]
+    lines += [str(len(faces))]
+    lines += [f"{number} {a} {b} {c}" for number, (a, b, c) in enumerate((np.asarray(faces) + 1).tolist(), 1)]
+    with atomic_path(path) as draft:
+        draft.write_text("\n".join(lines) + "\n", encoding="ascii")

@@ -1,33 +1,51 @@
-"""The table of the study file that says between which aims there is to choose."""
+"""The tables of the study file that say what is asked: ends of a landing (limit states), and aims to choose from."""
 
 import re
-from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import product
-from typing import Annotated
+from typing import Annotated, Any
 
-from pydantic import Field
+from pydantic import BeforeValidator, ConfigDict, Field
 
-from lithobrake.study.quantity import Number, Whole
-from lithobrake.study.section import Section
+from lithobrake.study.quantity import Number, Section, Whole, refuse
+from lithobrake.vocabulary.limit_state import ALLOWED, COMPARED, EXAMPLE, LimitState, NoLimitStateError
 from lithobrake.vocabulary.outcomes import JourneyStatus
 
 # What comes of an aim, and may be limited as the aim itself is.
 SETTLED = JourneyStatus.SETTLED.value
 AIM_RESULTS = (SETTLED, "missing", "distance_p95", "time_p95")
-COMPARED: dict[str, Callable[[float, float], bool]] = {
-    "<": lambda a, b: a < b,
-    "<=": lambda a, b: a <= b,
-    ">": lambda a, b: a > b,
-    ">=": lambda a, b: a >= b,
-}
 _LIMIT = re.compile(r"\s*([a-z_0-9.]+)\s*(<=|>=|<|>)\s*([-+.0-9eE]+)\s*")
+
+
+def condition_text(given: object) -> str:
+    """Give back the text of a condition; refuse what is none."""
+    if not isinstance(given, str):
+        raise refuse(given, ALLOWED, f"write it in quotation marks, as in {EXAMPLE}")
+    try:
+        return LimitState.of(given).text
+    except NoLimitStateError as error:
+        raise refuse(given, ALLOWED, str(error)) from error
+
+
+class LimitStatesSection(Section):
+    """Conditions whose probability the study tells, by names of your own: fast = "speed_out > 0.1 and not returns".
+
+    Outputs of the touchdown [SI] stand in comparisons; returns, captured, impact, flying, escaped and partner are true
+    or false (docs/reliability.md). With design.method = "drawn" only."""
+
+    model_config = ConfigDict(extra="allow")
+    __pydantic_extra__: dict[str, Annotated[str, BeforeValidator(condition_text)]] = Field(init=False)
+
+    def conditions(self) -> dict[str, str]:
+        """The conditions by their names."""
+        given: dict[str, Any] = self.__pydantic_extra__ or {}
+        return dict(given)
 
 
 class AimSection(Section):
     """Where to aim: speeds, angles and places to choose from, each tried with landers that go on until they rest.
 
-    docs/aiming.md. With design.method = "sequence" only, and impact.speed and impact.incidence_deg uncertain."""
+    docs/aiming.md. With design.method = "drawn" only, and impact.speed and impact.incidence_deg uncertain."""
 
     grid: dict[str, list[Annotated[float, Number("")]]] = Field(default={})
     """What is chosen, by dotted key, and the values to try, ascending: one to three uncertain numbers of [impact], or
@@ -64,4 +82,4 @@ class AimLimit:
 
     def keeps(self, value: float | None) -> bool:
         """Whether a value keeps it; what is not known does not."""
-        return value is not None and COMPARED[self.sign](value, self.number)
+        return value is not None and bool(COMPARED[self.sign](value, self.number))
