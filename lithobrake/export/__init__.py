@@ -8,14 +8,6 @@ from lithobrake.export.geotiff import write_geotiff
 from lithobrake.export.plate_text import write_plates
 
 __all__ = [
-    "KINDS",
-    "ExportOptions",
-    "export_study",
-    "write_ephemerides",
-    "write_facet_csv",
-    "write_facet_fits",
-    "write_geojson",
-    "write_geotiff",
-    "write_plates",
-    "write_rest_geojson",
-]
+    "KINDS", "ExportOptions", "export_study", "write_ephemerides", "write_facet_csv", "write_facet_fits",
+    "write_geojson", "write_geotiff", "write_plates", "write_rest_geojson",
+]  # fmt: skip
