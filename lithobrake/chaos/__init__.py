@@ -12,9 +12,6 @@ if TYPE_CHECKING:
     from lithobrake.chaos.bootstrap import score_intervals as score_intervals
     from lithobrake.chaos.bootstrap import sobol_estimates as sobol_estimates
     from lithobrake.chaos.bootstrap import sobol_intervals as sobol_intervals
-    from lithobrake.chaos.bounded_distributions import Beta as Beta
-    from lithobrake.chaos.bounded_distributions import LogUniform as LogUniform
-    from lithobrake.chaos.bounded_distributions import Uniform as Uniform
     from lithobrake.chaos.counts import smolyak_count as smolyak_count
     from lithobrake.chaos.counts import term_count as term_count
     from lithobrake.chaos.design import latin_hypercube as latin_hypercube
@@ -22,6 +19,13 @@ if TYPE_CHECKING:
     from lithobrake.chaos.design import tensor_count as tensor_count
     from lithobrake.chaos.design import tensor_grid as tensor_grid
     from lithobrake.chaos.distribution_registry import distribution as distribution
+    from lithobrake.chaos.distributions import Beta as Beta
+    from lithobrake.chaos.distributions import Exponential as Exponential
+    from lithobrake.chaos.distributions import Gamma as Gamma
+    from lithobrake.chaos.distributions import LogNormal as LogNormal
+    from lithobrake.chaos.distributions import LogUniform as LogUniform
+    from lithobrake.chaos.distributions import Normal as Normal
+    from lithobrake.chaos.distributions import Uniform as Uniform
     from lithobrake.chaos.fitting import fit as fit
     from lithobrake.chaos.gaussian_copula import DependentSurrogate as DependentSurrogate
     from lithobrake.chaos.gaussian_copula import GaussianCopula as GaussianCopula
@@ -52,9 +56,5 @@ if TYPE_CHECKING:
     from lithobrake.chaos.stochastic import load_stochastic as load_stochastic
     from lithobrake.chaos.surrogate import Surrogate as Surrogate
     from lithobrake.chaos.surrogate import load as load
-    from lithobrake.chaos.unbounded_distributions import Exponential as Exponential
-    from lithobrake.chaos.unbounded_distributions import Gamma as Gamma
-    from lithobrake.chaos.unbounded_distributions import LogNormal as LogNormal
-    from lithobrake.chaos.unbounded_distributions import Normal as Normal
 else:
     __getattr__, __dir__ = lazy_names(__name__)

@@ -8,15 +8,16 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy import special
 
-from lithobrake.chaos.abstract_distribution import Distribution, checked_inputs
+from lithobrake.chaos.abstract_distribution import Distribution
 from lithobrake.chaos.basis import outside_count, points_of
 from lithobrake.chaos.design import sobol_sequence
+from lithobrake.chaos.distribution_registry import checked_inputs
+from lithobrake.chaos.distributions import Normal
 from lithobrake.chaos.fitting import fit
 from lithobrake.chaos.polynomials import Array
 from lithobrake.chaos.storage import inputs_from_json, inputs_to_json, read, write
 from lithobrake.chaos.surrogate import Surrogate
 from lithobrake.chaos.threads import one_thread
-from lithobrake.chaos.unbounded_distributions import Normal
 from lithobrake.vocabulary.given_numbers import numbers
 
 FORMAT = "lithobrake expansion of dependent inputs"

@@ -75,7 +75,7 @@ def test_code_in_a_file_stays_text(tmp_path, monkeypatch):
     surrogate = load("model.json")
     assert surrogate.input_names[0] == surrogate.output_names[0] == code
     content = json.loads(Path("model.json").read_text())
-    for kind in (code, "__class__", "Distribution", "lithobrake.chaos.bounded_distributions.Uniform"):
+    for kind in (code, "__class__", "Distribution", "lithobrake.chaos.distributions.Uniform"):
         content["inputs"][0]["kind"] = kind
         Path("model.json").write_text(json.dumps(content))
         with pytest.raises(ValueError, match="damaged"):
