@@ -27,10 +27,7 @@ if TYPE_CHECKING:
     from lithobrake.chaos.distributions import Normal as Normal
     from lithobrake.chaos.distributions import Uniform as Uniform
     from lithobrake.chaos.fitting import fit as fit
-    from lithobrake.chaos.gaussian_copula import DependentSurrogate as DependentSurrogate
     from lithobrake.chaos.gaussian_copula import GaussianCopula as GaussianCopula
-    from lithobrake.chaos.gaussian_copula import fit_dependent as fit_dependent
-    from lithobrake.chaos.gaussian_copula import load_dependent as load_dependent
     from lithobrake.chaos.germ_tables import input_tables as input_tables
     from lithobrake.chaos.multi_index import multi_index_set as multi_index_set
     from lithobrake.chaos.noise import replicates as replicates

@@ -137,3 +137,30 @@ def test_all_distributions_are_public_and_known_to_study_files():
 @pytest.mark.parametrize("entry", [LogUniform(1e-6, 1e8), LogNormal(0.0, 1.0)])
 def test_what_has_no_logarithm_is_outside_however_wide_the_support(entry):
     assert outside_count({"a": entry}, np.array([[-1e-5], [0.0], [1.0]]))[0] == 2
+
+
+@pytest.mark.parametrize(
+    "entry",
+    [
+        Uniform(1.0, 2.0),
+        LogUniform(1.0, 100.0),
+        Normal(1.0, 2.0),
+        LogNormal(0.0, 1.0),
+        TruncatedNormal(0.0, 1.0, -1.0, 3.0),
+        TruncatedNormal(0.0, 1.0, 6.0, 9.0),
+        TruncatedNormal(0.0, 1.0, -np.inf, 1.0),
+        TruncatedNormal(0.0, 1.0, -1.0, np.inf),
+        TruncatedNormal(0.0, 1.0, -9.0, -7.0),
+        Beta(2.0, 3.0, -1.0, 1.0),
+        Gamma(2.0, 3.0),
+        Exponential(2.0),
+    ],
+    ids=lambda entry: f"{entry.kind} {entry.support}",
+)
+def test_probability_of_a_quantile_is_the_probability(entry):
+    u = np.array([0.001, 0.2, 0.5, 0.9, 0.999])
+    assert np.allclose(entry.cdf(entry.ppf(u)), u, rtol=1e-9)
+
+
+def test_probability_of_samples_is_their_rank():
+    assert Empirical([1.0, 2.0, 3.0, 4.0]).cdf(np.array([1.0, 4.0])).tolist() == [0.125, 0.875]
