@@ -47,10 +47,15 @@ def part_of(path: Path) -> str:
     return inside.parts[0] if len(inside.parts) > 1 else inside.stem
 
 
-def imported_names(path: Path) -> set[str]:
-    """The full names that a file imports, wherever in the file it does so: modules, and what comes out of them."""
+def imported_names(path: Path, only_at_load: bool = False) -> set[str]:
+    """The full names that a file imports: modules, and what comes out of them; wherever in the file it does so, or when
+    it is itself imported. A face whose names are imported late counts as importing them.
+    """
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    if only_at_load and path.name != "__init__.py":
+        tree.body = [node for node in tree.body if isinstance(node, ast.Import | ast.ImportFrom)]
     found = set()
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+    for node in ast.walk(tree):
         if isinstance(node, ast.ImportFrom):
             assert node.level == 0, f"{path} imports by dots; write the full name"
             found |= {f"{node.module}.{alias.name}" for alias in node.names}
@@ -93,6 +98,16 @@ def test_no_two_files_import_each_other() -> None:
     files = [path for path in SOURCES if part_of(path) in WITHOUT_CIRCLES]
     # Raises CycleError with the files of a circle.
     TopologicalSorter({path: {imported_file(name) for name in imported_names(path)} for path in files}).prepare()
+
+
+def test_any_file_can_be_imported_first() -> None:
+    graph = {}
+    for path in SOURCES:
+        files = {imported_file(name) for name in imported_names(path, only_at_load=True)}
+        # A file brings the faces of the folders that it stands in; those of its importer are there already.
+        faces = {folder / "__init__.py" for file in files for folder in file.parents if PACKAGE in folder.parents}
+        graph[path] = {file for file in files | faces if file.parent not in path.parents or file.name != "__init__.py"}
+    TopologicalSorter(graph).prepare()
 
 
 @pytest.mark.parametrize(("user", "part"), THROUGH_THE_FACE)

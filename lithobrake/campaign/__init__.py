@@ -1,41 +1,34 @@
 """Many runs of any model: each is computed once, kept in a ledger the moment it ends, and never lost."""
 
-from lithobrake.campaign.command import Command, absolute_words
-from lithobrake.campaign.dask_executor import DaskExecutor
-from lithobrake.campaign.ledger import Ledger
-from lithobrake.campaign.limits import Limits
-from lithobrake.campaign.local_executor import LocalExecutor, WorkerDiedError, available_cores
-from lithobrake.campaign.missing_runs import missing
-from lithobrake.campaign.model_server import ModelServer
-from lithobrake.campaign.record import Record, RunStatus, campaign_began, read_records, run_key, run_seed
-from lithobrake.campaign.run_counts import Tally, duration, ledger_tally, per_time
-from lithobrake.campaign.run_table import run_lines, write_csv
-from lithobrake.campaign.runs import RunOptions, Runs, run
+from typing import TYPE_CHECKING
 
-__all__ = [
-    "Command",
-    "DaskExecutor",
-    "Ledger",
-    "Limits",
-    "LocalExecutor",
-    "ModelServer",
-    "Record",
-    "RunOptions",
-    "RunStatus",
-    "Runs",
-    "Tally",
-    "WorkerDiedError",
-    "absolute_words",
-    "available_cores",
-    "campaign_began",
-    "duration",
-    "ledger_tally",
-    "missing",
-    "per_time",
-    "read_records",
-    "run",
-    "run_key",
-    "run_lines",
-    "run_seed",
-    "write_csv",
-]
+from lithobrake.vocabulary.lazy_names import lazy_names
+
+if TYPE_CHECKING:
+    from lithobrake.campaign.command import Command as Command
+    from lithobrake.campaign.command import absolute_words as absolute_words
+    from lithobrake.campaign.dask_executor import DaskExecutor as DaskExecutor
+    from lithobrake.campaign.ledger import Ledger as Ledger
+    from lithobrake.campaign.limits import Limits as Limits
+    from lithobrake.campaign.local_executor import LocalExecutor as LocalExecutor
+    from lithobrake.campaign.local_executor import WorkerDiedError as WorkerDiedError
+    from lithobrake.campaign.local_executor import available_cores as available_cores
+    from lithobrake.campaign.missing_runs import missing as missing
+    from lithobrake.campaign.model_server import ModelServer as ModelServer
+    from lithobrake.campaign.record import Record as Record
+    from lithobrake.campaign.record import RunStatus as RunStatus
+    from lithobrake.campaign.record import campaign_began as campaign_began
+    from lithobrake.campaign.record import read_records as read_records
+    from lithobrake.campaign.record import run_key as run_key
+    from lithobrake.campaign.record import run_seed as run_seed
+    from lithobrake.campaign.run_counts import Tally as Tally
+    from lithobrake.campaign.run_counts import duration as duration
+    from lithobrake.campaign.run_counts import ledger_tally as ledger_tally
+    from lithobrake.campaign.run_counts import per_time as per_time
+    from lithobrake.campaign.run_table import run_lines as run_lines
+    from lithobrake.campaign.run_table import write_csv as write_csv
+    from lithobrake.campaign.runs import RunOptions as RunOptions
+    from lithobrake.campaign.runs import Runs as Runs
+    from lithobrake.campaign.runs import run as run
+else:
+    __getattr__, __dir__ = lazy_names(__name__)

@@ -20,6 +20,8 @@ class Distribution(ABC):
     """One uncertain input. Subclasses are frozen dataclasses whose fields are the parameters."""
 
     kind: ClassVar[str]
+    # Whether the germ is a function of ln x.
+    logarithmic: ClassVar[bool] = False
 
     @property
     @abstractmethod
@@ -92,6 +94,16 @@ class Distribution(ABC):
     def _clip(self, x: Array) -> Array:
         return np.clip(x, *self.support)
 
+    def _scaled(self, x: Array) -> Array:
+        return np.log(x) if self.logarithmic else x
+
+    def _unscaled(self, values: Array) -> Array:
+        return np.exp(values) if self.logarithmic else values
+
+    def _per_unit(self, germ: float, scaled: float, x: Array) -> Array:
+        """Derivative by x of a germ that grows by so much over so much of x, or of ln x."""
+        return germ / (scaled * (x if self.logarithmic else np.ones_like(x)))
+
     def _number(self, name: str, above: float | None = None, finite: bool = True) -> float:
         """Check a parameter, store it as a float and give it back."""
         value = getattr(self, name)
@@ -115,14 +127,24 @@ class Distribution(ABC):
             )
 
 
-def checked_inputs(inputs: Any) -> dict[str, Distribution]:
-    """Check a mapping of input names to distributions and give it back as an ordered dict."""
-    if not hasattr(inputs, "items") or not inputs:
-        raise ValueError("inputs must be a dict of at least one name with its distribution, for instance Uniform(0, 1)")
-    for name, entry in inputs.items():
-        if not isinstance(entry, Distribution):
-            raise ValueError(
-                f"input {name!r} is {entry!r}, but must be a distribution (Uniform, LogUniform, Normal, LogNormal, "
-                f"TruncatedNormal, Beta, Gamma, Exponential, Empirical); {NO_CHOICES}"
-            )
-    return dict(inputs)
+class Limited(Distribution):
+    """An input between two finite limits, which are -1 and 1 of the germ."""
+
+    @property
+    def _limits(self) -> tuple[float, float]:
+        """The limits, or their logarithms."""
+        lower, upper = self.support
+        return (float(np.log(lower)), float(np.log(upper))) if self.logarithmic else (lower, upper)
+
+    def germ(self, x: Array) -> Array:
+        (low, high), value = self._limits, self._scaled(x)
+        # This form gives exactly -1 and 1 at the limits.
+        return ((value - low) - (high - value)) / (high - low)
+
+    def physical(self, germ: Array) -> Array:
+        low, high = self._limits
+        return self._clip(self._unscaled(0.5 * ((1.0 - germ) * low + (1.0 + germ) * high)))
+
+    def germ_derivative(self, x: Array) -> Array:
+        low, high = self._limits
+        return self._per_unit(2.0, high - low, x)

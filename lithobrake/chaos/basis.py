@@ -36,7 +36,7 @@ def outside_count(inputs: Mapping[str, Distribution], points: Array) -> tuple[in
         slack = ROUNDING * (upper - lower if entry.bounded else abs(lower) if np.isfinite(lower) else 0.0)
         column = points[:, k]
         wrong = ~((column >= lower - slack) & (column <= upper + slack))
-        if entry.kind == "log_normal":
+        if entry.logarithmic:
             wrong |= column <= 0.0
         if wrong.any():
             outside |= wrong

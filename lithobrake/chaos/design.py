@@ -6,7 +6,8 @@ from itertools import product
 
 import numpy as np
 
-from lithobrake.chaos.abstract_distribution import Distribution, checked_inputs
+from lithobrake.chaos.abstract_distribution import Distribution
+from lithobrake.chaos.distribution_registry import checked_inputs
 from lithobrake.chaos.polynomials import Array
 from lithobrake.vocabulary.given_numbers import random_numbers, sample_count, whole_number
 

@@ -1,12 +1,11 @@
-"""Distributions by name: what a study file or a saved expansion calls them."""
+"""The one list of distributions: by the names that study files and saved expansions use, and as inputs."""
 
 from dataclasses import fields
 from typing import Any
 
 from lithobrake.chaos.abstract_distribution import NO_CHOICES, Distribution
-from lithobrake.chaos.bounded_distributions import Beta, LogUniform, Uniform
+from lithobrake.chaos.distributions import Beta, Exponential, Gamma, LogNormal, LogUniform, Normal, Uniform
 from lithobrake.chaos.numerical_distributions import Empirical, TruncatedNormal
-from lithobrake.chaos.unbounded_distributions import Exponential, Gamma, LogNormal, Normal
 
 KINDS: dict[str, type[Distribution]] = {
     entry.kind: entry
@@ -31,3 +30,16 @@ def distribution(kind: str, **parameters: Any) -> Distribution:
     except TypeError:
         missing = [name for name in allowed if name not in parameters]
         raise ValueError(f"distribution {kind!r} lacks {', '.join(missing)}: it takes {', '.join(allowed)}") from None
+
+
+def checked_inputs(inputs: Any) -> dict[str, Distribution]:
+    """Check a mapping of input names to distributions and give it back as an ordered dict."""
+    if not hasattr(inputs, "items") or not inputs:
+        raise ValueError("inputs must be a dict of at least one name with its distribution, for instance Uniform(0, 1)")
+    for name, entry in inputs.items():
+        if not isinstance(entry, Distribution):
+            raise ValueError(
+                f"input {name!r} is {entry!r}, but must be a distribution "
+                f"({', '.join(known.__name__ for known in KINDS.values())}); {NO_CHOICES}"
+            )
+    return dict(inputs)

@@ -22,7 +22,7 @@ def input_tables(inputs: Mapping[str, Distribution], indices: Indices) -> dict[s
     tables = {"center": np.zeros(shape), "spread": np.ones(shape)}
     for k, one in enumerate(recurrences):
         tables["center"][k, : one.degree], tables["spread"][k, : one.degree] = one.center, one.spread
-    is_log = np.array([entry.kind in ("log_uniform", "log_normal") for entry in inputs.values()])
+    is_log = np.array([entry.logarithmic for entry in inputs.values()])
     probability = np.linspace(0.0, 1.0, QUANTILE_STEPS + 1)
     zero, slope, quantiles = np.empty(len(inputs)), np.empty(len(inputs)), np.empty((len(inputs), len(probability)))
     for k, entry in enumerate(inputs.values()):

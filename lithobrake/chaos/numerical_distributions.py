@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy import special
 
-from lithobrake.chaos.abstract_distribution import NO_CHOICES, Distribution, Support
+from lithobrake.chaos.abstract_distribution import NO_CHOICES, Distribution, Limited, Support
 from lithobrake.chaos.polynomials import Array, Recurrence, discretised
 
 # Densities below exp(-350) of the largest cannot be felt by polynomials of the degrees in use.
@@ -133,7 +133,7 @@ class TruncatedNormal(Distribution):
 
 
 @dataclass(frozen=True)
-class Empirical(Distribution):
+class Empirical(Limited):
     """The samples themselves [unit of the input], equally probable; polynomials orthonormal over exactly these values.
 
     Quantiles are sample values (no interpolation), so that a Monte Carlo has the moments that the expansion states.
@@ -162,14 +162,6 @@ class Empirical(Distribution):
     def support(self) -> Support:
         return self.samples[0], self.samples[-1]
 
-    def germ(self, x: Array) -> Array:
-        lower, upper = self.support
-        return ((x - lower) - (upper - x)) / (upper - lower)
-
-    def physical(self, germ: Array) -> Array:
-        lower, upper = self.support
-        return self._clip(0.5 * ((1.0 - germ) * lower + (1.0 + germ) * upper))
-
     def ppf(self, u: ArrayLike) -> Array:
         count = len(self.samples)
         place = np.ceil(np.asarray(u, dtype=float) * count).astype(int) - 1
@@ -180,9 +172,6 @@ class Empirical(Distribution):
         below, upto = (np.searchsorted(self._sorted, x, side=side) for side in ("left", "right"))
         count = len(self.samples)
         return np.clip(0.5 * (below + upto) / count, 0.5 / count, 1.0 - 0.5 / count)
-
-    def germ_derivative(self, x: Array) -> Array:
-        return np.full_like(x, 2.0 / (self.samples[-1] - self.samples[0]))
 
     def _measure(self) -> tuple[Array, Array]:
         # Equal values share one node, so that ties do not cost orthogonality.

@@ -5,10 +5,11 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lithobrake.chaos.abstract_distribution import Distribution, checked_inputs
+from lithobrake.chaos.abstract_distribution import Distribution
 from lithobrake.chaos.basis import basis_matrix, checked_points
 from lithobrake.chaos.counts import term_count
 from lithobrake.chaos.design import checked_count
+from lithobrake.chaos.distribution_registry import checked_inputs
 from lithobrake.chaos.multi_index import Indices, multi_index_set
 from lithobrake.chaos.polynomials import Array
 from lithobrake.chaos.threads import one_thread

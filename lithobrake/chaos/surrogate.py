@@ -10,8 +10,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from lithobrake.chaos import noise, scores, sensitivity
-from lithobrake.chaos.abstract_distribution import Distribution, checked_inputs
+from lithobrake.chaos.abstract_distribution import Distribution
 from lithobrake.chaos.basis import outside_count, points_of
+from lithobrake.chaos.distribution_registry import checked_inputs
 from lithobrake.chaos.evaluation import EvaluationPlan, evaluate, make_plan
 from lithobrake.chaos.moments import ShapeMoments, skewness_and_kurtosis
 from lithobrake.chaos.multi_index import Indices
@@ -113,8 +114,7 @@ class Surrogate:
         if count:
             text = f"{count} of {len(points)} points are outside the support of the inputs (first: {sentence})"
             undefined = any(
-                entry.kind in ("log_uniform", "log_normal") and bool((points[:, k] <= 0.0).any())
-                for k, entry in enumerate(self.inputs.values())
+                entry.logarithmic and bool((points[:, k] <= 0.0).any()) for k, entry in enumerate(self.inputs.values())
             )
             if outside == "raise" or undefined:
                 raise ValueError(f"{text}: an expansion does not extrapolate; leave them out, or pass outside='warn'")

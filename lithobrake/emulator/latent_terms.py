@@ -11,10 +11,9 @@ import numpy as np
 
 from lithobrake.chaos.abstract_distribution import Distribution
 from lithobrake.chaos.basis import basis_matrix
-from lithobrake.chaos.bounded_distributions import Uniform
+from lithobrake.chaos.distributions import Normal, Uniform
 from lithobrake.chaos.multi_index import Indices, multi_index_set
 from lithobrake.chaos.polynomials import Array
-from lithobrake.chaos.unbounded_distributions import Normal
 
 # Distributions that the latent variable may have, and nodes of the Gauss rule that integrates over it: as fine as the
 # noise asks for, which else would show single nodes as peaks of the density.

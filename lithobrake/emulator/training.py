@@ -7,8 +7,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lithobrake.chaos.abstract_distribution import Distribution, checked_inputs
+from lithobrake.chaos.abstract_distribution import Distribution
 from lithobrake.chaos.basis import checked_points
+from lithobrake.chaos.distribution_registry import checked_inputs
 from lithobrake.chaos.polynomials import Array
 from lithobrake.chaos.training import check_magnitude
 from lithobrake.emulator.coordinates import from_coordinate, to_coordinate

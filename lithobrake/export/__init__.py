@@ -6,14 +6,6 @@ from lithobrake.export.maps import write_geojson, write_geotiff, write_rest_geoj
 from lithobrake.export.shape_tables import write_facet_csv, write_facet_fits, write_plates
 
 __all__ = [
-    "KINDS",
-    "ExportOptions",
-    "export_study",
-    "write_ephemerides",
-    "write_facet_csv",
-    "write_facet_fits",
-    "write_geojson",
-    "write_geotiff",
-    "write_plates",
-    "write_rest_geojson",
-]
+    "KINDS", "ExportOptions", "export_study", "write_ephemerides", "write_facet_csv", "write_facet_fits",
+    "write_geojson", "write_geotiff", "write_plates", "write_rest_geojson",
+]  # fmt: skip

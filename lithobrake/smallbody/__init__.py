@@ -13,26 +13,7 @@ from lithobrake.smallbody.spice_kernels import PartnerPlace, SpinState, read_par
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus
 
 __all__ = [
-    "Arcs",
-    "Body",
-    "Bounce",
-    "FlightStatus",
-    "Flights",
-    "HardSurface",
-    "Impacts",
-    "JourneyStatus",
-    "Journeys",
-    "Launch",
-    "Partner",
-    "PartnerPlace",
-    "Rebounds",
-    "RestitutionTable",
-    "Shape",
-    "SpinState",
-    "didymos",
-    "dimorphos",
-    "fly",
-    "hop",
-    "read_partner",
-    "read_spin",
-]
+    "Arcs", "Body", "Bounce", "FlightStatus", "Flights", "HardSurface", "Impacts", "JourneyStatus", "Journeys",
+    "Launch", "Partner", "PartnerPlace", "Rebounds", "RestitutionTable", "Shape", "SpinState", "didymos", "dimorphos",
+    "fly", "hop", "read_partner", "read_spin",
+]  # fmt: skip

@@ -1,9 +1,12 @@
 """Quantiles against SciPy's distributions, germs and back, names, and refusal of wrong parameters."""
 
+from dataclasses import fields
+
 import numpy as np
 import pytest
 from scipy import stats
 
+from lithobrake import chaos
 from lithobrake.chaos import (
     Beta,
     Empirical,
@@ -16,6 +19,9 @@ from lithobrake.chaos import (
     Uniform,
     distribution,
 )
+from lithobrake.chaos.basis import outside_count
+from lithobrake.chaos.distribution_registry import KINDS
+from lithobrake.study.quantity import DISTRIBUTIONS
 
 PAIRS = [
     (Uniform(2.0, 5.0), stats.uniform(2.0, 3.0)),
@@ -118,3 +124,43 @@ def test_samples_that_are_no_numbers_are_refused_as_choices(samples):
         Empirical(samples)
     with pytest.raises(ValueError, match="discrete choices are not supported"):
         distribution("choice", values=samples)
+
+
+def test_all_distributions_are_public_and_known_to_study_files():
+    parameters = {kind: tuple(field.name for field in fields(entry)) for kind, entry in KINDS.items()}
+    # Samples do not stand in a study file.
+    assert parameters.pop("empirical") == ("samples",)
+    assert parameters == DISTRIBUTIONS
+    assert {entry.__name__ for entry in KINDS.values()} <= set(dir(chaos))
+
+
+@pytest.mark.parametrize("entry", [LogUniform(1e-6, 1e8), LogNormal(0.0, 1.0)])
+def test_what_has_no_logarithm_is_outside_however_wide_the_support(entry):
+    assert outside_count({"a": entry}, np.array([[-1e-5], [0.0], [1.0]]))[0] == 2
+
+
+@pytest.mark.parametrize(
+    "entry",
+    [
+        Uniform(1.0, 2.0),
+        LogUniform(1.0, 100.0),
+        Normal(1.0, 2.0),
+        LogNormal(0.0, 1.0),
+        TruncatedNormal(0.0, 1.0, -1.0, 3.0),
+        TruncatedNormal(0.0, 1.0, 6.0, 9.0),
+        TruncatedNormal(0.0, 1.0, -np.inf, 1.0),
+        TruncatedNormal(0.0, 1.0, -1.0, np.inf),
+        TruncatedNormal(0.0, 1.0, -9.0, -7.0),
+        Beta(2.0, 3.0, -1.0, 1.0),
+        Gamma(2.0, 3.0),
+        Exponential(2.0),
+    ],
+    ids=lambda entry: f"{entry.kind} {entry.support}",
+)
+def test_probability_of_a_quantile_is_the_probability(entry):
+    u = np.array([0.001, 0.2, 0.5, 0.9, 0.999])
+    assert np.allclose(entry.cdf(entry.ppf(u)), u, rtol=1e-9)
+
+
+def test_probability_of_samples_is_their_rank():
+    assert Empirical([1.0, 2.0, 3.0, 4.0]).cdf(np.array([1.0, 4.0])).tolist() == [0.125, 0.875]

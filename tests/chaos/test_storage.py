@@ -11,10 +11,8 @@ from lithobrake.chaos import (
     Empirical,
     Uniform,
     fit,
-    fit_dependent,
     fit_stochastic,
     load,
-    load_dependent,
     load_stochastic,
     sobol_sequence,
 )
@@ -55,7 +53,6 @@ def test_another_format_version_is_refused_in_one_sentence(version, tmp_path):
     makers = {
         load: fit(INPUTS, x, y, degree=1),
         load_stochastic: fit_stochastic(INPUTS, x, y),
-        load_dependent: fit_dependent(INPUTS, np.eye(2), x, y, degree=1),
     }
     path = tmp_path / "model.json"
     for read, surrogate in makers.items():
@@ -75,7 +72,7 @@ def test_code_in_a_file_stays_text(tmp_path, monkeypatch):
     surrogate = load("model.json")
     assert surrogate.input_names[0] == surrogate.output_names[0] == code
     content = json.loads(Path("model.json").read_text())
-    for kind in (code, "__class__", "Distribution", "lithobrake.chaos.bounded_distributions.Uniform"):
+    for kind in (code, "__class__", "Distribution", "lithobrake.chaos.distributions.Uniform"):
         content["inputs"][0]["kind"] = kind
         Path("model.json").write_text(json.dumps(content))
         with pytest.raises(ValueError, match="damaged"):
@@ -154,12 +151,6 @@ def test_parts_of_a_file_that_do_not_belong_together_are_refused(tmp_path):
         path.write_text(json.dumps({**whole, **change}))
         with pytest.raises(ValueError, match="damaged"):
             load_stochastic(path)
-    fit_dependent(INPUTS, np.eye(2), x, y, degree=1).save(path)
-    whole = json.loads(path.read_text())
-    whole["independent"]["inputs"] = whole["dependent_inputs"]
-    path.write_text(json.dumps(whole))
-    with pytest.raises(ValueError, match="not the germs"):
-        load_dependent(path)
 
 
 def test_a_folder_is_refused_in_one_sentence(tmp_path):

@@ -8,6 +8,7 @@ from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.paper.run_noise import Scatter
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
+from lithobrake.vocabulary.quantities import PAPER_DESIGNS
 
 if TYPE_CHECKING:
     from lithobrake.analysis import OutcomeModel

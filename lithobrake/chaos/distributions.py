@@ -1,4 +1,4 @@
-"""Inputs without a limit on one or both sides: normal, log-normal, gamma, exponential."""
+"""Inputs whose polynomials have a name: uniform, normal and their logarithmic kinds, beta, gamma, exponential."""
 
 from dataclasses import dataclass
 
@@ -6,8 +6,73 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy import special
 
-from lithobrake.chaos.abstract_distribution import Distribution, Support
-from lithobrake.chaos.polynomials import Array, Recurrence, hermite, laguerre
+from lithobrake.chaos.abstract_distribution import Distribution, Limited, Support
+from lithobrake.chaos.polynomials import Array, Recurrence, hermite, jacobi, laguerre, legendre
+
+
+@dataclass(frozen=True)
+class Uniform(Limited):
+    """Uniform between lower and upper [unit of the input]; Legendre polynomials; lower < upper."""
+
+    lower: float
+    upper: float
+    kind = "uniform"
+
+    def __post_init__(self) -> None:
+        above = 0.0 if self.logarithmic else None
+        self._ordered(self._number("lower", above), self._number("upper", above))
+
+    @property
+    def support(self) -> Support:
+        return self.lower, self.upper
+
+    def ppf(self, u: ArrayLike) -> Array:
+        # Through the germ, so that the median is the middle node of a grid to the last bit.
+        return self.physical(2.0 * np.asarray(u, dtype=float) - 1.0)
+
+    def cdf(self, x: Array) -> Array:
+        return 0.5 * (1.0 + self.germ(x))
+
+    def recurrence(self, degree: int) -> Recurrence:
+        return legendre(degree)
+
+
+@dataclass(frozen=True)
+class LogUniform(Uniform):
+    """Uniform in the logarithm between lower and upper [unit of the input], both above 0; Legendre in ln x."""
+
+    kind = "log_uniform"
+    logarithmic = True
+
+
+@dataclass(frozen=True)
+class Beta(Limited):
+    """Beta, density proportional to (x - lower)**(alpha - 1) (upper - x)**(beta - 1) between the limits; Jacobi."""
+
+    alpha: float
+    beta: float
+    lower: float = 0.0
+    upper: float = 1.0
+    kind = "beta"
+
+    def __post_init__(self) -> None:
+        self._number("alpha", above=0.0)
+        self._number("beta", above=0.0)
+        self._ordered(self._number("lower"), self._number("upper"))
+
+    @property
+    def support(self) -> Support:
+        return self.lower, self.upper
+
+    def ppf(self, u: ArrayLike) -> Array:
+        fraction = special.betaincinv(self.alpha, self.beta, np.asarray(u, dtype=float))
+        return self._clip(self.lower + fraction * (self.upper - self.lower))
+
+    def cdf(self, x: Array) -> Array:
+        return special.betainc(self.alpha, self.beta, 0.5 * (1.0 + self.germ(x)))
+
+    def recurrence(self, degree: int) -> Recurrence:
+        return jacobi(degree, self.alpha, self.beta)
 
 
 @dataclass(frozen=True)
@@ -24,13 +89,13 @@ class Normal(Distribution):
 
     @property
     def support(self) -> Support:
-        return -np.inf, np.inf
+        return 0.0 if self.logarithmic else -np.inf, np.inf
 
     def germ(self, x: Array) -> Array:
-        return (x - self.mean) / self.std
+        return (self._scaled(x) - self.mean) / self.std
 
     def physical(self, germ: Array) -> Array:
-        return self.mean + self.std * germ
+        return self._unscaled(self.mean + self.std * germ)
 
     def ppf(self, u: ArrayLike) -> Array:
         return self.physical(special.ndtri(np.asarray(u, dtype=float)))
@@ -39,45 +104,18 @@ class Normal(Distribution):
         return special.ndtr(self.germ(x))
 
     def germ_derivative(self, x: Array) -> Array:
-        return np.full_like(x, 1.0 / self.std)
+        return self._per_unit(1.0, self.std, x)
 
     def recurrence(self, degree: int) -> Recurrence:
         return hermite(degree)
 
 
 @dataclass(frozen=True)
-class LogNormal(Distribution):
+class LogNormal(Normal):
     """Log-normal: ln x is normal with this mean and standard deviation; Hermite in ln x."""
 
-    mean: float
-    std: float
     kind = "log_normal"
-
-    def __post_init__(self) -> None:
-        self._number("mean")
-        self._number("std", above=0.0)
-
-    @property
-    def support(self) -> Support:
-        return 0.0, np.inf
-
-    def germ(self, x: Array) -> Array:
-        return (np.log(x) - self.mean) / self.std
-
-    def physical(self, germ: Array) -> Array:
-        return np.exp(self.mean + self.std * germ)
-
-    def ppf(self, u: ArrayLike) -> Array:
-        return self.physical(special.ndtri(np.asarray(u, dtype=float)))
-
-    def cdf(self, x: Array) -> Array:
-        return special.ndtr(self.germ(x))
-
-    def germ_derivative(self, x: Array) -> Array:
-        return 1.0 / (self.std * x)
-
-    def recurrence(self, degree: int) -> Recurrence:
-        return hermite(degree)
+    logarithmic = True
 
 
 @dataclass(frozen=True)
