@@ -16,7 +16,7 @@ from lithobrake.dem.shape import Box, ConvexHull, Shape, Sphere
 from lithobrake.dem.world_state import WorldState
 from lithobrake.files.atomic import atomic_path
 
-FORMAT_VERSION = 4
+FORMAT_VERSION = 5
 
 
 def _shape_text(shape: Shape) -> str:

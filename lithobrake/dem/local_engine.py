@@ -16,6 +16,7 @@ from lithobrake.dem.neighbour_search import LISTED, NO_SLOT, enter_all, plan_all
 from lithobrake.dem.neighbours import new_pairs, with_overflow_for_all, with_overflow_where_used
 from lithobrake.dem.rigid_body import RigidBody
 from lithobrake.dem.threads import new_reactions
+from lithobrake.dem.watch import new_record
 
 # Slots for pairs at the start, for each body.
 SLOTS = 8
@@ -65,7 +66,7 @@ class LocalEngine:
         step = setting.step
         self.rules = Rules(step.gravity, step.drag, step.paper_mass, setting.steps_per_contact, engine.skin)
         self.cells = cells_of(engine.bodies, engine.skin)
-        self.record: Floats = np.array([0.0, -1.0, -1.0, 0.0])
+        self.record = new_record()
         self.summed = True  # the forces on each body stand in the engine's arrays
         self.plans: Plans
         self.agenda: Agenda

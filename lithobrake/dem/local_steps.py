@@ -31,7 +31,8 @@ from lithobrake.dem.holding import give_impulse, is_stirred, let_go
 from lithobrake.dem.neighbour_search import LISTED, search_neighbours
 from lithobrake.dem.scratch import Scratch
 from lithobrake.dem.stability import pair_step
-from lithobrake.dem.vectors import Vector, dot, minus, plus, put, row, scaled, times
+from lithobrake.dem.vectors import Vector, minus, plus, put, row, scaled, times
+from lithobrake.dem.watch import record_touch
 
 # Why a run stops: besides what neighbour_search.py says.
 NO_ROOM = 3
@@ -39,9 +40,6 @@ NO_ROOM = 3
 STEPS_NEAR, NARROWEST = 10.0, 1e-3
 # Largest c dt + (w dt)^2 / 4 of one contact, see stability.py; kicks follow each other, so each must be stable alone.
 STABLE_PART = 0.6
-# What is recorded of a watched body, and where: largest force [N], first and last instant of touch [s; -1: none], and
-# whether anything touches it (1) or not (0).
-PEAK, FIRST_TOUCH, LAST_TOUCH, TOUCHED = 0, 1, 2, 3
 
 
 @kernel
@@ -231,13 +229,10 @@ def meet(
 
 
 @kernel
-def record_touch(
+def record_contacts(
     pairs: Pairs, reactions: Reactions, flight: Flight, plans: Plans, watched: int, now: float, record: Floats
 ) -> None:  # fmt: skip
-    """Note the largest force on the watched body, when it was touched first and last, and whether it is now.
-
-    Writes to record.
-    """
+    """Note what the contacts of the watched body do to it now [s]. Writes to record."""
     force, touched, entry = (0.0, 0.0, 0.0), False, flight.head[watched]
     while entry >= 0:
         pair = entry >> 1
@@ -245,12 +240,7 @@ def record_touch(
             touched = True
             force = plus(force, scaled(1.0 if entry & 1 else -1.0, row(reactions.force, pair)))
         entry = plans.link[entry]
-    record[TOUCHED] = 1.0 if touched else 0.0
-    if touched:
-        record[PEAK] = max(record[PEAK], dot(force, force) ** 0.5)
-        if record[FIRST_TOUCH] < 0.0:
-            record[FIRST_TOUCH] = now
-        record[LAST_TOUCH] = now
+    record_touch(force, touched, now, record)
 
 
 @large_kernel
@@ -280,7 +270,7 @@ def advance_locally(
         if not meet(pair, bodies, cores, planes, pairs, laws, scratch, reactions, flight, plans, agenda, now, rules):
             return NO_ROOM
         if watched >= 0 and (pairs.first[pair] == watched or pairs.second[pair] == watched):
-            record_touch(pairs, reactions, flight, plans, watched, now, record)
+            record_contacts(pairs, reactions, flight, plans, watched, now, record)
     return LISTED
 
 

@@ -10,10 +10,8 @@ from lithobrake.dem import energy, timestep
 from lithobrake.dem.arrays import Floats, Step
 from lithobrake.dem.contacts import contacts_of
 from lithobrake.dem.engine import Engine
-from lithobrake.dem.local_steps import TOUCHED
 from lithobrake.dem.rigid_body import Plane, RigidBody, vector
 from lithobrake.dem.stability import largest_step
-from lithobrake.dem.time_loop import WATCHED
 from lithobrake.dem.world_state import WorldState
 
 
@@ -127,25 +125,6 @@ class Observables:
     def contact_torque(self) -> Floats:
         """Sum of the torques of the contacts on each body about its centroid [N m], world frame, [body_count, 3]."""
         return self._read().bodies.torque.copy()
-
-    @property
-    def watched(self) -> dict[str, float]:
-        """Largest contact force [N] on the watched body; steps from `watch` to its first and last contact (0: none).
-
-        Of contacts at steps of their own: instants [s] in place of steps (-1: none).
-        """
-        local = self._state.local
-        if local is not None:
-            return dict(zip(WATCHED, local.record[: len(WATCHED)].tolist(), strict=True))
-        return {name: float(self._state.watch_record[place]) for name, place in WATCHED.items()}
-
-    @property
-    def is_touched(self) -> bool:
-        """Whether anything touches the watched body."""
-        local = self._state.local
-        if local is not None:
-            return bool(local.record[TOUCHED])
-        return bool(self._read().bodies.force[self._state.watched].any())
 
     def contacts(self) -> NDArray[Any]:
         """Return the contacts (overlap > 0), a structured array.

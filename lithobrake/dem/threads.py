@@ -24,7 +24,7 @@ from lithobrake.dem.time_loop import (
     STEP_TOO_LARGE,
     begin_step,
     end_step,
-    record_watched,
+    record_step,
 )
 
 
@@ -98,7 +98,7 @@ class Team:
             drifted = False
             rates = self.each(across) + self.each(end)
             if watched >= 0:
-                record_watched(bodies, watched, watch_record)
+                record_step(bodies, watched, watch_record)
             if step_is_too_large(bodies, planes, pairs, laws, step, taken, max(rates)):
                 return taken + 1, STEP_TOO_LARGE, False
         return step_count, DONE, False

@@ -10,6 +10,7 @@ from lithobrake.dem.motion import drift, kick
 from lithobrake.dem.scratch import Scratch
 from lithobrake.dem.stability import step_is_too_large
 from lithobrake.dem.vectors import dot, plus, row, scaled
+from lithobrake.dem.watch import STEPS, record_touch
 
 DONE, LIST_USED_UP, FEATURES_OVERFLOW, STEP_TOO_LARGE, DIVERGED = 0, 1, 2, 3, 4
 
@@ -55,7 +56,7 @@ def advance(
 
     Returns the steps taken, why it stopped, and whether the step in hand has drifted but not yet felt its forces (it
     goes on from there once the neighbour list is renewed). Body `watched` (none: -1) is recorded, see
-    `record_watched`. `whole` is the partition of all bodies; there is no room in `reactions`.
+    watch.py. `whole` is the partition of all bodies; there is no room in `reactions`.
     Writes to bodies, pairs, scratch, reactions and watch_record.
     """
     for taken in range(step_count):
@@ -74,28 +75,15 @@ def advance(
         rate = forces_within_partition(bodies, cores, planes, pairs, laws, step, scratch, reactions, whole)
         end_step(bodies, step, whole.start, whole.stop)
         if watched >= 0:
-            record_watched(bodies, watched, watch_record)
+            record_step(bodies, watched, watch_record)
         if step_is_too_large(bodies, planes, pairs, laws, step, taken, rate):
             return taken + 1, STEP_TOO_LARGE, False
     return step_count, DONE, False
 
 
-# What is recorded of a watched body, and where.
-STEPS, PEAK_FORCE, FIRST_CONTACT, LAST_CONTACT = 0, 1, 2, 3
-WATCHED = {"peak_force": PEAK_FORCE, "first_contact": FIRST_CONTACT, "last_contact": LAST_CONTACT}
-
-
 @kernel
-def record_watched(bodies: Bodies, watched: int, watch_record: Floats) -> None:
-    """Count the step, and note the largest force on a body and the first and last step on which it was touched.
-
-    Writes to watch_record.
-    """
+def record_step(bodies: Bodies, watched: int, watch_record: Floats) -> None:
+    """Count a step, and note what its contacts did to the watched body. Writes to watch_record."""
     watch_record[STEPS] += 1.0
     force = row(bodies.force, watched)
-    size = dot(force, force) ** 0.5
-    if size > 0.0:
-        watch_record[PEAK_FORCE] = max(watch_record[PEAK_FORCE], size)
-        if watch_record[FIRST_CONTACT] == 0.0:
-            watch_record[FIRST_CONTACT] = watch_record[STEPS]
-        watch_record[LAST_CONTACT] = watch_record[STEPS]
+    record_touch(force, dot(force, force) > 0.0, watch_record[STEPS], watch_record)

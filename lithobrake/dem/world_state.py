@@ -13,6 +13,7 @@ from lithobrake.dem.local_engine import LocalEngine, Setting
 from lithobrake.dem.motion import write_spins
 from lithobrake.dem.neighbours import no_pairs
 from lithobrake.dem.rigid_body import Plane, RigidBody
+from lithobrake.dem.watch import new_record
 
 NOTHING_WATCHED = -1
 
@@ -31,7 +32,7 @@ class WorldState:
         }  # fmt: skip
         self.pairs: Pairs = no_pairs()
         self.lost = np.zeros(LOSSES)  # J, see contact_law.py
-        self.watched, self.watch_record = NOTHING_WATCHED, np.zeros(4)  # see time_loop.py
+        self.watched, self.watch_record = NOTHING_WATCHED, new_record()  # of the steps that all contacts share
         self.thread_count = 1
         self.engine: Engine | None = None
         self.reader: Engine | None = None  # in place of an engine, as long as there is none
