@@ -38,6 +38,8 @@ ALLOWED: dict[str, set[str]] = {
 }
 # Parts in which no file imports one that imports it, directly or through others.
 WITHOUT_CIRCLES = tuple(part for part in ALLOWED if (PACKAGE / part).is_dir())
+# Rooms of the engine: each may import those before it; what stands in none of them may import all.
+ENGINE_ROOMS = ("bodies", "narrow_phase", "law", "stepping", "local_stepping")
 # Who uses which part by the names of its __init__ alone.
 THROUGH_THE_FACE = (("touchdown", "dem"),)
 
@@ -94,6 +96,13 @@ def test_no_two_files_import_each_other() -> None:
     files = [path for path in SOURCES if part_of(path) in WITHOUT_CIRCLES]
     # Raises CycleError with the files of a circle.
     TopologicalSorter({path: {imported_file(name) for name in imported_names(path)} for path in files}).prepare()
+
+
+@pytest.mark.parametrize(("place", "room"), list(enumerate(ENGINE_ROOMS)))
+def test_rooms_of_the_engine_import_one_way(place: int, room: str) -> None:
+    for path in (PACKAGE / "dem" / room).glob("*.py"):
+        used = {name.split(".")[2] for name in imported_names(path) if name.startswith("lithobrake.dem.")}
+        assert used <= set(ENGINE_ROOMS[: place + 1]), path
 
 
 @pytest.mark.parametrize(("user", "part"), THROUGH_THE_FACE)

@@ -8,18 +8,18 @@ from dataclasses import asdict
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lithobrake.dem import timestep
-from lithobrake.dem.arrays import Floats
-from lithobrake.dem.assembly import rotation_matrices
+from lithobrake.dem.bodies.arrays import Floats
+from lithobrake.dem.bodies.material import Material
+from lithobrake.dem.bodies.rigid_body import Plane, new_body, rows, uniform_bodies, unit, units, vector
+from lithobrake.dem.bodies.shape import Shape
 from lithobrake.dem.checkpoint import read_checkpoint, write_checkpoint
-from lithobrake.dem.clock import Clock, checked_count, checked_step
-from lithobrake.dem.local_engine import FEWEST_STEPS, Setting
-from lithobrake.dem.material import Material, contact_options
+from lithobrake.dem.law.material_pair import contact_options
+from lithobrake.dem.local_stepping.local_engine import FEWEST_STEPS, Setting
 from lithobrake.dem.observables import Observables
-from lithobrake.dem.rigid_body import Plane, new_body, rows, uniform_bodies, unit, units, vector
-from lithobrake.dem.shape import Shape
-from lithobrake.dem.time_loop import DIVERGED, STEP_TOO_LARGE
-from lithobrake.dem.watch import FIRST_CONTACT, LAST_CONTACT, PEAK_FORCE, STEPS, TOUCHED, new_record
+from lithobrake.dem.stepping.assembly import rotation_matrices
+from lithobrake.dem.stepping.time_loop import DIVERGED, STEP_TOO_LARGE
+from lithobrake.dem.stepping.time_step import Clock, checked_count, checked_step, chosen_step
+from lithobrake.dem.stepping.watch import FIRST_CONTACT, LAST_CONTACT, PEAK_FORCE, STEPS, TOUCHED, new_record
 from lithobrake.dem.world_state import NOTHING_WATCHED, WorldState
 
 
@@ -152,10 +152,9 @@ class World(Observables):
         self._clock.give(value)
 
     def _chosen_step(self) -> float:
-        speed = timestep.meeting_speed_bound(
-            self.position, self.velocity, self.spin, self.bodies, self.planes, self.gravity
+        return chosen_step(
+            self.position, self.velocity, self.spin, self.bodies, self.planes, self.gravity, self._state.options
         )
-        return self.shortest_contact(speed) / timestep.STEPS_PER_CONTACT
 
     @property
     def thread_count(self) -> int:

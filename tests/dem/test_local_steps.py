@@ -6,7 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from lithobrake.dem import Box, ConvexHull, Material, Sphere, World, local_engine
+from lithobrake.dem import Box, ConvexHull, Material, Sphere, World
+from lithobrake.dem.local_stepping import local_engine
 
 ROCK = {"young_modulus": 1e7, "poisson_ratio": 0.25, "density": 2500.0}
 

@@ -108,7 +108,7 @@ def on_soil(job: Job, samples: Samples) -> tuple["Rebounds", "Bounce"]:
 
 def sliding_friction(study: Study, samples: Samples, ground: str) -> np.ndarray:
     """Friction under each sample once it is captured, [sample_count]: on soil that of hull and grain, or their law."""
-    from lithobrake.dem.material import pair_value
+    from lithobrake.dem.law.material_pair import pair_value
 
     rest, rule, hull = study.rest, study.contact.pair_rule, "grain" if study.lander.friction is None else "lander"
     if rest.rolling_friction is not None or ground == "hard":
