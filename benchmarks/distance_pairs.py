@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lithobrake.dem import Box, ConvexHull, Shape, Sphere
-from lithobrake.dem.arrays import Cores
-from lithobrake.dem.assembly import cores_of, rotation_matrices
+from lithobrake.dem.bodies.arrays import Cores
+from lithobrake.dem.stepping.assembly import cores_of, rotation_matrices
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]

@@ -22,23 +22,25 @@ from harness import ROOT, Row, command_line, cpu_seconds, origin, write_document
 
 # Name, file, what stands there, what stands there without the trick.
 SWITCHES = {
-    "sleeping pairs": ("feature_list.py", "        if travel < pairs.wake[pair]:", "        if False:"),
-    "gaps as margins": ("feature_list.py", "        return bound - reach\n", "        return margin\n"),
-    "names of faces": ("contact_patch.py", "    if face >= 0:", "    if False:"),
-    "one point pushes once": ("contact_law.py", "    if count == 1 and patch.family[0] != DEEP_EDGES:",
+    "sleeping pairs": ("narrow_phase/feature_list.py", "        if travel < pairs.wake[pair]:", "        if False:"),
+    "gaps as margins": ("narrow_phase/feature_list.py", "        return bound - reach\n", "        return margin\n"),
+    "names of faces": ("narrow_phase/contact_patch.py", "    if face >= 0:", "    if False:"),
+    "one point pushes once": ("law/hertz_spring.py", "    if contact.points == 1 and patch.family[0] != DEEP_EDGES:",
                               "    if bodies.turning_radius[first] == 0.0:"),
-    "one pair of edges alone": ("patch_energy.py", "(patch.family[0] == EDGES_APART and deep == 0.0)", "False"),
-    "spheres met by their mass": ("force.py", "through_centroids or step.paper_mass", "step.paper_mass"),
-    "limits by squares": ("tangential_spring.py", "    return vector if square <= limit * limit else",
+    "one pair of edges alone": ("narrow_phase/patch_energy.py", "(patch.family[0] == EDGES_APART and deep == 0.0)",
+                                "False"),
+    "spheres met by their mass": ("law/contact_law.py", "contact.through_centroids or step.paper_mass",
+                                  "step.paper_mass"),
+    "limits by squares": ("law/tangential_spring.py", "    return vector if square <= limit * limit else",
                           "    return vector if square**0.5 <= limit else"),
-    "neighbours by their gap": ("neighbours.py", "    return found != APART", "    return True"),
-    "edges by their part in the band": ("feature_culling.py", "    return low[0] - high[0] >= farthest or",
+    "neighbours by their gap": ("stepping/neighbours.py", "    return found != APART", "    return True"),
+    "edges by their part in the band": ("narrow_phase/feature_culling.py", "    return low[0] - high[0] >= farthest or",
                                         "    if farthest > 0.0:\n        return False\n    return"),
-    "skin of the list": ("engine.py", "SKIN = 0.25", "SKIN = 0.025"),
-    "one moment of inertia": ("assembly.py", "(inertia == inertia[:, :1, :1] * np.eye(3)).all(axis=(1, 2))",
+    "skin of the list": ("stepping/engine.py", "SKIN = 0.25", "SKIN = 0.025"),
+    "one moment of inertia": ("stepping/assembly.py", "(inertia == inertia[:, :1, :1] * np.eye(3)).all(axis=(1, 2))",
                               "np.zeros(len(inertia), dtype=bool)"),
-    "look every 16 steps": ("stability.py", "LOOK_STEPS, LOOK_PHASE = 16", "LOOK_STEPS, LOOK_PHASE = 1"),
-    "kernels in their callers": ("../compiled.py", '"forceinline": True', '"forceinline": False'),
+    "look every 16 steps": ("stepping/stability.py", "LOOK_STEPS, LOOK_PHASE = 16", "LOOK_STEPS, LOOK_PHASE = 1"),
+    "kernels in their callers": ("../compilation/compiled.py", '"forceinline": True', '"forceinline": False'),
 }  # fmt: skip
 CASES = ("hull1000", "sph4000", "touchdown")
 RELAX_STEPS, STEPS, REPEATS = 4000, 500, 9

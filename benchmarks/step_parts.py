@@ -16,13 +16,13 @@ from grains_speed import RELAX_STEPS, REPEATS
 from harness import Row, command_line, cpu_seconds, origin, write_document
 
 from lithobrake.dem import World
-from lithobrake.dem.arrays import Pairs
-from lithobrake.dem.engine import NO_REACTIONS
-from lithobrake.dem.feature_id import EDGES, feature_kind
-from lithobrake.dem.feature_list import update_feature_lists
-from lithobrake.dem.force import contact_forces
-from lithobrake.dem.motion import drift, kick
-from lithobrake.dem.stability import LOOK_STEPS, largest_step
+from lithobrake.dem.bodies.arrays import Pairs
+from lithobrake.dem.bodies.motion import drift, kick
+from lithobrake.dem.narrow_phase.feature_id import EDGES, feature_kind
+from lithobrake.dem.narrow_phase.feature_list import update_feature_lists
+from lithobrake.dem.stepping.engine import NO_REACTIONS
+from lithobrake.dem.stepping.force_sums import contact_forces
+from lithobrake.dem.stepping.stability import LOOK_STEPS, largest_step
 
 CALLS = 50
 KINDS = (

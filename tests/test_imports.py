@@ -37,6 +37,15 @@ ALLOWED: dict[str, set[str]] = {
 }
 # Parts in which no file imports one that imports it, directly or through others.
 WITHOUT_CIRCLES = tuple(part for part in ALLOWED if (PACKAGE / part).is_dir())
+# Rooms of a part from the ground up: each imports those before it alone; what stands in none of them may import all.
+ROOMS = {
+    "dem": ("bodies", "narrow_phase", "law", "stepping", "local_stepping"),
+    "pipeline": (
+        *("site", "folder", "design", "job", "stage", "runs", "emulate", "fly", "rest", "answer", "paper", "stages"),
+        *("sequential_sampling", "inference", "planning", "study_run", "commands"),
+    ),
+    "report": ("words", "tables", "figures", "live", "pages", "study_report"),
+}
 # Who uses which part by the names of its __init__ alone.
 THROUGH_THE_FACE = (("touchdown", "dem"),)
 
@@ -108,6 +117,31 @@ def test_any_file_can_be_imported_first() -> None:
         faces = {folder / "__init__.py" for file in files for folder in file.parents if PACKAGE in folder.parents}
         graph[path] = {file for file in files | faces if file.parent not in path.parents or file.name != "__init__.py"}
     TopologicalSorter(graph).prepare()
+
+
+def room_of(name: str) -> str:
+    """The room of a part that a full name stands in: the folder, or the file, below the part."""
+    return name.split(".")[2]
+
+
+@pytest.mark.parametrize("part", ROOMS)
+def test_rooms_of_a_part_import_one_way(part: str) -> None:
+    upward = set()
+    for path in (PACKAGE / part).rglob("*.py"):
+        rooms = ROOMS[part]
+        own = path.relative_to(PACKAGE / part).parts[0].removesuffix(".py")
+        allowed = rooms[: rooms.index(own) + 1] if own in rooms else rooms
+        used = {room_of(name) for name in imported_names(path) if name.startswith(f"lithobrake.{part}.")}
+        upward |= {f"{path.relative_to(PACKAGE)} imports {room}" for room in used & set(rooms) - set(allowed)}
+    assert not upward
+
+
+def test_every_room_has_its_place() -> None:
+    for part in ("pipeline", "report"):
+        found = {
+            path.relative_to(PACKAGE / part).parts[0].removesuffix(".py") for path in (PACKAGE / part).rglob("*.py")
+        }
+        assert found - {"__init__"} <= set(ROOMS[part]), part
 
 
 @pytest.mark.parametrize(("user", "part"), THROUGH_THE_FACE)

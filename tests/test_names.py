@@ -17,7 +17,9 @@ LONGEST_KERNEL = 80
 ALSO_KERNELS = ("expansion_loop",)
 # Where a newcomer who looks for these words among the names of files finds them.
 LOOKED_FOR = {
-    "tangential_spring": "dem", "rolling_resistance": "dem", "gjk": "dem", "penetration": "dem",
+    "gjk": "dem/narrow_phase", "penetration": "dem/narrow_phase", "hertz": "dem/law", "coulomb": "dem/law",
+    "restitution": "dem/law", "tangential_spring": "dem/law", "rolling_resistance": "dem/law",
+    "time_step": "dem/stepping", "stability": "dem/stepping", "agenda": "dem/local_stepping",
     "settling": "touchdown", "outcome_judge": "touchdown", "bootstrap": "chaos", "smolyak": "chaos",
     "polyhedron_gravity": "smallbody", "impact_search": "smallbody", "ledger": "campaign", "refusals": "study",
     "captions": "report/words",

@@ -245,7 +245,7 @@ def dropped(bed: Bed, ball: Lander, place: Floats, gravity: float, number: float
     while world.time < end:
         height = float(world.position[body, 2])
         world.run(steps=20)
-        if world.watched["first_contact"] > 0.0:
+        if world.first_touch is not None:
             path.append((height, world.time))
     heights, times = np.array(path).T
     depths = heights[0] - heights

@@ -3,12 +3,13 @@
 Other parts use this one by the names that stand here.
 """
 
-from lithobrake.dem.assembly import rotation_matrices
-from lithobrake.dem.material import Material, pair_law
+from lithobrake.dem.bodies.material import Material
+from lithobrake.dem.bodies.rigid_body import checked_inertia
+from lithobrake.dem.bodies.shape import Box, ConvexHull, Shape, Sphere, equivalent_radius
+from lithobrake.dem.law.material_pair import pair_law
 from lithobrake.dem.observables import BodyMotion
-from lithobrake.dem.rigid_body import checked_inertia
-from lithobrake.dem.shape import Box, ConvexHull, Shape, Sphere, equivalent_radius
-from lithobrake.dem.timestep import contact_duration
+from lithobrake.dem.stepping.assembly import rotation_matrices
+from lithobrake.dem.stepping.time_step import contact_duration
 from lithobrake.dem.world import StepTooLargeError, World
 
 __all__ = [

@@ -7,16 +7,16 @@ from typing import Any
 
 import numpy as np
 
-from lithobrake.dem.arrays import Step
-from lithobrake.dem.assembly import material_numbers, materials_of, shape_numbers, shapes_of
-from lithobrake.dem.engine import MOVING, Engine
-from lithobrake.dem.material import Material
-from lithobrake.dem.rigid_body import Plane, RigidBody
-from lithobrake.dem.shape import Box, ConvexHull, Shape, Sphere
+from lithobrake.dem.bodies.arrays import Step
+from lithobrake.dem.bodies.material import Material
+from lithobrake.dem.bodies.rigid_body import Plane, RigidBody
+from lithobrake.dem.bodies.shape import Box, ConvexHull, Shape, Sphere
+from lithobrake.dem.stepping.assembly import material_numbers, materials_of, shape_numbers, shapes_of
+from lithobrake.dem.stepping.engine import MOVING, Engine
 from lithobrake.dem.world_state import WorldState
 from lithobrake.files.atomic import atomic_path
 
-FORMAT_VERSION = 4
+FORMAT_VERSION = 5
 
 
 def _shape_text(shape: Shape) -> str:

@@ -2,8 +2,7 @@
 
 import numpy as np
 
-from lithobrake.dem.arrays import Floats, Pairs
-from lithobrake.dem.contact_law import DAMPING, FRICTION, ROLLING
+from lithobrake.dem.bodies.arrays import DAMPING, FRICTION, ROLLING, Floats, Pairs
 
 
 def kinetic(mass: Floats | float, velocity: Floats, spin: Floats, angular_momentum: Floats) -> Floats:

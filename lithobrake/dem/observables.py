@@ -6,15 +6,20 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lithobrake.dem import energy, timestep
-from lithobrake.dem.arrays import Floats, Step
-from lithobrake.dem.contacts import contacts_of
-from lithobrake.dem.engine import Engine
-from lithobrake.dem.local_steps import TOUCHED
-from lithobrake.dem.rigid_body import Plane, RigidBody, vector
-from lithobrake.dem.stability import largest_step
-from lithobrake.dem.time_loop import WATCHED
+from lithobrake.dem import energy
+from lithobrake.dem.bodies.arrays import Floats, Pairs, Step
+from lithobrake.dem.bodies.rigid_body import Plane, RigidBody, vector
+from lithobrake.dem.stepping.engine import Engine
+from lithobrake.dem.stepping.stability import largest_step
+from lithobrake.dem.stepping.time_step import shortest_contact
 from lithobrake.dem.world_state import WorldState
+
+CONTACT = np.dtype(
+    [
+        ("body_a", np.int64), ("body_b", np.int64), ("point", np.float64, 3), ("normal", np.float64, 3),
+        ("overlap", np.float64), ("normal_force", np.float64), ("tangential_force", np.float64, 3),
+    ]
+)  # fmt: skip
 
 
 class BodyMotion(NamedTuple):
@@ -31,6 +36,16 @@ class BodyMotion(NamedTuple):
     def kinetic_energy(self) -> float:
         """Kinetic energy [J]."""
         return float(energy.kinetic(self.mass, self.velocity, self.spin, self.angular_momentum))
+
+
+def contacts_of(pairs: Pairs) -> NDArray[Any]:
+    """Return the pairs that touch as a structured array, see `World.contacts`."""
+    touching = np.flatnonzero(pairs.overlap > 0.0)
+    result = np.zeros(len(touching), dtype=CONTACT)
+    result["body_a"], result["body_b"] = pairs.first[touching], pairs.second[touching]
+    for name in ("point", "normal", "overlap", "normal_force", "tangential_force"):
+        result[name] = getattr(pairs, name)[touching]
+    return result
 
 
 class Observables:
@@ -128,25 +143,6 @@ class Observables:
         """Sum of the torques of the contacts on each body about its centroid [N m], world frame, [body_count, 3]."""
         return self._read().bodies.torque.copy()
 
-    @property
-    def watched(self) -> dict[str, float]:
-        """Largest contact force [N] on the watched body; steps from `watch` to its first and last contact (0: none).
-
-        Of contacts at steps of their own: instants [s] in place of steps (-1: none).
-        """
-        local = self._state.local
-        if local is not None:
-            return dict(zip(WATCHED, local.record[: len(WATCHED)].tolist(), strict=True))
-        return {name: float(self._state.watch_record[place]) for name, place in WATCHED.items()}
-
-    @property
-    def is_touched(self) -> bool:
-        """Whether anything touches the watched body."""
-        local = self._state.local
-        if local is not None:
-            return bool(local.record[TOUCHED])
-        return bool(self._read().bodies.force[self._state.watched].any())
-
     def contacts(self) -> NDArray[Any]:
         """Return the contacts (overlap > 0), a structured array.
 
@@ -169,7 +165,7 @@ class Observables:
 
         Raises ValueError for a speed of zero, and where no two things can meet.
         """
-        return timestep.shortest_contact(self.bodies, self.planes, self._state.options, speed)
+        return shortest_contact(self.bodies, self.planes, self._state.options, speed)
 
     # --- energies ------------------------------------------------------------------------------------------------
 

@@ -8,16 +8,18 @@ from dataclasses import asdict
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lithobrake.dem import timestep
-from lithobrake.dem.assembly import rotation_matrices
+from lithobrake.dem.bodies.arrays import Floats
+from lithobrake.dem.bodies.material import Material
+from lithobrake.dem.bodies.rigid_body import Plane, new_body, rows, uniform_bodies, unit, units, vector
+from lithobrake.dem.bodies.shape import Shape
 from lithobrake.dem.checkpoint import read_checkpoint, write_checkpoint
-from lithobrake.dem.clock import Clock, checked_count, checked_step
-from lithobrake.dem.local_engine import FEWEST_STEPS, Setting
-from lithobrake.dem.material import Material, contact_options
+from lithobrake.dem.law.material_pair import contact_options
+from lithobrake.dem.local_stepping.local_engine import FEWEST_STEPS, Setting
 from lithobrake.dem.observables import Observables
-from lithobrake.dem.rigid_body import Plane, new_body, rows, uniform_bodies, unit, units, vector
-from lithobrake.dem.shape import Shape
-from lithobrake.dem.time_loop import DIVERGED, STEP_TOO_LARGE, STEPS
+from lithobrake.dem.stepping.assembly import rotation_matrices
+from lithobrake.dem.stepping.time_loop import DIVERGED, STEP_TOO_LARGE
+from lithobrake.dem.stepping.time_step import Clock, checked_count, checked_step, chosen_step
+from lithobrake.dem.stepping.watch import FIRST_CONTACT, LAST_CONTACT, PEAK_FORCE, STEPS, TOUCHED, new_record
 from lithobrake.dem.world_state import NOTHING_WATCHED, WorldState
 
 
@@ -129,11 +131,6 @@ class World(Observables):
         self._state.disassemble()
         self.planes[number] = Plane(place, old.normal, old.material, meets)
 
-    def watch(self, body: int) -> None:
-        """Note from now on the contact forces on one body, see `watched`."""
-        self._state.watched = range(len(self.bodies))[body]
-        self._state.watch_record[:] = 0.0
-
     # --- motion --------------------------------------------------------------------------------------------------
 
     @property
@@ -155,10 +152,9 @@ class World(Observables):
         self._clock.give(value)
 
     def _chosen_step(self) -> float:
-        speed = timestep.meeting_speed_bound(
-            self.position, self.velocity, self.spin, self.bodies, self.planes, self.gravity
+        return chosen_step(
+            self.position, self.velocity, self.spin, self.bodies, self.planes, self.gravity, self._state.options
         )
-        return self.shortest_contact(speed) / timestep.STEPS_PER_CONTACT
 
     @property
     def thread_count(self) -> int:
@@ -170,22 +166,6 @@ class World(Observables):
         if value != int(value) or value < 1:
             raise ValueError(f"World thread_count is {value!r}; allowed is a whole number of at least 1: change it")
         self._state.use_threads(int(value))
-
-    @property
-    def first_touch(self) -> float | None:
-        """Instant at which the watched body was first touched [s]; None where it was not."""
-        first = self.watched["first_contact"]
-        if self._state.local is not None:
-            return first if first >= 0.0 else None
-        return self.time - (self._state.watch_record[STEPS] - first) * self.time_step if first > 0.0 else None
-
-    @property
-    def touch_duration(self) -> float | None:
-        """Time from the first to the last touch of the watched body [s]; None where it was not touched."""
-        first, last = self.watched["first_contact"], self.watched["last_contact"]
-        if self._state.local is not None:
-            return last - first if first >= 0.0 else None
-        return (last - first + 1.0) * self.time_step if first > 0.0 else None
 
     def run(self, duration: float | None = None, *, steps: int | None = None) -> None:
         """Advance by a duration [s], rounded to whole steps, or by a number of steps.
@@ -253,6 +233,56 @@ class World(Observables):
         raise FloatingPointError(
             f"the motion diverged at t = {self.time:.6g} s: positions are no longer finite numbers"
         )
+
+    # --- the watched body ----------------------------------------------------------------------------------------
+
+    def watch(self, body: int) -> None:
+        """Note from now on the contact forces on one body, see `watched`."""
+        self._state.watched = range(len(self.bodies))[body]
+        self._state.watch_record[:] = new_record()
+
+    @property
+    def watched(self) -> dict[str, float]:
+        """Largest contact force [N] on the watched body, and its first and last contact [s; NaN: none]."""
+        record = self._watch_record
+        return {
+            "peak_force": float(record[PEAK_FORCE]),
+            "first_contact": self._instant(record[FIRST_CONTACT]),
+            "last_contact": self._instant(record[LAST_CONTACT]),
+        }
+
+    @property
+    def is_touched(self) -> bool:
+        """Whether anything touches the watched body."""
+        if self._state.local is not None:
+            return bool(self._state.local.record[TOUCHED])
+        return bool(self._read().bodies.force[self._state.watched].any())
+
+    @property
+    def first_touch(self) -> float | None:
+        """Instant at which the watched body was first touched [s]; None where it was not."""
+        first = self.watched["first_contact"]
+        return None if math.isnan(first) else first
+
+    @property
+    def touch_duration(self) -> float | None:
+        """Time from the first to the last touch of the watched body [s]; None where it was not touched."""
+        lasted = float(self._watch_record[LAST_CONTACT] - self._watch_record[FIRST_CONTACT])
+        if math.isnan(lasted):
+            return None
+        return lasted if self._state.local is not None else (lasted + 1.0) * self.time_step
+
+    @property
+    def _watch_record(self) -> Floats:
+        return self._state.watch_record if self._state.local is None else self._state.local.record
+
+    def _instant(self, clock: float) -> float:
+        """Return an instant [s] from what a record says of it."""
+        if self._state.local is not None:
+            return float(clock)
+        return float(self.time - (self._state.watch_record[STEPS] - clock) * self.time_step)
+
+    # --- on disk -------------------------------------------------------------------------------------------------
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write everything to an HDF5 file, whole or not at all; `World.load` continues from it bit for bit."""

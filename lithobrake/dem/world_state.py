@@ -5,14 +5,14 @@ The engine advances `motion` in place, so what a person reads of it needs no eng
 
 import numpy as np
 
-from lithobrake.dem.arrays import Floats, Pairs, Step
-from lithobrake.dem.assembly import inertias, inverses, rotation_matrices
-from lithobrake.dem.contact_law import LOSSES
-from lithobrake.dem.engine import Engine
-from lithobrake.dem.local_engine import LocalEngine, Setting
-from lithobrake.dem.motion import write_spins
-from lithobrake.dem.neighbours import no_pairs
-from lithobrake.dem.rigid_body import Plane, RigidBody
+from lithobrake.dem.bodies.arrays import LOSSES, Floats, Pairs, Step
+from lithobrake.dem.bodies.motion import write_spins
+from lithobrake.dem.bodies.rigid_body import Plane, RigidBody
+from lithobrake.dem.local_stepping.local_engine import LocalEngine, Setting
+from lithobrake.dem.stepping.assembly import inertias, inverses, rotation_matrices
+from lithobrake.dem.stepping.engine import Engine
+from lithobrake.dem.stepping.neighbours import no_pairs
+from lithobrake.dem.stepping.watch import new_record
 
 NOTHING_WATCHED = -1
 
@@ -30,8 +30,8 @@ class WorldState:
             "angular_momentum": np.zeros((0, 3)),
         }  # fmt: skip
         self.pairs: Pairs = no_pairs()
-        self.lost = np.zeros(LOSSES)  # J, see contact_law.py
-        self.watched, self.watch_record = NOTHING_WATCHED, np.zeros(4)  # see time_loop.py
+        self.lost = np.zeros(LOSSES)  # J, see Pairs
+        self.watched, self.watch_record = NOTHING_WATCHED, new_record()  # of the steps that all contacts share
         self.thread_count = 1
         self.engine: Engine | None = None
         self.reader: Engine | None = None  # in place of an engine, as long as there is none

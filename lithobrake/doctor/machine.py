@@ -24,7 +24,7 @@ class FoundCache:
         """Look at it, which takes NumPy and the compiler."""
         from lithobrake.compilation.compiled import lies_on_disk
         from lithobrake.compilation.disk_cache import DiskCache
-        from lithobrake.dem.time_loop import advance
+        from lithobrake.dem.stepping.time_loop import advance
         from lithobrake.smallbody.integration import integrate_flights
 
         cache = DiskCache("beds", "beds")

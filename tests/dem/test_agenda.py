@@ -3,7 +3,7 @@
 import numpy as np
 
 from lithobrake.compilation.compiled import large_kernel
-from lithobrake.dem.agenda import Agenda, new_agenda, put_on, take_off
+from lithobrake.dem.local_stepping.agenda import Agenda, new_agenda, put_on, take_off
 
 
 @large_kernel

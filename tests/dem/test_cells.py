@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from lithobrake.dem import Box, Material, Sphere, World, cells
+from lithobrake.dem import Box, Material, Sphere, World
+from lithobrake.dem.local_stepping import cells
 
 ROCK = Material(young_modulus=1e6, poisson_ratio=0.25, restitution=0.5, friction=0.5, density=2500.0)
 

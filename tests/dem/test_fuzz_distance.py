@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from lithobrake.dem.gjk import ITERATIONS
+from lithobrake.dem.narrow_phase.gjk import ITERATIONS
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
 from distance_pairs import FAMILIES, library

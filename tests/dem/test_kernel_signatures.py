@@ -26,7 +26,7 @@ def is_kernel(function: ast.FunctionDef) -> bool:
     return any(isinstance(mark, ast.Name) and mark.id.endswith("kernel") for mark in function.decorator_list)
 
 
-KERNELS = {function.name: function for path in sorted(DEM.glob("*.py")) for function in functions(path)
+KERNELS = {function.name: function for path in sorted(DEM.rglob("*.py")) for function in functions(path)
            if is_kernel(function)}  # fmt: skip
 
 
@@ -94,6 +94,6 @@ def test_a_kernel_says_what_it_writes(name: str) -> None:
     assert set(re.split(r", | and ", said[0]) if said else []) == written(name)
 
 
-@pytest.mark.parametrize("path", sorted(DEM.glob("*.py")), ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", sorted(DEM.rglob("*.py")), ids=lambda path: path.stem)
 def test_no_file_has_the_name_of_a_function_in_it(path: Path) -> None:
     assert path.stem not in [function.name for function in functions(path)]

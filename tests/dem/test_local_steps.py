@@ -6,7 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from lithobrake.dem import Box, ConvexHull, Material, Sphere, World, local_engine
+from lithobrake.dem import Box, ConvexHull, Material, Sphere, World
+from lithobrake.dem.local_stepping import local_engine
 
 ROCK = {"young_modulus": 1e7, "poisson_ratio": 0.25, "density": 2500.0}
 
@@ -172,6 +173,31 @@ def test_a_watched_body_tells_how_long_it_was_touched() -> None:
     reduced, stiffness = 0.5 * world.mass[0], 4.0 / 3.0 * (1e7 / (2.0 * (1.0 - 0.25**2))) * math.sqrt(0.025)
     deepest = (1.25 * reduced * 0.2**2 / stiffness) ** 0.4
     assert world.watched["peak_force"] == pytest.approx(stiffness * deepest**1.5, rel=0.01)
+
+
+@pytest.mark.parametrize("stepping", ["global", "local"])
+def test_both_steppings_give_the_instants_of_touch_in_seconds(stepping: str) -> None:
+    world = World()
+    world.add_body(Sphere(0.05), rock(1.0, 0.0), (0.0, 0.0, 0.0))
+    world.add_body(Sphere(0.05), rock(1.0, 0.0), (0.11, 0.0, 0.0), (-0.2, 0.0, 0.0))
+    world.watch(0)
+    duration = world.shortest_contact(0.2)
+    world.time_step = duration / 40.0
+
+    def run(time: float) -> None:
+        world.run(time) if stepping == "global" else world.run_locally(time, 40.0)
+
+    run(0.01)
+    assert math.isnan(world.watched["first_contact"])
+    assert math.isnan(world.watched["last_contact"])
+    assert world.first_touch is None
+    run(0.2)
+    # The gap of 0.01 m closes in 0.05 s; the first touch is noted up to a step after it, the last up to one before.
+    assert 0.05 <= world.watched["first_contact"] <= 0.05 + 0.06 * duration
+    assert world.watched["last_contact"] == pytest.approx(0.05 + duration, abs=0.06 * duration)
+    assert world.first_touch == world.watched["first_contact"]
+    assert world.touch_duration == pytest.approx(duration, rel=0.06)
+    assert not world.is_touched
 
 
 def test_what_cannot_be_run_is_refused() -> None:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from lithobrake.dem import Box, ConvexHull, Sphere
-from lithobrake.dem.shape import ROUNDING_FRACTION, equivalent_radius
+from lithobrake.dem.bodies.shape import ROUNDING_FRACTION, equivalent_radius
 
 
 def test_box_is_exact():

@@ -230,7 +230,7 @@ def test_skin_of_the_neighbour_list_changes_no_bit(monkeypatch, skin):
     """From lists that are renewed in every few steps to one that holds all pairs of hulls, boxes and spheres."""
     usual = heap()
     usual.run(0.4)
-    monkeypatch.setattr("lithobrake.dem.engine.SKIN", skin)
+    monkeypatch.setattr("lithobrake.dem.stepping.engine.SKIN", skin)
     other = heap()
     other.run(0.4)
     assert usual.energy()["friction"] > 0.0

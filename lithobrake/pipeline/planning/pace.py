@@ -19,7 +19,7 @@ def machine_pace() -> float | None:
 def engine_is_compiled() -> bool:
     """Whether the compiled engine lies on the disk."""
     from lithobrake.compilation.compiled import lies_on_disk
-    from lithobrake.dem.time_loop import advance
+    from lithobrake.dem.stepping.time_loop import advance
 
     return lies_on_disk(advance)
 

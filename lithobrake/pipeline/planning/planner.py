@@ -72,15 +72,12 @@ def plan_of(
 ) -> Plan:
     """The plan of a study that has been read."""
     study, keys = design.study, stage_keys(design.study)
-    stale = {
-        stage.name: stage.title
-        for stage in stages_of(study)
-        if not folder.is_current(stage.files(study), keys[stage.name])
-    }
+    old = [one for one in stages_of(study) if not folder.is_current(one.files(study), keys[one.name])]
+    stale = {stage.name: stage.title for stage in old}
     known = known_runs(study, folder)
     runs = tuple(possible_runs(design, folder, "screen" not in stale, known))
     largest = design.with_run_count(study.design.most_runs) if runs[-1].drawn > runs[0].drawn else design
-    beds = tuple(planned_beds(one.study, folder) for one in ((design,) if largest is design else (design, largest)))
+    beds = tuple(planned_beds(one.study, folder) for one in dict.fromkeys((design, largest)))
     made = _made(study, stale.keys(), runs, beds)
     soil = None if not study.has_soil else ExpectedSoil.of(design, runs[-1].kept_count)
     workers = None if on_cluster else worker_count or available_cores()

@@ -127,7 +127,7 @@ def on_soil(
 
 def sliding_friction(design: DrawnDesign, samples: Samples, ground: str) -> np.ndarray:
     """Friction under each sample once it is captured, [sample_count]: on soil that of hull and grain, or their law."""
-    from lithobrake.dem.material import pair_value
+    from lithobrake.dem.law.material_pair import pair_value
 
     study = design.study
     rest, rule, hull = study.rest, study.contact.pair_rule, "grain" if study.lander.friction is None else "lander"

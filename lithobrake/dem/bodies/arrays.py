@@ -1,0 +1,144 @@
+"""The arrays that kernels work on. Every length is in metres, every frame is the world's unless it says body.
+
+Kernels take a pair first, then arrays in the order below and those of scratch.py, then all else. They only read, but
+for what their docstrings say they write to.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
+Flags = NDArray[np.bool_]
+
+
+class Cores(NamedTuple):
+    """Constant: the convex cores of all shapes, one after the other. `start[s]:start[s + 1]` belongs to shape s."""
+
+    vertex: Floats  # [vertex_total, 3], about the centroid
+    vertex_start: Integers  # [shape_count + 1]
+    normal: Floats  # [face_total, 3]
+    offset: Floats  # [face_total]
+    face_start: Integers  # [shape_count + 1]
+    edge: Integers  # [edge_total, 4]: from, to, left face, right face, counted within the shape
+    edge_start: Integers  # [shape_count + 1]
+    edge_begin: Floats  # [edge_total, 3], about the centroid
+    edge_along: Floats  # [edge_total, 3], from begin to end
+    adjacent_face: Integers  # [2 edge_total]: the faces across the edges of each face, counted within the shape
+    adjacent_start: Integers  # [face_total + 1]
+    rounding: Floats  # [shape_count]
+
+
+class Bodies(NamedTuple):
+    """Per body; constants first, then what a step changes."""
+
+    shape: Integers  # [body_count]
+    material: Integers  # [body_count]
+    mass: Floats  # [body_count], kg
+    inverse_mass: Floats  # [body_count], 1/kg
+    inverse_inertia_body: Floats  # [body_count, 3, 3], body frame, 1/(kg m2)
+    isotropic: Flags  # [body_count], whether all moments of inertia are the same number
+    contact_radius: Floats  # [body_count], radius of the volume-equivalent sphere
+    curvature: Floats  # [body_count], 1/m, one over that
+    bounding_radius: Floats  # [body_count]
+    turning_radius: Floats  # [body_count], arm at which a spin moves the surface; 0 for spheres, which look the same
+    position: Floats  # [body_count, 3], centroid
+    velocity: Floats  # [body_count, 3], m/s
+    quaternion: Floats  # [body_count, 4], w x y z, body to world
+    angular_momentum: Floats  # [body_count, 3], kg m2/s
+    rotation: Floats  # [body_count, 3, 3], body to world
+    inverse_inertia: Floats  # [body_count, 3, 3], world frame
+    force: Floats  # [body_count, 3], N, without gravity
+    torque: Floats  # [body_count, 3], N m
+    half_spin: Floats  # [body_count, 3], rad/s, that made the last rotation
+    velocity_predicted: Floats  # [body_count, 3], m/s, at the instant of the positions
+    spin_predicted: Floats  # [body_count, 3], rad/s, at the instant of the positions
+    rates: Floats  # [body_count, 2], 1/s2 and 1/s, see stability.py; holds at the last look
+    dragged: Floats  # [body_count], J, what drag has taken
+    travel: Floats  # [body_count], m, a bound on how much nearer to anything the surface may have come so far
+    travel_listed: Floats  # [body_count], m, the same when the neighbour list was made
+
+
+class Planes(NamedTuple):
+    """Constant: half-spaces of matter below `offset` along the outward normal."""
+
+    normal: Floats  # [plane_count, 3]
+    offset: Floats  # [plane_count], m
+    material: Integers  # [plane_count]
+    meets: Flags  # [plane_count, body_count]
+
+
+class Pairs(NamedTuple):
+    """Per pair of neighbours, ordered by (first, second); plane k is second = -1 - k."""
+
+    first: Integers  # [pair_count]
+    second: Integers  # [pair_count]
+    wake: Floats  # [pair_count], m: its list of features serves until the travels of both add up to this
+    overlap: Floats  # [pair_count], m, effective; 0 where apart
+    normal: Floats  # [pair_count, 3], unit, from first to second
+    point: Floats  # [pair_count, 3], centre of pressure
+    normal_force: Floats  # [pair_count], N, less cohesion
+    elastic_force: Floats  # [pair_count], N, derivative of the elastic energy by the overlap
+    cohesion: Floats  # [pair_count], N, the same of the cohesive energy
+    spring: Floats  # [pair_count, 3], N, tangential spring force on second
+    tangential_force: Floats  # [pair_count, 3], N, spring and dashpot on second
+    tangential_stiffness: Floats  # [pair_count], N/m
+    twist: Floats  # [pair_count], N m, couple of the twisting spring about the normal on second
+    twist_stiffness: Floats  # [pair_count], N m
+    roll: Floats  # [pair_count, 3], N m, couple of the rolling spring on second
+    roll_stiffness: Floats  # [pair_count], N m
+    tilt_stiffness: Floats  # [pair_count], N m, against tilting of a patch of several points
+    lost: Floats  # [pair_count, LOSSES], J, what damping, friction and rolling took since the list was made
+    feature_count: Integers  # [pair_count], features near enough to touch before waking; -1: all of them
+    feature: Integers  # [pair_count, INLINE_FEATURES], the first of them, see feature_id.py
+    overflow_row: Integers  # [pair_count], row of those that found no room there, -1: none
+    overflow: Integers  # [row_count, overflow_max]
+
+
+# Columns of `lost`.
+DAMPING, FRICTION, ROLLING = 0, 1, 2
+LOSSES = 3
+
+
+class Laws(NamedTuple):
+    """Constant: per pair of materials [material_count, material_count]."""
+
+    young_modulus: Floats  # effective, Pa
+    shear_modulus: Floats  # effective, Pa
+    damping_ratio: Floats
+    shear_damping: Floats  # dashpot across the normal over that along it
+    friction: Floats
+    rolling_friction: Floats
+    spinning_friction: Floats
+    cohesion_force: Floats  # N
+    cohesion_line: Floats  # N/m, cohesion over contact radius
+
+
+class Partition(NamedTuple):
+    """A run of bodies, and the pairs of which they are the first: what one thread works on, see threads.py."""
+
+    start: int
+    stop: int  # bodies from start to before stop
+    first_pair: int
+    last_pair: int  # pairs from first_pair to before last_pair
+    outgoing: Integers  # those of them whose second is in a later partition, in order
+    incoming: Integers  # pairs of earlier partitions of which these bodies are the second, in order
+
+
+class Reactions(NamedTuple):
+    """What contacts do to their bodies, kept where these are in different partitions; no room where there is one."""
+
+    force: Floats  # [pair_count, 3] or [0, 3], N, on the second
+    first_torque: Floats  # the same, N m
+    second_torque: Floats  # the same, N m
+
+
+class Step(NamedTuple):
+    """What a step needs beside the arrays."""
+
+    time_step: float  # s
+    drag: float  # 1/s, viscous damping of all motion, 0 but in settling
+    gravity: tuple[float, float, float]  # m/s2
+    paper_mass: bool  # damping with the reduced mass of the bodies, not the mass seen at the contact point

@@ -1,0 +1,124 @@
+"""In which cell of a grid each body stands, so that neighbours of one body are searched near it alone.
+
+A body stands in the cell of where it was when its own neighbours were last searched; until the next search it moves by
+half the skin at most. Bodies that are much larger than most stand in no cell and are always looked at.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from lithobrake.compilation.compiled import kernel, large_kernel
+from lithobrake.dem.bodies.arrays import Bodies, Floats, Integers
+from lithobrake.dem.bodies.vectors import Vector, minus, plus, row
+
+Place = tuple[int, int, int]  # numbers of a cell along the axes
+
+# Largest bounding radius of what stands in a cell, over the median.
+LARGEST = 2.0
+# Most cells, for each body: costs or saves time alone.
+MOST_CELLS = 8
+
+
+class Cells(NamedTuple):
+    """A grid of cells along the axes; what is beyond it stands in the cells at its border."""
+
+    corner: Floats  # [3], m
+    size: Floats  # [1], m, of a cell
+    numbers: Integers  # [3], cells along each axis
+    first: Integers  # [cells], first body in each, -1: none
+    following: Integers  # [body_count], next body in the same cell, -1: none
+    before: Integers  # [body_count], the one before, -1: none
+    cell: Integers  # [body_count], -1: in none
+    large: Integers  # [large_count], bodies in no cell
+    found: Integers  # [body_count], what was last gathered
+    reach: Floats  # [1], m, that a body in a cell may reach beyond where it was put there
+
+
+def cells_of(bodies: Bodies, skin: float) -> Cells:
+    """Return all bodies in their cells; skin [m]."""
+    radius, n = bodies.bounding_radius, len(bodies.mass)
+    is_large = radius > LARGEST * np.median(radius)
+    reach = float(radius[~is_large].max()) + 0.5 * skin
+    size = 2.0 * reach
+    corner = bodies.position.min(axis=0)
+    extent = bodies.position.max(axis=0) - corner
+    while np.prod(np.floor(extent / size) + 1.0) > MOST_CELLS * n:
+        size *= 2.0
+    count = np.floor(extent / size).astype(np.int64) + 1
+    cells = Cells(
+        corner, np.array([size]), count, np.full(int(np.prod(count)), -1), np.full(n, -1), np.full(n, -1),
+        np.where(is_large, -1, 0), np.flatnonzero(is_large), np.full(n, -1),
+        np.array([reach]),
+    )  # fmt: skip
+    fill(bodies, cells)
+    return cells
+
+
+@large_kernel
+def fill(bodies: Bodies, cells: Cells) -> None:
+    """Put all bodies that are not large in the cells of where they are. Writes to cells."""
+    for body in range(len(cells.cell)):
+        if cells.cell[body] >= 0:
+            put_in_cell(bodies, cells, body)
+
+
+@kernel
+def cell_along(cells: Cells, place: Vector) -> Place:
+    """Return the numbers along the axes of the cell in which a place [m] lies, or of the nearest to it."""
+    return (
+        int(min(max((place[0] - cells.corner[0]) / cells.size[0], 0.0), cells.numbers[0] - 1.0)),
+        int(min(max((place[1] - cells.corner[1]) / cells.size[0], 0.0), cells.numbers[1] - 1.0)),
+        int(min(max((place[2] - cells.corner[2]) / cells.size[0], 0.0), cells.numbers[2] - 1.0)),
+    )
+
+
+@kernel
+def gather_near(cells: Cells, here: Vector, reach: float) -> int:
+    """Gather all bodies that may come within reach [m] of a place, and others; return how many. Writes to cells."""
+    count = len(cells.large)
+    for k in range(count):
+        cells.found[k] = cells.large[k]
+    way = reach + cells.reach[0]
+    low, high = cell_along(cells, minus(here, (way, way, way))), cell_along(cells, plus(here, (way, way, way)))
+    for i in range(low[0], high[0] + 1):
+        for j in range(low[1], high[1] + 1):
+            for k in range(low[2], high[2] + 1):
+                body = cells.first[number_of(cells, (i, j, k))]
+                while body >= 0:
+                    cells.found[count] = body
+                    count += 1
+                    body = cells.following[body]
+    return count
+
+
+@kernel
+def number_of(cells: Cells, place: Place) -> int:
+    """Return the number of a cell by its numbers along the axes."""
+    return (place[0] * cells.numbers[1] + place[1]) * cells.numbers[2] + place[2]
+
+
+@kernel
+def put_in_cell(bodies: Bodies, cells: Cells, body: int) -> None:
+    """Put a body in the cell of where it is. Writes to cells."""
+    cell = number_of(cells, cell_along(cells, row(bodies.position, body)))
+    after = cells.first[cell]
+    cells.following[body], cells.before[body], cells.cell[body] = after, -1, cell
+    if after >= 0:
+        cells.before[after] = body
+    cells.first[cell] = body
+
+
+@kernel
+def move_to_cell(bodies: Bodies, cells: Cells, body: int) -> None:
+    """Put a body that stands in a cell in that of where it is now. Writes to cells."""
+    cell, before, after = cells.cell[body], cells.before[body], cells.following[body]
+    if cell < 0:
+        return
+    if before >= 0:
+        cells.following[before] = after
+    else:
+        cells.first[cell] = after
+    if after >= 0:
+        cells.before[after] = before
+    put_in_cell(bodies, cells, body)

@@ -1,0 +1,152 @@
+"""Bodies in free flight: between two kicks by contacts they fall and turn without any force but gravity."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from lithobrake.compilation.compiled import kernel, large_kernel
+from lithobrake.dem.bodies.arrays import Bodies, Flags, Floats, Integers
+from lithobrake.dem.bodies.motion import turn_by
+from lithobrake.dem.bodies.vectors import Vector, add, cross, dot, minus, plus, put, row, scaled, times
+
+# Largest angle [rad] by which a body turns freely at once.
+LARGEST_TURN = 0.2
+
+
+class Flight(NamedTuple):
+    """Per body, between its kicks."""
+
+    time: Floats  # [body_count], s, to which it was last moved
+    velocity: Floats  # [body_count, 3], m/s, for which its pairs were planned
+    momentum: Floats  # [body_count, 3], kg m2/s, the same
+    slack: Floats  # [body_count], m/s, change of the speed of its surface for which the plans hold
+    turning: Floats  # [body_count], 1/(kg m2), largest inverse moment of inertia
+    mass: Floats  # [body_count], kg, smallest that a contact meets
+    head: Integers  # [body_count], first entry of the list of its pairs, -1: none
+    stamp: Integers  # [body_count], by which a search tells whom it has listed
+    held: Flags  # [body_count], see holding.py
+    held_velocity: Floats  # [body_count, 3], m/s, with which a held body will go on
+    held_momentum: Floats  # [body_count, 3], kg m2/s, the same
+    fastest_held: Floats  # [1], m/s, speed of its surface with which a held body is let go
+
+
+class Rules(NamedTuple):
+    """What holds for all bodies and contacts of a run."""
+
+    gravity: Vector  # m/s2
+    drag: float  # 1/s
+    paper_mass: bool  # as in Step
+    steps: float  # in the duration of a contact
+    skin: float  # m, gap below which two are neighbours
+
+
+@kernel
+def spin_of(bodies: Bodies, body: int) -> Vector:
+    """Return the angular velocity of a body [rad/s]."""
+    return times(bodies.inverse_inertia, body, row(bodies.angular_momentum, body))
+
+
+@kernel
+def spin_bound(bodies: Bodies, flight: Flight, body: int) -> float:
+    """Return a bound on the size of a body's angular velocity [rad/s], however it tumbles."""
+    momentum = row(bodies.angular_momentum, body)
+    return flight.turning[body] * dot(momentum, momentum) ** 0.5
+
+
+@kernel
+def surface_speed(bodies: Bodies, flight: Flight, body: int) -> float:
+    """Return a bound on the speed of a body's surface [m/s]."""
+    velocity = row(bodies.velocity, body)
+    return dot(velocity, velocity) ** 0.5 + bodies.turning_radius[body] * spin_bound(bodies, flight, body)
+
+
+@kernel
+def fly_to(bodies: Bodies, flight: Flight, body: int, now: float, rules: Rules) -> None:
+    """Move a body in free flight to an instant [s]. Writes to bodies and flight."""
+    time = now - flight.time[body]
+    if time <= 0.0:
+        return
+    flight.time[body] = now
+    if flight.held[body]:
+        return
+    before = row(bodies.velocity, body)
+    after = fall(bodies, body, before, time, rules)
+    spin = spin_bound(bodies, flight, body)
+    fastest = max(dot(before, before), dot(after, after)) ** 0.5
+    bodies.travel[body] += time * (fastest + bodies.turning_radius[body] * spin)
+    parts = 1 + int(spin * time / LARGEST_TURN)
+    for _ in range(parts):
+        turn_freely(bodies, body, time / parts)
+
+
+@kernel
+def fall(bodies: Bodies, body: int, before: Vector, time: float, rules: Rules) -> Vector:
+    """Move a body for a time [s] under gravity and drag, exactly; return its velocity then. Writes to bodies."""
+    if rules.drag == 0.0:
+        after = plus(before, scaled(time, rules.gravity))
+        add(bodies.position, body, time, plus(before, scaled(0.5 * time, rules.gravity)))
+    else:
+        kept = np.exp(-rules.drag * time)
+        # What drag and gravity come to in the end.
+        last = scaled(1.0 / rules.drag, rules.gravity)
+        after = plus(last, scaled(kept, minus(before, last)))
+        way = plus(scaled(time, last), scaled((1.0 - kept) / rules.drag, minus(before, last)))
+        add(bodies.position, body, 1.0, way)
+        momentum = row(bodies.angular_momentum, body)
+        turning = dot(momentum, spin_of(bodies, body)) * (1.0 + kept * kept)
+        moving = bodies.mass[body] * (dot(before, before) + dot(after, after))
+        bodies.dragged[body] += 0.5 * rules.drag * time * (moving + turning)
+        put(bodies.angular_momentum, body, scaled(kept, momentum))
+    put(bodies.velocity, body, after)
+    return after
+
+
+@kernel
+def turn_freely(bodies: Bodies, body: int, time: float) -> None:
+    """Turn a body freely for a time [s] by the spin at its middle, to the second order. Writes to bodies."""
+    momentum, spin = row(bodies.angular_momentum, body), spin_of(bodies, body)
+    if not bodies.isotropic[body]:
+        # Euler's equations: the angular momentum stands still while the body turns under it.
+        spin = plus(spin, scaled(0.5 * time, times(bodies.inverse_inertia, body, cross(momentum, spin))))
+    turn_by(bodies, body, spin, time)
+
+
+@large_kernel
+def fly_all_to(bodies: Bodies, flight: Flight, now: float, rules: Rules) -> None:
+    """Move all bodies to an instant [s] before which no contact is due. Writes to bodies and flight."""
+    for body in range(len(bodies.mass)):
+        fly_to(bodies, flight, body, now, rules)
+
+
+@kernel
+def place_at(bodies: Bodies, flight: Flight, body: int, now: float, rules: Rules) -> Vector:
+    """Return where a body will be at an instant [s] unless it is kicked before [m]."""
+    if flight.held[body]:
+        return row(bodies.position, body)
+    time = now - flight.time[body]
+    way, drop = time, 0.5 * time * time
+    if rules.drag > 0.0:
+        way = (1.0 - np.exp(-rules.drag * time)) / rules.drag
+        drop = (time - way) / rules.drag
+    moved = plus(scaled(way, row(bodies.velocity, body)), scaled(drop, rules.gravity))
+    return plus(row(bodies.position, body), moved)
+
+
+@kernel
+def weight(rules: Rules) -> float:
+    """Return the size of gravity [m/s2]."""
+    return dot(rules.gravity, rules.gravity) ** 0.5
+
+
+@kernel
+def relative_weight(flight: Flight, first: int, second: int, rules: Rules) -> float:
+    """Return the acceleration [m/s2] with which two fall against each other: none where both fall freely."""
+    falls_alone = second < 0 or flight.held[first] != flight.held[second]
+    return weight(rules) if falls_alone else 0.0
+
+
+@kernel
+def time_to_close(gap: float, speed: float, acceleration: float) -> float:
+    """Return the shortest time [s] in which a gap [m] closes at a speed [m/s] under an acceleration [m/s2]."""
+    fastest = speed + (speed * speed + 2.0 * acceleration * gap) ** 0.5
+    return 2.0 * gap / fastest if fastest > 0.0 else np.inf

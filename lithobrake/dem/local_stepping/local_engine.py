@@ -1,0 +1,156 @@
+"""The arrays of a world whose contacts take steps of their own: made from those of an engine, and given back to it."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from lithobrake.dem.bodies.arrays import Floats, Pairs, Step
+from lithobrake.dem.bodies.rigid_body import RigidBody
+from lithobrake.dem.local_stepping.agenda import Agenda, new_agenda
+from lithobrake.dem.local_stepping.cells import cells_of
+from lithobrake.dem.local_stepping.contact_plans import Plans
+from lithobrake.dem.local_stepping.free_flight import Flight, Rules, fly_all_to
+from lithobrake.dem.local_stepping.holding import hold_what_is_slow
+from lithobrake.dem.local_stepping.local_steps import NO_ROOM, advance_locally, sum_forces
+from lithobrake.dem.local_stepping.neighbour_search import LISTED, NO_SLOT, enter_all, plan_all_searches
+from lithobrake.dem.stepping.engine import Engine
+from lithobrake.dem.stepping.neighbours import new_pairs, with_overflow_for_all, with_overflow_where_used
+from lithobrake.dem.stepping.threads import new_reactions
+from lithobrake.dem.stepping.watch import new_record
+
+# Slots for pairs at the start, for each body.
+SLOTS = 8
+# Fewer steps in a collision do not follow it.
+FEWEST_STEPS = 5.0
+
+
+class Setting(NamedTuple):
+    """What a run depends on; with another setting, plans are made anew."""
+
+    step: Step
+    steps_per_contact: float
+    watched: int
+
+
+def flight_of(engine: Engine, bodies: list[RigidBody], time: float) -> Flight:
+    """Return bodies that have just arrived at an instant [s] and were never planned."""
+    n = len(bodies)
+    turning: Floats = np.linalg.eigvalsh(engine.bodies.inverse_inertia_body)[:, -1].astype(np.float64)
+    mass = np.array([body.smallest_mass_at_contact for body in bodies])
+    never = np.full((n, 3), np.nan)
+    stamp = np.full(n + len(engine.planes.offset), -1)
+    return Flight(
+        np.full(n, time), never, np.zeros((n, 3)), np.zeros(n), turning, mass, np.full(n, -1), stamp,
+        held=np.zeros(n, np.bool_), held_velocity=np.zeros((n, 3)), held_momentum=np.zeros((n, 3)),
+        fastest_held=np.zeros(1),
+    )  # fmt: skip
+
+
+def plans_of(capacity: int, used: int, time: float) -> Plans:
+    """Return slots for pairs, of which the first are used, looked at now [s]."""
+    free = np.arange(capacity - 1, -1, -1)
+    return Plans(
+        last=np.full(capacity, time), interval=np.zeros(capacity), inverse_mass=np.ones(capacity),
+        longest=np.zeros(capacity),
+        duration=np.zeros(capacity), apart=np.zeros((capacity, 3)), spin=np.zeros((capacity, 2, 3)),
+        link=np.full(2 * capacity, -1), free=free, free_count=np.array([capacity - used]),
+    )  # fmt: skip
+
+
+class LocalEngine:
+    """Moves the bodies of an engine on, each contact at its own steps, until it is given back."""
+
+    def __init__(self, engine: Engine, bodies: list[RigidBody], setting: Setting, time: float) -> None:
+        self.engine, self.setting, self.time = engine, setting, time
+        self.flight = flight_of(engine, bodies, time)
+        step = setting.step
+        self.rules = Rules(step.gravity, step.drag, step.paper_mass, setting.steps_per_contact, engine.skin)
+        self.cells = cells_of(engine.bodies, engine.skin)
+        self.record = new_record()
+        self.summed = True  # the forces on each body stand in the engine's arrays
+        self.plans: Plans
+        self.agenda: Agenda
+        engine.list_neighbours()
+        count = len(engine.pairs.first)
+        self._take(engine.pairs, max(SLOTS * len(bodies), 2 * count, 1))
+        self._enter(np.full(len(bodies) + count, time))
+        plan_all_searches(engine.bodies, self.flight, self.agenda, time, self.rules)
+
+    @property
+    def pairs(self) -> Pairs:
+        """The pairs in their slots, those that are free with first = -1."""
+        return self.engine.pairs
+
+    def _take(self, pairs: Pairs, capacity: int) -> None:
+        """Put pairs into the first of so many slots."""
+        used = np.flatnonzero(pairs.first >= 0)
+        slots = new_pairs(np.full(capacity, -1), np.zeros(capacity, dtype=np.int64))._replace(overflow=pairs.overflow)
+        for name in Pairs._fields[:-1]:
+            getattr(slots, name)[: len(used)] = getattr(pairs, name)[used]
+        self.engine.pairs, self.engine.scratch = slots, self.engine.scratch_of(slots)
+        self.reactions = new_reactions(capacity)
+        self.plans, self.agenda = plans_of(capacity, len(used), self.time), new_agenda(len(self.flight.time) + capacity)
+
+    def _enter(self, due: Floats) -> None:
+        """Enter bodies and pairs in their lists, due at instants [body_count + pair_count]."""
+        self.flight.head[:], self.flight.stamp[:] = -1, -1
+        engine = self.engine
+        enter_all(engine.bodies, engine.planes, self.pairs, engine.laws, self.flight, self.plans, self.agenda, due)
+
+    def _widen(self) -> None:
+        """Make twice as many slots."""
+        pairs, plans, agenda, reactions = self.pairs, self.plans, self.agenda, self.reactions
+        used, n = np.flatnonzero(pairs.first >= 0), len(self.flight.time)
+        self.engine.book()
+        self._take(pairs, 2 * len(pairs.first))
+        for name in ("last", "interval", "inverse_mass", "longest", "apart", "spin"):
+            getattr(self.plans, name)[: len(used)] = getattr(plans, name)[used]
+        for name in reactions._fields:
+            getattr(self.reactions, name)[: len(used)] = getattr(reactions, name)[used]
+        self._enter(np.concatenate([agenda.due[:n], agenda.due[n + used]]))
+
+    def run(self, duration: float) -> bool:
+        """Move on by a duration [s]; tell whether all is still finite."""
+        engine, end = self.engine, self.time + duration
+        while True:
+            reason = advance_locally(
+                engine.bodies, engine.cores, engine.planes, self.pairs, engine.laws, engine.scratch, self.reactions,
+                self.flight, self.plans, self.agenda, self.cells, end, self.rules, self.setting.watched, self.record,
+            )  # fmt: skip
+            if reason == NO_SLOT:
+                self._widen()
+            elif reason == NO_ROOM:
+                engine.pairs = with_overflow_for_all(self.pairs)
+                engine.scratch = engine.scratch_of(self.pairs)
+            else:
+                break
+        self.time = end
+        fly_all_to(engine.bodies, self.flight, end, self.rules)
+        self.summed = False
+        return reason == LISTED and bool(np.isfinite(engine.bodies.travel).all())
+
+    def sum_forces(self) -> None:
+        """Let the engine's arrays have the forces that the contacts had when they were last looked at."""
+        if not self.summed:
+            sum_forces(self.engine.bodies, self.pairs, self.reactions)
+            self.summed = True
+
+    def hold(self, share: float, reach: float) -> None:
+        """Hold what is slower than a share of the watched body and beyond a reach [m] of it, and let go the rest."""
+        if share > 0.0 or self.flight.held.any():
+            hold_what_is_slow(
+                self.engine.bodies, self.pairs, self.reactions, self.flight, self.plans, self.agenda,
+                self.setting.watched, share, reach, self.time, self.rules,
+            )  # fmt: skip
+
+    def give_back(self) -> None:
+        """Leave the engine with its pairs in order, ready for steps that all contacts share."""
+        pairs = self.pairs
+        self.hold(0.0, 0.0)
+        self.sum_forces()
+        self.engine.book()
+        used = np.flatnonzero(pairs.first >= 0)
+        used = used[np.lexsort((pairs.second[used], pairs.first[used]))]
+        arrays = {name: getattr(pairs, name)[used] for name in Pairs._fields[:-1]}
+        self.engine.pairs = with_overflow_where_used(Pairs(**arrays, overflow=pairs.overflow))
+        self.engine.list_neighbours()

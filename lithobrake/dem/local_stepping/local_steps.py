@@ -1,0 +1,288 @@
+"""Every contact at steps of its own: bodies fly freely between the instants at which contacts of theirs are due.
+
+A contact kicks its two bodies at its own instants, each time by its force over half the interval before and half the
+one after: momentum is kept to the last bit, and one contact alone is stepped as by the leapfrog of motion.py. Its
+intervals follow from its own collision, so that a slow one takes few steps while a fast one takes many beside it; what
+cannot touch yet is not looked at.
+
+Source: [Lew-2003], asynchronous variational integrators.
+"""
+
+from lithobrake.compilation.compiled import kernel, large_kernel
+from lithobrake.dem.bodies.arrays import Bodies, Cores, Floats, Laws, Pairs, Planes, Reactions, Step
+from lithobrake.dem.bodies.vectors import Vector, minus, plus, put, row, scaled, times
+from lithobrake.dem.local_stepping.agenda import Agenda, put_on
+from lithobrake.dem.local_stepping.approach import Approach, approach_of, closing_speed
+from lithobrake.dem.local_stepping.cells import Cells
+from lithobrake.dem.local_stepping.contact_plans import (
+    LONGER,
+    SHORTER,
+    Plans,
+    collision_step,
+    contact_step,
+    has_changed,
+    plan_apart,
+    plan_approach,
+    replan,
+)
+from lithobrake.dem.local_stepping.free_flight import Flight, Rules, fly_to, spin_of
+from lithobrake.dem.local_stepping.holding import give_impulse, is_stirred, let_go
+from lithobrake.dem.local_stepping.neighbour_search import LISTED, search_neighbours
+from lithobrake.dem.narrow_phase.feature_list import ROUNDING_OF_RADIUS, STEPS_LISTED, renew_list, travelled
+from lithobrake.dem.narrow_phase.scratch import Scratch
+from lithobrake.dem.stepping.force_sums import add_wrench, contact_force
+from lithobrake.dem.stepping.stability import pair_step
+from lithobrake.dem.stepping.watch import record_touch
+
+# Why a run stops: besides what neighbour_search.py says.
+NO_ROOM = 3
+# Steps of motion for which what is near and does not touch is listed; narrowest part of the widest margin.
+STEPS_NEAR, NARROWEST = 10.0, 1e-3
+# Largest c dt + (w dt)^2 / 4 of one contact, see stability.py; kicks follow each other, so each must be stable alone.
+STABLE_PART = 0.6
+
+
+@kernel
+def list_features(
+    pair: int, bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, scratch: Scratch, flight: Flight,
+    plans: Plans, rules: Rules,
+) -> bool:  # fmt: skip
+    """List the features of a pair anew where the list serves no longer; tell whether there was room for them.
+
+    What was not near is always listed anew: it is looked at only where it could touch by now, and the narrower the
+    list, the rarer what is near and does not touch. Writes to pairs and scratch.
+    """
+    first, second = pairs.first[pair], pairs.second[pair]
+    touching, travel = pairs.overlap[pair] > 0.0, travelled(bodies, first, second)
+    if pairs.feature_count[pair] != 0 and travel < pairs.wake[pair]:
+        return True
+    speed = closing_speed(bodies, flight, first, second)
+    step = plans.interval[pair] if touching else collision_step(pair, pairs, flight, plans, speed, rules)
+    radius = bodies.contact_radius[first] + (bodies.contact_radius[second] if second >= 0 else 0.0)
+    most = ROUNDING_OF_RADIUS * radius
+    way = (STEPS_LISTED if touching else STEPS_NEAR) * speed * step if speed > 0.0 else 0.0
+    margin = max(NARROWEST * most, min(way, most))
+    return renew_list(pair, bodies, cores, planes, pairs, scratch, margin, travel)
+
+
+@kernel
+def way_between(bodies: Bodies, first: int, second: int) -> Vector:
+    """Return the way from the centroid of the first to that of the second, or to the origin for a plane [m]."""
+    here = row(bodies.position, first)
+    return minus(row(bodies.position, second), here) if second >= 0 else scaled(-1.0, here)
+
+
+@kernel
+def note_motion(pair: int, bodies: Bodies, pairs: Pairs, plans: Plans) -> None:
+    """Note where the members of a pair are and how they turn, to tell at the next look how they have moved.
+
+    Writes to plans.
+    """
+    first, second = pairs.first[pair], pairs.second[pair]
+    put(plans.apart, pair, way_between(bodies, first, second))
+    put(plans.spin[pair], 0, spin_of(bodies, first))
+    if second >= 0:
+        put(plans.spin[pair], 1, spin_of(bodies, second))
+
+
+@kernel
+def predict(bodies: Bodies, body: int, force: Vector, torque: Vector, half: float) -> None:
+    """Write the velocities now, to which the kick at the last look has come but half: the rest is still to come.
+
+    Writes to bodies.
+    """
+    gain = scaled(half * bodies.inverse_mass[body], force)
+    put(bodies.velocity_predicted, body, plus(row(bodies.velocity, body), gain))
+    momentum = plus(row(bodies.angular_momentum, body), scaled(half, torque))
+    put(bodies.spin_predicted, body, times(bodies.inverse_inertia, body, momentum))
+    put(bodies.half_spin, body, spin_of(bodies, body))
+
+
+@kernel
+def force_after(
+    pair: int, bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, laws: Laws, step: Step, scratch: Scratch,
+    reactions: Reactions, plans: Plans,
+) -> float:  # fmt: skip
+    """Compute the contact force after a step in which others may have kicked the members; return its rate.
+
+    A contact slips by the way of its bodies since the last look, whoever kicked them: taken from the velocities at hand
+    alone, it would gain energy. Writes to bodies, pairs, scratch and reactions.
+    """
+    first, second = pairs.first[pair], pairs.second[pair]
+    velocity, other_velocity = row(bodies.velocity, first), (0.0, 0.0, 0.0)
+    touched = plans.interval[pair] > 0.0 and step.time_step > 0.0
+    if touched:
+        way = minus(way_between(bodies, first, second), row(plans.apart, pair))
+        mean = scaled(1.0 / step.time_step, way)
+        put(bodies.half_spin, first, scaled(0.5, plus(row(bodies.half_spin, first), row(plans.spin[pair], 0))))
+        if second >= 0:
+            other_velocity = row(bodies.velocity, second)
+            put(bodies.velocity, second, plus(velocity, mean))
+            put(bodies.half_spin, second, scaled(0.5, plus(row(bodies.half_spin, second), row(plans.spin[pair], 1))))
+        else:
+            put(bodies.velocity, first, scaled(-1.0, mean))
+    rate = contact_force(pair, bodies, cores, planes, pairs, laws, step, scratch, reactions, True)
+    if touched:
+        put(bodies.velocity, first, velocity)
+        if second >= 0:
+            put(bodies.velocity, second, other_velocity)
+    return rate
+
+
+@kernel
+def next_step(
+    pair: int, bodies: Bodies, planes: Planes, pairs: Pairs, laws: Laws, plans: Plans, planned: float, rate: float,
+    rules: Rules,
+) -> float:  # fmt: skip
+    """Return the interval [s] until a contact is due again; planned: the last one, 0 where it touches anew.
+
+    Writes to plans.
+    """
+    plans.inverse_mass[pair] = rate * pairs.overlap[pair] / (1.5 * pairs.elastic_force[pair])
+    plans.longest[pair] = pair_step(pair, bodies, planes, pairs, laws, rules.paper_mass, STABLE_PART)
+    step = contact_step(pair, bodies, pairs, plans, rules)
+    return planned if SHORTER * planned <= step <= LONGER * planned else step
+
+
+@kernel
+def touch(
+    pair: int, bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, laws: Laws, scratch: Scratch,
+    reactions: Reactions, flight: Flight, plans: Plans, passed: float, rules: Rules,
+) -> float:  # fmt: skip
+    """Compute a contact, kick its bodies, and return the interval [s] until it is due again; 0 where it has ended.
+
+    passed: since the last look [s]. Writes to bodies, pairs, scratch, reactions, flight and plans.
+    """
+    first, second = pairs.first[pair], pairs.second[pair]
+    planned = plans.interval[pair]
+    force, torque, other_torque = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
+    if planned > 0.0:
+        force, torque = row(reactions.force, pair), row(reactions.first_torque, pair)
+        other_torque = row(reactions.second_torque, pair)
+    predict(bodies, first, force, torque, 0.0 if flight.held[first] else -0.5 * passed)
+    if second >= 0:
+        predict(bodies, second, force, other_torque, 0.0 if flight.held[second] else 0.5 * passed)
+    step = Step(passed, 0.0, rules.gravity, rules.paper_mass)
+    rate = force_after(pair, bodies, cores, planes, pairs, laws, step, scratch, reactions, plans)
+    # The last kick reached over half of the interval that was planned; it may have been cut short.
+    cut = 0.5 * (passed - planned) if planned > 0.0 else 0.0
+    impulse, moment, other_moment = scaled(cut, force), scaled(cut, torque), scaled(cut, other_torque)
+    interval = 0.0
+    if pairs.overlap[pair] > 0.0:
+        interval = next_step(pair, bodies, planes, pairs, laws, plans, planned, rate, rules)
+        time = 0.5 * (interval + (passed if planned > 0.0 else min(passed, interval)))
+        impulse = plus(impulse, scaled(time, row(reactions.force, pair)))
+        moment = plus(moment, scaled(time, row(reactions.first_torque, pair)))
+        other_moment = plus(other_moment, scaled(time, row(reactions.second_torque, pair)))
+    give_impulse(bodies, flight, first, -1.0, impulse, moment)
+    if second >= 0:
+        give_impulse(bodies, flight, second, 1.0, impulse, other_moment)
+    plans.interval[pair] = interval
+    note_motion(pair, bodies, pairs, plans)
+    return interval
+
+
+@kernel
+def meet(
+    pair: int, bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, laws: Laws, scratch: Scratch,
+    reactions: Reactions, flight: Flight, plans: Plans, agenda: Agenda, now: float, rules: Rules,
+) -> bool:  # fmt: skip
+    """Look at a pair that is due and plan when to look again; tell whether there was room for its features.
+
+    Writes to bodies, pairs, scratch, reactions, flight, plans and agenda.
+    """
+    for member in (pairs.first[pair], pairs.second[pair]):
+        if member >= 0:
+            fly_to(bodies, flight, member, now, rules)
+    if not list_features(pair, bodies, cores, planes, pairs, scratch, flight, plans, rules):
+        return False
+    passed = now - plans.last[pair]
+    plans.last[pair] = now
+    if pairs.overlap[pair] == 0.0:
+        plans.interval[pair] = 0.0
+        if pairs.feature_count[pair] == 0:
+            plan_apart(pair, bodies, pairs, flight, agenda, now, rules)
+            return True
+        approach = approach_of(pair, bodies, cores, planes, pairs, flight, rules)
+        if approach.gap > 0.0:
+            plan_approach(pair, bodies, pairs, flight, plans, agenda, approach, now, rules)
+            return True
+    touched = plans.interval[pair] > 0.0
+    interval = touch(pair, bodies, cores, planes, pairs, laws, scratch, reactions, flight, plans, passed, rules)
+    if interval > 0.0:
+        put_on(agenda, len(bodies.mass) + pair, now + interval)
+    else:
+        # It has ended, or begins at the very instant: wait for a step of what may come.
+        speed = closing_speed(bodies, flight, pairs.first[pair], pairs.second[pair])
+        plan_approach(pair, bodies, pairs, flight, plans, agenda, Approach(0.0, speed, 0.0), now, rules)
+    for member in (pairs.first[pair], pairs.second[pair]):
+        if member < 0:
+            continue
+        if flight.held[member]:
+            if is_stirred(bodies, flight, member):
+                let_go(bodies, pairs, reactions, flight, plans, agenda, member, now, rules)
+                # It turns from now on, as the next look at this pair has to know.
+                note_motion(pair, bodies, pairs, plans)
+        elif (touched and interval == 0.0) or has_changed(bodies, flight, member):
+            replan(bodies, pairs, flight, plans, agenda, member, now, rules)
+    return True
+
+
+@kernel
+def record_contacts(
+    pairs: Pairs, reactions: Reactions, flight: Flight, plans: Plans, watched: int, now: float, record: Floats
+) -> None:  # fmt: skip
+    """Note what the contacts of the watched body do to it now [s]. Writes to record."""
+    force, touched, entry = (0.0, 0.0, 0.0), False, flight.head[watched]
+    while entry >= 0:
+        pair = entry >> 1
+        if pairs.overlap[pair] > 0.0:
+            touched = True
+            force = plus(force, scaled(1.0 if entry & 1 else -1.0, row(reactions.force, pair)))
+        entry = plans.link[entry]
+    record_touch(force, touched, now, record)
+
+
+@large_kernel
+def advance_locally(
+    bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, laws: Laws, scratch: Scratch, reactions: Reactions,
+    flight: Flight, plans: Plans, agenda: Agenda, cells: Cells, end: float, rules: Rules, watched: int, record: Floats,
+) -> int:  # fmt: skip
+    """Do all that is due up to an instant [s]; return LISTED, or what is lacking.
+
+    Writes to bodies, pairs, scratch, reactions, flight, plans, agenda, cells and record.
+    """
+    n = len(bodies.mass)
+    while agenda.size[0] > 0:
+        item = agenda.heap[0]
+        now = agenda.due[item]
+        # What is not a number never comes.
+        if not now <= end:
+            break
+        if item < n:
+            reason = search_neighbours(
+                bodies, cores, planes, pairs, laws, scratch, flight, plans, agenda, cells, item, now, rules
+            )
+            if reason != LISTED:
+                return reason
+            continue
+        pair = item - n
+        if not meet(pair, bodies, cores, planes, pairs, laws, scratch, reactions, flight, plans, agenda, now, rules):
+            return NO_ROOM
+        if watched >= 0 and (pairs.first[pair] == watched or pairs.second[pair] == watched):
+            record_contacts(pairs, reactions, flight, plans, watched, now, record)
+    return LISTED
+
+
+@large_kernel
+def sum_forces(bodies: Bodies, pairs: Pairs, reactions: Reactions) -> None:
+    """Sum up what the contacts did to every body when they were last looked at. Writes to bodies."""
+    bodies.force[:] = 0.0
+    bodies.torque[:] = 0.0
+    for pair in range(len(pairs.first)):
+        if pairs.overlap[pair] > 0.0:
+            first, second = pairs.first[pair], pairs.second[pair]
+            force = row(reactions.force, pair)
+            add_wrench(bodies, first, -1.0, force, row(reactions.first_torque, pair))
+            if second >= 0:
+                add_wrench(bodies, second, 1.0, force, row(reactions.second_torque, pair))

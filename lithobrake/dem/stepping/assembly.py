@@ -1,0 +1,111 @@
+"""From what a person adds to a world to the arrays that kernels work on."""
+
+import numpy as np
+
+from lithobrake.dem.bodies.arrays import Bodies, Cores, Floats, Integers, Laws, Planes
+from lithobrake.dem.bodies.material import Material
+from lithobrake.dem.bodies.motion import write_matrices, write_rotations
+from lithobrake.dem.bodies.rigid_body import Plane, RigidBody
+from lithobrake.dem.bodies.shape import Shape, Sphere
+from lithobrake.dem.law.material_pair import pair_law
+
+
+def shapes_of(bodies: list[RigidBody]) -> list[Shape]:
+    """Return the shapes of bodies, each once."""
+    return list({id(body.shape): body.shape for body in bodies}.values())
+
+
+def shape_numbers(bodies: list[RigidBody], shapes: list[Shape]) -> Integers:
+    """Return which of the shapes each body has, shape [body_count]."""
+    number = {id(shape): k for k, shape in enumerate(shapes)}
+    return np.array([number[id(body.shape)] for body in bodies], dtype=np.int64)
+
+
+def materials_of(bodies: list[RigidBody], planes: list[Plane]) -> list[Material]:
+    """Return the materials of bodies and planes, each once."""
+    return list(dict.fromkeys([body.material for body in bodies] + [plane.material for plane in planes]))
+
+
+def material_numbers(made: list[RigidBody] | list[Plane], materials: list[Material]) -> Integers:
+    """Return which of the materials each body or plane is made of."""
+    return np.array([materials.index(one.material) for one in made], dtype=np.int64)
+
+
+def rotation_matrices(quaternions: Floats) -> Floats:
+    """Return the rotation matrices [count, 3, 3], body to world, of unit quaternions w, x, y, z, shape [count, 4]."""
+    rotation = np.zeros((len(quaternions), 3, 3))
+    write_rotations(quaternions, rotation)
+    return rotation
+
+
+def cores_of(shapes: list[Shape]) -> Cores:
+    """Lay the convex cores of shapes one after the other."""
+    cores = [shape.core_polyhedron for shape in shapes]
+
+    def starts(counts: list[int] | np.ndarray) -> np.ndarray:
+        return np.concatenate([[0], np.cumsum(counts)]).astype(np.int64)
+
+    lines = np.concatenate([core.lines for core in cores])
+    return Cores(
+        np.concatenate([core.vertices for core in cores]), starts([len(core.vertices) for core in cores]),
+        np.concatenate([core.face_normals for core in cores]), np.concatenate([core.face_offsets for core in cores]),
+        starts([len(core.face_offsets) for core in cores]),
+        np.concatenate([core.edges for core in cores]), starts([len(core.edges) for core in cores]),
+        lines[:, 0].copy(), lines[:, 1] - lines[:, 0],
+        np.concatenate([core.adjacent_faces for core in cores]),
+        starts(np.concatenate([core.edges_of_face for core in cores])),
+        np.array([shape.rounding for shape in shapes]),
+    )  # fmt: skip
+
+
+def laws_of(materials: list[Material], shear_modulus_rule: str, pair_rule: str) -> Laws:
+    """Return the laws of all pairs of materials."""
+    table = np.array([[pair_law(a, b, shear_modulus_rule, pair_rule) for b in materials] for a in materials])
+    return Laws(*(np.ascontiguousarray(table[:, :, k]) for k in range(table.shape[2])))
+
+
+def planes_of(planes: list[Plane], materials: list[Material], body_count: int) -> Planes:
+    """Return planes as arrays."""
+    meets = np.ones((len(planes), body_count), dtype=np.bool_)
+    for k, plane in enumerate(planes):
+        if plane.meets is not None:
+            meets[k] = np.isin(np.arange(body_count), list(plane.meets))
+    normal = np.array([plane.normal for plane in planes]).reshape(-1, 3)
+    offset = np.array([plane.normal @ plane.point for plane in planes])
+    return Planes(normal, offset, material_numbers(planes, materials), meets)
+
+
+def inverses(matrices: Floats) -> Floats:
+    """Return the inverses of matrices, shape [count, 3, 3]."""
+    inverse: Floats = np.linalg.inv(matrices).astype(np.float64)
+    return inverse
+
+
+def inertias(bodies: list[RigidBody]) -> Floats:
+    """Return the inertias of bodies [kg m2], shape [body_count, 3, 3], body frame."""
+    return np.array([body.inertia for body in bodies]).reshape(-1, 3, 3)
+
+
+def bodies_of(
+    bodies: list[RigidBody], shapes: list[Shape], materials: list[Material], motion: dict[str, Floats]
+) -> Bodies:
+    """Return bodies as arrays, in a motion of position, velocity, quaternion and angular_momentum."""
+    n, bounding = len(bodies), np.array([body.shape.bounding_radius for body in bodies])
+    inertia = inertias(bodies)
+    arrays = Bodies(
+        shape=shape_numbers(bodies, shapes),
+        material=material_numbers(bodies, materials),
+        mass=np.array([body.mass for body in bodies]), inverse_mass=np.array([1.0 / body.mass for body in bodies]),
+        inverse_inertia_body=inverses(inertia),
+        isotropic=(inertia == inertia[:, :1, :1] * np.eye(3)).all(axis=(1, 2)),
+        contact_radius=np.array([body.shape.contact_radius for body in bodies]),
+        curvature=np.array([1.0 / body.shape.contact_radius for body in bodies]),
+        bounding_radius=bounding, turning_radius=np.where([isinstance(b.shape, Sphere) for b in bodies], 0.0, bounding),
+        position=motion["position"], velocity=motion["velocity"], quaternion=motion["quaternion"],
+        angular_momentum=motion["angular_momentum"], rotation=np.zeros((n, 3, 3)), inverse_inertia=np.zeros((n, 3, 3)),
+        force=np.zeros((n, 3)), torque=np.zeros((n, 3)), half_spin=np.zeros((n, 3)),
+        velocity_predicted=np.zeros((n, 3)), spin_predicted=np.zeros((n, 3)),
+        rates=np.zeros((n, 2)), dragged=np.zeros(n), travel=np.zeros(n), travel_listed=np.zeros(n),
+    )  # fmt: skip
+    write_matrices(arrays)
+    return arrays
