@@ -14,8 +14,8 @@ from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.fly.run_flights import FILE, RunFlights
 from lithobrake.pipeline.folder.study_folder import StudyFolder
 from lithobrake.pipeline.job import Job
-from lithobrake.pipeline.runs.known_runs import known_runs
 from lithobrake.pipeline.runs.run_table import DesignRuns, file_of
+from lithobrake.pipeline.runs.touchdown_runs import known_runs
 from lithobrake.pipeline.stages import stage_keys
 from lithobrake.study import Study
 from lithobrake.vocabulary.limit_state import LimitState

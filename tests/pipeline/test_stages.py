@@ -24,7 +24,7 @@ ELSEWHERE = (
     *("dem", "touchdown", "study/touchdown_model.py"),  # the hash of the engine
     *("study", "vocabulary"),  # by their values, which each stage reads; words
     *("pipeline/runs/beds.py", "pipeline/runs/pouring.py", "pipeline/runs/solver.py"),  # the keys of beds and runs
-    *("pipeline/runs/known_runs.py", "pipeline/runs/kernels.py"),
+    "pipeline/runs/kernels.py",
     "__init__.py",
 )
 

@@ -7,8 +7,7 @@ from typing import Any
 from lithobrake.pipeline.inference.expected_inference import ExpectedInference
 from lithobrake.pipeline.planning.expected_time import Span
 from lithobrake.pipeline.planning.expected_width import ExpectedHalfWidth
-from lithobrake.pipeline.planning.planned_beds import PlannedBeds
-from lithobrake.pipeline.planning.planned_grains import PlannedGrains
+from lithobrake.pipeline.planning.planned_beds import PlannedBeds, PlannedGrains
 from lithobrake.pipeline.planning.planned_runs import PlannedRuns
 
 

@@ -18,11 +18,10 @@ from lithobrake.pipeline.planning.expected_time import basis, expected_seconds
 from lithobrake.pipeline.planning.expected_width import expected_width
 from lithobrake.pipeline.planning.plan import Plan
 from lithobrake.pipeline.planning.plan_in_words import bytes_in_words
-from lithobrake.pipeline.planning.planned_beds import PlannedBeds, planned_beds
-from lithobrake.pipeline.planning.planned_grains import planned_grains
+from lithobrake.pipeline.planning.planned_beds import PlannedBeds, planned_beds, planned_grains
 from lithobrake.pipeline.planning.planned_runs import PlannedRuns, possible_runs
 from lithobrake.pipeline.planning.study_warnings import study_warnings
-from lithobrake.pipeline.runs.known_runs import known_runs
+from lithobrake.pipeline.runs.touchdown_runs import known_runs
 from lithobrake.pipeline.sequential_sampling import grown
 from lithobrake.pipeline.site import Site, with_site_gravity
 from lithobrake.pipeline.stages import stage_keys, stages_of

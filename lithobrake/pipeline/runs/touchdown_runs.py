@@ -6,11 +6,12 @@ from pathlib import Path
 
 import numpy as np
 
-from lithobrake.campaign import Ledger, Limits, ModelServer, RunOptions, Runs, Tally, run_seed
+from lithobrake.campaign import Ledger, Limits, ModelServer, Record, RunOptions, Runs, Tally, read_records, run_seed
 from lithobrake.campaign import run as run_campaign
 from lithobrake.campaign.model_server import PREFIX
 from lithobrake.pipeline.design.dependencies import bed_files, solver_command, solver_setting, touchdown_reads
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
+from lithobrake.pipeline.folder.study_folder import StudyFolder
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.runs.solver import FunctionModel, Model, ServerModel, SolverModel
 from lithobrake.study import Study
@@ -75,3 +76,18 @@ def model_of(
     if study.solver.command:
         return SolverModel(solver_command(study, folder), solver_setting(study))
     return TouchdownModel(study, tuple(folder / name for name in bed_files(study)), engine_hash())
+
+
+def known_runs(study: Study, folder: StudyFolder) -> dict[str, Record]:
+    """Runs of the folder's ledger, by key, that are not made again; none where there is no ledger.
+
+    Raises ValueError for a file that is no ledger.
+    """
+    path = folder / "runs.sqlite"
+    records = read_records(path) if path.is_file() else []
+    tries = study.campaign.retry_count
+    return {
+        entry.key: entry
+        for entry in records
+        if entry.status == "done" or (entry.status == "failed" and entry.attempts > tries)
+    }

@@ -22,7 +22,6 @@ from lithobrake.pipeline.emulate.samples import Samples
 from lithobrake.pipeline.job import Silent
 from lithobrake.pipeline.planning import expected_time
 from lithobrake.pipeline.planning.expected_disk import expected_bytes
-from lithobrake.pipeline.planning.expected_losses import expected_loss
 from lithobrake.pipeline.planning.expected_steps import ExpectedSoil
 from lithobrake.pipeline.planning.expected_time import (
     SPREAD,
@@ -32,10 +31,10 @@ from lithobrake.pipeline.planning.expected_time import (
     run_time,
 )
 from lithobrake.pipeline.planning.plan_in_words import brief_lines
-from lithobrake.pipeline.planning.planned_grains import planned_grains
+from lithobrake.pipeline.planning.planned_beds import planned_grains
 from lithobrake.pipeline.planning.planned_runs import PlannedRuns
 from lithobrake.pipeline.planning.planner import plan_of
-from lithobrake.pipeline.planning.study_warnings import study_warnings
+from lithobrake.pipeline.planning.study_warnings import expected_loss, study_warnings
 from lithobrake.pipeline.site import Site
 from lithobrake.pipeline.study_run import run_study
 from lithobrake.results import open_study
