@@ -105,9 +105,11 @@ def test_what_ends_is_the_study_of_that_many_runs(narrow: tuple[Path, DesignRuns
     assert not any("going on" in sentence for sentence in again.sentences)
     study = source(half_width=0.06).study
     only_read = StudyFolder.only_read(folder)
-    assert grown(DrawnDesign(study), only_read).design.run_count == runs.run_count
-    assert grown(DrawnDesign(study), only_read).with_run_count(24) == study.with_run_count(24)
-    plan = plan_of(grown(DrawnDesign(study), only_read), Site(study), "ball", only_read, 2)
+    design = grown(DrawnDesign(study), only_read)
+    assert len(design.rows) == runs.run_count
+    assert design.keys == runs.keys
+    assert design.study.with_run_count(24) == study.with_run_count(24)
+    plan = plan_of(design, Site(study), "ball", only_read, 2)
     # What follows the runs was not asked for.
     assert (plan.stages[0], len(plan.runs), plan.runs[0].drawn) == ("estimates", 1, runs.run_count)
     answered = sum(outcome in ("clear", "captured") for outcome in runs.outcomes)

@@ -93,7 +93,7 @@ def test_designs_by_count_vary_what_they_should(points_at: str) -> None:
 
 def test_a_larger_sobol_sequence_keeps_the_points_of_a_smaller_one() -> None:
     few, many = (changed(points="sobol_sequence", screening_count=n, refined_count=60) for n in (50, 70))
-    assert np.array_equal(points(few, "screening", ()), points(many, "screening", ())[:50])
+    assert np.array_equal(points(DrawnDesign(few), "screening", ()), points(DrawnDesign(many), "screening", ())[:50])
 
 
 def test_a_grid_of_few_inputs_reuses_the_nodes_of_the_grid_of_all() -> None:

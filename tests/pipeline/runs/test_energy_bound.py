@@ -17,9 +17,9 @@ from ..synthetic_lander import synthetic_tables
 NO_BED = 0.0
 
 
-def fastest(*given: Any) -> np.ndarray:
+def fastest(given: Study, *others: Any) -> np.ndarray:
     """The bound of the speed."""
-    return energy_bound(DrawnDesign(*given)).speed
+    return energy_bound(DrawnDesign(given), *others).speed
 
 
 def study(**changes: dict[str, Any]) -> Study:
