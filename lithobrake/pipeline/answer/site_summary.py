@@ -1,7 +1,6 @@
 """What the summary says of the body and of a point at rest on the ground at the site."""
 
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -15,37 +14,46 @@ from lithobrake.pipeline.site import (
     site_medians,
     site_warning,
 )
+from lithobrake.results.site_results import KernelNumbers, SiteResults
 from lithobrake.study import BUILT_IN_BODIES, Study
 from lithobrake.study.site_kernels import kernel_partner, kernel_spin
 
 
-def site_results(study: Study) -> dict[str, Any]:
+def site_results(study: Study) -> SiteResults:
     """The body at the medians, and the acceleration of a point at rest on the ground at the site."""
     body, site, effective = site_body(study), site_medians(study), effective_acceleration_at_site(study)
-    built_in, heads = study.site.body in BUILT_IN_BODIES, has_heading(study)
-    partner = None if body.partner is None else body.partner.body.name
-    return {
-        "body": study.site.body if built_in else "mesh",
-        "product_id": body_product(study),
-        "mass_kg": body.mass,
-        "bulk_density_kg_m3": body.density,
-        "spin_period_s": body.spin_period,
-        "kernels": _of_kernels(study),
-        "extents_m": np.ptp(body.shape.vertices, axis=0).tolist(),
-        "facet_count": len(body.shape.faces),
-        "centroid_m": body.shape.centroid.tolist(),
-        "partner": partner,
-        "partner_distance_m": None if partner is None else float(body.orbit.distance),
-        **{key: site[key] for key in ("latitude_deg", "longitude_deg")},
-        "heading_deg": site["heading_deg"] if heads else None,
-        "place_m": body.shape.surface_point(site["latitude_deg"], site["longitude_deg"]).tolist(),
-        "effective_acceleration_outward": float(effective[2]),
-        "effective_acceleration_along_heading": float(effective[0]) if heads else None,
+    heads, partner = has_heading(study), None if body.partner is None else body.partner.body.name
+    extents, centroid, place = (
+        (x, y, z)
+        for x, y, z in (
+            np.ptp(body.shape.vertices, axis=0).tolist(),
+            body.shape.centroid.tolist(),
+            body.shape.surface_point(site["latitude_deg"], site["longitude_deg"]).tolist(),
+        )
+    )
+    return SiteResults(
+        body=study.site.body if study.site.body in BUILT_IN_BODIES else "mesh",
+        product_id=body_product(study),
+        mass_kg=body.mass,
+        bulk_density_kg_m3=body.density,
+        spin_period_s=body.spin_period,
+        kernels=_of_kernels(study),
+        extents_m=extents,
+        facet_count=len(body.shape.faces),
+        centroid_m=centroid,
+        partner=partner,
+        partner_distance_m=None if partner is None else float(body.orbit.distance),
+        latitude_deg=site["latitude_deg"],
+        longitude_deg=site["longitude_deg"],
+        heading_deg=site["heading_deg"] if heads else None,
+        place_m=place,
+        effective_acceleration_outward=float(effective[2]),
+        effective_acceleration_along_heading=float(effective[0]) if heads else None,
         # In axes that do not turn, from the body alone.
-        "escape_speed_m_s": escape_speed(study),
-        "warning": site_warning(study),
-        "gravity_warning": gravity_warning(study),
-    }
+        escape_speed_m_s=escape_speed(study),
+        warning=site_warning(study),
+        gravity_warning=gravity_warning(study),
+    )
 
 
 def body_product(study: Study) -> str | None:
@@ -53,22 +61,11 @@ def body_product(study: Study) -> str | None:
     return None if study.site.body in BUILT_IN_BODIES else product_id(labelled_mesh(Path(study.site.body)))
 
 
-def _of_kernels(study: Study) -> dict[str, float] | None:
-    """What was read from kernels, degrees and SI; None without any."""
+def _of_kernels(study: Study) -> KernelNumbers | None:
+    """What was read from kernels; None without any."""
     spin, place = kernel_spin(study.site), kernel_partner(study.site)
     if spin is None:
         return None
-    table = {
-        "spin_period_s": spin.period,
-        "pole_right_ascension_deg": spin.pole_right_ascension_deg,
-        "pole_declination_deg": spin.pole_declination_deg,
-        "prime_meridian_deg": spin.prime_meridian_deg,
-    }
-    if place is None:
-        return table
-    return table | {
-        "partner_longitude_deg": place.longitude_deg,
-        "partner_latitude_deg": place.latitude_deg,
-        "partner_distance_m": place.distance,
-        "partner_period_s": place.period,
-    }
+    own = (spin.period, spin.pole_right_ascension_deg, spin.pole_declination_deg, spin.prime_meridian_deg)
+    partner = () if place is None else (place.longitude_deg, place.latitude_deg, place.distance, place.period)
+    return KernelNumbers(*own, *partner)

@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 
 from lithobrake.files.atomic import atomic_path
 from lithobrake.files.reading import read_json
-from lithobrake.report.figures.style import INTERACTIONS, LANDER, QUIET, figure_style, input_label
+from lithobrake.report.figures.style import INTERACTIONS, LANDER, QUIET, figure_style
+from lithobrake.report.words.labels import input_label
 
 BINS = 20
 WORDS = "grey: before; blue: after"

@@ -24,7 +24,7 @@ from lithobrake.chaos import (
 from lithobrake.emulator import Emulator, law_tables
 from lithobrake.pipeline.emulate.energy_bound import bound_numbers, energy_bound
 from lithobrake.report.live.packed import packed, script_data
-from lithobrake.report.pages.page_data import DrawnPage
+from lithobrake.report.page_data import DrawnPage
 from lithobrake.study import check_tables
 
 from ...pipeline.synthetic_lander import synthetic_tables
