@@ -110,7 +110,7 @@ def _write_report(job: Job) -> None:
 RUNS = ("pipeline", "chaos", "outputs.py", "attitude.py")
 FIT = ("pipeline", "chaos", "analysis", "outputs.py")
 EMULATE = (*FIT, "emulator")
-SUM_UP = (*FIT, "results/telling_numbers.py")
+SUM_UP = (*FIT, "results")
 FLY = ("pipeline", "smallbody", "mesh.py", "mesh_files.py", "mesh_labels.py", "outputs.py")
 # The points of one design are best for the degree that is fitted to them.
 _SCREENING_RUNS = ("points", "replicate_count", "screening_level", "screening_count", "screening_degree")
@@ -186,7 +186,7 @@ SEQUENCE = (
         fly_runs,
     ),
     Stage("telling_landing", "telling landing", telling_files, _nothing, ("runs",), (), land_tellingly),
-    Stage("estimate", "estimates", _files("estimates.json"), _nothing, ("fly_runs",), FIT, estimate),
+    Stage("estimate", "estimates", _files("estimates.json"), _nothing, ("fly_runs",), SUM_UP, estimate),
     Stage("emulator", "emulator", _files("emulator.json", EXPLORER), _nothing, ("runs",), EMULATE, _emulate),
     Stage("sample", "samples", _files("samples.h5"), _sample, ("emulator",), EMULATE, draw_emulator_samples),
     Stage("fly", "flights", _files(*FLIGHT_FILES), flight_reads, ("sample",), FLY, fly_samples),

@@ -24,9 +24,10 @@ if TYPE_CHECKING:
 PICTURES: dict[str, dict[str, None]] = {"png": {"Software": None}, "svg": {"Date": None, "Creator": None}}
 
 
-def write_report(folder: Path, progress: Callable[[int, int], None]) -> Path:
+def write_report(folder: Path, progress: Callable[[int, int], None] = lambda done, total: None) -> Path:
     """Write report/index.html of a study's folder, and its figures as PNG and SVG files; returns the path of the page.
 
+    progress: called with the number of figures that are drawn, and that of all.
     Raises ValueError when a file that the report reads is missing.
     """
     data = page_results(open_study(folder))

@@ -53,12 +53,7 @@ def limit_state_results(
 
 
 def _one(
-    study: Study,
-    name: str,
-    state: LimitState,
-    runs: DesignRuns,
-    fates: np.ndarray,
-    of_samples: dict[str, np.ndarray],
+    study: Study, name: str, state: LimitState, runs: DesignRuns, fates: np.ndarray, of_samples: dict[str, np.ndarray]
 ) -> LimitStateResult:
     """The results of one limit state, without its statement."""
     for output in state.outputs:

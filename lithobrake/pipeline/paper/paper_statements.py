@@ -27,10 +27,7 @@ def answer(study: Study, results: PaperResults) -> list[str]:
     if captured.count and not site.holds:
         beside.append(f"{percent(captured.share, 1)} are captured and lifted off again")
     returning = percent(outcomes["returns"].share, 1)
-    sentences = [
-        f"{scope(study).where}: {returning} of the landers {down}; {', '.join(beside)}.",
-        scope(study).why,
-    ]
+    sentences = [f"{scope(study).where}: {returning} of the landers {down}; {', '.join(beside)}.", scope(study).why]
     if outcomes["missing"].count:
         lost = [f"{percent(outcomes[outcome].share, 1)} {outcome.label}" for outcome in MISSING]
         low, high = (percent(bound, 1) for bound in results.returns.if_missing)

@@ -149,12 +149,7 @@ class _Cells:
         return [(int(column), int(row)) for column, row in found]
 
 
-def _draw(
-    axes: Axes,
-    cells: _Cells,
-    read: Sequence[Reading],
-    scale: tuple[float, float],
-) -> AxesImage:
+def _draw(axes: Axes, cells: _Cells, read: Sequence[Reading], scale: tuple[float, float]) -> AxesImage:
     """Colour the cells by their number, and write it there with its bounds."""
     table = np.full((len(cells.up), len(cells.across)), np.nan)
     for (column, row), (value, _, _) in zip(cells.places, read, strict=True):

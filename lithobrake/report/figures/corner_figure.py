@@ -26,7 +26,10 @@ _FORM = {"statement": str, "inputs": {str: _INPUT}}
 
 
 def write_corner(posterior: Path, picture: Path) -> None:
-    """Draw posterior.json as a PNG file."""
+    """Draw the posterior.json of an inference as a corner plot, a PNG file: inputs before and after, and each pair.
+
+    Raises ValueError for another file.
+    """
     content = read_json(posterior, _FORM, "infer again with: lithobrake infer")
     with figure_style(), atomic_path(picture) as draft:
         corner_figure(content["inputs"]).savefig(draft, format="png", metadata={"Software": None})

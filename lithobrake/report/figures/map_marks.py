@@ -43,12 +43,7 @@ def ellipse_style(share: float) -> Literal["-", "--"]:
 
 
 def draw_legend(
-    figure: Figure,
-    ellipses: Sequence[EllipseShare],
-    what: str,
-    place: tuple[float, float],
-    *,
-    is_gaussian: bool = True,
+    figure: Figure, ellipses: Sequence[EllipseShare], what: str, place: tuple[float, float], *, is_gaussian: bool = True
 ) -> None:
     """Say what mark and lines are, in one row with its lower left end at a place in parts of the figure.
 

@@ -101,14 +101,7 @@ def _bar(axes: Axes, row: int, parts: Sequence[Piece]) -> None:
     for part in parts:
         edge = QUIET if part.hatch else "white"
         axes.barh(
-            row,
-            part.share,
-            left=end,
-            height=0.52,
-            color=part.colour,
-            hatch=part.hatch,
-            edgecolor=edge,
-            linewidth=0.6,
+            row, part.share, left=end, height=0.52, color=part.colour, hatch=part.hatch, edgecolor=edge, linewidth=0.6
         )
         if part.share >= ROOM:
             light = sum(

@@ -25,12 +25,7 @@ def _header(title: str, content: Content, facts: str) -> str:
 
 
 def page(
-    title: str,
-    facts: str,
-    content: Content,
-    panels: Sequence[Panel],
-    provenance: Sequence[PageTable],
-    study_text: str,
+    title: str, facts: str, content: Content, panels: Sequence[Panel], provenance: Sequence[PageTable], study_text: str
 ) -> str:
     """Put the page together, with the panels that the plots of the content gave; all words are plain text and are
     escaped here.

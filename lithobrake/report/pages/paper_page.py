@@ -48,13 +48,7 @@ def _counts(data: PaperPage) -> "Figure":
     table, results, design = data.results.node_counts, data.results, data.study["design"]
     measure = "level" if design["points"] == "smolyak" else "degree"
     designs = [
-        Design(
-            name,
-            len(expansion.inputs),
-            design[f"{name}_{measure}"],
-            results.designs[name].run_count,
-            measure,
-        )
+        Design(name, len(expansion.inputs), design[f"{name}_{measure}"], results.designs[name].run_count, measure)
         for name, expansion in (("screening", results.screening), ("refined", results.refined))
     ]
     tensor, smolyak = np.array(table.tensor, dtype=float), np.array(table.smolyak, dtype=float)
