@@ -11,13 +11,13 @@ import pytest
 
 from lithobrake.chaos import Uniform, fit, smolyak
 from lithobrake.pipeline import StudyFolder, stage_keys, stages_of
-from lithobrake.pipeline.answer.dispersion_statistics import return_fraction, shares
 from lithobrake.pipeline.answer.scope import scope
 from lithobrake.pipeline.answer.summary_parts import study_tables
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.emulate.samples import SAMPLE_OUTCOMES, Samples
 from lithobrake.pipeline.fly.flights import COLUMNS, partner_time, starts
 from lithobrake.pipeline.paper.paper_designs import kept_inputs, points
+from lithobrake.pipeline.paper.paper_summary import limited_shares, return_fraction
 from lithobrake.pipeline.rest import journeys as rest
 from lithobrake.pipeline.site import Site, with_site_gravity
 from lithobrake.smallbody.restitution_table import COUNTS, EDGES
@@ -214,29 +214,31 @@ def test_drawn_velocities_have_the_drawn_speed_and_elevation_and_impossible_draw
 def test_shares_have_a_class_for_each_end_no_interval_and_no_sample_after_the_last_that_flew() -> None:
     outcomes = ("clear", "captured", "left_sideways", "outside", "time_limit", "clear", "captured", "clear")
     flown = [{"sample": "0", "status": "impact"}, {"sample": "5", "status": "escaped"}]
-    table = shares(made_samples(*outcomes), flown, Counter(clear=50, captured=1), holds=True)
-    assert table["sample_count"] == 6
+    found = limited_shares(made_samples(*outcomes), flown, Counter(clear=50, captured=1), holds=True)
+    assert found.sample_count == 6
+    table = found.outcomes
     ends = ("captured", "left_sideways", "time_limit", "outside", "impact", "flying", "escaped", "partner")
-    assert [table[name]["count"] for name in ends] == [1, 1, 1, 1, 1, 0, 1, 0]
-    assert (table["returns"]["count"], table["missing"]["count"]) == (2, 3)
-    assert (table["returns"]["lower"], table["returns"]["upper"]) == (None, None)
+    assert [table[name].count for name in ends] == [1, 1, 1, 1, 1, 0, 1, 0]
+    assert (table["returns"].count, table["missing"].count) == (2, 3)
+    assert (table["returns"].lower, table["returns"].upper) == (None, None)
     # Of 51 runs none left sideways or ran out of time: that allows 5.7 % (rule of three).
-    assert table["left_sideways"]["upper_limit"] == pytest.approx(1.0 - 0.05 ** (1 / 51))
-    assert "upper_limit" not in table["captured"]
+    assert table["left_sideways"].upper_limit == pytest.approx(1.0 - 0.05 ** (1 / 51))
+    assert table["captured"].upper_limit is None
     # What is captured where the site pushes outwards is lifted off again.
-    away = shares(made_samples(*outcomes), flown, Counter(clear=50, captured=1), holds=False)
-    assert away["returns"]["count"] == 1
+    away = limited_shares(made_samples(*outcomes), flown, Counter(clear=50, captured=1), holds=False)
+    assert away.outcomes["returns"].count == 1
 
 
 def test_the_answer_says_over_what_it_holds_and_flights_do_not_narrow_it() -> None:
     study = changed(site={"latitude_deg": 75.0})
-    table = shares(made_samples(*["clear"] * 3, "captured"), [{"sample": "0", "status": "impact"}] * 3, {}, holds=True)
+    flown = [{"sample": "0", "status": "impact"}] * 3
+    table = limited_shares(made_samples(*["clear"] * 3, "captured"), flown, {"clear": 40}, holds=True)
     found = return_fraction(study, table, 40)
-    assert (found["lower"], found["upper"], found["next_bed"], found["level"]) == (None, None, None, 0.9)
-    assert found["why"] == scope(study).why
-    assert found["from"] == "4 samples of an expansion of 40 landings on 1 bed"
-    assert found["missing"] == 0.0
-    assert found["if_missing"] == [1.0, 1.0]
+    assert (found.lower, found.upper, found.next_bed, found.level) == (None, None, None, 0.9)
+    assert found.why == scope(study).why
+    assert found.from_ == "4 samples of an expansion of 40 landings on 1 bed"
+    assert found.missing == 0.0
+    assert found.if_missing == (1.0, 1.0)
 
 
 @pytest.mark.parametrize(

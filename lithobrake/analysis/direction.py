@@ -2,15 +2,12 @@
 
 import math
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from lithobrake.analysis.confidence import LEVEL, Bounds, answered_runs, normal_quantile, t_quantile
 from lithobrake.analysis.share_estimate import standard_error
-
-NO_BOUNDS = (None, None)
 
 
 @dataclass(frozen=True)
@@ -30,16 +27,6 @@ class DirectionEstimate:
     resultant_length: float
     resultant_length_bounds: Bounds | None
     level: float = LEVEL
-
-    def summary(self) -> dict[str, Any]:
-        """Both as JSON values: {"value", "lower", "upper"} each, the direction in rad."""
-        direction = (self.mean_direction, *(self.mean_direction_bounds or NO_BOUNDS))
-        length = (self.resultant_length, *(self.resultant_length_bounds or NO_BOUNDS))
-        keys = ("value", "lower", "upper")
-        return {
-            "mean_direction": dict(zip(keys, direction, strict=True)),
-            "resultant_length": dict(zip(keys, length, strict=True)),
-        }
 
 
 def direction_estimate(angle: ArrayLike, bed: ArrayLike, *, why: str | None = None) -> DirectionEstimate:

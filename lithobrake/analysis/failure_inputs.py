@@ -1,7 +1,7 @@
 """Which inputs make the failures: how far their law among failing landings lies from that over all."""
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -39,10 +39,6 @@ class FailureInput:
     def found(self) -> bool:
         """Whether failing landings differ in this input by more than luck."""
         return self.distance > self.luck
-
-    def summary(self) -> dict[str, float | bool]:
-        """The input as `summary.json` holds it."""
-        return {key: value for key, value in asdict(self).items() if key != "level"} | {"found": self.found}
 
 
 def failure_inputs(

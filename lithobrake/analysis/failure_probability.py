@@ -7,7 +7,7 @@ landings, over beds that were not in the study.
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -55,25 +55,6 @@ class FailureProbability:
     def why(self) -> str | None:
         """Why there is no interval; None where there is one."""
         return self.by_runs.why
-
-    def summary(self) -> dict[str, Any]:
-        """The estimate as `summary.json` holds it."""
-        emulator, runs = self.by_emulator, self.by_runs.summary()
-        return {
-            "probability": self.probability,
-            "lower": self.lower,
-            "upper": self.upper,
-            "level": self.level,
-            "source": self.source,
-            "runs": {
-                key: runs[key] for key in ("share", "lower", "upper", "from", "next_bed", "if_missing", "missing")
-            },
-            "emulator": None
-            if emulator is None
-            else {"share": emulator.value, "lower": emulator.lower, "upper": emulator.upper},
-            "tail_limit": self.tail_limit,
-            "why": self.why,
-        }
 
 
 def failure_probability(

@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -61,21 +61,6 @@ class ShareEstimate:
     missing: float
     emulator: float | None
     why: str | None
-
-    def summary(self) -> dict[str, Any]:
-        """The estimate as `summary.json` holds it."""
-        return {
-            "share": self.share,
-            "lower": self.lower,
-            "upper": self.upper,
-            "level": self.level,
-            "from": self.source,
-            "next_bed": None if self.next_bed is None else list(self.next_bed),
-            "if_missing": list(self.if_missing),
-            "missing": self.missing,
-            "emulator": self.emulator,
-            "why": self.why,
-        }
 
 
 class _Mean(NamedTuple):

@@ -2,7 +2,7 @@
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -57,21 +57,6 @@ class VarianceShares:
     place_and_attitude: IntervalEstimate
     chaos: IntervalEstimate | None
     unbiased: dict[str, float]
-
-    def summary(self) -> dict[str, Any]:
-        """The shares as `summary.json` holds them: {"share", "lower", "upper"} of each part, or None."""
-
-        def part(one: IntervalEstimate | None) -> dict[str, float] | None:
-            return None if one is None else {"share": one.value, "lower": one.lower, "upper": one.upper}
-
-        return {
-            "soil": part(self.soil),
-            "soil_by_input": {name: part(one) for name, one in self.soil_by_input.items()},
-            "arrival": part(self.arrival),
-            "bed": part(self.bed),
-            "place_and_attitude": part(self.place_and_attitude),
-            "chaos": part(self.chaos),
-        }
 
 
 class _Part(NamedTuple):

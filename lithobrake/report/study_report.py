@@ -6,10 +6,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from lithobrake.files.atomic import atomic_path
+from lithobrake.report.content import Panel, Plot
 from lithobrake.report.figures.style import figure_style
+from lithobrake.report.page_data import DrawnPage, page_results
 from lithobrake.report.pages.drawn_page import sequence_content
-from lithobrake.report.pages.html import Panel, Plot, page
-from lithobrake.report.pages.page_data import DrawnPage, page_results
+from lithobrake.report.pages.html import page
 from lithobrake.report.pages.paper_page import paper_content
 from lithobrake.report.pages.study_files import data_files, picture_files
 from lithobrake.report.tables.paper_tables import provenance

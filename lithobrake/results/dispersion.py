@@ -1,7 +1,7 @@
 """Where the landers end: flights to the next impact, ellipses, and journeys until they are at rest."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from lithobrake.results.json_values import INLINE
 from lithobrake.results.shares import CountedShare, Level, SampleShares
@@ -30,6 +30,11 @@ class ImpactNumbers:
     """speed of the impact against the ground [m/s]"""
     impact_incidence_deg: ImpactNumber | None = None
     """angle of that velocity from the inward normal [deg]"""
+
+    @property
+    def known(self) -> dict[str, ImpactNumber]:
+        """The numbers that there are, by their keys."""
+        return {key: one for key, one in vars(self).items() if one is not None}
 
 
 @dataclass(frozen=True)
@@ -150,6 +155,21 @@ class GroundResults:
         """Every share of the table by its key."""
         return {**self.outcomes, "slid": self.slid, "outside_too_slow": self.outside_too_slow}
 
+    def with_counts(self, counts: Mapping[str, CountedShare], interval: Level) -> "GroundResults":
+        """The same with other shares, by the keys of `counts`, and what their bounds stand for."""
+        outcomes = dict(counts)
+        slid, slow = outcomes.pop("slid"), outcomes.pop("outside_too_slow")
+        return replace(self, outcomes=outcomes, slid=slid, outside_too_slow=slow, interval=interval)
+
+    @property
+    def quantiles(self) -> dict[str, Mapping[str, float]]:
+        """The quantiles of the landers at rest, by key and level; empty where there is none."""
+        found = {
+            "time_s": self.time_s, "path_length": self.path_length, "rebounds": self.rebounds,
+            "slid_length": self.slid_length, "slid_time_s": self.slid_time_s,
+        }  # fmt: skip
+        return {key: one for key, one in found.items() if one is not None}
+
 
 @dataclass(frozen=True)
 class RestResults:
@@ -165,3 +185,9 @@ class RestResults:
     """on hard ground"""
     equivalent: GroundResults | None
     """on hard ground like the soil"""
+
+    @property
+    def grounds(self) -> dict[str, GroundResults]:
+        """The grounds on which samples were followed, by their keys."""
+        found = {"soil": self.soil, "hard": self.hard, "equivalent": self.equivalent}
+        return {name: one for name, one in found.items() if one is not None}

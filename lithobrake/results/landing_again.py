@@ -8,14 +8,7 @@ from typing import TYPE_CHECKING
 from lithobrake.files.reading import read_json
 from lithobrake.results.moving_bodies import MovingBodies
 from lithobrake.study import Study, check_tables, load_tables
-from lithobrake.study.touchdown_model import (
-    TouchdownModel,
-    engine_hash,
-    lander,
-    landing,
-    stored_bed,
-    touchdown_version,
-)
+from lithobrake.study.touchdown_model import TouchdownModel, engine_hash, lander, landing, stored_bed, touchdown_version
 
 if TYPE_CHECKING:
     from lithobrake.campaign import Record

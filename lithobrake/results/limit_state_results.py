@@ -76,3 +76,37 @@ class LimitStateResult:
     """by input; empty where no run meets it, or all came down on one bed"""
     statement: str
     """all of it in a sentence"""
+
+
+@dataclass(frozen=True)
+class RareLimitState:
+    """A rare limit state, by subset simulation with landings of its own (rare_*.json, docs/reliability.md)."""
+
+    condition: str
+    """as the study file has it"""
+    probability: float
+    """of a landing that meets it; 0 where it was not reached"""
+    lower: float | None
+    """lower bound; null where there is none"""
+    upper: float | None
+    """upper bound likewise"""
+    level: float
+    """probability that the bounds stand for"""
+    origins: float
+    """how many beds of one size the landings that meet it come from"""
+    warning: str | None
+    """that so few origins give no stable probability, in a sentence; null where they are enough"""
+    reached: bool
+    """whether a landing met it"""
+    rarest: float
+    """probability of the last level"""
+    thresholds: tuple[float, ...]
+    """of each level: distance from the limit, in standard deviations of the outputs of the first level"""
+    shares: tuple[float, ...]
+    """of each level: landings that lie within the next threshold"""
+    landings: int
+    """landings that were made"""
+    beds: int
+    """beds that they came down on"""
+    statement: str
+    """all of it in a sentence"""

@@ -3,7 +3,24 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from lithobrake.results.shares import Estimate, ShareInterval
+from lithobrake.results.shares import Estimate
+from lithobrake.vocabulary.percentages import part
+
+
+@dataclass(frozen=True)
+class VariancePart:
+    """A part of the variance of an output."""
+
+    share: float
+    """of the variance, within [0, 1]"""
+    lower: float
+    """lower bound"""
+    upper: float
+    """upper bound"""
+
+    def words(self, more: str = "") -> str:
+        """The part with its interval in per cent; more: words behind that."""
+        return part(self.share, self.lower, self.upper, more)
 
 
 @dataclass(frozen=True)
@@ -28,7 +45,7 @@ class SideRuns:
     """runs that were repeated with an impact point a little beside"""
     twin_shift: float
     """how far beside [m]"""
-    soil_total_effect: Mapping[str, ShareInterval]
+    soil_total_effect: Mapping[str, VariancePart]
     """by output: share of its variance that goes with the soil, interactions with bed, impact point and attitude
     included"""
     chaos_deviation: Mapping[str, Estimate]
@@ -99,18 +116,6 @@ class OutputRange:
 
 
 @dataclass(frozen=True)
-class VariancePart:
-    """A part of the variance of an output."""
-
-    share: float
-    """of the variance, within [0, 1]"""
-    lower: float
-    """lower bound"""
-    upper: float
-    """upper bound"""
-
-
-@dataclass(frozen=True)
 class VarianceParts:
     """Where the scatter of an output of a drawn study comes from (docs/estimates.md).
 
@@ -131,3 +136,12 @@ class VarianceParts:
     """what twins differ in; null without auxiliary runs"""
     of: str
     """which landings it describes, in words"""
+
+    @property
+    def parts(self) -> dict[str, VariancePart]:
+        """The parts that are known, by their keys; together they are the whole."""
+        found = {
+            "soil": self.soil, "arrival": self.arrival, "bed": self.bed,
+            "place_and_attitude": self.place_and_attitude, "chaos": self.chaos,
+        }  # fmt: skip
+        return {name: one for name, one in found.items() if one is not None}

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 
     from lithobrake.campaign import Record
     from lithobrake.results.explorer_tables import ExplorerTables
+    from lithobrake.results.limit_state_results import RareLimitState
     from lithobrake.results.moving_bodies import MovingBodies
     from lithobrake.results.named_emulator import NamedEmulator
     from lithobrake.results.named_surrogate import NamedSurrogate
@@ -42,11 +43,6 @@ _PLACES = ("sample", "status", "latitude_deg", "longitude_deg")
 # Columns that hold no numbers.
 _WORDS = {"key", "design", "outcome", "reason", "status", "ground"}
 _SCORE = {"ape": [NUMBER | None], "mape": NUMBER | None, "q2": NUMBER | None, "rmse": NUMBER, "std": NUMBER}
-_RARE = {
-    "condition": str, "probability": NUMBER, "lower": NUMBER | None, "upper": NUMBER | None, "origins": NUMBER,
-    "warning": str | None, "reached": bool, "rarest": NUMBER, "thresholds": [NUMBER], "shares": [NUMBER],
-    "landings": int, "beds": int, "statement": str,
-}  # fmt: skip
 
 # What a notebook says can be asked for: the file that it takes, and what comes.
 _ASKED = {
@@ -148,15 +144,17 @@ class StudyResults:
         return content
 
     @cached_property
-    def rare(self) -> dict[str, dict[str, Any]]:
+    def rare(self) -> "dict[str, RareLimitState]":
         """What `lithobrake rare` found of each limit state it was asked for, by name (docs/reliability.md)."""
-        files = sorted(self.folder.glob("rare_*.json"))
-        return {
-            path.stem.removeprefix("rare_"): read_json(
-                self._file(path.name), _RARE, "make it again with: lithobrake rare"
-            )
-            for path in files
-        }
+        from lithobrake.results.json_values import from_json
+        from lithobrake.results.limit_state_results import RareLimitState
+
+        remedy, found = "make it again with: lithobrake rare", {}
+        for path in sorted(self.folder.glob("rare_*.json")):
+            content = read_json(self._file(path.name), dict, remedy)
+            with reading(path, remedy):
+                found[path.stem.removeprefix("rare_")] = from_json(RareLimitState, content)
+        return found
 
     @cached_property
     def samples(self) -> "Table":

@@ -84,6 +84,16 @@ class DrawnResults:
     headline: tuple[str, ...]
     """the answer, then the most informative numbers, in sentences"""
 
+    @property
+    def spreads(self) -> dict[str, OutputEstimate]:
+        """The outputs with mean and quantiles."""
+        return {name: one for name, one in self.outputs.items() if isinstance(one, OutputEstimate)}
+
+    @property
+    def directions(self) -> dict[str, OutputDirection]:
+        """The outputs with neither beginning nor end."""
+        return {name: one for name, one in self.outputs.items() if isinstance(one, OutputDirection)}
+
 
 @dataclass(frozen=True)
 class PaperResults:

@@ -1,9 +1,11 @@
 """The most informative numbers of a paper study apart from its answer, picked once for its sentences and its page."""
 
 from collections import Counter
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
+from lithobrake.results.expansions import ExpansionResults, OutputErrors
+from lithobrake.results.summary import PaperResults
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
 
 SPEED = "speed_out"
@@ -36,19 +38,19 @@ class TellingNumbers:
 
     ended: Counter[str]
     failed: int
-    speed: dict[str, float] | None
+    speed: Mapping[str, float] | None
     main_input: MainInput
-    score: dict[str, Any]
+    score: OutputErrors
 
     @classmethod
-    def of(cls, results: dict[str, Any]) -> "TellingNumbers":
-        """Those of the table `results` of a summary."""
+    def of(cls, results: PaperResults) -> "TellingNumbers":
+        """Those of the results of a study."""
         ended: Counter[str] = Counter()
-        for design in results["designs"].values():
-            ended.update(design["outcomes"])
-        failed = ended.pop("failed", 0)
-        speed = results["monte_carlo"]["outputs"].get(SPEED)
-        return cls(ended, failed, speed, _main_input(results["refined"]), results["scores"]["test_all"][SPEED])
+        for design in results.designs.values():
+            ended.update(design.outcomes)
+        failed, speed = ended.pop("failed", 0), results.monte_carlo.outputs.get(SPEED)
+        quantiles = None if speed is None else speed.quantiles
+        return cls(ended, failed, quantiles, _main_input(results.refined), results.scores["test_all"][SPEED])
 
     @property
     def left_count(self) -> int:
@@ -56,10 +58,9 @@ class TellingNumbers:
         return self.ended[TouchdownOutcome.CLEAR]
 
 
-def _main_input(refined: dict[str, Any]) -> MainInput:
-    total, intervals = refined["sobol_total"][SPEED], refined["sobol_total_interval"][SPEED]
+def _main_input(refined: ExpansionResults) -> MainInput:
+    total, intervals = refined.sobol_total[SPEED], refined.sobol_total_interval[SPEED]
     name = max(total, key=lambda one: total[one])
     low, high = intervals[name]
     equals = sorted((one for one in total if one != name and intervals[one][1] >= low), key=lambda one: -total[one])
-    noise_share = refined["fits"][SPEED]["noise_share"]
-    return MainInput(name, total[name], (low, high), refined["degree"], tuple(equals), noise_share)
+    return MainInput(name, total[name], (low, high), refined.degree, tuple(equals), refined.fits[SPEED].noise_share)

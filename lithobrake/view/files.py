@@ -38,8 +38,8 @@ def contact_sheet(bodies: "MovingBodies", path: str | Path, picture_count: int =
 
     Raises ValueError for bodies that are no landing in a box.
     """
+    from lithobrake.report.figures.hulls import scene
     from lithobrake.report.figures.landing_figure import landing_figure
-    from lithobrake.report.figures.scene import scene
     from lithobrake.report.figures.style import figure_style
 
     if bodies.attributes.get("format") != "lithobrake landing":

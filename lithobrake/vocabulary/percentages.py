@@ -1,17 +1,43 @@
 """Shares in per cent, the same in every sentence and table: as many digits as the interval deserves."""
 
-from collections.abc import Mapping
-from typing import Any
+import math
+from typing import Protocol
 
+# Probability with which every interval of an estimate holds the truth; results carry it, so that no reader has to ask.
+LEVEL = 0.9
 # Of an interval narrower than this tenths of a per cent say something.
 NARROW = 0.02
 # More digits than these say nothing of a share next to 0 or 1.
 MOST_DIGITS = 2
 
 
+class BoundedShare(Protocol):
+    """A share of one with the bounds of its interval, None where it has none."""
+
+    @property
+    def share(self) -> float:
+        """The share."""
+
+    @property
+    def lower(self) -> float | None:
+        """Its lower bound."""
+
+    @property
+    def upper(self) -> float | None:
+        """Its upper bound."""
+
+
 def percent(share: float, digits: int = 0) -> str:
     """A share of one in per cent, with more digits where it is next to 0 or 1."""
     return f"{_number(share, digits)} %"
+
+
+def rare_percent(share: float) -> str:
+    """A share of one in per cent, to two digits of its distance from 0 or 1 where that is small."""
+    away = min(share, 1.0 - share)
+    if away >= 0.1 or away == 0.0:
+        return percent(share)
+    return f"{100.0 * share:.{max(0, 1 - math.floor(math.log10(100.0 * away)))}f} %"
 
 
 def span(lower: float, upper: float, digits: int | None = None) -> str:
@@ -29,23 +55,26 @@ def interval_digits(lower: float | None, upper: float | None) -> int:
     return int(lower is not None and upper is not None and upper - lower < NARROW)
 
 
-def with_interval(entry: Mapping[str, Any], alone: int = 0) -> str:
-    """A share of the summary with its interval, "71 % (68-73 %)"; alone: digits of one without an interval."""
-    lower, upper = entry.get("lower"), entry.get("upper")
-    if lower is None or upper is None:
-        return percent(entry["share"], alone)
-    digits = interval_digits(lower, upper)
-    return f"{percent(entry['share'], digits)} ({span(lower, upper, digits)})"
+def with_interval(entry: BoundedShare, alone: int = 0, level: float | None = None) -> str:
+    """A share with its interval, "71 % (68-73 %)", or "71 % (90 % interval 68-73 %)" where a level is to be named.
+
+    alone: digits of a share without an interval.
+    """
+    if entry.lower is None or entry.upper is None:
+        return percent(entry.share, alone)
+    digits = interval_digits(entry.lower, entry.upper)
+    named = "" if level is None else f"{percent(level)} interval "
+    return f"{percent(entry.share, digits)} ({named}{span(entry.lower, entry.upper, digits)})"
 
 
-def part(entry: Mapping[str, float], more: str = "") -> str:
+def part(share: float, lower: float, upper: float, more: str = "") -> str:
     """A part of a variance, which cannot be told from nothing where it is 0 or less: "not detected (0-2 %)".
 
     more: words that stand behind the interval.
     """
-    digits = interval_digits(entry["lower"], entry["upper"])
-    shown = percent(min(entry["share"], 1.0), digits) if entry["share"] > 0.0 else "not detected"
-    return f"{shown} ({span(entry['lower'], entry['upper'], digits)}{more})"
+    digits = interval_digits(lower, upper)
+    shown = percent(min(share, 1.0), digits) if share > 0.0 else "not detected"
+    return f"{shown} ({span(lower, upper, digits)}{more})"
 
 
 def _number(share: float, digits: int) -> str:

@@ -191,14 +191,11 @@ def test_the_estimate_lies_within_its_interval_where_all_with_an_outcome_end_ali
     assert found.upper - found.lower >= 1.0 - 0.1 ** (1.0 / 12.0)
 
 
-def test_the_summary_has_its_keys() -> None:
+def test_a_new_bed_may_lie_beyond_the_interval_of_the_share() -> None:
     h, bed = runs(12, 10)
-    table = share_estimate(h, bed, emulator=0.5).summary()
-    assert list(table) == [
-        *("share", "lower", "upper", "level", "from", "next_bed", "if_missing", "missing", "emulator", "why"),
-    ]
-    assert table["emulator"] == 0.5
-    assert table["next_bed"][0] < table["lower"] < table["share"] < table["upper"] < table["next_bed"][1]
+    found = share_estimate(h, bed, emulator=0.5)
+    assert found.emulator == 0.5
+    assert found.next_bed[0] < found.lower < found.share < found.upper < found.next_bed[1]
 
 
 def test_what_cannot_be_is_refused() -> None:

@@ -96,14 +96,14 @@ def test_the_product_of_an_archive_is_named_by_the_label_of_its_mesh(tmp_path: P
     given, found = (changed(site={"body": str(one), "mass": 3e12, "spin_period": 1e4}) for one in (label, path))
     for study in (given, found):
         told = site_results(Site(study))
-        assert (told["body"], told["product_id"]) == ("mesh", "urn:nasa:pds:rocks:data:rock::3.0")
-        assert told["extents_m"] == [2e3, 2e3, 2e3]
+        assert (told.body, told.product_id) == ("mesh", "urn:nasa:pds:rocks:data:rock::3.0")
+        assert told.extents_m == (2e3, 2e3, 2e3)
     assert flight_reads(given) == flight_reads(found)
     before = flight_reads(found), summary_reads(found)
     label.write_text(label.read_text().replace("3.0", "4.0"))
     assert flight_reads(found) == before[0]
     assert summary_reads(found) != before[1]
-    assert site_results(Site(changed()))["product_id"] is None
+    assert site_results(Site(changed())).product_id is None
     label.write_text(PRODUCT.format(file="other.obj"))
     with pytest.raises(ValueError, match=r"study\.toml: site\.body: .*rock\.xml: this label names other\.obj"):
         changed(site={"body": str(label), "mass": 3e12, "spin_period": 1e4})

@@ -13,13 +13,16 @@ import numpy as np
 import pytest
 
 from lithobrake.report import write_report
-from lithobrake.report.figures.scene import scene
-from lithobrake.report.pages.html import PageTable, number
-from lithobrake.report.pages.page_data import PaperPage
+from lithobrake.report.content import PageTable
+from lithobrake.report.figures.hulls import scene
+from lithobrake.report.page_data import PaperPage
 from lithobrake.report.pages.study_files import size
 from lithobrake.report.tables.paper_tables import tables
 from lithobrake.report.words import captions
+from lithobrake.report.words.numbers import number
 from lithobrake.results import MovingBodies
+from lithobrake.results.expansions import SampledOutput
+from lithobrake.results.shares import CountedShare
 
 
 def test_progress_counts_the_figures_and_the_same_files_give_the_same_page(
@@ -48,27 +51,31 @@ def test_page_has_the_nine_figures_inside_and_nothing_outside(paper_page: str, s
 
 def test_captions_carry_the_numbers_of_the_summary(paper: PaperPage) -> None:
     results = paper.results
-    assert all(sentence in captions.answer(paper) for sentence in results["answer"])
-    bed, design = results["beds"][0], results["designs"]["screening"]
+    assert all(sentence in captions.answer(paper) for sentence in results.answer)
+    bed, design = results.beds[0], results.designs["screening"]
     for name in ("surface_height_m", "mean_diameter_m", "smallest_width_m", "smallest_depth_m"):
-        assert f"{bed[name]:.3g} m" in captions.bed(paper)
+        assert f"{getattr(bed, name):.3g} m" in captions.bed(paper)
     assert "0.2 m/s and 30 deg from the normal" in captions.landing(paper)
-    assert f"takes {design['run_count']} runs on the Smolyak grid" in captions.counts(paper)
-    first = results["screening"]["sobol_first"]["speed_out"]
+    assert f"takes {design.run_count} runs on the Smolyak grid" in captions.counts(paper)
+    first = results.screening.sobol_first["speed_out"]
     assert f"({100 * max(first.values()):.0f} %, " in captions.sobol(paper)
     assert f"Q2 = {paper.scores['test_all']['speed_out'].q2:.2f}" in captions.errors(paper)
     assert "pull 1.4 × 10⁻⁵ m/s2 outward" in captions.impact_map(paper)
-    long, short = next(one["semi_axes_m"] for one in results["ellipses"]["shares"] if one["share"] == 0.95)
+    assert results.ellipses is not None
+    long, short = next(one.semi_axes_m for one in results.ellipses.shares if one.share == 0.95)
     assert f"{long:.3g} by {short:.3g} m (semi-axes)" in captions.body(paper)
 
 
 def test_ground_that_could_not_be_asked_says_why(paper: PaperPage) -> None:
-    why = paper.results["rest"]["why_no_soil"]
+    rest = paper.results.rest
+    why, hard = rest.why_no_soil, rest.hard
+    assert why is not None
+    assert hard is not None
     assert why.startswith("impact.incidence_deg")
     assert why in captions.rest(paper)
-    some = {"count": 3, "share": 0.15, "lower": None, "upper": None}
-    both = paper.results["rest"] | {"soil": paper.results["rest"]["hard"] | {"outside": some}}
-    assert "15.0 %" in captions.rest(replace(paper, results=paper.results | {"rest": both}))
+    soil = replace(hard, outcomes={**hard.outcomes, "outside": CountedShare(3, 0.15, None, None)})
+    both = replace(paper.results, rest=replace(rest, soil=soil))
+    assert "15.0 %" in captions.rest(replace(paper, results=both))
 
 
 def test_every_score_and_every_sobol_index_has_its_interval(paper: PaperPage) -> None:
@@ -79,14 +86,16 @@ def test_every_score_and_every_sobol_index_has_its_interval(paper: PaperPage) ->
 
 
 def test_flights_without_scatter_stand_beside_those_with_it(paper: PaperPage) -> None:
-    table, alone = table_of(paper, "After the first bounce"), paper.results["without_scatter"]["shares"]
+    table, alone = table_of(paper, "After the first bounce"), paper.results.without_scatter
+    assert alone is not None
     assert table.columns[-1] == "without scatter"
-    assert table.rows[0][-1] == f"{100 * alone['impact']['share']:.1f} %"
+    assert table.rows[0][-1] == f"{100 * alone.shares.outcomes['impact'].share:.1f} %"
     assert [row[0] for row in table_of(paper, "Landing ellipses").rows][-1] == "next impact, without scatter"
 
 
 def test_an_outcome_that_no_run_had_has_its_upper_limit(paper: PaperPage) -> None:
-    limit = paper.results["shares"]["time_limit"]["upper_limit"]
+    limit = paper.results.shares.outcomes["time_limit"].upper_limit
+    assert limit is not None
     assert f"at most {100 * limit:.1f} %" in [row[2] for row in table_of(paper, "After the first bounce").rows]
 
 
@@ -101,11 +110,11 @@ def test_provenance_stands_at_the_end(paper_page: str) -> None:
 
 
 def test_page_says_when_the_study_was_made_and_what_its_body_is_like(paper: PaperPage) -> None:
-    words, site = captions.facts(paper), paper.results["site"]
+    words, site = captions.facts(paper), paper.results.site
     assert re.match(r"Study of \d{4}-\d\d-\d\d, \d\d:\d\d UTC\. ", words)
-    for key in ("escape_speed_m_s", "bulk_density_kg_m3"):
-        assert number(site[key]) in words
-        assert number(site[key]) in captions.impact_map(paper)
+    for value in (site.escape_speed_m_s, site.bulk_density_kg_m3):
+        assert number(value) in words
+        assert number(value) in captions.impact_map(paper)
 
 
 def test_page_links_the_files_that_are_there_and_no_others(study_folder: Path, paper_page: str) -> None:
@@ -120,10 +129,13 @@ def test_page_links_the_files_that_are_there_and_no_others(study_folder: Path, p
 
 def test_no_number_of_a_symmetric_study_is_rounding(paper: PaperPage, paper_page: str) -> None:
     assert "<td>centroid_m</td><td>0, 0, 0</td>" in paper_page
-    spread = paper.results["monte_carlo"]["outputs"]
-    across = {"velocity_out_y": {key: -2.2e-14 * value for key, value in spread["speed_out"].items()}}
-    symmetric = {"monte_carlo": paper.results["monte_carlo"] | {"outputs": spread | across}}
-    table = table_of(replace(paper, results=paper.results | symmetric), "Outputs of the samples that leave")
+    samples = paper.results.monte_carlo
+    speed = samples.outputs["speed_out"]
+    quantiles = {level: -2.2e-14 * value for level, value in speed.quantiles.items()}
+    across = SampledOutput(-2.2e-14 * speed.mean, -2.2e-14 * speed.std, quantiles)
+    symmetric = replace(samples, outputs={**samples.outputs, "velocity_out_y": across})
+    found = replace(paper, results=replace(paper.results, monte_carlo=symmetric))
+    table = table_of(found, "Outputs of the samples that leave")
     assert next(row for row in table.rows if row[0] == "velocity across y")[2:] == ["0"] * 5
 
 
@@ -189,9 +201,9 @@ def test_a_damaged_file_is_one_sentence(
 
 
 def test_a_study_in_which_nothing_leaves_says_so(paper: PaperPage) -> None:
-    table = paper.results["monte_carlo"] | {"leaving_count": 0, "outputs": {}}
-    none = replace(paper, results=paper.results | {"monte_carlo": table}, facet=paper.facet[:0])
-    count = captions.thousands(table["sample_count"])
+    table = replace(paper.results.monte_carlo, leaving_count=0, outputs={})
+    none = replace(paper, results=replace(paper.results, monte_carlo=table), facet=paper.facet[:0])
+    count = captions.thousands(table.sample_count)
     assert f"None of the {count} samples leaves the surface" in captions.scatter(none, "grain.restitution")
     assert captions.body(none) == ""
 

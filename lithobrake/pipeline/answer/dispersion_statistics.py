@@ -1,17 +1,27 @@
 """What became of the landers: shares, times and speeds, ellipses, and where they rest."""
 
-from collections.abc import Mapping, Sequence
-from typing import Any
+from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
-from lithobrake.pipeline.answer.scope import scope
 from lithobrake.pipeline.emulate.samples import MISSING, SAMPLE_OUTCOMES, Samples
 from lithobrake.pipeline.fly.flights import QUANTILES, flight_numbers, read_table
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.site import Site
+from lithobrake.results.dispersion import (
+    EllipseShare,
+    FlightChecks,
+    GroundResults,
+    ImpactNumber,
+    ImpactNumbers,
+    LandingEllipses,
+    RestResults,
+)
+from lithobrake.results.json_values import from_json
+from lithobrake.results.shares import CountedShare, Level, SampleShares
 from lithobrake.study import Study
-from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus, SampleOutcome, TouchdownOutcome
+from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus, SampleOutcome
 
 # In the order of the summary.
 FLIGHTS = (FlightStatus.IMPACT, FlightStatus.FLYING, FlightStatus.ESCAPED, FlightStatus.PARTNER)
@@ -19,72 +29,37 @@ NORMAL_QUANTILE_90 = 1.6448536269514722
 Rows = Sequence[dict[str, str]]
 
 
-def dispersion_results(job: Job, samples: Samples, flights: Rows, run_outcomes: Mapping[str, int]) -> dict[str, Any]:
-    """The parts of the summary that come from flights and journeys; run_outcomes: how often each came in the runs."""
-    study = job.study
-    holds = Site(study).holds
-    results: dict[str, Any] = {}
-    results["shares"] = shares(samples, flights, run_outcomes, holds=holds) | {"why": scope(study).why}
-    results["returns"] = return_fraction(study, results["shares"], sum(run_outcomes.values()))
-    results["flights"] = flight_numbers(flights) | job.folder.read_json("flights.json")
-    results["ellipses"] = ellipses(study, flights, FlightStatus.IMPACT)
-    results["without_scatter"] = None
-    if samples.without_scatter is not None:
-        alone = read_table(job.folder, "flights_without_scatter.csv")
-        results["without_scatter"] = {
-            "shares": shares(samples.expansion_alone(), alone, run_outcomes, holds=holds),
-            "flights": flight_numbers(alone),
-            "ellipses": ellipses(study, alone, FlightStatus.IMPACT),
-        }
-    results["rest"] = rest_results(job)
-    return results
-
-
-def shares(samples: Samples, flights: Rows, run_outcomes: Mapping[str, int], *, holds: bool) -> dict[str, Any]:
-    """What became of the samples, as shares of all that were looked at.
+def shares(samples: Samples, flights: Rows, *, holds: bool) -> SampleShares:
+    """What became of the samples, as shares of all that were looked at, without intervals.
 
     When not all leaving samples flew, only the samples up to the last that flew are looked at: they are a random part
     of all. `returns` = down again in time, or captured where the site `holds` what lies there; `missing` = left
     sideways, in contact at the time limit, or outside, after which nobody knows where the lander is.
-    upper_limit: of an outcome that none of the runs had, which its share of 0 does not say (95 %).
     """
-    from lithobrake.analysis import upper_limit
-
     total = len(samples.outcome)
     if len(flights) < int(samples.leaves.sum()):
         total = int(flights[-1]["sample"]) + 1
     met = np.bincount(samples.outcome[:total], minlength=len(SAMPLE_OUTCOMES)).tolist()
-    counts = dict(zip(SAMPLE_OUTCOMES, met, strict=True))
+    counts = {str(name): count for name, count in zip(SAMPLE_OUTCOMES, met, strict=True)}
     del counts[SampleOutcome.CLEAR]
     statuses = [row["status"] for row in flights]
-    counts |= {status: statuses.count(status) for status in FLIGHTS}
+    counts |= {str(status): statuses.count(status) for status in FLIGHTS}
     counts["returns"] = counts[FlightStatus.IMPACT] + (counts[SampleOutcome.CAPTURED] if holds else 0)
     counts["missing"] = sum(counts[name] for name in MISSING)
-    table: dict[str, Any] = {"sample_count": total, "flight_count": len(flights)}
-    table |= {name: proportion(count, total) for name, count in counts.items()}
-    for name in set(TouchdownOutcome) - {TouchdownOutcome.CLEAR, *run_outcomes}:
-        table[name]["upper_limit"] = upper_limit(sum(run_outcomes.values()))
-    return table
+    return SampleShares(total, len(flights), {name: proportion(count, total) for name, count in counts.items()})
 
 
-def return_fraction(study: Study, table: Mapping[str, Any], run_count: int) -> dict[str, Any]:
-    """The return fraction, without an interval, which runs on one bed or at one place do not give."""
-    total, returning = table["sample_count"], table["returns"]
-    return {
-        "share": returning["share"],
-        "lower": None,
-        "upper": None,
-        "level": 0.9,
-        "from": f"{total} samples of an expansion of {run_count} landings {scope(study).landings}",
-        "next_bed": None,
-        "if_missing": [returning["share"], returning["share"] + table["missing"]["share"]],
-        "missing": table["missing"]["share"],
-        "emulator": returning["share"],
-        "why": scope(study).why,
-    }
+def impact_numbers(rows: Rows) -> ImpactNumbers:
+    """Quantiles of time, speed and incidence of the flights that end on the body."""
+    return ImpactNumbers(**{name: ImpactNumber(quantiles) for name, quantiles in flight_numbers(rows).items()})
 
 
-def ellipses(study: Study, rows: Rows, status: str) -> dict[str, Any] | None:
+def flight_checks(job: Job) -> FlightChecks:
+    """How exact the flights of a study are."""
+    return from_json(FlightChecks, job.folder.read_json("flights.json"), "flights")
+
+
+def ellipses(study: Study, rows: Rows, status: str) -> LandingEllipses | None:
     """Ellipses that hold half and 95 % of the places of the rows with this status; None where there are none.
 
     The axes in metres are the angles times the radius at the middle.
@@ -98,29 +73,25 @@ def ellipses(study: Study, rows: Rows, status: str) -> dict[str, Any] | None:
         return None
     centre = Site(study).body.shape.surface_point(found.latitude_deg, found.longitude_deg)
     radius = float(np.linalg.norm(centre))
-    return {
-        "latitude_deg": found.latitude_deg,
-        "longitude_deg": found.longitude_deg,
-        "heading_deg": found.heading_deg,
-        "shares": [
-            {"share": share, "semi_axes_deg": list(axes), "semi_axes_m": (np.radians(axes) * radius).tolist()}
-            for share, axes in found.semi_axes_deg.items()
-        ],
-    }
+    held = []
+    for share, (long, short) in found.semi_axes_deg.items():
+        long_m, short_m = (np.radians((long, short)) * radius).tolist()
+        held.append(EllipseShare(share, (long, short), (long_m, short_m)))
+    return LandingEllipses(found.latitude_deg, found.longitude_deg, found.heading_deg, tuple(held))
 
 
-def rest_results(job: Job) -> dict[str, Any]:
+def rest_results(job: Job) -> RestResults:
     """What became of the samples that were followed, on each ground."""
     rows, known = read_table(job.folder, "rest.csv"), job.folder.read_json("rest.json")
-    table: dict[str, Any] = {"why_no_soil": known["why_no_soil"], "trained_ranges": known["trained_ranges"]}
+    ranges = {name: (low, high) for name, (low, high) in known["trained_ranges"].items()}
+    found: dict[str, GroundResults | None] = {}
     for ground in ("soil", "hard", "equivalent"):
         part = [row for row in rows if row["ground"] == ground]
-        table[ground] = _ends(job.study, part, known["trained_ranges"]) if part else None
-        if part:
-            table[ground]["of"] = followed_words(job.study, ground, len(part))
-    if table["hard"] is not None:
-        _put_sampling_intervals(table["hard"])
-    return table
+        found[ground] = _ends(job.study, ground, part, ranges) if part else None
+    hard = found["hard"]
+    if hard is not None:
+        found["hard"] = _with_sampling_intervals(hard)
+    return RestResults(known["why_no_soil"], ranges, **found)
 
 
 def followed_words(study: Study, ground: str, count: int) -> str:
@@ -135,36 +106,40 @@ def followed_words(study: Study, ground: str, count: int) -> str:
     return f"{count} journeys of samples of the {model}{on}"
 
 
-def _put_sampling_intervals(table: dict[str, Any]) -> None:
-    """Fill in the bounds of shares that depend on nothing but the samples drawn. Source: [Wilson-1927]."""
+def _with_sampling_intervals(found: GroundResults) -> GroundResults:
+    """The bounds of shares that depend on nothing but the samples drawn. Source: [Wilson-1927]."""
     from lithobrake.analysis import LEVEL, wilson_interval
 
-    for entry in table.values():
-        if isinstance(entry, dict) and "count" in entry:
-            lower, upper = wilson_interval(entry["count"], table["sample_count"], NORMAL_QUANTILE_90)
-            entry |= {"lower": lower, "upper": upper}
-    table |= {"level": LEVEL, "why": None}
+    def bounded(one: CountedShare) -> CountedShare:
+        lower, upper = wilson_interval(one.count, found.sample_count, NORMAL_QUANTILE_90)
+        return replace(one, lower=lower, upper=upper)
+
+    return found.with_counts({name: bounded(one) for name, one in found.counts.items()}, Level(LEVEL, None))
 
 
-def _ends(study: Study, rows: Rows, ranges: dict[str, list[float]]) -> dict[str, Any]:
+def _ends(study: Study, ground: str, rows: Rows, ranges: dict[str, tuple[float, float]]) -> GroundResults:
     """Shares of each end, and the numbers of the landers that settled."""
-    statuses = [row["status"] for row in rows]
-    table: dict[str, Any] = {"sample_count": len(rows)}
-    table |= {name: proportion(statuses.count(name), len(rows)) for name in JourneyStatus}
-    table["slid"] = proportion(sum(float(row["slid_length"]) > 0.0 for row in rows), len(rows))
+    statuses, total = [row["status"] for row in rows], len(rows)
     settled = [row for row in rows if row["status"] == JourneyStatus.SETTLED]
+    numbers = {}
     for name in ("time_s", "path_length", "rebounds", "slid_length", "slid_time_s") if settled else ():
         values = np.array([float(row[name]) for row in settled])
-        table[name] = {f"quantile_{level:g}": float(np.quantile(values, level)) for level in QUANTILES}
-    table["ellipses"] = ellipses(study, rows, JourneyStatus.SETTLED)
-    lowest = ranges.get("impact.speed", [0.0])[0]
+        numbers[name] = {f"quantile_{level:g}": float(np.quantile(values, level)) for level in QUANTILES}
+    lowest = ranges["impact.speed"][0] if "impact.speed" in ranges else 0.0
     # Most journeys that leave the range of the runs have become too slow for it; some ended at the first impact.
     outside = [float(row["impact_speed"] or "inf") for row in rows if row["status"] == JourneyStatus.OUTSIDE]
-    too_slow = sum(speed < lowest for speed in outside)
-    table["outside_too_slow"] = proportion(too_slow, len(rows))
-    return table
+    return GroundResults(
+        sample_count=total,
+        outcomes={str(name): proportion(statuses.count(name), total) for name in JourneyStatus},
+        slid=proportion(sum(float(row["slid_length"]) > 0.0 for row in rows), total),
+        **numbers,
+        ellipses=ellipses(study, rows, JourneyStatus.SETTLED),
+        outside_too_slow=proportion(sum(speed < lowest for speed in outside), total),
+        of=followed_words(study, ground, total),
+        interval=None,
+    )
 
 
-def proportion(count: int, total: int) -> dict[str, Any]:
+def proportion(count: int, total: int) -> CountedShare:
     """A count and its share of a total; no interval, which would have to hold for other beds and places."""
-    return {"count": count, "share": count / total, "lower": None, "upper": None}
+    return CountedShare(count, count / total, None, None)

@@ -1,7 +1,7 @@
 """What the study file asks for under [limit_states]: the probability of each, and which inputs make the failures."""
 
 from collections.abc import Mapping
-from typing import Any
+from dataclasses import replace
 
 import numpy as np
 
@@ -12,20 +12,24 @@ from lithobrake.pipeline.answer.failing_runs import CAPTURED, failing_runs
 from lithobrake.pipeline.answer.missing_landings import left_in_flight
 from lithobrake.pipeline.answer.scope import why_no_interval
 from lithobrake.pipeline.answer.shares_over_refits import sample_fates
+from lithobrake.pipeline.answer.statements import limit_statement
+from lithobrake.pipeline.answer.typed_estimates import limit_state
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.emulate.fitted_emulator import REFIT_COUNT
 from lithobrake.pipeline.emulate.samples import Samples
 from lithobrake.pipeline.fly.run_flights import RunFlights
 from lithobrake.pipeline.folder.study_folder import StudyFolder
 from lithobrake.pipeline.runs.run_table import DesignRuns
+from lithobrake.results.limit_state_results import LimitStateResult
+from lithobrake.results.shares import CountedShare, ShareInterval
 from lithobrake.study import Study
 from lithobrake.vocabulary.limit_state import LOFTED, RETURNS, SETTLED, LimitState
 from lithobrake.vocabulary.outcomes import FlightStatus, SampleOutcome
 
 
 def limit_state_results(
-    study: Study, folder: StudyFolder, flights: Rows, shares: Mapping[str, Any], *, holds: bool
-) -> dict[str, Any]:
+    study: Study, folder: StudyFolder, flights: Rows, shares: Mapping[str, CountedShare], *, holds: bool
+) -> dict[str, LimitStateResult]:
     """The results of every limit state of a study, by its name; holds: whether the site holds what lies there.
 
     shares: the table of how landings end (`run_shares`), from which a limit state of one of its words has its numbers.
@@ -39,23 +43,20 @@ def limit_state_results(
     fates = RunFlights.load(folder, "sequence").fates
     of_samples = _values_of_samples(samples, sample_fates(samples, flights, holds=holds), holds=holds)
     states = {name: LimitState.of(text) for name, text in conditions.items()}
-    found = {name: _one(study, name, state, runs, fates, of_samples) for name, state in states.items()}
+    found = {}
     for name, state in states.items():
-        of_word = _of_one_word(state, shares)
-        found[name] |= of_word
-        found[name]["runs"] |= {"share" if key == "probability" else key: one for key, one in of_word.items()}
+        one, of_word = _one(study, name, state, runs, fates, of_samples), _of_one_word(state, shares)
+        if of_word is not None:
+            one = replace(one, probability=of_word.share, lower=of_word.lower, upper=of_word.upper)
+            one = replace(one, runs=replace(one.runs, **vars(of_word)))
+        found[name] = replace(one, statement=limit_statement(name, one))
     return found
 
 
 def _one(
-    study: Study,
-    name: str,
-    state: LimitState,
-    runs: DesignRuns,
-    fates: np.ndarray,
-    of_samples: dict[str, np.ndarray],
-) -> dict[str, Any]:
-    """The results of one limit state."""
+    study: Study, name: str, state: LimitState, runs: DesignRuns, fates: np.ndarray, of_samples: dict[str, np.ndarray]
+) -> LimitStateResult:
+    """The results of one limit state, without its statement."""
     for output in state.outputs:
         if not np.isfinite(runs.output(output)).any():
             raise ValueError(
@@ -79,28 +80,24 @@ def _one(
     )
     several = len(np.unique(runs.inputs["bed"][np.isfinite(failing)])) > 1
     of_inputs = failure_inputs(inputs, x, failing, runs.inputs["bed"], study.seed) if several else {}
-    return {
-        "condition": state.text,
-        **found.summary(),
-        "failing_runs": float(np.nansum(failing)),
-        "inputs": {key: one.summary() for key, one in of_inputs.items()},
-    }
+    return limit_state(state.text, found, float(np.nansum(failing)), of_inputs)
 
 
-def _of_one_word(state: LimitState, shares: Mapping[str, Any]) -> dict[str, Any]:
-    """Probability and bounds of a limit state that is a fate, or its opposite; none of another."""
+def _of_one_word(state: LimitState, shares: Mapping[str, CountedShare]) -> ShareInterval | None:
+    """Probability and bounds of a limit state that is a fate, or its opposite; None of another."""
     if state.outputs or len(state.fates) != 1:
-        return {}
+        return None
     (word,) = state.fates
-    share, lower, upper = (shares[word][key] for key in ("share", "lower", "upper"))
+    one = shares[word]
     so, otherwise = (
         limit_state_met(state, {CAPTURED: np.full(1, end), word: np.full(1, end)})[0] for end in (1.0, 0.0)
     )
     if so == otherwise:
-        return {}
+        return None
     if otherwise:
-        share, lower, upper = 1.0 - share, *(None if end is None else 1.0 - end for end in (upper, lower))
-    return {"probability": share, "lower": lower, "upper": upper}
+        lower, upper = (None if end is None else 1.0 - end for end in (one.upper, one.lower))
+        return ShareInterval(1.0 - one.share, lower, upper)
+    return ShareInterval(one.share, one.lower, one.upper)
 
 
 def _values_of_samples(samples: Samples, met: dict[str, np.ndarray], *, holds: bool) -> dict[str, np.ndarray]:

@@ -1,13 +1,14 @@
 """Landings without an outcome: how many, why, and which landings every other number then describes."""
 
 from collections.abc import Mapping, Sequence
-from typing import Any
 
 import numpy as np
 
 from lithobrake.pipeline.runs.run_table import DesignRuns
+from lithobrake.results.run_results import MissingLandings
 from lithobrake.study import Study
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
+from lithobrake.vocabulary.percentages import percent
 from lithobrake.vocabulary.quantities import OVER_RIM
 
 FAILED = "failed"
@@ -27,11 +28,11 @@ REMEDIES = {
 OF_A_PROGRAM = "outcomes clear or captured from the program that makes the touchdowns"
 
 
-def missing_landings(outcomes: Mapping[str, int]) -> dict[str, Any]:
+def missing_landings(outcomes: Mapping[str, int]) -> MissingLandings:
     """How many of the landings have no outcome, by how they ended; outcomes: landings by outcome."""
     lost = {str(name): outcomes[name] for name in LOST if outcomes.get(name)}
     count, total = sum(lost.values()), sum(outcomes.values())
-    return {"count": count, "share": count / total if total else 0.0, "outcomes": lost}
+    return MissingLandings(count, count / total if total else 0.0, lost)
 
 
 def missing_words(lost: Mapping[str, int]) -> str:
@@ -42,13 +43,13 @@ def missing_words(lost: Mapping[str, int]) -> str:
 def missing_warning(study: Study, outcomes: Mapping[str, int]) -> str | None:
     """What missing landings do to the numbers of a study, and how to avoid them; None for few or none."""
     found, total = missing_landings(outcomes), sum(outcomes.values())
-    if found["share"] <= WARNED:
+    if found.share <= WARNED:
         return None
-    remedies = [REMEDIES[name] for name in found["outcomes"]] if study.has_soil else [OF_A_PROGRAM]
+    remedies = [REMEDIES[name] for name in found.outcomes] if study.has_soil else [OF_A_PROGRAM]
     return (
-        f"{found['count']} of {total} landings ({100 * found['share']:.0f} %) have no outcome "
-        f"({missing_words(found['outcomes'])}): medians, quantiles, variance shares and the emulator describe only the "
-        f"other {total - found['count']}; to avoid this, give {', '.join(remedies)}"
+        f"{found.count} of {total} landings ({percent(found.share)}) have no outcome "
+        f"({missing_words(found.outcomes)}): medians, quantiles, variance shares and the emulator describe only the "
+        f"other {total - found.count}; to avoid this, give {', '.join(remedies)}"
     )
 
 

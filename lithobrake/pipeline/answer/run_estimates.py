@@ -1,12 +1,10 @@
 """What the runs of a sequence say of themselves: shares, parts of the variance, means and quantiles, with intervals."""
 
 from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 
 from lithobrake.analysis import (
-    IntervalEstimate,
     chaos_variance,
     direction_estimate,
     mean_estimate,
@@ -17,11 +15,15 @@ from lithobrake.analysis import (
 from lithobrake.pipeline.answer.missing_landings import described, missing_landings, missing_warning
 from lithobrake.pipeline.answer.run_shares import flight_estimates, return_fraction, run_shares
 from lithobrake.pipeline.answer.scope import why_no_interval
+from lithobrake.pipeline.answer.typed_estimates import direction, finite_estimate, variance_part, variance_parts
 from lithobrake.pipeline.fly.flights import QUANTILES
 from lithobrake.pipeline.fly.run_flights import RunFlights, RunImpacts
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.runs.run_table import DesignRuns
-from lithobrake.study import Study
+from lithobrake.results.json_values import to_json
+from lithobrake.results.run_results import OutputDirection, OutputEstimate, RunResults, SideRuns, VarianceParts
+from lithobrake.results.shares import Estimate
+from lithobrake.results.summary import Estimates
 from lithobrake.study.touchdown_model import SURFACE
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
 from lithobrake.vocabulary.quantities import OVER_RIM, TOUCHDOWN
@@ -46,20 +48,18 @@ def estimate(job: Job) -> None:
     bed, why = runs.inputs["bed"].astype(int), why_no_interval(study)
     values = {name: runs.output(name) for name in SPLIT if name != RETURNS} | {RETURNS: returns}
     found = return_fraction(study, runs, flights)
-    job.folder.write_json(
-        FILE,
-        {
-            "returns": found,
-            "shares": run_shares(study, runs, flights, found),
-            "flights": flight_estimates(RunImpacts.load(job.folder), runs, why),
-            "variance_shares": {name: _split(job, runs, name, y) for name, y in values.items()},
-            "outputs": {
-                name: _spread(name, y, bed, why) | {"of": described(np.isfinite(y), runs.outcomes)}
-                for name, y in _outputs(runs).items()
-            },
-            "runs": _counts(job, runs, values),
+    estimates = Estimates(
+        returns=found,
+        shares=run_shares(study, runs, flights, found),
+        flights=flight_estimates(RunImpacts.load(job.folder), runs, why),
+        variance_shares={name: _split(job, runs, name, y) for name, y in values.items()},
+        outputs={
+            name: _spread(name, y, bed, why, described(np.isfinite(y), runs.outcomes))
+            for name, y in _outputs(runs).items()
         },
+        runs=_counts(job, runs, values),
     )
+    job.folder.write_json(FILE, to_json(estimates))
 
 
 def _outputs(runs: DesignRuns) -> dict[str, np.ndarray]:
@@ -68,40 +68,25 @@ def _outputs(runs: DesignRuns) -> dict[str, np.ndarray]:
     return {name: y for name, y in known.items() if np.isfinite(y).sum() >= 2}
 
 
-def _spread(name: str, y: np.ndarray, bed: np.ndarray, why: str | None) -> dict[str, Any]:
+def _spread(name: str, y: np.ndarray, bed: np.ndarray, why: str | None, of: str) -> OutputEstimate | OutputDirection:
     """Mean and quantiles of an output over the runs that have it, with intervals where beds and places give them.
 
-    Of the azimuth, which has neither beginning nor end, mean direction and resultant length.
+    Of the azimuth, which has neither beginning nor end, mean direction and resultant length. of: landings it describes.
     """
     if name == AZIMUTH_OUT:
-        return direction_estimate(y, bed, why=why).summary()
+        return direction(direction_estimate(y, bed, why=why), of)
     known = y[np.isfinite(y)]
     several = len(np.unique(bed[np.isfinite(y)])) > 1
     if why is None and several:
-        mean, quantiles = mean_estimate(y, bed), quantile_estimates(y, bed, QUANTILES)
-        found = [_with_ends(one) for one in (mean, *quantiles)]
+        mean, *quantiles = map(finite_estimate, (mean_estimate(y, bed), *quantile_estimates(y, bed, QUANTILES)))
     else:
         points = [known.mean(), *np.quantile(known, QUANTILES, method="hazen")]
-        found = [{"value": float(point), "lower": None, "upper": None} for point in points]
+        mean, *quantiles = (Estimate(float(point), None, None) for point in points)
     levels = (f"{level:g}" for level in QUANTILES)
-    return {
-        "mean": found[0],
-        "quantiles": dict(zip(levels, found[1:], strict=True)),
-        "standard_deviation": float(known.std(ddof=1)),
-    }
+    return OutputEstimate(mean, dict(zip(levels, quantiles, strict=True)), float(known.std(ddof=1)), of)
 
 
-def _with_ends(one: IntervalEstimate) -> dict[str, float | None]:
-    # Few beds give no interval of a tail.
-    lower, upper = (bound if np.isfinite(bound) else None for bound in (one.lower, one.upper))
-    return {"value": one.value, "lower": lower, "upper": upper}
-
-
-def _part(one: IntervalEstimate) -> dict[str, float]:
-    return {"share": one.value, "lower": one.lower, "upper": one.upper}
-
-
-def _split(job: Job, runs: DesignRuns, name: str, y: np.ndarray) -> dict[str, Any] | None:
+def _split(job: Job, runs: DesignRuns, name: str, y: np.ndarray) -> VarianceParts | None:
     """Parts of the variance of an output; None where the runs cannot tell."""
     # A place that is drawn by a law of its own is a place like any other.
     inputs = job.design.soil_inputs
@@ -111,7 +96,7 @@ def _split(job: Job, runs: DesignRuns, name: str, y: np.ndarray) -> dict[str, An
     twins = _differences(job, "twins", name, y)
     known = twins if np.isfinite(twins).any() else None
     found = variance_shares(inputs, runs.columns(list(inputs)), y, runs.inputs["bed"], soil=soil, twins=known)
-    return None if found is None else found.summary() | {"of": described(np.isfinite(y), runs.outcomes)}
+    return None if found is None else variance_parts(found, described(np.isfinite(y), runs.outcomes))
 
 
 def _differences(job: Job, design: str, name: str, y: np.ndarray) -> np.ndarray:
@@ -124,34 +109,31 @@ def _differences(job: Job, design: str, name: str, y: np.ndarray) -> np.ndarray:
     return difference
 
 
-def _counts(job: Job, runs: DesignRuns, values: Mapping[str, np.ndarray]) -> dict[str, Any]:
+def _counts(job: Job, runs: DesignRuns, values: Mapping[str, np.ndarray]) -> RunResults:
     """How many runs ended how, and what the side runs say that the parts of the variance do not hold."""
     left, outcomes = np.array(runs.outcomes) == TouchdownOutcome.CLEAR, runs.outcome_counts()
-    return {
-        "count": runs.run_count,
-        "beds": len(np.unique(runs.inputs["bed"])),
-        "outcomes": outcomes,
-        "missing": missing_landings(outcomes),
-        "warning": missing_warning(job.study, outcomes),
+    return RunResults(
+        count=runs.run_count,
+        beds=len(np.unique(runs.inputs["bed"])),
+        outcomes=outcomes,
+        missing=missing_landings(outcomes),
+        warning=missing_warning(job.study, outcomes),
         # A lander that clearly flies beyond the rim has left; one that does not is left_sideways.
-        "over_rim": int((runs.output(OVER_RIM) == 1.0)[left].sum()),
-        "side_runs": _side_runs(job, values) if job.study.design.side_runs else None,
-    }
+        over_rim=int((runs.output(OVER_RIM) == 1.0)[left].sum()),
+        side_runs=_side_runs(job, values) if job.study.design.side_runs else None,
+    )
 
 
-def _side_runs(job: Job, values: Mapping[str, np.ndarray]) -> dict[str, Any]:
+def _side_runs(job: Job, values: Mapping[str, np.ndarray]) -> SideRuns:
     """Numbers of pairs, the total effect of the soil, and the standard deviation that chaos gives an output."""
-    study: Study = job.study
-    found: dict[str, Any] = {
-        design: DesignRuns.load(job.folder, design).run_count for design in ("soil_pairs", "twins")
-    }
+    soil_pairs, twin_count = (DesignRuns.load(job.folder, design).run_count for design in ("soil_pairs", "twins"))
     effects, chaos = {}, {}
     for name, y in values.items():
         pairs, twins = (_differences(job, design, name, y) for design in ("soil_pairs", "twins"))
         known = np.isfinite(y)
         if np.isfinite(pairs).sum() >= 2 and known.sum() >= 2 and np.ptp(y[known]) > 0.0:
-            effects[name] = _part(soil_total_effect(pairs, y))
+            effects[name] = variance_part(soil_total_effect(pairs, y))
         if np.isfinite(twins).any():
             one = chaos_variance(twins)
-            chaos[name] = {"value": one.value**0.5, "lower": one.lower**0.5, "upper": one.upper**0.5}
-    return {**found, "twin_shift": study.design.twin_shift, "soil_total_effect": effects, "chaos_deviation": chaos}
+            chaos[name] = Estimate(one.value**0.5, one.lower**0.5, one.upper**0.5)
+    return SideRuns(soil_pairs, twin_count, job.study.design.twin_shift, effects, chaos)

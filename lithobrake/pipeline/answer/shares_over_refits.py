@@ -1,8 +1,7 @@
 """Intervals of the shares that the emulator gives, from the scatter of its samples over refits."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -10,6 +9,7 @@ from lithobrake.analysis import LEVEL, refit_interval, upper_limit
 from lithobrake.pipeline.answer.dispersion_statistics import Rows
 from lithobrake.pipeline.emulate.fitted_emulator import REFIT_COUNT
 from lithobrake.pipeline.emulate.samples import MISSING, SAMPLE_OUTCOMES, Samples
+from lithobrake.results.shares import CountedShare
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus, SampleOutcome, TouchdownOutcome
 
 
@@ -21,24 +21,27 @@ class Refits:
     run_count: int
     why: str | None
 
-    def put_intervals(self, table: dict[str, Any], sample: np.ndarray, met: Mapping[str, np.ndarray]) -> None:
-        """Fill in lower and upper of the shares of a table, of samples [count] that have met each event [count]."""
-        table |= {"level": LEVEL, "why": self.why}
-        refit = sample % REFIT_COUNT
+    def with_intervals(
+        self, counts: Mapping[str, CountedShare], sample: np.ndarray, met: Mapping[str, np.ndarray]
+    ) -> dict[str, CountedShare]:
+        """The shares of events, those of samples [count] that have met each event [count] with their bounds."""
+        refit, found = sample % REFIT_COUNT, dict(counts)
         totals = np.bincount(refit, minlength=REFIT_COUNT)
         if self.why is not None or totals.min() < 2:
-            return
+            return found
         for name, event in met.items():
-            counts = np.bincount(refit[event], minlength=REFIT_COUNT)
-            found = refit_interval(counts, totals, self.bed_count)
-            table[name] |= {"lower": found.lower, "upper": found.upper}
+            one = refit_interval(np.bincount(refit[event], minlength=REFIT_COUNT), totals, self.bed_count)
+            found[name] = replace(found[name], lower=one.lower, upper=one.upper)
+        return found
 
-    def widen_what_no_run_met(self, table: dict[str, Any], run_outcomes: Mapping[str, int]) -> None:
-        """Let the bounds of an outcome that no run had reach from 0 to what so many beds can say of it."""
-        for name in set(TouchdownOutcome) - {TouchdownOutcome.CLEAR, *run_outcomes}:
-            entry = table[name]
-            if entry["upper"] is not None:
-                entry |= {"lower": 0.0, "upper": max(entry["upper"], upper_limit(self.bed_count, LEVEL))}
+    def widened(self, counts: dict[str, CountedShare], run_outcomes: Mapping[str, int]) -> dict[str, CountedShare]:
+        """The same with bounds of an outcome that no run had from 0 to what so many beds can say of it."""
+        limit = upper_limit(self.bed_count, LEVEL)
+        for outcome in set(TouchdownOutcome) - {TouchdownOutcome.CLEAR, *run_outcomes}:
+            one = counts[outcome.value]
+            if one.upper is not None:
+                counts[outcome.value] = replace(one, lower=0.0, upper=max(one.upper, limit))
+        return counts
 
 
 def sample_fates(samples: Samples, flights: Rows, *, holds: bool) -> dict[str, np.ndarray]:

@@ -12,10 +12,13 @@ import numpy as np
 from lithobrake.campaign import read_records
 from lithobrake.pipeline.answer.missing_landings import described
 from lithobrake.pipeline.answer.site_summary import body_product
-from lithobrake.pipeline.emulate.samples import Samples
-from lithobrake.pipeline.fly.flights import QUANTILES
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.runs.run_table import DesignRuns
+from lithobrake.results.json_values import to_json
+from lithobrake.results.run_results import OutputRange
+from lithobrake.results.site_results import BedNumbers
+from lithobrake.results.study_results import SUMMARY_FORMAT
+from lithobrake.results.summary import DrawnResults, PaperResults, Provenance, RunTimes
 from lithobrake.study import Study
 from lithobrake.vocabulary.quantities import TOUCHDOWN
 
@@ -42,7 +45,8 @@ def _plain(value: Any) -> Any:
     return [_plain(entry) for entry in value] if isinstance(value, list | tuple) else value
 
 
-def bed_results(job: Job, name: str) -> dict[str, Any]:
+def bed_results(job: Job, name: str) -> BedNumbers:
+    """A bed of the study, and how large the first impact asks it to be."""
     from lithobrake.study.touchdown_model import grain, lander, stored_bed
     from lithobrake.touchdown import smallest_bed
 
@@ -50,60 +54,57 @@ def bed_results(job: Job, name: str) -> dict[str, Any]:
     width, depth = smallest_bed(
         lander(job.study, values), grain(values), float(bed.grain_diameter), values["impact.speed"]
     )  # fmt: skip
-    return {
-        "solid_fraction": float(bed.solid_fraction),
-        "coordination_number": float(bed.coordination_number),
-        "surface_height_m": float(bed.surface_height),
-        "mean_diameter_m": float(bed.grain_diameter),
-        "smallest_width_m": width,
-        "smallest_depth_m": depth,
-        "large_enough": bool(min(bed.width) >= width and bed.surface_height >= depth),
-    }
+    return BedNumbers(
+        solid_fraction=float(bed.solid_fraction),
+        coordination_number=float(bed.coordination_number),
+        surface_height_m=float(bed.surface_height),
+        mean_diameter_m=float(bed.grain_diameter),
+        smallest_width_m=width,
+        smallest_depth_m=depth,
+        large_enough=bool(min(bed.width) >= width and bed.surface_height >= depth),
+    )
 
 
-def outputs_of_runs(runs: DesignRuns) -> dict[str, Any]:
+def outputs_of_runs(runs: DesignRuns) -> dict[str, OutputRange]:
     """What else the touchdowns gave, over distinct runs: median, smallest and largest."""
-    table: dict[str, Any] = {}
+    table = {}
     for name in ("contact_duration", "penetration", "peak_acceleration", "energy_lost"):
+        known = np.isfinite(runs.output(name))
         values = runs.output(name)[~np.isnan(runs.output(name))]
         if len(values):
-            table[name] = {
-                "median": float(np.median(values)), "smallest": float(values.min()), "largest": float(values.max()),
-                "unit": TOUCHDOWN[name].units, "of": described(np.isfinite(runs.output(name)), runs.outcomes),
-            }  # fmt: skip
+            table[name] = OutputRange(
+                float(np.median(values)), float(values.min()), float(values.max()), TOUCHDOWN[name].units,
+                described(known, runs.outcomes),
+            )  # fmt: skip
     return table
 
 
-def monte_carlo_results(samples: Samples) -> dict[str, Any]:
-    """Spread of each output over the samples that leave the surface."""
-    leaving = samples.leaves
-    table: dict[str, Any] = {"sample_count": len(leaving), "leaving_count": int(leaving.sum()), "outputs": {}}
-    for index, name in enumerate(samples.output_names if leaving.any() else ()):
-        values = samples.outputs[leaving, index]
-        quantiles = {f"quantile_{level:g}": float(np.quantile(values, level)) for level in QUANTILES}
-        table["outputs"][name] = {"mean": float(values.mean()), "std": float(values.std()), **quantiles}
-    return table
+def write_summary_file(job: Job, results: DrawnResults | PaperResults, asked: int, runs: DesignRuns) -> None:
+    """Write summary.json. Times, host, folders and versions stand in provenance only; asked, runs: as provenance."""
+    tables = {
+        "study": study_tables(job.study, job.tables),
+        "results": results,
+        "provenance": provenance(job, asked, runs),
+    }
+    job.folder.write_json("summary.json", {"format_version": SUMMARY_FORMAT, **to_json(tables)})
 
 
-def provenance(job: Job, asked: int, runs: DesignRuns) -> dict[str, Any]:
+def provenance(job: Job, asked: int, runs: DesignRuns) -> Provenance:
     """Where it all comes from; asked: runs of all designs, of which `runs` are the distinct ones."""
     ledger, keys = job.folder / "runs.sqlite", set(runs.keys)
     records = [one for one in (read_records(ledger) if ledger.is_file() else []) if one.key in keys]
     packages = ("lithobrake", "numpy", "scipy", "numba", "scikit-learn", "h5py")
-    return {
-        "date": datetime.now(UTC).isoformat(timespec="seconds"),
-        "folder": str(job.folder.path),
-        "host": platform.node(),
-        "system": platform.platform(),
-        "cores": os.cpu_count(),
-        "python": sys.version.split()[0],
-        "packages": {name: version(name) for name in packages},
-        "wall_s": job.folder.wall_times(),
-        "runs": {
-            "asked": asked,
-            "distinct": runs.run_count,
-            "wall_s": sum(one.wall_s or 0.0 for one in records),
-            "cpu_s": sum(one.cpu_s or 0.0 for one in records),
-            "longest_wall_s": max((one.wall_s or 0.0 for one in records), default=0.0),
-        },
-    }
+    wall = [one.wall_s or 0.0 for one in records]
+    return Provenance(
+        date=datetime.now(UTC).isoformat(timespec="seconds"),
+        folder=str(job.folder.path),
+        host=platform.node(),
+        system=platform.platform(),
+        cores=os.cpu_count(),
+        python=sys.version.split()[0],
+        packages={name: version(name) for name in packages},
+        wall_s=job.folder.wall_times(),
+        runs=RunTimes(
+            asked, runs.run_count, sum(wall), sum(one.cpu_s or 0.0 for one in records), max(wall, default=0.0)
+        ),
+    )

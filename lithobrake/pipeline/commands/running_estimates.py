@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from lithobrake.campaign import Record, RunStatus
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
+from lithobrake.vocabulary.percentages import percent, with_interval
 from lithobrake.vocabulary.quantities import OVER_RIM
 
 if TYPE_CHECKING:
@@ -40,16 +41,20 @@ class RunningEstimates:
         lines = [f"so far, from {self.captured.source}:", f"  captured: {_share(self.captured)}"]
         if self.speed_out is not None:
             value, lower, upper = self.speed_out.value, self.speed_out.lower, self.speed_out.upper
-            level = f"{100 * self.speed_out.level:.0f} %"
+            level = percent(self.speed_out.level)
             lines.append(f"  mean speed_out: {value:.4g} m/s ({level}: {lower:.4g} to {upper:.4g})")
         return [*lines, f"  {NO_FLIGHTS}" if self.returns is None else f"  return fraction: {_share(self.returns)}"]
 
     def to_json(self) -> dict[str, Any]:
         """All of it as JSON values."""
+        # Who only looks at lines does not wait for these.
+        from lithobrake.pipeline.answer.typed_estimates import fraction
+        from lithobrake.results.json_values import to_json
+
         return {
-            TouchdownOutcome.CAPTURED.value: None if self.captured is None else self.captured.summary(),
+            TouchdownOutcome.CAPTURED.value: None if self.captured is None else to_json(fraction(self.captured)),
             "speed_out": None if self.speed_out is None else asdict(self.speed_out),
-            "returns": None if self.returns is None else self.returns.summary(),
+            "returns": None if self.returns is None else to_json(fraction(self.returns)),
             "why_no_returns": NO_FLIGHTS if self.returns is None else None,
         }
 
@@ -84,10 +89,5 @@ def running_estimates(records: Sequence[Record], flown: Mapping[str, float]) -> 
 
 def _share(found: "ShareEstimate") -> str:
     """A share with its interval, which holds whatever became of landings without an outcome, or why it has none."""
-    if found.lower is None or found.upper is None:
-        return f"{_percent(found.share)}, without an interval: {found.why}"
-    return f"{_percent(found.share)} ({100 * found.level:.0f} %: {_percent(found.lower)} to {_percent(found.upper)})"
-
-
-def _percent(share: float) -> str:
-    return f"{100 * share:.1f} %"
+    why = "" if found.why is None else f", without an interval: {found.why}"
+    return f"{with_interval(found, level=found.level)}{why}"

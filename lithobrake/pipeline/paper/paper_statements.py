@@ -1,52 +1,48 @@
 """The answer of a paper study in sentences, and the most informative numbers behind it."""
 
-from typing import Any
+from collections.abc import Mapping
 
 from lithobrake.pipeline.answer.scope import scope
 from lithobrake.pipeline.emulate.samples import MISSING
+from lithobrake.results.expansions import OutputErrors
+from lithobrake.results.summary import PaperResults
 from lithobrake.results.telling_numbers import MainInput, TellingNumbers
 from lithobrake.study import Study
 from lithobrake.vocabulary.outcomes import FlightStatus, SampleOutcome, TouchdownOutcome
+from lithobrake.vocabulary.percentages import percent
 
 CENTIMETRES = 100.0
 
 
-def answer(study: Study, results: dict[str, Any]) -> list[str]:
+def answer(study: Study, results: PaperResults) -> list[str]:
     """What becomes of the landers, over what that holds, what is missing, and what the site does to those that lie."""
-    shares, site, hours = results["shares"], results["site"], f"{study.flight.duration / 3600:.3g} h"
-    holds = site["effective_acceleration_outward"] < 0.0
-    down = (
-        f"are captured or impact the surface again within {hours}"
-        if holds
-        else f"impact the surface again within {hours}"
-    )
-    returning = _percent(shares["returns"]["share"])
+    outcomes, site, hours = results.shares.outcomes, results.site, f"{study.flight.duration / 3600:.3g} h"
+    again = f"impact the surface again within {hours}"
+    down = f"are captured or {again}" if site.holds else again
     ways = {FlightStatus.ESCAPED: "escape", FlightStatus.FLYING: f"are still flying after {hours}"}
-    if shares[FlightStatus.PARTNER]["count"]:
+    if outcomes[FlightStatus.PARTNER].count:
         ways[FlightStatus.PARTNER] = "impact the partner"
-    beside = [f"{_percent(shares[status]['share'])} {words}" for status, words in ways.items()]
-    captured = shares[SampleOutcome.CAPTURED]
-    if captured["count"] and not holds:
-        beside.append(f"{_percent(captured['share'])} are captured and lifted off again")
-    sentences = [
-        f"{scope(study).where}: {returning} of the landers {down}; {', '.join(beside)}.",
-        scope(study).why,
-    ]
-    if shares["missing"]["count"]:
-        lost = [f"{_percent(shares[outcome]['share'])} {outcome.label}" for outcome in MISSING]
-        low, high = (_percent(bound) for bound in results["returns"]["if_missing"])
+    beside = [f"{percent(outcomes[status].share, 1)} {words}" for status, words in ways.items()]
+    captured = outcomes[SampleOutcome.CAPTURED]
+    if captured.count and not site.holds:
+        beside.append(f"{percent(captured.share, 1)} are captured and lifted off again")
+    returning = percent(outcomes["returns"].share, 1)
+    sentences = [f"{scope(study).where}: {returning} of the landers {down}; {', '.join(beside)}.", scope(study).why]
+    if outcomes["missing"].count:
+        lost = [f"{percent(outcomes[outcome].share, 1)} {outcome.label}" for outcome in MISSING]
+        low, high = (percent(bound, 1) for bound in results.returns.if_missing)
         sentences.append(
-            f"{_percent(shares['missing']['share'])} of the samples have no outcome ({', '.join(lost)}): {low} impact "
+            f"{percent(outcomes['missing'].share, 1)} of the samples have no outcome ({', '.join(lost)}): {low} impact "
             f"again if none, {high} if all of these do."
         )
-    return [*sentences, *([site["warning"]] if site["warning"] else [])]
+    return [*sentences, *([site.warning] if site.warning else [])]
 
 
-def headline(study: Study, results: dict[str, Any]) -> list[str]:
+def headline(study: Study, results: PaperResults) -> list[str]:
     """The answer, and the most informative numbers behind it, each in a sentence."""
     telling = TellingNumbers.of(results)
     return [
-        *results["answer"],
+        *results.answer,
         _touchdowns(telling),
         *_speed(study, telling.speed),
         _main_input(telling.main_input),
@@ -62,7 +58,7 @@ def _touchdowns(telling: TellingNumbers) -> str:
     return "; ".join([f"{telling.left_count} of {telling.ended.total()} touchdowns {left.label}", *others]) + "."
 
 
-def _speed(study: Study, speed: dict[str, float] | None) -> list[str]:
+def _speed(study: Study, speed: Mapping[str, float] | None) -> list[str]:
     """The rebound speed of the samples that leave."""
     if not speed:
         return []
@@ -80,9 +76,7 @@ def _main_input(main: MainInput) -> str:
     low, high = main.interval
     noise = main.noise_share
     role = f"cannot be told from {', '.join(main.equals)} by its" if main.equals else "is the dominant input by its"
-    rest = (
-        "" if noise is None else f"; {100 * noise:.0f} % of the variance of the runs is scatter that no input explains"
-    )
+    rest = "" if noise is None else f"; {percent(noise)} of the variance of the runs is scatter that no input explains"
     return (
         f"For the rebound speed {main.name} {role} total Sobol index, {main.total:.2f} (95 % interval {low:.2f} to "
         f"{high:.2f}) of the variance that the refined expansion of degree {main.degree} explains over its inputs; the "
@@ -90,25 +84,21 @@ def _main_input(main: MainInput) -> str:
     )
 
 
-def _explained(score: dict[str, Any]) -> str:
+def _explained(score: OutputErrors) -> str:
     """How well the expansion predicts fresh runs."""
     error = (
-        f"error {CENTIMETRES * score['rmse']:.2g} cm/s at a spread of {CENTIMETRES * score['std']:.2g} cm/s, "
-        f"MAPE {'undefined' if score['mape'] is None else format(score['mape'], '.2g') + ' %'}"
+        f"error {CENTIMETRES * score.rmse:.2g} cm/s at a spread of {CENTIMETRES * score.std:.2g} cm/s, "
+        f"MAPE {'undefined' if score.mape is None else format(score.mape, '.2g') + ' %'}"
     )
-    if score["q2"] is None:
+    if score.q2 is None:
         return f"On fresh runs with all inputs varying the rebound speed does not vary ({error})."
-    q2 = f"Q2 = {score['q2']:.2f}"
-    low, high = score.get("q2_interval") or (None, None)
+    q2 = f"Q2 = {score.q2:.2f}"
+    low, high = score.q2_interval
     if high is not None:
         q2 += f", 95 %: {'below any bound' if low is None else format(low, '.2f')} to {high:.2f}"
     words = (
-        f"explains {100 * score['q2']:.0f} % of the variance of the rebound speed"
-        if score["q2"] > 0.0
+        f"explains {percent(score.q2)} of the variance of the rebound speed"
+        if score.q2 > 0.0
         else "is worse than the mean of the runs: it explains nothing of the rebound speed"
     )
     return f"On fresh runs with all inputs varying the expansion {words} ({q2}; {error})."
-
-
-def _percent(share: float) -> str:
-    return f"{100 * share:.1f} %"

@@ -2,103 +2,188 @@
 
 from collections import Counter
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from lithobrake.pipeline.answer.dispersion_statistics import dispersion_results
-from lithobrake.pipeline.answer.run_estimates import SPLIT
-from lithobrake.pipeline.answer.site_summary import site_results
-from lithobrake.pipeline.answer.summary_parts import (
-    bed_results,
-    monte_carlo_results,
-    outputs_of_runs,
-    provenance,
-    study_tables,
+from lithobrake.analysis import LEVEL
+from lithobrake.pipeline.answer.dispersion_statistics import (
+    Rows,
+    ellipses,
+    flight_checks,
+    impact_numbers,
+    rest_results,
+    shares,
 )
+from lithobrake.pipeline.answer.run_estimates import SPLIT
+from lithobrake.pipeline.answer.scope import scope
+from lithobrake.pipeline.answer.site_summary import site_results
+from lithobrake.pipeline.answer.summary_parts import bed_results, outputs_of_runs, write_summary_file
+from lithobrake.pipeline.design.dependencies import bed_files
 from lithobrake.pipeline.emulate.samples import Samples
-from lithobrake.pipeline.fly.flights import read_table
+from lithobrake.pipeline.fly.flights import QUANTILES, read_table
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.paper.paper_designs import kept_inputs, replicate_count
 from lithobrake.pipeline.paper.paper_statements import answer, headline
-from lithobrake.pipeline.runs.beds import bed_files
 from lithobrake.pipeline.runs.run_table import DesignRuns
-from lithobrake.results.study_results import SUMMARY_FORMAT
+from lithobrake.results.dispersion import FlightResults, WithoutScatter
+from lithobrake.results.expansions import (
+    DesignCounts,
+    ExpansionResults,
+    ExpansionSamples,
+    NodeCounts,
+    OutputErrors,
+    OutputFit,
+    SampledOutput,
+)
+from lithobrake.results.json_values import from_json
+from lithobrake.results.shares import ReturnFraction, SampleShares
+from lithobrake.results.summary import PaperResults
 from lithobrake.study import Study
-from lithobrake.vocabulary.outcomes import TouchdownOutcome
+from lithobrake.vocabulary.outcomes import FlightStatus, TouchdownOutcome
 from lithobrake.vocabulary.quantities import OUTPUTS, PAPER_DESIGNS, TOUCHDOWN
 
 if TYPE_CHECKING:
     from lithobrake.chaos import Surrogate
 
 
-def _without_runs(table: Mapping[str, Mapping[str, Any]]) -> dict[str, dict[str, Any]]:
-    """Scores by output, less the errors of each run."""
-    return {output: {name: value for name, value in score.items() if name != "ape"} for output, score in table.items()}
-
-
 def write_summary(job: Job) -> None:
-    """Write summary.json: study, results, provenance. Times, host, folders and versions stand in provenance only."""
-    from lithobrake.chaos import load
-
-    screening, refined = load(job.folder / "screening.json"), load(job.folder / "refined.json")
+    """Write summary.json: study, results, provenance."""
     runs = {design: DesignRuns.load(job.folder, design) for design in PAPER_DESIGNS}
     distinct = DesignRuns.distinct(list(runs.values()))
+    results = _results(job, runs, distinct)
+    results = replace(results, answer=tuple(answer(job.study, results)))
+    results = replace(results, headline=tuple(headline(job.study, results)))
+    write_summary_file(job, results, sum(one.run_count for one in runs.values()), distinct)
+
+
+def _results(job: Job, runs: dict[str, DesignRuns], distinct: DesignRuns) -> PaperResults:
+    """What came out, without sentences."""
+    from lithobrake.chaos import load
+
+    study, screening, refined = job.study, load(job.folder / "screening.json"), load(job.folder / "refined.json")
     ended = Counter(outcome for outcome in distinct.outcomes if outcome in list(TouchdownOutcome))
-    samples, scores = Samples.load(job.folder), job.folder.read_json("scores.json")
-    kept, flights = kept_inputs(job.study, screening), read_table(job.folder, "flights.csv")
-    results = {
-        "units": {name: TOUCHDOWN[name].units for name in OUTPUTS},
-        "beds": [bed_results(job, name) for name in bed_files(job.study)],
-        "node_counts": _node_counts(job.study, len(screening.input_names)),
-        "designs": {design: _design(runs[design], replicate_count(job.study, design)) for design in PAPER_DESIGNS},
-        "outputs_of_runs": outputs_of_runs(distinct),
-        "screening": _expansion(job, "screening", screening, runs["screening"]),
-        "refined": _expansion(job, "refined", refined, runs["refined"]),
-        "kept_inputs": list(kept),
-        "kept_share": _by_output(screening, np.asarray(screening.sobol_group(kept))),
-        "scores": {stage: _without_runs(table) for stage, table in scores.items()},
-        "monte_carlo": monte_carlo_results(samples),
-        "site": site_results(job.site),
+    samples, kept, flights = (
+        Samples.load(job.folder),
+        kept_inputs(study, screening),
+        read_table(job.folder, "flights.csv"),
+    )
+    holds = job.site.holds
+    table = replace(limited_shares(samples, flights, ended, holds=holds), why=scope(study).why)
+    return PaperResults(
+        units={name: TOUCHDOWN[name].units for name in OUTPUTS},
+        beds=tuple(bed_results(job, name) for name in bed_files(study)),
+        node_counts=_node_counts(study, len(screening.input_names)),
+        designs={design: _design(runs[design], replicate_count(study, design)) for design in PAPER_DESIGNS},
+        outputs_of_runs=outputs_of_runs(distinct),
+        screening=_expansion(job, "screening", screening, runs["screening"]),
+        refined=_expansion(job, "refined", refined, runs["refined"]),
+        kept_inputs=tuple(kept),
+        kept_share=_by_output(screening, np.asarray(screening.sobol_group(kept))),
+        scores=_scores(job),
+        monte_carlo=_monte_carlo(samples),
+        site=site_results(job.site),
         # One bed, one place and one attitude have no parts.
-        "variance_shares": dict.fromkeys(SPLIT),
-        **dispersion_results(job, samples, flights, ended),
-    }
-    results["answer"] = answer(job.study, results)
-    results["headline"] = headline(job.study, results)
-    job.folder.write_json(
-        "summary.json",
-        {
-            "format_version": SUMMARY_FORMAT,
-            "study": study_tables(job.study, job.tables),
-            "results": results,
-            "provenance": provenance(job, sum(one.run_count for one in runs.values()), distinct),
-        },
+        variance_shares=dict.fromkeys(SPLIT),
+        shares=table,
+        returns=return_fraction(study, table, sum(ended.values())),
+        flights=FlightResults(impact_numbers(flights), flight_checks(job)),
+        ellipses=ellipses(study, flights, FlightStatus.IMPACT),
+        without_scatter=_without_scatter(job, samples, ended, holds=holds),
+        rest=rest_results(job),
+        answer=(),
+        headline=(),
     )
 
 
-def _node_counts(study: Study, input_count: int) -> dict[str, Any]:
-    """Nodes of the full tensor grid and of the Smolyak grid, by number of inputs and level: what the design saves."""
-    from lithobrake.chaos import smolyak_count, tensor_count
+def limited_shares(samples: Samples, flights: Rows, run_outcomes: Mapping[str, int], *, holds: bool) -> SampleShares:
+    """What became of the samples; run_outcomes: how often each came in the runs; holds: whether the site does.
 
-    counts = list(range(1, max(7, input_count) + 1))
-    levels = list(range(1, max(5, study.design.screening_level, study.design.refined_level) + 1))
-    grids = {"tensor": tensor_count, "smolyak": smolyak_count}
-    table = {name: [[int(count(n, level)) for level in levels] for n in counts] for name, count in grids.items()}
-    return {"input_counts": counts, "levels": levels, **table}
+    upper_limit: of an outcome that none of the runs had, which its share of 0 does not say (95 %).
+    """
+    from lithobrake.analysis import upper_limit
+
+    found = shares(samples, flights, holds=holds)
+    outcomes, limit = dict(found.outcomes), upper_limit(sum(run_outcomes.values()))
+    for outcome in set(TouchdownOutcome) - {TouchdownOutcome.CLEAR, *run_outcomes}:
+        outcomes[outcome.value] = replace(outcomes[outcome.value], upper_limit=limit)
+    return replace(found, outcomes=outcomes)
 
 
-def _design(design: DesignRuns, replicate_count: int) -> dict[str, Any]:
+def _without_scatter(
+    job: Job, samples: Samples, run_outcomes: Mapping[str, int], *, holds: bool
+) -> WithoutScatter | None:
+    """What becomes of the samples of the expansion alone; None where they have no scatter to leave out."""
+    if samples.without_scatter is None:
+        return None
+    flights = read_table(job.folder, "flights_without_scatter.csv")
+    found = limited_shares(samples.expansion_alone(), flights, run_outcomes, holds=holds)
+    return WithoutScatter(found, impact_numbers(flights), ellipses(job.study, flights, FlightStatus.IMPACT))
+
+
+def return_fraction(study: Study, table: SampleShares, run_count: int) -> ReturnFraction:
+    """The return fraction, without an interval, which runs on one bed or at one place do not give."""
+    share, missing = table.outcomes["returns"].share, table.outcomes["missing"].share
+    return ReturnFraction(
+        share=share,
+        lower=None,
+        upper=None,
+        level=LEVEL,
+        from_=f"{table.sample_count} samples of an expansion of {run_count} landings {scope(study).landings}",
+        next_bed=None,
+        if_missing=(share, share + missing),
+        missing=missing,
+        emulator=share,
+        why=scope(study).why,
+    )
+
+
+def _scores(job: Job) -> dict[str, dict[str, OutputErrors]]:
+    """Scores by set of runs and output, less the errors of each run."""
     return {
-        "point_count": design.run_count // replicate_count,
-        "replicate_count": replicate_count,
-        "run_count": design.run_count,
-        "with_outputs": int(design.has_outputs.sum()),
-        "outcomes": design.outcome_counts(),
+        stage: {
+            output: replace(from_json(OutputErrors, score, f"{stage}.{output}"), ape=None)
+            for output, score in table.items()
+        }
+        for stage, table in job.folder.read_json("scores.json").items()
     }
 
 
-def _expansion(job: Job, design: str, surrogate: "Surrogate", runs: DesignRuns) -> dict[str, Any]:
+def _monte_carlo(samples: Samples) -> ExpansionSamples:
+    """Spread of each output over the samples that leave the surface."""
+    leaving, outputs = samples.leaves, {}
+    for index, name in enumerate(samples.output_names if leaving.any() else ()):
+        values = samples.outputs[leaving, index]
+        quantiles = {f"quantile_{level:g}": float(np.quantile(values, level)) for level in QUANTILES}
+        outputs[name] = SampledOutput(float(values.mean()), float(values.std()), quantiles)
+    return ExpansionSamples(len(leaving), int(leaving.sum()), outputs)
+
+
+def _node_counts(study: Study, input_count: int) -> NodeCounts:
+    """Nodes of the full tensor grid and of the Smolyak grid, by number of inputs and level: what the design saves."""
+    from lithobrake.chaos import smolyak_count, tensor_count
+
+    counts = tuple(range(1, max(7, input_count) + 1))
+    levels = tuple(range(1, max(5, study.design.screening_level, study.design.refined_level) + 1))
+    tensor, smolyak = (
+        tuple(tuple(int(count(n, level)) for level in levels) for n in counts)
+        for count in (tensor_count, smolyak_count)
+    )
+    return NodeCounts(counts, levels, tensor, smolyak)
+
+
+def _design(design: DesignRuns, replicate_count: int) -> DesignCounts:
+    return DesignCounts(
+        point_count=design.run_count // replicate_count,
+        replicate_count=replicate_count,
+        run_count=design.run_count,
+        with_outputs=int(design.has_outputs.sum()),
+        outcomes=design.outcome_counts(),
+    )
+
+
+def _expansion(job: Job, design: str, surrogate: "Surrogate", runs: DesignRuns) -> ExpansionResults:
     """What an expansion says, with its Sobol indices freed of scatter, and their 95 % intervals [lower, upper].
 
     An index is a share of the variance that the inputs give the expansion, not of that of the runs.
@@ -113,31 +198,30 @@ def _expansion(job: Job, design: str, surrogate: "Surrogate", runs: DesignRuns) 
         columns = zip(surrogate.output_names, np.moveaxis(table, 1, 0).tolist(), strict=True)
         return {output: dict(zip(inputs, column, strict=True)) for output, column in columns}
 
-    return {
-        "inputs": inputs,
-        "term_count": len(surrogate.multi_indices),
-        "degree": surrogate.degree,
-        "fits": {name: _fit(entry) for name, entry in surrogate.report["outputs"].items()},
-        "mean": _by_output(surrogate, np.asarray(surrogate.mean)),
-        "std": _by_output(surrogate, np.sqrt(np.asarray(surrogate.variance))),
-        "sobol_first": by_output(estimates["first"][0]),
-        "sobol_total": by_output(estimates["total"][0]),
-        "sobol_first_interval": by_output(np.moveaxis(estimates["first"][1:], 0, -1)),
-        "sobol_total_interval": by_output(np.moveaxis(estimates["total"][1:], 0, -1)),
-    }
+    return ExpansionResults(
+        inputs=tuple(inputs),
+        term_count=len(surrogate.multi_indices),
+        degree=surrogate.degree,
+        fits={name: _fit(entry) for name, entry in surrogate.report["outputs"].items()},
+        mean=_by_output(surrogate, np.asarray(surrogate.mean)),
+        std=_by_output(surrogate, np.sqrt(np.asarray(surrogate.variance))),
+        sobol_first=by_output(estimates["first"][0]),
+        sobol_total=by_output(estimates["total"][0]),
+        sobol_first_interval=by_output(np.moveaxis(estimates["first"][1:], 0, -1)),
+        sobol_total_interval=by_output(np.moveaxis(estimates["total"][1:], 0, -1)),
+    )
 
 
-def _fit(entry: dict[str, Any]) -> dict[str, Any]:
+def _fit(entry: dict[str, Any]) -> OutputFit:
     """How one output was fitted, the error expected at a new run and the scatter between equal runs, SI.
 
     noise_share: of the variance of the runs; None where the scatter is not known or the runs do not vary.
     """
     keys = ("method", "term_count", "condition_number", "rmse_estimate", "rrmse_estimate", "noise_std", "noise_from")
-    table = {key: entry.get(key) for key in keys}
+    table: dict[str, Any] = {key: entry.get(key) for key in keys}
     noise, share = table["noise_std"], table["rrmse_estimate"]
-    if noise is None or not share:
-        return {**table, "noise_share": None}
-    return {**table, "noise_share": min((noise * share / table["rmse_estimate"]) ** 2, 1.0)}
+    known = noise is not None and bool(share)
+    return OutputFit(**table, noise_share=min((noise * share / table["rmse_estimate"]) ** 2, 1.0) if known else None)
 
 
 def _by_output(surrogate: "Surrogate", values: np.ndarray) -> dict[str, float]:

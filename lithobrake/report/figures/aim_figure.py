@@ -1,6 +1,6 @@
 """The aims of a study as maps: how many landers settle there, how far and how late, on soil and on hard ground."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -11,10 +11,13 @@ from matplotlib.image import AxesImage
 from matplotlib.patches import Rectangle
 from numpy.typing import NDArray
 
-from lithobrake.report.figures.style import QUIET, SITE, input_label
-from lithobrake.vocabulary.outcomes import JourneyStatus
+from lithobrake.report.figures.style import QUIET, SITE
+from lithobrake.report.words.labels import input_label
+from lithobrake.results.aims import AimResult, AimResults
+from lithobrake.results.shares import Estimate, ShareInterval
 
-SETTLED = JourneyStatus.SETTLED.value
+# A number and its bounds.
+Reading = tuple[float, float | None, float | None]
 HOUR = 3600.0
 # One for all maps; colours darker than this part of their scale have white figures.
 COLOURS, DARK = "Blues", 0.55
@@ -30,51 +33,39 @@ class AimRow:
     title: str
     ground: str
     scale: tuple[float, float] | None
-    read: Callable[[Mapping[str, Any]], tuple[float, float | None, float | None]]
+    read: Callable[[AimResult], Reading]
 
 
-def _share(ground: str) -> Callable[[Mapping[str, Any]], tuple[float, float | None, float | None]]:
-    def read(aim: Mapping[str, Any]) -> tuple[float, float | None, float | None]:
-        share = aim[ground][SETTLED]
-        low, high = (None if share[end] is None else 100 * share[end] for end in ("lower", "upper"))
-        return 100 * share["share"], low, high
-
-    return read
+def _percentages(share: ShareInterval) -> Reading:
+    low, high = (None if end is None else 100 * end for end in (share.lower, share.upper))
+    return 100 * share.share, low, high
 
 
-def _far(name: str, unit: float) -> Callable[[Mapping[str, Any]], tuple[float, float | None, float | None]]:
-    def read(aim: Mapping[str, Any]) -> tuple[float, float | None, float | None]:
-        found = aim["soil"][name]
-        if found is None:
-            return float("nan"), None, None
-        value, low, high = (None if found[key] is None else found[key] / unit for key in ("value", "lower", "upper"))
-        return float("nan") if value is None else value, low, high
-
-    return read
-
-
-def _missing(aim: Mapping[str, Any]) -> tuple[float, float | None, float | None]:
-    return 100 * aim["soil"]["missing"], None, None
+def _within(found: Estimate | None, unit: float) -> Reading:
+    if found is None:
+        return float("nan"), None, None
+    low, high = (None if end is None else end / unit for end in (found.lower, found.upper))
+    return found.value / unit, low, high
 
 
 # Maps in per cent share one scale, from nothing to all: colours differ as much as the shares do.
 WHOLE = (0.0, 100.0)
 ROWS = (
-    AimRow("at rest on soil [%]", "soil", WHOLE, _share("soil")),
-    AimRow("unknown outcome on soil [%]", "soil", WHOLE, _missing),
-    AimRow("95 % rest within [m]", "soil", None, _far("distance_p95", 1.0)),
-    AimRow("95 % rest within [h]", "soil", None, _far("time_p95", HOUR)),
-    AimRow("at rest on hard ground [%]", "hard", WHOLE, _share("hard")),
+    AimRow("at rest on soil [%]", "soil", WHOLE, lambda aim: _percentages(aim.soil.settled)),
+    AimRow("unknown outcome on soil [%]", "soil", WHOLE, lambda aim: (100 * aim.soil.missing, None, None)),
+    AimRow("95 % rest within [m]", "soil", None, lambda aim: _within(aim.soil.distance_p95, 1.0)),
+    AimRow("95 % rest within [h]", "soil", None, lambda aim: _within(aim.soil.time_p95, HOUR)),
+    AimRow("at rest on hard ground [%]", "hard", WHOLE, lambda aim: _percentages(aim.hard.settled)),
 )
 
 
-def aim_figure(table: Mapping[str, Any]) -> Figure:
+def aim_figure(table: AimResults) -> Figure:
     """Draw results.aim: a row of maps for each number, a map for each value of the third name.
 
     What limits rule out is crossed; a frame marks the best on each ground, a dotted one what cannot be told from it.
     """
-    values = np.array([aim["values"] for aim in table["aims"]])
-    labels = [input_label(name, unit) for name, unit in zip(table["names"], table["units"], strict=True)]
+    values = np.array([aim.values for aim in table.aims])
+    labels = [input_label(name, unit) for name, unit in zip(table.names, table.units, strict=True)]
     # What is not chosen is the same everywhere.
     places = np.column_stack([values, np.zeros((len(values), 3 - values.shape[1]))])
     across, up, panels = (np.unique(column) for column in places.T)
@@ -82,7 +73,7 @@ def aim_figure(table: Mapping[str, Any]) -> Figure:
     layout = _Layout(max(room, 0.62 * len(across)), max(0.36 * len(up), 0.5), len(panels))
     figure = Figure(figsize=layout.size)
     for number, row in enumerate(ROWS):
-        read = [row.read(aim) for aim in table["aims"]]
+        read = [row.read(aim) for aim in table.aims]
         scale = row.scale or _ends(np.array([one[0] for one in read]))
         for column, panel in enumerate(panels.tolist()):
             axes = figure.add_axes(layout.place(number, column))
@@ -158,12 +149,7 @@ class _Cells:
         return [(int(column), int(row)) for column, row in found]
 
 
-def _draw(
-    axes: Axes,
-    cells: _Cells,
-    read: Sequence[tuple[float, float | None, float | None]],
-    scale: tuple[float, float],
-) -> AxesImage:
+def _draw(axes: Axes, cells: _Cells, read: Sequence[Reading], scale: tuple[float, float]) -> AxesImage:
     """Colour the cells by their number, and write it there with its bounds."""
     table = np.full((len(cells.up), len(cells.across)), np.nan)
     for (column, row), (value, _, _) in zip(cells.places, read, strict=True):
@@ -180,17 +166,17 @@ def _draw(
     return drawn
 
 
-def _mark(axes: Axes, cells: _Cells, table: Mapping[str, Any], shown: NDArray[np.int64], ground: str) -> None:
+def _mark(axes: Axes, cells: _Cells, table: AimResults, shown: NDArray[np.int64], ground: str) -> None:
     """Cross out what limits rule out, and frame the best and what cannot be told from it."""
-    best = table[f"best_on_{ground}"]
+    best = table.best_on_soil if ground == "soil" else table.best_on_hard
     for (column, row), aim in zip(cells.places, shown.tolist(), strict=True):
-        if not table["aims"][aim][ground]["allowed"]:
+        if not (table.aims[aim].soil if ground == "soil" else table.aims[aim].hard).allowed:
             axes.plot([column - 0.5, column + 0.5], [row - 0.5, row + 0.5], color=QUIET, linewidth=0.8)
-        if best is not None and best["aim"] == aim:
+        if best is not None and best.aim == aim:
             # Inside of the cell, where no neighbour covers it.
             frame = Rectangle((column - 0.47, row - 0.45), 0.94, 0.9, fill=False, edgecolor=SITE, linewidth=1.8)
             axes.add_patch(frame)
-        elif best is not None and aim in (best["not_worse"] or ()):
+        elif best is not None and aim in (best.not_worse or ()):
             frame = Rectangle((column - 0.47, row - 0.45), 0.94, 0.9, fill=False, edgecolor=SITE, linestyle=":")
             axes.add_patch(frame)
 

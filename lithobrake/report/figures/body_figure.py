@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from lithobrake.report.figures.hulls import Camera, frame_axes
-from lithobrake.report.figures.site_mark import draw_legend, mark_site
+from lithobrake.report.figures.map_marks import draw_legend, mark_site
 
 Array = NDArray[np.float64]
 Facets = NDArray[np.int64]

@@ -1,58 +1,29 @@
 """Figure 5 of a sequence: whether the emulator predicts landings on beds that it has not seen."""
 
-import math
 from collections.abc import Mapping, Sequence
-from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from lithobrake.report.figures.style import INK, QUIET, TEST, TRAINING, output
+from lithobrake.report.figures.style import INK, QUIET, TEST, TRAINING
+from lithobrake.report.words.chance import band_luck, luck, unlucky
+from lithobrake.report.words.labels import output
+from lithobrake.results.emulator_results import OutputScore
 
-# Half of the middle nine tenths of a normal distribution, in standard deviations.
-NINE_TENTHS = 1.645
 LUCK = "#e3e7eb"
 
 
-def histograms(scores: Mapping[str, Mapping[str, Any]]) -> dict[str, Sequence[int]]:
-    """The outputs that have a histogram of their probability integral transform, with its counts by bin."""
-    return {name: score["pit"] for name, score in scores.items() if score.get("pit")}
-
-
-def luck(counts: Sequence[int]) -> tuple[float, float]:
-    """Between which counts nine of ten bins lie where all is right, if runs are independent."""
-    total, bins = sum(counts), len(counts)
-    half = NINE_TENTHS * math.sqrt(total / bins * (1.0 - 1.0 / bins))
-    return total / bins - half, total / bins + half
-
-
-def unlucky(counts: Sequence[int]) -> list[bool]:
-    """Which bins lie outside of that."""
-    low, high = luck(counts)
-    return [not low <= count <= high for count in counts]
-
-
-def band_luck(run_count: int) -> tuple[float, float]:
-    """Between which shares nine of ten right 90 % bands hold as many independent runs."""
-    half = NINE_TENTHS * math.sqrt(0.09 / run_count)
-    return 0.9 - half, 0.9 + half
-
-
-def calibration_figure(scores: Mapping[str, Mapping[str, Any]]) -> Figure:
-    """Draw a histogram for each output of the PIT values of its runs, and how many the 90 % bands held.
-
-    scores: by output, with the counts "pit" and the share "band_90".
-    """
-    found = histograms(scores)
+def calibration_figure(scores: Mapping[str, OutputScore]) -> Figure:
+    """Draw a histogram for each output of the PIT values of its runs, and how many the 90 % bands held."""
     figure = Figure(figsize=(9.2, 3.1))
-    grid = figure.subplots(1, len(found) + 1, width_ratios=[*[1.0] * len(found), 0.8])
+    grid = figure.subplots(1, len(scores) + 1, width_ratios=[*[1.0] * len(scores), 0.8])
     figure.subplots_adjust(left=0.06, right=0.985, top=0.89, bottom=0.17, wspace=0.32)
-    for axes, (name, counts) in zip(grid, found.items(), strict=False):
-        _histogram(axes, name, counts)
+    for axes, (name, score) in zip(grid, scores.items(), strict=False):
+        _histogram(axes, name, score.pit)
     grid[0].set_ylabel("runs")
-    _bands(grid[-1], {name: scores[name] for name in found})
+    _bands(grid[-1], scores)
     return figure
 
 
@@ -75,10 +46,10 @@ def _histogram(axes: Axes, name: str, counts: Sequence[int]) -> None:
     axes.set_xlabel("PIT value")
 
 
-def _bands(axes: Axes, scores: Mapping[str, Mapping[str, Any]]) -> None:
+def _bands(axes: Axes, scores: Mapping[str, OutputScore]) -> None:
     """The share of runs that the bands held, beside what luck alone does to it."""
     for row, (name, score) in enumerate(scores.items()):
-        shown, held, (low, high) = output(name), score["band_90"], band_luck(sum(score["pit"]))
+        shown, held, (low, high) = output(name), score.band_90, band_luck(sum(score.pit))
         axes.barh(row, high - low, left=low, height=0.5, color=LUCK, zorder=0)
         colour = TRAINING if low <= held <= high else TEST
         axes.plot(held, row, "o", color=colour, markersize=6, zorder=3)
@@ -86,7 +57,7 @@ def _bands(axes: Axes, scores: Mapping[str, Mapping[str, Any]]) -> None:
         axes.text(0.0, row - 0.36, words, transform=axes.get_yaxis_transform(), fontsize=8.5)
     axes.axvline(0.9, color=QUIET, linewidth=0.9, zorder=1)
     axes.set_title("in the 90 % band")
-    lowest = min([0.75, *(score["band_90"] - 0.05 for score in scores.values())])
+    lowest = min([0.75, *(score.band_90 - 0.05 for score in scores.values())])
     axes.set_xlim(lowest, 1.0)
     axes.set_ylim(len(scores) - 0.4, -0.7)
     axes.set_yticks([])

@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 
 from lithobrake.files.atomic import atomic_path
 from lithobrake.files.reading import read_json
-from lithobrake.report.figures.style import INTERACTIONS, LANDER, QUIET, figure_style, input_label
+from lithobrake.report.figures.style import INTERACTIONS, LANDER, QUIET, figure_style
+from lithobrake.report.words.labels import input_label
 
 BINS = 20
 WORDS = "grey: before; blue: after"
@@ -25,7 +26,7 @@ _FORM = {"statement": str, "inputs": {str: _INPUT}}
 
 
 def write_corner(posterior: Path, picture: Path) -> None:
-    """Draw the posterior.json of an inference as a corner plot, a PNG file: each input before and after, and each pair.
+    """Draw the posterior.json of an inference as a corner plot, a PNG file: inputs before and after, and each pair.
 
     Raises ValueError for another file.
     """

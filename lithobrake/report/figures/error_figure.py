@@ -1,51 +1,25 @@
 """Figure 5: how far the expansion is from the soft-surface model, on runs it has seen and on runs it has not."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from lithobrake.report.figures.style import INK, PAPER_OUTPUTS, QUIET, TEST, TEST_ALL, TRAINING, Output, output
-from lithobrake.report.pages.html import fixed, number
+from lithobrake.report.figures.style import INK, QUIET, TEST, TEST_ALL, TRAINING
+from lithobrake.report.words.labels import PAPER_OUTPUTS, Output, output
+from lithobrake.report.words.numbers import number, q2_words
+from lithobrake.results.expansions import OutputErrors
 
 Array = NDArray[np.float64]
+ErrorsByOutput = Mapping[str, OutputErrors]
 
 # Words and lines need more contrast with white than bars do.
 TEXT = {TRAINING: TRAINING, TEST: "#a8690a", TEST_ALL: "#5f656d"}
 
 
-@dataclass(frozen=True)
-class Score:
-    """Errors of one output on one set of runs: APE and MAPE [%], Q2, RMSE and spread (std) in SI.
-
-    MAPE and Q2 do not exist (None) where a true value is zero, or all are the same; q2_interval: 95 % (lower, upper),
-    None where it has no such end.
-    """
-
-    ape: Array
-    mape: float | None
-    q2: float | None
-    rmse: float
-    std: float
-    q2_interval: tuple[float | None, float | None] = (None, None)
-
-    @property
-    def q2_words(self) -> str:
-        """Q2 with its interval: ".93 (.8 to .97)"."""
-        if self.q2 is None:
-            return "undefined"
-        low, high = self.q2_interval
-        if low is None and high is None:
-            return fixed(self.q2)
-        return (
-            f"{fixed(self.q2)} ({'no bound' if low is None else fixed(low)} to {fixed(1.0 if high is None else high)})"
-        )
-
-
-def error_figure(training: dict[str, Score], test_kept: dict[str, Score], test_all: dict[str, Score]) -> Figure:
+def error_figure(training: ErrorsByOutput, test_kept: ErrorsByOutput, test_all: ErrorsByOutput) -> Figure:
     """Draw histograms of the absolute percentage error; dashed lines stand at the means.
 
     Above: the kept inputs vary, training and test. Below: all inputs vary, which is what the real landing will see.
@@ -67,15 +41,21 @@ def error_figure(training: dict[str, Score], test_kept: dict[str, Score], test_a
     return figure
 
 
-def _panel(axes: Axes, name: str, series: Sequence[tuple[str, Score, str]]) -> None:
+def _errors(score: OutputErrors) -> Array:
+    """Absolute percentage errors of the runs [%]; one whose true value is zero has none, and counts in other scores."""
+    return np.array([error for error in score.ape or () if error is not None], dtype=float)
+
+
+def _panel(axes: Axes, name: str, series: Sequence[tuple[str, OutputErrors, str]]) -> None:
     """One output: shares of runs over the error in per cent, and the figures that keep a MAPE honest."""
     shown = output(name)
-    limit, beyond = _limit([score.ape for _, score, _ in series])
+    limit, beyond = _limit([_errors(score) for _, score, _ in series])
     bins = np.linspace(0.0, limit, 17).tolist()
     for words, score, colour in series:
-        weights = np.full(len(score.ape), 1.0 / max(len(score.ape), 1))
+        errors = _errors(score)
+        weights = np.full(len(errors), 1.0 / max(len(errors), 1))
         axes.hist(
-            np.minimum(score.ape, limit),
+            np.minimum(errors, limit),
             bins=bins,
             weights=weights,
             color=colour,
@@ -96,13 +76,13 @@ def _panel(axes: Axes, name: str, series: Sequence[tuple[str, Score, str]]) -> N
     _write_figures(axes, shown, series)
 
 
-def _write_figures(axes: Axes, shown: Output, series: Sequence[tuple[str, Score, str]]) -> None:
+def _write_figures(axes: Axes, shown: Output, series: Sequence[tuple[str, OutputErrors, str]]) -> None:
     """Write the figures of each series above the panel, where no bar can run into them; the last is the lowest."""
     y = 1.03
     for words, score, colour in reversed(series):
         mape = "undefined" if score.mape is None else f"{score.mape:.3g} %"
         lines = (
-            f"{len(score.ape)} runs: MAPE {mape}, $Q^2$ {score.q2_words}\n"
+            f"{len(_errors(score))} runs: MAPE {mape}, $Q^2$ {q2_words(score)}\n"
             f"RMSE {number(score.rmse * shown.factor, 2)} at a spread of "
             f"{number(score.std * shown.factor, 2)} {shown.unit}"
         )

@@ -1,6 +1,5 @@
 """Figure 7: where the lander comes down after the first bounce, and in how many cases it does."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,10 +12,11 @@ from numpy.typing import NDArray
 from scipy.interpolate import LinearNDInterpolator
 
 from lithobrake.report.figures.density import WHOLE, Window, close_window, draw_density, near
-from lithobrake.report.figures.ellipse_line import draw_ellipses, fitting, follows_gaussian
-from lithobrake.report.figures.site_mark import draw_legend, mark_site
+from lithobrake.report.figures.map_marks import draw_ellipses, draw_legend, fitting, mark_site
 from lithobrake.report.figures.style import INK, QUIET, TRAINING
-from lithobrake.vocabulary.percentages import percent, with_interval
+from lithobrake.report.words.chance import follows_gaussian
+from lithobrake.results.dispersion import LandingEllipses
+from lithobrake.vocabulary.percentages import LEVEL, percent, with_interval
 
 Array = NDArray[np.float64]
 
@@ -30,10 +30,10 @@ class Share:
     """
 
     name: str
-    value: float
+    share: float
     lower: float | None = None
     upper: float | None = None
-    level: float = 0.9
+    level: float = LEVEL
     colour: str = TRAINING
     digits: int = 0
 
@@ -42,7 +42,7 @@ class Share:
         """The share in per cent, with its interval or its limit."""
         if self.lower is None and self.upper is not None:
             return f"at most {percent(self.upper, 1)}"
-        return with_interval({"share": self.value, "lower": self.lower, "upper": self.upper}, self.digits)
+        return with_interval(self, self.digits)
 
 
 def map_figure(
@@ -51,7 +51,7 @@ def map_figure(
     site: tuple[float, float],
     shares: list[Share],
     vertices: Array | None = None,
-    ellipses: Mapping[str, Any] | None = None,
+    ellipses: LandingEllipses | None = None,
     whole: str = "all samples",
 ) -> Figure:
     """Draw the density of impacts on a map, and the shares of what became of the samples.
@@ -98,7 +98,7 @@ def _impacts(
     longitude: Array,
     site: tuple[float, float],
     window: Window | None,
-    ellipses: Mapping[str, Any] | None,
+    ellipses: LandingEllipses | None,
 ) -> tuple[Any, str] | None:
     """Draw the impacts, in a close view beside the site where on the whole map they would lie under its mark.
 
@@ -183,7 +183,7 @@ def draw_shares(axes: Axes, shares: list[Share], whole: str) -> None:
     place = np.arange(len(shares))[::-1]
     words = f"share of {whole} [%]"
     for y, share in zip(place, shares, strict=True):
-        axes.barh(y, 100 * share.value, color=share.colour, height=0.68)
+        axes.barh(y, 100 * share.share, color=share.colour, height=0.68)
         if share.upper is not None:
             ends = [100 * (share.lower or 0.0), 100 * share.upper]
             # At the very ends of the axis a clipped line would look as if there were no interval.

@@ -1,9 +1,7 @@
 """Where landers rest after bounce upon bounce: on the soil, and beside it on hard ground."""
 
 import textwrap
-from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -11,10 +9,11 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from lithobrake.report.figures.density import WHOLE, Window, close_window, draw_density, near
-from lithobrake.report.figures.ellipse_line import draw_ellipses, fitting, follows_gaussian
 from lithobrake.report.figures.map_figure import Share, draw_relief, draw_scale, draw_shares
-from lithobrake.report.figures.site_mark import draw_legend, mark_site
+from lithobrake.report.figures.map_marks import draw_ellipses, draw_legend, fitting, mark_site
 from lithobrake.report.figures.style import QUIET
+from lithobrake.report.words.chance import follows_gaussian
+from lithobrake.results.dispersion import LandingEllipses
 
 Array = NDArray[np.float64]
 
@@ -29,7 +28,7 @@ class RestMap:
     title: str
     latitude: Array
     longitude: Array
-    ellipses: Mapping[str, Any] | None
+    ellipses: LandingEllipses | None
     shares: list[Share]
     absent: str | None = None
     whole: str = "all landers"
@@ -57,7 +56,7 @@ def rest_figure(maps: list[RestMap], site: tuple[float, float], vertices: Array 
         share = row_height * len(one.shares) / height
         bars = figure.add_axes((0.135 + 0.5 * side, 1.0 - maps_height / height - share, 0.18, share))
         draw_shares(bars, one.shares, one.whole)
-    held = {entry["share"]: entry for one in maps for entry in fitting(one.ellipses, window)}
+    held = {ellipse.share: ellipse for one in maps for ellipse in fitting(one.ellipses, window)}
     is_gaussian = all(follows_gaussian(one.ellipses, len(one.latitude)) for one in maps)
     draw_legend(figure, list(held.values()), "landers at rest", (0.06, 1.0 - 0.25 / height), is_gaussian=is_gaussian)
     return figure

@@ -10,7 +10,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
-from lithobrake.report.figures.style import INK, QUIET, SITE, TRAINING, output
+from lithobrake.report.figures.style import INK, QUIET, SITE, TRAINING
+from lithobrake.report.words.labels import output
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
 
 Array = NDArray[np.float64]

@@ -8,12 +8,11 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from lithobrake.report.figures.style import PAPER_OUTPUTS, QUIET, output
+from lithobrake.report.figures.style import QUIET
+from lithobrake.report.page_data import DRAWN_COUNT
+from lithobrake.report.words.labels import PAPER_OUTPUTS, output
 
 Array = NDArray[np.float64]
-
-# More dots than this only cover each other, and a picture of ten million takes minutes.
-DRAWN_COUNT = 200_000
 
 
 def scatter_figure(outputs: Mapping[str, Array], colour: tuple[str, Array], leaves: NDArray[np.bool_]) -> Figure:

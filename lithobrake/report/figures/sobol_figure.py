@@ -1,13 +1,16 @@
 """Figure 4: which inputs matter, as rings of first-order Sobol indices."""
 
+from collections.abc import Mapping
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
-from lithobrake.report.figures.style import INTERACTIONS, PAPER_OUTPUTS, QUIET, input_colours, input_label, output
-from lithobrake.report.pages.html import number
+from lithobrake.report.figures.style import INTERACTIONS, QUIET, input_colours
+from lithobrake.report.words.labels import PAPER_OUTPUTS, input_label, output
+from lithobrake.report.words.numbers import number
 
 Array = NDArray[np.float64]
 
@@ -15,7 +18,7 @@ Array = NDArray[np.float64]
 def sobol_figure(
     input_names: tuple[str, ...],
     sobol_first: dict[str, Array],
-    spread: dict[str, float],
+    spread: Mapping[str, float],
     scatter: dict[str, float | None],
 ) -> Figure:
     """Draw one ring an output; what is left of the whole belongs to interactions.

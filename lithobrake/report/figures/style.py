@@ -1,9 +1,7 @@
 """How every figure looks: colours that colour-blind readers tell apart, one type size, names and units of outputs."""
 
-import re
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
 from typing import Any
 
 import matplotlib
@@ -11,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus, SampleOutcome
-from lithobrake.vocabulary.quantities import TOUCHDOWN
 
 INK = "#1c2733"
 QUIET = "#66717d"
@@ -87,93 +84,6 @@ STYLE: Any = {
     # Names inside an SVG file are made of this and the content, not of chance.
     "svg.hashsalt": "lithobrake",
 }
-
-
-@dataclass(frozen=True)
-class Output:
-    """An output as the page shows it: symbol in a figure and in a sentence, words, unit, and the factor from SI."""
-
-    symbol: str
-    sign: str
-    words: str
-    unit: str
-    factor: float
-
-    @property
-    def label(self) -> str:
-        """Axis label with the unit."""
-        return f"{self.words} {self.symbol} [{self.unit}]".strip()
-
-    @property
-    def row(self) -> str:
-        """Title of a row."""
-        return f"{self.words} {self.sign}".strip()
-
-
-# In a figure, and in a sentence.
-SYMBOLS = {
-    "speed_out": ("$V^+$", "V+"),
-    "elevation_out": (r"$\theta^+$", "theta+"),
-    "spin_out": (r"$\omega^+$", "omega+"),
-    "velocity_out_x": ("$V^+_x$", ""),
-    "velocity_out_y": ("$V^+_y$", ""),
-    "velocity_out_z": ("$V^+_z$", ""),
-}
-# The three outputs of [Landings-PCE], in its order.
-PAPER_OUTPUTS = ("speed_out", "elevation_out", "spin_out")
-
-INPUT_LABELS = {
-    "grain.young_modulus": "Young's modulus $E$, grains",
-    "grain.poisson_ratio": r"Poisson's ratio $\nu$, grains",
-    "grain.restitution": "restitution $e$, grains",
-    "grain.friction": r"friction $\mu$, grains",
-    "grain.rolling_friction": "rolling friction, grains",
-    "grain.spinning_friction": "spinning friction, grains",
-    "grain.cohesion_force": "cohesion, grains",
-    "grain.surface_energy": "surface energy, grains",
-    "grain.density": r"density $\rho$, grains",
-    "lander.young_modulus": "Young's modulus $E$, lander",
-    "lander.poisson_ratio": r"Poisson's ratio $\nu$, lander",
-    "lander.restitution": "restitution $e$, lander",
-    "lander.friction": r"friction $\mu$, lander",
-    "lander.rolling_friction": "rolling friction, lander",
-    "lander.spinning_friction": "spinning friction, lander",
-    "lander.cohesion_force": "cohesion, lander",
-    "lander.surface_energy": "surface energy, lander",
-    "lander.mass": "mass of the lander",
-    "lander.diameter": "diameter of the lander",
-    "impact.speed": "impact speed",
-    "impact.incidence_deg": "incidence",
-    "impact.azimuth_deg": "azimuth",
-    "impact.place.x": "place x",
-    "impact.place.y": "place y",
-    "impact.spin_x": "spin about x",
-    "impact.spin_y": "spin about y",
-    "impact.spin_z": "spin about z",
-    "site.latitude_deg": "latitude",
-    "site.longitude_deg": "longitude",
-    "site.heading_deg": "heading",
-    "surface.gravity": "gravity",
-    "surface.slope_deg": "slope",
-    "surface.slope_azimuth_deg": "azimuth of the slope",
-}
-
-
-def output(name: str) -> Output:
-    """How an output is shown, angles in degrees; one that is not known keeps its own name and SI value."""
-    if name not in TOUCHDOWN:
-        return Output("", "", name, "SI", 1.0)
-    known, (symbol, sign) = TOUCHDOWN[name], SYMBOLS.get(name, ("", ""))
-    unit, factor = ("deg", 180.0 / np.pi) if known.units == "rad" else (known.units, 1.0)
-    return Output(symbol, sign, known.title or name, unit, factor)
-
-
-def input_label(name: str, unit: str = "") -> str:
-    """How a design input is shown, with its unit if it has one; without an entry it keeps its dotted key in words."""
-    words = name.removeprefix("solver.inputs.").replace("_", " ").replace(".", ": ")
-    label = INPUT_LABELS.get(name, words.removesuffix(" deg"))
-    shown = re.sub(r"(\d)", r"$^\1$", unit)
-    return f"{label} [{shown}]" if shown else label
 
 
 def input_colours(names: tuple[str, ...]) -> dict[str, str]:

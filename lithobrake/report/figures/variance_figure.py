@@ -2,30 +2,24 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import matplotlib
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from lithobrake.report.figures.style import INK, INTERACTIONS, QUIET, input_colours, input_label, output
-from lithobrake.vocabulary.percentages import part as shown
+from lithobrake.report.figures.style import INK, INTERACTIONS, QUIET, input_colours
+from lithobrake.report.words.labels import input_label, long_part_words, output, part_words
+from lithobrake.results.run_results import VarianceParts
 from lithobrake.vocabulary.percentages import percent
 
-Share = Mapping[str, float]
-Record = Mapping[str, Any]
-
-# The parts beside the soil, in the order of the bar: words, colour, hatching. No soil input has any of these.
-PARTS = {
-    "arrival": ("impact, at least", QUIET, ""),
-    "bed": ("bed", "#f1e6d0", "////"),
-    "place_and_attitude": ("everything else", INTERACTIONS, ""),
-    "chaos": ("chaos", INK, ""),
+# The parts beside the soil, in the order of the bar: colour, hatching. No soil input has any of these.
+LOOKS = {
+    "arrival": (QUIET, ""),
+    "bed": ("#f1e6d0", "////"),
+    "place_and_attitude": (INTERACTIONS, ""),
+    "chaos": (INK, ""),
 }
-SOIL = "soil"
-# What everything else holds, where there is room for it.
-REMAINDER = "impact point, attitude, interactions"
 # From here on a piece has room for its figure.
 ROOM = 0.055
 ROW_HEIGHT = 0.92
@@ -41,49 +35,26 @@ class Piece:
     hatch: str = ""
 
 
-def part_words(record: Record, name: str) -> str:
-    """A part in words; without auxiliary runs chaos is within everything else."""
-    if name == SOIL:
-        return "soil, at least"
-    with_chaos = name == "place_and_attitude" and record.get("chaos") is None
-    return f"{PARTS[name][0]}, chaos" if with_chaos else PARTS[name][0]
-
-
-def long_part_words(record: Record, name: str) -> str:
-    """A part in words, and what everything else holds."""
-    words = part_words(record, name)
-    if name != "place_and_attitude":
-        return words
-    return f"{PARTS[name][0]} ({REMAINDER}{words.removeprefix(PARTS[name][0])})"
-
-
-def known_parts(record: Record) -> dict[str, Share]:
-    """The parts that a record has, in the order of the bar."""
-    return {name: record[name] for name in (SOIL, *PARTS) if record.get(name) is not None}
-
-
-def pieces(record: Record, colours: Mapping[str, str]) -> list[Piece]:
+def pieces(record: VarianceParts, colours: Mapping[str, str]) -> list[Piece]:
     """The pieces of one bar: of the soil each input alone, and what they do together.
 
     What inputs do alone is estimated with scatter, and drawn smaller where together it is more than the soil does.
     """
-    alone = {name: max(one["share"], 0.0) for name, one in record["soil_by_input"].items()}
-    soil, total = record[SOIL]["share"], sum(alone.values())
+    alone = {name: max(one.share, 0.0) for name, one in record.soil_by_input.items()}
+    soil, total = record.soil.share, sum(alone.values())
     scale = min(1.0, soil / total) if total > 0.0 else 0.0
     found = [Piece(name, scale * share, colours[name]) for name, share in alone.items()]
     found.append(Piece("interactions", soil - scale * total, "white", "...."))
-    return found + [
-        Piece(name, record[name]["share"], *PARTS[name][1:]) for name in PARTS if record.get(name) is not None
-    ]
+    return found + [Piece(name, one.share, *LOOKS[name]) for name, one in record.parts.items() if name in LOOKS]
 
 
-def variance_figure(shares: Mapping[str, Record | None], words: Mapping[str, str], level: float) -> Figure:
+def variance_figure(shares: Mapping[str, VarianceParts | None], words: Mapping[str, str], level: float) -> Figure:
     """Draw a bar for each output, and beside it each part with its interval.
 
     shares: by output, None where the runs cannot tell; words: title of the row of an output; level: of the intervals.
     """
     records = [record for record in shares.values() if record]
-    names = tuple(dict.fromkeys(name for record in records for name in record["soil_by_input"]))
+    names = tuple(dict.fromkeys(name for record in records for name in record.soil_by_input))
     colours, handles = input_colours(names), _handles(names, records)
     # In inches from below: the legend, the axis, a row for each output, the title.
     legend, rows = 0.1 + 0.175 * -(-len(handles) // 4), ROW_HEIGHT * len(shares)
@@ -110,14 +81,14 @@ def _row(name: str) -> str:
     return f"{shown.words}\n{shown.symbol}".strip()
 
 
-def _handles(names: Sequence[str], records: Sequence[Record]) -> list[Patch]:
+def _handles(names: Sequence[str], records: Sequence[VarianceParts]) -> list[Patch]:
     """The legend: soil inputs, then the parts that some output has."""
     colours = input_colours(tuple(names))
     handles = [Patch(facecolor=colours[name], label=input_label(name)) for name in names]
     if names:
         handles.append(Patch(facecolor="white", edgecolor=QUIET, hatch="....", label="soil inputs together"))
-    for part, (_, colour, hatch) in PARTS.items():
-        known = [record for record in records if record.get(part) is not None]
+    for part, (colour, hatch) in LOOKS.items():
+        known = [record for record in records if part in record.parts]
         if known:
             label = long_part_words(known[0], part)
             handles.append(Patch(facecolor=colour, edgecolor=QUIET if hatch else colour, hatch=hatch, label=label))
@@ -130,14 +101,7 @@ def _bar(axes: Axes, row: int, parts: Sequence[Piece]) -> None:
     for part in parts:
         edge = QUIET if part.hatch else "white"
         axes.barh(
-            row,
-            part.share,
-            left=end,
-            height=0.52,
-            color=part.colour,
-            hatch=part.hatch,
-            edgecolor=edge,
-            linewidth=0.6,
+            row, part.share, left=end, height=0.52, color=part.colour, hatch=part.hatch, edgecolor=edge, linewidth=0.6
         )
         if part.share >= ROOM:
             light = sum(
@@ -157,20 +121,18 @@ def _bar(axes: Axes, row: int, parts: Sequence[Piece]) -> None:
         end += part.share
 
 
-def _intervals(axes: Axes, row: int, record: Record) -> None:
+def _intervals(axes: Axes, row: int, record: VarianceParts) -> None:
     """One line a part: its share with its interval, and both as numbers in the margin."""
-    parts = known_parts(record)
+    parts = record.parts
     step = 0.84 / max(len(parts), 5)
     start = row - 0.5 * step * (len(parts) - 1)
     for index, (part, share) in enumerate(parts.items()):
         y = start + step * index
-        axes.plot(
-            [share["lower"], share["upper"]], [y, y], color=QUIET, linewidth=1.3, solid_capstyle="butt", clip_on=False
-        )
-        axes.plot(share["share"], y, "o", color=INK, markersize=3.6, clip_on=False)
+        axes.plot([share.lower, share.upper], [y, y], color=QUIET, linewidth=1.3, solid_capstyle="butt", clip_on=False)
+        axes.plot(share.share, y, "o", color=INK, markersize=3.6, clip_on=False)
         side = axes.get_yaxis_transform()
         axes.text(-0.04, y, part_words(record, part), transform=side, ha="right", va="center_baseline", fontsize=7.5)
-        axes.text(1.05, y, shown(share), transform=side, va="center_baseline", fontsize=7.5)
+        axes.text(1.05, y, share.words(), transform=side, va="center_baseline", fontsize=7.5)
 
 
 def _dress(axes: Axes, title: str, row_count: int) -> None:

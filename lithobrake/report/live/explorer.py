@@ -5,12 +5,12 @@ from typing import Any
 
 import numpy as np
 
-from lithobrake.report.figures.style import output
+from lithobrake.report.content import LiveSection
 from lithobrake.report.live.packed import packed, script_data
-from lithobrake.report.pages.html import LiveSection
-from lithobrake.report.pages.page_data import DrawnPage, PageData, PaperPage
+from lithobrake.report.page_data import DrawnPage, PageData, PaperPage
 from lithobrake.report.words.captions import hours, input_words, listing, thousands
 from lithobrake.report.words.drawn_answer import action, has_interval
+from lithobrake.report.words.labels import output
 from lithobrake.results import ExplorerTables, Table
 from lithobrake.vocabulary.outcomes import FlightStatus, TouchdownOutcome
 
@@ -55,7 +55,7 @@ def _fixed(data: PageData, explorer: ExplorerTables) -> str:
 
 def _moved(data: PageData, explorer: ExplorerTables) -> list[str]:
     """The inputs with sliders: those of an expansion that the screening has kept, and all of an emulator."""
-    return list(data.results.get("kept_inputs") or explorer.input_names)
+    return list(data.results.kept_inputs if isinstance(data, PaperPage) else explorer.input_names)
 
 
 def _bands(data: PaperPage | DrawnPage, explorer: ExplorerTables) -> str:
@@ -75,7 +75,7 @@ def _law(explorer: ExplorerTables) -> dict[str, np.ndarray]:
 
 def _facts(data: PaperPage | DrawnPage, explorer: ExplorerTables) -> dict[str, Any]:
     """Names, units and words beside the numbers."""
-    names, site = list(explorer.output_names), data.results["site"]
+    names, site = list(explorer.output_names), data.results.site
     units = {name: one.units for name, one in data.samples.columns.items()}
     shown = {name: output(name) for name in names if name in SHOWN}
     return {
@@ -102,10 +102,10 @@ def _facts(data: PaperPage | DrawnPage, explorer: ExplorerTables) -> dict[str, A
         "ofAll": isinstance(data, PaperPage),
         "fates": [str(fate) for fate in FlightStatus],
         "impact": list(FlightStatus).index(FlightStatus.IMPACT),
-        "holds": site["effective_acceleration_outward"] < 0.0,
+        "holds": site.holds,
         "action": action(data),
         "hours": hours(data.study["flight"]["duration"]),
-        "site": [site["latitude_deg"], site["longitude_deg"]],
+        "site": [site.latitude_deg, site.longitude_deg],
         "bedCount": explorer.group_count,
         "reach": explorer.interval_reach if has_interval(data) else None,
     }

@@ -9,12 +9,13 @@ import numpy as np
 from matplotlib.colors import LogNorm, to_rgb
 from numpy.typing import NDArray
 
+from lithobrake.report.content import LiveSection
 from lithobrake.report.figures.body_figure import BARE, colour_ends, facet_density
-from lithobrake.report.figures.scene import Scene
+from lithobrake.report.figures.hulls import Scene, scene
 from lithobrake.report.figures.style import FATE_COLOURS
 from lithobrake.report.live.packed import deflated, script_data
-from lithobrake.report.pages.html import LiveSection, number
-from lithobrake.report.pages.page_data import PageData
+from lithobrake.report.page_data import PageData
+from lithobrake.report.words.numbers import number
 from lithobrake.vocabulary.outcomes import FlightStatus
 
 Array = NDArray[np.float64]
@@ -39,16 +40,16 @@ AWAY = 4.2
 def view_sections(data: PageData) -> list[LiveSection]:
     """The landing that was kept, and the body with where landers come down, as far as there are such."""
     found = []
-    if data.landing is not None and len(data.landing.moving.time) > 1:
-        found.append(_landing(data.landing, data.shown_landing))
+    if data.landing is not None and len(data.landing.time) > 1:
+        found.append(_landing(scene(data.landing, has_lander=True), data.shown_landing))
     if len(data.facet):
         found.append(_body(data))
     return found
 
 
-def _landing(scene: Scene, which: str) -> LiveSection:
-    moving = scene.moving
-    arrays, facts = landing_arrays(scene)
+def _landing(shown: Scene, which: str) -> LiveSection:
+    moving = shown.moving
+    arrays, facts = landing_arrays(shown)
     still = moving.position[0, :-1]
     middle = 0.5 * (still.min(axis=0) + still.max(axis=0))
     radius = float(np.linalg.norm(still - middle, axis=1).max())
@@ -124,7 +125,7 @@ def _body(data: PageData) -> LiveSection:
     colours = np.where(
         density[:, None] > 0.0, matplotlib.colormaps["viridis"](LogNorm(low, high)(density))[:, :3], BARE
     )
-    site = np.array(data.results["site"]["place_m"])
+    site = np.array(data.results.site.place_m)
     longitude, latitude = np.arctan2(site[1], site[0]), np.arctan2(site[2], np.hypot(site[0], site[1]))
     arrays = {**_geometry([(vertices, faces)]), "paint": np.rint(255.0 * colours).astype(np.uint8)}
     facts: dict[str, Any] = {"bodyCount": 1, "frameCount": 1, "shades": []}

@@ -4,23 +4,23 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from lithobrake.report.content import Content, Plot
 from lithobrake.report.figures.aim_figure import aim_figure
 from lithobrake.report.figures.calibration_figure import calibration_figure
 from lithobrake.report.figures.rare_figure import rare_figure
 from lithobrake.report.figures.runs_figure import LandingsOfRuns, runs_figure
 from lithobrake.report.figures.scatter_figure import scatter_figure
-from lithobrake.report.figures.style import input_label
 from lithobrake.report.figures.variance_figure import variance_figure
 from lithobrake.report.live.explorer import explorer_sections
 from lithobrake.report.live.views import view_sections
+from lithobrake.report.page_data import DrawnPage
 from lithobrake.report.pages import shared_plots as any_study
-from lithobrake.report.pages.html import Content, Plot
-from lithobrake.report.pages.page_data import DrawnPage
 from lithobrake.report.tables.drawn_tables import colour_input, tables, tiles
-from lithobrake.report.tables.rare_tables import rare_caption
 from lithobrake.report.words import captions
 from lithobrake.report.words import drawn_captions as sequence_captions
 from lithobrake.report.words.drawn_answer import warnings
+from lithobrake.report.words.drawn_captions import rare_caption
+from lithobrake.report.words.labels import input_label
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
 from lithobrake.vocabulary.quantities import OVER_RIM
 
@@ -50,8 +50,9 @@ def _plots(data: DrawnPage) -> list[Plot]:
         Plot("body", "The same on the body", captions.body(data), lambda: any_study.draw_body(data)),
         Plot("rest", "Where it rests", captions.rest(data), lambda: any_study.draw_rest(data)),
     ]
-    if data.results["aim"]:
-        plots.append(Plot("aim", "Where to aim", words.aims(data), lambda: aim_figure(data.results["aim"])))
+    aim = data.results.aim
+    if aim is not None:
+        plots.append(Plot("aim", "Where to aim", words.aims(data, aim), lambda: aim_figure(aim)))
     if data.rare:
         plots.append(Plot("rare", "What is rare", rare_caption(data.rare), lambda: rare_figure(data.rare)))
     return plots
@@ -69,19 +70,19 @@ def _runs(data: DrawnPage) -> "Figure":
         np.nan_to_num(column["bed"]).astype(np.int64),
     )
     quantiles = {
-        name: {level: entry["value"] for level, entry in data.table("outputs", name, "quantiles").items()}
-        for name in data.results["outputs"]
+        name: {level: one.value for level, one in spread.quantiles.items()}
+        for name, spread in data.results.spreads.items()
     }
     return runs_figure(landings, quantiles)
 
 
 def _variance(data: DrawnPage) -> "Figure | None":
-    shares = data.results["variance_shares"]
+    shares = data.results.variance_shares
     return variance_figure(shares, RETURNS_ROW, data.level) if any(shares.values()) else None
 
 
 def _calibration(data: DrawnPage) -> "Figure":
-    return calibration_figure(data.results["emulator"]["scores"])
+    return calibration_figure(data.results.emulator.scores.outputs)
 
 
 def _samples(data: DrawnPage, colour: str | None) -> "Figure | None":

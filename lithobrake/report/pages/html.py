@@ -1,83 +1,17 @@
 """The page: one HTML file that needs nothing but itself."""
 
 import base64
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
 from html import escape
 from importlib.resources import files
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+from lithobrake.report.content import Content, LiveSection, PageTable, Panel, Tile
 
 # More rows or lines than this do not fit on a screen of a phone.
 LONG = 15
-# Of the largest number beside it: what the rounding of doubles may add up to over some million steps of time.
-ROUNDING = 1e-9
 # What every page can do; sections bring scripts of their own. Each is a file beside this one.
 SCRIPT = "pages/page.js"
 NO_SCRIPT = '<noscript><p class="warning">What follows needs JavaScript, which does not run here.</p></noscript>\n'
-
-
-@dataclass(frozen=True)
-class Panel:
-    """A figure of the page: title, one sentence that says what it shows, and the picture (PNG) if there is one."""
-
-    title: str
-    sentence: str
-    picture: bytes | None
-
-
-@dataclass(frozen=True)
-class Plot:
-    """A figure that is still to be drawn: name of its file, title, sentence, and what draws it, or None."""
-
-    name: str
-    title: str
-    sentence: str
-    draw: Callable[[], "Figure | None"]
-
-
-@dataclass(frozen=True)
-class Tile:
-    """One of the few numbers that a reader takes away."""
-
-    value: str
-    unit: str
-    words: str
-
-
-@dataclass(frozen=True)
-class PageTable:
-    """A table of the page; a column whose name stands in `numbers` is set to the right, a cell in `links` is one."""
-
-    title: str
-    columns: Sequence[str]
-    rows: Sequence[Sequence[str]]
-    note: str = ""
-    numbers: frozenset[str] = field(default_factory=frozenset)
-    links: Mapping[str, str] = field(default_factory=dict)
-
-
-@dataclass(frozen=True)
-class LiveSection:
-    """A part of the page that a reader moves, as HTML, under a heading that others may share, and its scripts."""
-
-    heading: str
-    html: str
-    scripts: tuple[str, ...]
-
-
-@dataclass(frozen=True)
-class Content:
-    """What a page says of its study: the answer, what to beware of in sentences, and what stands below."""
-
-    answer: str
-    warnings: Sequence[str]
-    tiles: Sequence[Tile]
-    plots: Sequence[Plot]
-    tables: Sequence[PageTable]
-    live: Sequence[LiveSection] = ()
 
 
 def _header(title: str, content: Content, facts: str) -> str:
@@ -91,12 +25,7 @@ def _header(title: str, content: Content, facts: str) -> str:
 
 
 def page(
-    title: str,
-    facts: str,
-    content: Content,
-    panels: Sequence[Panel],
-    provenance: Sequence[PageTable],
-    study_text: str,
+    title: str, facts: str, content: Content, panels: Sequence[Panel], provenance: Sequence[PageTable], study_text: str
 ) -> str:
     """Put the page together, with the panels that the plots of the content gave; all words are plain text and are
     escaped here.
@@ -199,66 +128,3 @@ def _folding(title: str, length: int, unit: str, content: str) -> str:
     count = f" <small>{length} {unit}</small>" if is_long else ""
     opening = "<details>" if is_long else "<details open>"
     return f"{opening}<summary><h3>{escape(title)}{count}</h3></summary>{content}</details>\n"
-
-
-def flat(tree: Mapping[str, object], prefix: str = "", alike: Sequence[Sequence[str]] = ()) -> list[tuple[str, str]]:
-    """A nested mapping as rows (dotted name, value in words), in its own order; alike: names that share one scale."""
-    scales = {name: largest([tree.get(one) for one in names]) for names in alike for name in names}
-    rows: list[tuple[str, str]] = []
-    for name, value in tree.items():
-        key = f"{prefix}.{name}" if prefix else str(name)
-        if isinstance(value, Mapping):
-            rows += flat(value, key)
-        else:
-            rows.append((key, show(value, scales.get(name, 0.0))))
-    return rows
-
-
-def show(value: object, scale: float = 0.0) -> str:
-    """A value of a results file in words: numbers to four digits, lists in one line and of one scale."""
-    if isinstance(value, bool) or value is None:
-        return {True: "yes", False: "no", None: "none"}[value]
-    if isinstance(value, float):
-        return number(value, 4, scale=scale)
-    if isinstance(value, list | tuple):
-        scale = max(scale, largest(value))
-        return ", ".join(show(entry, scale) for entry in value)
-    return str(value)
-
-
-def largest(value: object) -> float:
-    """The largest magnitude among the numbers of a value of a results file; 0 where it has none."""
-    if isinstance(value, list | tuple):
-        return max(map(largest, value), default=0.0)
-    return abs(value) if isinstance(value, int | float) else 0.0
-
-
-def unit_scales(numbers: Iterable[tuple[str, float]]) -> dict[str, float]:
-    """The largest magnitude of each unit among the numbers (unit, value) of a table."""
-    scales: dict[str, float] = {}
-    for unit, value in numbers:
-        scales[unit] = max(scales.get(unit, 0.0), abs(value))
-    return scales
-
-
-def fixed(value: float, digits: int = 2) -> str:
-    """A number to some digits behind the point, without a sign when they are all zeros."""
-    text = f"{value:.{digits}f}"
-    return text if float(text) else text.removeprefix("-")
-
-
-def number(value: float, digits: int = 3, *, zeros: bool = False, scale: float = 0.0) -> str:
-    """A number to some digits, very large and very small ones with a power of ten; zeros: keep those at the end.
-
-    scale: the largest magnitude of what it stands beside; what is rounding next to that is shown as 0.
-    """
-    if abs(value) <= ROUNDING * scale:
-        return "0"
-    if value == 0 or 1e-3 <= abs(value) < 1e5:
-        text = f"{value:#.{digits}g}" if zeros else f"{value:.{digits}g}"
-        return f"{value:.0f}" if "e" in text else text.removesuffix(".")
-    mantissa, exponent = f"{value:.{digits - 1}e}".split("e")
-    if not zeros and "." in mantissa:
-        mantissa = mantissa.rstrip("0").removesuffix(".")
-    raised = str(int(exponent)).translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))
-    return f"{mantissa} × 10{raised}"

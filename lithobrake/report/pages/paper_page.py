@@ -4,18 +4,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from lithobrake.report.content import Content, Plot
 from lithobrake.report.figures.count_figure import Design, count_figure
 from lithobrake.report.figures.error_figure import error_figure
 from lithobrake.report.figures.scatter_figure import scatter_figure
 from lithobrake.report.figures.sobol_figure import sobol_figure
-from lithobrake.report.figures.style import PAPER_OUTPUTS, input_label
 from lithobrake.report.live.explorer import explorer_sections
 from lithobrake.report.live.views import view_sections
+from lithobrake.report.page_data import PaperPage
 from lithobrake.report.pages import shared_plots as any_study
-from lithobrake.report.pages.html import Content, Plot
-from lithobrake.report.pages.page_data import PaperPage
 from lithobrake.report.tables.paper_tables import tables, tiles
 from lithobrake.report.words import captions
+from lithobrake.report.words.labels import PAPER_OUTPUTS, input_label
 from lithobrake.results.telling_numbers import TellingNumbers
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
 
@@ -45,28 +45,22 @@ def _plots(data: PaperPage) -> list[Plot]:
 
 
 def _counts(data: PaperPage) -> "Figure":
-    table, results, design = data.results["node_counts"], data.results, data.study["design"]
+    table, results, design = data.results.node_counts, data.results, data.study["design"]
     measure = "level" if design["points"] == "smolyak" else "degree"
     designs = [
-        Design(
-            name,
-            len(results[name]["inputs"]),
-            design[f"{name}_{measure}"],
-            results["designs"][name]["run_count"],
-            measure,
-        )
-        for name in ("screening", "refined")
+        Design(name, len(expansion.inputs), design[f"{name}_{measure}"], results.designs[name].run_count, measure)
+        for name, expansion in (("screening", results.screening), ("refined", results.refined))
     ]
-    tensor, smolyak = np.array(table["tensor"], dtype=float), np.array(table["smolyak"], dtype=float)
-    return count_figure(table["input_counts"], table["levels"], tensor, smolyak, designs)
+    tensor, smolyak = np.array(table.tensor, dtype=float), np.array(table.smolyak, dtype=float)
+    return count_figure(table.input_counts, table.levels, tensor, smolyak, designs)
 
 
 def _sobol(data: PaperPage) -> "Figure":
-    screening = data.results["screening"]
-    names = tuple(screening["inputs"])
-    first = {output: np.array([screening["sobol_first"][output][name] for name in names]) for output in PAPER_OUTPUTS}
-    scatter = {output: screening["fits"][output]["noise_share"] for output in PAPER_OUTPUTS}
-    return sobol_figure(names, first, screening["std"], scatter)
+    screening = data.results.screening
+    names = tuple(screening.inputs)
+    first = {output: np.array([screening.sobol_first[output][name] for name in names]) for output in PAPER_OUTPUTS}
+    scatter = {output: screening.fits[output].noise_share for output in PAPER_OUTPUTS}
+    return sobol_figure(names, first, screening.std, scatter)
 
 
 def _errors(data: PaperPage) -> "Figure":

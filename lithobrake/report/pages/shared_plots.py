@@ -1,19 +1,20 @@
 """Figures that the page of any study has: the surface, a landing, where landers come down and where they rest."""
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from lithobrake.report.figures.bed_figure import bed_figure
 from lithobrake.report.figures.body_figure import body_figure
+from lithobrake.report.figures.hulls import scene
 from lithobrake.report.figures.landing_figure import landing_figure
 from lithobrake.report.figures.map_figure import Share, map_figure
 from lithobrake.report.figures.rest_figure import RestMap, rest_figure
 from lithobrake.report.figures.style import FATE_COLOURS
-from lithobrake.report.pages.page_data import PageData, PaperPage
+from lithobrake.report.page_data import PageData, PaperPage
 from lithobrake.report.tables.dispersion_tables import GROUND_WORDS, followed, parts
 from lithobrake.report.words.captions import hours, thousands
+from lithobrake.results.shares import CountedShare
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus
 
 if TYPE_CHECKING:
@@ -41,60 +42,68 @@ SHORT_JOURNEY_WORDS = {
 def draw_bed(data: PageData) -> "Figure | None":
     if data.bed is None:
         return None
-    moving, first = data.bed.moving, data.results["beds"][0]
+    moving, first = data.bed, data.results.beds[0]
     width = tuple(data.study["bed"]["width"])
     return bed_figure(
-        *(data.bed.bodies, moving.time, moving.position, moving.orientation),
-        *(width, first["surface_height_m"], moving.history),
+        *(scene(moving, has_lander=False).bodies, moving.time, moving.position, moving.orientation),
+        *(width, first.surface_height_m, moving.history),
     )
 
 
 def draw_landing(data: PageData) -> "Figure | None":
     if data.landing is None:
         return None
-    moving, width = data.landing.moving, tuple(data.study["bed"]["width"])
-    return landing_figure(data.landing.bodies, moving.time, moving.position, moving.orientation, width)
+    moving, width = data.landing, tuple(data.study["bed"]["width"])
+    return landing_figure(
+        scene(moving, has_lander=True).bodies, moving.time, moving.position, moving.orientation, width
+    )
 
 
 def draw_map(data: PageData) -> "Figure":
-    table, site, limit = data.results["shares"], data.results["site"], hours(data.study["flight"]["duration"])
+    table, site, limit = data.results.shares, data.results.site, hours(data.study["flight"]["duration"])
     words = {key: SHORT_OUTCOME_WORDS.get(key, long).format(hours=limit) for key, long in parts(data).items()}
-    shares = [_share(data, key, short, table[key]) for key, short in words.items()]
-    where = (site["latitude_deg"], site["longitude_deg"])
-    ellipses = data.results["ellipses"]
+    shares = [_share(data, key, short, table.outcomes[key]) for key, short in words.items()]
+    where = (site.latitude_deg, site.longitude_deg)
+    ellipses = data.results.ellipses
     return map_figure(data.latitude, data.longitude, where, shares, data.body_vertices, ellipses, _whole(data))
 
 
-def _share(data: PageData, fate: str, words: str, entry: Mapping[str, Any]) -> Share:
+def _share(data: PageData, fate: str, words: str, entry: CountedShare) -> Share:
     """A share of the summary, with its interval or its limit where it has one."""
-    limit = entry.get("upper_limit")
-    lower, upper = (entry["lower"], entry["upper"]) if limit is None else (None, limit)
-    return Share(words, entry["share"], lower, upper, data.level, FATE_COLOURS[fate], data.digits)
+    limit = entry.upper_limit
+    lower, upper = (entry.lower, entry.upper) if limit is None else (None, limit)
+    return Share(words, entry.share, lower, upper, data.level, FATE_COLOURS[fate], data.digits)
 
 
 def _whole(data: PageData) -> str:
     """What the shares of the flights are shares of."""
     if not isinstance(data, PaperPage):
         return "all landings"
-    looked_at, count = (data.results[table]["sample_count"] for table in ("shares", "monte_carlo"))
+    looked_at, count = data.results.shares.sample_count, data.results.monte_carlo.sample_count
     words = f"{thousands(looked_at)} samples"
     return f"all {words}" if looked_at == count else f"the {words} up to the last that was flown"
 
 
 def draw_body(data: PageData) -> "Figure":
-    return body_figure(data.body_vertices, data.body_faces, data.facet, np.array(data.results["site"]["place_m"]))
+    return body_figure(data.body_vertices, data.body_faces, data.facet, np.array(data.results.site.place_m))
 
 
 def draw_rest(data: PageData) -> "Figure":
-    found, site, limit = followed(data), data.results["site"], hours(data.study["rest"]["duration"])
+    found, site, limit = followed(data), data.results.site, hours(data.study["rest"]["duration"])
     # The same statuses on both sides, so that rows and colours match.
-    met = {key: words for key, words in SHORT_JOURNEY_WORDS.items() if any(one[key]["count"] for one in found.values())}
+    met = {
+        key: words
+        for key, words in SHORT_JOURNEY_WORDS.items()
+        if any(one.outcomes[key].count for one in found.values())
+    }
     maps = []
     for ground, (latitude, longitude) in data.rest.items():
         table = found.get(ground)
-        shares = [_share(data, key, words.format(hours=limit), table[key]) for key, words in met.items() if table]
-        absent = None if table else f"Not asked: {data.results['rest']['why_no_soil']}."
-        ellipses = table["ellipses"] if table else None
-        whole = f"the {table['sample_count']} followed" if table else ""
+        shares = [
+            _share(data, key, words.format(hours=limit), table.outcomes[key]) for key, words in met.items() if table
+        ]
+        absent = None if table else f"Not asked: {data.results.rest.why_no_soil}."
+        ellipses = table.ellipses if table else None
+        whole = f"the {table.sample_count} followed" if table else ""
         maps.append(RestMap(f"On {GROUND_WORDS[ground]}", latitude, longitude, ellipses, shares, absent, whole))
-    return rest_figure(maps, (site["latitude_deg"], site["longitude_deg"]), data.body_vertices)
+    return rest_figure(maps, (site.latitude_deg, site.longitude_deg), data.body_vertices)

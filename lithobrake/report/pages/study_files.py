@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from urllib.parse import quote
 
-from lithobrake.report.pages.html import PageTable
+from lithobrake.report.content import PageTable
 
 CONTENTS = {
     "study.toml": "the study as it was asked",

@@ -3,10 +3,14 @@
 from collections.abc import Mapping
 from typing import Any
 
-from lithobrake.report.figures.ellipse_line import follows_gaussian
-from lithobrake.report.pages.html import PageTable, fixed, flat, number
-from lithobrake.report.pages.page_data import PageData, PaperPage
+from lithobrake.report.content import PageTable
+from lithobrake.report.page_data import DrawnPage, PageData, PaperPage
 from lithobrake.report.words.captions import hours, thousands
+from lithobrake.report.words.chance import follows_gaussian
+from lithobrake.report.words.numbers import fixed, flat, number
+from lithobrake.results.dispersion import GroundResults, ImpactNumber
+from lithobrake.results.json_values import to_json
+from lithobrake.results.shares import CountedShare, EmulatorShares
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus, SampleOutcome
 from lithobrake.vocabulary.percentages import percent, with_interval
 
@@ -46,11 +50,11 @@ def outcome_words(data: PageData) -> dict[str, str]:
 
     So is the return fraction where the ground holds nothing: it is then the share of those that impact again.
     """
-    site, known = data.results["site"], data.results["shares"]
-    absent: set[str] = set() if site["partner"] else {FlightStatus.PARTNER}
-    if site["effective_acceleration_outward"] >= 0.0:
+    site, known = data.results.site, data.results.shares
+    absent: set[str] = set() if site.partner else {FlightStatus.PARTNER}
+    if not site.holds:
         absent.add("returns")
-    return {key: text for key, text in OUTCOME_WORDS.items() if key in known and key not in absent}
+    return {key: text for key, text in OUTCOME_WORDS.items() if key in known.outcomes and key not in absent}
 
 
 def parts(data: PageData) -> dict[str, str]:
@@ -66,108 +70,103 @@ def dispersion_tables(data: PageData) -> list[PageTable]:
 
 
 def _outcomes(data: PageData) -> PageTable:
-    return _outcomes_of_samples(data) if isinstance(data, PaperPage) else _outcomes_of_landings(data)
+    return _outcomes_of_landings(data) if isinstance(data, DrawnPage) else _outcomes_of_samples(data)
 
 
-def _outcomes_of_landings(data: PageData) -> PageTable:
+def _outcomes_of_landings(data: DrawnPage) -> PageTable:
     """Outcomes of the runs of a drawn study, beside what the emulator gives."""
-    shares, limit = data.results["shares"], hours(data.study["flight"]["duration"])
+    shares, limit = data.results.shares, hours(data.study["flight"]["duration"])
     level = percent(data.level)
     columns = ["outcome", f"share of the landings ({level} interval)", f"by the {data.model}"]
     known, whole = outcome_words(data), parts(data)
     shown = whole | {key: known[key] for key in SUMS if key in known}
-    shown |= {key: f"(of these: {known[key]})" for key in LOST if key in known and shares[key]["count"]}
+    shown |= {key: f"(of these: {known[key]})" for key in LOST if key in known and shares.outcomes[key].count}
     rows = [
-        [words.format(hours=limit), with_interval(shares[key]), _by_emulator(shares["emulator"], key)]
+        [words.format(hours=limit), with_interval(shares.outcomes[key]), _by_emulator(shares.emulator, key)]
         for key, words in shown.items()
     ]
     note = (
-        f"Of all landings, by {thousands(shares['flight_count'])} flights of the runs themselves; the first "
-        f"{len(whole)} rows add up to 100 %. In the last column {thousands(shares['emulator']['flight_count'])} flown "
+        f"Of all landings, by {thousands(shares.flight_count)} flights of the runs themselves; the first "
+        f"{len(whole)} rows add up to 100 %. In the last column {thousands(shares.emulator.flight_count)} flown "
         f"samples of the {data.model}."
     )
-    if shares["missing"]["count"]:
+    if shares.outcomes["missing"].count:
         note += (
             " Landings of unknown outcome count as like those that left in flight across the edge of the bed, and "
             "every interval covers whatever became of them."
         )
-    note += f" {shares['why']}" if shares["why"] else ""
+    note += f" {shares.why}" if shares.why else ""
     return PageTable("After the first bounce", columns, rows, note, frozenset(columns[1:]))
 
 
-def _by_emulator(shares: Mapping[str, Any], key: str) -> str:
+def _by_emulator(shares: EmulatorShares, key: str) -> str:
     """A share of the samples: unknown outcomes are shares of all, the others of those with an outcome, as by runs."""
-    if key not in shares:
+    if key not in shares.outcomes:
         return ""
-    known = shares["sample_count"] - shares["missing"]["count"]
-    total = shares["sample_count"] if key in (*LOST, "missing") else known
-    return percent(shares[key]["count"] / total) if total else ""
+    known = shares.sample_count - shares.outcomes["missing"].count
+    total = shares.sample_count if key in (*LOST, "missing") else known
+    return percent(shares.outcomes[key].count / total) if total else ""
 
 
-def _outcomes_of_samples(data: PaperPage) -> PageTable:
+def _outcomes_of_samples(data: PageData) -> PageTable:
     """Outcomes of the samples of an expansion, which have no interval."""
-    shares, limit = data.results["shares"], hours(data.study["flight"]["duration"])
-    alone = data.results["without_scatter"]
+    shares, limit = data.results.shares, hours(data.study["flight"]["duration"])
+    alone = data.results.without_scatter
     columns = ["outcome", "samples", "share", *(["without scatter"] if alone else [])]
     rows = []
     for key, words in outcome_words(data).items():
-        row = [words.format(hours=limit), str(shares[key]["count"]), _share(shares[key], data.digits)]
-        rows.append(row + ([_share(alone["shares"][key], data.digits)] if alone else []))
-    note = f"Shares of {shares['sample_count']} samples; {shares['flight_count']} of them were flown. {shares['why']}"
-    if any(_is_unmet(shares[key]) for key in outcome_words(data)):
+        row = [words.format(hours=limit), str(shares.outcomes[key].count), _share(shares.outcomes[key], data.digits)]
+        rows.append(row + ([_share(alone.shares.outcomes[key], data.digits)] if alone else []))
+    note = f"Shares of {shares.sample_count} samples; {shares.flight_count} of them were flown. {shares.why}"
+    if any(shares.outcomes[key].upper_limit is not None for key in outcome_words(data)):
         note += f' "At most": no run ended so, which such a probability allows ({percent(data.level)}).'
     if alone:
         note += (
             " The first shares have the scatter from run to run; without it stand those of the expansion alone, of "
-            f"{alone['shares']['sample_count']} samples."
+            f"{alone.shares.sample_count} samples."
         )
     return PageTable("After the first bounce", columns, rows, note, frozenset(columns[1:]))
 
 
-def _share(entry: Mapping[str, Any], alone: int) -> str:
+def _share(entry: CountedShare, alone: int) -> str:
     """A share, with its interval if it has one, or the largest that an outcome may have which no run had."""
-    return f"at most {percent(entry['upper_limit'], 1)}" if _is_unmet(entry) else with_interval(entry, alone)
-
-
-def _is_unmet(entry: Mapping[str, Any]) -> bool:
-    """Whether no run had an outcome, so that only a limit of its share is known."""
-    return entry.get("upper_limit") is not None
+    return with_interval(entry, alone) if entry.upper_limit is None else f"at most {percent(entry.upper_limit, 1)}"
 
 
 def _flights(data: PageData) -> PageTable:
     """Times, speeds and incidences of the impacts, and how exact the flights are."""
-    flights, words = data.results["flights"], {"time_s": "time of flight [s]", "impact_speed": "impact speed [m/s]"}
+    flights, words = data.results.flights, {"time_s": "time of flight [s]", "impact_speed": "impact speed [m/s]"}
     words |= {"impact_incidence_deg": "incidence at the impact, from the normal [deg]"}
     columns = ["flights that impact the surface again", "5 %", "median", "95 %"]
-    rows = [[words[key], *(_with_ends(flights[key], level) for level in QUANTILES)] for key in words if key in flights]
-    error, drift = flights.get("gravity_table_error"), flights.get("jacobi_drift_largest_m2_s2")
-    whose = next((f"Of {flights[key]['of']}. " for key in words if key in flights and "of" in flights[key]), "")
+    known = flights.impacts.known
+    rows = [[words[key], *(_with_ends(one, level) for level in QUANTILES)] for key, one in known.items()]
+    checks, error = flights.checks, flights.checks.gravity_table_error
+    whose = next((f"Of {one.of}. " for one in known.values() if one.of), "")
     note = f"{whose}Gravity is summed over the facets."
     if error:
         note = (
-            f"{whose}Gravity is read from a table, {number(error['median'], 2)} of the surface gravity off the sum "
-            f"over the facets in the median, {number(error['p95'], 2)} at the 95th percentile of "
-            f"{error['point_count']} points."
+            f"{whose}Gravity is read from a table, {number(error.median, 2)} of the surface gravity off the sum "
+            f"over the facets in the median, {number(error.p95, 2)} at the 95th percentile of "
+            f"{error.point_count} points."
         )
-    if drift is not None:
+    if checks.jacobi_drift_largest_m2_s2 is not None:
         note += (
-            f" The Jacobi constant of {flights['jacobi_flight_count']} flights changes by {number(drift, 2)} m2/s2 at "
-            "most, without the partner."
+            f" The Jacobi constant of {checks.jacobi_flight_count} flights changes by "
+            f"{number(checks.jacobi_drift_largest_m2_s2, 2)} m2/s2 at most, without the partner."
         )
     return PageTable("The flights to the next impact", columns, rows, note, frozenset(columns[1:]))
 
 
-def _with_ends(entry: Mapping[str, Any], level: str) -> str:
+def _with_ends(entry: ImpactNumber, level: str) -> str:
     """A quantile, with its interval where it has one."""
-    ends = (entry.get("intervals") or {}).get(level)
-    shown = number(entry[level])
+    ends = (entry.intervals or {}).get(level)
+    shown = number(entry.quantiles[level])
     return shown if ends is None else f"{shown} ({number(ends[0])} to {number(ends[1])})"
 
 
-def followed(data: PageData) -> dict[str, Mapping[str, Any]]:
+def followed(data: PageData) -> dict[str, GroundResults]:
     """The grounds on which samples were followed, with what became of them."""
-    rest = data.results["rest"]
-    return {ground: rest[ground] for ground in GROUND_WORDS if rest[ground]}
+    return data.results.rest.grounds
 
 
 def _statuses(data: PageData) -> PageTable:
@@ -175,16 +174,16 @@ def _statuses(data: PageData) -> PageTable:
     columns = ["after all bounces", *(GROUND_WORDS[ground] for ground in found)]
     rows = []
     for key, words in JOURNEY_WORDS.items():
-        if any(table[key]["count"] for table in found.values()):
+        if any(table.counts[key].count for table in found.values()):
             rows.append(
                 [
                     words.format(hours=limit, model=data.model),
-                    *(_share(table[key], data.digits) for table in found.values()),
+                    *(_share(table.counts[key], data.digits) for table in found.values()),
                 ]
             )
-    of = "; ".join(f"{GROUND_WORDS[ground]}: {table['of']}" for ground, table in found.items())
+    of = "; ".join(f"{GROUND_WORDS[ground]}: {table.of}" for ground, table in found.items())
     note = f"From the first impact. {of[:1].upper()}{of[1:]}."
-    why = data.results["rest"]["why_no_soil"]
+    why = data.results.rest.why_no_soil
     note += f" The soil could not be asked: {why}." if why else ""
     return PageTable("From bounce to bounce", columns, rows, note, frozenset(columns[1:]))
 
@@ -194,10 +193,10 @@ def _journeys(data: PageData) -> PageTable:
     words = {"time_s": "time to rest [s]", "rebounds": "rebounds", "path_length": "path [m]"}
     words |= {"slid_length": "slid along the ground [m]", "slid_time_s": "time of that [s]"}
     rows = [
-        [words[key], GROUND_WORDS[ground], *(number(table[key][level]) for level in QUANTILES)]
+        [words[key], GROUND_WORDS[ground], *(number(table.quantiles[key][level]) for level in QUANTILES)]
         for key in words
         for ground, table in followed(data).items()
-        if key in table
+        if key in table.quantiles
     ]
     rest = data.study["rest"]
     note = (
@@ -220,21 +219,23 @@ def _sliding(rest: Mapping[str, Any]) -> str:
 
 def _ellipses(data: PageData) -> PageTable:
     columns = ["places", "share inside", "latitude [deg]", "longitude [deg]", "semi-axes [m]", "heading [deg]", "shape"]
-    sets = {"next impact": (data.results["ellipses"], len(data.facet))}
-    if data.results["without_scatter"]:
-        alone = data.results["without_scatter"]
-        sets["next impact, without scatter"] = (alone["ellipses"], alone["shares"][FlightStatus.IMPACT]["count"])
+    sets = {"next impact": (data.results.ellipses, len(data.facet))}
+    if data.results.without_scatter:
+        alone = data.results.without_scatter
+        sets["next impact, without scatter"] = (alone.ellipses, alone.shares.outcomes[FlightStatus.IMPACT].count)
     sets |= {
-        f"at rest, {GROUND_WORDS[ground]}": (table["ellipses"], table[JourneyStatus.SETTLED]["count"])
+        f"at rest, {GROUND_WORDS[ground]}": (table.ellipses, table.outcomes[JourneyStatus.SETTLED].count)
         for ground, table in followed(data).items()
     }
     rows = []
     for name, (found, count) in sets.items():
         shape = "as Gaussian" if follows_gaussian(found, count) else "not Gaussian"
-        for entry in found["shares"] if found else ():
-            axes = " x ".join(number(axis) for axis in entry["semi_axes_m"])
-            middle = [fixed(found[key]) for key in ("latitude_deg", "longitude_deg")]
-            rows.append([name, percent(entry["share"]), *middle, axes, f"{found['heading_deg']:.1f}", shape])
+        if found is None:
+            continue
+        for entry in found.shares:
+            axes = " x ".join(number(axis) for axis in entry.semi_axes_m)
+            middle = [fixed(found.latitude_deg), fixed(found.longitude_deg)]
+            rows.append([name, percent(entry.share), *middle, axes, f"{found.heading_deg:.1f}", shape])
     note = (
         "Each holds that share of the places, which need follow no law; the heading is that of the longer axis, from "
         "north toward east. Not Gaussian: the sizes of both differ from those of a Gaussian law by more than chance, "
@@ -244,5 +245,5 @@ def _ellipses(data: PageData) -> PageTable:
 
 
 def _site(data: PageData) -> PageTable:
-    rows = flat(data.results["site"], alike=(("extents_m", "centroid_m", "place_m"), ACCELERATIONS))
+    rows = flat(to_json(data.results.site), alike=(("extents_m", "centroid_m", "place_m"), ACCELERATIONS))
     return PageTable("Site and body", ["name", "value"], rows, "m, kg, s, m/s2; degrees where named.")

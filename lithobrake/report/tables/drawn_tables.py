@@ -1,18 +1,17 @@
 """The tables and the first numbers of the page of a sequence."""
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
-from lithobrake.report.figures.style import output
-from lithobrake.report.figures.variance_figure import PARTS, SOIL, long_part_words
-from lithobrake.report.pages.html import PageTable, Tile, number
-from lithobrake.report.pages.page_data import DrawnPage
+from lithobrake.report.content import PageTable, Tile
+from lithobrake.report.page_data import DrawnPage
 from lithobrake.report.tables.dispersion_tables import GROUND_WORDS, dispersion_tables, followed
 from lithobrake.report.tables.limit_state_tables import limit_state_tables
-from lithobrake.report.tables.paper_tables import INPUT_COLUMNS, beds_table, input_cells, table_cell, touchdowns_table
+from lithobrake.report.tables.paper_tables import INPUT_COLUMNS, beds_table, input_cells, touchdowns_table
 from lithobrake.report.tables.rare_tables import rare_tables
 from lithobrake.report.words.captions import hours, input_words
+from lithobrake.report.words.chance import BAND
 from lithobrake.report.words.drawn_answer import (
     action,
     as_sentence,
@@ -24,8 +23,12 @@ from lithobrake.report.words.drawn_answer import (
     outcome_label,
 )
 from lithobrake.report.words.drawn_captions import RETURNS, sign
+from lithobrake.report.words.labels import PART_WORDS, long_part_words, output
+from lithobrake.report.words.numbers import number, table_cell
+from lithobrake.results.run_results import SideRuns, VarianceParts
+from lithobrake.results.shares import Estimate
 from lithobrake.vocabulary.outcomes import JourneyStatus, TouchdownOutcome
-from lithobrake.vocabulary.percentages import interval_digits, part, percent, span, with_interval
+from lithobrake.vocabulary.percentages import interval_digits, percent, span, with_interval
 
 CENTIMETRES = 100.0
 LEVELS = {"0.05": "5 %", "0.5": "median", "0.95": "95 %"}
@@ -33,32 +36,32 @@ LEVELS = {"0.05": "5 %", "0.5": "median", "0.95": "95 %"}
 
 def tiles(data: DrawnPage) -> list[Tile]:
     """The return fraction, and the most informative numbers beside it."""
-    results, returns = data.results, data.results["returns"]
-    digits = interval_digits(returns["lower"], returns["upper"])
+    results, returns = data.results, data.results.returns
+    digits = interval_digits(returns.lower, returns.upper)
     alone = "of these landings, without an interval: other beds, impact points or attitudes give another figure"
     sure = f"({interval(returns, data.level)})" if has_interval(data) else alone
-    share = percent(returns["share"], digits).removesuffix(" %")
+    share = percent(returns.share, digits).removesuffix(" %")
     found = [Tile(share, "%", f"of the landings {action(data)} {sure}"), *_at_rest(data)]
-    median = data.table("outputs", "speed_out", "quantiles").get("0.5")
-    if median:
+    if "speed_out" in results.spreads:
+        median = results.spreads["speed_out"].quantiles["0.5"]
         words = "rebound speed, median of those that leave"
-        if median["lower"] is not None:
-            ends = " to ".join(number(CENTIMETRES * median[end]) for end in ("lower", "upper"))
+        if median.lower is not None and median.upper is not None:
+            ends = " to ".join(number(CENTIMETRES * end) for end in (median.lower, median.upper))
             words += f" ({percent(data.level)} interval {ends})"
-        found.append(Tile(number(CENTIMETRES * median["value"]), "cm/s", words))
-    runs = results["runs"]
-    left = runs["outcomes"].get(TouchdownOutcome.CLEAR, 0)
-    beds = f", on {runs['beds']} beds" if runs["beds"] > 1 else ", all on one bed"
-    found.append(Tile(str(left), f"of {runs['count']}", f"landings left the surface{beds}"))
-    soil = data.table("variance_shares", "speed_out").get(SOIL)
-    if soil:
-        value, _, unit = part(soil).partition(" (")[0].partition(" %")
+        found.append(Tile(number(CENTIMETRES * median.value), "cm/s", words))
+    runs = results.runs
+    left = runs.outcomes.get(TouchdownOutcome.CLEAR, 0)
+    beds = f", on {runs.beds} beds" if runs.beds > 1 else ", all on one bed"
+    found.append(Tile(str(left), f"of {runs.count}", f"landings left the surface{beds}"))
+    parts = results.variance_shares["speed_out"]
+    if parts is not None:
+        value, _, unit = parts.soil.words().partition(" (")[0].partition(" %")
         words = "at least of the variance of the rebound speed is explained by soil"
-        found.append(Tile(value, "%" if value[0].isdigit() else unit, f"{words} ({interval(soil, data.level)})"))
-    band = results["emulator"]["scores"].get("speed_out")
+        found.append(Tile(value, "%" if value[0].isdigit() else unit, f"{words} ({interval(parts.soil, data.level)})"))
+    band = results.emulator.scores.outputs.get("speed_out")
     if band:
-        words = f"of the rebound speeds on {left_out(data)} lay within the 90 % bands of the emulator"
-        found.append(Tile(percent(band["band_90"]).removesuffix(" %"), "%", words))
+        words = f"of the rebound speeds on {left_out(data)} lay within the {percent(BAND)} bands of the emulator"
+        found.append(Tile(percent(band.band_90).removesuffix(" %"), "%", words))
     return found
 
 
@@ -66,8 +69,8 @@ def _at_rest(data: DrawnPage) -> list[Tile]:
     """Which landers come to rest after all bounces, on the soil or else on hard ground; none where it was not asked."""
     found, limit = followed(data), hours(data.study["rest"]["duration"])
     for ground, table in found.items():
-        share, _, ends = with_interval(table[JourneyStatus.SETTLED]).partition(" %")
-        unknown = table[JourneyStatus.OUTSIDE]["share"]
+        share, _, ends = with_interval(table.outcomes[JourneyStatus.SETTLED]).partition(" %")
+        unknown = table.outcomes[JourneyStatus.OUTSIDE].share
         lost = f"; outcome of {percent(unknown)} unknown" if unknown > 0.0 else ""
         return [Tile(share, "%", f"at rest within {limit}, bounce after bounce on {GROUND_WORDS[ground]}{ends}{lost}")]
     return []
@@ -79,27 +82,26 @@ def tables(data: DrawnPage) -> list[PageTable]:
         _answer, _inputs, _outputs, _directions, _variance, _runs, _emulator, beds_table, touchdowns_table
     )  # fmt: skip
     found = [table for table in (make(data) for make in made) if table.rows]
-    side = [_side_runs(data)] if data.results["runs"]["side_runs"] else []
-    return [*found, *side, *limit_state_tables(data), *rare_tables(data.rare), *dispersion_tables(data)]
+    side = data.results.runs.side_runs
+    beside = [_side_runs(data, side)] if side else []
+    return [*found, *beside, *limit_state_tables(data), *rare_tables(data.rare), *dispersion_tables(data)]
 
 
 def _answer(data: DrawnPage) -> PageTable:
-    returns, missing = data.results["returns"], data.results["runs"]["missing"]["count"]
-    digits = interval_digits(returns["lower"], returns["upper"])
-    rows = [[f"return fraction: landings that {action(data)}", percent(returns["share"], digits)]]
-    if has_interval(data):
+    returns, missing = data.results.returns, data.results.runs.missing.count
+    digits = interval_digits(returns.lower, returns.upper)
+    rows = [[f"return fraction: landings that {action(data)}", percent(returns.share, digits)]]
+    if returns.lower is not None and returns.upper is not None:
         held = f"{percent(data.level)} interval"
-        rows.append([held, span(returns["lower"], returns["upper"])])
-    if returns["next_bed"] is not None:
-        rows.append([f"prediction interval for a new bed{_bed_size(data)}", span(*returns["next_bed"])])
+        rows.append([held, span(returns.lower, returns.upper)])
+    if returns.next_bed is not None:
+        rows.append([f"prediction interval for a new bed{_bed_size(data)}", span(*returns.next_bed)])
     if missing:
-        rows.append(
-            [f"if none or all of the {missing} landings of unknown outcome return", span(*returns["if_missing"])]
-        )
-    if returns["emulator"] is not None:
-        rows.append(["return fraction by the emulator", percent(returns["emulator"], digits)])
-    rows.append(["from", returns["from"]])
-    note = as_sentence(returns["why"]) if returns["why"] else ""
+        rows.append([f"if none or all of the {missing} landings of unknown outcome return", span(*returns.if_missing)])
+    if returns.emulator is not None:
+        rows.append(["return fraction by the emulator", percent(returns.emulator, digits)])
+    rows.append(["from", returns.from_])
+    note = as_sentence(returns.why) if returns.why else ""
     if has_interval(data) and missing:
         note = "The interval covers whatever became of the landings of unknown outcome."
     return PageTable("The answer", ["quantity", "value"], rows, note)
@@ -107,7 +109,7 @@ def _answer(data: DrawnPage) -> PageTable:
 
 def _bed_size(data: DrawnPage) -> str:
     """How much ground a bed is; nothing where touchdowns are made without one."""
-    if not data.results["beds"]:
+    if not data.results.beds:
         return ""
     return f" of {' x '.join(f'{length:g}' for length in data.study['bed']['width'])} m"
 
@@ -116,15 +118,13 @@ def _outputs(data: DrawnPage) -> PageTable:
     """Mean and quantiles of the landings that left."""
     columns = ["output", "unit", "mean", "standard deviation", *LEVELS.values()]
     rows = []
-    for name, table in data.results["outputs"].items():
-        # An angle without beginning or end has a table of its own.
-        if "quantiles" not in table:
-            continue
+    for name, table in data.results.spreads.items():
         shown = output(name)
-        cells = [_estimate(table["mean"], shown.factor), table_cell(table["standard_deviation"] * shown.factor)]
-        cells += [_estimate(table["quantiles"][level], shown.factor) for level in LEVELS]
+        cells = [_estimate(table.mean, shown.factor), table_cell(table.standard_deviation * shown.factor)]
+        cells += [_estimate(table.quantiles[level], shown.factor) for level in LEVELS]
         rows.append([shown.row.replace("_", " "), shown.unit, *cells])
-    of = data.table("outputs", "speed_out").get("of", "the landings that left")
+    speed = data.results.spreads.get("speed_out")
+    of = "the landings that left" if speed is None else speed.of
     note = (
         f"Of {of}, over the input distributions, on beds, impact points and attitudes that were not in the study. In "
         f"brackets {percent(data.level)} intervals."
@@ -140,11 +140,10 @@ def _directions(data: DrawnPage) -> PageTable:
     rows = [
         [
             output(name).row.replace("_", " "),
-            _estimate(table["mean_direction"], math.degrees(1.0)),
-            _estimate(table["resultant_length"], 1.0),
+            _estimate(table.mean_direction, math.degrees(1.0)),
+            _estimate(table.resultant_length, 1.0),
         ]
-        for name, table in data.results["outputs"].items()
-        if "mean_direction" in table
+        for name, table in data.results.directions.items()
     ]
     note = (
         "Resultant length: 0 where directions cancel, 1 where all are alike. In brackets "
@@ -153,34 +152,25 @@ def _directions(data: DrawnPage) -> PageTable:
     return PageTable("Directions of the landings", columns, rows, note, frozenset(columns[1:]))
 
 
-def _estimate(entry: Mapping[str, Any] | None, factor: float) -> str:
+def _estimate(entry: Estimate | None, factor: float) -> str:
     """A number with its interval, where it has them."""
-    if not entry:
+    if entry is None:
         return ""
-    value = table_cell(entry["value"] * factor)
-    if entry.get("lower") is None:
+    value = table_cell(entry.value * factor)
+    if entry.lower is None or entry.upper is None:
         return value
-    return f"{value} ({number(entry['lower'] * factor)} to {number(entry['upper'] * factor)})"
+    return f"{value} ({number(entry.lower * factor)} to {number(entry.upper * factor)})"
 
 
 def _variance(data: DrawnPage) -> PageTable:
     """Every part of the variance of each output, soil by input."""
-    records = data.results["variance_shares"]
+    records = data.results.variance_shares
     known = [record for record in records.values() if record]
-    inputs = list(dict.fromkeys(name for record in known for name in record["soil_by_input"]))
-    rows = [["soil, at least", *(_part(record, SOIL) for record in records.values())]]
-    rows += [
-        [
-            f"of it {input_words(name)} alone",
-            *(_part(record and record["soil_by_input"], name) for record in records.values()),
-        ]
-        for name in inputs
-    ]
-    rows += [
-        [long_part_words(known[0], name), *(_part(record, name) for record in records.values())]
-        for name in PARTS
-        if any(record.get(name) for record in known)
-    ]
+    inputs = list(dict.fromkeys(name for record in known for name in record.soil_by_input))
+    names = [name for name in PART_WORDS if name != "soil" and any(name in one.parts for one in known)]
+    heads = ["soil, at least", *(f"of it {input_words(name)} alone" for name in inputs)]
+    heads += [long_part_words(known[0], name) for name in names]
+    rows = list(map(list, zip(heads, *(_parts(one, inputs, names) for one in records.values()), strict=True)))
     note = (
         "Shares of the variance over the input distributions of the study file, beds, impact points and attitudes; in "
         f"brackets {percent(data.level)} intervals. Soil and impact: terms of first and second degree, so at least so "
@@ -191,36 +181,34 @@ def _variance(data: DrawnPage) -> PageTable:
     return PageTable("Parts of the variance", columns, rows if known else [], note, frozenset(columns[1:]))
 
 
-def _part(record: Mapping[str, Any] | None, name: str) -> str:
+def _parts(record: VarianceParts | None, inputs: Sequence[str], names: Sequence[str]) -> list[str]:
+    """The parts of one output: soil, each soil input alone, the others by name."""
     if record is None:
-        return "not known"
-    share = record.get(name)
-    return "" if share is None else part(share)
+        return ["not known"] * (1 + len(inputs) + len(names))
+    found = [record.soil, *map(record.soil_by_input.get, inputs), *map(record.parts.get, names)]
+    return ["" if one is None else one.words() for one in found]
 
 
 def _runs(data: DrawnPage) -> PageTable:
-    runs = data.results["runs"]
-    total = max(sum(runs["outcomes"].values()), 1)
-    rows = [[outcome_label(word), str(count), percent(count / total)] for word, count in runs["outcomes"].items()]
-    rows.append(
-        ["(left the surface across the edge of the bed)", str(runs["over_rim"]), percent(runs["over_rim"] / total)]
-    )
-    note = " ".join(filter(None, [f"On {runs['beds']} beds.", missing_sentence(data)]))
+    runs = data.results.runs
+    total = max(sum(runs.outcomes.values()), 1)
+    rows = [[outcome_label(word), str(count), percent(count / total)] for word, count in runs.outcomes.items()]
+    rows.append(["(left the surface across the edge of the bed)", str(runs.over_rim), percent(runs.over_rim / total)])
+    note = " ".join(filter(None, [f"On {runs.beds} beds.", missing_sentence(data)]))
     return PageTable("Outcomes of the runs", ["outcome", "runs", "share"], rows, note, frozenset({"runs", "share"}))
 
 
-def _side_runs(data: DrawnPage) -> PageTable:
+def _side_runs(data: DrawnPage, side: SideRuns) -> PageTable:
     """What pairs of runs tell of soil and chaos."""
-    side, rows = data.table("runs", "side_runs"), []
-    effects, chaos = (data.table("runs", "side_runs", key) for key in ("soil_total_effect", "chaos_deviation"))
+    effects, chaos, rows = side.soil_total_effect, side.chaos_deviation, []
     for name in dict.fromkeys([*effects, *chaos]):
         shown = output(name)
         row, unit, factor = (sign(name), "", 1.0) if name == RETURNS else (shown.row, shown.unit, shown.factor)
-        rows.append([row, _part(effects, name), _estimate(chaos.get(name), factor), unit])
+        rows.append([row, effects[name].words() if name in effects else "", _estimate(chaos.get(name), factor), unit])
     columns = ["output", "total effect of the soil", "standard deviation by chaos", "unit"]
     note = (
-        f"{side['soil_pairs']} runs were repeated on a second soil, {side['twins']} with an impact point "
-        f"{number(1e3 * side['twin_shift'])} mm away. Total effect: the share of the variance that goes "
+        f"{side.soil_pairs} runs were repeated on a second soil, {side.twins} with an impact point "
+        f"{number(1e3 * side.twin_shift)} mm away. Total effect: the share of the variance that goes "
         f"with the soil at one bed, impact point and attitude, whatever these are. In brackets {percent(data.level)} "
         "intervals."
     )
@@ -229,15 +217,13 @@ def _side_runs(data: DrawnPage) -> PageTable:
 
 def _emulator(data: DrawnPage) -> PageTable:
     """How the emulator does on beds left out."""
-    emulator = data.results["emulator"]
-    columns = ["output", "skill", "within the 90 % band"]
-    rows = []
-    for name, score in emulator["scores"].items():
-        skill, band = score.get("crps_skill", score.get("energy_skill")), score.get("band_90")
-        shown = "all together" if name == "joint" else output(name).row
-        rows.append([shown, *("" if one is None else percent(one) for one in (skill, band))])
+    emulator = data.results.emulator
+    columns = ["output", "skill", f"within the {percent(BAND)} band"]
+    rows = [["all together", percent(emulator.scores.joint.energy_skill), ""]]
+    for name, score in emulator.scores.outputs.items():
+        rows.append([output(name).row, percent(score.crps_skill), percent(score.band_90)])
     note = (
-        f"{emulator['statement']} Skill: how much smaller the score (CRPS; of all together the energy score) "
+        f"{emulator.statement} Skill: how much smaller the score (CRPS; of all together the energy score) "
         f"is than that of drawing one of the runs, on {left_out(data)}; 0 is no better."
     )
     return PageTable(f"The emulator on {left_out(data)}", columns, rows, note, frozenset(columns[1:]))
@@ -245,7 +231,7 @@ def _emulator(data: DrawnPage) -> PageTable:
 
 def _inputs(data: DrawnPage) -> PageTable:
     """What every run draws for itself, and which of the uncertain inputs the emulator found to matter."""
-    found, rows = data.results["emulator"]["found_inputs"], []
+    found, rows = data.results.emulator.found_inputs, []
     # Sizes of grains vary within a bed, and the site from flight to flight: neither is an input of a run.
     for name, law in ((name, law) for name, law in _uncertain(data.study) if name in data.runs):
         rows.append([*input_cells(name, law), "yes" if name in found else "no"])
@@ -274,6 +260,6 @@ def _uncertain(tables: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[st
 def colour_input(data: DrawnPage) -> str | None:
     """The input that figures of the samples are coloured by: the one that V+ varies most with, of those sampled."""
     sampled = [name for name, _ in _uncertain(data.study) if name in data.samples]
-    parts = data.table("variance_shares", "speed_out", "soil_by_input")
-    alone = {name: part["share"] for name, part in parts.items() if name in sampled}
+    parts = data.results.variance_shares["speed_out"]
+    alone = {name: one.share for name, one in parts.soil_by_input.items() if name in sampled} if parts else {}
     return max(alone, key=lambda name: alone[name]) if alone else next(iter(sampled), None)

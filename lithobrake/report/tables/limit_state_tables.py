@@ -1,12 +1,12 @@
 """The tables of the limit states that a study file asks for: how probable, and which inputs make them."""
 
 from collections.abc import Mapping
-from typing import Any
 
-from lithobrake.report.pages.html import PageTable, fixed, number
-from lithobrake.report.pages.page_data import DrawnPage
-from lithobrake.report.tables.paper_tables import table_cell
+from lithobrake.report.content import PageTable
+from lithobrake.report.page_data import DrawnPage
 from lithobrake.report.words.captions import input_words
+from lithobrake.report.words.numbers import fixed, number, table_cell
+from lithobrake.results.limit_state_results import LimitStateResult
 from lithobrake.vocabulary.percentages import percent
 
 SOURCES = {"runs": "runs", "emulator": "emulator: too few runs meet it"}
@@ -14,42 +14,42 @@ SOURCES = {"runs": "runs", "emulator": "emulator: too few runs meet it"}
 
 def limit_state_tables(data: DrawnPage) -> list[PageTable]:
     """Probabilities, and inputs where runs tell of any; none where the study asks for no limit state."""
-    states = data.table("limit_states")
+    states = data.results.limit_states
     return [_probabilities(states), *_inputs(states)] if states else []
 
 
-def _probabilities(states: Mapping[str, Any]) -> PageTable:
-    level = percent(next(iter(states.values()))["level"])
+def _probabilities(states: Mapping[str, LimitStateResult]) -> PageTable:
+    level = percent(next(iter(states.values())).level)
     columns = ["limit state", "met where", "probability [%]", f"{level} interval [%]", "source", "runs that meet it"]
     rows = [
         [
             name,
-            state["condition"],
-            _percentage(state["probability"]),
-            "none" if state["lower"] is None else f"{_percentage(state['lower'])} to {_percentage(state['upper'])}",
-            SOURCES[state["source"]],
-            number(state["failing_runs"]),
+            state.condition,
+            _percentage(state.probability),
+            " to ".join(_percentage(end) for end in (state.lower, state.upper) if end is not None) or "none",
+            SOURCES[state.source],
+            number(state.failing_runs),
         ]
         for name, state in states.items()
     ]
-    note = " ".join(state["statement"] for state in states.values())
+    note = " ".join(state.statement for state in states.values())
     return PageTable("Limit states", columns, rows, note, frozenset((*columns[2:4], columns[5])))
 
 
-def _inputs(states: Mapping[str, Any]) -> list[PageTable]:
+def _inputs(states: Mapping[str, LimitStateResult]) -> list[PageTable]:
     """Inputs among the runs that meet a limit state, furthest from their distribution first."""
     rows = []
     for name, state in states.items():
-        found = sorted(state["inputs"].items(), key=lambda entry: -entry[1]["distance"])
+        found = sorted(state.inputs.items(), key=lambda entry: -entry[1].distance)
         rows += [
             [
                 name if place == 0 else "",
                 input_words(key),
-                f"{fixed(one['distance'])} ({fixed(one['lower'])} to {fixed(one['upper'])})",
-                fixed(one["luck"]),
-                table_cell(one["median"]),
-                table_cell(one["median_of_all"]),
-                "yes" if one["found"] else "no",
+                f"{fixed(one.distance)} ({fixed(one.lower)} to {fixed(one.upper)})",
+                fixed(one.luck),
+                table_cell(one.median),
+                table_cell(one.median_of_all),
+                "yes" if one.found else "no",
             ]
             for place, (key, one) in enumerate(found)
         ]

@@ -3,12 +3,15 @@
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from lithobrake.report.figures.style import PAPER_OUTPUTS, output
-from lithobrake.report.pages.html import PageTable, Tile, fixed, flat, number, show, unit_scales
-from lithobrake.report.pages.page_data import PageData, PaperPage
+from lithobrake.report.content import PageTable, Tile
+from lithobrake.report.page_data import PageData, PaperPage
 from lithobrake.report.tables.dispersion_tables import dispersion_tables
 from lithobrake.report.words.captions import input_words
 from lithobrake.report.words.drawn_answer import action
+from lithobrake.report.words.labels import PAPER_OUTPUTS, output
+from lithobrake.report.words.numbers import fixed, flat, number, show, table_cell, unit_scales
+from lithobrake.results.expansions import Ends
+from lithobrake.results.json_values import to_json
 from lithobrake.results.telling_numbers import TellingNumbers
 from lithobrake.vocabulary.percentages import percent
 
@@ -36,7 +39,7 @@ def tiles(data: PaperPage) -> list[Tile]:
     noise = main.noise_share
     found = [
         Tile(
-            percent(data.results["returns"]["share"], data.digits).removesuffix(" %"),
+            percent(data.results.returns.share, data.digits).removesuffix(" %"),
             "%",
             f"of the landings {action(data)}; {_scope(data)}",
         ),
@@ -49,10 +52,10 @@ def tiles(data: PaperPage) -> list[Tile]:
             + ("" if noise is None else f"; {percent(noise, 0)} of the variance of the runs is scatter"),
         ),
         Tile(
-            "none" if score["q2"] is None else fixed(score["q2"]),
+            "none" if score.q2 is None else fixed(score.q2),
             "Q2",
-            f"{_bounds(score, 'q2')}outgoing speed, fresh runs, all inputs vary: error {number(score['rmse'], 2)} m/s "
-            f"at a spread of {number(score['std'], 2)} m/s",
+            f"{_bounds(score.q2_interval)}outgoing speed, fresh runs, all inputs vary: error "
+            f"{number(score.rmse, 2)} m/s at a spread of {number(score.std, 2)} m/s",
         ),
     ]
     if speed:
@@ -65,13 +68,13 @@ def tiles(data: PaperPage) -> list[Tile]:
 
 def _scope(data: PaperPage) -> str:
     """Over what the answer holds, in the words that it begins with."""
-    where, _, _ = data.results["answer"][0].partition(":")
+    where, _, _ = data.results.answer[0].partition(":")
     return where[:1].lower() + where[1:]
 
 
-def _bounds(score: Mapping[str, Any], key: str) -> str:
+def _bounds(interval: Ends) -> str:
     """The 95 % interval of a score in words, or nothing where it has no end."""
-    low, high = score[f"{key}_interval"]
+    low, high = interval
     return "" if high is None else f"({'no bound' if low is None else fixed(low)} to {fixed(high)}, 95 %) "
 
 
@@ -87,19 +90,19 @@ def tables(data: PaperPage) -> list[PageTable]:
     return [
         _inputs(data),
         _runs(data),
-        *([beds_table(data)] if data.results["beds"] else []),
+        *([beds_table(data)] if data.results.beds else []),
         _fits(data),
         _scores(data),
         _sobol(data),
         _outputs(data),
-        *([touchdowns_table(data)] if data.results["outputs_of_runs"] else []),
+        *([touchdowns_table(data)] if data.results.outputs_of_runs else []),
         *dispersion_tables(data),
     ]
 
 
 def provenance(data: PageData) -> list[PageTable]:
     """Where the numbers come from: seed, times, versions."""
-    rows = [("seed", show(data.study["seed"])), *flat(data.provenance)]
+    rows = [("seed", show(data.study["seed"])), *flat(to_json(data.provenance))]
     return [
         PageTable(
             "Execution",
@@ -111,9 +114,9 @@ def provenance(data: PageData) -> list[PageTable]:
 
 
 def _inputs(data: PaperPage) -> PageTable:
-    kept = data.results["kept_inputs"]
+    kept = data.results.kept_inputs
     rows = []
-    for name in data.results["screening"]["inputs"]:
+    for name in data.results.screening.inputs:
         value: Any = data.study
         for key in name.split("."):
             value = value[key]
@@ -129,17 +132,20 @@ def input_cells(name: str, law: Mapping[str, Any]) -> list[str]:
 
 def _runs(data: PaperPage) -> PageTable:
     rows = []
-    for name, design in data.results["designs"].items():
-        outcomes = ", ".join(f"{count} {outcome.replace('_', ' ')}" for outcome, count in design["outcomes"].items())
-        rows.append([DESIGN_WORDS.get(name, name), str(design["run_count"]), str(design["with_outputs"]), outcomes])
+    for name, design in data.results.designs.items():
+        outcomes = ", ".join(f"{count} {outcome.replace('_', ' ')}" for outcome, count in design.outcomes.items())
+        rows.append([DESIGN_WORDS.get(name, name), str(design.run_count), str(design.with_outputs), outcomes])
     numbers = frozenset({"runs", "left the surface"})
     return PageTable("Touchdowns", ["design", "runs", "left the surface", "outcomes"], rows, numbers=numbers)
 
 
 def beds_table(data: PageData) -> PageTable:
     columns = ["bed", "solid fraction", "contacts a grain", "surface height [m]", "mean diameter [m]"]
-    keys = ("solid_fraction", "coordination_number", "surface_height_m", "mean_diameter_m")
-    rows = [[str(index), *(table_cell(bed[key]) for key in keys)] for index, bed in enumerate(data.results["beds"])]
+    rows = [
+        [str(index), *map(table_cell, numbers)]
+        for index, one in enumerate(data.results.beds)
+        for numbers in [(one.solid_fraction, one.coordination_number, one.surface_height_m, one.mean_diameter_m)]
+    ]
     return PageTable("Beds", columns, rows, numbers=frozenset(columns[1:]))
 
 
@@ -154,23 +160,24 @@ def _fits(data: PaperPage) -> PageTable:
         "expected error",
         "scatter between equal runs",
     ]
-    scale = _output_scales([data.results[stage]["fits"] for stage in ("screening", "refined")], "rmse_estimate")
+    expansions = {"screening": data.results.screening, "refined": data.results.refined}
+    scale = _output_scales((name, fit.rmse_estimate) for one in expansions.values() for name, fit in one.fits.items())
     rows = []
-    for stage in ("screening", "refined"):
-        for row, (name, fit) in enumerate(data.results[stage]["fits"].items()):
+    for stage, expansion in expansions.items():
+        for row, (name, fit) in enumerate(expansion.fits.items()):
             shown = output(name)
             rows.append(
                 [
                     stage if row == 0 else "",
                     shown.row,
                     shown.unit,
-                    fit["method"].replace("_", " "),
-                    str(fit["term_count"]),
-                    "-" if fit["condition_number"] is None else f"{fit['condition_number']:.3g}",
-                    table_cell(fit["rmse_estimate"] * shown.factor, scale[shown.unit]),
+                    fit.method.replace("_", " "),
+                    str(fit.term_count),
+                    "-" if fit.condition_number is None else f"{fit.condition_number:.3g}",
+                    table_cell(fit.rmse_estimate * shown.factor, scale[shown.unit]),
                     "not known"
-                    if fit["noise_std"] is None
-                    else table_cell(fit["noise_std"] * shown.factor, scale[shown.unit]),
+                    if fit.noise_std is None
+                    else table_cell(fit.noise_std * shown.factor, scale[shown.unit]),
                 ]
             )
     note = (
@@ -183,9 +190,9 @@ def _fits(data: PaperPage) -> PageTable:
 
 def _scores(data: PaperPage) -> PageTable:
     columns = ["expansion and runs", "output", "unit", "MAPE [%]", "Q2", "RMSE", "spread (std)", "RMSE/spread"]
-    scale = _output_scales(data.results["scores"].values(), "std")
+    scale = _output_scales((name, one.std) for table in data.results.scores.values() for name, one in table.items())
     rows = []
-    for stage, table in data.results["scores"].items():
+    for stage, table in data.results.scores.items():
         for row, (name, score) in enumerate(table.items()):
             shown = output(name)
             rows.append(
@@ -193,11 +200,11 @@ def _scores(data: PaperPage) -> PageTable:
                     STAGE_WORDS.get(stage, stage) if row == 0 else "",
                     shown.row,
                     shown.unit,
-                    _with_interval(score, "mape"),
-                    _with_interval(score, "q2"),
-                    table_cell(score["rmse"] * shown.factor, scale[shown.unit]),
-                    table_cell(score["std"] * shown.factor, scale[shown.unit]),
-                    _or_none(score["rrmse"]),
+                    _with_interval(_or_none(score.mape), score.mape_interval),
+                    _with_interval("undefined" if score.q2 is None else fixed(score.q2, 3), score.q2_interval),
+                    table_cell(score.rmse * shown.factor, scale[shown.unit]),
+                    table_cell(score.std * shown.factor, scale[shown.unit]),
+                    _or_none(score.rrmse),
                 ]
             )
     note = (
@@ -208,15 +215,16 @@ def _scores(data: PaperPage) -> PageTable:
 
 
 def _sobol(data: PaperPage) -> PageTable:
-    table = data.results["screening"]
+    table = data.results.screening
     words = [output(name).sign for name in PAPER_OUTPUTS]
     columns = ["input", *(f"{word} first" for word in words), *(f"{word} total" for word in words)]
     rows = [
         [
             input_words(key),
-            *(_index(table, kind, name, key) for kind in ("sobol_first", "sobol_total") for name in PAPER_OUTPUTS),
+            *(_index(table.sobol_first[name][key], table.sobol_first_interval[name][key]) for name in PAPER_OUTPUTS),
+            *(_index(table.sobol_total[name][key], table.sobol_total_interval[name][key]) for name in PAPER_OUTPUTS),
         ]
-        for key in table["inputs"]
+        for key in table.inputs
     ]
     note = (
         "Shares of the variance that the screening expansion explains, on the beds and at the places of its runs, "
@@ -228,51 +236,46 @@ def _sobol(data: PaperPage) -> PageTable:
 
 def _outputs(data: PaperPage) -> PageTable:
     columns = ["output", "unit", "mean", "std", "5 %", "median", "95 %"]
-    keys = ("mean", "std", "quantile_0.05", "quantile_0.5", "quantile_0.95")
-    outputs = data.results["monte_carlo"]["outputs"]
-    scale = _output_scales([outputs], *keys)
+    numbers = {
+        name: (one.mean, one.std, *(one.quantiles[key] for key in ("quantile_0.05", "quantile_0.5", "quantile_0.95")))
+        for name, one in data.results.monte_carlo.outputs.items()
+    }
+    scale = _output_scales((name, value) for name, values in numbers.items() for value in values)
     rows = []
-    for name, table in outputs.items():
+    for name, values in numbers.items():
         shown = output(name)
-        cells = (table_cell(table[key] * shown.factor, scale[shown.unit]) for key in keys)
+        cells = (table_cell(value * shown.factor, scale[shown.unit]) for value in values)
         rows.append([shown.row, shown.unit, *cells])
     return PageTable("Outputs of the samples that leave", columns, rows, numbers=frozenset(columns[2:]))
 
 
 def touchdowns_table(data: PageData) -> PageTable:
-    found, keys = data.results["outputs_of_runs"], ("smallest", "median", "largest")
-    scale = unit_scales((table["unit"], table[key]) for table in found.values() for key in keys)
+    found = data.results.outputs_of_runs
+    numbers = {name: (one.unit, (one.smallest, one.median, one.largest)) for name, one in found.items()}
+    scale = unit_scales((unit, value) for unit, values in numbers.values() for value in values)
     rows = [
-        [name.replace("_", " "), table["unit"], *(table_cell(table[key], scale[table["unit"]]) for key in keys)]
-        for name, table in found.items()
+        [name.replace("_", " "), unit, *(table_cell(value, scale[unit]) for value in values)]
+        for name, (unit, values) in numbers.items()
     ]
     columns = ["quantity", "unit", "smallest", "median", "largest"]
     return PageTable("What else the touchdowns gave", columns, rows, "Over all distinct runs.", frozenset(columns[2:]))
 
 
-def _output_scales(tables: Iterable[Mapping[str, Any]], *keys: str) -> dict[str, float]:
-    """The largest magnitude of each unit among these numbers of the outputs, as they are shown."""
-    outputs = [(output(name), entry) for table in tables for name, entry in table.items()]
-    return unit_scales((shown.unit, entry[key] * shown.factor) for shown, entry in outputs for key in keys)
+def _output_scales(numbers: Iterable[tuple[str, float]]) -> dict[str, float]:
+    """The largest magnitude of each unit among these numbers of outputs [SI], as they are shown."""
+    return unit_scales((output(name).unit, value * output(name).factor) for name, value in numbers)
 
 
-def _index(table: Mapping[str, Any], kind: str, name: str, key: str) -> str:
+def _index(index: float, interval: tuple[float, float]) -> str:
     """One Sobol index with its interval."""
-    low, high = table[f"{kind}_interval"][name][key]
-    return f"{fixed(table[kind][name][key])} ({fixed(low)} to {fixed(high)})"
+    return f"{fixed(index)} ({fixed(interval[0])} to {fixed(interval[1])})"
 
 
-def _with_interval(score: Mapping[str, Any], key: str) -> str:
-    """A score, with its interval where there is one."""
-    low, high = score.get(f"{key}_interval") or (None, None)
-    words = fixed(score[key], 3) if key == "q2" and score[key] is not None else _or_none(score[key])
+def _with_interval(words: str, interval: Ends) -> str:
+    """A score in words, with its interval where there is one."""
+    low, high = interval
     return words if low is None or high is None else f"{words} ({number(low, 2)} to {number(high, 2)})"
 
 
 def _or_none(value: float | None) -> str:
     return "undefined" if value is None else table_cell(value)
-
-
-def table_cell(value: float, scale: float = 0.0) -> str:
-    """A number in a column: three digits, zeros at the end kept; scale: the largest of its unit in the table."""
-    return number(value, zeros=True, scale=scale)

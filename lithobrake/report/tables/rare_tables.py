@@ -3,26 +3,13 @@
 from collections.abc import Mapping
 from itertools import accumulate
 from operator import mul
-from typing import Any
 
-from lithobrake.report.pages.html import PageTable, fixed, number
+from lithobrake.report.content import PageTable
+from lithobrake.report.words.numbers import fixed, number
+from lithobrake.results.limit_state_results import RareLimitState
 from lithobrake.vocabulary.percentages import percent
 
-RareResults = Mapping[str, Mapping[str, Any]]
-
-
-def rare_caption(rare: RareResults) -> str:
-    """The sentence of the figure."""
-    named = ", ".join(f"{name} ({found['condition']})" for name, found in rare.items())
-    return (
-        f"Subset simulation with landings of {named}: each point is a level, at whose threshold the next one begins "
-        "with the landings that came nearer; at 0 the limit state is met. Bars are 90 % intervals."
-    )
-
-
-def rare_warnings(rare: RareResults) -> list[str]:
-    """Where the same with another seed may give quite another probability."""
-    return [f"{name}: {found['warning']}" for name, found in rare.items() if found["warning"]]
+RareResults = Mapping[str, RareLimitState]
 
 
 def rare_tables(rare: RareResults) -> list[PageTable]:
@@ -31,19 +18,21 @@ def rare_tables(rare: RareResults) -> list[PageTable]:
 
 
 def _probabilities(rare: RareResults) -> PageTable:
-    columns = ["limit state", "met where", "probability", "90 % interval", "landings", "beds", "origins"]
+    level = percent(next(iter(rare.values())).level)
+    columns = ["limit state", "met where", "probability", f"{level} interval", "landings", "beds", "origins"]
     rows = [
         [
             name,
-            found["condition"],
-            number(found["probability"]) if found["reached"] else f"below {number(found['rarest'])}",
-            "none" if found["lower"] is None else f"{number(found['lower'])} to {number(found['upper'])}",
-            *(number(found[key]) for key in ("landings", "beds")),
-            fixed(found["origins"], 1),
+            found.condition,
+            number(found.probability) if found.reached else f"below {number(found.rarest)}",
+            " to ".join(number(end) for end in (found.lower, found.upper) if end is not None) or "none",
+            number(found.landings),
+            number(found.beds),
+            fixed(found.origins, 1),
         ]
         for name, found in rare.items()
     ]
-    note = " ".join(found["statement"] for found in rare.values())
+    note = " ".join(found.statement for found in rare.values())
     note += " Origins: how many beds of one size the landings that meet it come from."
     return PageTable("Rare limit states", columns, rows, note, frozenset(columns[2:]))
 
@@ -54,7 +43,7 @@ def _levels(rare: RareResults) -> PageTable:
         [name if level == 0 else "", str(level + 1), fixed(threshold), percent(share, 1), number(left)]
         for name, found in rare.items()
         for level, (threshold, share, left) in enumerate(
-            zip(found["thresholds"], found["shares"], accumulate(found["shares"], mul), strict=True)
+            zip(found.thresholds, found.shares, accumulate(found.shares, mul), strict=True)
         )
     ]
     note = "Thresholds: distance from the limit, in standard deviations of the outputs of the first level."

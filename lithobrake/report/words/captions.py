@@ -1,14 +1,13 @@
 """The sentences of the page, built from the numbers of the files. They are plain text."""
 
 import math
-from typing import Any
+from collections.abc import Mapping
 
-from lithobrake.report.figures.ellipse_line import follows_gaussian
-from lithobrake.report.figures.error_figure import Score
-from lithobrake.report.figures.scatter_figure import DRAWN_COUNT
-from lithobrake.report.figures.style import PAPER_OUTPUTS, output
-from lithobrake.report.pages.html import fixed, number
-from lithobrake.report.pages.page_data import PageData, PaperPage
+from lithobrake.report.page_data import DRAWN_COUNT, PageData, PaperPage
+from lithobrake.report.words.chance import follows_gaussian
+from lithobrake.report.words.labels import PAPER_OUTPUTS, output
+from lithobrake.report.words.numbers import fixed, number, q2_words
+from lithobrake.results.expansions import DesignCounts, ExpansionResults, OutputErrors
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus, TouchdownOutcome
 from lithobrake.vocabulary.percentages import percent, with_interval
 
@@ -43,15 +42,15 @@ def hours(seconds: float) -> str:
 
 def answer(data: PageData) -> str:
     """The answer to the question of the study: where, and what the summary says of it."""
-    return " ".join([*place_words(data), *data.results["answer"]])
+    return " ".join([*place_words(data), *data.results.answer])
 
 
 def place_words(data: PageData) -> list[str]:
     """Where the study lands, in a sentence."""
-    site = data.results["site"]
-    place = f"latitude {site['latitude_deg']:g} deg, longitude {site['longitude_deg']:g} deg on {body_name(data)}"
+    site = data.results.site
+    place = f"latitude {site.latitude_deg:g} deg, longitude {site.longitude_deg:g} deg on {body_name(data)}"
     # A product of an archive tells which shape "the body" is.
-    product = f" ({site['product_id']})" if site["product_id"] else ""
+    product = f" ({site.product_id})" if site.product_id else ""
     return [f"Landing at {place}{product}."]
 
 
@@ -63,16 +62,16 @@ def body_name(data: PageData) -> str:
 
 def facts(data: PageData) -> str:
     """When the study was made, and what the body's gravity is known by."""
-    known, date = gravity_words(data), data.provenance["date"][:16].replace("T", ", ")
+    known, date = gravity_words(data), data.provenance.date[:16].replace("T", ", ")
     return f"Study of {date} UTC. {known[0].upper()}{known[1:]}."
 
 
 def gravity_words(data: PageData) -> str:
     """Escape speed at the site and bulk density of the body."""
-    site = data.results["site"]
+    site = data.results.site
     return (
-        f"escape speed at the site {number(site['escape_speed_m_s'])} m/s, bulk density of the body "
-        f"{number(site['bulk_density_kg_m3'])} kg/m3"
+        f"escape speed at the site {number(site.escape_speed_m_s)} m/s, bulk density of the body "
+        f"{number(site.bulk_density_kg_m3)} kg/m3"
     )
 
 
@@ -83,18 +82,18 @@ def bed(data: PageData) -> str:
         return "The touchdowns were made by a " + (
             f"program of the study's author: {program}" if program else "function."
         )
-    study, (first, *others) = data.study["bed"], data.results["beds"]
+    study, (first, *others) = data.study["bed"], data.results.beds
     which = f"the first of {len(others) + 1} beds," if others else "a bed"
     width = " x ".join(f"{length:g}" for length in study["width"])
     return (
-        f"{study['grain_count']} grains, convex hulls with a mean diameter of {number(first['mean_diameter_m'])} m, "
+        f"{study['grain_count']} grains, convex hulls with a mean diameter of {number(first.mean_diameter_m)} m, "
         f"fall as a random cloud and settle in an open box of {width} m into {which} "
-        f"{number(first['surface_height_m'])} m deep with a solid fraction of {first['solid_fraction']:.2f} and "
-        f"{first['coordination_number']:.1f} contacts a grain. Grains are poured with the medians of their ranges, and "
+        f"{number(first.surface_height_m)} m deep with a solid fraction of {first.solid_fraction:.2f} and "
+        f"{first.coordination_number:.1f} contacts a grain. Grains are poured with the medians of their ranges, and "
         "take on the soil of a landing at its touchdown. "
-        f"The bed must be at least {number(first['smallest_width_m'])} m wide and "
-        f"{number(first['smallest_depth_m'])} m deep to avoid boundary reflections during the first impact; this bed "
-        f"{'meets' if first['large_enough'] else 'does not meet'} that limit."
+        f"The bed must be at least {number(first.smallest_width_m)} m wide and "
+        f"{number(first.smallest_depth_m)} m deep to avoid boundary reflections during the first impact; this bed "
+        f"{'meets' if first.large_enough else 'does not meet'} that limit."
     )
 
 
@@ -102,7 +101,7 @@ def landing(data: PageData) -> str:
     """Figure 2."""
     if data.landing is None:
         return ""
-    attributes, time = data.landing.moving.attributes, data.landing.moving.time
+    attributes, time = data.landing.attributes, data.landing.time
     ended = TouchdownOutcome(str(attributes["status"])).sentence.rstrip(".")
     return (
         f"{data.shown_landing}, the lander arrives at "
@@ -115,50 +114,50 @@ def landing(data: PageData) -> str:
 
 def counts(data: PaperPage) -> str:
     """Figure 3."""
-    table, design, designs = data.results["node_counts"], data.study["design"], data.results["designs"]
-    level, inputs = design["screening_level"], len(data.results["screening"]["inputs"])
+    table, design, designs = data.results.node_counts, data.study["design"], data.results.designs
+    level, inputs = design["screening_level"], len(data.results.screening.inputs)
     grid = design["points"] == "smolyak"
     place = f"at level {level}" if grid else f"of degree {design['screening_degree']}"
     words = (
         f"The screening of {inputs} inputs {place} takes {_runs(designs['screening'])} {POINT_WORDS[design['points']]}"
     )
-    if grid and inputs in table["input_counts"] and level in table["levels"]:
-        full = table["tensor"][table["input_counts"].index(inputs)][table["levels"].index(level)]
+    if grid and inputs in table.input_counts and level in table.levels:
+        full = table.tensor[table.input_counts.index(inputs)][table.levels.index(level)]
         words += f", against {thousands(full)} on the full tensor grid"
     place = f"at level {design['refined_level']}" if grid else f"of degree {design['refined_degree']}"
-    kept = len(data.results["kept_inputs"])
+    kept = len(data.results.kept_inputs)
     refined = "the kept input" if kept == 1 else f"the {kept} kept inputs"
     return f"{words}; the refined design in {refined} {place} takes {_runs(designs['refined'])}."
 
 
-def _runs(design: dict[str, int]) -> str:
+def _runs(design: DesignCounts) -> str:
     """How many runs a design takes, and how they come about."""
-    count, points = design["replicate_count"], design["point_count"]
-    return f"{design['run_count']} runs" + (f" ({points} points, {count} times each)" if count > 1 else "")
+    count, points = design.replicate_count, design.point_count
+    return f"{design.run_count} runs" + (f" ({points} points, {count} times each)" if count > 1 else "")
 
 
 def sobol(data: PaperPage) -> str:
     """Figure 4."""
-    screening = data.results["screening"]
+    screening = data.results.screening
     leaders = [_leader(name, screening) for name in PAPER_OUTPUTS]
-    shares = {name: screening["fits"][name]["noise_share"] for name in PAPER_OUTPUTS}
+    shares = {name: screening.fits[name].noise_share for name in PAPER_OUTPUTS}
     scatter = [f"{percent(share)} of {output(name).sign}" for name, share in shares.items() if share is not None]
     rest = f"; of the variance of the runs {listing(scatter)} is scatter, which no input decides" if scatter else ""
-    kept = listing([input_words(name) for name in data.results["kept_inputs"]])
-    share = min(data.results["kept_share"][name] for name in data.study["design"]["kept_outputs"])
+    kept = listing([input_words(name) for name in data.results.kept_inputs])
+    share = min(data.results.kept_share[name] for name in data.study["design"]["kept_outputs"])
     return (
         f"{listing(leaders)}{rest}; the second step keeps {kept}, which together have at least {percent(share)} of "
         "the explained variance of every output that decides."
     )
 
 
-def _leader(name: str, screening: dict[str, Any]) -> str:
+def _leader(name: str, screening: ExpansionResults) -> str:
     """The input that an output varies with most, if any was found, with its 95 % interval."""
-    first = screening["sobol_first"][name]
+    first = screening.sobol_first[name]
     main = max(first, key=lambda key: first[key])
     if first[main] <= 0.0:
         return f"no input was found that {output(name).sign} varies with"
-    low, high = (percent(end) for end in screening["sobol_first_interval"][name][main])
+    low, high = (percent(end) for end in screening.sobol_first_interval[name][main])
     return (
         f"{output(name).sign} varies most with the {input_words(main)} ({percent(first[main])}, {low} to {high}, "
         "of its explained variance)"
@@ -175,23 +174,23 @@ def errors(data: PaperPage) -> str:
     )
 
 
-def _explained(table: dict[str, Score]) -> str:
+def _explained(table: Mapping[str, OutputErrors]) -> str:
     """Explained share of the variance and mean error of the outputs of [Landings-PCE] on one set of runs."""
     parts = []
     for name in PAPER_OUTPUTS:
         q2, mape = table[name].q2, table[name].mape
-        words = "an undefined share" if q2 is None else f"Q2 = {table[name].q2_words}"
+        words = "an undefined share" if q2 is None else f"Q2 = {q2_words(table[name])}"
         parts.append(f"{words} of {output(name).sign} (MAPE {'undefined' if mape is None else f'{mape:.2g} %'})")
     return listing(parts)
 
 
 def scatter(data: PaperPage, colour_name: str) -> str:
     """Figure 6."""
-    table = data.results["monte_carlo"]
-    total, leaving = table["sample_count"], table["leaving_count"]
+    table = data.results.monte_carlo
+    total, leaving = table.sample_count, table.leaving_count
     if not leaving:
         return f"None of the {thousands(total)} samples leaves the surface, so there is nothing to draw."
-    speed, angle = table["outputs"]["speed_out"], table["outputs"]["elevation_out"]
+    speed, angle = table.outputs["speed_out"].quantiles, table.outputs["elevation_out"].quantiles
     degrees = output("elevation_out").factor
     first = f" (the first {thousands(DRAWN_COUNT)} are drawn)" if leaving > DRAWN_COUNT else ""
     return (
@@ -204,16 +203,16 @@ def scatter(data: PaperPage, colour_name: str) -> str:
 
 def impact_map(data: PageData) -> str:
     """Figure 7."""
-    shares, site = data.results["shares"], data.results["site"]
-    extents = " x ".join(f"{length:.0f}" for length in site["extents_m"])
-    outward = site["effective_acceleration_outward"]
+    shares, site = data.results.shares, data.results.site
+    extents = " x ".join(f"{length:.0f}" for length in site.extents_m)
+    outward = site.effective_acceleration_outward
     direction = "outward" if outward > 0 else "inward"
-    down = with_interval(shares[FlightStatus.IMPACT], data.digits)
+    down = with_interval(shares.outcomes[FlightStatus.IMPACT], data.digits)
     return (
         f"{down} of the landings impact the surface again within {hours(data.study['flight']['duration'])}. "
         f"The map has the {thousands(len(data.facet))} impacts of {thousands(data.flights.row_count)} flown samples of "
-        f"the {data.model} (body: {number(site['mass_kg'])} kg, {extents} m, one turn in "
-        f"{site['spin_period_s'] / 3600:.4g} h; at the site gravity and spin together pull "
+        f"the {data.model} (body: {number(site.mass_kg)} kg, {extents} m, one turn in "
+        f"{site.spin_period_s / 3600:.4g} h; at the site gravity and spin together pull "
         f"{number(abs(outward), 2)} m/s2 {direction}; {gravity_words(data)})."
     )
 
@@ -223,31 +222,31 @@ def body(data: PageData) -> str:
     if not len(data.facet):
         return ""
     shared = f"{thousands(len(data.facet))} impacts on the shape that the flights used"
-    ellipse = data.table("ellipses")
-    large = [entry["semi_axes_m"] for entry in ellipse.get("shares", ()) if entry["share"] > 0.9]
-    if not large:
+    ellipses = data.results.ellipses
+    large = [one.semi_axes_m for one in ellipses.shares if one.share > 0.9] if ellipses else []
+    if ellipses is None or not large:
         return f"{shared}; they lie too far around the body, or are too few, for an ellipse that holds 95 % of them."
     long, short = large[0]
-    latitude, longitude = (fixed(ellipse[key], 1) for key in ("latitude_deg", "longitude_deg"))
     return (
-        f"{shared}; an ellipse of {number(long)} by {number(short)} m (semi-axes) about latitude {latitude} deg, "
-        f"longitude {longitude} deg holds 95 % of them{_shape_words(data)}."
+        f"{shared}; an ellipse of {number(long)} by {number(short)} m (semi-axes) about latitude "
+        f"{fixed(ellipses.latitude_deg, 1)} deg, longitude {fixed(ellipses.longitude_deg, 1)} deg holds 95 % of them"
+        f"{_shape_words(data)}."
     )
 
 
 def rest(data: PageData) -> str:
     """Figure 9."""
-    table = data.results["rest"]
-    soil, hard = table["soil"], table["hard"]
+    table = data.results.rest
+    soil, hard = table.soil, table.hard
     if hard is None:
         return ""
     limit = hours(data.study["rest"]["duration"])
-    settled = with_interval(hard[JourneyStatus.SETTLED], data.digits)
+    settled = with_interval(hard.outcomes[JourneyStatus.SETTLED], data.digits)
     words = f"Followed from bounce to bounce for up to {limit}, {settled} come to rest on hard ground"
     if soil is None:
-        return f"{words}; on the soil it is not known: {table['why_no_soil']}."
+        return f"{words}; on the soil it is not known: {table.why_no_soil}."
     settled_on_soil, outside = (
-        with_interval(soil[status], data.digits) for status in (JourneyStatus.SETTLED, JourneyStatus.OUTSIDE)
+        with_interval(soil.outcomes[status], data.digits) for status in (JourneyStatus.SETTLED, JourneyStatus.OUTSIDE)
     )
     return (
         f"{words}, {settled_on_soil} on the soil. The outcome of {outside} on the soil is unknown: they were stopped "
@@ -257,7 +256,7 @@ def rest(data: PageData) -> str:
 
 def _shape_words(data: PageData) -> str:
     """What to beware of where the places are not spread as the ellipses suggest."""
-    is_gaussian = follows_gaussian(data.results["ellipses"], len(data.facet))
+    is_gaussian = follows_gaussian(data.results.ellipses, len(data.facet))
     return "" if is_gaussian else ", but the places are not Gaussian, and it says little of where they lie inside it"
 
 

@@ -1,13 +1,12 @@
 """What the answer of a sequence is of, and what a reader has to beware of, in words."""
 
 from collections.abc import Mapping
-from typing import Any
 
-from lithobrake.report.pages.page_data import DrawnPage, PageData
-from lithobrake.report.tables.rare_tables import rare_warnings
+from lithobrake.report.page_data import DrawnPage, PageData
 from lithobrake.report.words.captions import hours, listing
+from lithobrake.results.limit_state_results import RareLimitState
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
-from lithobrake.vocabulary.percentages import interval_digits, percent, span
+from lithobrake.vocabulary.percentages import BoundedShare, interval_digits, percent, span
 
 # With fewer beds intervals are wide, and how much beds differ is hardly known.
 FEW_BEDS = 12
@@ -16,20 +15,19 @@ FEW_BEDS = 12
 def action(data: PageData) -> str:
     """What the return fraction is of: landers that do this."""
     again = f"impact the surface again within {hours(data.study['flight']['duration'])}"
-    holds = data.results["site"]["effective_acceleration_outward"] < 0.0
-    return f"{again} or are captured where the ground holds them" if holds else again
+    return f"{again} or are captured where the ground holds them" if data.results.site.holds else again
 
 
 def has_interval(data: PageData) -> bool:
     """Whether the runs tell how sure the share is."""
-    return data.results["returns"]["lower"] is not None
+    return data.results.returns.lower is not None
 
 
-def interval(entry: Mapping[str, Any], level: float) -> str:
+def interval(entry: BoundedShare, level: float) -> str:
     """The interval of an entry with its level, "90 % interval 68-73 %"; empty where it has none."""
-    if entry["lower"] is None:
+    if entry.lower is None or entry.upper is None:
         return ""
-    return f"{percent(level)} interval {span(entry['lower'], entry['upper'])}"
+    return f"{percent(level)} interval {span(entry.lower, entry.upper)}"
 
 
 def drawn_things(data: DrawnPage) -> list[str]:
@@ -53,7 +51,7 @@ def as_sentence(words: str) -> str:
 
 def left_out(data: DrawnPage) -> str:
     """What the emulator was validated on: beds that it had not seen, or, where there is but one, runs."""
-    return "held-out runs" if data.results["runs"]["beds"] == 1 else "held-out beds"
+    return "held-out runs" if data.results.runs.beds == 1 else "held-out beds"
 
 
 def outcome_label(word: str) -> str:
@@ -63,14 +61,14 @@ def outcome_label(word: str) -> str:
 
 def missing_sentence(data: DrawnPage) -> str:
     """How many runs have no outcome, and between which shares the truth then lies; empty where all have one."""
-    missing, returns = data.results["runs"]["missing"], data.results["returns"]
-    if not missing["count"]:
+    missing, returns = data.results.runs.missing, data.results.returns
+    if not missing.count:
         return ""
-    kinds = listing([f"{number} {outcome_label(word)}" for word, number in missing["outcomes"].items()])
-    ends = returns["if_missing"]
+    kinds = listing([f"{number} {outcome_label(word)}" for word, number in missing.outcomes.items()])
+    ends = returns.if_missing
     low, high = (percent(end, interval_digits(*ends)) for end in ends)
     return (
-        f"{missing['count']} of {data.results['runs']['count']} landings have no outcome ({kinds}): the return "
+        f"{missing.count} of {data.results.runs.count} landings have no outcome ({kinds}): the return "
         f"fraction is {low} if none of these return, {high} if all do."
     )
 
@@ -78,17 +76,17 @@ def missing_sentence(data: DrawnPage) -> str:
 def warnings(data: DrawnPage) -> list[str]:
     """What makes the numbers of the page weaker than they look."""
     found = [
-        _said(data.results["runs"]["warning"]),
+        _said(data.results.runs.warning),
         _few_beds(data),
         emulator_outside(data),
-        _said(data.results["site"]["gravity_warning"]),
+        _said(data.results.site.gravity_warning),
         *rare_warnings(data.rare),
     ]
     return [words for words in found if words]
 
 
 def _few_beds(data: DrawnPage) -> str:
-    beds = data.results["runs"]["beds"]
+    beds = data.results.runs.beds
     if not has_interval(data) or beds >= FEW_BEDS:
         return ""
     return (
@@ -99,8 +97,13 @@ def _few_beds(data: DrawnPage) -> str:
 
 def emulator_outside(data: DrawnPage) -> str:
     """That the emulator contradicts the runs it was made from, if it does."""
-    return _said(data.results["emulator"]["warning"])
+    return _said(data.results.emulator.warning)
 
 
 def _said(warning: str | None) -> str:
     return as_sentence(warning) if warning else ""
+
+
+def rare_warnings(rare: Mapping[str, RareLimitState]) -> list[str]:
+    """Where the same with another seed may give quite another probability."""
+    return [f"{name}: {found.warning}" for name, found in rare.items() if found.warning]

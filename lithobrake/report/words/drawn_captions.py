@@ -1,18 +1,19 @@
 """The sentences under the figures of a sequence, from the numbers of its summary. They are plain text."""
 
 from collections.abc import Mapping
-from typing import Any
 
-from lithobrake.report.figures.calibration_figure import band_luck, histograms, unlucky
-from lithobrake.report.figures.scatter_figure import DRAWN_COUNT
-from lithobrake.report.figures.style import output
-from lithobrake.report.figures.variance_figure import SOIL, known_parts, part_words
-from lithobrake.report.pages.html import number
-from lithobrake.report.pages.page_data import DrawnPage
+from lithobrake.report.page_data import DRAWN_COUNT, DrawnPage
 from lithobrake.report.words.captions import input_words, listing, thousands
+from lithobrake.report.words.chance import BAND, band_luck, unlucky
 from lithobrake.report.words.drawn_answer import drawn_things, emulator_outside, left_out, missing_sentence
+from lithobrake.report.words.labels import output, part_words
+from lithobrake.report.words.numbers import number
+from lithobrake.results.aims import AimResults
+from lithobrake.results.limit_state_results import RareLimitState
+from lithobrake.results.run_results import VarianceParts
+from lithobrake.results.shares import Estimate
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
-from lithobrake.vocabulary.percentages import part, percent
+from lithobrake.vocabulary.percentages import percent
 
 RETURNS = "returns"
 # An input with more than this part of what the soil does is named.
@@ -27,25 +28,25 @@ def sign(name: str) -> str:
 
 def runs(data: DrawnPage) -> str:
     """Figure 3."""
-    table = data.results["runs"]
-    beds, outcomes = table["beds"], table["outcomes"]
+    table = data.results.runs
+    beds, outcomes = table.beds, table.outcomes
     own = listing(["soil", *drawn_things(data)])
     clear, captured = (outcomes.get(word, 0) for word in (TouchdownOutcome.CLEAR, TouchdownOutcome.CAPTURED))
     said = [
         f"Every dot is a landing with {own} of its own"
         + (", all on one bed" if beds == 1 else f", on one of {beds} beds")
-        + f": of {table['count']} landers {clear} left the surface and {captured} "
+        + f": of {table.count} landers {clear} left the surface and {captured} "
         f"{'was' if captured == 1 else 'were'} captured."
     ]
     quantiles = _quantiles(data)
     if quantiles:
         said.append(f"{quantiles}.")
-    if table["over_rim"]:
-        said.append(f"{table['over_rim']} of these left across the edge of the bed, in flight (rings).")
+    if table.over_rim:
+        said.append(f"{table.over_rim} of these left across the edge of the bed, in flight (rings).")
     said.append(missing_sentence(data))
-    record = data.results["variance_shares"]["speed_out"]
+    record = data.results.variance_shares["speed_out"]
     if record:
-        said.append(f"Right: the same speeds by bed; the bed's share of their variance: {part(record['bed'])}.")
+        said.append(f"Right: the same speeds by bed; the bed's share of their variance: {record.bed.words()}.")
     return " ".join(filter(None, said))
 
 
@@ -53,10 +54,9 @@ def _quantiles(data: DrawnPage) -> str:
     """Median with its interval, and the middle nine tenths, of speed and elevation."""
     found = []
     for name in ("speed_out", "elevation_out"):
-        levels = data.table("outputs", name, "quantiles")
-        if {"0.05", "0.5", "0.95"} <= levels.keys():
-            shown = output(name)
-            low, middle, high = (levels[level]["value"] * shown.factor for level in ("0.05", "0.5", "0.95"))
+        if name in data.results.spreads:
+            levels, shown = data.results.spreads[name].quantiles, output(name)
+            low, middle, high = (levels[level].value * shown.factor for level in ("0.05", "0.5", "0.95"))
             ends = _ends(data, levels["0.5"], shown.factor)
             found.append(
                 f"the median of {shown.sign} is {number(middle)} {shown.unit}{ends}, "
@@ -66,16 +66,16 @@ def _quantiles(data: DrawnPage) -> str:
     return f"{words[:1].upper()}{words[1:]}"
 
 
-def _ends(data: DrawnPage, entry: Mapping[str, Any], factor: float) -> str:
+def _ends(data: DrawnPage, entry: Estimate, factor: float) -> str:
     """The interval of a number in brackets, where it has one."""
-    if entry["lower"] is None:
+    if entry.lower is None or entry.upper is None:
         return ""
-    return f" ({percent(data.level)} interval {number(entry['lower'] * factor)} to {number(entry['upper'] * factor)})"
+    return f" ({percent(data.level)} interval {number(entry.lower * factor)} to {number(entry.upper * factor)})"
 
 
 def variance(data: DrawnPage) -> str:
     """Figure 4."""
-    records = {name: record for name, record in data.results["variance_shares"].items() if record}
+    records = {name: record for name, record in data.results.variance_shares.items() if record}
     if not records:
         return (
             "The runs cannot tell where the scatter comes from: they lie on one bed, or are too few for their inputs."
@@ -86,57 +86,55 @@ def variance(data: DrawnPage) -> str:
         "the input distributions of the study file."
     ]
     if others:
-        soils = [f"{part(records[name][SOIL])} of {sign(name)}" for name in others]
+        soils = [f"{records[name].soil.words()} of {sign(name)}" for name in others]
         said.append(f"Soil explains at least {listing(soils)}.")
     said.append("Soil and impact: by terms of first and second degree; what they do otherwise is in everything else.")
-    if all(record["chaos"] is None for record in records.values()):
+    if all(record.chaos is None for record in records.values()):
         said.append("Without auxiliary runs chaos is not known apart: it is within everything else.")
     return " ".join(said)
 
 
-def scatter_words(record: Mapping[str, Any]) -> str:
+def scatter_words(record: VarianceParts) -> str:
     """What explains the variance of an output, in a part of a sentence with intervals."""
-    words = {SOIL: "soil explains at least", "bed": "the bed"}
+    words = {"soil": "soil explains at least", "bed": "the bed"}
     found = []
-    for name, share in known_parts(record).items():
-        more = _main_input(record) if name == SOIL else ""
+    for name, share in record.parts.items():
+        more = _main_input(record) if name == "soil" else ""
         whose = words.get(name, part_words(record, name)).replace(",", "")
-        found.append(f"{whose} {part(share, more)}")
+        found.append(f"{whose} {share.words(more)}")
     return listing(found)
 
 
-def _main_input(record: Mapping[str, Any]) -> str:
+def _main_input(record: VarianceParts) -> str:
     """Which input makes most of what the soil does, where one does and the soil does something."""
-    alone = {name: share["share"] for name, share in record["soil_by_input"].items()}
-    soil = record[SOIL]
+    alone = {name: share.share for name, share in record.soil_by_input.items()}
     name = max(alone, key=lambda one: alone[one], default="")
-    is_main = bool(name) and alone[name] > MAIN * soil["share"] and record["soil_by_input"][name]["lower"] > 0.0
+    is_main = bool(name) and alone[name] > MAIN * record.soil.share and record.soil_by_input[name].lower > 0.0
     return f"; most of it {input_words(name)}" if is_main else ""
 
 
 def calibration(data: DrawnPage) -> str:
     """Figure 5."""
-    emulator = data.results["emulator"]
-    scores = emulator["scores"]
-    found = histograms(scores)
-    held = {name: scores[name]["band_90"] for name in found}
-    bins = [is_beyond for counts in found.values() for is_beyond in unlucky(counts)]
+    emulator = data.results.emulator
+    scores = emulator.scores.outputs
+    held = {name: score.band_90 for name, score in scores.items()}
+    bins = [is_beyond for score in scores.values() for is_beyond in unlucky(score.pit)]
     shares = [f"{percent(share)} of {sign(name)}" for name, share in held.items()]
     said = [
-        f"On {left_out(data)} the 90 % bands held {listing(shares)}.",
+        f"On {left_out(data)} the {percent(BAND)} bands held {listing(shares)}.",
         "For a calibrated emulator the histogram is flat; the grey band covers 90 % of the sampling fluctuation of "
         "independent runs. High ends mean bands that are too narrow, a hump in the middle too wide, a slope a bias.",
         f"{sum(bins)} of {len(bins)} bars lie outside of the grey{' (orange)' if any(bins) else ''}; chance alone "
         f"gives {number(0.1 * len(bins), 2)}.",
     ]
-    lucky = {name: band_luck(sum(found[name])) for name in held}
+    lucky = {name: band_luck(sum(score.pit)) for name, score in scores.items()}
     for words, off in (
         ("too narrow", [sign(name) for name, share in held.items() if share < lucky[name][0]]),
         ("too wide", [sign(name) for name, share in held.items() if share > lucky[name][1]]),
     ):
         if off:
             said.append(f"The bands of {listing(off)} are {words} for chance alone.")
-    return " ".join([*said, emulator["statement"]])
+    return " ".join([*said, emulator.statement])
 
 
 def samples(data: DrawnPage, colour_name: str | None) -> str:
@@ -149,18 +147,27 @@ def samples(data: DrawnPage, colour_name: str | None) -> str:
         return f"None of the {thousands(total)} samples leaves the surface, so there is nothing to draw."
     first = f" (the first {thousands(DRAWN_COUNT)} are drawn)" if leaving > DRAWN_COUNT else ""
     colour = f"the colour is the {input_words(colour_name)}"
-    if not data.results["emulator"]["follows_inputs"]:
+    if not data.results.emulator.follows_inputs:
         colour += ", and says nothing: the emulator samples runs whatever the inputs"
     count = f"Of {thousands(total)} samples of the emulator {thousands(leaving)} leave the surface"
     return " ".join(filter(None, [f"{count}{first}; {colour}.", emulator_outside(data)]))
 
 
-def aims(data: DrawnPage) -> str:
+def aims(data: DrawnPage, table: AimResults) -> str:
     """The figure of the aims."""
-    table = data.results["aim"]
-    crossed = " Aims that the limits rule out are crossed." if table["within"] else ""
+    crossed = " Aims that the limits rule out are crossed." if table.within else ""
     return (
-        f"{thousands(table['lander_count'])} landers at each aim, followed until they rest; below each number its "
+        f"{thousands(table.lander_count)} landers at each aim, followed until they rest; below each number its "
         f"{percent(data.level)} interval, a frame about the best, dotted about "
-        f"those that cannot be distinguished from it.{crossed} {table['statement']}"
+        f"those that cannot be distinguished from it.{crossed} {table.statement}"
+    )
+
+
+def rare_caption(rare: Mapping[str, RareLimitState]) -> str:
+    """The sentence of the figure."""
+    named = ", ".join(f"{name} ({found.condition})" for name, found in rare.items())
+    level = percent(next(iter(rare.values())).level)
+    return (
+        f"Subset simulation with landings of {named}: each point is a level, at whose threshold the next one begins "
+        f"with the landings that came nearer; at 0 the limit state is met. Bars are {level} intervals."
     )

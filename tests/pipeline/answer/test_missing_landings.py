@@ -7,6 +7,7 @@ import pytest
 
 from lithobrake.pipeline.answer.missing_landings import described, left_in_flight, missing_landings, missing_warning
 from lithobrake.pipeline.runs.run_table import DesignRuns
+from lithobrake.results.run_results import MissingLandings
 from lithobrake.study import Study, check_tables
 
 from ..synthetic_lander import synthetic_tables
@@ -21,8 +22,8 @@ def study() -> Study:
 
 def test_landings_without_an_outcome_are_counted_by_how_they_ended() -> None:
     found = missing_landings({"clear": 6, "captured": 1, "left_sideways": 2, "failed": 1})
-    assert found == {"count": 3, "share": 0.3, "outcomes": {"left_sideways": 2, "failed": 1}}
-    assert missing_landings({"clear": 3}) == {"count": 0, "share": 0.0, "outcomes": {}}
+    assert found == MissingLandings(3, 0.3, {"left_sideways": 2, "failed": 1})
+    assert missing_landings({"clear": 3}) == MissingLandings(0, 0.0, {})
 
 
 def test_more_than_2_per_cent_without_an_outcome_are_warned_of_with_the_cure(study: Study) -> None:

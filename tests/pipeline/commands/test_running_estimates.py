@@ -35,7 +35,7 @@ def test_estimates_are_those_of_the_runs_with_beds_as_units() -> None:
     assert found.speed_out == mean_estimate(np.where(captured, np.nan, SPEEDS), bed)
     first, share, speed, last = found.lines()
     assert first == "so far, from 60 landings on 6 beds:"
-    assert share.startswith("  captured: 20.0 % (90 %: ")
+    assert share.startswith("  captured: 20 % (90 % interval ")
     assert speed.startswith(f"  mean speed_out: {SPEEDS[~captured].mean():.4g} m/s (90 %: ")
     assert "The return fraction is not known yet" in last
     content = json.loads(json.dumps(found.to_json(), allow_nan=False))
@@ -45,7 +45,7 @@ def test_estimates_are_those_of_the_runs_with_beds_as_units() -> None:
     flown = running_estimates([record(run) for run in range(60)], {f"run {run}": shares[run] for run in range(60)})
     assert flown is not None
     assert flown.returns == share_estimate(shares, bed)
-    assert flown.lines()[-1].startswith("  return fraction: 40.0 % (90 %: ")
+    assert flown.lines()[-1].startswith("  return fraction: 40 % (90 % interval ")
 
 
 def test_runs_without_an_answer_widen_it_and_one_bed_has_no_interval() -> None:
@@ -59,7 +59,7 @@ def test_runs_without_an_answer_widen_it_and_one_bed_has_no_interval() -> None:
     one_bed = running_estimates([record(run, bed_count=1) for run in range(60)], {})
     assert one_bed is not None
     assert one_bed.speed_out is None
-    assert "20.0 %, without an interval: all runs came down on one bed" in one_bed.lines()[1]
+    assert "20 %, without an interval: all runs came down on one bed" in one_bed.lines()[1]
 
 
 def test_too_few_runs_say_nothing() -> None:

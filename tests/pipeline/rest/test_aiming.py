@@ -1,6 +1,7 @@
 """Aims of a study, from its file to its page."""
 
 import dataclasses
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -9,11 +10,12 @@ import pytest
 
 import lithobrake
 from lithobrake.files.reading import read_rows
-from lithobrake.pipeline.answer.aim_results import _statement
+from lithobrake.pipeline.answer.aim_results import aim_statement
 from lithobrake.pipeline.emulate.fitted_emulator import REFIT_COUNT
 from lithobrake.pipeline.rest.aiming import _distances
 from lithobrake.results import StudyResults
 from lithobrake.results.json_values import to_json
+from lithobrake.results.summary import DrawnResults
 from lithobrake.smallbody import didymos
 from lithobrake.study import StudyError
 from lithobrake.study.reader import check_tables
@@ -82,13 +84,18 @@ def test_the_best_keeps_the_limits_and_says_how_sure_it_is(found: dict[str, Any]
     assert all(found["best_on_hard"][key] is None for key in ("share_of_refits", "own", "not_worse"))
 
 
-def test_the_statement_has_the_share_without_selection_and_names_what_is_alike(found: dict[str, Any]) -> None:
-    best, others = found["best_on_soil"], sum(aim["soil"]["allowed"] for aim in found["aims"]) - 1
-    assert f": {100 * best['own']['share']:.0f} % (90 % interval " in found["statement"]
-    assert "of the refits" not in found["statement"]
-    told = _statement({**found, "best_on_soil": {**best, "not_worse": [1]}})
+def test_the_statement_has_the_share_without_selection_and_names_what_is_alike(results: StudyResults) -> None:
+    assert isinstance(results.results, DrawnResults)
+    found = results.results.aim
+    assert found is not None
+    best, others = found.best_on_soil, sum(aim.soil.allowed for aim in found.aims) - 1
+    assert best is not None
+    assert best.own is not None
+    assert f": {100 * best.own.share:.0f} % (90 % interval " in found.statement
+    assert "of the refits" not in found.statement
+    told = aim_statement(replace(found, best_on_soil=replace(best, not_worse=(1,))))
     assert f"1 of the other {others} cannot be distinguished from it with 90 % confidence: impact.speed = 0.1, " in told
-    told = _statement({**found, "best_on_soil": {**best, "not_worse": []}})
+    told = aim_statement(replace(found, best_on_soil=replace(best, not_worse=())))
     assert "It is better than every other, with 90 % confidence." in told
 
 

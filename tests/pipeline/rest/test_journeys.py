@@ -13,7 +13,7 @@ import pytest
 from lithobrake.analysis import OutcomeModel, wilson_interval
 from lithobrake.chaos import Uniform, fit, smolyak
 from lithobrake.pipeline import Job, StudyFolder
-from lithobrake.pipeline.answer.dispersion_statistics import NORMAL_QUANTILE_90, dispersion_results, proportion
+from lithobrake.pipeline.answer.dispersion_statistics import NORMAL_QUANTILE_90, proportion, rest_results
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.emulate.outgoing import rolling_spin
 from lithobrake.pipeline.emulate.samples import SAMPLE_OUTCOMES, Samples
@@ -174,13 +174,14 @@ def test_hard_ground_is_followed_from_the_first_impact_and_the_summary_adds_up(t
         assert folder.read_json("rest.json")["trained_ranges"] == {key: [1.0, 2.0] for key in inputs}
         write_table(folder, "flights.csv", COLUMNS, [])
         folder.write_json("flights.json", {})
-        table = dispersion_results(job, Samples.load(folder), [], {"captured": 40})["rest"]
+        table = rest_results(job)
     assert "on hard ground only: impact.speed and" in said[0]
-    assert table["soil"] is None
-    assert table["hard"]["sample_count"] == 60
-    assert sum(table["hard"][name]["count"] for name in JourneyStatus) == 60
+    assert table.soil is None
+    assert table.hard is not None
+    assert table.hard.sample_count == 60
+    assert sum(table.hard.outcomes[name].count for name in JourneyStatus) == 60
     lower, upper = wilson_interval(60, 60, NORMAL_QUANTILE_90)
-    assert table["hard"]["settled"] == proportion(60, 60) | {"lower": lower, "upper": upper}
+    assert table.hard.outcomes["settled"] == replace(proportion(60, 60), lower=lower, upper=upper)
     assert (folder / "rest.csv").read_text().splitlines()[0] == (
         "ground,sample,status,time_s,latitude_deg,longitude_deg,rebounds,path_length [m],slid_length [m],slid_time_s,"
         "impact_speed [m/s],impact_incidence_deg"
@@ -203,8 +204,8 @@ def test_hard_ground_is_followed_from_the_first_impact_and_the_summary_adds_up(t
     along = max(0.8 * along, along - 0.6 * 1.6 * down)
     assert 0.0 < float(rows[0]["slid_length"]) < along**2 / (2.0 * 0.6 * 2e-4)
     assert 0.0 < float(rows[0]["slid_time_s"]) < float(rows[0]["time_s"])
-    assert table["hard"]["slid"]["count"] == 60
-    assert table["hard"]["slid_length"]["quantile_0.5"] == float(rows[0]["slid_length"])
+    assert table.hard.slid.count == 60
+    assert table.hard.quantiles["slid_length"]["quantile_0.5"] == float(rows[0]["slid_length"])
 
 
 def test_a_flight_is_noted_by_its_sample_and_its_number_in_the_journey() -> None:

@@ -1,26 +1,27 @@
 """The figures of a sequence show what they are given: bars that add up, counts, and what luck does not explain."""
 
-from typing import Any
-
 import matplotlib
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from lithobrake.report.figures.calibration_figure import band_luck, calibration_figure, luck
+from lithobrake.report.figures.calibration_figure import calibration_figure
 from lithobrake.report.figures.runs_figure import LandingsOfRuns, runs_figure
 from lithobrake.report.figures.style import TEST, TRAINING, figure_style
 from lithobrake.report.figures.variance_figure import pieces, variance_figure
+from lithobrake.report.words.chance import band_luck, luck
+from lithobrake.results.emulator_results import OutputScore
+from lithobrake.results.run_results import VariancePart, VarianceParts
 
 
-def part(share: float) -> dict[str, float]:
-    return {"share": share, "lower": max(share - 0.05, 0.0), "upper": min(share + 0.05, 1.0)}
+def part(share: float) -> VariancePart:
+    return VariancePart(share, max(share - 0.05, 0.0), min(share + 0.05, 1.0))
 
 
-RECORD: dict[str, Any] = {
-    "soil": part(0.12), "soil_by_input": {"grain.friction": part(0.15), "grain.density": part(-0.01)},
-    "arrival": part(0.2), "bed": part(0.0), "place_and_attitude": part(0.68), "chaos": None,
-}  # fmt: skip
+RECORD = VarianceParts(
+    soil=part(0.12), soil_by_input={"grain.friction": part(0.15), "grain.density": part(-0.01)}, arrival=part(0.2),
+    bed=part(0.0), place_and_attitude=part(0.68), chaos=None, of="the landings",
+)  # fmt: skip
 
 
 def words_of(figure: Figure) -> list[str]:
@@ -58,10 +59,7 @@ def test_every_part_has_its_interval_and_an_output_that_is_not_known_says_so() -
 
 
 def test_bars_beyond_luck_have_another_colour() -> None:
-    scores = {
-        "speed_out": {"pit": [30, 5, 9, 10, 10, 10, 10, 10, 6, 0], "band_90": 0.7},
-        "joint": {"energy_skill": 0.1},
-    }
+    scores = {"speed_out": OutputScore(0.1, 0.7, (30, 5, 9, 10, 10, 10, 10, 10, 6, 0))}
     with figure_style():
         figure = calibration_figure(scores)
     low, high = luck([10] * 10)
@@ -76,7 +74,7 @@ def test_bars_beyond_luck_have_another_colour() -> None:
 
 
 def test_a_band_that_luck_explains_is_as_it_should_be() -> None:
-    scores = {"spin_out": {"pit": [10] * 10, "band_90": 0.88}}
+    scores = {"spin_out": OutputScore(0.1, 0.88, (10,) * 10)}
     with figure_style():
         figure = calibration_figure(scores)
     assert [line.get_color() for line in figure.axes[1].lines if line.get_marker() == "o"] == [TRAINING]

@@ -1,6 +1,6 @@
 """Each figure is made from plain arrays and shows what it is given."""
 
-from typing import Any
+from dataclasses import replace
 
 import matplotlib
 import numpy as np
@@ -14,24 +14,30 @@ from lithobrake.report.figures.bed_figure import bed_figure, three_moments
 from lithobrake.report.figures.body_figure import body_figure, colour_ends, facet_density
 from lithobrake.report.figures.count_figure import Design, count_figure
 from lithobrake.report.figures.density import WHOLE, Window, close_window, draw_density, neighbour_count
-from lithobrake.report.figures.ellipse_line import draw_ellipses, fitting, follows_gaussian, outline
-from lithobrake.report.figures.error_figure import Score, error_figure
+from lithobrake.report.figures.error_figure import error_figure
 from lithobrake.report.figures.hulls import Hull
 from lithobrake.report.figures.landing_figure import instants, landing_figure
 from lithobrake.report.figures.map_figure import Share, draw_shares, map_figure
+from lithobrake.report.figures.map_marks import draw_ellipses, fitting, outline
 from lithobrake.report.figures.rest_figure import RestMap, rest_figure
 from lithobrake.report.figures.scatter_figure import scatter_figure
 from lithobrake.report.figures.sobol_figure import sobol_figure
-from lithobrake.report.figures.style import FATE_COLOURS, INK, PAPER_OUTPUTS, figure_style, input_label
-from lithobrake.report.pages.page_data import DrawnPage
+from lithobrake.report.figures.style import FATE_COLOURS, INK, figure_style
+from lithobrake.report.page_data import DrawnPage
 from lithobrake.report.pages.shared_plots import draw_map, draw_rest
+from lithobrake.report.words.chance import follows_gaussian
+from lithobrake.report.words.labels import PAPER_OUTPUTS, input_label
+from lithobrake.results.aims import AimOnGround, AimResult, AimResults, BestAim
+from lithobrake.results.dispersion import EllipseShare, LandingEllipses
+from lithobrake.results.expansions import OutputErrors
+from lithobrake.results.shares import Estimate, ShareInterval
 
-ELLIPSES = {
-    "latitude_deg": 10.0,
-    "longitude_deg": 30.0,
-    "heading_deg": 20.0,
-    "shares": [{"share": 0.5, "semi_axes_deg": [0.8, 0.4]}, {"share": 0.95, "semi_axes_deg": [1.6, 0.8]}],
-}
+
+def ellipse(share: float, long: float, short: float) -> EllipseShare:
+    return EllipseShare(share, (long, short), (10.0 * long, 10.0 * short))
+
+
+ELLIPSES = LandingEllipses(10.0, 30.0, 20.0, (ellipse(0.5, 0.8, 0.4), ellipse(0.95, 1.6, 0.8)))
 TETRAHEDRON = np.array([(1.0, 1.0, 1.0), (1.0, -1.0, -1.0), (-1.0, 1.0, -1.0), (-1.0, -1.0, 1.0)])
 FACES = np.array([(0, 1, 2), (0, 3, 1), (0, 2, 3), (1, 3, 2)])
 
@@ -122,8 +128,17 @@ def test_sobol_figure_says_what_is_scatter_and_where_no_input_was_found() -> Non
     assert words.count("scatter: 70 % of\nthe runs' variance") == 3
 
 
+def errors(ape: list[float], *, q2: float | None, std: float, mape: float, rmse: float) -> OutputErrors:
+    """Errors without intervals."""
+    none = (None, None)
+    return OutputErrors(
+        mape=mape, q2=q2, rrmse=None, rmse=rmse, std=std, ape=tuple(ape), mape_interval=none, rmse_interval=none,
+        rrmse_interval=none, q2_interval=none,
+    )  # fmt: skip
+
+
 def test_error_figure_puts_q2_rmse_and_spread_beside_every_mape() -> None:
-    score = Score(ape=np.array([1.0, 2.0, 3.0]), mape=2.0, q2=0.75, rmse=0.01, std=0.02)
+    score = errors([1.0, 2.0, 3.0], q2=0.75, std=0.02, mape=2.0, rmse=0.01)
     scores = dict.fromkeys(PAPER_OUTPUTS, score)
     with figure_style():
         figure = error_figure(scores, scores, scores)
@@ -133,14 +148,14 @@ def test_error_figure_puts_q2_rmse_and_spread_beside_every_mape() -> None:
 
 
 def test_error_figure_says_how_many_errors_lie_beyond_the_axis() -> None:
-    wild = Score(ape=np.append(np.linspace(1.0, 2.0, 39), 500.0), mape=14.0, q2=0.5, rmse=0.1, std=0.2)
+    wild = errors([*np.linspace(1.0, 2.0, 39).tolist(), 500.0], q2=0.5, std=0.2, mape=14.0, rmse=0.1)
     scores = dict.fromkeys(PAPER_OUTPUTS, wild)
     with figure_style():
         assert "1 beyond" in texts(error_figure(scores, scores, scores))
 
 
 def test_error_figure_shows_a_q2_that_does_not_exist_as_such() -> None:
-    score = Score(ape=np.array([1.0]), mape=1.0, q2=None, rmse=0.01, std=0.0)
+    score = errors([1.0], q2=None, std=0.0, mape=1.0, rmse=0.01)
     scores = dict.fromkeys(PAPER_OUTPUTS, score)
     with figure_style():
         assert "$Q^2$ undefined" in texts(error_figure(scores, scores, scores))
@@ -262,12 +277,11 @@ def test_one_fate_has_one_colour_in_every_figure(drawn: DrawnPage) -> None:
 
 
 def test_an_ellipse_over_the_edge_of_the_map_or_round_a_pole_is_not_drawn() -> None:
-    entries = [{"share": 0.5, "semi_axes_deg": [2.0, 1.0]}, {"share": 0.95, "semi_axes_deg": [20.0, 8.0]}]
-    at = {"latitude_deg": 85.0, "longitude_deg": 170.0, "heading_deg": 0.0, "shares": entries}
-    assert [one["share"] for one in fitting(at, WHOLE)] == [0.5]
-    assert [one["share"] for one in fitting(at | {"latitude_deg": 10.0}, WHOLE)] == [0.5, 0.95]
+    at = LandingEllipses(85.0, 170.0, 0.0, (ellipse(0.5, 2.0, 1.0), ellipse(0.95, 20.0, 8.0)))
+    assert [one.share for one in fitting(at, WHOLE)] == [0.5]
+    assert [one.share for one in fitting(replace(at, latitude_deg=10.0), WHOLE)] == [0.5, 0.95]
     close = Window(latitude=10.0, longitude=170.0, half=5.0, half_longitude=5.0)
-    assert [one["share"] for one in fitting(at | {"latitude_deg": 10.0}, close)] == [0.5]
+    assert [one.share for one in fitting(replace(at, latitude_deg=10.0), close)] == [0.5]
     assert fitting(None, WHOLE) == []
 
 
@@ -279,26 +293,22 @@ def test_ellipses_of_heavy_tails_are_flagged(freedom: float, is_gaussian: bool) 
         places /= np.sqrt(random.chisquare(freedom, 2000) / freedom)[:, None]
     found = dispersion_ellipses(*(0.1 * places.T))
     assert found is not None
-    shares = [{"share": share, "semi_axes_deg": axes} for share, axes in found.semi_axes_deg.items()]
-    assert follows_gaussian({"shares": shares}, 2000) is is_gaussian
+    shares = tuple(ellipse(share, *axes) for share, axes in found.semi_axes_deg.items())
+    assert follows_gaussian(LandingEllipses(0.0, 0.0, 0.0, shares), 2000) is is_gaussian
     assert follows_gaussian(None, 0)
 
 
 def test_aims_share_one_scale_and_have_colour_bars() -> None:
-    def far(value: float) -> dict[str, float]:
-        return {"value": value, "lower": 0.7 * value, "upper": 1.4 * value}
+    def far(value: float) -> Estimate:
+        return Estimate(value, 0.7 * value, 1.4 * value)
 
-    def ground(share: float) -> dict[str, Any]:
-        return {
-            "settled": {"share": share, "lower": share - 0.1, "upper": share + 0.1}, "missing": 0.4, "allowed": True,
-            "distance_p95": far(100.0 * share), "time_p95": far(3600.0),
-        }  # fmt: skip
+    def ground(share: float) -> AimOnGround:
+        settled = ShareInterval(share, share - 0.1, share + 0.1)
+        return AimOnGround(settled, 0.4, far(100.0 * share), far(3600.0), allowed=True)
 
-    aims = [
-        {"values": [speed], "soil": ground(share), "hard": ground(0.2)} for speed, share in ((0.1, 0.2), (0.2, 0.3))
-    ]
-    table = {"names": ["impact.speed"], "units": ["m/s"], "aims": aims, "best_on_hard": None,
-             "best_on_soil": {"aim": 1, "not_worse": [0]}}  # fmt: skip
+    aims = tuple(AimResult((speed,), ground(share), ground(0.2)) for speed, share in ((0.1, 0.2), (0.2, 0.3)))
+    best = BestAim(1, 0.9, None, (0,), 0, None)
+    table = AimResults(("impact.speed",), ("m/s",), (), 100, 50, 0.9, None, aims, best, None, "")
     with figure_style():
         figure = aim_figure(table)
     maps = [axes.images[0] for axes in figure.axes if axes.images]

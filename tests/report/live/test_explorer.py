@@ -25,7 +25,7 @@ from lithobrake.emulator import Emulator, law_tables
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.runs.energy_bound import bound_numbers, energy_bound
 from lithobrake.report.live.packed import packed, script_data
-from lithobrake.report.pages.page_data import DrawnPage
+from lithobrake.report.page_data import DrawnPage
 from lithobrake.study import check_tables
 
 from ...pipeline.synthetic_lander import synthetic_tables

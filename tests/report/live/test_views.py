@@ -6,9 +6,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from lithobrake.report.figures.scene import Scene
+from lithobrake.report.figures.hulls import Scene
 from lithobrake.report.live.views import LARGEST, landing_arrays, view_sections
-from lithobrake.report.pages.page_data import PaperPage
+from lithobrake.report.page_data import PaperPage
 from lithobrake.results import MovingBodies
 
 from ..finished_studies import OCTAHEDRON, OCTAHEDRON_FACES
@@ -16,7 +16,7 @@ from ..finished_studies import OCTAHEDRON, OCTAHEDRON_FACES
 
 def moving(position: np.ndarray, orientation: np.ndarray) -> Scene:
     """Octahedra that move so, at steps of a tenth of a second."""
-    from lithobrake.report.figures.scene import scene
+    from lithobrake.report.figures.hulls import scene
 
     count = position.shape[1]
     time = 0.1 * np.arange(len(position))

@@ -13,9 +13,9 @@ import h5py
 import pytest
 
 from lithobrake.report import write_report
+from lithobrake.report.content import PageTable
+from lithobrake.report.page_data import DrawnPage, page_results
 from lithobrake.report.pages.drawn_page import sequence_content
-from lithobrake.report.pages.html import PageTable
-from lithobrake.report.pages.page_data import DrawnPage, page_results
 from lithobrake.report.tables import drawn_tables as sequence_tables
 from lithobrake.report.tables.dispersion_tables import parts
 from lithobrake.report.tables.rare_tables import rare_tables
@@ -23,14 +23,21 @@ from lithobrake.report.words import captions
 from lithobrake.report.words import drawn_captions as sequence_captions
 from lithobrake.report.words.drawn_answer import warnings
 from lithobrake.results import open_study
+from lithobrake.results.emulator_results import EmulatorScores, JointScore, OutputScore
+from lithobrake.results.run_results import OutputDirection, VariancePart, VarianceParts
+from lithobrake.results.shares import Estimate
 from lithobrake.vocabulary.percentages import with_interval
 
 ONE_BED: dict[str, Any] = {"lower": None, "upper": None, "next_bed": None, "why": "One bed was poured."}
 
 
 def changed(data: DrawnPage, **tables: Mapping[str, Any]) -> DrawnPage:
-    """The results with other entries in some of their tables."""
-    return replace(data, results=data.results | {name: data.results[name] | new for name, new in tables.items()})
+    """The results with other fields, or other entries, in some of their tables."""
+    new = {}
+    for name, entries in tables.items():
+        table = getattr(data.results, name)
+        new[name] = {**table, **entries} if isinstance(table, Mapping) else replace(table, **entries)
+    return replace(data, results=replace(data.results, **new))
 
 
 def table_of(data: DrawnPage, title: str) -> PageTable:
@@ -56,21 +63,22 @@ def test_every_figure_is_there_with_its_file(drawn_page: str, sequence_folder: P
 
 def test_the_page_opens_with_the_answer_of_the_summary(drawn: DrawnPage) -> None:
     words = captions.answer(drawn)
-    assert all(sentence in words for sentence in drawn.results["answer"])
+    assert all(sentence in words for sentence in drawn.results.answer)
 
 
 def test_the_share_has_its_interval_in_the_first_tile(drawn: DrawnPage) -> None:
-    tile, returns = sequence_tables.tiles(drawn)[0], drawn.results["returns"]
-    assert float(tile.value) == round(100 * returns["share"])
-    assert f"{100 * returns['lower']:.0f}-{100 * returns['upper']:.0f} %" in tile.words
-    narrow = returns | {"lower": returns["share"] - 0.004, "upper": returns["share"] + 0.004}
-    assert sequence_tables.tiles(changed(drawn, returns=narrow))[0].value == f"{100 * returns['share']:.1f}"
+    tile, returns = sequence_tables.tiles(drawn)[0], drawn.results.returns
+    assert float(tile.value) == round(100 * returns.share)
+    assert f"{100 * returns.lower:.0f}-{100 * returns.upper:.0f} %" in tile.words
+    narrow = {"lower": returns.share - 0.004, "upper": returns.share + 0.004}
+    assert sequence_tables.tiles(changed(drawn, returns=narrow))[0].value == f"{100 * returns.share:.1f}"
 
 
 def test_warnings_name_few_beds_and_what_the_summary_warns_of(drawn: DrawnPage) -> None:
-    gravity = drawn.results["site"]["gravity_warning"]
+    gravity = drawn.results.site.gravity_warning
     lost, last = warnings(changed(drawn, emulator={"warning": None}))
-    assert lost[:-1] == drawn.results["runs"]["warning"]
+    assert lost[:-1] == drawn.results.runs.warning
+    assert gravity is not None
     assert last[1:-1] in gravity
     few = warnings(changed(drawn, emulator={"warning": "the emulator is off"}, runs={"beds": 6}))
     assert [words[:20] for words in few[1:3]] == ["The study has 6 beds", "The emulator is off."]
@@ -81,34 +89,34 @@ def test_warnings_name_few_beds_and_what_the_summary_warns_of(drawn: DrawnPage) 
 def test_the_first_warning_of_the_page_is_that_of_missing_landings(drawn: DrawnPage, drawn_page: str) -> None:
     first = re.search(r'<p class="warning">(.*?)</p>', drawn_page)
     assert first is not None
-    assert first[1][:-1] == drawn.results["runs"]["warning"]
+    assert first[1][:-1] == drawn.results.runs.warning
 
 
 def test_tile_answer_tables_and_figure_have_one_value_of_the_return_fraction(drawn: DrawnPage) -> None:
-    returns = drawn.results["returns"]
-    share, held = f"{100 * returns['share']:.0f} %", f"{100 * returns['lower']:.0f}-{100 * returns['upper']:.0f} %"
+    returns = drawn.results.returns
+    share, held = f"{100 * returns.share:.0f} %", f"{100 * returns.lower:.0f}-{100 * returns.upper:.0f} %"
     tile = sequence_tables.tiles(drawn)[0]
     rows = table_of(drawn, "The answer").rows
     outcomes = {row[0]: row[1:] for row in table_of(drawn, "After the first bounce").rows}
     assert f"{tile.value} %" == rows[0][1] == share
     assert rows[1][1] == held
     (one,) = [cells for words, cells in outcomes.items() if words.startswith("return fraction")]
-    assert one == [f"{share} ({held})", f"{100 * returns['emulator']:.0f} %"]
+    assert one == [f"{share} ({held})", f"{100 * returns.emulator:.0f} %"]
     assert share in captions.answer(drawn)
 
 
 def test_the_outcomes_of_the_runs_add_up_and_each_stands_once(drawn: DrawnPage) -> None:
-    table, shares = table_of(drawn, "After the first bounce"), drawn.results["shares"]
+    table, shares = table_of(drawn, "After the first bounce"), drawn.results.shares.outcomes
     assert len({row[0] for row in table.rows}) == len(table.rows)
     whole = parts(drawn)
-    assert sum(shares[key]["share"] for key in whole) == pytest.approx(1.0)
+    assert sum(shares[key].share for key in whole) == pytest.approx(1.0)
     assert [row[1] for row in table.rows[: len(whole)]] == [with_interval(shares[key]) for key in whole]
     outward = changed(drawn, site={"effective_acceleration_outward": 1e-5})
     assert not any(row[0].startswith("return fraction") for row in table_of(outward, "After the first bounce").rows)
 
 
 def test_a_prediction_interval_for_a_new_bed_has_the_size_of_the_bed(drawn: DrawnPage) -> None:
-    low, high = drawn.results["returns"]["next_bed"]
+    low, high = drawn.results.returns.next_bed or (0.0, 0.0)
     row = next(row for row in table_of(drawn, "The answer").rows if "new bed" in row[0])
     assert row == ["prediction interval for a new bed of 0.55 x 0.55 m", f"{100 * low:.0f}-{100 * high:.0f} %"]
     assert "new bed" not in captions.answer(drawn)
@@ -127,7 +135,7 @@ def rare(**changes: Any) -> dict[str, Any]:
         "condition": "speed_out > 0.3", "probability": 0.0015, "lower": 4e-4, "upper": 0.005, "origins": 2.4,
         "warning": "Few beds led to it: raise bed.bed_count.", "reached": True, "rarest": 0.0015,
         "thresholds": [1.7, 0.9, 0.0], "shares": [0.1, 0.1, 0.15], "landings": 1400, "beds": 12,
-        "statement": "fast: probability .0015.",
+        "level": 0.9, "statement": "fast: probability .0015.",
     } | changes  # fmt: skip
 
 
@@ -157,34 +165,30 @@ def test_rare_limit_states_have_their_levels_a_figure_and_a_warning(sequence_fol
         write_report(folder, lambda done, total: None)
 
 
-def record() -> dict[str, Any]:
+def record() -> VarianceParts:
     """Parts of the variance that add up to 1."""
-
-    def part(share: float, lower: float, upper: float) -> dict[str, float]:
-        return {"share": share, "lower": lower, "upper": upper}
-
-    alone = {"grain.friction": part(0.05, 0.01, 0.09), "grain.restitution": part(0.008, 0.0, 0.02)}
-    return {
-        "soil": part(0.06, 0.01, 0.11), "soil_by_input": alone, "arrival": None, "bed": part(0.03, 0.0, 0.15),
-        "place_and_attitude": part(0.906, 0.8, 0.97), "chaos": part(0.004, 0.003, 0.01),
-    }  # fmt: skip
+    alone = {"grain.friction": VariancePart(0.05, 0.01, 0.09), "grain.restitution": VariancePart(0.008, 0.0, 0.02)}
+    return VarianceParts(
+        soil=VariancePart(0.06, 0.01, 0.11), soil_by_input=alone, arrival=None, bed=VariancePart(0.03, 0.0, 0.15),
+        place_and_attitude=VariancePart(0.906, 0.8, 0.97), chaos=VariancePart(0.004, 0.003, 0.01), of="the landings",
+    )  # fmt: skip
 
 
 def test_the_caption_of_the_calibration_counts_what_luck_does_not_explain(drawn: DrawnPage) -> None:
-    narrow = {"pit": [60, 10, 10, 10, 10, 10, 10, 10, 10, 60], "band_90": 0.6}
-    scores = {"speed_out": narrow, "joint": {"energy_skill": 0.1}}
+    narrow = OutputScore(0.1, 0.6, (60, 10, 10, 10, 10, 10, 10, 10, 10, 60))
+    scores = EmulatorScores(JointScore(0.1), {"speed_out": narrow})
     words = sequence_captions.calibration(changed(drawn, emulator={"scores": scores}))
     assert percents(words)[:2] == [90.0, 60.0]
     assert "10 of 10 bars" in words
-    assert words.endswith(drawn.results["emulator"]["statement"])
+    assert words.endswith(drawn.results.emulator.statement)
 
 
 def test_the_caption_of_the_runs_has_their_outcomes_and_quantiles(drawn: DrawnPage) -> None:
-    words, runs = sequence_captions.runs(drawn), drawn.results["runs"]
-    for number in (runs["count"], runs["beds"], *runs["outcomes"].values()):
+    words, runs = sequence_captions.runs(drawn), drawn.results.runs
+    for number in (runs.count, runs.beds, *runs.outcomes.values()):
         assert re.search(rf"\b{number}\b", words)
-    median = drawn.results["outputs"]["speed_out"]["quantiles"]["0.5"]
-    for end in median.values():
+    median = drawn.results.spreads["speed_out"].quantiles["0.5"]
+    for end in vars(median).values():
         assert f"{end:.3g}" in words
 
 
@@ -198,24 +202,22 @@ def test_a_colour_that_says_nothing_is_called_so(drawn: DrawnPage) -> None:
 
 
 def test_every_output_of_the_runs_has_its_numbers_and_their_intervals(drawn: DrawnPage) -> None:
-    table, speed = table_of(drawn, "Outputs of the landings"), drawn.results["outputs"]["speed_out"]
+    table, speed = table_of(drawn, "Outputs of the landings"), drawn.results.spreads["speed_out"]
     row = next(row for row in table.rows if row[1] == "m/s")
-    assert row[2] == f"{speed['mean']['value']:.3g} ({speed['mean']['lower']:.3g} to {speed['mean']['upper']:.3g})"
+    assert row[2] == f"{speed.mean.value:.3g} ({speed.mean.lower:.3g} to {speed.mean.upper:.3g})"
     assert sum(" to " in cell for cell in row) == 4
 
 
 def test_an_azimuth_has_a_direction_and_a_resultant_length(drawn: DrawnPage) -> None:
-    azimuth = {
-        "mean_direction": {"value": math.radians(5.0), "lower": math.radians(-10.0), "upper": math.radians(20.0)},
-        "resultant_length": {"value": 0.2, "lower": 0.1, "upper": 0.3}, "of": "the landings",
-    }  # fmt: skip
+    mean = Estimate(math.radians(5.0), math.radians(-10.0), math.radians(20.0))
+    azimuth = OutputDirection(mean, Estimate(0.2, 0.1, 0.3), "the landings")
     table = table_of(changed(drawn, outputs={"azimuth_out": azimuth}), "Directions of the landings")
     assert table.rows == [["azimuth out", "5.00 (-10 to 20)", "0.200 (0.1 to 0.3)"]]
     assert not any(one.title.startswith("Directions") for one in sequence_tables.tables(drawn))
 
 
 def test_touchdowns_without_a_bed_have_a_page_without_one(drawn: DrawnPage) -> None:
-    alone = replace(drawn, bed=None, landing=None, results=drawn.results | {"beds": []})
+    alone = replace(drawn, bed=None, landing=None, results=replace(drawn.results, beds=()))
     content = sequence_content(alone)
     assert "Beds" not in {table.title for table in content.tables}
     assert next(row for row in content.tables[0].rows if "new bed" in row[0])[0] == "prediction interval for a new bed"
@@ -223,9 +225,10 @@ def test_touchdowns_without_a_bed_have_a_page_without_one(drawn: DrawnPage) -> N
 
 
 def test_side_runs_have_their_numbers(drawn: DrawnPage) -> None:
-    table, side = table_of(drawn, "Side runs"), drawn.results["runs"]["side_runs"]
-    assert re.findall(r"\d+", table.note)[:2] == [str(side["soil_pairs"]), str(side["twins"])]
-    assert float(table.rows[0][2].split()[0]) == pytest.approx(side["chaos_deviation"]["speed_out"]["value"], rel=5e-3)
+    table, side = table_of(drawn, "Side runs"), drawn.results.runs.side_runs
+    assert side is not None
+    assert re.findall(r"\d+", table.note)[:2] == [str(side.soil_pairs), str(side.twins)]
+    assert float(table.rows[0][2].split()[0]) == pytest.approx(side.chaos_deviation["speed_out"].value, rel=5e-3)
     without = changed(drawn, runs={"side_runs": None})
     assert not [one for one in sequence_tables.tables(without) if one.title == "Side runs"]
 
@@ -248,19 +251,18 @@ def test_what_the_emulator_found_stands_beside_the_inputs(drawn: DrawnPage) -> N
 
 
 def test_one_bed_has_a_page_without_intervals(drawn: DrawnPage) -> None:
-    def bare(entry: dict[str, Any]) -> dict[str, Any]:
-        return entry | {"lower": None, "upper": None}
+    def bare(entry: Estimate) -> Estimate:
+        return replace(entry, lower=None, upper=None)
 
     outputs = {
-        name: table | {
-            "mean": bare(table["mean"]),
-            "quantiles": {level: bare(one) for level, one in table["quantiles"].items()},
-        }
-        for name, table in drawn.results["outputs"].items() if "quantiles" in table
-    }  # fmt: skip
-    shares = dict.fromkeys(drawn.results["variance_shares"])
+        name: replace(
+            table, mean=bare(table.mean), quantiles={level: bare(one) for level, one in table.quantiles.items()}
+        )
+        for name, table in drawn.results.spreads.items()
+    }
+    shares = dict.fromkeys(drawn.results.variance_shares)
     alone = changed(drawn, returns=ONE_BED, runs={"beds": 1}, variance_shares=shares)
-    content = sequence_content(replace(alone, results=alone.results | {"outputs": outputs}))
+    content = sequence_content(replace(alone, results=replace(alone.results, outputs=outputs)))
     answer, outputs_table = content.tables[0], next(one for one in content.tables if one.title.startswith("Outputs"))
     assert not any("interval" in row[0] for row in answer.rows)
     assert answer.note.startswith(ONE_BED["why"])
@@ -272,7 +274,7 @@ def test_one_bed_has_a_page_without_intervals(drawn: DrawnPage) -> None:
 def test_what_a_study_has_not_is_left_out(drawn: DrawnPage) -> None:
     none = dict.fromkeys(("soil", "hard", "equivalent"))
     alone = changed(drawn, rest=none | {"why_no_soil": "rest.count is 0"})
-    empty = replace(alone, landing=None, facet=drawn.facet[:0], results=alone.results | {"ellipses": None})
+    empty = replace(alone, landing=None, facet=drawn.facet[:0], results=replace(alone.results, ellipses=None))
     content = sequence_content(empty)
     assert {plot.name for plot in content.plots if not plot.sentence} == {"landing", "body", "rest"}
     assert all(table.rows for table in content.tables)

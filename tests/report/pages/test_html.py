@@ -5,7 +5,9 @@ from html.parser import HTMLParser
 
 import pytest
 
-from lithobrake.report.pages.html import LONG, Content, PageTable, Panel, Tile, flat, number, page, show, unit_scales
+from lithobrake.report.content import Content, PageTable, Panel, Tile
+from lithobrake.report.pages.html import LONG, page
+from lithobrake.report.words.numbers import flat, number, show, unit_scales
 
 
 def example() -> str:

@@ -1,4 +1,4 @@
-"""The results of a study as the page shows them: a view, in which whatever is missing is told with its file."""
+"""The results of a study as the page shows them; a file that is missing or damaged is named."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -9,9 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lithobrake.files.reading import DamagedFileError, reading
-from lithobrake.report.figures.error_figure import Score
-from lithobrake.report.figures.scene import Scene, scene
-from lithobrake.results import ExplorerTables, StudyResults, Table
+from lithobrake.results import ExplorerTables, MovingBodies, StudyResults, Table
+from lithobrake.results.expansions import OutputErrors
+from lithobrake.results.json_values import from_json
+from lithobrake.results.limit_state_results import RareLimitState
+from lithobrake.results.summary import DrawnResults, PaperResults, Provenance
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus, TouchdownOutcome
 
 Array = NDArray[np.float64]
@@ -21,13 +23,15 @@ OF_ANY_STUDY = ("samples.h5", "explorer.h5", "flights.csv", "flight_paths.h5", "
 PAPER_FILES = (*FILES, "scores.json", *OF_ANY_STUDY)
 DRAWN_FILES = (*FILES, "designs/sequence.csv", *OF_ANY_STUDY)
 GROUNDS = ("soil", "hard")
+# More dots than this only cover each other, and a picture of ten million takes minutes.
+DRAWN_COUNT = 200_000
 
 
 @dataclass(frozen=True)
 class PageData:
     """What the page shows of any study.
 
-    study, results, provenance: the three tables of summary.json;
+    study: the tables of its file; results and provenance: those of summary.json;
     latitude, longitude: of the impacts [deg], shape [impact], and facet, the one of the body that was hit;
     body_vertices of the body [m] and its body_faces, counted from 0; rest: latitude and longitude [deg] of the landers
     that rest, by ground; paths: places on the ways of some flights [m] and how each ended; flights: of the samples;
@@ -40,11 +44,11 @@ class PageData:
     digits: ClassVar[int]
     """Digits behind the point of a share in per cent without an interval, as its answer prints them."""
     study: dict[str, Any]
-    results: dict[str, Any]
-    provenance: dict[str, Any]
+    results: DrawnResults | PaperResults
+    provenance: Provenance
     study_text: str
-    bed: Scene | None
-    landing: Scene | None
+    bed: MovingBodies | None
+    landing: MovingBodies | None
     latitude: Array
     longitude: Array
     facet: NDArray[np.int64]
@@ -66,20 +70,14 @@ class PageData:
         """Which landing has been kept with its pictures, as a sentence about it begins; empty where none has."""
         return ""
 
-    def table(self, *keys: str) -> Mapping[str, Any]:
-        """A table within the results, by the keys that lead to it; an empty one where there is none or it is null."""
-        found: Mapping[str, Any] = self.results
-        for key in keys:
-            found = found.get(key) or {}
-        return found
-
 
 @dataclass(frozen=True)
 class PaperPage(PageData):
-    """Results of the method in two steps; scores: stage, output, score."""
+    """Results of a paper study; scores: by set of runs and output, with the error of each run."""
 
     model, digits = "expansion", 1
-    scores: dict[str, dict[str, Score]]
+    results: PaperResults
+    scores: Mapping[str, Mapping[str, OutputErrors]]
 
     @property
     def level(self) -> float:
@@ -94,22 +92,23 @@ class PaperPage(PageData):
 
 @dataclass(frozen=True)
 class DrawnPage(PageData):
-    """Results of a sequence; runs: its landings, without side runs; rare: what `lithobrake rare` found, by state."""
+    """Results of a drawn study; runs: without auxiliary ones; rare: what `lithobrake rare` found, by limit state."""
 
     model, digits = "emulator", 0
 
+    results: DrawnResults
     runs: Table
-    rare: Mapping[str, Mapping[str, Any]]
+    rare: Mapping[str, RareLimitState]
 
     @property
     def level(self) -> float:
         """That of all intervals."""
-        return float(self.results["returns"]["level"])
+        return self.results.returns.level
 
     @property
     def shown_landing(self) -> str:
         """The run that its file names, or the first one."""
-        attributes = {} if self.landing is None else self.landing.moving.attributes
+        attributes = {} if self.landing is None else self.landing.attributes
         if "run" not in attributes:
             return "In the first run"
         which = (
@@ -120,49 +119,34 @@ class DrawnPage(PageData):
         return f"In run {str(attributes['run'])[:8]}, {which}"
 
 
-class SummaryTable(dict[str, Any]):
-    """A table of summary.json; a key that it lacks, as where another version wrote it, is named with the file."""
-
-    def __init__(self, content: Mapping[str, Any], path: Path, remedy: str, inside: str = "") -> None:
-        """Take over a table and those in it; inside: its dotted name with a point, empty for the outermost."""
-        super().__init__(content)
-        self._lacks = f"{path} lacks {inside}{{key}}; {remedy}"
-        for key, value in content.items():
-            if isinstance(value, dict):
-                self[key] = SummaryTable(value, path, remedy, f"{inside}{key}.")
-
-    def __missing__(self, key: str) -> Any:
-        """Raise DamagedFileError for a key that is not there."""
-        raise DamagedFileError(self._lacks.format(key=key))
-
-
 def page_results(found: StudyResults) -> PaperPage | DrawnPage:
     """What the page shows of a study. Raises ValueError that names the file when one is missing or damaged."""
     _refuse_without(found.folder, FILES)
-    summary = SummaryTable(found.summary, found.folder / "summary.json", found.remedy)
-    if summary["study"]["design"]["method"] == "paper":
+    results = found.results
+    if isinstance(results, PaperResults):
         _refuse_without(found.folder, PAPER_FILES)
-        return PaperPage(**_of_any_study(found, summary), scores=_scores(found))
+        return PaperPage(results=results, **_of_any_study(found), scores=_scores(found))
     _refuse_without(found.folder, DRAWN_FILES)
     runs = found.runs.where(found.runs["design"] == "sequence")
-    return DrawnPage(**_of_any_study(found, summary), runs=runs, rare=found.rare)
+    return DrawnPage(results=results, **_of_any_study(found), runs=runs, rare=found.rare)
 
 
-def _of_any_study(found: StudyResults, summary: SummaryTable) -> dict[str, Any]:
+def _of_any_study(found: StudyResults) -> dict[str, Any]:
     """The fields that results of every method have."""
     # A program or function of the user's own has neither beds nor pictures.
-    has_scenes = bool(summary["results"]["beds"])
+    has_scenes = bool(found.results.beds)
     if has_scenes:
         _refuse_without(found.folder, ("landing.h5", "beds/bed_0.h5"))
     latitude, longitude, facet = _impacts(found)
     vertices, faces = found.body_shape
+    with reading(found.folder / "summary.json", found.remedy):
+        provenance = from_json(Provenance, found.summary["provenance"], "provenance")
     return {
-        "study": summary["study"],
-        "results": summary["results"],
-        "provenance": summary["provenance"],
+        "study": found.study,
+        "provenance": provenance,
         "study_text": found.study_text,
-        "bed": scene(found.bed_bodies(0), has_lander=False) if has_scenes else None,
-        "landing": scene(found.median_landing, has_lander=True) if has_scenes else None,
+        "bed": found.bed_bodies(0) if has_scenes else None,
+        "landing": found.median_landing if has_scenes else None,
         "latitude": latitude,
         "longitude": longitude,
         "facet": facet,
@@ -205,19 +189,10 @@ def _places(path: Path, table: Table, remedy: str) -> tuple[Array, Array]:
     return latitude, longitude
 
 
-def _scores(found: StudyResults) -> dict[str, dict[str, Score]]:
-    """Scores by stage and output; a score that does not exist is None."""
+def _scores(found: StudyResults) -> dict[str, dict[str, OutputErrors]]:
+    """Errors by set of runs and output."""
     with reading(found.folder / "scores.json", found.remedy):
-        return {stage: {name: _score(score) for name, score in table.items()} for stage, table in found.scores.items()}
-
-
-def _score(score: Mapping[str, Any]) -> Score:
-    return Score(
-        # A run whose true value is zero has no percentage; it still counts in all other scores.
-        ape=np.array([value for value in score["ape"] if value is not None], dtype=float),
-        mape=score["mape"],
-        q2=score["q2"],
-        q2_interval=tuple(score["q2_interval"]),
-        rmse=score["rmse"],
-        std=score["std"],
-    )
+        return {
+            stage: {name: from_json(OutputErrors, errors, f"{stage}.{name}") for name, errors in table.items()}
+            for stage, table in found.scores.items()
+        }

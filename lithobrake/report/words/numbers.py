@@ -1,0 +1,86 @@
+"""Numbers of the page in words and cells."""
+
+from collections.abc import Iterable, Mapping, Sequence
+
+from lithobrake.results.expansions import OutputErrors
+
+# Of the largest number beside it: what the rounding of doubles may add up to over some million steps of time.
+ROUNDING = 1e-9
+
+
+def flat(tree: Mapping[str, object], prefix: str = "", alike: Sequence[Sequence[str]] = ()) -> list[tuple[str, str]]:
+    """A nested mapping as rows (dotted name, value in words), in its own order; alike: names that share one scale."""
+    scales = {name: largest([tree.get(one) for one in names]) for names in alike for name in names}
+    rows: list[tuple[str, str]] = []
+    for name, value in tree.items():
+        key = f"{prefix}.{name}" if prefix else str(name)
+        if isinstance(value, Mapping):
+            rows += flat(value, key)
+        else:
+            rows.append((key, show(value, scales.get(name, 0.0))))
+    return rows
+
+
+def show(value: object, scale: float = 0.0) -> str:
+    """A value of a results file in words: numbers to four digits, lists in one line and of one scale."""
+    if isinstance(value, bool) or value is None:
+        return {True: "yes", False: "no", None: "none"}[value]
+    if isinstance(value, float):
+        return number(value, 4, scale=scale)
+    if isinstance(value, list | tuple):
+        scale = max(scale, largest(value))
+        return ", ".join(show(entry, scale) for entry in value)
+    return str(value)
+
+
+def largest(value: object) -> float:
+    """The largest magnitude among the numbers of a value of a results file; 0 where it has none."""
+    if isinstance(value, list | tuple):
+        return max(map(largest, value), default=0.0)
+    return abs(value) if isinstance(value, int | float) else 0.0
+
+
+def unit_scales(numbers: Iterable[tuple[str, float]]) -> dict[str, float]:
+    """The largest magnitude of each unit among the numbers (unit, value) of a table."""
+    scales: dict[str, float] = {}
+    for unit, value in numbers:
+        scales[unit] = max(scales.get(unit, 0.0), abs(value))
+    return scales
+
+
+def fixed(value: float, digits: int = 2) -> str:
+    """A number to some digits behind the point, without a sign when they are all zeros."""
+    text = f"{value:.{digits}f}"
+    return text if float(text) else text.removeprefix("-")
+
+
+def number(value: float, digits: int = 3, *, zeros: bool = False, scale: float = 0.0) -> str:
+    """A number to some digits, very large and very small ones with a power of ten; zeros: keep those at the end.
+
+    scale: the largest magnitude of what it stands beside; what is rounding next to that is shown as 0.
+    """
+    if abs(value) <= ROUNDING * scale:
+        return "0"
+    if value == 0 or 1e-3 <= abs(value) < 1e5:
+        text = f"{value:#.{digits}g}" if zeros else f"{value:.{digits}g}"
+        return f"{value:.0f}" if "e" in text else text.removesuffix(".")
+    mantissa, exponent = f"{value:.{digits - 1}e}".split("e")
+    if not zeros and "." in mantissa:
+        mantissa = mantissa.rstrip("0").removesuffix(".")
+    raised = str(int(exponent)).translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))
+    return f"{mantissa} × 10{raised}"
+
+
+def table_cell(value: float, scale: float = 0.0) -> str:
+    """A number in a column: three digits, zeros at the end kept; scale: the largest of its unit in the table."""
+    return number(value, zeros=True, scale=scale)
+
+
+def q2_words(errors: OutputErrors) -> str:
+    """Q2 with its interval: "0.93 (0.80 to 0.97)"."""
+    low, high = errors.q2_interval
+    if errors.q2 is None:
+        return "undefined"
+    if low is None and high is None:
+        return fixed(errors.q2)
+    return f"{fixed(errors.q2)} ({'no bound' if low is None else fixed(low)} to {fixed(1.0 if high is None else high)})"
