@@ -62,8 +62,9 @@ def parts(world: World) -> Iterator[tuple[str, float, float]]:
     ends = np.searchsorted(kind[order], np.arange(len(KINDS) + 1))
     for name, start, stop in zip(KINDS, ends[:-1], ends[1:], strict=True):
         if start < stop:
-            rest = (engine.laws, still, engine.scratch, NO_REACTIONS, False, start, stop)
-            spent = nanoseconds(lambda rest=rest: contact_forces(bodies, *held, sorted_pairs, *rest))
+            system = engine.system(NO_REACTIONS)._replace(pairs=sorted_pairs)
+            parts = (system, still, False, start, stop)
+            spent = nanoseconds(lambda parts=parts: contact_forces(*parts))
             yield f"forces: {name}", (stop - start) / count, spent
     look = nanoseconds(lambda: largest_step(bodies, engine.planes, pairs, engine.laws, False))
     yield f"look at stability, every {LOOK_STEPS} steps", 1.0 / LOOK_STEPS, look / LOOK_STEPS

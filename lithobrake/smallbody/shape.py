@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lithobrake.geometry.mesh import closed_faces, mass_properties
+from lithobrake.geometry.mesh import closed_faces, mass_properties, thinned
 from lithobrake.geometry.mesh_files import read_mesh
 from lithobrake.geometry.mesh_labels import labelled_mesh
 from lithobrake.smallbody.attraction import Gravity
@@ -19,7 +19,6 @@ from lithobrake.smallbody.multipole import Multipole
 from lithobrake.smallbody.polyhedron_gravity import PolyhedronTerms
 from lithobrake.smallbody.ray_facet import outermost_hit
 from lithobrake.smallbody.signed_distance import heights, pseudonormals
-from lithobrake.smallbody.thinning import thinned
 from lithobrake.vocabulary.given_numbers import numbers
 
 FEWEST_FACETS = 100
@@ -173,17 +172,6 @@ class Shape:
         latitude = np.degrees(np.arctan2(p[..., 2], np.hypot(p[..., 0], p[..., 1])))
         longitude = np.degrees(np.arctan2(p[..., 1], p[..., 0]))
         return latitude, np.where(longitude == -180.0, 180.0, longitude)
-
-    def latitude_longitude_height(
-        self, points: ArrayLike
-    ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-        """As latitude_longitude, with the height [m] over surface_point along the radius, which it is the inverse of.
-
-        Raises ValueError as that does. The distance to the nearest point of the surface is `height`.
-        """
-        latitude, longitude = self.latitude_longitude(points)
-        ground = np.linalg.norm(self.surface_point(latitude, longitude), axis=-1)
-        return latitude, longitude, np.linalg.norm(np.asarray(points, dtype=np.float64), axis=-1) - ground
 
     def surface_point(
         self, latitude_deg: ArrayLike, longitude_deg: ArrayLike, height: ArrayLike = 0.0

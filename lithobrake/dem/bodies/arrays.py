@@ -1,7 +1,7 @@
 """The arrays that kernels work on. Every length is in metres, every frame is the world's unless it says body.
 
-Kernels take a pair first, then arrays in the order below and those of scratch.py, then all else. They only read, but
-for what their docstrings say they write to.
+Kernels take a pair first, then the System of scratch.py or arrays in the order below and there, then all else. They
+only read, but for what their docstrings say they write to.
 """
 
 from typing import NamedTuple

@@ -7,18 +7,7 @@ Source: [Landings-PCE], Eqs 1 to 9, with the shear modulus of [Mindlin-1949].
 """
 
 from lithobrake.compilation.compiled import kernel
-from lithobrake.dem.bodies.arrays import (
-    DAMPING,
-    FRICTION,
-    ROLLING,
-    Bodies,
-    Cores,
-    Laws,
-    Pairs,
-    Planes,
-    Reactions,
-    Step,
-)
+from lithobrake.dem.bodies.arrays import DAMPING, FRICTION, ROLLING, Bodies, Pairs, Reactions, Step
 from lithobrake.dem.bodies.vectors import Vector, add, cross, dot, minus, plus, put, row, scaled
 from lithobrake.dem.law.contact_motion import relative_motion
 from lithobrake.dem.law.coulomb_friction import friction_force, resist_twisting
@@ -28,19 +17,17 @@ from lithobrake.dem.law.rolling_resistance import resist_rolling
 from lithobrake.dem.law.tangential_spring import stored
 from lithobrake.dem.narrow_phase.contact_patch import Contact, find_contact
 from lithobrake.dem.narrow_phase.patch_energy import patch_tilt_stiffness
-from lithobrake.dem.narrow_phase.scratch import Scratch
+from lithobrake.dem.narrow_phase.scratch import System
 
 
 @kernel
-def contact_force(
-    pair: int, bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, laws: Laws, step: Step, scratch: Scratch,
-    reactions: Reactions, kept: bool,
-) -> float:  # fmt: skip
-    """Compute the contact force of one pair, and add it to its members or keep it in `reactions`.
+def contact_force(pair: int, system: System, step: Step, kept: bool) -> float:
+    """Compute the contact force of one pair, and add it to its members or keep it in the reactions.
 
     Returns the square [1/s2] of the rate of its spring or dashpot, 0 where nothing touches.
-    Writes to bodies, pairs, scratch and reactions.
+    Writes to system.
     """
+    bodies, cores, planes, pairs, laws, scratch, reactions = system
     patch, first, second = scratch.patch, pairs.first[pair], pairs.second[pair]
     if pairs.feature_count[pair] == 0:
         end_contact(pair, pairs)

@@ -9,6 +9,7 @@ from lithobrake.dem.bodies.arrays import Bodies, Floats, Integers, Pairs
 from lithobrake.dem.bodies.vectors import Vector, cross, dot, minus, plus, put, row
 from lithobrake.dem.local_stepping.agenda import Agenda, put_on
 from lithobrake.dem.local_stepping.approach import Approach, closing_speed
+from lithobrake.dem.local_stepping.cells import Cells
 from lithobrake.dem.local_stepping.free_flight import (
     Flight,
     Rules,
@@ -41,6 +42,15 @@ class Plans(NamedTuple):
     link: Integers  # [2 pair_capacity], next entry in the list of the first's, and of the second's pairs; -1: none
     free: Integers  # [pair_capacity], slots that are free
     free_count: Integers  # [1]
+
+
+class Schedule(NamedTuple):
+    """When what is due, and what that follows from."""
+
+    flight: Flight
+    plans: Plans
+    agenda: Agenda
+    cells: Cells
 
 
 @kernel

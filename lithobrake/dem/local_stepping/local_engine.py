@@ -8,7 +8,7 @@ from lithobrake.dem.bodies.arrays import Floats, Pairs, Step
 from lithobrake.dem.bodies.rigid_body import RigidBody
 from lithobrake.dem.local_stepping.agenda import Agenda, new_agenda
 from lithobrake.dem.local_stepping.cells import cells_of
-from lithobrake.dem.local_stepping.contact_plans import Plans
+from lithobrake.dem.local_stepping.contact_plans import Plans, Schedule
 from lithobrake.dem.local_stepping.free_flight import Flight, Rules, fly_all_to
 from lithobrake.dem.local_stepping.holding import hold_what_is_slow
 from lithobrake.dem.local_stepping.local_steps import NO_ROOM, advance_locally, sum_forces
@@ -113,10 +113,10 @@ class LocalEngine:
         """Move on by a duration [s]; tell whether all is still finite."""
         engine, end = self.engine, self.time + duration
         while True:
+            schedule = Schedule(self.flight, self.plans, self.agenda, self.cells)
             reason = advance_locally(
-                engine.bodies, engine.cores, engine.planes, self.pairs, engine.laws, engine.scratch, self.reactions,
-                self.flight, self.plans, self.agenda, self.cells, end, self.rules, self.setting.watched, self.record,
-            )  # fmt: skip
+                engine.system(self.reactions), schedule, end, self.rules, self.setting.watched, self.record
+            )
             if reason == NO_SLOT:
                 self._widen()
             elif reason == NO_ROOM:

@@ -11,13 +11,13 @@ Source: [Lew-2003], asynchronous variational integrators.
 from lithobrake.compilation.compiled import kernel, large_kernel
 from lithobrake.dem.bodies.arrays import Bodies, Cores, Floats, Laws, Pairs, Planes, Reactions, Step
 from lithobrake.dem.bodies.vectors import Vector, minus, plus, put, row, scaled, times
-from lithobrake.dem.local_stepping.agenda import Agenda, put_on
+from lithobrake.dem.local_stepping.agenda import put_on
 from lithobrake.dem.local_stepping.approach import Approach, approach_of, closing_speed
-from lithobrake.dem.local_stepping.cells import Cells
 from lithobrake.dem.local_stepping.contact_plans import (
     LONGER,
     SHORTER,
     Plans,
+    Schedule,
     collision_step,
     contact_step,
     has_changed,
@@ -29,7 +29,7 @@ from lithobrake.dem.local_stepping.free_flight import Flight, Rules, fly_to, spi
 from lithobrake.dem.local_stepping.holding import give_impulse, is_stirred, let_go
 from lithobrake.dem.local_stepping.neighbour_search import LISTED, search_neighbours
 from lithobrake.dem.narrow_phase.feature_list import ROUNDING_OF_RADIUS, STEPS_LISTED, renew_list, travelled
-from lithobrake.dem.narrow_phase.scratch import Scratch
+from lithobrake.dem.narrow_phase.scratch import Scratch, System
 from lithobrake.dem.stepping.force_sums import add_wrench, contact_force
 from lithobrake.dem.stepping.stability import pair_step
 from lithobrake.dem.stepping.watch import record_touch
@@ -99,15 +99,13 @@ def predict(bodies: Bodies, body: int, force: Vector, torque: Vector, half: floa
 
 
 @kernel
-def force_after(
-    pair: int, bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, laws: Laws, step: Step, scratch: Scratch,
-    reactions: Reactions, plans: Plans,
-) -> float:  # fmt: skip
+def force_after(pair: int, system: System, step: Step, plans: Plans) -> float:
     """Compute the contact force after a step in which others may have kicked the members; return its rate.
 
     A contact slips by the way of its bodies since the last look, whoever kicked them: taken from the velocities at hand
-    alone, it would gain energy. Writes to bodies, pairs, scratch and reactions.
+    alone, it would gain energy. Writes to system.
     """
+    bodies, pairs = system.bodies, system.pairs
     first, second = pairs.first[pair], pairs.second[pair]
     velocity, other_velocity = row(bodies.velocity, first), (0.0, 0.0, 0.0)
     touched = plans.interval[pair] > 0.0 and step.time_step > 0.0
@@ -121,7 +119,7 @@ def force_after(
             put(bodies.half_spin, second, scaled(0.5, plus(row(bodies.half_spin, second), row(plans.spin[pair], 1))))
         else:
             put(bodies.velocity, first, scaled(-1.0, mean))
-    rate = contact_force(pair, bodies, cores, planes, pairs, laws, step, scratch, reactions, True)
+    rate = contact_force(pair, system, step, True)
     if touched:
         put(bodies.velocity, first, velocity)
         if second >= 0:
@@ -145,14 +143,13 @@ def next_step(
 
 
 @kernel
-def touch(
-    pair: int, bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, laws: Laws, scratch: Scratch,
-    reactions: Reactions, flight: Flight, plans: Plans, passed: float, rules: Rules,
-) -> float:  # fmt: skip
+def touch(pair: int, system: System, schedule: Schedule, passed: float, rules: Rules) -> float:
     """Compute a contact, kick its bodies, and return the interval [s] until it is due again; 0 where it has ended.
 
-    passed: since the last look [s]. Writes to bodies, pairs, scratch, reactions, flight and plans.
+    passed: since the last look [s]. Writes to system and schedule.
     """
+    bodies, _, planes, pairs, laws, _, reactions = system
+    flight, plans = schedule.flight, schedule.plans
     first, second = pairs.first[pair], pairs.second[pair]
     planned = plans.interval[pair]
     force, torque, other_torque = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
@@ -163,7 +160,7 @@ def touch(
     if second >= 0:
         predict(bodies, second, force, other_torque, 0.0 if flight.held[second] else 0.5 * passed)
     step = Step(passed, 0.0, rules.gravity, rules.paper_mass)
-    rate = force_after(pair, bodies, cores, planes, pairs, laws, step, scratch, reactions, plans)
+    rate = force_after(pair, system, step, plans)
     # The last kick reached over half of the interval that was planned; it may have been cut short.
     cut = 0.5 * (passed - planned) if planned > 0.0 else 0.0
     impulse, moment, other_moment = scaled(cut, force), scaled(cut, torque), scaled(cut, other_torque)
@@ -183,14 +180,13 @@ def touch(
 
 
 @kernel
-def meet(
-    pair: int, bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, laws: Laws, scratch: Scratch,
-    reactions: Reactions, flight: Flight, plans: Plans, agenda: Agenda, now: float, rules: Rules,
-) -> bool:  # fmt: skip
+def meet(pair: int, system: System, schedule: Schedule, now: float, rules: Rules) -> bool:
     """Look at a pair that is due and plan when to look again; tell whether there was room for its features.
 
-    Writes to bodies, pairs, scratch, reactions, flight, plans and agenda.
+    Writes to system and schedule.
     """
+    bodies, cores, planes, pairs, _, scratch, reactions = system
+    flight, plans, agenda, _ = schedule
     for member in (pairs.first[pair], pairs.second[pair]):
         if member >= 0:
             fly_to(bodies, flight, member, now, rules)
@@ -208,7 +204,7 @@ def meet(
             plan_approach(pair, bodies, pairs, flight, plans, agenda, approach, now, rules)
             return True
     touched = plans.interval[pair] > 0.0
-    interval = touch(pair, bodies, cores, planes, pairs, laws, scratch, reactions, flight, plans, passed, rules)
+    interval = touch(pair, system, schedule, passed, rules)
     if interval > 0.0:
         put_on(agenda, len(bodies.mass) + pair, now + interval)
     else:
@@ -244,15 +240,12 @@ def record_contacts(
 
 
 @large_kernel
-def advance_locally(
-    bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, laws: Laws, scratch: Scratch, reactions: Reactions,
-    flight: Flight, plans: Plans, agenda: Agenda, cells: Cells, end: float, rules: Rules, watched: int, record: Floats,
-) -> int:  # fmt: skip
+def advance_locally(system: System, schedule: Schedule, end: float, rules: Rules, watched: int, record: Floats) -> int:
     """Do all that is due up to an instant [s]; return LISTED, or what is lacking.
 
-    Writes to bodies, pairs, scratch, reactions, flight, plans, agenda, cells and record.
+    Writes to system, schedule and record.
     """
-    n = len(bodies.mass)
+    pairs, agenda, n = system.pairs, schedule.agenda, len(system.bodies.mass)
     while agenda.size[0] > 0:
         item = agenda.heap[0]
         now = agenda.due[item]
@@ -260,17 +253,15 @@ def advance_locally(
         if not now <= end:
             break
         if item < n:
-            reason = search_neighbours(
-                bodies, cores, planes, pairs, laws, scratch, flight, plans, agenda, cells, item, now, rules
-            )
+            reason = search_neighbours(system, schedule, item, now, rules)
             if reason != LISTED:
                 return reason
             continue
         pair = item - n
-        if not meet(pair, bodies, cores, planes, pairs, laws, scratch, reactions, flight, plans, agenda, now, rules):
+        if not meet(pair, system, schedule, now, rules):
             return NO_ROOM
         if watched >= 0 and (pairs.first[pair] == watched or pairs.second[pair] == watched):
-            record_contacts(pairs, reactions, flight, plans, watched, now, record)
+            record_contacts(pairs, system.reactions, schedule.flight, schedule.plans, watched, now, record)
     return LISTED
 
 

@@ -10,10 +10,10 @@ from lithobrake.dem.bodies.arrays import Bodies, Cores, Floats, Laws, Pairs, Pla
 from lithobrake.dem.bodies.vectors import dot, minus, row
 from lithobrake.dem.law.material_pair import law_between
 from lithobrake.dem.local_stepping.agenda import Agenda, put_on, take_off
-from lithobrake.dem.local_stepping.cells import Cells, gather_near, move_to_cell
-from lithobrake.dem.local_stepping.contact_plans import Plans, plan_search
+from lithobrake.dem.local_stepping.cells import gather_near, move_to_cell
+from lithobrake.dem.local_stepping.contact_plans import Plans, Schedule, plan_search
 from lithobrake.dem.local_stepping.free_flight import Flight, Rules, fly_to, place_at, spin_bound
-from lithobrake.dem.narrow_phase.scratch import Scratch
+from lithobrake.dem.narrow_phase.scratch import Scratch, System
 from lithobrake.dem.stepping.neighbours import are_near
 from lithobrake.dem.stepping.time_step import HERTZ_DURATION
 
@@ -143,14 +143,13 @@ def is_near(
 
 
 @kernel
-def list_if_near(
-    bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, laws: Laws, scratch: Scratch, flight: Flight,
-    plans: Plans, agenda: Agenda, body: int, other: int, now: float, rules: Rules,
-) -> bool:  # fmt: skip
+def list_if_near(system: System, schedule: Schedule, body: int, other: int, now: float, rules: Rules) -> bool:
     """List another as a neighbour of a body if it is near and not listed yet; tell whether there was a slot.
 
-    Writes to pairs, scratch, flight, plans and agenda.
+    Writes to system and schedule.
     """
+    bodies, cores, planes, pairs, laws, scratch, _ = system
+    flight, plans, agenda, _ = schedule
     n = len(bodies.mass)
     if other == body or flight.stamp[other if other >= 0 else n - 1 - other] == body:
         return True
@@ -160,27 +159,24 @@ def list_if_near(
 
 
 @large_kernel
-def search_neighbours(
-    bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, laws: Laws, scratch: Scratch, flight: Flight,
-    plans: Plans, agenda: Agenda, cells: Cells, body: int, now: float, rules: Rules,
-) -> int:  # fmt: skip
+def search_neighbours(system: System, schedule: Schedule, body: int, now: float, rules: Rules) -> int:
     """List the neighbours of a body anew; return LISTED, NO_SLOT where one more is needed, or LOST.
 
-    Writes to bodies, pairs, scratch, flight, plans, agenda and cells.
+    Writes to system and schedule.
     """
+    bodies, planes, pairs = system.bodies, system.planes, system.pairs
+    flight, plans, agenda, cells = schedule
     fly_to(bodies, flight, body, now, rules)
     if not np.isfinite(bodies.travel[body]):
         return LOST
     move_to_cell(bodies, cells, body)
     here, reach = row(bodies.position, body), bodies.bounding_radius[body] + rules.skin
-    drop_distant(bodies, cores, planes, pairs, scratch, flight, plans, agenda, body, now, rules)
+    drop_distant(system, schedule, body, now, rules)
     has_room = True
     for at in range(-len(planes.offset), gather_near(cells, here, reach)):
         other = at if at < 0 else cells.found[at]
         if other >= 0 or planes.meets[-1 - other, body]:
-            has_room &= list_if_near(
-                bodies, cores, planes, pairs, laws, scratch, flight, plans, agenda, body, other, now, rules
-            )
+            has_room &= list_if_near(system, schedule, body, other, now, rules)
     if not has_room:
         return NO_SLOT
     unstamp(pairs, flight, plans, body, len(bodies.mass))
@@ -201,14 +197,10 @@ def unstamp(pairs: Pairs, flight: Flight, plans: Plans, body: int, body_count: i
 
 
 @kernel
-def drop_distant(
-    bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, scratch: Scratch, flight: Flight, plans: Plans,
-    agenda: Agenda, body: int, now: float, rules: Rules,
-) -> None:  # fmt: skip
-    """Forget the pairs of a body that are no longer near it, and stamp the others.
-
-    Writes to pairs, scratch, flight, plans and agenda.
-    """
+def drop_distant(system: System, schedule: Schedule, body: int, now: float, rules: Rules) -> None:
+    """Forget the pairs of a body that are no longer near it, and stamp the others. Writes to system and schedule."""
+    bodies, cores, planes, pairs, _, scratch, _ = system
+    flight, plans, agenda, _ = schedule
     entry, n = flight.head[body], len(bodies.mass)
     while entry >= 0:
         after, pair = plans.link[entry], entry >> 1

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from lithobrake.dem.bodies.arrays import Floats, Integers
+from lithobrake.dem.bodies.arrays import Bodies, Cores, Floats, Integers, Laws, Pairs, Planes, Reactions
 
 
 class Simplex(NamedTuple):
@@ -43,6 +43,18 @@ class Scratch(NamedTuple):
     turned: TurnedFeatures
     relative: Floats  # [1, 3, 3], rotation from the second body's frame to the first's
     patch: Patch
+
+
+class System(NamedTuple):
+    """All that contact forces are computed from, and what they are written to."""
+
+    bodies: Bodies
+    cores: Cores
+    planes: Planes
+    pairs: Pairs
+    laws: Laws
+    scratch: Scratch
+    reactions: Reactions
 
 
 def scratch_for(feature_max: int, point_max: int) -> Scratch:

@@ -4,12 +4,12 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 
-from lithobrake.dem.bodies.arrays import DAMPING, Bodies, Cores, Floats, Laws, Pairs, Planes, Step
+from lithobrake.dem.bodies.arrays import DAMPING, Bodies, Cores, Floats, Laws, Pairs, Planes, Reactions, Step
 from lithobrake.dem.bodies.motion import write_matrices
 from lithobrake.dem.bodies.rigid_body import Plane, RigidBody
 from lithobrake.dem.narrow_phase.feature_id import INLINE_FEATURES
 from lithobrake.dem.narrow_phase.feature_list import BOUND_SLACK
-from lithobrake.dem.narrow_phase.scratch import Scratch, scratch_for
+from lithobrake.dem.narrow_phase.scratch import Scratch, System, scratch_for
 from lithobrake.dem.stepping.assembly import bodies_of, cores_of, laws_of, materials_of, planes_of, shapes_of
 from lithobrake.dem.stepping.neighbours import carry_over, neighbouring_pairs, with_more_overflow
 from lithobrake.dem.stepping.threads import Team, new_reactions, partitions_of
@@ -84,13 +84,16 @@ class Engine:
         """Take steps until the lists have to be renewed, on one thread or on several."""
         if self.team is None:
             return advance(
-                self.bodies, self.cores, self.planes, self.pairs, self.laws, step, self.scratch, NO_REACTIONS,
-                self.whole, steps, drifted, self._travel_limit, watched, self.watch_record,
+                self.system(NO_REACTIONS), step, self.whole, steps, drifted, self._travel_limit, watched,
+                self.watch_record,
             )  # fmt: skip
         return self.team.advance(
-            self.bodies, self.cores, self.planes, self.laws, step, steps, drifted, self._travel_limit, watched,
-            self.watch_record,
-        )  # fmt: skip
+            self.system(self.team.reactions), step, steps, drifted, self._travel_limit, watched, self.watch_record
+        )
+
+    def system(self, reactions: Reactions) -> System:
+        """Return all that contact forces are computed from, with room for what pairs do."""
+        return System(self.bodies, self.cores, self.planes, self.pairs, self.laws, self.scratch, reactions)
 
     def losses(self) -> Floats:
         """Return what damping, friction and rolling have taken so far [J], shape [3]."""

@@ -11,9 +11,9 @@ from typing import Any
 
 import numpy as np
 
-from lithobrake.dem.bodies.arrays import Bodies, Cores, Floats, Laws, Pairs, Partition, Planes, Reactions, Step
+from lithobrake.dem.bodies.arrays import Floats, Pairs, Partition, Reactions, Step
 from lithobrake.dem.narrow_phase.feature_list import update_feature_lists
-from lithobrake.dem.narrow_phase.scratch import Scratch
+from lithobrake.dem.narrow_phase.scratch import Scratch, System
 from lithobrake.dem.stepping.force_sums import forces_across_partitions, forces_within_partition
 from lithobrake.dem.stepping.stability import step_is_too_large
 from lithobrake.dem.stepping.time_loop import (
@@ -54,7 +54,7 @@ class Team:
 
     def __init__(self, pool: ThreadPoolExecutor, scratches: list[Scratch], body_count: int, pairs: Pairs) -> None:
         self.pool, self.scratches = pool, scratches  # scratch, one for each thread and for the one that calls
-        self.pairs, self.reactions = pairs, new_reactions(len(pairs.first))
+        self.reactions = new_reactions(len(pairs.first))
         self.partitions = partitions_of(pairs, body_count, len(scratches))
 
     def each(self, work: Callable[[Partition, Scratch], Any]) -> list[Any]:
@@ -64,11 +64,11 @@ class Team:
         return [work(*parts[0]), *(other.result() for other in others)]
 
     def advance(
-        self, bodies: Bodies, cores: Cores, planes: Planes, laws: Laws, step: Step, step_count: int, drifted: bool,
-        travel_limit: float, watched: int, watch_record: Floats,
+        self, system: System, step: Step, step_count: int, drifted: bool, travel_limit: float, watched: int,
+        watch_record: Floats,
     ) -> tuple[int, int, bool]:  # fmt: skip
-        """Take up to `step_count` steps, see time_loop.advance."""
-        pairs, reactions = self.pairs, self.reactions
+        """Take up to `step_count` steps, see time_loop.advance; every thread with scratch of its own."""
+        bodies, cores, planes, pairs, laws, _, _ = system
 
         def begin(partition: Partition, _: Scratch) -> float:
             return begin_step(bodies, step, partition.start, partition.stop)
@@ -79,10 +79,10 @@ class Team:
             )
 
         def across(partition: Partition, scratch: Scratch) -> float:
-            return forces_across_partitions(bodies, cores, planes, pairs, laws, step, scratch, reactions, partition)
+            return forces_across_partitions(system._replace(scratch=scratch), step, partition)
 
         def end(partition: Partition, scratch: Scratch) -> float:
-            rate = forces_within_partition(bodies, cores, planes, pairs, laws, step, scratch, reactions, partition)
+            rate = forces_within_partition(system._replace(scratch=scratch), step, partition)
             end_step(bodies, step, partition.start, partition.stop)
             return rate
 

@@ -3,11 +3,11 @@
 import numpy as np
 
 from lithobrake.compilation.compiled import kernel, large_kernel
-from lithobrake.dem.bodies.arrays import Bodies, Cores, Floats, Laws, Pairs, Partition, Planes, Reactions, Step
+from lithobrake.dem.bodies.arrays import Bodies, Floats, Partition, Step
 from lithobrake.dem.bodies.motion import drift, kick
 from lithobrake.dem.bodies.vectors import dot, plus, row, scaled
 from lithobrake.dem.narrow_phase.feature_list import update_feature_lists
-from lithobrake.dem.narrow_phase.scratch import Scratch
+from lithobrake.dem.narrow_phase.scratch import System
 from lithobrake.dem.stepping.force_sums import forces_within_partition
 from lithobrake.dem.stepping.stability import step_is_too_large
 from lithobrake.dem.stepping.watch import STEPS, record_touch
@@ -48,17 +48,16 @@ def end_step(bodies: Bodies, step: Step, start: int, stop: int) -> None:
 
 @large_kernel
 def advance(
-    bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, laws: Laws, step: Step, scratch: Scratch,
-    reactions: Reactions, whole: Partition, step_count: int, drifted: bool, travel_limit: float, watched: int,
+    system: System, step: Step, whole: Partition, step_count: int, drifted: bool, travel_limit: float, watched: int,
     watch_record: Floats,
 ) -> tuple[int, int, bool]:  # fmt: skip
     """Take up to `step_count` steps.
 
     Returns the steps taken, why it stopped, and whether the step in hand has drifted but not yet felt its forces (it
     goes on from there once the neighbour list is renewed). Body `watched` (none: -1) is recorded, see watch.py.
-    `whole` is the partition of all bodies; there is no room in `reactions`.
-    Writes to bodies, pairs, scratch, reactions and watch_record.
+    `whole` is the partition of all bodies; there is no room in the reactions. Writes to system and watch_record.
     """
+    bodies, cores, planes, pairs, laws, scratch, _ = system
     for taken in range(step_count):
         if not drifted:
             farthest = begin_step(bodies, step, whole.start, whole.stop)
@@ -72,7 +71,7 @@ def advance(
         if lacking > 0:
             return taken, FEATURES_OVERFLOW, True
         drifted = False
-        rate = forces_within_partition(bodies, cores, planes, pairs, laws, step, scratch, reactions, whole)
+        rate = forces_within_partition(system, step, whole)
         end_step(bodies, step, whole.start, whole.stop)
         if watched >= 0:
             record_step(bodies, watched, watch_record)
