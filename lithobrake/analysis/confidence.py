@@ -4,12 +4,11 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from lithobrake.vocabulary.arrays import Array, Labels
 from lithobrake.vocabulary.given_numbers import LARGEST, labels, numbers_or_nan
 
-Array = NDArray[np.float64]
-Labels = NDArray[np.int64]
 Bounds = tuple[float, float]
 
 # Probability with which every interval of an estimate holds the truth; results carry it, so that no reader has to ask.

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from lithobrake.analysis.confidence import Array
+from lithobrake.vocabulary.arrays import Array
 
 INSTALL = 'install emcee, whose walkers reach what points do not: pip install "lithobrake[infer]"'
 ENDLESS = "emcee's walkers did not come to an end either; leave some bounces out, or give them larger errors"

@@ -9,9 +9,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.special import logsumexp, ndtr, ndtri
 
-from lithobrake.analysis.confidence import LEVEL, Array, IntervalEstimate
+from lithobrake.analysis.confidence import LEVEL, IntervalEstimate
 from lithobrake.analysis.ensemble_walk import ENDLESS, INSTALL, WALKER_COUNT, can_walk, walk
 from lithobrake.analysis.sampling import sample_inputs
+from lithobrake.vocabulary.arrays import Array
 from lithobrake.vocabulary.given_numbers import random_numbers, sample_count, whole_number
 
 if TYPE_CHECKING:

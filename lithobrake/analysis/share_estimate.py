@@ -10,9 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from lithobrake.analysis.bed_components import bed_components
 from lithobrake.analysis.confidence import (
     LEVEL,
-    Array,
     Bounds,
-    Labels,
     numbered_beds,
     partial_quantile,
     share_interval,
@@ -23,6 +21,7 @@ from lithobrake.analysis.control_variate import control_variate
 from lithobrake.analysis.next_bed import next_bed_deviation
 from lithobrake.analysis.outcome_model import upper_limit
 from lithobrake.chaos.threads import one_thread
+from lithobrake.vocabulary.arrays import Array, Labels
 from lithobrake.vocabulary.given_numbers import numbers, numbers_or_nan
 
 ONE_BED = (

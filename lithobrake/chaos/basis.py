@@ -7,7 +7,8 @@ from numpy.typing import ArrayLike
 
 from lithobrake.chaos.abstract_distribution import Distribution
 from lithobrake.chaos.multi_index import Indices, multi_index_set
-from lithobrake.chaos.polynomials import Array, Recurrence
+from lithobrake.chaos.polynomials import Recurrence
+from lithobrake.vocabulary.arrays import Array
 from lithobrake.vocabulary.given_numbers import numbers
 
 # Limits computed by a user in another order of operations may differ from ours in the last digits.

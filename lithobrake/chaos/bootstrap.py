@@ -13,11 +13,11 @@ from lithobrake.chaos.degree_selection import best_terms, terms_to_try
 from lithobrake.chaos.gaussian_process import FAMILIES, fit_process
 from lithobrake.chaos.least_squares import RANK_TOLERANCE
 from lithobrake.chaos.multi_index import Indices
-from lithobrake.chaos.polynomials import Array
 from lithobrake.chaos.scores import absolute_percentage_error
 from lithobrake.chaos.surrogate import Surrogate
 from lithobrake.chaos.threads import one_thread
 from lithobrake.chaos.training import Training, checked_training
+from lithobrake.vocabulary.arrays import Array
 from lithobrake.vocabulary.given_numbers import finite_number, random_numbers, sample_count, whole_number
 
 # With more terms for each point than this the residuals say too little about the error.

@@ -8,7 +8,7 @@ import numpy as np
 
 from lithobrake.chaos.abstract_distribution import Distribution
 from lithobrake.chaos.distribution_registry import checked_inputs
-from lithobrake.chaos.polynomials import Array
+from lithobrake.vocabulary.arrays import Array
 from lithobrake.vocabulary.given_numbers import random_numbers, sample_count, whole_number
 
 # Points of one scrambled Sobol sequence: its digits have no more places.

@@ -7,7 +7,7 @@ import numpy as np
 from lithobrake.chaos.abstract_distribution import Distribution
 from lithobrake.chaos.basis import recurrences_of
 from lithobrake.chaos.multi_index import Indices
-from lithobrake.chaos.polynomials import Array
+from lithobrake.vocabulary.arrays import Array
 
 # Equal steps of probability between which the quantiles of an input may be taken as straight.
 QUANTILE_STEPS = 512

@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lithobrake.chaos.basis import checked_points
-from lithobrake.chaos.polynomials import Array
 from lithobrake.chaos.storage import read, write
 from lithobrake.chaos.threads import one_thread
 from lithobrake.emulator.coordinates import from_coordinate, with_slope
@@ -21,6 +20,7 @@ from lithobrake.emulator.outcome_classes import fit_classes
 from lithobrake.emulator.residual_rows import BANDWIDTHS, drawn_rows, row_weights, smoothed, smoothing
 from lithobrake.emulator.significance import found_inputs
 from lithobrake.emulator.storage import FORMAT, Parts, content_of, parts_of
+from lithobrake.vocabulary.arrays import Array
 from lithobrake.vocabulary.given_numbers import finite_number, random_numbers, sample_count
 from lithobrake.vocabulary.html_table import html_table
 

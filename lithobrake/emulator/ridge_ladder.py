@@ -13,7 +13,7 @@ from itertools import groupby, product
 import numpy as np
 
 from lithobrake.chaos.multi_index import Indices
-from lithobrake.chaos.polynomials import Array
+from lithobrake.vocabulary.arrays import Array
 
 # Finer steps of factors and penalties gave the same errors.
 SECOND_FACTORS = (0.0, 0.4)

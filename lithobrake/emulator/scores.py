@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from lithobrake.chaos.polynomials import Array
+from lithobrake.vocabulary.arrays import Array
 
 
 def energy_scores(points: Array, weights: Array, scales: Array, observed: Array) -> Array:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from lithobrake.chaos.abstract_distribution import Distribution
 from lithobrake.chaos.basis import basis_matrix
 from lithobrake.chaos.multi_index import Indices, multi_index_set
-from lithobrake.chaos.polynomials import Array
+from lithobrake.vocabulary.arrays import Array
 
 
 @dataclass(frozen=True)

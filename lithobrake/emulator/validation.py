@@ -6,12 +6,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lithobrake.chaos.multi_index import Indices
-from lithobrake.chaos.polynomials import Array
 from lithobrake.emulator.coordinates import from_coordinate
 from lithobrake.emulator.law import Choices, Law, best_choices, fit_law, rows_alone
 from lithobrake.emulator.residual_rows import BANDWIDTHS, row_weights
 from lithobrake.emulator.scores import crps, energy_scores, pit
 from lithobrake.emulator.training import TrainingRuns
+from lithobrake.vocabulary.arrays import Array
 
 # Groups beyond this many are left out several at a time: the time grows with the folds, the answer hardly changes.
 MOST_FOLDS = 24

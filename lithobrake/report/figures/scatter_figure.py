@@ -9,8 +9,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from lithobrake.report.figures.style import PAPER_OUTPUTS, QUIET, output
-
-Array = NDArray[np.float64]
+from lithobrake.vocabulary.arrays import Array
 
 # More dots than this only cover each other, and a picture of ten million takes minutes.
 DRAWN_COUNT = 200_000

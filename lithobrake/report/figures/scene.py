@@ -8,8 +8,7 @@ from numpy.typing import NDArray
 from lithobrake.report.figures.hulls import Hull
 from lithobrake.report.figures.style import GRAIN, LANDER
 from lithobrake.results import MovingBodies
-
-Array = NDArray[np.float64]
+from lithobrake.vocabulary.arrays import Array
 
 
 @dataclass(frozen=True)

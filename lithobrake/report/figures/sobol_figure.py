@@ -4,12 +4,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
-from numpy.typing import NDArray
 
 from lithobrake.report.figures.style import INTERACTIONS, PAPER_OUTPUTS, QUIET, input_colours, input_label, output
 from lithobrake.report.pages.html import number
-
-Array = NDArray[np.float64]
+from lithobrake.vocabulary.arrays import Array
 
 
 def sobol_figure(
