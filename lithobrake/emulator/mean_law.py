@@ -9,8 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from lithobrake.emulator.ridge_ladder import Ladder, degree_of
-from lithobrake.emulator.terms import Terms
+from lithobrake.emulator.ridge_ladder import Ladder, Terms, degree_of
 from lithobrake.vocabulary.arrays import Array
 
 # Least squares with fewer runs to a term has standard errors that are themselves hardly known.

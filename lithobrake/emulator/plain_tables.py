@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from lithobrake.chaos.germ_tables import input_tables
+from lithobrake.chaos.basis import input_tables
 from lithobrake.emulator.model import Emulator
 from lithobrake.emulator.residual_rows import smoothing
 from lithobrake.vocabulary.arrays import Array

@@ -18,8 +18,7 @@ from lithobrake.chaos.storage import (
 )
 from lithobrake.emulator.law import Choices, Law
 from lithobrake.emulator.outcome_classes import OutcomeClasses
-from lithobrake.emulator.ridge_ladder import Ladder, Rung
-from lithobrake.emulator.terms import Terms
+from lithobrake.emulator.ridge_ladder import Ladder, Rung, Terms
 from lithobrake.emulator.training import TrainingRuns
 from lithobrake.emulator.validation import Scores
 from lithobrake.vocabulary.arrays import Array
