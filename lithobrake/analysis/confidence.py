@@ -1,4 +1,4 @@
-"""The one level of confidence, and a number with the interval that stands for it."""
+"""A number with the interval that stands for it, at the one level of confidence, and what intervals are made of."""
 
 import math
 from dataclasses import dataclass
@@ -8,11 +8,10 @@ from numpy.typing import ArrayLike
 
 from lithobrake.vocabulary.arrays import Array, Labels
 from lithobrake.vocabulary.given_numbers import LARGEST, finite_number, labels, numbers_or_nan, whole_number
+from lithobrake.vocabulary.percentages import LEVEL as LEVEL
 
 Bounds = tuple[float, float]
 
-# Probability with which every interval of an estimate holds the truth; results carry it, so that no reader has to ask.
-LEVEL = 0.9
 # Shares nearer than this to 0 or 1 have skewed errors: their intervals are made on the logit scale.
 NEAR_CERTAIN = 0.1
 NORMAL_QUANTILE_95 = 1.959963984540054

@@ -14,6 +14,7 @@ from lithobrake.analysis.posterior_points import ENDLESS, INSTALL, LEAST, WALKER
 from lithobrake.chaos.design import sample_inputs
 from lithobrake.vocabulary.arrays import Array
 from lithobrake.vocabulary.given_numbers import random_numbers, sample_count, whole_number
+from lithobrake.vocabulary.percentages import percent
 
 if TYPE_CHECKING:
     from lithobrake.chaos import Distribution
@@ -109,8 +110,8 @@ class Posterior:
         """What was learnt, and what not, in a sentence."""
         learnt = self.learnt()
         said = [
-            f"{name}: {one.after.value:.3g} (90 % interval {one.after.lower:.3g} to {one.after.upper:.3g}, before "
-            f"{one.before.lower:.3g} to {one.before.upper:.3g})"
+            f"{name}: {one.after.value:.3g} ({percent(LEVEL)} interval {one.after.lower:.3g} to {one.after.upper:.3g}, "
+            f"before {one.before.lower:.3g} to {one.before.upper:.3g})"
             for name, one in learnt.items()
             if one.sd_ratio <= NOTHING_LEARNT
         ]

@@ -3,6 +3,8 @@
 from collections.abc import Mapping
 from typing import Any
 
+# Probability with which every interval of an estimate holds the truth; results carry it, so that no reader has to ask.
+LEVEL = 0.9
 # Of an interval narrower than this tenths of a per cent say something.
 NARROW = 0.02
 # More digits than these say nothing of a share next to 0 or 1.
