@@ -14,8 +14,8 @@ from scipy.spatial import cKDTree
 
 from lithobrake.report.figures.hulls import Camera, frame_axes
 from lithobrake.report.figures.site_mark import draw_legend, mark_site
-from lithobrake.vocabulary.arrays import Array
 
+Array = NDArray[np.float64]
 Facets = NDArray[np.int64]
 # Impacts are counted within this share of the body's radius, or on a facet alone where facets are larger.
 REACH = 0.1

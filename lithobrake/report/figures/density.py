@@ -6,9 +6,10 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import LogNorm
+from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from lithobrake.vocabulary.arrays import Array
+Array = NDArray[np.float64]
 
 # Below this, cells of a sixtieth of the map's height would be mostly empty.
 MANY_IMPACTS = 10_000

@@ -6,12 +6,13 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
+from numpy.typing import NDArray
 
 from lithobrake.report.figures.density import Window, near
 from lithobrake.report.figures.site_mark import ellipse_style
 from lithobrake.report.figures.style import SITE
-from lithobrake.vocabulary.arrays import Array
 
+Array = NDArray[np.float64]
 POINTS = 361
 # Of half and 95 % of a Gaussian law in the plane: logarithm of the ratio of the squared sizes of their ellipses.
 GAUSSIAN_RATIO = math.log(math.log(0.05) / math.log(0.5))

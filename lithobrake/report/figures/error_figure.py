@@ -6,10 +6,12 @@ from dataclasses import dataclass
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
 from lithobrake.report.figures.style import INK, PAPER_OUTPUTS, QUIET, TEST, TEST_ALL, TRAINING, Output, output
 from lithobrake.report.pages.html import fixed, number
-from lithobrake.vocabulary.arrays import Array
+
+Array = NDArray[np.float64]
 
 # Words and lines need more contrast with white than bars do.
 TEXT = {TRAINING: TRAINING, TEST: "#a8690a", TEST_ALL: "#5f656d"}

@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 from lithobrake.geometry.attitude import rotation_matrices
 from lithobrake.report.figures.shading import light_on_faces
 from lithobrake.report.figures.style import shade
-from lithobrake.vocabulary.arrays import Array
 
+Array = NDArray[np.float64]
 Triangles = NDArray[np.int64]
 
 # A body this many times larger than the middle one is cut up before it is painted.

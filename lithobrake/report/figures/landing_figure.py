@@ -5,10 +5,12 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
 from lithobrake.report.figures.hulls import Camera, Hull, draw_box, frame_axes, paint
 from lithobrake.report.figures.style import INK, SITE
-from lithobrake.vocabulary.arrays import Array
+
+Array = NDArray[np.float64]
 
 
 def instants(lander_height: Array, count: int = 6) -> list[int]:

@@ -9,14 +9,16 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
+from numpy.typing import NDArray
 from scipy.interpolate import LinearNDInterpolator
 
 from lithobrake.report.figures.density import WHOLE, Window, close_window, draw_density, near
 from lithobrake.report.figures.ellipse_line import draw_ellipses, fitting, follows_gaussian
 from lithobrake.report.figures.site_mark import draw_legend, mark_site
 from lithobrake.report.figures.style import INK, QUIET, TRAINING
-from lithobrake.vocabulary.arrays import Array
 from lithobrake.vocabulary.percentages import percent, with_interval
+
+Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -8,13 +8,15 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
 from lithobrake.report.figures.density import WHOLE, Window, close_window, draw_density, near
 from lithobrake.report.figures.ellipse_line import draw_ellipses, fitting, follows_gaussian
 from lithobrake.report.figures.map_figure import Share, draw_relief, draw_scale, draw_shares
 from lithobrake.report.figures.site_mark import draw_legend, mark_site
 from lithobrake.report.figures.style import QUIET
-from lithobrake.vocabulary.arrays import Array
+
+Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -11,8 +11,9 @@ from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 from lithobrake.report.figures.style import INK, QUIET, SITE, TRAINING, output
-from lithobrake.vocabulary.arrays import Array
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
+
+Array = NDArray[np.float64]
 
 # In inches: a bed's row, and what stands above and below the rows.
 BED_HEIGHT, MARGINS = 0.115, 1.07

@@ -9,7 +9,8 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from lithobrake.report.figures.style import PAPER_OUTPUTS, QUIET, output
-from lithobrake.vocabulary.arrays import Array
+
+Array = NDArray[np.float64]
 
 # More dots than this only cover each other, and a picture of ten million takes minutes.
 DRAWN_COUNT = 200_000

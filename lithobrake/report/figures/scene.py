@@ -8,7 +8,8 @@ from numpy.typing import NDArray
 from lithobrake.report.figures.hulls import Hull
 from lithobrake.report.figures.style import GRAIN, LANDER
 from lithobrake.results import MovingBodies
-from lithobrake.vocabulary.arrays import Array
+
+Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from lithobrake.vocabulary.arrays import Array
+Array = NDArray[np.float64]
 
 # Directions as the viewer has them: to the right, towards the viewer, up. The sun stands at the upper left, whatever
 # the camera's azimuth; a weak light from the lower right keeps the form of what the sun does not reach.

@@ -4,10 +4,12 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
+from numpy.typing import NDArray
 
 from lithobrake.report.figures.style import INTERACTIONS, PAPER_OUTPUTS, QUIET, input_colours, input_label, output
 from lithobrake.report.pages.html import number
-from lithobrake.vocabulary.arrays import Array
+
+Array = NDArray[np.float64]
 
 
 def sobol_figure(

@@ -15,9 +15,9 @@ from lithobrake.report.figures.style import FATE_COLOURS
 from lithobrake.report.live.packed import deflated, script_data
 from lithobrake.report.pages.html import LiveSection, number
 from lithobrake.report.pages.page_data import Results
-from lithobrake.vocabulary.arrays import Array
 from lithobrake.vocabulary.outcomes import FlightStatus
 
+Array = NDArray[np.float64]
 SCRIPTS = ("live/view3d.js", "live/moving.js")
 # Half of the range of a signed number of 16 bits.
 LARGEST = 32767

@@ -12,9 +12,9 @@ from lithobrake.files.reading import DamagedFileError, reading
 from lithobrake.report.figures.error_figure import Score
 from lithobrake.report.figures.scene import Scene, scene
 from lithobrake.results import ExplorerTables, StudyResults, Table
-from lithobrake.vocabulary.arrays import Array
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus, TouchdownOutcome
 
+Array = NDArray[np.float64]
 FILES = ("summary.json", "study.toml")
 # What the last stages of either method write before the report.
 OF_ANY_STUDY = ("samples.h5", "explorer.h5", "flights.csv", "flight_paths.h5", "rest.csv", "body.obj")
