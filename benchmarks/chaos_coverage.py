@@ -12,9 +12,9 @@ from chaos_accuracy import INPUTS, Model, kinked, smooth
 from harness import command_line
 from scipy import stats
 
+from lithobrake.analysis.confidence import LEVEL, normal_quantile
 from lithobrake.chaos import fit, score_intervals, sobol_intervals, sobol_sequence
 
-LEVEL, NORMAL_90 = 0.9, 1.6448536269514722
 CASES: list[tuple[str, Model, float, int, str | None]] = [
     ("smooth", smooth, 0.0, 60, None),
     ("smooth", smooth, 0.15, 60, None),
@@ -61,7 +61,7 @@ def trial(
     return {
         "indices": (low <= indices + 1e-3) & (indices - 1e-3 <= high),
         "width": high - low,
-        "prediction": np.abs(error) <= NORMAL_90 * expected,
+        "prediction": np.abs(error) <= normal_quantile() * expected,
         "ratio": np.array(expected / np.sqrt(np.mean(error**2))),
         **{key: np.array(value) for key, value in scores.items()},
     }

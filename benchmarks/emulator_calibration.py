@@ -16,6 +16,7 @@ from scipy import stats
 
 sys.path.insert(0, str(ROOT))
 
+from lithobrake.analysis.confidence import t_quantile
 from lithobrake.emulator import Emulator
 from tests.emulator.conditional_errors import DrawnRuns, fitted, law_errors
 from tests.emulator.test_calibration import fresh_energy_score
@@ -76,7 +77,7 @@ def interval_row(run_count: int, bed_count: int, studies: int) -> Row:
         # What the draws of one refit scatter by themselves is no uncertainty of the emulator.
         luck = np.var([outputs_of(model, DRAWS, k) for k in range(REFITS)], axis=0)
         variance = np.maximum(np.var(refits, axis=0) - luck, 0.0) * bed_count / (bed_count - 1.0)
-        half = stats.t.ppf(0.95, bed_count - 1) * np.sqrt(variance)
+        half = t_quantile(bed_count - 1) * np.sqrt(variance)
         held.append(np.abs(outputs_of(model, 20_000, 7) - exact) <= half)
     share, median, high = np.mean(held, axis=0)
     return {

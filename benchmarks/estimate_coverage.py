@@ -33,7 +33,7 @@ from lithobrake.analysis import (
     variance_shares,
 )
 from lithobrake.analysis.bed_components import BedComponents, bed_components
-from lithobrake.analysis.confidence import t_quantile
+from lithobrake.analysis.confidence import LEVEL, t_quantile
 from lithobrake.analysis.control_variate import control_variate
 from lithobrake.analysis.share_estimate import standard_error
 from lithobrake.chaos import sobol_sequence
@@ -173,7 +173,7 @@ def pivot(components: BedComponents) -> float:
     within = components.within * components.within_freedom / stats.chi2.ppf(points[:, 1], components.within_freedom)
     bed = np.maximum(between - within, 0.0) / on_each
     mean = np.maximum(between, within) / (on_each * (freedom + 1))
-    return float(np.quantile(np.abs(special.ndtri(points[:, 2])) * np.sqrt(bed + mean), 0.9))
+    return float(np.quantile(np.abs(special.ndtri(points[:, 2])) * np.sqrt(bed + mean), LEVEL))
 
 
 def adjusted(truth: Truth, run_count: int, bed_count: int, seed: int) -> tuple[np.ndarray, np.ndarray]:
@@ -196,7 +196,7 @@ def few_beds(truth: Truth, run_count: int, bed_count: int, seed: int) -> dict[st
     ratios = np.abs(shift) / (factor * np.sqrt(np.sum(spread**2, axis=1)))
     widths = {
         "share, t": t_quantile(bed_count - 1) * standard_error(values, bed),
-        "share, Webb": float(np.quantile(ratios, 0.9)) * factor * math.sqrt(float(np.sum(sums**2))),
+        "share, Webb": float(np.quantile(ratios, LEVEL)) * factor * math.sqrt(float(np.sum(sums**2))),
     }
     return {name: (float(abs(mean - share) <= width), mean - share, width) for name, width in widths.items()}
 
@@ -305,7 +305,7 @@ def main() -> None:
     """Measure and write."""
     count = command_line(__doc__, studies=400).parse_args().studies
     write_rows(TABLE, COLUMNS, map(rounded, rows(count)))
-    write_made(TABLE, f"benchmarks/estimate_coverage.py --studies {count}", studies=count, level=0.9)
+    write_made(TABLE, f"benchmarks/estimate_coverage.py --studies {count}", studies=count, level=LEVEL)
 
 
 if __name__ == "__main__":

@@ -22,7 +22,7 @@ sys.path.insert(0, str(ROOT / "tests"))
 from synthetic_landings import ELEVATION_LIMIT, INPUTS, OUTPUT_NAMES, SPEED_LIMIT, STRONG, WEAK, Truth, random_soils
 
 from lithobrake import emulator
-from lithobrake.analysis import Observation, identifiability, infer
+from lithobrake.analysis import LEVEL, Observation, identifiability, infer
 
 TABLE = RESULTS / "inference_calibration.csv"
 COLUMNS = ("kind", "soil", "bounces", "cases", "input", "held", "chi_square_p", "sd_ratio", "effective", "to_halve")
@@ -113,7 +113,7 @@ def inverse_of_the_mean(model: emulator.Emulator, y: np.ndarray, soil: np.ndarra
     for values in x.T:
         order = np.argsort(values)
         steps = np.cumsum(weights[order]) / weights.sum()
-        ends.append(np.interp([0.05, 0.95], steps, values[order]))
+        ends.append(np.interp([0.5 - 0.5 * LEVEL, 0.5 + 0.5 * LEVEL], steps, values[order]))
     return [bool(low <= value <= high) for (low, high), value in zip(ends, soil, strict=True)]
 
 
@@ -139,7 +139,7 @@ def main() -> None:
         *(simulator_rows(name, bounces, cases) for bounces in bounce_counts for name in SOILS),
     )
     write_rows(TABLE, COLUMNS, map(rounded, chain.from_iterable(parts)))
-    write_made(TABLE, f"benchmarks/inference_calibration.py --cases {cases}", cases=cases, level=0.9)
+    write_made(TABLE, f"benchmarks/inference_calibration.py --cases {cases}", cases=cases, level=LEVEL)
 
 
 if __name__ == "__main__":

@@ -25,6 +25,7 @@ from scipy import stats
 
 from lithobrake import emulator
 from lithobrake.analysis import (
+    LEVEL,
     drawn_counts,
     failure_probability,
     regression_terms,
@@ -188,7 +189,7 @@ def main() -> None:
     parser = command_line(__doc__, studies=200)
     parser.add_argument("--subset", action="store_true", help="only the rows of subset_simulation")
     chosen, begin = parser.parse_args(), time.process_time()
-    count, facts = chosen.studies, {"studies": chosen.studies, "level": 0.9, "table": TABLE.name}
+    count, facts = chosen.studies, {"studies": chosen.studies, "level": LEVEL, "table": TABLE.name}
     parts = [
         *(study_rows(Truth(skewed), count) for skewed in (False, True)),
         *(subset_rows(count), openturns_rows(max(count // 10, 2))),

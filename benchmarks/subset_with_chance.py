@@ -15,7 +15,7 @@ import numpy as np
 from harness import RESULTS, Row, command_line, write_made, write_rows
 from scipy import stats
 
-from lithobrake.analysis import SubsetResult, subset_simulation
+from lithobrake.analysis import LEVEL, SubsetResult, subset_simulation
 
 TABLE = RESULTS / "subset_with_chance.csv"
 COLUMNS = ("noise_share", "bed_share", "beds", "points_per_level", "seeds", "held", "bias", "scatter", "told", "width")
@@ -63,7 +63,7 @@ def main() -> None:
     """Measure and write."""
     count = command_line(__doc__, seeds=200).parse_args().seeds
     write_rows(TABLE, COLUMNS, rows(count))
-    write_made(TABLE, f"benchmarks/subset_with_chance.py --seeds {count}", seeds=count, level=0.9)
+    write_made(TABLE, f"benchmarks/subset_with_chance.py --seeds {count}", seeds=count, level=LEVEL)
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
 """What runs and a fitted expansion say: estimates with their intervals, samples, outcomes."""
 
 from lithobrake.analysis.best_choice import BestChoice, best_choice, quantile_within
-from lithobrake.analysis.confidence import LEVEL, IntervalEstimate
+from lithobrake.analysis.confidence import LEVEL, IntervalEstimate, wilson_interval
 from lithobrake.analysis.control_variate import regression_terms
 from lithobrake.analysis.direction import DirectionEstimate, direction_estimate
 from lithobrake.analysis.ellipse import Ellipses, dispersion_ellipses
@@ -17,14 +17,13 @@ from lithobrake.analysis.inference import LearntInput, Observation, Posterior, i
 from lithobrake.analysis.observed_bounces import Identifiability, identifiability, predictive_p_value
 from lithobrake.analysis.outcome_model import OutcomeModel, unseen_limit, upper_limit
 from lithobrake.analysis.output_estimates import mean_estimate, quantile_estimates
-from lithobrake.analysis.proportion import wilson_interval
 from lithobrake.analysis.refit_interval import refit_interval
-from lithobrake.analysis.sampling import sample_inputs
 from lithobrake.analysis.sequential_stopping import half_width_of, next_run_count, scatter_of
 from lithobrake.analysis.share_estimate import ShareEstimate, share_estimate
 from lithobrake.analysis.side_runs import chaos_variance, soil_total_effect
 from lithobrake.analysis.subset_simulation import SubsetResult, subset_simulation
 from lithobrake.analysis.variance_shares import VarianceShares, variance_shares
+from lithobrake.chaos.design import sample_inputs
 
 __all__ = [
     "LEVEL", "BestChoice", "DirectionEstimate", "Ellipses", "FailureInput", "FailureProbability", "Identifiability",

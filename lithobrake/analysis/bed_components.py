@@ -4,7 +4,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from lithobrake.analysis.confidence import LEVEL, Array, IntervalEstimate, Labels
+from lithobrake.analysis.confidence import LEVEL, IntervalEstimate
+from lithobrake.vocabulary.arrays import Array, Labels
 
 # Directions along which beds are told apart by less than this part of the best are told by the inputs already.
 SMALLEST_COUNT = 1e-9

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lithobrake.analysis.confidence import LEVEL, Array, IntervalEstimate, t_quantile
+from lithobrake.analysis.confidence import LEVEL, IntervalEstimate, t_quantile
+from lithobrake.vocabulary.arrays import Array
 from lithobrake.vocabulary.given_numbers import finite_number, numbers, whole_number
 
 

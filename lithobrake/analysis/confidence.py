@@ -1,21 +1,22 @@
-"""The one level of confidence, and a number with the interval that stands for it."""
+"""A number with the interval that stands for it, at the one level of confidence, and what intervals are made of."""
 
 import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from lithobrake.vocabulary.given_numbers import LARGEST, labels, numbers_or_nan
+from lithobrake.vocabulary.arrays import Array, Labels
+from lithobrake.vocabulary.given_numbers import LARGEST, finite_number, labels, numbers_or_nan, whole_number
+from lithobrake.vocabulary.percentages import LEVEL as LEVEL
 
-Array = NDArray[np.float64]
-Labels = NDArray[np.int64]
 Bounds = tuple[float, float]
 
-# Probability with which every interval of an estimate holds the truth; results carry it, so that no reader has to ask.
-LEVEL = 0.9
 # Shares nearer than this to 0 or 1 have skewed errors: their intervals are made on the logit scale.
 NEAR_CERTAIN = 0.1
+NORMAL_QUANTILE_95 = 1.959963984540054
+# Probabilities beyond this quantile are below the smallest float.
+MOST_QUANTILE = 40.0
 
 
 @dataclass(frozen=True)
@@ -92,6 +93,24 @@ def share_spread(share: float, deviation: float) -> tuple[float, float]:
     tail = 0.5 + 0.5 * LEVEL if share < 0.5 else 0.5 - 0.5 * LEVEL
     far = float(special.betaincinv(share * size, (1.0 - share) * size, tail))
     return (0.0, max(far, share)) if share < 0.5 else (min(far, share), 1.0)
+
+
+def wilson_interval(count: int, total: int, quantile: float = NORMAL_QUANTILE_95) -> tuple[float, float]:
+    """Interval of the true share when `count` of `total` independent draws have a property.
+
+    quantile: of the standard normal distribution (1.96: 95 %). The interval stays within [0, 1] and holds near 0 and
+    1, where the usual plus-minus does not. Raises ValueError for counts that cannot be, and for
+    a quantile below 0.
+    Source: [Wilson-1927].
+    """
+    count = whole_number("count", count, 0, whole_number("total", total, 1))
+    finite_number("quantile", quantile, at_least=0.0, at_most=MOST_QUANTILE)
+    share = count / total
+    spread = quantile**2 / total
+    middle = (share + spread / 2) / (1 + spread)
+    half = quantile / (1 + spread) * math.sqrt(share * (1 - share) / total + spread / (4 * total))
+    # The ends at nobody and at everybody are exact; rounding would leave them a hair away.
+    return (0.0 if count == 0 else max(middle - half, 0.0)), (1.0 if count == total else min(middle + half, 1.0))
 
 
 def numbered_beds(bed: ArrayLike, run_count: int) -> Labels:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lithobrake.analysis.confidence import Array, Labels
+from lithobrake.vocabulary.arrays import Array, Labels
 
 if TYPE_CHECKING:
     from lithobrake.chaos import Distribution

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lithobrake.analysis.confidence import LEVEL, Array, answers, numbered_beds
+from lithobrake.analysis.confidence import LEVEL, answers, numbered_beds
 from lithobrake.chaos.basis import checked_points
+from lithobrake.vocabulary.arrays import Array
 from lithobrake.vocabulary.given_numbers import random_numbers
 
 if TYPE_CHECKING:

@@ -12,11 +12,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lithobrake.analysis.confidence import LEVEL, Array, IntervalEstimate, Labels
+from lithobrake.analysis.confidence import LEVEL, IntervalEstimate
 from lithobrake.analysis.outcome_model import unseen_limit
 from lithobrake.analysis.refit_interval import refit_interval
-from lithobrake.analysis.sampling import sample_inputs
 from lithobrake.analysis.share_estimate import ShareEstimate, share_estimate
+from lithobrake.chaos.design import sample_inputs
+from lithobrake.vocabulary.arrays import Array, Labels
 from lithobrake.vocabulary.given_numbers import numbers_or_nan, whole_number
 
 if TYPE_CHECKING:

@@ -9,10 +9,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.special import logsumexp, ndtr, ndtri
 
-from lithobrake.analysis.confidence import LEVEL, Array, IntervalEstimate
-from lithobrake.analysis.ensemble_walk import ENDLESS, INSTALL, WALKER_COUNT, can_walk, walk
-from lithobrake.analysis.sampling import sample_inputs
+from lithobrake.analysis.confidence import LEVEL, IntervalEstimate
+from lithobrake.analysis.posterior_points import ENDLESS, INSTALL, LEAST, WALKER_COUNT, Proposal, can_walk, walk
+from lithobrake.chaos.design import sample_inputs
+from lithobrake.vocabulary.arrays import Array
 from lithobrake.vocabulary.given_numbers import random_numbers, sample_count, whole_number
+from lithobrake.vocabulary.percentages import percent
 
 if TYPE_CHECKING:
     from lithobrake.chaos import Distribution
@@ -20,15 +22,12 @@ if TYPE_CHECKING:
 
 REFIT_COUNT = 30
 POINT_COUNT = 1 << 12
-# While too few points carry weight new ones are drawn near those that do, so often at most; a part of them is drawn
-# from the prior still, and the others wider than what is known so far, so that nothing is lost.
-MOST_ROUNDS, OF_PRIOR, WIDER = 4, 0.2, 1.5
+# While too few points carry weight new ones are drawn near those that do, so often at most.
+MOST_ROUNDS = 4
 # Fewer points of weight than this are no sample of a law.
 FEWEST_EFFECTIVE = 400.0
 # An input of which more than this part of the prior's standard deviation is left has learnt nothing worth saying.
 NOTHING_LEARNT = 0.9
-# Probability as near to 0, or to 1, as a law without ends takes.
-LEAST = 2.0**-53
 # How far beside points walkers begin, as a part of their spread, which is at least so much in normal scores.
 BESIDE, NARROWEST = 0.1, 0.01
 # Equal steps of probability in which an input's law is compared with its prior.
@@ -111,8 +110,8 @@ class Posterior:
         """What was learnt, and what not, in a sentence."""
         learnt = self.learnt()
         said = [
-            f"{name}: {one.after.value:.3g} (90 % interval {one.after.lower:.3g} to {one.after.upper:.3g}, before "
-            f"{one.before.lower:.3g} to {one.before.upper:.3g})"
+            f"{name}: {one.after.value:.3g} ({percent(LEVEL)} interval {one.after.lower:.3g} to {one.after.upper:.3g}, "
+            f"before {one.before.lower:.3g} to {one.before.upper:.3g})"
             for name, one in learnt.items()
             if one.sd_ratio <= NOTHING_LEARNT
         ]
@@ -246,42 +245,6 @@ def posterior_of(laws: "Mapping[str, Distribution]", points: Array, logarithms: 
     weights = np.exp(logarithms - logsumexp(logarithms))
     evidence = float(logsumexp(logarithms)) - float(np.log(len(points)))
     return Posterior(dict(laws), points, weights, 1.0 / float(np.sum(weights**2)), evidence)
-
-
-@dataclass(frozen=True)
-class Proposal:
-    """Where points are drawn, in normal scores, in which the prior is standard normal: near a mean, or the prior.
-
-    near: mean [input_count] and root of the covariance [input_count, input_count] of a normal law; None: prior alone.
-    Source: [Owen-2000] (defensive mixtures).
-    """
-
-    normal: tuple[Array, Array] | None
-
-    @classmethod
-    def near(cls, scores: Array, weights: Array) -> "Proposal":
-        """Of the weighted points so far; an input of which one point knows all keeps some width."""
-        mean = weights @ scores
-        covariance = (scores - mean).T @ ((scores - mean) * weights[:, None]) + 1e-4 * np.eye(len(mean))
-        root: Array = np.asarray(WIDER * np.linalg.cholesky(covariance), dtype=np.float64)
-        return cls((mean, root))
-
-    def draw(self, dimension: int, count: int, seed: int) -> tuple[Array, Array]:
-        """Normal scores [count, dimension], and the logarithm of the prior's density over that of the draws [count]."""
-        from lithobrake.chaos import Uniform, sobol_sequence
-
-        unit = {str(k): Uniform(0.0, 1.0) for k in range(dimension + 1)}
-        uniforms = np.clip(sobol_sequence(unit, count, seed=seed), LEAST, 1.0 - LEAST)
-        scores = ndtri(uniforms[:, 1:])
-        if self.normal is None:
-            return scores, np.zeros(count)
-        mean, root = self.normal
-        moved = mean + scores @ root.T
-        scores = np.where((uniforms[:, 0] < OF_PRIOR)[:, None], scores, moved)
-        prior = -0.5 * np.sum(scores**2, axis=1)
-        inner = np.linalg.solve(root, (scores - mean).T).T
-        other = -0.5 * np.sum(inner**2, axis=1) - float(np.log(np.diagonal(root)).sum())
-        return scores, prior - np.logaddexp(np.log(OF_PRIOR) + prior, np.log1p(-OF_PRIOR) + other)
 
 
 def _likelihood(

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.special import logsumexp
 
-from lithobrake.analysis.confidence import Array
 from lithobrake.analysis.inference import Bounds, Observation, Posterior, posterior_of
-from lithobrake.analysis.sampling import sample_inputs
+from lithobrake.chaos.design import sample_inputs
+from lithobrake.vocabulary.arrays import Array
 from lithobrake.vocabulary.given_numbers import random_numbers, whole_number
 
 if TYPE_CHECKING:

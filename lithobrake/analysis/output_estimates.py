@@ -6,8 +6,9 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lithobrake.analysis.confidence import Array, IntervalEstimate, Labels, answered_runs, t_quantile
+from lithobrake.analysis.confidence import IntervalEstimate, answered_runs, t_quantile
 from lithobrake.analysis.share_estimate import standard_error
+from lithobrake.vocabulary.arrays import Array, Labels
 
 # Quantiles of less than this probability, or more than 1 less it, take so many beds for an interval: on fewer beds a
 # handful of runs beyond the quantile lie on one or two of them (measured: docs/estimates.md).

@@ -7,12 +7,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lithobrake.analysis.bed_components import bed_components
+from lithobrake.analysis.bed_components import BedComponents, bed_components
 from lithobrake.analysis.confidence import (
     LEVEL,
-    Array,
     Bounds,
-    Labels,
     numbered_beds,
     partial_quantile,
     share_interval,
@@ -20,9 +18,9 @@ from lithobrake.analysis.confidence import (
     t_quantile,
 )
 from lithobrake.analysis.control_variate import control_variate
-from lithobrake.analysis.next_bed import next_bed_deviation
 from lithobrake.analysis.outcome_model import upper_limit
 from lithobrake.chaos.threads import one_thread
+from lithobrake.vocabulary.arrays import Array, Labels
 from lithobrake.vocabulary.given_numbers import numbers, numbers_or_nan
 
 ONE_BED = (
@@ -31,6 +29,9 @@ ONE_BED = (
 )
 # Fewer landings that resemble those without an outcome say less of them than all landings do.
 FEWEST_LIKE = 5
+# The variance of beds is taken at its upper limit of this confidence: few beds say little of it, and its plain estimate
+# is 0 in half of the studies where beds differ little.
+BED_VARIANCE_CONFIDENCE = 0.7
 
 
 @dataclass(frozen=True)
@@ -218,7 +219,7 @@ def _next_bed(known: _Mean, ends: tuple[_Mean, _Mean], bounds: Bounds) -> Bounds
 
 def _spread(one: _Mean) -> Bounds:
     share = min(max(one.value, 0.0), 1.0)
-    return share_spread(share, next_bed_deviation(bed_components(one.values, one.beds), one.error))
+    return share_spread(share, _next_bed_deviation(bed_components(one.values, one.beds), one.error))
 
 
 def _outer(*bounds: Bounds) -> Bounds:
@@ -230,3 +231,13 @@ def _source(answered: NDArray[np.bool_], bed_count: int) -> str:
     known, total = int(answered.sum()), len(answered)
     on_beds = f"landing{'s' if total > 1 else ''} on {bed_count} bed{'s' if bed_count > 1 else ''}"
     return f"{total} {on_beds}" if known == total else f"{known} of {total} {on_beds}"
+
+
+def _next_bed_deviation(components: BedComponents, standard_error: float) -> float:
+    """Standard deviation of the next bed's mean about an estimate [unit of the runs].
+
+    Error of the estimate and difference of the bed together, the variance of beds at an upper limit: measured to
+    hold more evenly than draws of both mean squares (generalised pivots, [Krishnamoorthy-2009]) and than the plain
+    estimate cut at 0; see docs/estimates.md. Source: [Wald-1947] (upper limit).
+    """
+    return math.sqrt(components.variance_at(BED_VARIANCE_CONFIDENCE) + standard_error**2)

@@ -3,7 +3,8 @@
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lithobrake.analysis.confidence import LEVEL, Array, IntervalEstimate, answers
+from lithobrake.analysis.confidence import LEVEL, IntervalEstimate, answers
+from lithobrake.vocabulary.arrays import Array
 
 # So few squares miss the rare large ones, which carry much of the effect: their own scatter says too little of it.
 # Measured on normal, Ishigami's and synthetic landings: bounds hold .83 to .93 with it, .76 to .86 without.

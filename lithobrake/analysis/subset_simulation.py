@@ -10,7 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lithobrake.analysis.confidence import LEVEL, Array, Labels, t_quantile
+from lithobrake.analysis.confidence import LEVEL, t_quantile
+from lithobrake.vocabulary.arrays import Array, Labels
 from lithobrake.vocabulary.given_numbers import labels, numbers, random_numbers, whole_number
 
 # Share of the points of a level that make the next one.

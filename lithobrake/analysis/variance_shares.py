@@ -8,19 +8,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from lithobrake.analysis.bed_components import BedComponents, bed_components
-from lithobrake.analysis.confidence import (
-    LEVEL,
-    Array,
-    Bounds,
-    IntervalEstimate,
-    Labels,
-    answers,
-    numbered_beds,
-    t_quantile,
-)
+from lithobrake.analysis.confidence import LEVEL, Bounds, IntervalEstimate, answers, numbered_beds, t_quantile
 from lithobrake.analysis.control_variate import regression_terms
 from lithobrake.analysis.side_runs import chaos_variance
 from lithobrake.chaos.threads import one_thread
+from lithobrake.vocabulary.arrays import Array, Labels
 
 if TYPE_CHECKING:
     from lithobrake.chaos import Distribution

@@ -8,6 +8,7 @@ if TYPE_CHECKING:
     from lithobrake.chaos.abstract_distribution import Distribution as Distribution
     from lithobrake.chaos.basis import basis_matrix as basis_matrix
     from lithobrake.chaos.basis import condition_number as condition_number
+    from lithobrake.chaos.basis import input_tables as input_tables
     from lithobrake.chaos.bootstrap import coefficient_changes as coefficient_changes
     from lithobrake.chaos.bootstrap import score_intervals as score_intervals
     from lithobrake.chaos.bootstrap import sobol_estimates as sobol_estimates
@@ -28,7 +29,6 @@ if TYPE_CHECKING:
     from lithobrake.chaos.distributions import Uniform as Uniform
     from lithobrake.chaos.fitting import fit as fit
     from lithobrake.chaos.gaussian_copula import GaussianCopula as GaussianCopula
-    from lithobrake.chaos.germ_tables import input_tables as input_tables
     from lithobrake.chaos.multi_index import multi_index_set as multi_index_set
     from lithobrake.chaos.noise import replicates as replicates
     from lithobrake.chaos.numerical_distributions import Empirical as Empirical

@@ -10,7 +10,8 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lithobrake.chaos.polynomials import Array, Recurrence
+from lithobrake.chaos.polynomials import Recurrence
+from lithobrake.vocabulary.arrays import Array
 
 Support = tuple[float, float]
 NO_CHOICES = "discrete choices are not supported: fit one expansion for each choice"

@@ -8,16 +8,15 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lithobrake.chaos import sensitivity
-from lithobrake.chaos.basis import basis_matrix, condition_number
-from lithobrake.chaos.degree_selection import best_terms, terms_to_try
+from lithobrake.chaos.basis import basis_matrix
+from lithobrake.chaos.degree_selection import best_terms, with_low_degrees
 from lithobrake.chaos.gaussian_process import FAMILIES, fit_process
-from lithobrake.chaos.least_squares import RANK_TOLERANCE
 from lithobrake.chaos.multi_index import Indices
-from lithobrake.chaos.polynomials import Array
 from lithobrake.chaos.scores import absolute_percentage_error
 from lithobrake.chaos.surrogate import Surrogate
 from lithobrake.chaos.threads import one_thread
 from lithobrake.chaos.training import Training, checked_training
+from lithobrake.vocabulary.arrays import Array
 from lithobrake.vocabulary.given_numbers import finite_number, random_numbers, sample_count, whole_number
 
 # With more terms for each point than this the residuals say too little about the error.
@@ -190,7 +189,7 @@ def _refit_of(surrogate: Surrogate, training: Training, output: int) -> Refit:
     if method == "gaussian_process" and "covariance" in entry:
         if entry.get("noise_std", 0.0) ** 2 > SCATTER_SHARE * np.var(training.y[:, output]):
             constant = np.zeros((1, len(training.inputs)), dtype=np.int64)
-            return _least_squares_refit(training, output, _with_low_degrees(constant, training))
+            return _least_squares_refit(training, output, with_low_degrees(constant, training))
         return _process_refit(training, output, entry, indices)
     if method != "ols" or len(indices) > TERMS_PER_POINT * training.count:
         indices = best_terms(training, term_limit=TERMS_PER_POINT * training.count)
@@ -218,7 +217,7 @@ def _sparse_refit(training: Training, output: int, expected_error: float, kept: 
     From the chosen terms alone no effect that the choice has overlooked could ever return, and their residuals are
     too small.
     """
-    rich = _least_squares_refit(training, output, _with_low_degrees(kept, training))
+    rich = _least_squares_refit(training, output, with_low_degrees(kept, training))
     return replace(rich, residuals=_grown(rich.residuals, expected_error))
 
 
@@ -226,18 +225,6 @@ def _grown(residuals: Array, size: float) -> Array:
     """Residuals [count] with at least this root mean square."""
     own = float(np.sqrt(np.mean(residuals**2)))
     return residuals * max(size / own, 1.0) if own > 0.0 else residuals
-
-
-def _with_low_degrees(kept: Indices, training: Training) -> Indices:
-    """The kept terms and those of the highest total degree with which the points still determine them twice over."""
-    union, degree = kept, 1
-    while True:
-        more = np.unique(np.concatenate([kept, terms_to_try(training, degree)]), axis=0)
-        if 2 * len(more) > training.count or len(more) == len(union):
-            return union
-        if condition_number(training.inputs, training.x, more) > 1.0 / RANK_TOLERANCE:
-            return union
-        union, degree = more, degree + 1
 
 
 def _process_refit(training: Training, output: int, entry: dict[str, Any], indices: Indices) -> Refit:

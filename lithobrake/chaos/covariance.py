@@ -12,13 +12,13 @@ import numpy as np
 
 from lithobrake.chaos.abstract_distribution import Distribution
 from lithobrake.chaos.multi_index import Indices
-from lithobrake.chaos.polynomials import Array
 from lithobrake.chaos.univariate_covariance import (
     UnivariateCovariance,
     UnivariateGaussian,
     UnivariatePolynomial,
     gaussian_means,
 )
+from lithobrake.vocabulary.arrays import Array
 
 Gradient = Callable[[Array], Array]
 # The squared lengths of the Gaussians that make up a Matern covariance.

@@ -4,8 +4,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from lithobrake.chaos.basis import basis_matrix
-from lithobrake.chaos.least_squares import solve_least_squares
+from lithobrake.chaos.basis import basis_matrix, condition_number
+from lithobrake.chaos.least_squares import RANK_TOLERANCE, solve_least_squares
 from lithobrake.chaos.multi_index import Indices, multi_index_set
 from lithobrake.chaos.solution import Solution
 from lithobrake.chaos.training import Training
@@ -88,3 +88,15 @@ def best_terms(
     ladder = [row for row in ladder if len(row[0].indices) <= max(term_limit, 1)]
     best = int(np.argmin([np.mean([one.expected_error for one in row] / spread) for row in ladder]))
     return ladder[best][0].indices
+
+
+def with_low_degrees(kept: Indices, training: Training) -> Indices:
+    """The kept terms and those of the highest total degree with which the points still determine them twice over."""
+    union, degree = kept, 1
+    while True:
+        more = np.unique(np.concatenate([kept, terms_to_try(training, degree)]), axis=0)
+        if 2 * len(more) > training.count or len(more) == len(union):
+            return union
+        if condition_number(training.inputs, training.x, more) > 1.0 / RANK_TOLERANCE:
+            return union
+        union, degree = more, degree + 1

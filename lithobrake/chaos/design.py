@@ -1,4 +1,4 @@
-"""Designs by count or by grid: full tensor of Gauss nodes, scrambled Sobol sequence, Latin hypercube."""
+"""Designs by count or by grid: full tensor of Gauss nodes, scrambled Sobol sequence, Latin hypercube, random points."""
 
 import warnings
 from collections.abc import Mapping, Sequence
@@ -8,7 +8,7 @@ import numpy as np
 
 from lithobrake.chaos.abstract_distribution import Distribution
 from lithobrake.chaos.distribution_registry import checked_inputs
-from lithobrake.chaos.polynomials import Array
+from lithobrake.vocabulary.arrays import Array
 from lithobrake.vocabulary.given_numbers import random_numbers, sample_count, whole_number
 
 # Points of one scrambled Sobol sequence: its digits have no more places.
@@ -72,6 +72,20 @@ def latin_hypercube(inputs: Mapping[str, Distribution], count: int, seed: int = 
     generator, size = random_numbers(seed), checked_count(count, len(distributions))
     columns = [(generator.permutation(size) + generator.random(size)) / size for _ in distributions]
     return _physical(distributions, np.column_stack(columns))
+
+
+def sample_inputs(inputs: Mapping[str, Distribution], count: int, seed: int) -> Array:
+    """Draw independent points, shape [count, input_count], in the physical units of the inputs.
+
+    Each input has a random stream of its own, so neither another input nor a larger count changes earlier draws.
+    """
+    count, seed = sample_count("count", count, len(inputs), at_least=0), whole_number("seed", seed, 0)
+    columns = []
+    for name, entry in inputs.items():
+        generator = np.random.Generator(np.random.PCG64([seed, *name.encode()]))
+        # Strictly between 0 and 1, so that an unbounded distribution gives a finite value.
+        columns.append(entry.ppf((generator.integers(0, 2**52, size=count) + 0.5) / 2**52))
+    return np.column_stack(columns) if columns else np.empty((count, 0))
 
 
 def _physical(distributions: Mapping[str, Distribution], uniforms: Array) -> Array:

@@ -7,7 +7,8 @@ from numpy.typing import ArrayLike
 from scipy import special
 
 from lithobrake.chaos.abstract_distribution import Distribution, Limited, Support
-from lithobrake.chaos.polynomials import Array, Recurrence, hermite, jacobi, laguerre, legendre
+from lithobrake.chaos.polynomials import Recurrence, hermite, jacobi, laguerre, legendre
+from lithobrake.vocabulary.arrays import Array
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,8 @@ from lithobrake.chaos.abstract_distribution import Distribution
 from lithobrake.chaos.basis import germs_of, recurrences_of
 from lithobrake.chaos.evaluation_loop import Loop, compiled_loop
 from lithobrake.chaos.multi_index import Indices
-from lithobrake.chaos.polynomials import Array, Recurrence
+from lithobrake.chaos.polynomials import Recurrence
+from lithobrake.vocabulary.arrays import Array
 
 # Points worked on at once: the tables of one block stay in the processor's cache.
 BLOCK = 4096

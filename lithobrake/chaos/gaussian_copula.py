@@ -10,8 +10,8 @@ from lithobrake.chaos.abstract_distribution import Distribution
 from lithobrake.chaos.design import sobol_sequence
 from lithobrake.chaos.distribution_registry import checked_inputs
 from lithobrake.chaos.distributions import Normal
-from lithobrake.chaos.polynomials import Array
 from lithobrake.chaos.threads import one_thread
+from lithobrake.vocabulary.arrays import Array
 from lithobrake.vocabulary.given_numbers import numbers
 
 

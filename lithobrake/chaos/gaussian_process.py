@@ -10,8 +10,8 @@ from lithobrake.chaos.basis import germs_of
 from lithobrake.chaos.counts import term_count
 from lithobrake.chaos.covariance import Covariance, PolynomialCovariance, ProductCovariance, RadialMatern
 from lithobrake.chaos.multi_index import Indices, multi_index_set
-from lithobrake.chaos.polynomials import Array
 from lithobrake.chaos.training import Training
+from lithobrake.vocabulary.arrays import Array
 
 FAMILIES: tuple[type[Covariance], ...] = (PolynomialCovariance, ProductCovariance, RadialMatern)
 # Parameters are learnt from at most so many points: a step costs their number cubed, and they are few.

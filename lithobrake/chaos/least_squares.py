@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lithobrake.chaos.multi_index import Indices
-from lithobrake.chaos.polynomials import Array
+from lithobrake.vocabulary.arrays import Array
 
 # Singular values below this times the largest are rank loss: far below any usable condition number,
 # far above the rounding of an exactly deficient system.

@@ -10,9 +10,9 @@ from lithobrake.chaos.design import sobol_sequence
 from lithobrake.chaos.evaluation import evaluate, make_plan
 from lithobrake.chaos.multi_index import Indices
 from lithobrake.chaos.polynomial_products import central_moments, product_count
-from lithobrake.chaos.polynomials import Array
 from lithobrake.chaos.sensitivity import mean_of, variance_of
 from lithobrake.chaos.threads import one_thread
+from lithobrake.vocabulary.arrays import Array
 
 # Nodes times outputs of the full grid, and entries of products, beyond which sampling takes over: seconds of work.
 NODE_LIMIT = 30_000_000

@@ -9,7 +9,8 @@ from numpy.typing import ArrayLike
 from scipy import special
 
 from lithobrake.chaos.abstract_distribution import NO_CHOICES, Distribution, Limited, Support
-from lithobrake.chaos.polynomials import Array, Recurrence, discretised
+from lithobrake.chaos.polynomials import Recurrence, discretised
+from lithobrake.vocabulary.arrays import Array
 
 # Densities below exp(-350) of the largest cannot be felt by polynomials of the degrees in use.
 NEGLIGIBLE_LOG_DENSITY = 350.0

@@ -11,8 +11,8 @@ from lithobrake.chaos.counts import term_count
 from lithobrake.chaos.design import checked_count
 from lithobrake.chaos.distribution_registry import checked_inputs
 from lithobrake.chaos.multi_index import Indices, multi_index_set
-from lithobrake.chaos.polynomials import Array
 from lithobrake.chaos.threads import one_thread
+from lithobrake.vocabulary.arrays import Array
 from lithobrake.vocabulary.given_numbers import random_numbers
 
 # Gauss nodes that stand for the density of one input when points are drawn from it times a squared polynomial.

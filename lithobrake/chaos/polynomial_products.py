@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from lithobrake.chaos.abstract_distribution import Distribution
 from lithobrake.chaos.multi_index import Indices
-from lithobrake.chaos.polynomials import Array
+from lithobrake.vocabulary.arrays import Array
 
 Whole = NDArray[np.int64]
 

@@ -6,9 +6,8 @@ Every family, classical or computed from data, is the same two arrays, so one ev
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from lithobrake.vocabulary.arrays import Array
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from lithobrake.chaos.polynomials import Array
+from lithobrake.vocabulary.arrays import Array
 
 Score = dict[str, Any]
 

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lithobrake.chaos.multi_index import Indices
-from lithobrake.chaos.polynomials import Array
+from lithobrake.vocabulary.arrays import Array
 
 
 def _shares(indices: Indices, coefficients: Array, chosen: NDArray[np.bool_]) -> Array:

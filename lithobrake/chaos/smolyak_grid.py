@@ -8,7 +8,7 @@ import numpy as np
 from lithobrake.chaos.abstract_distribution import Distribution
 from lithobrake.chaos.counts import check_level, smolyak_count
 from lithobrake.chaos.distribution_registry import checked_inputs
-from lithobrake.chaos.polynomials import Array
+from lithobrake.vocabulary.arrays import Array
 
 MOST_NODES = 10_000_000
 

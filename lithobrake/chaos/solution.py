@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from lithobrake.chaos.multi_index import Indices
-from lithobrake.chaos.polynomials import Array
+from lithobrake.vocabulary.arrays import Array
 
 
 @dataclass(frozen=True)

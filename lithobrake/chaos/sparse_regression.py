@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 from lithobrake.chaos.basis import basis_matrix
 from lithobrake.chaos.degree_selection import solve_ols, terms_to_try
 from lithobrake.chaos.multi_index import Indices, multi_index_set
-from lithobrake.chaos.polynomials import Array
 from lithobrake.chaos.solution import Solution
 from lithobrake.chaos.training import Training
+from lithobrake.vocabulary.arrays import Array
 
 Rows = NDArray[np.int64]
 

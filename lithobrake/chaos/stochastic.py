@@ -13,10 +13,10 @@ from lithobrake.chaos.abstract_distribution import Distribution
 from lithobrake.chaos.fitting import fit
 from lithobrake.chaos.model_selection import PROCESS_FROM, PROCESS_LIMIT
 from lithobrake.chaos.noise import equal_rows, replicates
-from lithobrake.chaos.polynomials import Array
 from lithobrake.chaos.storage import numbers_from_json, read, write
 from lithobrake.chaos.surrogate import Surrogate
 from lithobrake.chaos.training import checked_training
+from lithobrake.vocabulary.arrays import Array
 from lithobrake.vocabulary.given_numbers import random_numbers
 
 FORMAT = "lithobrake stochastic surrogate"

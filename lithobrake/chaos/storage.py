@@ -12,9 +12,9 @@ import numpy as np
 from lithobrake.chaos.abstract_distribution import Distribution
 from lithobrake.chaos.distribution_registry import distribution
 from lithobrake.chaos.multi_index import LOOKED_AT, Indices
-from lithobrake.chaos.polynomials import Array
 from lithobrake.files.atomic import atomic_path
 from lithobrake.files.reading import UNREADABLE
+from lithobrake.vocabulary.arrays import Array
 
 Kept = TypeVar("Kept")
 

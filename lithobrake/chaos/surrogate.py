@@ -16,7 +16,6 @@ from lithobrake.chaos.distribution_registry import checked_inputs
 from lithobrake.chaos.evaluation import EvaluationPlan, evaluate, make_plan
 from lithobrake.chaos.moments import ShapeMoments, skewness_and_kurtosis
 from lithobrake.chaos.multi_index import Indices
-from lithobrake.chaos.polynomials import Array
 from lithobrake.chaos.storage import (
     indices_from_json,
     inputs_from_json,
@@ -27,6 +26,7 @@ from lithobrake.chaos.storage import (
     write,
 )
 from lithobrake.chaos.threads import one_thread
+from lithobrake.vocabulary.arrays import Array
 from lithobrake.vocabulary.given_numbers import numbers
 
 FORMAT = "lithobrake expansion"

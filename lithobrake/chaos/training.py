@@ -11,7 +11,7 @@ from lithobrake.chaos.abstract_distribution import Distribution
 from lithobrake.chaos.basis import checked_weights, outside_count, points_of
 from lithobrake.chaos.distribution_registry import checked_inputs
 from lithobrake.chaos.noise import equal_rows
-from lithobrake.chaos.polynomials import Array
+from lithobrake.vocabulary.arrays import Array
 from lithobrake.vocabulary.given_numbers import LARGEST, numbers_or_nan
 
 

@@ -7,7 +7,7 @@ from typing import ClassVar
 import numpy as np
 
 from lithobrake.chaos.abstract_distribution import Distribution
-from lithobrake.chaos.polynomials import Array
+from lithobrake.vocabulary.arrays import Array
 
 # Nodes of the quadrature that projects a bump on polynomials.
 RULE_NODES = 160

@@ -5,7 +5,7 @@ A law that is fitted in these coordinates cannot leave the bounds, whatever it d
 
 import numpy as np
 
-from lithobrake.chaos.polynomials import Array
+from lithobrake.vocabulary.arrays import Array
 
 
 def to_coordinate(y: Array, lower: Array, upper: Array) -> Array:

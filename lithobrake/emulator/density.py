@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from lithobrake.chaos.polynomials import Array
+from lithobrake.vocabulary.arrays import Array
 
 # Rows times points that are looked at together: bounds the memory.
 _BLOCK = 1 << 21

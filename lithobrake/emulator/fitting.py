@@ -10,8 +10,7 @@ from lithobrake.chaos.threads import one_thread
 from lithobrake.emulator.law import fit_law
 from lithobrake.emulator.model import Emulator
 from lithobrake.emulator.outcome_classes import best_inverse_penalty, fit_classes
-from lithobrake.emulator.ridge_ladder import highest_degree
-from lithobrake.emulator.terms import terms_up_to
+from lithobrake.emulator.ridge_ladder import highest_degree, terms_up_to
 from lithobrake.emulator.training import checked_runs
 from lithobrake.emulator.validation import choices_by_groups, folds_of
 

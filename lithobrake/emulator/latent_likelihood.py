@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import optimize
 
-from lithobrake.chaos.polynomials import Array
 from lithobrake.emulator.latent_terms import LatentTerms
 from lithobrake.emulator.training import TrainingRuns
+from lithobrake.vocabulary.arrays import Array
 
 # Relative change of the mean logarithm of the density at which a climb ends.
 TOLERANCE = 1e-7

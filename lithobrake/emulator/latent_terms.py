@@ -13,7 +13,7 @@ from lithobrake.chaos.abstract_distribution import Distribution
 from lithobrake.chaos.basis import basis_matrix
 from lithobrake.chaos.distributions import Normal, Uniform
 from lithobrake.chaos.multi_index import Indices, multi_index_set
-from lithobrake.chaos.polynomials import Array
+from lithobrake.vocabulary.arrays import Array
 
 # Distributions that the latent variable may have, and nodes of the Gauss rule that integrates over it: as fine as the
 # noise asks for, which else would show single nodes as peaks of the density.

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from lithobrake.chaos.multi_index import Indices
-from lithobrake.chaos.polynomials import Array
 from lithobrake.emulator.ridge_ladder import Ladder, averaged_ridge, best_ladder
+from lithobrake.vocabulary.arrays import Array
 
 # Added to squared residuals, as a share of their mean: a residual that happens to be near zero says little of the
 # scale, but its logarithm would weigh more than all others.

@@ -9,9 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from lithobrake.chaos.polynomials import Array
-from lithobrake.emulator.ridge_ladder import Ladder, degree_of
-from lithobrake.emulator.terms import Terms
+from lithobrake.emulator.ridge_ladder import Ladder, Terms, degree_of
+from lithobrake.vocabulary.arrays import Array
 
 # Least squares with fewer runs to a term has standard errors that are themselves hardly known.
 RUNS_PER_TERM = 4

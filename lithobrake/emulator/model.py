@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lithobrake.chaos.basis import checked_points
-from lithobrake.chaos.polynomials import Array
 from lithobrake.chaos.storage import read, write
 from lithobrake.chaos.threads import one_thread
 from lithobrake.emulator.coordinates import from_coordinate, with_slope
@@ -21,8 +20,10 @@ from lithobrake.emulator.outcome_classes import fit_classes
 from lithobrake.emulator.residual_rows import BANDWIDTHS, drawn_rows, row_weights, smoothed, smoothing
 from lithobrake.emulator.significance import found_inputs
 from lithobrake.emulator.storage import FORMAT, Parts, content_of, parts_of
+from lithobrake.vocabulary.arrays import Array
 from lithobrake.vocabulary.given_numbers import finite_number, random_numbers, sample_count
 from lithobrake.vocabulary.html_table import html_table
+from lithobrake.vocabulary.percentages import LEVEL
 
 # Draws that are made at once: bounds the memory, and belongs to what a seed gives.
 _BLOCK = 1 << 18
@@ -218,7 +219,7 @@ class Emulator(Parts):
         there = self.runs.has_outputs
         return mean_law(self.terms, self._run_matrix[there], target, self.choices.location, self.weights[there])
 
-    def found_inputs(self, level: float = 0.9, seed: int = 0) -> dict[str, bool]:
+    def found_inputs(self, level: float = LEVEL, seed: int = 0) -> dict[str, bool]:
         """Say which inputs change the mean of any output: one test for all inputs and outputs together.
 
         If none does, none is found with probability `level`. An input counts with its products with others, so that one

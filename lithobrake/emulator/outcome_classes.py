@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from lithobrake.chaos.polynomials import Array
+from lithobrake.vocabulary.arrays import Array
 
 # Inverse penalties of the slopes, from none to hardly any penalty; the first is as good as no inputs.
 INVERSE_PENALTIES = (1e-6, 1e-3, 3e-3, 1e-2, 3e-2, 0.1, 0.3, 1.0)

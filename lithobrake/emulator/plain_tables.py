@@ -8,10 +8,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from lithobrake.chaos.germ_tables import input_tables
-from lithobrake.chaos.polynomials import Array
+from lithobrake.chaos.basis import input_tables
 from lithobrake.emulator.model import Emulator
 from lithobrake.emulator.residual_rows import smoothing
+from lithobrake.vocabulary.arrays import Array
 
 
 def law_tables(models: Sequence[Emulator]) -> dict[str, Array]:

@@ -8,7 +8,7 @@ Source: [Silverman-1987].
 import numpy as np
 from numpy.typing import NDArray
 
-from lithobrake.chaos.polynomials import Array
+from lithobrake.vocabulary.arrays import Array
 
 # Widths of the kernel, in units of the root mean square distance of two points; infinite draws from all rows alike.
 BANDWIDTHS = (np.inf, 0.9, 0.65)

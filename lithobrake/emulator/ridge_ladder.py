@@ -6,14 +6,17 @@ with the terms' coefficients as normal: one rung alone would follow the luck of 
 chaos expansion again. Source: [Hoerl-1970] (ridge); [Hoeting-1999] (averaging).
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from itertools import groupby, product
 
 import numpy as np
+from numpy.typing import NDArray
 
-from lithobrake.chaos.multi_index import Indices
-from lithobrake.chaos.polynomials import Array
+from lithobrake.chaos.abstract_distribution import Distribution
+from lithobrake.chaos.basis import basis_matrix
+from lithobrake.chaos.multi_index import Indices, multi_index_set
+from lithobrake.vocabulary.arrays import Array
 
 # Finer steps of factors and penalties gave the same errors.
 SECOND_FACTORS = (0.0, 0.4)
@@ -27,6 +30,31 @@ MOST_OF_SECOND_DEGREE = 12
 PENALTIES = (1e-5, 1e-4, 1e-3, 1e-2, 3e-2, 0.1, 0.3, 1.0)
 # Rungs of less weight are left out of the average.
 LEAST_WEIGHT = 0.005
+
+
+@dataclass(frozen=True)
+class Terms:
+    """Multi-indices [term_count, input_count] by total degree, the constant left out: linear terms come first, in the
+    order of the inputs, and each has variance 1 over the law of its input.
+    """
+
+    inputs: dict[str, Distribution]
+    indices: Indices
+
+    @property
+    def degrees(self) -> NDArray[np.int64]:
+        """Total degree of each term [term_count]."""
+        return self.indices.sum(axis=1)
+
+    def matrix(self, points: Array) -> Array:
+        """Terms at points in physical units [count, input_count], shape [count, term_count]."""
+        return np.ascontiguousarray(basis_matrix(self.inputs, self.indices, points))
+
+
+def terms_up_to(inputs: Mapping[str, Distribution], degree: int) -> Terms:
+    """All terms up to a total degree, as far as the inputs determine them."""
+    highest = [int(min(degree, entry.highest_degree)) for entry in inputs.values()]
+    return Terms(dict(inputs), multi_index_set(len(inputs), degree, max_degrees=highest)[1:])
 
 
 @dataclass(frozen=True)

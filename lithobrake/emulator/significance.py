@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import stats
 
-from lithobrake.chaos.polynomials import Array
 from lithobrake.emulator.mean_law import RUNS_PER_TERM
-from lithobrake.emulator.terms import Terms
+from lithobrake.emulator.ridge_ladder import Terms
+from lithobrake.vocabulary.arrays import Array
 from lithobrake.vocabulary.given_numbers import finite_number, random_numbers
 
 PERMUTATIONS = 399

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 from scipy import special
 
 from lithobrake.chaos.basis import checked_points
-from lithobrake.chaos.polynomials import Array, hermite
+from lithobrake.chaos.polynomials import hermite
 from lithobrake.chaos.storage import indices_from_json, read, write
 from lithobrake.chaos.threads import one_thread
 from lithobrake.emulator.coordinates import from_coordinate, with_slope
@@ -23,6 +23,7 @@ from lithobrake.emulator.latent_likelihood import LatentProblem, branches, probl
 from lithobrake.emulator.latent_terms import LATENT_DEGREE, LATENTS, LatentTerms
 from lithobrake.emulator.storage import column_from_json, runs_from_json, runs_to_json
 from lithobrake.emulator.training import TrainingRuns
+from lithobrake.vocabulary.arrays import Array
 from lithobrake.vocabulary.given_numbers import numbers, random_numbers, sample_count
 
 FORMAT = "lithobrake stochastic expansion"

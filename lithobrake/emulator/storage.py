@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 
 from lithobrake.chaos.multi_index import multi_index_set
-from lithobrake.chaos.polynomials import Array
 from lithobrake.chaos.storage import (
     indices_from_json,
     inputs_from_json,
@@ -19,10 +18,10 @@ from lithobrake.chaos.storage import (
 )
 from lithobrake.emulator.law import Choices, Law
 from lithobrake.emulator.outcome_classes import OutcomeClasses
-from lithobrake.emulator.ridge_ladder import Ladder, Rung
-from lithobrake.emulator.terms import Terms
+from lithobrake.emulator.ridge_ladder import Ladder, Rung, Terms
 from lithobrake.emulator.training import TrainingRuns
 from lithobrake.emulator.validation import Scores
+from lithobrake.vocabulary.arrays import Array
 
 FORMAT = "lithobrake emulator"
 # JSON has no infinity: no bound and no kernel are null.

@@ -10,9 +10,9 @@ from numpy.typing import ArrayLike, NDArray
 from lithobrake.chaos.abstract_distribution import Distribution
 from lithobrake.chaos.basis import checked_points
 from lithobrake.chaos.distribution_registry import checked_inputs
-from lithobrake.chaos.polynomials import Array
 from lithobrake.chaos.training import check_magnitude
 from lithobrake.emulator.coordinates import from_coordinate, to_coordinate
+from lithobrake.vocabulary.arrays import Array
 from lithobrake.vocabulary.given_numbers import LARGEST, labels, numbers, numbers_or_nan, random_numbers, whole_number
 
 WITH_OUTPUTS, WITHOUT_OUTPUTS = "with_outputs", "without_outputs"

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lithobrake.smallbody.shape import Shape
+from lithobrake.vocabulary.arrays import Array
 
-Array = NDArray[np.float64]
 Whole = NDArray[np.int64]
 CROSSINGS = 8  # edges that one way may go over
 

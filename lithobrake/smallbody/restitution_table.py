@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 from lithobrake.files.atomic import atomic_path
 from lithobrake.files.reading import read_rows
 from lithobrake.smallbody.bounce import Impacts, Rebounds
+from lithobrake.vocabulary.arrays import Array
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
 
-Array = NDArray[np.float64]
 # Levels of the quantiles of each cell; the outermost are the smallest and largest value.
 LEVELS = (0.0, 0.05, 0.25, 0.5, 0.75, 0.95, 1.0)
 DRAWN = ("normal_restitution", "tangential_restitution", "azimuth_deg")

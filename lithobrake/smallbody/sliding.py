@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from lithobrake.smallbody.body import Body
 from lithobrake.smallbody.facet_edges import first_edge, over_edges, sizes, unit
+from lithobrake.vocabulary.arrays import Array
 
-Array = NDArray[np.float64]
 TURN = 0.05  # rad by which the velocity may turn in a step
 FACET_STEP = 0.25  # of a facet's size: how far a step may go
 NEAR = 1e-3  # m; a lander that comes to a stop within this does so in one step

@@ -12,8 +12,8 @@ from lithobrake.emulator.ridge_ladder import (
     best_ladder,
     degree_of,
     highest_degree,
+    terms_up_to,
 )
-from lithobrake.emulator.terms import terms_up_to
 
 INPUTS = {"a": Uniform(0.0, 1.0), "b": Uniform(0.0, 1.0), "c": Uniform(0.0, 1.0)}
 TERMS = terms_up_to(INPUTS, 2)
