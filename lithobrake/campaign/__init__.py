@@ -7,10 +7,11 @@ from lithobrake.campaign.limits import Limits
 from lithobrake.campaign.local_executor import LocalExecutor, WorkerDiedError, available_cores
 from lithobrake.campaign.missing_runs import missing
 from lithobrake.campaign.model_server import ModelServer
-from lithobrake.campaign.record import Record, RunStatus, campaign_began, read_records, run_key, run_seed
+from lithobrake.campaign.record import Record, RunStatus, campaign_began, read_records
 from lithobrake.campaign.run_counts import Tally, duration, ledger_tally, per_time
 from lithobrake.campaign.run_table import run_lines, write_csv
 from lithobrake.campaign.runs import RunOptions, Runs, run
+from lithobrake.campaign.seed_and_key import run_key, run_seed
 
 __all__ = [
     "Command",

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from lithobrake.cli.application import Force, Json, OutPath, StudyPath, app, refuse_written, study_folder
+from lithobrake.cli.arguments import Force, Json, OutPath, StudyPath, app, refuse_written, study_folder
 from lithobrake.cli.terminal import one_sentence, shown_progress, tell, tell_json
 from lithobrake.vocabulary.plain_text import plain
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from lithobrake.cli.application import Force, Json, StudyDirectory, app, given_folder, refuse_written
+from lithobrake.cli.arguments import Force, Json, StudyDirectory, app, given_folder, refuse_written
 from lithobrake.cli.terminal import (
     BAD_INPUT,
     leave,

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from lithobrake.cli.application import (
+from lithobrake.cli.arguments import (
     ExecutorName,
     Json,
     Logs,

@@ -9,8 +9,8 @@ from lithobrake.pipeline.runs.designs import design_inputs
 from lithobrake.pipeline.runs.place_region import place_region, smallest_width
 from lithobrake.pipeline.site import gravity_warning, site_warning
 from lithobrake.study import Study
+from lithobrake.study.bed_section import FEWEST_BEDS
 from lithobrake.study.quantity import Scalar, Uncertain, uncertain
-from lithobrake.study.study import FEWEST_BEDS
 from lithobrake.study.touchdown_model import PLACE
 
 # A share of touchdowns that may be cut off without a word [-].

@@ -20,7 +20,7 @@ from lithobrake.geometry.attitude import uniform_attitude
 from lithobrake.pipeline.runs.designs import design_inputs
 from lithobrake.pipeline.runs.place_region import place_region
 from lithobrake.study import Study
-from lithobrake.study.study import FEWEST_BEDS, MOST_BEDS, RUNS_A_BED
+from lithobrake.study.bed_section import FEWEST_BEDS, MOST_BEDS, RUNS_A_BED
 from lithobrake.study.touchdown_model import ORIENTATION, PLACE, given_attitude, medians
 
 if TYPE_CHECKING:

@@ -2,7 +2,6 @@
 
 import hashlib
 import math
-import pickle
 import reprlib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -11,7 +10,7 @@ from typing import Any
 
 from lithobrake import __version__
 from lithobrake.campaign import Command, ModelServer
-from lithobrake.campaign.main_module import refuse_unreachable
+from lithobrake.campaign.main_module import pickled
 from lithobrake.files.hashing import content_hash
 from lithobrake.study import Study
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
@@ -89,15 +88,7 @@ def function_identity(function: Model) -> str:
 
     Raises ValueError for a function that cannot be sent to a worker process.
     """
-    try:
-        content = pickle.dumps(function)
-    except (pickle.PicklingError, AttributeError, TypeError) as error:
-        raise ValueError(
-            f"the model cannot be sent to a process ({error}); give a function of a file, outside of any other "
-            "function, or an object whose attributes can be sent"
-        ) from error
-    refuse_unreachable(content)
-    return hashlib.sha256(content).hexdigest()[:16]
+    return hashlib.sha256(pickled("the model", function)).hexdigest()[:16]
 
 
 def checked(what: str, answer: Mapping[str, Any]) -> dict[str, Any]:

@@ -14,7 +14,7 @@ from lithobrake.pipeline.runs.drawn_design import beds_of_runs, sequence_rows, s
 from lithobrake.pipeline.runs.place_region import place_region, smallest_width
 from lithobrake.pipeline.runs.touchdown_runs import touchdown_keys
 from lithobrake.study import Study, check_tables
-from lithobrake.study.study import default_bed_count
+from lithobrake.study.bed_section import default_bed_count
 from lithobrake.study.template import template
 from lithobrake.study.touchdown_model import ORIENTATION, PLACE, draw, medians
 
