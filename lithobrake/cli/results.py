@@ -193,7 +193,9 @@ def infer(
     folder: StudyDirectory,
     bounce: Annotated[
         Path | None,
-        typer.Option("--bounce", metavar="FILE", help="Observed bounces, a CSV file. Absent: what they would say."),
+        typer.Option(
+            "--bounce", metavar="FILE", help="Observed bounces, a CSV file. If omitted, report identifiability only."
+        ),
     ] = None,
 ) -> None:
     """Infer the soil from observed bounces with a study's emulator: writes posterior.json and posterior.png there."""

@@ -106,11 +106,11 @@ def _write_report(job: Job) -> None:
     write_report(job.folder.path, lambda done, total: job.progress(done, total, "figures"))
 
 
-RUNS = ("pipeline", "chaos", "outputs.py", "attitude.py")
-FIT = ("pipeline", "chaos", "analysis", "outputs.py")
+RUNS = ("pipeline", "chaos", "vocabulary/quantities.py", "geometry/attitude.py")
+FIT = ("pipeline", "chaos", "analysis", "vocabulary/quantities.py")
 EMULATE = (*FIT, "emulator")
 SUM_UP = (*FIT, "results/telling_numbers.py")
-FLY = ("pipeline", "smallbody", "mesh.py", "mesh_files.py", "mesh_labels.py", "outputs.py")
+FLY = ("pipeline", "smallbody", "geometry", "vocabulary/quantities.py")
 # The points of one design are best for the degree that is fitted to them.
 _SCREENING_RUNS = ("points", "replicate_count", "screening_level", "screening_count", "screening_degree")
 _REFINED_RUNS = _design("refined_level", "refined_count", "refined_degree", "kept_share", "kept_outputs")
@@ -125,7 +125,7 @@ REPORT = Stage(
     _files("report/index.html"),
     _nothing,
     ("summary",),
-    ("report", "results", "outputs.py"),
+    ("report", "results", "vocabulary/quantities.py"),
     _write_report,
 )
 PAPER = (
