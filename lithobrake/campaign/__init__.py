@@ -19,8 +19,6 @@ if TYPE_CHECKING:
     from lithobrake.campaign.record import RunStatus as RunStatus
     from lithobrake.campaign.record import campaign_began as campaign_began
     from lithobrake.campaign.record import read_records as read_records
-    from lithobrake.campaign.record import run_key as run_key
-    from lithobrake.campaign.record import run_seed as run_seed
     from lithobrake.campaign.run_counts import Tally as Tally
     from lithobrake.campaign.run_counts import duration as duration
     from lithobrake.campaign.run_counts import ledger_tally as ledger_tally
@@ -30,5 +28,7 @@ if TYPE_CHECKING:
     from lithobrake.campaign.runs import RunOptions as RunOptions
     from lithobrake.campaign.runs import Runs as Runs
     from lithobrake.campaign.runs import run as run
+    from lithobrake.campaign.seed_and_key import run_key as run_key
+    from lithobrake.campaign.seed_and_key import run_seed as run_seed
 else:
     __getattr__, __dir__ = lazy_names(__name__)

@@ -11,14 +11,14 @@ import tempfile
 import threading
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from difflib import get_close_matches
-from hashlib import file_digest
 from pathlib import Path
 from typing import Any
 
 from lithobrake.campaign.capped_log import CappedLog, last_words
 from lithobrake.campaign.decoders import read_answer
-from lithobrake.campaign.record import run_key
+from lithobrake.campaign.seed_and_key import run_key
+from lithobrake.files.hashing import content_hash
+from lithobrake.vocabulary.plain_text import closest
 
 ANSWER = "outputs.json"
 # How long to wait for the last of what a program printed, where something that it left running may print on [s].
@@ -81,8 +81,8 @@ class Command:
         So are templates, and the name of another answer than outputs.json. Put it into the context of a campaign, so
         that runs of a changed program count as other runs.
         """
-        words = [_content_hash(Path(word)) if os.path.isfile(word) else word for word in self.words()]
-        words += [f"template {template.name} {_content_hash(template)}" for template in self.templates]
+        words = [content_hash(Path(word)) if os.path.isfile(word) else word for word in self.words()]
+        words += [f"template {template.name} {content_hash(template)}" for template in self.templates]
         return words + ([f"answer {self.answer}"] if self.answer != ANSWER else [])
 
     @contextlib.contextmanager
@@ -151,11 +151,6 @@ def absolute_words(command: str, folder: Path) -> list[str]:
     return [os.path.abspath(folder / word) if os.path.isfile(folder / word) else word for word in shlex.split(command)]
 
 
-def _content_hash(path: Path) -> str:
-    with path.open("rb") as file:
-        return file_digest(file, "sha256").hexdigest()
-
-
 def _how(code: int) -> str:
     return f"exit code {code}" if code > 0 else f"signal {-code}"
 
@@ -172,8 +167,7 @@ def fill_template(template: Path, folder: Path, question: Mapping[str, Any]) -> 
     def filled(match: re.Match[str]) -> str:
         name = match[1]
         if name not in values:
-            close = get_close_matches(name, values, n=1)
-            meant = f"; did you mean {close[0]}?" if close else f"; there are: {', '.join(values)}"
+            meant = closest(name, values) or f"; there are: {', '.join(values)}"
             raise ValueError(f"{template} has a place for {name}, which is no number of a run{meant}")
         value = values[name]
         return repr(value) if isinstance(value, float) else str(value)

@@ -19,7 +19,7 @@ from multiprocessing.connection import Pipe, wait
 from typing import Any
 
 from lithobrake.campaign.limits import Limits, memory_by_session
-from lithobrake.campaign.main_module import refuse_unreachable
+from lithobrake.campaign.main_module import pickled
 from lithobrake.campaign.worker import BEGUN, Call, Worker
 
 # How often running calls are looked at when they have limits [s].
@@ -83,7 +83,7 @@ class LocalExecutor(Executor):
 
         Raises ValueError for a call that cannot be sent to a process.
         """
-        call, future = _pickled(function, args, kwargs), Future[Any]()
+        call, future = pickled("a call", (function, args, kwargs)), Future[Any]()
         with self._lock:
             if self._closing:
                 raise RuntimeError("this LocalExecutor is shut down; make another one")
@@ -220,18 +220,6 @@ class LocalExecutor(Executor):
             reason = limits.exceeded(time.monotonic() - since, memory.get(worker.number, 0))
             if reason:
                 self._lose(worker, reason)
-
-
-def _pickled(*call: Any) -> bytes:
-    try:
-        content = pickle.dumps(call)
-    except (pickle.PicklingError, AttributeError, TypeError) as error:
-        raise ValueError(
-            f"a call cannot be sent to a process ({error}); a model may be a function of a file, outside of any other "
-            "function, or an object whose attributes can be sent"
-        ) from error
-    refuse_unreachable(content)
-    return content
 
 
 def available_cores() -> int:

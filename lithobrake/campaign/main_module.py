@@ -1,6 +1,7 @@
 """The script that a model stands in: worker processes import it only where a call names something that it defines."""
 
 import os
+import pickle
 import pickletools
 import runpy
 import sys
@@ -62,12 +63,28 @@ def main_source() -> Source | None:
     return ("path", os.path.abspath(path)) if path and os.path.isfile(path) else None
 
 
-def refuse_unreachable(pickled: bytes) -> None:
+def refuse_unreachable(sent: bytes) -> None:
     """Raise MainModuleError for a pickle with something of the script that is run here, where none can import that."""
-    if MAIN.encode() not in pickled or main_source() is not None:
+    if MAIN.encode() not in sent or main_source() is not None:
         return
-    if any(argument == MAIN for _, argument, _ in pickletools.genops(pickled)):
+    if any(argument == MAIN for _, argument, _ in pickletools.genops(sent)):
         raise MainModuleError(_UNREACHABLE)
+
+
+def pickled(what: str, content: object) -> bytes:
+    """The pickle that is sent to a process of its own; what: the content in words, as "the model".
+
+    Raises ValueError for what cannot be sent, MainModuleError where no process can import it.
+    """
+    try:
+        sent = pickle.dumps(content)
+    except (pickle.PicklingError, AttributeError, TypeError) as error:
+        raise ValueError(
+            f"{what} cannot be sent to a process ({error}); a model may be a function of a file, outside of any other "
+            "function, or an object whose attributes can be sent"
+        ) from error
+    refuse_unreachable(sent)
+    return sent
 
 
 def refuse_while_importing() -> None:

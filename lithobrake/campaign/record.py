@@ -1,10 +1,10 @@
-"""One run: its name and seed, what the ledger keeps of it, and the ledger as another process reads it."""
+"""One run as the ledger keeps it, and the ledger as another process reads it."""
 
 import hashlib
 import json
 import logging
 import sqlite3
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from contextlib import AbstractContextManager, closing
 from dataclasses import dataclass
 from datetime import UTC, datetime
@@ -165,24 +165,3 @@ def campaign_began(path: str | PathLike[str]) -> str | None:
     """When the campaign now at work on a ledger began (ISO, UTC); None if there is none."""
     holder = lock_holder(lock_path(Path(path)))
     return holder.get("began") if holder else None
-
-
-def run_key(inputs: Mapping[str, float], seed: int, replicate: int, context: Mapping[str, Any]) -> str:
-    """Name of a run: the hash of all that determines it.
-
-    inputs: every number that the model is given. seed: seed of the study. replicate: which repetition.
-    context: whatever else the result depends on (options, versions), as JSON values.
-    """
-    return _hash({"inputs": dict(inputs), "seed": seed, "replicate": replicate, "context": dict(context)}).hex()
-
-
-def run_seed(inputs: Mapping[str, float], seed: int, replicate: int) -> int:
-    """Seed of the random draws of one run; below 2**53, so that it is the same number in JSON and SQLite."""
-    digest = _hash({"inputs": dict(inputs), "seed": seed, "replicate": replicate})
-    return int.from_bytes(digest[:8], "big") >> 11
-
-
-def _hash(value: Mapping[str, Any]) -> bytes:
-    # Python writes the shortest text that reads back as the same float, so equal texts are equal bits.
-    text = json.dumps(value, sort_keys=True, separators=(",", ":"), allow_nan=False)
-    return hashlib.sha256(text.encode()).digest()

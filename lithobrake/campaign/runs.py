@@ -12,8 +12,9 @@ from lithobrake.campaign.coordinator import Coordinator, PendingRun
 from lithobrake.campaign.ledger import Ledger
 from lithobrake.campaign.limits import Limits
 from lithobrake.campaign.local_executor import LocalExecutor
-from lithobrake.campaign.record import Record, RunStatus, run_key, run_seed
+from lithobrake.campaign.record import Record, RunStatus
 from lithobrake.campaign.run_counts import Tally
+from lithobrake.campaign.seed_and_key import run_key, run_seed
 from lithobrake.campaign.single_run import Model
 
 if TYPE_CHECKING:

@@ -2,6 +2,6 @@
 
 # Each file of commands adds its own to the application; --help lists them in this order.
 from lithobrake.cli import studies, results, one_offs  # noqa: F401  # isort: skip
-from lithobrake.cli.application import app
+from lithobrake.cli.arguments import app
 
 __all__ = ["app"]

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from lithobrake.cli.application import Force, Json, OutPath, StudyPath, app, refuse_written, study_folder
+from lithobrake.cli.arguments import Force, Json, OutPath, StudyPath, app, refuse_written, study_folder
 from lithobrake.cli.terminal import one_sentence, shown_progress, tell, tell_json
 from lithobrake.vocabulary.plain_text import plain
 
@@ -22,7 +22,7 @@ INCOMPLETE = 1
 def land(
     study: StudyPath,
     change: Annotated[
-        list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Another value for a number that it reads.")
+        list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Override a study parameter.")
     ] = None,
     number: Annotated[int, typer.Option("--number", metavar="N", help="Which run of the study, from 1.")] = 1,
     out: Annotated[

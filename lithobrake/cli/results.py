@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from lithobrake.cli.application import Force, Json, StudyDirectory, app, given_folder, refuse_written
+from lithobrake.cli.arguments import Force, Json, StudyDirectory, app, given_folder, refuse_written
 from lithobrake.cli.terminal import (
     BAD_INPUT,
     leave,
@@ -193,7 +193,9 @@ def infer(
     folder: StudyDirectory,
     bounce: Annotated[
         Path | None,
-        typer.Option("--bounce", metavar="FILE", help="Observed bounces, a CSV file. Absent: what they would say."),
+        typer.Option(
+            "--bounce", metavar="FILE", help="Observed bounces, a CSV file. If omitted, report identifiability only."
+        ),
     ] = None,
 ) -> None:
     """Infer the soil from observed bounces with a study's emulator: writes posterior.json and posterior.png there."""

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from lithobrake.cli.application import (
+from lithobrake.cli.arguments import (
     ExecutorName,
     Json,
     Logs,
@@ -82,7 +82,8 @@ def plan(
     out: OutPath = None,
     workers: Workers = None,
     infer: Annotated[
-        bool, typer.Option("--infer", help="Say too how many observed bounces would halve what is unknown of an input.")
+        bool,
+        typer.Option("--infer", help="Also report how many observed bounces halve each input's standard deviation."),
     ] = False,
     json: Json = False,
 ) -> None:

@@ -5,7 +5,7 @@ Source: [GeoTIFF-2019], keys of user-defined geographic frames.
 
 import json
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -29,8 +29,10 @@ GDAL_NODATA = 42113
 RESOLUTION_DEG, FINEST_DEG = 1.0, 0.05
 BAND, BAND_UNIT = "impact density", "1/m2"
 WORDS = "latitude planetocentric, longitude east positive, both of the body-fixed frame"
-PROPERTIES = ("time_s", "impact_speed", "impact_incidence_deg")
-REST_PROPERTIES = ("time_s", "rebounds", "path_length")
+# Of each impact and of each place of rest, and what those columns hold that are no floats.
+PROPERTIES = ("sample", "facet", "time_s", "impact_speed", "impact_incidence_deg")
+REST_PROPERTIES = ("sample", "ground", "time_s", "rebounds", "path_length")
+NO_FLOATS: dict[str, Callable[[Any], int | str]] = {"sample": int, "facet": int, "ground": str}
 
 
 @dataclass(frozen=True)
@@ -137,15 +139,7 @@ def write_geojson(results: StudyResults, path: Path) -> None:
     """Write a point for each flight that ends on the body, with its sample, facet, time and velocity of impact."""
     flights = results.flights
     down = flights.where(np.flatnonzero(flights["status"] == FlightStatus.IMPACT))
-    properties = [
-        {
-            "sample": int(down["sample"][row]),
-            "facet": int(down["facet"][row]),
-            **{name: float(down[name][row]) for name in PROPERTIES},
-        }
-        for row in range(down.row_count)
-    ]
-    _write_points(results, path, "impacts", down, properties)
+    _write_points(results, path, "impacts", down, PROPERTIES)
 
 
 def write_rest_geojson(results: StudyResults, path: Path) -> None:
@@ -154,21 +148,11 @@ def write_rest_geojson(results: StudyResults, path: Path) -> None:
     settled = journeys.where(np.flatnonzero(journeys["status"] == JourneyStatus.SETTLED))
     # Journeys of an earlier version may lack some of these.
     known = [name for name in REST_PROPERTIES if name in settled.columns]
-    properties = [
-        {
-            "sample": int(settled["sample"][row]),
-            "ground": str(settled["ground"][row]),
-            **{name: float(settled[name][row]) for name in known},
-        }
-        for row in range(settled.row_count)
-    ]
-    _write_points(results, path, "places of rest", settled, properties)
+    _write_points(results, path, "places of rest", settled, known)
 
 
-def _write_points(
-    results: StudyResults, path: Path, what: str, table: Table, properties: Sequence[Mapping[str, Any]]
-) -> None:
-    """Write the places of a table, one point a row, in the frame of the body."""
+def _write_points(results: StudyResults, path: Path, what: str, table: Table, names: Sequence[str]) -> None:
+    """Write the places of a table, one point a row with its numbers of these names, in the frame of the body."""
     frame = MapFrame.of(results)
     features = [
         {
@@ -177,9 +161,9 @@ def _write_points(
                 "type": "Point",
                 "coordinates": [float(table["longitude_deg"][row]), float(table["latitude_deg"][row])],
             },
-            "properties": one,
+            "properties": {name: NO_FLOATS.get(name, float)(table[name][row]) for name in names},
         }
-        for row, one in enumerate(properties)
+        for row in range(table.row_count)
     ]
     # The newest standard knows the Earth alone; the member of the one before says which body this is.
     content: dict[str, Any] = {

@@ -23,12 +23,14 @@ def hashed_seed(*values: Any) -> int:
 
 
 def source_hash(*parts: str) -> str:
-    """Hash of the sources of parts or files of the package: results of other code are other results."""
+    """Hash of the sources of parts or files of the package: results of other code are other results.
+
+    Raises ValueError for a part that there is not: its code would be left out of the hash unseen.
+    """
     package = Path(__file__).parents[1]
     roots = [package / part for part in dict.fromkeys(parts)]
-    absent = [str(root) for root in roots if not root.exists()]
-    if absent:
-        raise FileNotFoundError(f"{', '.join(absent)}: no part of the package")
+    if lacking := [str(root) for root in roots if not root.exists()]:
+        raise ValueError(f"{', '.join(lacking)} cannot be hashed; allowed: folders and files of the package")
     digest = hashlib.sha256()
     for source in sorted(path for root in roots for path in ([root] if root.is_file() else root.rglob("*.py"))):
         digest.update(str(source.relative_to(package)).encode() + b"\0" + source.read_bytes())

@@ -7,6 +7,8 @@ from pydantic import Field
 from lithobrake.study.quantity import Number, Numbers, Section, Whole
 
 Metres = Annotated[float, Number("m", above=0)]
+# Ten landings on a bed cost least for what they tell, where a bed costs some six landings; an interval needs a dozen.
+RUNS_A_BED, FEWEST_BEDS, MOST_BEDS = 10, 12, 60
 
 
 class Constant(Section):
@@ -75,3 +77,11 @@ class BedSection(Section):
     """Acceleration under which the grains fall; it is then lowered slowly to the one they settle under."""
     settle_gravity: Annotated[float, Number("m/s2", above=0)] | None = None
     """Acceleration under which the bed comes to rest; absent: surface.gravity, which must then point inward."""
+
+
+def default_bed_count(run_count: int) -> int:
+    """How many beds a drawn study has of which nothing else is said: a tenth of the runs, within limits.
+
+    Source: [Cochran-1977], section 10.6.
+    """
+    return min(run_count, MOST_BEDS, max(FEWEST_BEDS, -(-run_count // RUNS_A_BED)))

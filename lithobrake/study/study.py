@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 from pydantic import BaseModel, PrivateAttr, model_validator
 
-from lithobrake.study.bed_section import BedSection
+from lithobrake.study.bed_section import BedSection, default_bed_count
 from lithobrake.study.design_sections import (
     DEFAULT_METHOD,
     CampaignSection,
@@ -29,17 +29,6 @@ from lithobrake.study.material_sections import GrainSection, LanderSection
 from lithobrake.study.quantity import Scalar, Section, Uncertain, Whole
 from lithobrake.study.question_sections import AimSection, LimitStatesSection
 from lithobrake.study.site_kernels import kernel_values
-
-# Ten landings on a bed cost least for what they tell, where a bed costs some six landings; an interval needs a dozen.
-RUNS_A_BED, FEWEST_BEDS, MOST_BEDS = 10, 12, 60
-
-
-def default_bed_count(run_count: int) -> int:
-    """How many beds a drawn study has of which nothing else is said: a tenth of the runs, within limits.
-
-    Source: [Cochran-1977], section 10.6.
-    """
-    return min(run_count, MOST_BEDS, max(FEWEST_BEDS, -(-run_count // RUNS_A_BED)))
 
 
 class Study(Section):

@@ -50,7 +50,8 @@ json.dump({"height": 1.0}, open("outputs.json", "w"))
 def test_a_program_that_prints_without_end_fills_no_disk_and_its_last_words_are_the_reason(tmp_path: Path) -> None:
     model = Command(shlex.join([sys.executable, "-c", PRINTS_MUCH]), tmp_path / "solver")
     result = run_model(model, {"a": 1.0}, 1)
-    assert result["reason"] == "RuntimeError: the program ended with exit code 3; its last words: it diverged"
+    assert "exit code 3" in result["reason"]
+    assert result["reason"].endswith("it diverged")
     (log,) = (tmp_path / "solver").glob("*/log.txt")
     assert log.stat().st_size <= 3 * KEPT
 

@@ -41,7 +41,8 @@ def test_a_table_fits_its_terminal_and_names_what_it_leaves_out(records: list[Re
     assert wide[-1].endswith("...")
     narrow = run_lines(records, UNITS, 66)
     assert "friction" not in "".join(narrow[:-1])
-    assert narrow[-1] == "Differ too: grain.friction (--csv has every column)"
+    assert "grain.friction" in narrow[-1]
+    assert "--csv" in narrow[-1]
     heads = {"height": ("rebound", "height"), "grain.friction": ("", "friction"), "grain.density": ("", "the same")}
     shown = run_lines(records, UNITS, 72, heads)
     assert [line.split() for line in shown[:4]] == [

@@ -48,7 +48,8 @@ def test_without_a_current_folder_the_sentence_says_so(folder: Path) -> None:
     words = [sys.executable, "-c", script, str(study)]
     ended = subprocess.run(words, cwd=folder / "gone", capture_output=True, text=True, check=False)
     assert (ended.returncode, ended.stdout) == (2, "")
-    assert ended.stderr == "the current folder was removed; change to one that exists\n"
+    assert "current folder" in ended.stderr
+    assert ended.stderr.count("\n") == 1
 
 
 @pytest.mark.parametrize("kind", [".h5", ".vtkhdf", ".png", ".mp4"])
@@ -57,7 +58,10 @@ def test_a_landing_replaces_a_file_only_when_told_to(tmp_path: Path, kind: str) 
     path.write_text("mine")
     found = RUNNER.invoke(app, ["land", str(study), "--out", str(path)])
     assert (found.exit_code, found.stdout) == (2, "")
-    assert found.stderr == f"{path} exists; choose another name with --out, or replace it with --force\n"
+    assert found.stderr.startswith(str(path))
+    assert found.stderr.count("\n") == 1
+    assert "--out" in found.stderr
+    assert "--force" in found.stderr
     assert path.read_text() == "mine"
 
 

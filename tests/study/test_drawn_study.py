@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from lithobrake.study import Study, StudyError, check_tables
-from lithobrake.study.study import default_bed_count
+from lithobrake.study.bed_section import default_bed_count
 from lithobrake.study.template import template
 
 TABLES: dict[str, Any] = tomllib.loads(template()) | {"design": {"method": "drawn"}}

@@ -22,8 +22,8 @@ from lithobrake.geometry.attitude import uniform_attitude
 from lithobrake.pipeline.design.dependencies import touchdown_keys
 from lithobrake.pipeline.design.place_region import Interval, place_region
 from lithobrake.study import Study
+from lithobrake.study.bed_section import FEWEST_BEDS, MOST_BEDS, RUNS_A_BED
 from lithobrake.study.quantity import uncertain
-from lithobrake.study.study import FEWEST_BEDS, MOST_BEDS, RUNS_A_BED
 from lithobrake.study.touchdown_model import ORIENTATION, PLACE, given_attitude, medians
 
 if TYPE_CHECKING:

@@ -76,7 +76,7 @@ def starts(site: Site, samples: Samples) -> Starts:
 
 def sample_sites(site: Site, count: int) -> dict[str, np.ndarray]:
     """The site of each sample by the keys of SITE_KEYS, each of shape [count]; a larger count changes no earlier one"""
-    from lithobrake.analysis.sampling import sample_inputs
+    from lithobrake.chaos.design import sample_inputs
 
     # The random numbers of an input follow from its name.
     laws = {f"site.{key}": law for key, law in site.distributions.items()}

@@ -15,7 +15,6 @@ PARTS = (
     "smallbody",
     "geometry",
     "chaos",
-    "analysis/sampling.py",
     "vocabulary/quantities.py",
 )
 

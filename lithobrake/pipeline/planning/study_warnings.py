@@ -11,8 +11,8 @@ from lithobrake.pipeline.planning.expected_steps import ExpectedSoil
 from lithobrake.pipeline.rest.bounce_inputs import why_no_soil
 from lithobrake.pipeline.site import Site
 from lithobrake.study import Study
+from lithobrake.study.bed_section import FEWEST_BEDS
 from lithobrake.study.quantity import Scalar, Uncertain, uncertain
-from lithobrake.study.study import FEWEST_BEDS
 from lithobrake.study.touchdown_model import PLACE
 
 if TYPE_CHECKING:

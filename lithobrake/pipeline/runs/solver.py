@@ -2,14 +2,13 @@
 
 import hashlib
 import math
-import pickle
 import reprlib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 from lithobrake.campaign import Command, ModelServer
-from lithobrake.campaign.main_module import refuse_unreachable
+from lithobrake.campaign.main_module import pickled
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
 from lithobrake.vocabulary.quantities import ORIENTATION_OUT, OUTPUTS, SPIN_OUT
 
@@ -85,15 +84,7 @@ def function_identity(function: Model) -> str:
 
     Raises ValueError for a function that cannot be sent to a worker process.
     """
-    try:
-        content = pickle.dumps(function)
-    except (pickle.PicklingError, AttributeError, TypeError) as error:
-        raise ValueError(
-            f"the model cannot be sent to a process ({error}); give a function of a file, outside of any other "
-            "function, or an object whose attributes can be sent"
-        ) from error
-    refuse_unreachable(content)
-    return hashlib.sha256(content).hexdigest()[:16]
+    return hashlib.sha256(pickled("the model", function)).hexdigest()[:16]
 
 
 def checked(what: str, answer: Mapping[str, Any]) -> dict[str, Any]:

@@ -13,7 +13,7 @@ from lithobrake.pipeline.design.dependencies import bed_files, pour_seed, touchd
 from lithobrake.pipeline.design.drawn_design import DrawnDesign, beds_of_runs
 from lithobrake.pipeline.design.place_region import place_region, smallest_width
 from lithobrake.study import Study, check_tables
-from lithobrake.study.study import default_bed_count
+from lithobrake.study.bed_section import default_bed_count
 from lithobrake.study.template import template
 from lithobrake.study.touchdown_model import ORIENTATION, PLACE, draw, medians
 

@@ -1,4 +1,4 @@
-"""The application that the commands add themselves to, and the arguments that several of them take."""
+"""Arguments and options that several commands take, and the application that the commands add themselves to."""
 
 from pathlib import Path
 from typing import Annotated
