@@ -44,7 +44,7 @@ ROOMS = {
         *("site", "folder", "design", "job", "stage", "runs", "emulate", "fly", "rest", "answer", "paper", "stages"),
         *("sequential_sampling", "inference", "planning", "study_run", "commands"),
     ),
-    "report": ("words", "tables", "figures", "live", "pages", "study_report"),
+    "report": ("content", "page_data", "words", "tables", "figures", "live", "pages", "study_report"),
 }
 # Who uses which part by the names of its __init__ alone.
 THROUGH_THE_FACE = (("touchdown", "dem"),)
