@@ -1,4 +1,4 @@
-"""A sequence that goes on until its answer is as well known as asked: design.half_width.
+"""Sequential sampling: runs are added until the half-width of the answer is that of design.half_width.
 
 What comes next follows from the runs that have ended, which the ledger has, and from their flights, which the folder
 has. So a study that is stopped and run again goes the same way, and whoever only looks at its folder knows how many
@@ -22,7 +22,7 @@ from lithobrake.vocabulary.limit_state import LimitState
 
 
 def flown_shares(study: Study, folder: StudyFolder) -> dict[str, float]:
-    """Share of its flights with which each run of a study's sequence answers, by key, NaN where it has no answer.
+    """Share of its flights with which each drawn run of a study answers, by key, NaN where it has no answer.
 
     Of a study with more or fewer runs too: a run flies from the same sites in all of them. None at all where the file
     is not there or not whole, or was made otherwise than the study says.
@@ -39,9 +39,9 @@ def flown_shares(study: Study, folder: StudyFolder) -> dict[str, float]:
 
 def _failing_shares(study: Study, folder: StudyFolder) -> dict[str, float]:
     """Share of its flights in which each run meets the limit state that the half width is asked of, by key."""
-    if folder.key_of(file_of("sequence")) is None:
+    if folder.key_of(file_of("drawn")) is None:
         return {}
-    runs, fates = DesignRuns.load(folder, "sequence"), RunFlights.load(folder, "sequence").fates
+    runs, fates = DesignRuns.load(folder, "drawn"), RunFlights.load(folder, "drawn").fates
     if runs.run_count != len(fates):
         # More runs have been made since, which have not flown.
         return {}

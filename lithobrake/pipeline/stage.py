@@ -22,9 +22,9 @@ def same_files(*names: str) -> Callable[[Study], list[str]]:
 class Stage:
     """A step of a study.
 
-    files: what it writes. make: writes it. after: stages whose files it reads. reads: what of the study it depends on,
-    as JSON values. parts: rooms and files of the package whose code decides what it writes, beside those of the stages
-    before; a change in any other makes no file of it outdated.
+    files: what it writes. make: writes it. after: stages whose files it reads. dependencies: what of the study it
+    depends on, as JSON values. parts: rooms and files of the package whose code decides what it writes, beside those of
+    the stages before; a change in any other makes no file of it outdated.
     """
 
     name: str
@@ -32,5 +32,5 @@ class Stage:
     files: Callable[[Study], list[str]]
     make: Callable[[Job], None]
     after: tuple[str, ...] = ()
-    reads: Callable[[Study], Any] = no_dependencies
+    dependencies: Callable[[Study], Any] = no_dependencies
     parts: tuple[str, ...] = ()

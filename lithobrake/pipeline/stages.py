@@ -89,7 +89,7 @@ def stage_keys(study: Study) -> dict[str, str]:
     keys: dict[str, str] = {}
     for stage in stages_of(study):
         before = [keys[name] for name in stage.after]
-        keys[stage.name] = json_hash([stage.name, stage.reads(study), source_hash(*stage.parts), before])
+        keys[stage.name] = json_hash([stage.name, stage.dependencies(study), source_hash(*stage.parts), before])
     return keys
 
 

@@ -132,7 +132,7 @@ def _make_all(job: Job, source: StudySource, until: str, note: Callable[..., Non
     def make_runs(job: Job) -> None:
         job.folder.begin(source.path, source.content, setting(job.study), job.say)
         # While further beds are poured, whoever looks still finds the runs that there are.
-        job.folder.note_runs("sequence", job.design.keys)
+        job.folder.note_runs("drawn", job.design.keys)
         make(job, ANSWERED_AFTER, note)
 
     names = [stage.name for stage in stages_until(job.study, until)]

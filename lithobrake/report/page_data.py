@@ -21,7 +21,7 @@ FILES = ("summary.json", "study.toml")
 # What the last stages of either method write before the report.
 OF_ANY_STUDY = ("samples.h5", "explorer.h5", "flights.csv", "flight_paths.h5", "rest.csv", "body.obj")
 PAPER_FILES = (*FILES, "scores.json", *OF_ANY_STUDY)
-DRAWN_FILES = (*FILES, "designs/sequence.csv", *OF_ANY_STUDY)
+DRAWN_FILES = (*FILES, "designs/drawn.csv", *OF_ANY_STUDY)
 GROUNDS = ("soil", "hard")
 # More dots than this only cover each other, and a picture of ten million takes minutes.
 DRAWN_COUNT = 200_000
@@ -127,7 +127,7 @@ def page_results(found: StudyResults) -> PaperPage | DrawnPage:
         _refuse_without(found.folder, PAPER_FILES)
         return PaperPage(results=results, **_of_any_study(found), scores=_scores(found))
     _refuse_without(found.folder, DRAWN_FILES)
-    runs = found.runs.where(found.runs["design"] == "sequence")
+    runs = found.runs.where(found.runs["design"] == "drawn")
     return DrawnPage(results=results, **_of_any_study(found), runs=runs, rare=found.rare)
 
 

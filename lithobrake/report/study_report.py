@@ -9,7 +9,7 @@ from lithobrake.files.atomic import atomic_path
 from lithobrake.report.content import Panel, Plot
 from lithobrake.report.figures.style import figure_style
 from lithobrake.report.page_data import DrawnPage, page_results
-from lithobrake.report.pages.drawn_page import sequence_content
+from lithobrake.report.pages.drawn_page import drawn_content
 from lithobrake.report.pages.html import page
 from lithobrake.report.pages.paper_page import paper_content
 from lithobrake.report.pages.study_files import data_files, picture_files
@@ -31,7 +31,7 @@ def write_report(folder: Path, progress: Callable[[int, int], None] = lambda don
     Raises ValueError when a file that the report reads is missing.
     """
     data = page_results(open_study(folder))
-    content = sequence_content(data) if isinstance(data, DrawnPage) else paper_content(data)
+    content = drawn_content(data) if isinstance(data, DrawnPage) else paper_content(data)
     # A figure of which there is nothing to say is left out.
     plots = [plot for plot in content.plots if plot.sentence]
     panels = _panels(folder, plots, progress)

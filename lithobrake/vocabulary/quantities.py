@@ -12,7 +12,7 @@ OutputName = Literal["speed_out", "elevation_out", "spin_out", "velocity_out_x",
 OUTPUTS: tuple[OutputName, ...] = get_args(OutputName)
 # The designs of a study in two stages, in the order in which their runs are made, and of a drawn one.
 PAPER_DESIGNS = ("screening", "refined", "test_kept", "test_all")
-DRAWN_DESIGNS = ("sequence", "soil_pairs", "twins")
+DRAWN_DESIGNS = ("drawn", "soil_pairs", "twins")
 # The unit of a number that has none, where a header has to say so.
 PURE = "-"
 

@@ -12,7 +12,7 @@ from blocks import ROOT
 def test_kept_ledgers_have_the_runs_of_their_summaries(study: str) -> None:
     folder = ROOT / "showcase" / study
     results = json.loads((folder / "summary.json").read_text(encoding="utf-8"))["results"]
-    designs = results.get("designs") or {"sequence": results["runs"]}
+    designs = results.get("designs") or {"drawn": results["runs"]}
     for name, design in designs.items():
         with (folder / "runs" / f"{name}.csv").open(newline="", encoding="utf-8") as file:
             outcomes = Counter(row["outcome"] for row in csv.DictReader(file))

@@ -38,7 +38,7 @@ def grown(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, DesignRuns, s
     said = lithobrake("run", ball(folder, 12), "--out", folder / "out", "--workers", 2)
     assert "stage 3 of 14: runs" in said
     assert f"Report: {folder / 'out' / 'report' / 'index.html'}" in said
-    first = DesignRuns.load(StudyFolder.only_read(folder / "out"), "sequence")
+    first = DesignRuns.load(StudyFolder.only_read(folder / "out"), "drawn")
     return folder, first, lithobrake("run", ball(folder, 14, "side_runs = true"), "--out", folder / "out")
 
 
@@ -46,11 +46,11 @@ def test_a_study_of_more_runs_makes_only_those_that_are_new(grown: tuple[Path, D
     folder, first, said = grown
     assert "sequence: 12 of 14 runs were known and are reused" in said
     assert (first.run_count, set(first.outcomes)) == (12, {"clear"})
-    designs = ("sequence", "soil_pairs", "twins")
+    designs = ("drawn", "soil_pairs", "twins")
     runs = {name: DesignRuns.load(StudyFolder.only_read(folder / "out"), name) for name in designs}
     assert [one.run_count for one in runs.values()] == [14, 14, 12]
-    assert runs["sequence"].keys[:12] == first.keys
-    assert not set(runs["sequence"].keys) & {*runs["soil_pairs"].keys, *runs["twins"].keys}
+    assert runs["drawn"].keys[:12] == first.keys
+    assert not set(runs["drawn"].keys) & {*runs["soil_pairs"].keys, *runs["twins"].keys}
     table = open_study(folder / "out").runs
     assert len(table["key"]) == 40
     assert sorted(set(table["design"])) == sorted(designs)
@@ -88,7 +88,7 @@ def test_a_folder_that_changes_its_method_has_the_runs_of_the_present_one(
     assert set(open_study(tmp_path / "out").runs["design"]) == {"screening"}
     # A folder of an early format does not note its stages: it has no other runs.
     (tmp_path / "out" / "keys.json").write_text('{"format_version": 1, "files": {}, "wall_s": {}}')
-    assert set(open_study(tmp_path / "out").runs["design"]) == {"screening", "sequence", "soil_pairs", "twins"}
+    assert set(open_study(tmp_path / "out").runs["design"]) == {"screening", "drawn", "soil_pairs", "twins"}
 
 
 @pytest.fixture(scope="module")
@@ -104,7 +104,7 @@ def soil(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_landings_of_a_sequence_use_their_beds_and_tell_how_the_lander_turns(soil: Path) -> None:
     folder = StudyFolder.only_read(soil / "out")
-    runs = DesignRuns.load(folder, "sequence")
+    runs = DesignRuns.load(folder, "drawn")
     assert sorted(runs.inputs["bed"]) == [0.0, 0.0, 1.0, 1.0]
     assert sorted(path.name for path in (soil / "out" / "beds").iterdir()) == ["bed_0.h5", "bed_1.h5"]
     assert (soil / "out" / "beds" / "bed_0.h5").read_bytes() != (soil / "out" / "beds" / "bed_1.h5").read_bytes()
@@ -130,7 +130,7 @@ def test_the_landing_that_is_shown_is_the_run_of_the_median_speed(soil: Path, tm
     first = open_study(out).median_landing
     assert "run" not in first.attributes
     run_study(StudySource.read(study), out, until="telling_landing")
-    runs, shown = DesignRuns.load(StudyFolder.only_read(out), "sequence"), open_study(out).median_landing
+    runs, shown = DesignRuns.load(StudyFolder.only_read(out), "drawn"), open_study(out).median_landing
     speeds = np.sort(runs.output("speed_out")[runs.has_outputs])
     row = runs.keys.index(shown.attributes["run"])
     assert runs.output("speed_out")[row] == speeds[(len(speeds) - 1) // 2]

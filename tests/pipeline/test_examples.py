@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from lithobrake.pipeline.design.dependencies import solver_reads
+from lithobrake.pipeline.design.dependencies import solver_dependencies
 from lithobrake.pipeline.runs.solver import completed
 from lithobrake.results import open_study
 from lithobrake.study import StudyError, read_study
@@ -142,9 +142,9 @@ def test_the_place_of_a_study_does_not_name_its_runs(tmp_path: Path) -> None:
     for name in ("ball_on_plate.toml", "ball_on_plate.py"):
         (tmp_path / name).write_text((EXAMPLES / name).read_text())
     here, there = (read_study(folder / "ball_on_plate.toml") for folder in (EXAMPLES, tmp_path))
-    assert solver_reads(here) == solver_reads(there)
+    assert solver_dependencies(here) == solver_dependencies(there)
     (tmp_path / "ball_on_plate.py").write_text("print()")
-    assert solver_reads(here) != solver_reads(there)
+    assert solver_dependencies(here) != solver_dependencies(there)
 
 
 @pytest.mark.parametrize(

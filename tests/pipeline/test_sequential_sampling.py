@@ -51,14 +51,14 @@ def source(**design: Any) -> StudySource:
 
 def run(folder: Path, shown: Said, **design: Any) -> DesignRuns:
     run_study(source(**design), folder, until="fly_runs", worker_count=2, model=land, shown=shown)
-    return DesignRuns.load(StudyFolder.only_read(folder), "sequence")
+    return DesignRuns.load(StudyFolder.only_read(folder), "drawn")
 
 
 def answers(folder: Path) -> tuple[np.ndarray, np.ndarray]:
     """What the runs of a folder answer, and their beds."""
     known = {record.key: record for record in open_study(folder).ledger}
     only_read = StudyFolder.only_read(folder)
-    return answers_of(DesignRuns.load(only_read, "sequence").keys, known, read_shares(only_read))
+    return answers_of(DesignRuns.load(only_read, "drawn").keys, known, read_shares(only_read))
 
 
 @pytest.fixture(scope="module")
@@ -90,7 +90,7 @@ def test_a_half_width_may_be_that_of_a_limit_state(tmp_path: Path) -> None:
     steps = [one for one in said.sentences if one.startswith("the probability of caught is known to +- ")]
     assert len(steps) >= 2
     assert steps[-1].endswith("asks for +- 6: that is enough")
-    runs = DesignRuns.load(StudyFolder.only_read(tmp_path), "sequence")
+    runs = DesignRuns.load(StudyFolder.only_read(tmp_path), "drawn")
     caught = (np.array(runs.outcomes) == "captured").astype(float)
     assert (half_width_of(caught, runs.inputs["bed"]) or 1.0) <= 0.06
 
@@ -124,7 +124,7 @@ def test_a_study_that_is_stopped_between_two_looks_ends_with_the_same_runs(
 ) -> None:
     with pytest.raises(KeyboardInterrupt):
         run(tmp_path, Said("going on to 50"), half_width=0.06)
-    first = DesignRuns.load(StudyFolder.only_read(tmp_path), "sequence")
+    first = DesignRuns.load(StudyFolder.only_read(tmp_path), "drawn")
     assert first.run_count == 24
     said = Said()
     assert run(tmp_path, said, half_width=0.06).keys == narrow[1].keys

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from lithobrake.pipeline.answer.site_summary import site_results
-from lithobrake.pipeline.answer.summary_parts import summary_reads
-from lithobrake.pipeline.fly.flights import flight_reads
+from lithobrake.pipeline.answer.summary_parts import summary_dependencies
+from lithobrake.pipeline.fly.flights import flight_dependencies
 from lithobrake.pipeline.site import Site
 from lithobrake.smallbody import Body
 from lithobrake.smallbody.built_in_bodies import top_shape
@@ -98,11 +98,11 @@ def test_the_product_of_an_archive_is_named_by_the_label_of_its_mesh(tmp_path: P
         told = site_results(Site(study))
         assert (told.body, told.product_id) == ("mesh", "urn:nasa:pds:rocks:data:rock::3.0")
         assert told.extents_m == (2e3, 2e3, 2e3)
-    assert flight_reads(given) == flight_reads(found)
-    before = flight_reads(found), summary_reads(found)
+    assert flight_dependencies(given) == flight_dependencies(found)
+    before = flight_dependencies(found), summary_dependencies(found)
     label.write_text(label.read_text().replace("3.0", "4.0"))
-    assert flight_reads(found) == before[0]
-    assert summary_reads(found) != before[1]
+    assert flight_dependencies(found) == before[0]
+    assert summary_dependencies(found) != before[1]
     assert site_results(Site(changed())).product_id is None
     label.write_text(PRODUCT.format(file="other.obj"))
     with pytest.raises(ValueError, match=r"study\.toml: site\.body: .*rock\.xml: this label names other\.obj"):

@@ -122,7 +122,7 @@ def test_page_links_the_files_that_are_there_and_no_others(study_folder: Path, p
     assert all((study_folder / "report" / link).is_file() for link in links)
     for name in ("summary.json", "samples.h5", "flights.csv", "beds/bed_0.h5", "report/figure_7_map.png"):
         assert f"../{name}" in links
-    assert "../designs/sequence.csv" not in links
+    assert "../designs/drawn.csv" not in links
     held = size((study_folder / "samples.h5").stat().st_size)
     assert f'every sample</td><td class="number">{held}</td>' in paper_page
 

@@ -29,7 +29,7 @@ ASKED: dict[str, tuple[str, Callable[[StudyResults], Any]]] = {
     "body.obj": (BODY, lambda results: results.body_shape),
     "flights.csv": (FLIGHTS, lambda results: results.flights),
     "study.toml": ("[site]\n", lambda results: results.study_text),
-    "designs/sequence.csv": ("key,outcome\na,clear\n", lambda results: results.runs),
+    "designs/drawn.csv": ("key,outcome\na,clear\n", lambda results: results.runs),
     "emulator.json": ("{}", lambda results: results.emulator),
     "refined.json": ("{}", lambda results: results.surrogate),
     "scores.json": ("{}", lambda results: results.scores),
@@ -111,7 +111,7 @@ def test_pipes_are_not_waited_for(folder: Path) -> None:
     (folder / "keys.json").unlink()
     (folder / "runs.sqlite").touch()
     # A design that is no file counts as one that has not been run yet; without an emulator no study counts as drawn.
-    for name in (name for name in ASKED if name != "designs/sequence.csv"):
+    for name in (name for name in ASKED if name != "designs/drawn.csv"):
         (folder / name).unlink()
         os.mkfifo(folder / name)
         with pytest.raises(ValueError, match="no regular file"):

@@ -9,7 +9,7 @@ import pytest
 
 from lithobrake.pipeline.answer.site_summary import site_results
 from lithobrake.pipeline.answer.summary_parts import study_tables
-from lithobrake.pipeline.fly.flights import flight_reads
+from lithobrake.pipeline.fly.flights import flight_dependencies
 from lithobrake.pipeline.site import Site
 from lithobrake.results.json_values import to_json
 from lithobrake.smallbody import read_partner
@@ -70,12 +70,12 @@ def test_a_mesh_turns_as_the_kernels_say(folder: Path) -> None:
 
 def test_another_spin_in_the_kernel_makes_the_flights_anew_and_another_comment_does_not(folder: Path) -> None:
     found, kernel = study(folder, kernels=NAMES[:1]), folder / NAMES[0]
-    before = flight_reads(found)
+    before = flight_dependencies(found)
     kernel.write_text("KPL/PCK\nA comment.\n" + PCK.removeprefix("KPL/PCK\n"))
-    assert flight_reads(found) == before
+    assert flight_dependencies(found) == before
     kernel.write_text(PCK.replace("3823.0", "3824.0"))
-    assert flight_reads(found) != before
-    assert flight_reads(study(folder)) == flight_reads(study(folder, kernels=[]))
+    assert flight_dependencies(found) != before
+    assert flight_dependencies(study(folder)) == flight_dependencies(study(folder, kernels=[]))
 
 
 @pytest.mark.parametrize(

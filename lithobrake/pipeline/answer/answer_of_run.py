@@ -1,4 +1,4 @@
-"""What each run answers, and which bed it answers for: the two arrays that every estimate of a sequence stands on.
+"""What each run answers, and which bed it answers for: the two arrays that every estimate of a drawn study stands on.
 
 The answer of a run is the share of its flights, over headings and all else that is uncertain of the site, in which it
 returns; one that is captured answers without flying, and one of which nobody knows where it went, not at all. A study
@@ -28,7 +28,7 @@ def answer_words(study: Study) -> str:
 def read_shares(folder: StudyFolder) -> dict[str, float]:
     """What a folder's table of the flights of runs says of them, by key."""
     rows = read_rows(folder / FILE, ("design", "key", "returns"), AGAIN)
-    return {row["key"]: float(row["returns"] or "nan") for row in rows if row["design"] == "sequence"}
+    return {row["key"]: float(row["returns"] or "nan") for row in rows if row["design"] == "drawn"}
 
 
 def answers_of(

@@ -39,8 +39,8 @@ def limit_state_results(
     conditions = study.limit_states.conditions()
     if not conditions:
         return {}
-    runs, samples = DesignRuns.load(folder, "sequence"), Samples.load(folder)
-    fates = RunFlights.load(folder, "sequence").fates
+    runs, samples = DesignRuns.load(folder, "drawn"), Samples.load(folder)
+    fates = RunFlights.load(folder, "drawn").fates
     of_samples = _values_of_samples(samples, sample_fates(samples, flights, holds=holds), holds=holds)
     states = {name: LimitState.of(text) for name, text in conditions.items()}
     found = {}

@@ -1,4 +1,4 @@
-"""What the runs of a sequence say of themselves: shares, parts of the variance, means and quantiles, with intervals."""
+"""What the drawn runs say of themselves: shares, parts of the variance, means and quantiles, with intervals."""
 
 from collections.abc import Mapping
 
@@ -37,8 +37,8 @@ SOIL = ("grain.", "surface.", "solver.inputs.", *(f"lander.{name}" for name in S
 
 def estimate(job: Job) -> None:
     """Write what the runs say of the return fraction, of where scatter comes from, and of their outputs."""
-    study, runs = job.study, DesignRuns.load(job.folder, "sequence")
-    flights = RunFlights.load(job.folder, "sequence")
+    study, runs = job.study, DesignRuns.load(job.folder, "drawn")
+    flights = RunFlights.load(job.folder, "drawn")
     returns = flights.returns
     if not np.isfinite(returns).any():
         raise ValueError(
@@ -100,7 +100,7 @@ def _split(job: Job, runs: DesignRuns, name: str, y: np.ndarray) -> VariancePart
 
 
 def _differences(job: Job, design: str, name: str, y: np.ndarray) -> np.ndarray:
-    """What an output differs by between the runs of a side design and theirs of the sequence, [pair_count]."""
+    """What an output differs by between the runs of a side design and the drawn runs beside them, [pair_count]."""
     if not job.study.design.side_runs:
         return np.empty(0)
     beside = DesignRuns.load(job.folder, design).output(name) if name != RETURNS else None

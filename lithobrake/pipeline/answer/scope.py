@@ -41,7 +41,7 @@ def scope(study: Study) -> Scope:
 
 
 def why_no_interval(study: Study) -> str | None:
-    """Why the runs of a sequence say nothing of other beds and places; None where they do."""
+    """Why drawn runs say nothing of other beds and places; None where they do."""
     if study.bed_count > 1 and not DrawnDesign(study).one_place:
         return None
     where, remedies = [], []

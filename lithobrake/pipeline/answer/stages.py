@@ -2,7 +2,7 @@
 
 from lithobrake.pipeline.answer.drawn_summary import write_drawn_summary
 from lithobrake.pipeline.answer.run_estimates import FILE, estimate
-from lithobrake.pipeline.answer.summary_parts import summary_reads
+from lithobrake.pipeline.answer.summary_parts import summary_dependencies
 from lithobrake.pipeline.stage import Stage, same_files
 
 PARTS = ("pipeline/answer", "pipeline/site.py", "analysis", "chaos", "emulator", "results", "vocabulary")
@@ -14,6 +14,6 @@ SUMMARY = Stage(
     same_files("summary.json"),
     write_drawn_summary,
     ("landing", "telling_landing", "estimate", "rest", "aim"),
-    summary_reads,
+    summary_dependencies,
     PARTS,
 )

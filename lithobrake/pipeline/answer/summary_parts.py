@@ -23,7 +23,7 @@ from lithobrake.study import Study
 from lithobrake.vocabulary.quantities import TOUCHDOWN
 
 
-def summary_reads(study: Study) -> dict[str, Any]:
+def summary_dependencies(study: Study) -> dict[str, Any]:
     """What the summary depends on beside the files of the stages before it."""
     return study_tables(study) | {"product": body_product(study)}
 

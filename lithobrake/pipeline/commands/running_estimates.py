@@ -1,4 +1,4 @@
-"""What the runs of a sequence say while more of them come in: the estimates as they are now, with their intervals.
+"""What the drawn runs say while more of them come in: the estimates as they are now, with their intervals.
 
 Runs that take long come in last, so what is said early leans to those that end soon.
 """
@@ -60,7 +60,7 @@ class RunningEstimates:
 
 
 def running_estimates(records: Sequence[Record], flown: Mapping[str, float]) -> RunningEstimates | None:
-    """The estimates from runs of a sequence, of which those count that are done; None for too few.
+    """The estimates from drawn runs, of which those count that are done; None for too few.
 
     flown: share of its flights in which a run returns, by key, of those that have flown.
     """

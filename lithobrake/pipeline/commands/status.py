@@ -22,7 +22,7 @@ class RunsStatus:
 
     others: how many more its ledger has. rare: how many of the ledger's only a limit state asks for, by its name.
     outcomes: how often each came. reasons: why runs failed, and how often. estimates: what they say so far, of a
-    sequence; None for another study, and before enough have ended.
+    drawn runs; None for another study, and before enough have ended.
     """
 
     tally: Tally
@@ -179,8 +179,8 @@ def _runs(path: Path, notes: Notes, flown: dict[str, float]) -> RunsStatus:
     records = [entry for entry in every if entry.key in asked] if notes.stages else every
     others = {entry.key for entry in every} - {entry.key for entry in records}
     rare = {name: len(others.intersection(keys)) for name, keys in notes.rare.items()}
-    # Those beside the sequence are at places and soils of its runs, and say nothing new.
-    drawn = set(notes.designs.get("sequence", ()))
+    # Those beside the drawn runs are at places and soils of its runs, and say nothing new.
+    drawn = set(notes.designs.get("drawn", ()))
     return RunsStatus(
         tally=ledger_tally(records, campaign_began(path / "runs.sqlite")),
         others=len(others.difference(*notes.rare.values())),
@@ -192,7 +192,7 @@ def _runs(path: Path, notes: Notes, flown: dict[str, float]) -> RunsStatus:
 
 
 def _flown(path: Path, state: FolderState) -> dict[str, float]:
-    """Which share of its flights each run of a sequence returns in, by key; none before they have flown."""
+    """Which share of its flights each drawn run returns in, by key; none before they have flown."""
     if not any(stage.name == "fly_runs" and stage.is_current for stage in state.stages):
         return {}
     from lithobrake.pipeline.answer.answer_of_run import read_shares

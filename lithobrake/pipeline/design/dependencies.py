@@ -21,7 +21,7 @@ def bed_files(study: Study) -> list[str]:
     return [f"beds/bed_{index}.h5" for index in range(study.bed_count)]
 
 
-def bed_reads(study: Study) -> dict[str, Any]:
+def bed_dependencies(study: Study) -> dict[str, Any]:
     """What the beds depend on: uncertain quantities count with their medians."""
     values = medians(study)
     return {
@@ -43,12 +43,12 @@ def pour_seed(study: Study, index: int) -> int:
     return int(state[0]) >> 11
 
 
-def touchdown_reads(study: Study) -> dict[str, Any]:
+def touchdown_dependencies(study: Study) -> dict[str, Any]:
     """What a touchdown depends on beside its values: the options, the lander's mesh, the beds, the engine."""
     if not study.has_soil:
-        return solver_reads(study)
+        return solver_dependencies(study)
     return {
-        "bed": bed_reads(study),
+        "bed": bed_dependencies(study),
         "lander": study.lander.model_dump(include={"shape", "edges", "inertia", "unit"}),
         "mesh": None if study.lander.file is None else content_hash(Path(study.lander.file)),
         "stepping": study.contact.stepping,
@@ -58,7 +58,7 @@ def touchdown_reads(study: Study) -> dict[str, Any]:
     }
 
 
-def solver_reads(study: Study) -> dict[str, Any]:
+def solver_dependencies(study: Study) -> dict[str, Any]:
     """What a touchdown by a program depends on beside its values: the program's files, and what it is told."""
     setting = solver_setting(study)
     # A mesh counts with its content, wherever it lies.
@@ -84,16 +84,21 @@ def solver_command(study: Study, folder: Path) -> Command:
     return Command(str(solver.command), folder / "solver", templates=templates, answer=solver.answer)
 
 
-def design_reads(study: Study) -> dict[str, Any]:
+def design_dependencies(study: Study) -> dict[str, Any]:
     """What the runs of any design depend on."""
     values = study.touchdown_values()
     inputs = uncertain(values)
     fixed = {name: value for name, value in values.items() if name not in inputs}
     laws = {name: value.to_chaos().to_json() for name, value in inputs.items()}
-    return {"touchdown": touchdown_reads(study), "drawn": _drawn_reads(study), "fixed": fixed, "inputs": laws}
+    return {
+        "touchdown": touchdown_dependencies(study),
+        "drawn": _drawn_dependencies(study),
+        "fixed": fixed,
+        "inputs": laws,
+    }
 
 
-def _drawn_reads(study: Study) -> dict[str, Any]:
+def _drawn_dependencies(study: Study) -> dict[str, Any]:
     """What the draws of a run depend on, beside its seed."""
     return {
         "bed_count": study.bed_count,
@@ -104,5 +109,5 @@ def _drawn_reads(study: Study) -> dict[str, Any]:
 
 def touchdown_keys(study: Study, rows: Sequence[Mapping[str, float]], replicate: int) -> list[str]:
     """The keys of these runs in the ledger."""
-    context = touchdown_reads(study)
+    context = touchdown_dependencies(study)
     return [run_key(row, study.seed, replicate, context) for row in rows]

@@ -34,7 +34,7 @@ AZIMUTH = "impact.azimuth_deg"
 # an azimuth that is given leaves the others as they were.
 DRAWN = ("place x", "place y", "azimuth", "attitude 1", "attitude 2", "attitude 3")
 PAIR_COUNT, TWIN_COUNT = 20, 12
-# Side runs stand beside the first runs of the sequence, in its order, so that row k of theirs goes with its row k.
+# Side runs stand beside the first drawn runs, in their order, so that row k of theirs goes with row k of these.
 SIDE_DESIGNS = ("soil_pairs", "twins")
 
 
@@ -89,8 +89,8 @@ class DrawnDesign:
         return self.rows_at(beds_of_runs(self.study, run + 1)[-1:], self._points(1, skip=run))[0]
 
     def rows_of(self, design: str) -> list[dict[str, float]]:
-        """All inputs of the runs of a design: of "sequence", or of a side design, whose row k goes with run k."""
-        return {"sequence": lambda: self.rows, "soil_pairs": self._soil_pairs, "twins": self._twins}[design]()
+        """All inputs of the runs of a design: of "drawn", or of a side design, whose row k goes with run k."""
+        return {"drawn": lambda: self.rows, "soil_pairs": self._soil_pairs, "twins": self._twins}[design]()
 
     @property
     def coordinates(self) -> "dict[str, Distribution]":

@@ -15,7 +15,7 @@ SIZE_COUNT = 1000
 def place_region(study: Study) -> tuple[Interval, Interval] | None:
     """The rectangle [m, from the middle of the bed, along x and y] out of which places are drawn; None for no draw.
 
-    Where the sequence is told of neither place nor region: wherever the lander is as far from each wall as in the
+    Where a drawn study names neither place nor region: wherever the lander is as far from each wall as in the
     smallest bed whose walls do not answer its first blow, or in the middle where a bed is no wider than that.
     """
     impact = study.impact

@@ -1,4 +1,4 @@
-"""Samples of a sequence: draws of the input law through the emulator, outcome, velocity and spin together."""
+"""Samples of a drawn study: draws of the input law through the emulator, outcome, velocity and spin together."""
 
 import numpy as np
 

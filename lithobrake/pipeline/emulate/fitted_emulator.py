@@ -1,4 +1,4 @@
-"""The emulator of the runs of a sequence: fitted, and fitted again to beds drawn with replacement."""
+"""The emulator of the drawn runs: fitted, and fitted again to beds drawn with replacement."""
 
 import math
 from typing import TYPE_CHECKING
@@ -28,11 +28,11 @@ MARGIN = 1e-6
 
 
 def fit_emulator(job: Job) -> None:
-    """Fit the emulator to the runs of the sequence and write it; a run that failed says nothing."""
+    """Fit the emulator to the drawn runs and write it; a run that failed says nothing."""
     from lithobrake import emulator
     from lithobrake.emulator.training import FEWEST
 
-    runs = DesignRuns.load(job.folder, "sequence")
+    runs = DesignRuns.load(job.folder, "drawn")
     inputs, outcomes = job.design.inputs, tuple(TouchdownOutcome)
     ended = np.isin(runs.outcomes, outcomes)
     left = int(runs.has_outputs.sum())

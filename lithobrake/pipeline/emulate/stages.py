@@ -21,7 +21,7 @@ PARTS = (
 )
 
 
-def sample_reads(study: Study) -> Any:
+def sample_dependencies(study: Study) -> Any:
     """What the samples depend on beside the model that they are of."""
     return study.monte_carlo.model_dump()
 
@@ -32,4 +32,6 @@ def _fit(job: Job) -> None:
 
 
 EMULATOR = Stage("emulator", "emulator", same_files(FILE, EXPLORER), _fit, ("runs",), parts=PARTS)
-SAMPLE = Stage("sample", "samples", same_files("samples.h5"), draw_emulator_samples, ("emulator",), sample_reads, PARTS)
+SAMPLE = Stage(
+    "sample", "samples", same_files("samples.h5"), draw_emulator_samples, ("emulator",), sample_dependencies, PARTS
+)

@@ -46,7 +46,7 @@ class Starts:
     site: dict[str, np.ndarray]
 
 
-def flight_reads(study: Study) -> dict[str, Any]:
+def flight_dependencies(study: Study) -> dict[str, Any]:
     """What the flights depend on beside the samples."""
     built_in = study.site.body in BUILT_IN_BODIES
     mesh = labelled_mesh(Path(study.site.body))

@@ -10,7 +10,7 @@ import numpy as np
 from lithobrake.files.hashing import hashed_seed
 from lithobrake.files.reading import read_rows
 from lithobrake.pipeline.emulate.outgoing import VELOCITY
-from lithobrake.pipeline.fly.flights import Starts, flight_reads, fly_starts, write_table
+from lithobrake.pipeline.fly.flights import Starts, flight_dependencies, fly_starts, write_table
 from lithobrake.pipeline.folder.study_folder import AGAIN, StudyFolder
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.runs.run_table import DesignRuns
@@ -32,7 +32,7 @@ RETURNS = (FlightStatus.IMPACT, JourneyStatus.SETTLED)
 FIRST = ("heading_deg", "partner_longitude_deg")
 LATTICE = (*FIRST, *(key for key in SITE_KEYS if key not in FIRST))
 COLUMNS = ("design", "run", "key", "outcome", "flight_count", *FATES, "returns")
-# Of each flight of the sequence that ends on the body.
+# Of each flight of the drawn runs that ends on the body.
 IMPACT_NUMBERS = ("time_s", "impact_speed", "impact_incidence_deg")
 IMPACT_COLUMNS = ("run", *IMPACT_NUMBERS)
 
@@ -55,14 +55,14 @@ class RunFlights:
         return cls(returns, np.array([[int(row[fate]) for fate in FATES] for row in rows]).reshape(-1, len(FATES)))
 
 
-def run_flight_reads(study: Study) -> dict[str, Any]:
+def run_flight_dependencies(study: Study) -> dict[str, Any]:
     """What the flights of the runs depend on apart from the runs."""
-    return {name: value for name, value in flight_reads(study).items() if name != "flight_count"}
+    return {name: value for name, value in flight_dependencies(study).items() if name != "flight_count"}
 
 
 @dataclass(frozen=True)
 class RunImpacts:
-    """Flights of the sequence that end on the body, [impact_count] each: the run, and the numbers of IMPACT_NUMBERS."""
+    """Flights of the drawn runs that end on the body, [impact_count] each: the run, and numbers of IMPACT_NUMBERS."""
 
     run: np.ndarray
     numbers: dict[str, np.ndarray]

@@ -1,8 +1,8 @@
 """The stages of flights."""
 
 from lithobrake.pipeline.fly.flight_paths import FILE as PATHS
-from lithobrake.pipeline.fly.flights import flight_reads, fly_samples
-from lithobrake.pipeline.fly.run_flights import FILE, IMPACTS, fly_runs, run_flight_reads
+from lithobrake.pipeline.fly.flights import flight_dependencies, fly_samples
+from lithobrake.pipeline.fly.run_flights import FILE, IMPACTS, fly_runs, run_flight_dependencies
 from lithobrake.pipeline.stage import Stage, same_files
 
 FILES = ("flights.csv", "flights.json", "body.obj", PATHS)
@@ -24,7 +24,7 @@ FLY_RUNS = Stage(
     same_files(FILE, IMPACTS),
     fly_runs,
     ("side_runs",),
-    run_flight_reads,
+    run_flight_dependencies,
     PARTS,
 )
-FLY = Stage("fly", "flights", same_files(*FILES), fly_samples, ("sample",), flight_reads, PARTS)
+FLY = Stage("fly", "flights", same_files(*FILES), fly_samples, ("sample",), flight_dependencies, PARTS)

@@ -34,7 +34,7 @@ _ABSENT: dict[str, Any] = {name: {} for name in _FORM} | {"study": {"file": "", 
 # The stage whose key says whether a design is still what the study asks for.
 _STAGE_OF_DESIGN = {
     "screening": "screening_runs", "refined": "refined_runs", "test_kept": "test_runs", "test_all": "test_runs",
-    "sequence": "runs", "soil_pairs": "side_runs", "twins": "side_runs",
+    "drawn": "runs", "soil_pairs": "side_runs", "twins": "side_runs",
 }  # fmt: skip
 
 

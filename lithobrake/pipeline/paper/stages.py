@@ -4,12 +4,12 @@ from collections.abc import Callable
 from typing import Any
 
 from lithobrake.pipeline.answer.stages import PARTS as ANSWER_PARTS
-from lithobrake.pipeline.answer.summary_parts import summary_reads
-from lithobrake.pipeline.design.dependencies import design_reads
+from lithobrake.pipeline.answer.summary_parts import summary_dependencies
+from lithobrake.pipeline.design.dependencies import design_dependencies
 from lithobrake.pipeline.emulate.explorer_tables import FILE as EXPLORER
 from lithobrake.pipeline.emulate.stages import PARTS as EMULATOR_PARTS
-from lithobrake.pipeline.emulate.stages import sample_reads
-from lithobrake.pipeline.fly.flights import flight_reads
+from lithobrake.pipeline.emulate.stages import sample_dependencies
+from lithobrake.pipeline.fly.flights import flight_dependencies
 from lithobrake.pipeline.fly.stages import FILES as FLIGHT_FILES
 from lithobrake.pipeline.fly.stages import PARTS as FLIGHT_PARTS
 from lithobrake.pipeline.paper.expansion_flights import fly_expansion_samples
@@ -18,10 +18,10 @@ from lithobrake.pipeline.paper.expansion_tables import sample_expansion
 from lithobrake.pipeline.paper.expansions import fit_refined, fit_screening, score_all
 from lithobrake.pipeline.paper.paper_runs import make_refined_runs, make_screening_runs, make_test_runs
 from lithobrake.pipeline.paper.paper_summary import write_summary
-from lithobrake.pipeline.rest.journeys import rest_files, rest_reads
+from lithobrake.pipeline.rest.journeys import rest_dependencies, rest_files
 from lithobrake.pipeline.rest.stages import PARTS as REST_PARTS
 from lithobrake.pipeline.runs.run_table import file_of
-from lithobrake.pipeline.runs.shown_landing import land_once, landing_files, landing_reads
+from lithobrake.pipeline.runs.shown_landing import land_once, landing_dependencies, landing_files
 from lithobrake.pipeline.runs.stages import PARTS as RUN_PARTS
 from lithobrake.pipeline.stage import Stage, same_files
 from lithobrake.study import Study
@@ -33,20 +33,20 @@ def _design(*names: str) -> Callable[[Study], Any]:
     return lambda study: [study.design.model_dump()[name] for name in names]
 
 
-def _screening_reads(study: Study) -> Any:
+def _screening_dependencies(study: Study) -> Any:
     # The points of one design are best for the degree that is fitted to them.
     own = _design("points", "replicate_count", "screening_level", "screening_count", "screening_degree")
-    return [design_reads(study), study.seed, *own(study)]
+    return [design_dependencies(study), study.seed, *own(study)]
 
 
-MEDIAN_LANDING = Stage("landing", "median landing", landing_files, land_once, ("bed",), landing_reads)
+MEDIAN_LANDING = Stage("landing", "median landing", landing_files, land_once, ("bed",), landing_dependencies)
 SCREENING_RUNS = Stage(
     "screening_runs",
     "screening runs",
     same_files(file_of("screening")),
     make_screening_runs,
     ("bed",),
-    _screening_reads,
+    _screening_dependencies,
     PARTS,
 )
 SCREEN = Stage(
@@ -78,7 +78,7 @@ SAMPLE = Stage(
     same_files("samples.h5", EXPLORER),
     sample_expansion,
     ("refine", "test"),
-    sample_reads,
+    sample_dependencies,
     (*PARTS, *EMULATOR_PARTS),
 )
 FLY = Stage(
@@ -87,11 +87,17 @@ FLY = Stage(
     same_files(*FLIGHT_FILES, "flights_without_scatter.csv"),
     fly_expansion_samples,
     ("sample",),
-    flight_reads,
+    flight_dependencies,
     FLIGHT_PARTS,
 )
 REST = Stage(
-    "rest", "bounces until rest", rest_files, follow_expansion_samples, ("fly",), rest_reads, (*PARTS, *REST_PARTS)
+    "rest",
+    "bounces until rest",
+    rest_files,
+    follow_expansion_samples,
+    ("fly",),
+    rest_dependencies,
+    (*PARTS, *REST_PARTS),
 )
 SUMMARY = Stage(
     "summary",
@@ -99,6 +105,6 @@ SUMMARY = Stage(
     same_files("summary.json"),
     write_summary,
     ("landing", "rest"),
-    summary_reads,
+    summary_dependencies,
     (*PARTS, *ANSWER_PARTS),
 )

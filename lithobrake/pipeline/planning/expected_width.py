@@ -60,7 +60,7 @@ class ExpectedHalfWidth:
 
 
 def expected_width(design: DrawnDesign, known: Mapping[str, Record], folder: StudyFolder) -> ExpectedHalfWidth | None:
-    """What to expect of a sequence; None for another method, and for one bed, which gives no interval.
+    """What to expect of a drawn study; None for another method, and for one bed, which gives no interval.
 
     known: runs that have ended, by key; folder: where they may have flown.
     """

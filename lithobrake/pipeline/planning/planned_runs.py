@@ -22,7 +22,7 @@ class PlannedRuns:
     """Distinct touchdowns of a study in which so many inputs are kept after the screening.
 
     A touchdown that several designs share counts for the first of them. known: keys of those that have ended already.
-    drawn, side: of a sequence, which has none of the others.
+    drawn, side: of a drawn study, which has none of the others.
     """
 
     kept_count: int
@@ -47,7 +47,7 @@ class PlannedRuns:
 def possible_runs(drawn: DrawnDesign, folder: StudyFolder, screened: bool, known: Iterable[str]) -> list[PlannedRuns]:
     """The touchdowns with the inputs that the screening keeps; before it, those with one input and with all of them.
 
-    Of a sequence those of its count; with a half width that is not met yet, also the most that there may be.
+    Of a drawn study those of its count; with a half width that is not met yet, also the most that there may be.
 
     screened: the folder has the screening of this study. known: keys of runs that have ended.
     """

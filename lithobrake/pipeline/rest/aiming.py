@@ -10,7 +10,7 @@ from lithobrake.pipeline.emulate.emulator_samples import drawn_samples
 from lithobrake.pipeline.emulate.fitted_emulator import REFIT_COUNT
 from lithobrake.pipeline.fly.flights import sample_sites, write_table
 from lithobrake.pipeline.job import Job
-from lithobrake.pipeline.rest.journeys import Sites, journey_reads, on_hard_ground, on_soil
+from lithobrake.pipeline.rest.journeys import Sites, journey_dependencies, on_hard_ground, on_soil
 from lithobrake.study import Study
 from lithobrake.vocabulary.outcomes import JourneyStatus
 
@@ -28,10 +28,10 @@ def aim_files(study: Study) -> list[str]:
     return [FILE] if study.aim.grid else []
 
 
-def aim_reads(study: Study) -> dict[str, Any]:
+def aim_dependencies(study: Study) -> dict[str, Any]:
     """What the landers at the aims depend on beside the emulator and the site."""
     # Which aims are allowed is asked of what is already there.
-    return {"rest": journey_reads(study), "grid": study.aim.grid, "lander_count": study.aim.lander_count}
+    return {"rest": journey_dependencies(study), "grid": study.aim.grid, "lander_count": study.aim.lander_count}
 
 
 def follow_aims(job: Job) -> None:

@@ -65,5 +65,5 @@ def emulator_bounce(job: Job, samples: Samples) -> EmulatorBounce:
     def bound(x: np.ndarray) -> EnergyBound:
         return energy_bound(job.design, height, dict(zip(names, x.T, strict=True)), len(x))
 
-    ranges = DesignRuns.load(job.folder, "sequence").ranges(names)
+    ranges = DesignRuns.load(job.folder, "drawn").ranges(names)
     return EmulatorBounce(refits(job), known % REFIT_COUNT, inputs, ranges, bound)

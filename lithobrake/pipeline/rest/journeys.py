@@ -50,21 +50,21 @@ def rest_files(study: Study) -> list[str]:
     return [*FILES, *([RESTITUTION] if asks else [])]
 
 
-def journey_reads(study: Study) -> dict[str, Any]:
+def journey_dependencies(study: Study) -> dict[str, Any]:
     """What journeys depend on beside samples and flights; a table with other columns or law is made anew."""
     law = sliding_law.INTERCEPT, sliding_law.SLOPE
     own = study.rest.model_dump(exclude={"arc_count"}, exclude_none=True)
     return own | {"columns": COLUMNS, "sliding_law": law}
 
 
-def rest_reads(study: Study) -> dict[str, Any]:
+def rest_dependencies(study: Study) -> dict[str, Any]:
     """What the files of the stage depend on beside that."""
-    return journey_reads(study) | {"arc_count": study.rest.arc_count, "arc_columns": tuple(ARC)}
+    return journey_dependencies(study) | {"arc_count": study.rest.arc_count, "arc_columns": tuple(ARC)}
 
 
 def follow_samples(job: Job) -> None:
     """Follow the first samples of the emulator from bounce to bounce and write the files of the stage."""
-    follow(job, "sequence", emulated_soil)
+    follow(job, "drawn", emulated_soil)
 
 
 def follow(job: Job, design: str, soil: "Callable[[Job, Samples], Soil]") -> None:
@@ -152,7 +152,7 @@ def on_hard_ground(study: Study, sites: "Sites") -> tuple["Rebounds", "Bounce"]:
 def _on_equivalent_ground(job: Job, sites: "Sites") -> tuple["Rebounds", "Bounce"]:
     """What hard ground says that has the restitution the soil implies; its table is written beside."""
     study = job.study
-    table = restitution_table(study, Samples.load(job.folder), DesignRuns.load(job.folder, "sequence"))
+    table = restitution_table(study, Samples.load(job.folder), DesignRuns.load(job.folder, "drawn"))
     table.save(job.folder / RESTITUTION)
     random = np.random.default_rng(sampling_seed(study, "equivalent ground"))
     return table(_first_impacts(study, sites), random), table

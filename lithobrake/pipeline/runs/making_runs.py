@@ -14,13 +14,13 @@ from lithobrake.pipeline.runs.touchdown_runs import touchdowns
 
 
 def make_drawn_runs(job: Job) -> None:
-    """Make the runs of the sequence."""
+    """Make the drawn runs."""
     say_gravity(job)
-    make_rows(job, "sequence", [job.design.rows])
+    make_rows(job, "drawn", [job.design.rows])
 
 
 def make_side_runs(job: Job) -> None:
-    """Make the runs beside the sequence: on a second soil, and at places a little beside."""
+    """Make the runs beside the drawn ones: on a second soil, and at places a little beside."""
     for design in SIDE_DESIGNS if job.study.design.side_runs else ():
         make_rows(job, design, [job.design.rows_of(design)])
 

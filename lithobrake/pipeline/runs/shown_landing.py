@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from lithobrake.pipeline.design.dependencies import bed_files, touchdown_reads
+from lithobrake.pipeline.design.dependencies import bed_files, touchdown_dependencies
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.runs.kernels import compile_kernels
@@ -27,13 +27,13 @@ def telling_files(study: Study) -> list[str]:
     return [TELLING] if study.has_soil and study.design.method == "drawn" else []
 
 
-def landing_reads(study: Study) -> dict[str, Any]:
+def landing_dependencies(study: Study) -> dict[str, Any]:
     """What the landing to look at depends on."""
-    return {"touchdown": touchdown_reads(study), "values": landing_values(DrawnDesign(study))}
+    return {"touchdown": touchdown_dependencies(study), "values": landing_values(DrawnDesign(study))}
 
 
 def landing_values(design: DrawnDesign) -> dict[str, float]:
-    """All inputs of the landing to look at: the first run of a sequence, or that at the medians of all inputs."""
+    """All inputs of the landing to look at: the first drawn run, or that at the medians of all inputs."""
     if design.study.design.method == "paper":
         return draw(design.study, design.medians, design.study.seed)
     return design.row(0)
@@ -46,11 +46,11 @@ def land_once(job: Job) -> None:
 
 
 def land_tellingly(job: Job) -> None:
-    """Make the telling run of the sequence again, for its pictures.
+    """Make the telling run again, for its pictures.
 
     Says where it comes out otherwise than as a run: another machine may have made that.
     """
-    runs = DesignRuns.load(job.folder, "sequence")
+    runs = DesignRuns.load(job.folder, "drawn")
     row = telling_run(runs)
     ended = _land(job, job.design.rows[row], TELLING, run=runs.keys[row])
     if ended != runs.outcomes[row]:

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from lithobrake.pipeline.design.dependencies import bed_files, bed_reads, design_reads
+from lithobrake.pipeline.design.dependencies import bed_dependencies, bed_files, design_dependencies
 from lithobrake.pipeline.design.drawn_design import SIDE_DESIGNS, beds_of_runs
 from lithobrake.pipeline.design.place_region import place_region
 from lithobrake.pipeline.runs.beds import pour_beds
@@ -11,8 +11,8 @@ from lithobrake.pipeline.runs.run_table import file_of
 from lithobrake.pipeline.runs.shown_landing import (
     land_once,
     land_tellingly,
+    landing_dependencies,
     landing_files,
-    landing_reads,
     telling_files,
 )
 from lithobrake.pipeline.stage import Stage, same_files
@@ -32,18 +32,18 @@ PARTS = (
 )
 
 
-def _drawn_reads(study: Study) -> Any:
+def _drawn_dependencies(study: Study) -> Any:
     count = study.design.run_count
-    return [design_reads(study), place_region(study), study.seed, count, beds_of_runs(study, count)]
+    return [design_dependencies(study), place_region(study), study.seed, count, beds_of_runs(study, count)]
 
 
 def _side_files(study: Study) -> list[str]:
     return [file_of(design) for design in SIDE_DESIGNS] if study.design.side_runs else []
 
 
-BED = Stage("bed", "bed", bed_files, pour_beds, reads=bed_reads)
-FIRST_LANDING = Stage("landing", "first landing", landing_files, land_once, ("bed",), landing_reads)
-DRAWN_RUNS = Stage("runs", "runs", same_files(file_of("sequence")), make_drawn_runs, ("bed",), _drawn_reads, PARTS)
+BED = Stage("bed", "bed", bed_files, pour_beds, dependencies=bed_dependencies)
+FIRST_LANDING = Stage("landing", "first landing", landing_files, land_once, ("bed",), landing_dependencies)
+DRAWN_RUNS = Stage("runs", "runs", same_files(file_of("drawn")), make_drawn_runs, ("bed",), _drawn_dependencies, PARTS)
 SIDE_RUNS = Stage(
     "side_runs",
     "side runs",

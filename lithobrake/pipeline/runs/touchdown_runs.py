@@ -9,7 +9,7 @@ import numpy as np
 from lithobrake.campaign import Ledger, Limits, ModelServer, Record, RunOptions, Runs, Tally, read_records, run_seed
 from lithobrake.campaign import run as run_campaign
 from lithobrake.campaign.model_server import PREFIX
-from lithobrake.pipeline.design.dependencies import bed_files, solver_command, solver_setting, touchdown_reads
+from lithobrake.pipeline.design.dependencies import bed_files, solver_command, solver_setting, touchdown_dependencies
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.folder.study_folder import StudyFolder
 from lithobrake.pipeline.job import Job
@@ -43,7 +43,7 @@ def touchdowns(job: Job, rows: Sequence[Mapping[str, float]], title: str, replic
             model_of(study, job.folder.path.absolute(), job.model),
             np.array([list(row.values()) for row in rows]),
             names=list(rows[0]),
-            context=touchdown_reads(study),
+            context=touchdown_dependencies(study),
             ledger=ledger,
             executor=job.executor,
             limits=Limits(study.campaign.wall_limit or math.inf, study.campaign.memory_limit or math.inf),

@@ -1,4 +1,4 @@
-"""The page of a sequence: its figures in the order of the work, and what stands beside them."""
+"""The page of a drawn study: its figures in the order of the work, and what stands beside them."""
 
 from typing import TYPE_CHECKING
 
@@ -16,8 +16,7 @@ from lithobrake.report.live.views import view_sections
 from lithobrake.report.page_data import DrawnPage
 from lithobrake.report.pages import shared_plots as any_study
 from lithobrake.report.tables.drawn_tables import colour_input, tables, tiles
-from lithobrake.report.words import captions
-from lithobrake.report.words import drawn_captions as sequence_captions
+from lithobrake.report.words import captions, drawn_captions
 from lithobrake.report.words.drawn_answer import warnings
 from lithobrake.report.words.drawn_captions import rare_caption
 from lithobrake.report.words.labels import input_label
@@ -31,14 +30,14 @@ if TYPE_CHECKING:
 RETURNS_ROW = {"returns": "return fraction"}
 
 
-def sequence_content(data: DrawnPage) -> Content:
+def drawn_content(data: DrawnPage) -> Content:
     """All that the page shows of the study."""
     live = [*explorer_sections(data), *view_sections(data)]
     return Content(captions.answer(data), warnings(data), tiles(data), _plots(data), tables(data), live)
 
 
 def _plots(data: DrawnPage) -> list[Plot]:
-    colour, words = colour_input(data), sequence_captions
+    colour, words = colour_input(data), drawn_captions
     plots = [
         Plot("bed", "The surface", captions.bed(data), lambda: any_study.draw_bed(data)),
         Plot("landing", "A landing", captions.landing(data), lambda: any_study.draw_landing(data)),

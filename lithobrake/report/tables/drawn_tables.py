@@ -1,4 +1,4 @@
-"""The tables and the first numbers of the page of a sequence."""
+"""The tables and the first numbers of the page of a drawn study."""
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence

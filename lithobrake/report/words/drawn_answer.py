@@ -1,4 +1,4 @@
-"""What the answer of a sequence is of, and what a reader has to beware of, in words."""
+"""What the answer of a drawn study is of, and what a reader has to beware of, in words."""
 
 from collections.abc import Mapping
 

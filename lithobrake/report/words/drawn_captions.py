@@ -1,4 +1,4 @@
-"""The sentences under the figures of a sequence, from the numbers of its summary. They are plain text."""
+"""The sentences under the figures of a drawn study, from the numbers of its summary. They are plain text."""
 
 from collections.abc import Mapping
 

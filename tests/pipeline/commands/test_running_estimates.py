@@ -75,7 +75,7 @@ def under_way(tmp_path: Path) -> Path:
     folder, keys = StudyFolder(tmp_path), [record(run).key for run in range(60)]
     stages = {"bed": {"title": "bed", "key": "", "files": []}}
     folder.begin(None, b"", stages, print)
-    folder.note_runs("sequence", keys)
+    folder.note_runs("drawn", keys)
     folder.note_runs("twins", ["twin"])
     with Ledger(folder / "runs.sqlite") as ledger:
         asked = [record(run) for run in range(60)]

@@ -26,7 +26,7 @@ from lithobrake.pipeline.paper.run_noise import Scatter
 from lithobrake.pipeline.rest.bounce_inputs import why_no_soil
 from lithobrake.pipeline.rest.journey_arcs import arc_rows
 from lithobrake.pipeline.rest.journeys import COLUMNS as REST
-from lithobrake.pipeline.rest.journeys import Sites, rest_reads, sliding_friction
+from lithobrake.pipeline.rest.journeys import Sites, rest_dependencies, sliding_friction
 from lithobrake.pipeline.rest.sliding_law import FRICTIONS, INTERCEPT, SLOPE, effective_friction
 from lithobrake.pipeline.rest.slow_arrivals import SlowArrivals
 from lithobrake.pipeline.runs.run_table import DesignRuns
@@ -273,7 +273,7 @@ def test_stones_as_large_as_the_lander_hold_it_more_than_its_contacts_do() -> No
     for ground in ("soil", "equivalent"):
         assert sliding_friction(DrawnDesign(drawn), samples, ground) == pytest.approx(at_ends)
     assert sliding_friction(DrawnDesign(drawn), samples, "hard").tolist() == [0.6] * 3
-    assert rest_reads(drawn)["sliding_law"] == (INTERCEPT, SLOPE)
+    assert rest_dependencies(drawn)["sliding_law"] == (INTERCEPT, SLOPE)
     ball = {"shape": "sphere", "diameter": 0.1, "edges": None, "friction": 0.4}
     assert sliding_friction(DrawnDesign(changed(lander=ball)), samples, "soil").tolist() == [0.4, 0.05, 0.4]
 

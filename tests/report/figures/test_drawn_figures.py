@@ -1,4 +1,4 @@
-"""The figures of a sequence show what they are given: bars that add up, counts, and what luck does not explain."""
+"""The figures of a drawn study show what they are given: bars that add up, counts, and what luck does not explain."""
 
 import matplotlib
 import numpy as np

@@ -15,12 +15,11 @@ import pytest
 from lithobrake.report import write_report
 from lithobrake.report.content import PageTable
 from lithobrake.report.page_data import DrawnPage, page_results
-from lithobrake.report.pages.drawn_page import sequence_content
-from lithobrake.report.tables import drawn_tables as sequence_tables
+from lithobrake.report.pages.drawn_page import drawn_content
+from lithobrake.report.tables import drawn_tables
 from lithobrake.report.tables.dispersion_tables import parts
 from lithobrake.report.tables.rare_tables import rare_tables
-from lithobrake.report.words import captions
-from lithobrake.report.words import drawn_captions as sequence_captions
+from lithobrake.report.words import captions, drawn_captions
 from lithobrake.report.words.drawn_answer import warnings
 from lithobrake.results import open_study
 from lithobrake.results.emulator_results import EmulatorScores, JointScore, OutputScore
@@ -41,7 +40,7 @@ def changed(data: DrawnPage, **tables: Mapping[str, Any]) -> DrawnPage:
 
 
 def table_of(data: DrawnPage, title: str) -> PageTable:
-    return next(table for table in sequence_tables.tables(data) if table.title.startswith(title))
+    return next(table for table in drawn_tables.tables(data) if table.title.startswith(title))
 
 
 def percents(words: str) -> list[float]:
@@ -67,11 +66,11 @@ def test_the_page_opens_with_the_answer_of_the_summary(drawn: DrawnPage) -> None
 
 
 def test_the_share_has_its_interval_in_the_first_tile(drawn: DrawnPage) -> None:
-    tile, returns = sequence_tables.tiles(drawn)[0], drawn.results.returns
+    tile, returns = drawn_tables.tiles(drawn)[0], drawn.results.returns
     assert float(tile.value) == round(100 * returns.share)
     assert f"{100 * returns.lower:.0f}-{100 * returns.upper:.0f} %" in tile.words
     narrow = {"lower": returns.share - 0.004, "upper": returns.share + 0.004}
-    assert sequence_tables.tiles(changed(drawn, returns=narrow))[0].value == f"{100 * returns.share:.1f}"
+    assert drawn_tables.tiles(changed(drawn, returns=narrow))[0].value == f"{100 * returns.share:.1f}"
 
 
 def test_warnings_name_few_beds_and_what_the_summary_warns_of(drawn: DrawnPage) -> None:
@@ -95,7 +94,7 @@ def test_the_first_warning_of_the_page_is_that_of_missing_landings(drawn: DrawnP
 def test_tile_answer_tables_and_figure_have_one_value_of_the_return_fraction(drawn: DrawnPage) -> None:
     returns = drawn.results.returns
     share, held = f"{100 * returns.share:.0f} %", f"{100 * returns.lower:.0f}-{100 * returns.upper:.0f} %"
-    tile = sequence_tables.tiles(drawn)[0]
+    tile = drawn_tables.tiles(drawn)[0]
     rows = table_of(drawn, "The answer").rows
     outcomes = {row[0]: row[1:] for row in table_of(drawn, "After the first bounce").rows}
     assert f"{tile.value} %" == rows[0][1] == share
@@ -123,7 +122,7 @@ def test_a_prediction_interval_for_a_new_bed_has_the_size_of_the_bed(drawn: Draw
 
 
 def test_the_caption_of_what_decides_has_every_part_with_its_interval(drawn: DrawnPage) -> None:
-    words = sequence_captions.variance(changed(drawn, variance_shares={"speed_out": record(), "spin_out": record()}))
+    words = drawn_captions.variance(changed(drawn, variance_shares={"speed_out": record(), "spin_out": record()}))
     for shown in ("at least 6 % (1-11 %; most", "3 % (0-15 %)", "everything else 91 % (80-97 %)", "0.4 % (0.3-1.0 %)"):
         assert shown in words
     assert "friction of the grains" in words
@@ -148,7 +147,7 @@ def test_rare_limit_states_have_their_levels_a_figure_and_a_warning(sequence_fol
         (folder / f"rare_{name}.json").write_text(json.dumps(content), encoding="utf-8")
     found = page_results(open_study(folder))
     assert isinstance(found, DrawnPage)
-    content = sequence_content(found)
+    content = drawn_content(found)
     assert "fast: Few beds led to it: raise bed.bed_count." in content.warnings
     plot = content.plots[-1]
     figure = plot.draw()
@@ -177,14 +176,14 @@ def record() -> VarianceParts:
 def test_the_caption_of_the_calibration_counts_what_luck_does_not_explain(drawn: DrawnPage) -> None:
     narrow = OutputScore(0.1, 0.6, (60, 10, 10, 10, 10, 10, 10, 10, 10, 60))
     scores = EmulatorScores(JointScore(0.1), {"speed_out": narrow})
-    words = sequence_captions.calibration(changed(drawn, emulator={"scores": scores}))
+    words = drawn_captions.calibration(changed(drawn, emulator={"scores": scores}))
     assert percents(words)[:2] == [90.0, 60.0]
     assert "10 of 10 bars" in words
     assert words.endswith(drawn.results.emulator.statement)
 
 
 def test_the_caption_of_the_runs_has_their_outcomes_and_quantiles(drawn: DrawnPage) -> None:
-    words, runs = sequence_captions.runs(drawn), drawn.results.runs
+    words, runs = drawn_captions.runs(drawn), drawn.results.runs
     for number in (runs.count, runs.beds, *runs.outcomes.values()):
         assert re.search(rf"\b{number}\b", words)
     median = drawn.results.spreads["speed_out"].quantiles["0.5"]
@@ -193,9 +192,9 @@ def test_the_caption_of_the_runs_has_their_outcomes_and_quantiles(drawn: DrawnPa
 
 
 def test_a_colour_that_says_nothing_is_called_so(drawn: DrawnPage) -> None:
-    colour = sequence_tables.colour_input(drawn)
+    colour = drawn_tables.colour_input(drawn)
     follows, alone = (
-        sequence_captions.samples(changed(drawn, emulator={"follows_inputs": is_so}), colour) for is_so in (True, False)
+        drawn_captions.samples(changed(drawn, emulator={"follows_inputs": is_so}), colour) for is_so in (True, False)
     )
     assert len(alone) > len(follows)
     assert "whatever the inputs" in alone
@@ -213,12 +212,12 @@ def test_an_azimuth_has_a_direction_and_a_resultant_length(drawn: DrawnPage) -> 
     azimuth = OutputDirection(mean, Estimate(0.2, 0.1, 0.3), "the landings")
     table = table_of(changed(drawn, outputs={"azimuth_out": azimuth}), "Directions of the landings")
     assert table.rows == [["azimuth out", "5.00 (-10 to 20)", "0.200 (0.1 to 0.3)"]]
-    assert not any(one.title.startswith("Directions") for one in sequence_tables.tables(drawn))
+    assert not any(one.title.startswith("Directions") for one in drawn_tables.tables(drawn))
 
 
 def test_touchdowns_without_a_bed_have_a_page_without_one(drawn: DrawnPage) -> None:
     alone = replace(drawn, bed=None, landing=None, results=replace(drawn.results, beds=()))
-    content = sequence_content(alone)
+    content = drawn_content(alone)
     assert "Beds" not in {table.title for table in content.tables}
     assert next(row for row in content.tables[0].rows if "new bed" in row[0])[0] == "prediction interval for a new bed"
     assert {plot.name for plot in content.plots if not plot.sentence} == {"landing"}
@@ -230,7 +229,7 @@ def test_side_runs_have_their_numbers(drawn: DrawnPage) -> None:
     assert re.findall(r"\d+", table.note)[:2] == [str(side.soil_pairs), str(side.twins)]
     assert float(table.rows[0][2].split()[0]) == pytest.approx(side.chaos_deviation["speed_out"].value, rel=5e-3)
     without = changed(drawn, runs={"side_runs": None})
-    assert not [one for one in sequence_tables.tables(without) if one.title == "Side runs"]
+    assert not [one for one in drawn_tables.tables(without) if one.title == "Side runs"]
 
 
 def test_site_and_grain_sizes_are_no_inputs_of_a_run(drawn: DrawnPage) -> None:
@@ -262,7 +261,7 @@ def test_one_bed_has_a_page_without_intervals(drawn: DrawnPage) -> None:
     }
     shares = dict.fromkeys(drawn.results.variance_shares)
     alone = changed(drawn, returns=ONE_BED, runs={"beds": 1}, variance_shares=shares)
-    content = sequence_content(replace(alone, results=replace(alone.results, outputs=outputs)))
+    content = drawn_content(replace(alone, results=replace(alone.results, outputs=outputs)))
     answer, outputs_table = content.tables[0], next(one for one in content.tables if one.title.startswith("Outputs"))
     assert not any("interval" in row[0] for row in answer.rows)
     assert answer.note.startswith(ONE_BED["why"])
@@ -275,7 +274,7 @@ def test_what_a_study_has_not_is_left_out(drawn: DrawnPage) -> None:
     none = dict.fromkeys(("soil", "hard", "equivalent"))
     alone = changed(drawn, rest=none | {"why_no_soil": "rest.count is 0"})
     empty = replace(alone, landing=None, facet=drawn.facet[:0], results=replace(alone.results, ellipses=None))
-    content = sequence_content(empty)
+    content = drawn_content(empty)
     assert {plot.name for plot in content.plots if not plot.sentence} == {"landing", "body", "rest"}
     assert all(table.rows for table in content.tables)
     titles = {table.title for table in content.tables}
