@@ -39,7 +39,7 @@ def rotation() -> list[float]:
 
 def kept(cache: Path) -> list[Path]:
     """The kernel of `rotation` in the cache."""
-    return sorted(cache.rglob("dem.motion.write_rotations-*"))
+    return sorted(cache.rglob("dem.bodies.motion.write_rotations-*"))
 
 
 def test_cache_folder_changes_with_any_source_of_the_part(tmp_path, monkeypatch):
