@@ -127,14 +127,20 @@ def is_mapping(kind: Any) -> bool:
     return len(get_args(kind)) == 2 and get_args(kind)[0] is str
 
 
+def summary_of(kind: Any) -> str:
+    """The first sentence of a dataclass, as words of a key."""
+    first = " ".join((kind.__doc__ or "").split("\n\n")[0].split()).rstrip(".")
+    return f"{first[:1].lower()}{first[1:]}"
+
+
 def keys_of(kind: Any) -> dict[str, str]:
     """The keys of a dataclass with their meaning, those of inline fields among them."""
     words, keys = field_words(kind), {}
     for field in fields(kind):
-        if not is_inline(field):
-            keys[key_of(field)] = words[field.name]
-        elif is_mapping(field.type):
-            keys["*"] = words[field.name]
+        if not is_inline(field) or is_mapping(field.type):
+            # A field without words of its own holds a table that has some.
+            inner = next((one for one, _ in tables_within(field.type, "")), None)
+            keys["*" if is_inline(field) else key_of(field)] = words.get(field.name) or summary_of(inner)
         else:
             keys |= keys_of(dataclass_in(field.type))
     return keys

@@ -31,9 +31,7 @@ class AimResult:
     values: tuple[float, ...]
     """of the names, in the units of the study file"""
     soil: AimOnGround
-    """on the soil of the study"""
     hard: AimOnGround
-    """on hard ground"""
 
 
 @dataclass(frozen=True)
@@ -75,10 +73,7 @@ class AimResults:
     why: str | None
     """why the soil gives no interval, in a sentence; null where it gives one"""
     aims: tuple[AimResult, ...]
-    """each option"""
     best_on_soil: BestAim | None
-    """the best on the soil"""
     best_on_hard: BestAim | None
-    """the best on hard ground"""
     statement: str
     """the best option and how sure it is, in sentences"""

@@ -72,9 +72,7 @@ class FlightResults:
     """The flights that end on the body, of the runs of a drawn study or of samples, and how exact all flights are."""
 
     impacts: ImpactNumbers = field(metadata=INLINE)
-    """the flights that end on the body"""
     checks: FlightChecks = field(metadata=INLINE)
-    """how exact all flights are"""
 
 
 @dataclass(frozen=True)
@@ -100,7 +98,6 @@ class LandingEllipses:
     heading_deg: float
     """of the longer axis, from north toward east"""
     shares: tuple[EllipseShare, ...]
-    """each ellipse"""
 
 
 @dataclass(frozen=True)
@@ -108,11 +105,8 @@ class WithoutScatter:
     """The samples of the expansion alone, without the scatter from run to run."""
 
     shares: SampleShares
-    """what became of them"""
     flights: ImpactNumbers
-    """those that end on the body"""
     ellipses: LandingEllipses | None
-    """where they do"""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -127,7 +121,6 @@ class GroundResults:
     sample_count: int
     """samples followed"""
     outcomes: Mapping[str, CountedShare] = field(metadata=INLINE)
-    """by outcome"""
     slid: CountedShare
     """moved along the ground at all, however they ended"""
     time_s: Mapping[str, float] | None = None
@@ -141,7 +134,6 @@ class GroundResults:
     slid_time_s: Mapping[str, float] | None = None
     """time of that [s], part of time_s, likewise"""
     ellipses: LandingEllipses | None
-    """where the landers are at rest"""
     outside_too_slow: CountedShare
     """of those of unknown outcome: slower than any run"""
     of: str
@@ -180,11 +172,8 @@ class RestResults:
     trained_ranges: Mapping[str, tuple[float, float]]
     """smallest and largest value of each input in runs in which all vary, in its unit"""
     soil: GroundResults | None
-    """on the soil"""
     hard: GroundResults | None
-    """on hard ground"""
     equivalent: GroundResults | None
-    """on hard ground like the soil"""
 
     @property
     def grounds(self) -> dict[str, GroundResults]:

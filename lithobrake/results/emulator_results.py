@@ -31,9 +31,7 @@ class EmulatorScores:
     """Scores on held-out beds."""
 
     joint: JointScore
-    """of all outputs together"""
     outputs: Mapping[str, OutputScore] = field(metadata=INLINE)
-    """by output"""
 
 
 @dataclass(frozen=True)
@@ -49,6 +47,5 @@ class EmulatorResults:
     found_inputs: tuple[str, ...]
     """significant inputs: they change a mean, alone or by products; one test of 90 % for all"""
     scores: EmulatorScores
-    """how well it predicts"""
     warning: str | None
     """that its share lies outside the interval of the runs, in a sentence; null where it does not"""

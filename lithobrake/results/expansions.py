@@ -73,7 +73,6 @@ class ExpansionResults:
     degree: int
     """highest total degree of a term"""
     fits: Mapping[str, OutputFit]
-    """by output: how it was fitted"""
     mean: Mapping[str, float]
     """by output: mean over the distributions of the inputs"""
     std: Mapping[str, float]

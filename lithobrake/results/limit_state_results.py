@@ -63,7 +63,6 @@ class LimitStateResult:
     source: str
     """runs, or the emulator where it is so rare (or so sure) that runs cannot tell"""
     runs: LimitStateRuns
-    """the same by the runs"""
     emulator: ShareInterval | None
     """the same by the emulator; null where it cannot tell"""
     tail_limit: float

@@ -63,7 +63,6 @@ class RunResults:
     outcomes: Mapping[str, int]
     """runs that ended so; failed: runs without an outcome"""
     missing: MissingLandings
-    """the runs without an outcome"""
     warning: str | None
     """where more than 2 % of the runs have no outcome: how many, why, what they leave undescribed, and how to avoid it,
     in a sentence; else null"""

@@ -101,7 +101,6 @@ class SampleShares:
     flight_count: int
     """of those, samples that flew"""
     outcomes: Mapping[str, CountedShare] = field(metadata=INLINE)
-    """by outcome"""
     why: str | None = None
     """why the shares have no interval, in a sentence"""
 
@@ -115,7 +114,6 @@ class EmulatorShares:
     flight_count: int
     """of those, samples that flew"""
     outcomes: Mapping[str, CountedShare] = field(metadata=INLINE)
-    """by outcome"""
     level: float
     """probability that the bounds of this table stand for"""
     why: str | None
@@ -135,7 +133,6 @@ class RunShares:
     why: str | None
     """why the shares have no interval, in a sentence; null where they have one"""
     outcomes: Mapping[str, CountedShare] = field(metadata=INLINE)
-    """by outcome"""
 
 
 @dataclass(frozen=True)
@@ -148,4 +145,3 @@ class LandingShares(RunShares):
     """
 
     emulator: EmulatorShares
-    """the same by its samples"""

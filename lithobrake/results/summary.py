@@ -1,6 +1,7 @@
 """What came out of a study, as summary.json and estimates.json hold it: every key with its type, meaning and unit.
 
-docs/summary.md is made of the words beneath the fields. Numbers are in SI where no unit is named.
+docs/summary.md is made of the words beneath the fields, and of those of a table where a field holds one. Numbers are in
+SI where no unit is named.
 """
 
 from collections.abc import Mapping
@@ -28,17 +29,11 @@ class Estimates:
     """What the runs of a drawn study say, as estimates.json holds it."""
 
     returns: ReturnFraction
-    """the return fraction"""
     shares: RunShares
-    """what became of the landings"""
     flights: ImpactNumbers
-    """the flights of the runs that end on the body"""
     variance_shares: Mapping[str, VarianceParts | None]
-    """by output: parts of its variance"""
     outputs: Mapping[str, OutputEstimate | OutputDirection]
-    """each output over the runs"""
     runs: RunResults
-    """how the runs ended"""
 
 
 @dataclass(frozen=True)
@@ -48,37 +43,24 @@ class DrawnResults:
     units: Mapping[str, str]
     """unit of each output of the emulator"""
     beds: tuple[BedNumbers, ...]
-    """each bed"""
     returns: ReturnFraction
-    """the return fraction"""
     shares: LandingShares
-    """what became of the landings"""
     flights: FlightResults
-    """the flights of the runs that end on the body"""
     variance_shares: Mapping[str, VarianceParts | None]
-    """by output: parts of its variance"""
     outputs: Mapping[str, OutputEstimate | OutputDirection]
-    """each output over the runs"""
     runs: RunResults
-    """how the runs ended"""
     outputs_of_runs: Mapping[str, OutputRange]
-    """what else the touchdowns gave"""
     site: SiteResults
-    """body and site"""
     monte_carlo: MonteCarlo
-    """the samples of the emulator"""
     ellipses: LandingEllipses | None
-    """of the impacts of the samples"""
     without_scatter: WithoutScatter | None
     """null: samples of an emulator have no expansion alone"""
     rest: RestResults
-    """where journeys end"""
     limit_states: Mapping[str, LimitStateResult]
     """each limit state of the study file; empty where it asks for none"""
     aim: AimResults | None
     """delivery options; null where the study file has none"""
     emulator: EmulatorResults
-    """how well the emulator predicts"""
     answer: tuple[str, ...]
     """what becomes of the landers, over what that holds, and what is missing, in sentences"""
     headline: tuple[str, ...]
@@ -102,13 +84,9 @@ class PaperResults:
     units: Mapping[str, str]
     """unit of each output of the expansions"""
     beds: tuple[BedNumbers, ...]
-    """each bed"""
     node_counts: NodeCounts
-    """what grids cost"""
     designs: Mapping[str, DesignCounts]
-    """the runs of each design"""
     outputs_of_runs: Mapping[str, OutputRange]
-    """what else the touchdowns gave"""
     screening: ExpansionResults
     """the expansion in all inputs"""
     refined: ExpansionResults
@@ -120,23 +98,16 @@ class PaperResults:
     scores: Mapping[str, Mapping[str, OutputErrors]]
     """errors of the expansions by set of runs and output; scores.json has those of single runs beside them"""
     monte_carlo: ExpansionSamples
-    """the samples of the refined expansion"""
     site: SiteResults
-    """body and site"""
     variance_shares: Mapping[str, VarianceParts | None]
     """null: one bed, one impact point and one attitude have no parts"""
     shares: SampleShares
-    """what became of the samples"""
     returns: ReturnFraction
-    """the return fraction"""
     flights: FlightResults
-    """the flights of the samples that end on the body"""
     ellipses: LandingEllipses | None
-    """of their impacts"""
     without_scatter: WithoutScatter | None
     """null where the samples have no scatter from run to run"""
     rest: RestResults
-    """where journeys end"""
     answer: tuple[str, ...]
     """what becomes of the landers, over what that holds, and what is missing, in sentences"""
     headline: tuple[str, ...]
@@ -180,4 +151,3 @@ class Provenance:
     wall_s: Mapping[str, float]
     """wall time of each stage when its files were made"""
     runs: RunTimes
-    """what the runs took"""
