@@ -30,7 +30,7 @@ def test_every_source_has_a_key() -> None:
 
 
 def test_the_paper_has_its_key() -> None:
-    """Only the text of the study file, which has no references beside it, may say "the paper"; its method is so named."""
+    """Only the text of the study file, without references beside it, may say "the paper"; its method is so named."""
     for path in SOURCES:
         if path.parent.name != READ_BY_USERS:
             assert not re.search(r"\bthe\s+paper\b(?!\s+method)", path.read_text("utf-8")), path
