@@ -41,7 +41,21 @@ WITHOUT_CIRCLES = tuple(part for part in ALLOWED if (PACKAGE / part).is_dir())
 ROOMS = {
     "dem": ("bodies", "narrow_phase", "law", "stepping", "local_stepping"),
     "pipeline": (
-        *("site", "folder", "design", "job", "stage", "runs", "emulate", "fly", "rest", "answer", "paper", "stages"),
+        *(
+            "site",
+            "folder",
+            "design",
+            "job",
+            "stage",
+            "runs",
+            "emulate",
+            "fly",
+            "rest",
+            "answer",
+            "paper",
+            "stages",
+            "outdated_files",
+        ),
         *("sequential_sampling", "inference", "planning", "study_run", "commands"),
     ),
     "report": ("content", "page_data", "words", "tables", "figures", "live", "pages", "study_report"),

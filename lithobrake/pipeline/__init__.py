@@ -18,12 +18,12 @@ if TYPE_CHECKING:
     from lithobrake.pipeline.inference.inferred_study import InferredStudy as InferredStudy
     from lithobrake.pipeline.inference.inferred_study import infer_study as infer_study
     from lithobrake.pipeline.job import Job as Job
+    from lithobrake.pipeline.outdated_files import make as make
+    from lithobrake.pipeline.outdated_files import stage_keys as stage_keys
     from lithobrake.pipeline.planning.plan import Plan as Plan
     from lithobrake.pipeline.planning.plan_in_words import plan_lines as plan_lines
     from lithobrake.pipeline.planning.planner import plan_study as plan_study
     from lithobrake.pipeline.stage import Stage as Stage
-    from lithobrake.pipeline.stages import make as make
-    from lithobrake.pipeline.stages import stage_keys as stage_keys
     from lithobrake.pipeline.stages import stages_of as stages_of
     from lithobrake.pipeline.study_run import run_study as run_study
     from lithobrake.pipeline.study_run import write_report_again as write_report_again

@@ -14,9 +14,9 @@ from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.fly.run_flights import FILE, RunFlights
 from lithobrake.pipeline.folder.study_folder import StudyFolder
 from lithobrake.pipeline.job import Job
+from lithobrake.pipeline.outdated_files import stage_keys
 from lithobrake.pipeline.runs.run_table import DesignRuns, file_of
 from lithobrake.pipeline.runs.touchdown_runs import known_runs
-from lithobrake.pipeline.stages import stage_keys
 from lithobrake.study import Study
 from lithobrake.vocabulary.limit_state import LimitState
 

@@ -17,12 +17,13 @@ from lithobrake.pipeline.folder.owner import refuse_others_folder
 from lithobrake.pipeline.folder.state import grouped, read_state
 from lithobrake.pipeline.folder.study_folder import StudyFolder
 from lithobrake.pipeline.job import Job, Progress, Silent
+from lithobrake.pipeline.outdated_files import make, setting
 from lithobrake.pipeline.planning.plan_in_words import brief_lines
 from lithobrake.pipeline.planning.planner import plan_of
 from lithobrake.pipeline.runs.solver import Model, function_identity
 from lithobrake.pipeline.sequential_sampling import grow, grown
 from lithobrake.pipeline.site import Site, with_site_gravity
-from lithobrake.pipeline.stages import make, setting, stages_until
+from lithobrake.pipeline.stages import stages_until
 from lithobrake.results import StudyResults
 from lithobrake.study import StudySource
 

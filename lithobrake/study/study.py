@@ -25,7 +25,8 @@ from lithobrake.study.impact_sections import (
     PlaceSection,
     SurfaceSection,
 )
-from lithobrake.study.material_sections import GrainSection, LanderSection
+from lithobrake.study.lander_section import LanderSection
+from lithobrake.study.material_sections import GrainSection
 from lithobrake.study.quantity import Scalar, Section, Uncertain, Whole
 from lithobrake.study.question_sections import AimSection, LimitStatesSection
 from lithobrake.study.site_kernels import kernel_values

@@ -11,7 +11,7 @@ from lithobrake.pipeline import StudyFolder, write_report_again
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.emulate.outgoing import VELOCITY
 from lithobrake.pipeline.fly.flights import Starts, fly_starts
-from lithobrake.pipeline.fly.run_flights import run_sites
+from lithobrake.pipeline.fly.run_sites import run_sites
 from lithobrake.pipeline.job import Job, Silent
 from lithobrake.pipeline.site import Site
 from lithobrake.results import StudyResults

@@ -44,7 +44,7 @@ def grown(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, DesignRuns, s
 
 def test_a_study_of_more_runs_makes_only_those_that_are_new(grown: tuple[Path, DesignRuns, str]) -> None:
     folder, first, said = grown
-    assert "sequence: 12 of 14 runs were known and are reused" in said
+    assert "drawn: 12 of 14 runs were known and are reused" in said
     assert (first.run_count, set(first.outcomes)) == (12, {"clear"})
     designs = ("drawn", "soil_pairs", "twins")
     runs = {name: DesignRuns.load(StudyFolder.only_read(folder / "out"), name) for name in designs}
@@ -84,7 +84,7 @@ def test_a_folder_that_changes_its_method_has_the_runs_of_the_present_one(
     study = write_ball(tmp_path / "study.toml", FEW_RUNS)
     shutil.copy(study, tmp_path / "out" / "study.toml")
     lithobrake("screen", study, "--out", tmp_path / "out")
-    assert (tmp_path / "out" / "designs" / "sequence.csv").is_file()
+    assert (tmp_path / "out" / "designs" / "drawn.csv").is_file()
     assert set(open_study(tmp_path / "out").runs["design"]) == {"screening"}
     # A folder of an early format does not note its stages: it has no other runs.
     (tmp_path / "out" / "keys.json").write_text('{"format_version": 1, "files": {}, "wall_s": {}}')

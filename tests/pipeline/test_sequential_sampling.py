@@ -128,7 +128,7 @@ def test_a_study_that_is_stopped_between_two_looks_ends_with_the_same_runs(
     assert first.run_count == 24
     said = Said()
     assert run(tmp_path, said, half_width=0.06).keys == narrow[1].keys
-    assert any("sequence: 24 of 50 runs were known" in sentence for sentence in said.sentences)
+    assert any("drawn: 24 of 50 runs were known" in sentence for sentence in said.sentences)
 
 
 def test_a_study_that_goes_on_still_shows_the_runs_that_there_are(tmp_path: Path) -> None:

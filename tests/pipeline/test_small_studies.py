@@ -181,6 +181,9 @@ from lithobrake.pipeline.folder.study_folder import StudyFolder
 from lithobrake.results import open_study
 
 out = Path(sys.argv[1])
+# What is imported late is imported here: the interpreter may lie where nobody may enter.
+open_study(out).ledger
+study_status(out).lines()
 out.chmod(0o555)
 if os.geteuid() == 0:
     os.seteuid(65534)

@@ -7,12 +7,12 @@ import numpy as np
 from lithobrake.analysis import LEVEL
 from lithobrake.pipeline.answer.aim_results import aim_results
 from lithobrake.pipeline.answer.dispersion_statistics import Rows, ellipses, flight_checks, rest_results, shares
+from lithobrake.pipeline.answer.drawn_answer import drawn_answer, drawn_headline
 from lithobrake.pipeline.answer.limit_states import limit_state_results
 from lithobrake.pipeline.answer.missing_landings import described
 from lithobrake.pipeline.answer.run_estimates import FILE as ESTIMATES
 from lithobrake.pipeline.answer.shares_over_refits import Refits, journey_ends, sample_fates
 from lithobrake.pipeline.answer.site_summary import site_results
-from lithobrake.pipeline.answer.statements import drawn_answer, drawn_headline
 from lithobrake.pipeline.answer.summary_parts import bed_results, outputs_of_runs, write_summary_file
 from lithobrake.pipeline.design.dependencies import bed_files
 from lithobrake.pipeline.emulate.fitted_emulator import FILE as EMULATOR

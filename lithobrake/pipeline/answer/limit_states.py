@@ -8,11 +8,11 @@ import numpy as np
 from lithobrake.analysis import drawn_counts, failure_inputs, failure_probability, regression_terms
 from lithobrake.analysis.limit_state_evaluation import limit_state_met
 from lithobrake.pipeline.answer.dispersion_statistics import Rows
+from lithobrake.pipeline.answer.drawn_answer import limit_statement
 from lithobrake.pipeline.answer.failing_runs import CAPTURED, failing_runs
 from lithobrake.pipeline.answer.missing_landings import left_in_flight
 from lithobrake.pipeline.answer.scope import why_no_interval
 from lithobrake.pipeline.answer.shares_over_refits import sample_fates
-from lithobrake.pipeline.answer.statements import limit_statement
 from lithobrake.pipeline.answer.typed_estimates import limit_state
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.emulate.fitted_emulator import REFIT_COUNT

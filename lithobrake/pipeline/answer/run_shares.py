@@ -10,7 +10,8 @@ from lithobrake.pipeline.answer.scope import why_no_interval
 from lithobrake.pipeline.answer.typed_estimates import counted, fraction
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.fly.flights import QUANTILES
-from lithobrake.pipeline.fly.run_flights import FATES, FLIGHT_COUNT, RunFlights, RunImpacts
+from lithobrake.pipeline.fly.run_flights import FATES, RunFlights, RunImpacts
+from lithobrake.pipeline.fly.run_sites import FLIGHT_COUNT
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.results.dispersion import ImpactNumber, ImpactNumbers
 from lithobrake.results.shares import CountedShare, ReturnFraction, RunShares

@@ -1,26 +1,23 @@
 """The flights of the runs themselves: each run's own velocity from many sites, and how these flights end."""
 
-import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from lithobrake.files.hashing import hashed_seed
 from lithobrake.files.reading import read_rows
 from lithobrake.pipeline.emulate.outgoing import VELOCITY
 from lithobrake.pipeline.fly.flights import Starts, flight_dependencies, fly_starts, write_table
+from lithobrake.pipeline.fly.run_sites import FLIGHT_COUNT, run_sites
 from lithobrake.pipeline.folder.study_folder import AGAIN, StudyFolder
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.runs.run_table import DesignRuns
-from lithobrake.pipeline.site import SITE_KEYS, Site
+from lithobrake.pipeline.site import Site
 from lithobrake.study import Study
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus, TouchdownOutcome
 from lithobrake.vocabulary.quantities import DRAWN_DESIGNS, FLIGHT, RUN
 
-# Flights of each run. In equal steps of the heading so many leave nothing to gain from more.
-FLIGHT_COUNT = 64
 FILE, IMPACTS = "run_flights.csv", "run_impacts.csv"
 # What may become of a run at one of its sites; of a captured one, whether the ground there holds it.
 FATES = (
@@ -28,9 +25,6 @@ FATES = (
     *(JourneyStatus.SETTLED, JourneyStatus.LOFTED),
 )
 RETURNS = (FlightStatus.IMPACT, JourneyStatus.SETTLED)
-# Numbers of a site in the order of their powers: those that matter most fill their plane best.
-FIRST = ("heading_deg", "partner_longitude_deg")
-LATTICE = (*FIRST, *(key for key in SITE_KEYS if key not in FIRST))
 COLUMNS = ("design", "run", "key", "outcome", "flight_count", *FATES, "returns")
 # Of each flight of the drawn runs that ends on the body.
 IMPACT_NUMBERS = ("time_s", "impact_speed", "impact_incidence_deg")
@@ -86,34 +80,6 @@ def fly_runs(job: Job) -> None:
         if design == designs[0]:
             write_table(job.folder, IMPACTS, IMPACT_COLUMNS, impacts, RUN | FLIGHT)
     write_table(job.folder, FILE, COLUMNS, rows)
-
-
-def run_sites(site: Site, run_count: int, flight_count: int = FLIGHT_COUNT) -> dict[str, np.ndarray]:
-    """Sites of the flights of runs by the keys of SITE_KEYS, each [run_count, flight_count].
-
-    Each uncertain number goes through its law in equal steps from a random first one of the run, the heading in order,
-    the others so that together they fill all that may be evenly (a lattice of powers of one generator): a share of
-    these flights hardly scatters. More runs change no earlier site.
-    """
-    sites, laws = site.columns((run_count, flight_count)), site.distributions
-    generator = _generator(flight_count)
-    for run in range(run_count):
-        random = np.random.Generator(np.random.PCG64(hashed_seed(site.study.seed, "flights of runs", run)))
-        # All keys take their random numbers, whether uncertain or not, so that one more leaves the others as they were.
-        for key in SITE_KEYS:
-            first = random.random()
-            if key in laws:
-                steps = np.arange(flight_count) * pow(generator, LATTICE.index(key), flight_count)
-                share = (steps / flight_count + first) % 1.0
-                # Half a unit in the last place off the ends, where an unbounded law is infinite.
-                sites[key][run] = laws[key].ppf(np.clip(share, 2.0**-54, 1.0 - 2.0**-53))
-    return sites
-
-
-def _generator(count: int) -> int:
-    """The number next to the golden section of a count that has no divisor with it."""
-    golden = 0.5 * (math.sqrt(5.0) - 1.0) * count
-    return min((one for one in range(1, count + 1) if math.gcd(one, count) == 1), key=lambda one: abs(one - golden))
 
 
 def _flown(job: Job, runs: DesignRuns, design: str) -> tuple[np.ndarray, list[list[Any]]]:

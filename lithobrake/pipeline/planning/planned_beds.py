@@ -7,8 +7,8 @@ import numpy as np
 
 from lithobrake.pipeline.design.dependencies import bed_files
 from lithobrake.pipeline.folder.study_folder import StudyFolder
+from lithobrake.pipeline.outdated_files import stage_keys
 from lithobrake.pipeline.runs.beds import bed_recipe
-from lithobrake.pipeline.stages import stage_keys
 from lithobrake.study import Study
 from lithobrake.study.touchdown_model import grain_sizes, in_words_of_the_study
 

@@ -12,6 +12,7 @@ from lithobrake.pipeline.folder.owner import refuse_others_folder
 from lithobrake.pipeline.folder.study_folder import StudyFolder
 from lithobrake.pipeline.inference.expected_inference import ExpectedInference
 from lithobrake.pipeline.inference.inferred_study import InferredStudy
+from lithobrake.pipeline.outdated_files import stage_keys
 from lithobrake.pipeline.planning.expected_disk import expected_bytes, flight_count, journey_count
 from lithobrake.pipeline.planning.expected_steps import ExpectedSoil
 from lithobrake.pipeline.planning.expected_time import basis, expected_seconds
@@ -24,7 +25,7 @@ from lithobrake.pipeline.planning.study_warnings import study_warnings
 from lithobrake.pipeline.runs.touchdown_runs import known_runs
 from lithobrake.pipeline.sequential_sampling import grown
 from lithobrake.pipeline.site import Site, with_site_gravity
-from lithobrake.pipeline.stages import stage_keys, stages_of
+from lithobrake.pipeline.stages import stages_of
 from lithobrake.study import Study, StudySource
 
 MAKE_RUNS = frozenset({"screening_runs", "refined_runs", "test_runs", "runs", "side_runs"})

@@ -9,7 +9,7 @@ from lithobrake.report.content import LiveSection
 from lithobrake.report.live.packed import packed, script_data
 from lithobrake.report.page_data import DrawnPage, PageData, PaperPage
 from lithobrake.report.words.captions import hours, input_words, listing, thousands
-from lithobrake.report.words.drawn_answer import action, has_interval
+from lithobrake.report.words.drawn_warnings import action, has_interval
 from lithobrake.report.words.labels import output
 from lithobrake.results import ExplorerTables, Table
 from lithobrake.vocabulary.outcomes import FlightStatus, TouchdownOutcome

@@ -17,8 +17,8 @@ from lithobrake.report.page_data import DrawnPage
 from lithobrake.report.pages import shared_plots as any_study
 from lithobrake.report.tables.drawn_tables import colour_input, tables, tiles
 from lithobrake.report.words import captions, drawn_captions
-from lithobrake.report.words.drawn_answer import warnings
 from lithobrake.report.words.drawn_captions import rare_caption
+from lithobrake.report.words.drawn_warnings import warnings
 from lithobrake.report.words.labels import input_label
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
 from lithobrake.vocabulary.quantities import OVER_RIM

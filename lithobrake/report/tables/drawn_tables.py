@@ -12,7 +12,8 @@ from lithobrake.report.tables.paper_tables import INPUT_COLUMNS, beds_table, inp
 from lithobrake.report.tables.rare_tables import rare_tables
 from lithobrake.report.words.captions import hours, input_words
 from lithobrake.report.words.chance import BAND
-from lithobrake.report.words.drawn_answer import (
+from lithobrake.report.words.drawn_captions import RETURNS, sign
+from lithobrake.report.words.drawn_warnings import (
     action,
     as_sentence,
     drawn_things,
@@ -22,7 +23,6 @@ from lithobrake.report.words.drawn_answer import (
     missing_sentence,
     outcome_label,
 )
-from lithobrake.report.words.drawn_captions import RETURNS, sign
 from lithobrake.report.words.labels import PART_WORDS, long_part_words, output
 from lithobrake.report.words.numbers import number, table_cell
 from lithobrake.results.run_results import SideRuns, VarianceParts

@@ -7,7 +7,7 @@ from lithobrake.report.content import PageTable, Tile
 from lithobrake.report.page_data import PageData, PaperPage
 from lithobrake.report.tables.dispersion_tables import dispersion_tables
 from lithobrake.report.words.captions import input_words
-from lithobrake.report.words.drawn_answer import action
+from lithobrake.report.words.drawn_warnings import action
 from lithobrake.report.words.labels import PAPER_OUTPUTS, output
 from lithobrake.report.words.numbers import fixed, flat, number, show, table_cell, unit_scales
 from lithobrake.results.expansions import Ends

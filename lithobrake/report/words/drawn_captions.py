@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from lithobrake.report.page_data import DRAWN_COUNT, DrawnPage
 from lithobrake.report.words.captions import input_words, listing, thousands
 from lithobrake.report.words.chance import BAND, band_luck, unlucky
-from lithobrake.report.words.drawn_answer import drawn_things, emulator_outside, left_out, missing_sentence
+from lithobrake.report.words.drawn_warnings import drawn_things, emulator_outside, left_out, missing_sentence
 from lithobrake.report.words.labels import output, part_words
 from lithobrake.report.words.numbers import number
 from lithobrake.results.aims import AimResults

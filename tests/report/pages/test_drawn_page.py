@@ -20,7 +20,7 @@ from lithobrake.report.tables import drawn_tables
 from lithobrake.report.tables.dispersion_tables import parts
 from lithobrake.report.tables.rare_tables import rare_tables
 from lithobrake.report.words import captions, drawn_captions
-from lithobrake.report.words.drawn_answer import warnings
+from lithobrake.report.words.drawn_warnings import warnings
 from lithobrake.results import open_study
 from lithobrake.results.emulator_results import EmulatorScores, JointScore, OutputScore
 from lithobrake.results.run_results import OutputDirection, VariancePart, VarianceParts
