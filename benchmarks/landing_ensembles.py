@@ -60,9 +60,12 @@ def draws(study: Study, count: int) -> Iterator[tuple[int, Lander, Landing]]:
 
 
 def landed(bed: Bed, body: Lander, arrival: Landing, way: str) -> Row:
-    """Land once in a way: "local:15", or with slow grains held, "local:15:0.1"."""
-    stepping, steps, held = (*way.split(":"), "0")[:3]
-    contact = replace(arrival.contact, stepping=stepping, steps_per_contact=float(steps), held_speed=float(held))
+    """Land once in a way: "local:15", with fewer steps in slow collisions "local:15:0.1", grains held "local:15:0.1:0.1"."""
+    stepping, steps, resolved, held = (*way.split(":"), "0", "0")[:4]
+    contact = replace(
+        arrival.contact, stepping=stepping, steps_per_contact=float(steps), resolved_speed=float(resolved),
+        held_speed=float(held),
+    )  # fmt: skip
     outcome, cpu = timed(lambda: land(bed, body, replace(arrival, contact=contact)))
     return {"way": way, "outcome": str(outcome.status), "simulated_s": outcome.simulated_time, "cpu_s": cpu} | {
         name: outcome.outputs[name] for name in COMPARED

@@ -17,16 +17,19 @@ from landing_ensembles import beds_of, drawn_study, draws
 
 from lithobrake.touchdown import Bed, Lander, Landing
 from lithobrake.touchdown.outcome_judge import OutcomeJudge
-from lithobrake.touchdown.simulation import look_interval, moving_reach, release
+from lithobrake.touchdown.simulation import look_interval, moving_reach, release, surface_speed
 
 GRAINS, WIDTH, BEDS = 200, 1.8, 2
-# Steps a contact, and share of the lander's speed below which grains are held.
-WAYS = [(25.0, 0.0), (25.0, 0.03), (25.0, 0.1), (100.0, 0.0), (100.0, 0.03), (100.0, 0.1)]
+# Steps a contact, and shares of the lander's speed below which collisions take fewer, and grains are held.
+WAYS = [
+    (25.0, 0.0, 0.0), (25.0, 0.1, 0.0), (25.0, 0.1, 0.03), (25.0, 0.1, 0.1),
+    (100.0, 0.0, 0.0), (100.0, 0.1, 0.0), (100.0, 0.1, 0.03),
+]  # fmt: skip
 STUDY = SCENARIOS / "mission.toml"
 RESULTS = Path(__file__).with_suffix(".json")
 
 
-def missing(bed: Bed, lander: Lander, landing: Landing, steps: float, held: float) -> float:
+def missing(bed: Bed, lander: Lander, landing: Landing, steps: float, resolved: float, held: float) -> float:
     """What the ledger lacks in the end, over the energy of the impact, on a bed that takes on its soil at once."""
     world = bed.world(landing.grain, bed.gravity, landing.contact)
     world.gravity = np.array(landing.gravity)
@@ -37,8 +40,9 @@ def missing(bed: Bed, lander: Lander, landing: Landing, steps: float, held: floa
     reach = moving_reach(bed.grain_diameter, lander, landing)
     before = world.energy()["total"]
     while judge.ended is None:
-        interval = look_interval(world, judge.motion, lander, landing)
-        world.run_locally(interval, steps, held_speed=held, reach=reach)
+        speed = surface_speed(judge.motion, lander)
+        interval = look_interval(world, speed, lander, landing)
+        world.run_locally(interval, steps, resolved_speed=resolved * speed, held_speed=held * speed, reach=reach)
         judge.look()
     return (world.energy()["total"] - before) / (0.5 * lander.mass * landing.speed**2)
 
@@ -51,13 +55,11 @@ def main() -> None:
     study = study.model_copy(update={"bed": small})
     beds, cases = beds_of(study, given.beds), list(draws(study, given.landings))
     rows: list[Row] = []
-    for steps, held in WAYS:
-        found, cpu = timed(
-            lambda steps=steps, held=held: [missing(beds[bed], *case, steps, held) for bed, *case in cases]
-        )
+    for way in WAYS:
+        found, cpu = timed(lambda way=way: [missing(beds[bed], *case, *way) for bed, *case in cases])
         errors = np.array(found)
         rows.append({
-            "steps_per_contact": steps, "held_speed": held, "mean": float(errors.mean()),
+            "steps_per_contact": way[0], "resolved_speed": way[1], "held_speed": way[2], "mean": float(errors.mean()),
             "error_of_mean": float(errors.std(ddof=1) / len(errors) ** 0.5), "largest": float(abs(errors).max()),
             "cpu_s": cpu,
         })  # fmt: skip

@@ -14,7 +14,8 @@ from lithobrake.dem.bodies.rigid_body import Plane, new_body, rows, uniform_bodi
 from lithobrake.dem.bodies.shape import Shape
 from lithobrake.dem.checkpoint import read_checkpoint, write_checkpoint
 from lithobrake.dem.law.material_pair import contact_options
-from lithobrake.dem.local_stepping.local_engine import FEWEST_STEPS, Setting
+from lithobrake.dem.local_stepping.contact_plans import FEWEST_STEPS
+from lithobrake.dem.local_stepping.local_engine import Setting
 from lithobrake.dem.observables import Observables
 from lithobrake.dem.stepping.assembly import rotation_matrices
 from lithobrake.dem.stepping.time_loop import DIVERGED, STEP_TOO_LARGE
@@ -188,16 +189,17 @@ class World(Observables):
             self._refuse(reason)
 
     def run_locally(
-        self, duration: float, steps_per_contact: float, *, held_speed: float = 0.0, reach: float = 0.0
-    ) -> None:
+        self, duration: float, steps_per_contact: float, *, resolved_speed: float = 0.0, held_speed: float = 0.0,
+        reach: float = 0.0,
+    ) -> None:  # fmt: skip
         """Advance by a duration [s], every contact at steps of its own, so many in the time of its collision.
 
         What is slow or far from anything then costs little; a landing is 4 to 5 times as fast (docs/performance.md).
         Energy of a landing is kept to three thousandths of the impact's with 25 steps, to one with 100; three times
-        less well with a tenth held. The time step plays no part. What touches something, is beyond a reach [m] of the
-        watched body and slower than half a share, held_speed, of it stands still until it has that share; with 0
-        nothing does.
-        Raises ValueError for a duration below 0, less than 5 steps, or a share without a watched body,
+        less well with a tenth held. The time step plays no part. Collisions slower than resolved_speed [m/s] take fewer
+        steps, in proportion, but never less than 5. What touches something, is beyond a reach [m] of the watched body
+        and slower than half of held_speed [m/s] stands still until it is that fast; with 0 nothing does.
+        Raises ValueError for a duration below 0, less than 5 steps, or a held_speed without a watched body,
         FloatingPointError where the motion diverged.
         """
         if not self.bodies:
@@ -205,7 +207,8 @@ class World(Observables):
         for name, value, least, si in (
             ("duration", duration, 0.0, " s"),
             ("steps_per_contact", steps_per_contact, FEWEST_STEPS, ""),
-            ("held_speed", held_speed, 0.0, ""),
+            ("resolved_speed", resolved_speed, 0.0, " m/s"),
+            ("held_speed", held_speed, 0.0, " m/s"),
             ("reach", reach, 0.0, " m"),
         ):
             if not least <= value < math.inf:
@@ -213,10 +216,11 @@ class World(Observables):
                 raise ValueError(f"World.run_locally {name} is {value!r}{si}; allowed is {allowed}: change it")
         if held_speed > 0.0 and self._state.watched == NOTHING_WATCHED:
             raise ValueError(
-                f"World.run_locally held_speed is {held_speed!r}, but no body is watched: call watch first"
+                f"World.run_locally held_speed is {held_speed!r} m/s, but no body is watched: call watch first"
             )
         setting = Setting(self._step(0.0), float(steps_per_contact), self._state.watched)
         local = self._state.stepping_locally(setting, self.time)
+        local.slow_down(resolved_speed)
         local.hold(held_speed, reach)
         if not local.run(duration):
             self._refuse(DIVERGED)

@@ -24,6 +24,7 @@ class ContactModel:
 
     steps_per_contact: in each ("local", see World.run_locally), or in the shortest that the impact can make.
     stepping: "local", steps of its own for each contact, or "global", the same for all.
+    resolved_speed: collisions slower than this share of the lander take fewer steps, in proportion, but at least five.
     held_speed: grains that touch something stand still while they are slower than this share of the lander and farther
     from it than the rule of smallest_bed.py keeps clear; 0: none do. Only with local steps.
     """
@@ -33,11 +34,16 @@ class ContactModel:
     pair_rule: str = "smaller"
     steps_per_contact: float = 25.0
     stepping: str = "local"
+    resolved_speed: float = 0.1
     held_speed: float = 0.0
 
     def __post_init__(self) -> None:
         if self.stepping not in ("global", "local"):
             raise ValueError(f'ContactModel.stepping is {self.stepping!r}; allowed are "global" and "local": change it')
+        if not 0.0 <= self.resolved_speed <= 1.0:
+            raise ValueError(
+                f"ContactModel.resolved_speed is {self.resolved_speed!r}; allowed is 0 <= value <= 1: change it"
+            )
         if not 0.0 <= self.held_speed < 1.0:
             raise ValueError(f"ContactModel.held_speed is {self.held_speed!r}; allowed is 0 <= value < 1: change it")
         if self.held_speed > 0.0 and self.stepping != "local":

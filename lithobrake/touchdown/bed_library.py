@@ -66,7 +66,8 @@ def bed_key(recipe: BedRecipe) -> str:
     """The name of a bed in the library: a hash of its recipe, of the code that pours it, and of what that stands on."""
     table = asdict(recipe)
     # How a landing is stepped; a bed is poured and settled with all contacts at the same steps.
-    del table["contact"]["stepping"], table["contact"]["held_speed"]
+    for name in ("stepping", "resolved_speed", "held_speed"):
+        del table["contact"][name]
     return json_hash([table, _code()])
 
 

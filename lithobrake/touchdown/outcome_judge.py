@@ -22,6 +22,11 @@ CAPTURED_CONTACTS = 10.0
 SUNK_FRACTION = 0.5
 
 
+def capture_lift(lander: Lander, gravity: float) -> float:
+    """Return the energy per mass [J/kg] below which a lander in flight is captured; gravity: inward [m/s2]."""
+    return gravity * CAPTURED_APEX * lander.smallest_edge
+
+
 class OutcomeJudge:
     """Looks at the lander every few steps, until it can tell how the touchdown ended."""
 
@@ -71,8 +76,7 @@ class OutcomeJudge:
         world, position, velocity = self.world, self.motion.position, self.motion.velocity
         free, energy = not world.is_touched, self.motion.kinetic_energy if has_touched else math.inf
         flies, outward = has_touched and free, bool(velocity[2] > 0.0)
-        lift = -world.gravity[2] * CAPTURED_APEX * self.lander.smallest_edge
-        held = energy < self.lander.mass * lift
+        held = energy < self.lander.mass * capture_lift(self.lander, -world.gravity[2])
         if abs(position[0]) > 0.5 * self.bed.width[0] or abs(position[1]) > 0.5 * self.bed.width[1]:
             # Soil as it lies in the bed would go on there: what flies up has left it, of anything else nobody knows.
             self.over_rim = flies and outward and not held

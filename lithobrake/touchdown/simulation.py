@@ -13,7 +13,7 @@ from lithobrake.touchdown.bed import Bed
 from lithobrake.touchdown.lander import Lander
 from lithobrake.touchdown.landing import Landing
 from lithobrake.touchdown.outcome import Outcome
-from lithobrake.touchdown.outcome_judge import OutcomeJudge
+from lithobrake.touchdown.outcome_judge import OutcomeJudge, capture_lift
 from lithobrake.touchdown.smallest_bed import smallest_bed
 from lithobrake.touchdown.surface import rotation_matrix
 
@@ -59,11 +59,16 @@ def land(
     judge = OutcomeJudge(bed, lander, landing, world, number, frame_count)
     chunk = max(1, int(landing.contact.steps_per_contact / CHECKS_PER_CONTACT))
     reach = moving_reach(bed.grain_diameter, lander, landing)
+    # A lander slower than that cannot leave: grains count as slow beside this speed at least.
+    slowest = math.sqrt(2.0 * max(0.0, capture_lift(lander, -landing.gravity[2])))
     while judge.ended is None:
         if locally:
-            interval = look_interval(world, judge.motion, lander, landing)
-            contact = landing.contact
-            world.run_locally(interval, contact.steps_per_contact, held_speed=contact.held_speed, reach=reach)
+            contact, speed = landing.contact, surface_speed(judge.motion, lander)
+            interval, telling = look_interval(world, speed, lander, landing), max(speed, slowest)
+            world.run_locally(
+                interval, contact.steps_per_contact,
+                resolved_speed=contact.resolved_speed * telling, held_speed=contact.held_speed * telling, reach=reach,
+            )  # fmt: skip
         else:
             world.run(steps=chunk)
         judge.look()
@@ -86,10 +91,16 @@ def released_speed(bed: Bed, material: Material) -> float:
     return math.sqrt(2.0 * freed / mass)
 
 
-def look_interval(world: World, motion: BodyMotion, lander: Lander, landing: Landing) -> float:
-    """Return the time [s] until a lander in motion is to be looked at again, where contacts step for themselves."""
+def surface_speed(motion: BodyMotion, lander: Lander) -> float:
+    """Return a bound on the speed of a lander's surface [m/s]."""
     turning = float(np.linalg.norm(motion.spin)) * lander.shape.bounding_radius
-    speed = float(np.linalg.norm(motion.velocity)) + turning
+    return float(np.linalg.norm(motion.velocity)) + turning
+
+
+def look_interval(world: World, speed: float, lander: Lander, landing: Landing) -> float:
+    """Return the time [s] until a lander whose surface moves at a speed [m/s] is to be looked at again, where contacts
+    step for themselves.
+    """
     shortest = world.time_step * landing.contact.steps_per_contact / CHECKS_PER_CONTACT
     longest = LOOK_TIME * landing.time_limit
     way = LOOK_WAY * lander.smallest_edge

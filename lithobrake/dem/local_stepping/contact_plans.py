@@ -27,6 +27,8 @@ SHORTER, LONGER = 0.8, 2.0
 URGENT = 0.5
 # Time from first to deepest touch and back, over deepest overlap by speed: Hertz (1882), see time_step.py.
 HERTZ_TIME = 2.943
+# Fewer steps in a collision do not follow it.
+FEWEST_STEPS = 5.0
 
 
 class Plans(NamedTuple):
@@ -54,24 +56,31 @@ class Schedule(NamedTuple):
 
 
 @kernel
+def steps_at(speed: float, flight: Flight, rules: Rules) -> float:
+    """Return the number of steps in a collision that begins at a speed [m/s]: fewer in proportion where it is slow."""
+    full = flight.resolved_speed[0]
+    return rules.steps if speed >= full else max(FEWEST_STEPS, rules.steps * speed / full)
+
+
+@kernel
 def collision_step(pair: int, pairs: Pairs, flight: Flight, plans: Plans, speed: float, rules: Rules) -> float:
     """Return the step [s] of a contact that begins at a speed [m/s]; on what does not fall gravity adds to that."""
     # What gravity adds within a collision at the speed that it adds.
     acceleration = relative_weight(flight, pairs.first[pair], pairs.second[pair], rules)
     speed += (acceleration * plans.duration[pair]) ** (5.0 / 6.0)
-    return plans.duration[pair] * speed**-0.2 / rules.steps if speed > 0.0 else np.inf
+    return plans.duration[pair] * speed**-0.2 / steps_at(speed, flight, rules) if speed > 0.0 else np.inf
 
 
 @kernel
-def contact_step(pair: int, bodies: Bodies, pairs: Pairs, plans: Plans, rules: Rules) -> float:
+def contact_step(pair: int, bodies: Bodies, pairs: Pairs, flight: Flight, plans: Plans, rules: Rules) -> float:
     """Return the step [s] of a contact: a part of the collision with the energy that it has now."""
     normal, overlap, elastic = row(pairs.normal, pair), pairs.overlap[pair], pairs.elastic_force[pair]
     speed = dot(closing_velocity(pair, bodies, pairs, plans), normal)
     inverse_mass = plans.inverse_mass[pair]
     energy = 0.4 * elastic * overlap + 0.5 * speed * speed / inverse_mass
     deepest = (2.5 * energy * overlap**1.5 / elastic) ** 0.4
-    step = HERTZ_TIME * deepest / ((2.0 * energy * inverse_mass) ** 0.5 * rules.steps)
-    return min(step, plans.longest[pair])
+    fastest = (2.0 * energy * inverse_mass) ** 0.5
+    return min(HERTZ_TIME * deepest / (fastest * steps_at(fastest, flight, rules)), plans.longest[pair])
 
 
 @kernel
@@ -155,7 +164,7 @@ def replan(
     while entry >= 0:
         pair, item = entry >> 1, len(bodies.mass) + (entry >> 1)
         if pairs.overlap[pair] > 0.0:
-            step = contact_step(pair, bodies, pairs, plans, rules)
+            step = contact_step(pair, bodies, pairs, flight, plans, rules)
             # A contact keeps its steps even while it can: uneven ones take energy from it.
             if step < URGENT * plans.interval[pair]:
                 put_on(agenda, item, min(agenda.due[item], max(plans.last[pair] + step, now)))

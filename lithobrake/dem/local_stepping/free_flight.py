@@ -28,6 +28,7 @@ class Flight(NamedTuple):
     held_velocity: Floats  # [body_count, 3], m/s, with which a held body will go on
     held_momentum: Floats  # [body_count, 3], kg m2/s, the same
     fastest_held: Floats  # [1], m/s, speed of its surface with which a held body is let go
+    resolved_speed: Floats  # [1], m/s, of collisions that take all steps; slower ones take fewer
 
 
 class Rules(NamedTuple):

@@ -128,19 +128,18 @@ def is_stirred(bodies: Bodies, flight: Flight, body: int) -> bool:
 @large_kernel
 def hold_what_is_slow(
     bodies: Bodies, pairs: Pairs, reactions: Reactions, flight: Flight, plans: Plans, agenda: Agenda, watched: int,
-    share: float, reach: float, now: float, rules: Rules,
+    limit: float, reach: float, now: float, rules: Rules,
 ) -> None:  # fmt: skip
     """Hold what touches something, is slow, and has its centroid beyond a reach [m] of the watched body's.
 
-    Slow: its surface, below CALM times a share of the speed of the watched body's. What comes near, or has momentum for
-    more than that share, is let go; with a share of 0, all.
+    Slow: its surface, below CALM times a limit [m/s]. What comes near, or has momentum for more than the limit, is let
+    go; with a limit of 0, all.
     All must have been moved to now [s]. Writes to bodies, flight, plans and agenda.
     """
-    limit = share * surface_speed(bodies, flight, watched) if share > 0.0 else 0.0
     flight.fastest_held[0] = limit
     for body in range(len(bodies.mass)):
         between = minus(row(bodies.position, body), row(bodies.position, watched))
-        far = share > 0.0 and dot(between, between) > reach * reach
+        far = limit > 0.0 and dot(between, between) > reach * reach
         if flight.held[body]:
             if not far or is_stirred(bodies, flight, body):
                 flight.time[body] = now

@@ -20,8 +20,6 @@ from lithobrake.dem.stepping.watch import new_record
 
 # Slots for pairs at the start, for each body.
 SLOTS = 8
-# Fewer steps in a collision do not follow it.
-FEWEST_STEPS = 5.0
 
 
 class Setting(NamedTuple):
@@ -42,7 +40,7 @@ def flight_of(engine: Engine, bodies: list[RigidBody], time: float) -> Flight:
     return Flight(
         np.full(n, time), never, np.zeros((n, 3)), np.zeros(n), turning, mass, np.full(n, -1), stamp,
         held=np.zeros(n, np.bool_), held_velocity=np.zeros((n, 3)), held_momentum=np.zeros((n, 3)),
-        fastest_held=np.zeros(1),
+        fastest_held=np.zeros(1), resolved_speed=np.zeros(1),
     )  # fmt: skip
 
 
@@ -135,12 +133,16 @@ class LocalEngine:
             sum_forces(self.engine.bodies, self.pairs, self.reactions)
             self.summed = True
 
-    def hold(self, share: float, reach: float) -> None:
-        """Hold what is slower than a share of the watched body and beyond a reach [m] of it, and let go the rest."""
-        if share > 0.0 or self.flight.held.any():
+    def slow_down(self, resolved_speed: float) -> None:
+        """Take all steps of collisions at this speed [m/s] and above; of slower ones fewer, in proportion."""
+        self.flight.resolved_speed[0] = resolved_speed
+
+    def hold(self, limit: float, reach: float) -> None:
+        """Hold what is slower than a limit [m/s] and beyond a reach [m] of the watched body, and let go the rest."""
+        if limit > 0.0 or self.flight.held.any():
             hold_what_is_slow(
                 self.engine.bodies, self.pairs, self.reactions, self.flight, self.plans, self.agenda,
-                self.setting.watched, share, reach, self.time, self.rules,
+                self.setting.watched, limit, reach, self.time, self.rules,
             )  # fmt: skip
 
     def give_back(self) -> None:

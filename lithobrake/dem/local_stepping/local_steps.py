@@ -129,8 +129,8 @@ def force_after(pair: int, system: System, step: Step, plans: Plans) -> float:
 
 @kernel
 def next_step(
-    pair: int, bodies: Bodies, planes: Planes, pairs: Pairs, laws: Laws, plans: Plans, planned: float, rate: float,
-    rules: Rules,
+    pair: int, bodies: Bodies, planes: Planes, pairs: Pairs, laws: Laws, flight: Flight, plans: Plans, planned: float,
+    rate: float, rules: Rules,
 ) -> float:  # fmt: skip
     """Return the interval [s] until a contact is due again; planned: the last one, 0 where it touches anew.
 
@@ -138,7 +138,7 @@ def next_step(
     """
     plans.inverse_mass[pair] = rate * pairs.overlap[pair] / (1.5 * pairs.elastic_force[pair])
     plans.longest[pair] = pair_step(pair, bodies, planes, pairs, laws, rules.paper_mass, STABLE_PART)
-    step = contact_step(pair, bodies, pairs, plans, rules)
+    step = contact_step(pair, bodies, pairs, flight, plans, rules)
     return planned if SHORTER * planned <= step <= LONGER * planned else step
 
 
@@ -166,7 +166,7 @@ def touch(pair: int, system: System, schedule: Schedule, passed: float, rules: R
     impulse, moment, other_moment = scaled(cut, force), scaled(cut, torque), scaled(cut, other_torque)
     interval = 0.0
     if pairs.overlap[pair] > 0.0:
-        interval = next_step(pair, bodies, planes, pairs, laws, plans, planned, rate, rules)
+        interval = next_step(pair, bodies, planes, pairs, laws, flight, plans, planned, rate, rules)
         time = 0.5 * (interval + (passed if planned > 0.0 else min(passed, interval)))
         impulse = plus(impulse, scaled(time, row(reactions.force, pair)))
         moment = plus(moment, scaled(time, row(reactions.first_torque, pair)))

@@ -28,7 +28,7 @@ def bed_dependencies(study: Study) -> dict[str, Any]:
         "seed": pour_seed(study, 0),
         "bed": study.bed.model_dump(exclude={"bed_count"}),
         "values": {name: value for name, value in values.items() if name.startswith(("grain.", "surface."))},
-        "contact": study.contact.model_dump(exclude={"stepping", "held_speed"}),
+        "contact": study.contact.model_dump(exclude={"stepping", "resolved_speed", "held_speed"}),
         "engine": engine_hash(),
     }
 
@@ -52,6 +52,7 @@ def touchdown_dependencies(study: Study) -> dict[str, Any]:
         "lander": study.lander.model_dump(include={"shape", "edges", "inertia", "unit"}),
         "mesh": None if study.lander.file is None else content_hash(Path(study.lander.file)),
         "stepping": study.contact.stepping,
+        "resolved_speed": study.contact.resolved_speed,
         "held_speed": study.contact.held_speed,
         "time_limit": study.landing.time_limit,
         "version": touchdown_version(),
