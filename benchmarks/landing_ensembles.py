@@ -60,7 +60,7 @@ def draws(study: Study, count: int) -> Iterator[tuple[int, Lander, Landing]]:
 
 
 def landed(bed: Bed, body: Lander, arrival: Landing, way: str) -> Row:
-    """Land once in a way: "local:15", with fewer steps in slow collisions "local:15:0.1", grains held "local:15:0.1:0.1"."""
+    """Land once in a way: "local:15", "local:15:0.1" with resolved_speed, "local:15:0.1:0.03" with held_speed, too."""
     stepping, steps, resolved, held = (*way.split(":"), "0", "0")[:4]
     contact = replace(
         arrival.contact, stepping=stepping, steps_per_contact=float(steps), resolved_speed=float(resolved),

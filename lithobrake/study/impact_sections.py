@@ -84,7 +84,7 @@ class ContactSection(Section):
     stepping: Literal["global", "local"] = "local"
     """Steps of a touchdown: "local", each contact at steps of its own, or "global", the same for all contacts, which
     takes several times as long."""
-    resolved_speed: Annotated[float, Number("", at_least=0, at_most=1)] = 0.1
+    resolved_speed: Annotated[float, Number("", at_least=0, at_most=1)] = 0.3
     """Collisions slower than this share of the lander's speed take fewer steps than steps_per_contact, in proportion,
     but at least five. 0: all take as many. Only with stepping = "local"."""
     held_speed: Annotated[float, Number("", at_least=0, below=1)] = 0.0

@@ -34,7 +34,7 @@ class ContactModel:
     pair_rule: str = "smaller"
     steps_per_contact: float = 25.0
     stepping: str = "local"
-    resolved_speed: float = 0.1
+    resolved_speed: float = 0.3
     held_speed: float = 0.0
 
     def __post_init__(self) -> None:
