@@ -42,12 +42,13 @@ def scope(study: Study) -> Scope:
 
 def why_no_interval(study: Study) -> str | None:
     """Why drawn runs say nothing of other beds and places; None where they do."""
-    if study.bed_count > 1 and not DrawnDesign(study).one_place:
+    one_place = DrawnDesign(study).one_place
+    if study.bed_count > 1 and not one_place:
         return None
     where, remedies = [], []
     if study.bed_count == 1:
         where, remedies = ["on one bed"], ["bed.bed_count to 12 or more"]
-    if DrawnDesign(study).one_place:
+    if one_place:
         where, remedies = [*where, "at one place"], [*remedies, "impact.region to where it may come down"]
     return (
         f"All runs came down {' and '.join(where)}. Another bed, place or attitude gives another figure; this study "

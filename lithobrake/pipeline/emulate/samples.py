@@ -1,8 +1,7 @@
-"""Monte Carlo on the refined expansion: what leaves the surface, how fast and where to, and what does not."""
+"""Samples of a model of the bounce: what leaves the surface, how fast and where to, what does not, and their file."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,10 +15,6 @@ from lithobrake.study.quantity import median
 from lithobrake.study.units import input_units
 from lithobrake.vocabulary.outcomes import SampleOutcome
 from lithobrake.vocabulary.quantities import RUN, TOUCHDOWN, quantity
-
-if TYPE_CHECKING:
-    pass
-
 
 FORMAT_VERSION = 2
 SAMPLE_OUTCOMES = tuple(SampleOutcome)

@@ -10,13 +10,13 @@ from lithobrake.pipeline.emulate.samples import CAPTURED, CLEAR
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.paper.expansion_samples import outcome_model
 from lithobrake.pipeline.paper.run_noise import Scatter
+from lithobrake.pipeline.rest.bounce_inputs import inputs_at
+from lithobrake.pipeline.runs.run_table import DesignRuns
 
 if TYPE_CHECKING:
     from lithobrake.analysis import OutcomeModel
     from lithobrake.chaos import Surrogate
     from lithobrake.smallbody import Impacts, Rebounds
-from lithobrake.pipeline.rest.bounce_inputs import inputs_at
-from lithobrake.pipeline.runs.run_table import DesignRuns
 
 
 @dataclass(frozen=True)

@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from lithobrake.pipeline.emulate.samples import Samples, sampling_seed, touchdown_values
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.paper.run_noise import Scatter
 from lithobrake.pipeline.runs.run_table import DesignRuns
@@ -13,7 +14,6 @@ from lithobrake.vocabulary.quantities import PAPER_DESIGNS
 if TYPE_CHECKING:
     from lithobrake.analysis import OutcomeModel
     from lithobrake.chaos import Surrogate
-from lithobrake.pipeline.emulate.samples import Samples, sampling_seed, touchdown_values
 
 # Points at which the expansion is evaluated at once; between two blocks progress is shown.
 _BLOCK = 1 << 20

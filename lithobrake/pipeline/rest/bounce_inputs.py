@@ -1,4 +1,4 @@
-"""What of an impact a model of the bounce takes for its inputs, and within which ranges it was trained."""
+"""What of an impact a model of the bounce takes for its inputs."""
 
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
