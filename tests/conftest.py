@@ -1,6 +1,7 @@
 """What holds for all tests."""
 
 import os
+import sys
 
 import pytest
 
@@ -19,6 +20,20 @@ def pytest_configure(config: pytest.Config) -> None:
     """Have pytest-xdist take the files in their order; by itself it begins with those of most tests."""
     if hasattr(config.option, "loadscopereorder"):
         config.option.loadscopereorder = False
+    _keep_bytecode(config)
+
+
+def _keep_bytecode(config: pytest.Config) -> None:
+    """Where Python is told to keep no bytecode, keep it in a folder of pytest's, off the sources.
+
+    Every process that a test starts would otherwise compile the sources of SciPy, Numba and Matplotlib anew, which
+    takes longer than what it is started for.
+    """
+    if sys.dont_write_bytecode and hasattr(config, "cache"):
+        folder = str(config.cache.mkdir("bytecode"))
+        sys.dont_write_bytecode, sys.pycache_prefix = False, folder
+        os.environ["PYTHONPYCACHEPREFIX"] = folder
+        os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
