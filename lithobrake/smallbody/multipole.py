@@ -56,6 +56,12 @@ class Multipole(NamedTuple):
                 break
         return cls(centre, radius, real, imaginary, fraction * radius, error)
 
+    @classmethod
+    def unused(cls, centre: NDArray[np.float64]) -> "Multipole":
+        """Without moments, for points so near that the facets are summed over for each of them."""
+        none = np.zeros((DEGREE + 2, DEGREE + 3))
+        return cls(centre, 1.0, none, none, np.inf, 0.0)
+
     def field(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
         """As PolyhedronTerms.field (the Laplacian is zero), at points [m], [count, 3], outside the body's sphere."""
         result = np.empty((len(points), 5))

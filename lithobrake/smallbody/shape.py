@@ -15,7 +15,7 @@ from lithobrake.smallbody.attraction import Gravity
 from lithobrake.smallbody.gravity_table import LEVELS, GravityTable
 from lithobrake.smallbody.gravity_table_build import TableError, gravity_table_of
 from lithobrake.smallbody.grid import Grid
-from lithobrake.smallbody.multipole import Multipole
+from lithobrake.smallbody.multipole import RADII, Multipole
 from lithobrake.smallbody.polyhedron_gravity import PolyhedronTerms
 from lithobrake.smallbody.ray_facet import outermost_hit
 from lithobrake.smallbody.signed_distance import heights, pseudonormals
@@ -101,6 +101,17 @@ class Shape:
     def gravity(self) -> Gravity:
         """What the gravity kernels read."""
         return Gravity(self.attracting.polyhedron, self.attracting.multipole, GravityTable.empty())
+
+    def gravity_at(self, points: NDArray[np.float64]) -> Gravity:
+        """What the gravity kernels read for these points [m], shape [count, 3].
+
+        Moments take most of a second, and are not computed for points that are all nearer than any series is used.
+        """
+        part = self.attracting
+        reach = RADII[0] * np.linalg.norm(part.vertices - part.centroid, axis=1).max()
+        if "multipole" in vars(part) or (np.linalg.norm(points - part.centroid, axis=1) >= reach).any():
+            return self.gravity
+        return Gravity(part.polyhedron, Multipole.unused(part.centroid), GravityTable.empty())
 
     @property
     def tabled_gravity(self) -> Gravity:
