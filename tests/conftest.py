@@ -1,6 +1,7 @@
 """What holds for all tests."""
 
 import os
+import sys
 
 import pytest
 
@@ -11,14 +12,32 @@ for name in ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS"):
 # Beds that a test needs are poured: the tests of the library have one of their own.
 os.environ["LITHOBRAKE_BED_LIBRARY_GB"] = "0"
 
-# Files that take minutes, the longest first: at the end one process would work on them while the other waits.
-LONGEST = ("test_killed.py", "test_whole_study.py", "test_drawn_study.py", "test_state.py", "test_pouring.py")
+# Files that take half a minute and more, the longest first: at the end one process would work on them while the other
+# waits.
+LONGEST = (
+    "test_killed.py", "test_whole_study.py", "test_examples.py", "test_calibration.py", "test_drawn_journeys.py",
+    "test_pouring.py", "test_notebooks.py", "test_state.py",
+)  # fmt: skip
 
 
 def pytest_configure(config: pytest.Config) -> None:
     """Have pytest-xdist take the files in their order; by itself it begins with those of most tests."""
     if hasattr(config.option, "loadscopereorder"):
         config.option.loadscopereorder = False
+    _keep_bytecode(config)
+
+
+def _keep_bytecode(config: pytest.Config) -> None:
+    """Where Python is told to keep no bytecode, keep it in a folder of pytest's, off the sources.
+
+    Every process that a test starts would otherwise compile the sources of SciPy, Numba and Matplotlib anew, which
+    takes longer than what it is started for.
+    """
+    if sys.dont_write_bytecode and hasattr(config, "cache"):
+        folder = str(config.cache.mkdir("bytecode"))
+        sys.dont_write_bytecode, sys.pycache_prefix = False, folder
+        os.environ["PYTHONPYCACHEPREFIX"] = folder
+        os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

@@ -16,6 +16,7 @@ import pytest
 from lithobrake.results import open_study
 from lithobrake.results.json_values import to_json
 
+from .command_line import lithobrake
 from .few_grains import few_grains
 
 STUDY = (
@@ -52,8 +53,10 @@ def command(study: Path, out: Path, workers: int) -> list[str]:
     return [sys.executable, "-m", "lithobrake", "run", str(study), "--out", str(out), "--workers", str(workers)]
 
 
-def lithobrake(study: Path, out: Path, workers: int) -> "subprocess.CompletedProcess[str]":
-    return subprocess.run(command(study, out, workers), capture_output=True, text=True, check=False, timeout=600)
+def go_on(study: Path, out: Path, workers: int) -> None:
+    """Give the command for a study that is there, or a part of it."""
+    ended = lithobrake("run", study, "--out", out, "--workers", workers)
+    assert ended.returncode == 0, ended.stderr
 
 
 def summary(out: Path) -> dict[str, Any]:
@@ -82,7 +85,8 @@ def study(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="module")
 def out(study: Path) -> Path:
     folder = study.parent / "first"
-    ended = lithobrake(study, folder, workers=2)
+    # From an interpreter of its own, as a user starts it.
+    ended = subprocess.run(command(study, folder, 2), capture_output=True, text=True, check=False, timeout=600)
     assert ended.returncode == 0, ended.stderr
     assert "Report: " in ended.stdout
     assert len(ended.stdout.strip().splitlines()) == len(summary(folder)["results"]["headline"]) + 1
@@ -122,7 +126,7 @@ def test_every_data_set_of_the_files_says_what_it_holds(out: Path) -> None:
 
 def test_the_same_command_on_a_finished_study_computes_nothing(study: Path, out: Path) -> None:
     before = {name: (out / name).stat().st_mtime_ns for name in FILES if name != "study.toml"}
-    assert lithobrake(study, out, workers=2).returncode == 0
+    go_on(study, out, workers=2)
     assert {name: (out / name).stat().st_mtime_ns for name in before} == before
 
 
@@ -130,7 +134,7 @@ def test_a_deleted_file_is_made_again_with_the_same_bytes_and_nothing_before_it(
     before = {name: ((out / name).stat().st_mtime_ns, (out / name).read_bytes()) for name in FILES[1:]}
     (out / "samples.h5").unlink()
     (out / "flights.csv").unlink()
-    assert lithobrake(study, out, workers=2).returncode == 0
+    go_on(study, out, workers=2)
     assert (out / "flights.csv").read_bytes() == before["flights.csv"][1]
     for name in ("beds/bed_0.h5", "landing.h5", "screening.json", "refined.json", "scores.json"):
         assert (out / name).stat().st_mtime_ns == before[name][0]
@@ -161,7 +165,7 @@ def test_ctrl_c_keeps_the_runs_and_one_worker_ends_with_the_same_bits(study: Pat
     assert "Traceback" not in said
     kept = finished_runs(other)
     assert 2 <= kept < finished_runs(out)
-    assert lithobrake(study, other, workers=1).returncode == 0
+    go_on(study, other, workers=1)
     assert summary(other)["results"] == summary(out)["results"]
     assert summary(other)["study"] == summary(out)["study"]
     assert (other / "flights.csv").read_bytes() == (out / "flights.csv").read_bytes()

@@ -81,7 +81,8 @@ class Body:
 
     def _field(self, points: ArrayLike) -> NDArray[np.float64]:
         p = self._checked(points)
-        field = attraction.field(p.reshape(-1, 3), self.shape.gravity) * (GRAVITATIONAL_CONSTANT * self.density)
+        rows = p.reshape(-1, 3)
+        field = attraction.field(rows, self.shape.gravity_at(rows)) * (GRAVITATIONAL_CONSTANT * self.density)
         return field.reshape(*p.shape[:-1], 5)
 
     def acceleration(self, points: ArrayLike) -> NDArray[np.float64]:

@@ -21,14 +21,6 @@ def unit(vectors: Array) -> Array:
     return np.divide(vectors, size, out=np.zeros_like(vectors), where=size > 0.0)
 
 
-def sizes(shape: Shape, facet: Whole) -> Array:
-    """Edges of squares twice as large as the facets [m], [count]."""
-    corner = shape.corners[facet]
-    normal = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
-    edge: Array = np.sqrt(np.linalg.norm(normal, axis=1))
-    return edge
-
-
 def over_edges(
     shape: Shape, facet: Whole, position: Array, way: Array, velocity: Array, press: Array, braking: Array
 ) -> tuple[Array, Array, Whole, NDArray[np.bool_]]:
@@ -64,9 +56,7 @@ def over_edges(
 
 def first_edge(shape: Shape, facet: Whole, start: Array, way: Array) -> tuple[Whole, Array]:
     """Number of the edge through which each way leaves its facet, -1: none, and the part of the way before it."""
-    corner, up = shape.corners[facet], shape.normals[facet]
-    inward = np.cross(up[:, None], np.roll(corner, -1, axis=1) - corner)
-    inward /= np.linalg.norm(inward, axis=2, keepdims=True)
+    corner, inward = shape.corners[facet], shape.inward[facet]
     before = np.maximum(np.einsum("nei,nei->ne", inward, start[:, None] - corner), 0.0)
     change = np.einsum("nei,ni->ne", inward, way)
     out = before + change < -1e-12 * shape.radius

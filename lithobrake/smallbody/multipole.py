@@ -21,6 +21,7 @@ RADII = (1.15, 1.3, 1.5, 1.75, 2.0, 2.5, 3.0, 4.0, 6.0)  # tried as that radius,
 # Rows of scratch: position over the body's radius and 1/r**2, then harmonic of order m, the last two of rising degree.
 _X, _Y, _Z, _W, _DIAGONAL, _NEW, _OLD = 0, 1, 2, 3, 4, 6, 8
 SCRATCH = 10 * LANES
+BLOCK = 48  # points whose regular harmonics are raised side by side
 
 
 class Multipole(NamedTuple):
@@ -56,6 +57,12 @@ class Multipole(NamedTuple):
                 break
         return cls(centre, radius, real, imaginary, fraction * radius, error)
 
+    @classmethod
+    def unused(cls, centre: NDArray[np.float64]) -> "Multipole":
+        """Without moments, for points so near that the facets are summed over for each of them."""
+        none = np.zeros((DEGREE + 2, DEGREE + 3))
+        return cls(centre, 1.0, none, none, np.inf, 0.0)
+
     def field(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
         """As PolyhedronTerms.field (the Laplacian is zero), at points [m], [count, 3], outside the body's sphere."""
         result = np.empty((len(points), 5))
@@ -80,46 +87,55 @@ def _moments(corner: Floats, node: Floats, weight: Floats, real: Floats, imagina
     facets.
 
     corner [facet_count, 3, 3] about the centre; node, weight: Gauss-Legendre on 0 to 1. A facet is a folded square;
-    along a cone a harmonic of degree n grows as the n-th power, which leaves the factor 1/(n + 3).
+    along a cone a harmonic of degree n grows as the n-th power, which leaves the factor 1/(n + 3). The harmonics of
+    BLOCK points are raised side by side, and summed point after point.
     """
-    top = len(real) - 2
-    re, im = np.zeros((top + 1, top + 1)), np.zeros((top + 1, top + 1))
-    for f in range(len(corner)):
-        a, b, c = corner[f, 0], corner[f, 1], corner[f, 2]
-        six = (
-            a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0])
-        )
-        for p in range(len(node)):
-            for q in range(len(node)):
-                s, t = node[p], node[p] * node[q]
-                x = a[0] + s * (b[0] - a[0]) + t * (c[0] - b[0])
-                y = a[1] + s * (b[1] - a[1]) + t * (c[1] - b[1])
-                z = a[2] + s * (b[2] - a[2]) + t * (c[2] - b[2])
-                part = six * weight[p] * weight[q] * node[p]
-                _regular(x, y, z, re, im)
-                for n in range(top + 1):
-                    for m in range(n + 1):
-                        real[n, m] += part * re[n, m] / (n + 3.0)
-                        imaginary[n, m] -= part * im[n, m] / (n + 3.0)
+    point = np.zeros((5, BLOCK))
+    x, y, z, square, part = point[0], point[1], point[2], point[3], point[4]
+    harmonic = np.zeros((8, BLOCK))
+    diagonal, diagonal_i, new, new_i = harmonic[0], harmonic[1], harmonic[2], harmonic[3]
+    old, old_i, term, term_i = harmonic[4], harmonic[5], harmonic[6], harmonic[7]
+    point_count = len(corner) * len(node) ** 2
+    for start in range(0, point_count, BLOCK):
+        count = min(BLOCK, point_count - start)
+        for j in range(count):
+            _place(point, j, start + j, corner, node, weight)
+        diagonal[:], diagonal_i[:] = 1.0, 0.0
+        for m in range(len(real) - 1):
+            for j in range(BLOCK if m else 0):
+                re, im = diagonal[j], diagonal_i[j]
+                diagonal[j] = -(x[j] * re - y[j] * im) / (2.0 * m)
+                diagonal_i[j] = -(x[j] * im + y[j] * re) / (2.0 * m)
+            new[:], new_i[:], old[:], old_i[:] = diagonal, diagonal_i, 0.0, 0.0
+            for n in range(m, len(real) - 1):
+                ahead, below = 2.0 * n - 1.0, float((n - m) * (n + m))
+                for j in range(BLOCK if n > m else 0):
+                    re, im = new[j], new_i[j]
+                    new[j] = ahead * z[j] * re / below - square[j] * old[j] / below
+                    new_i[j] = ahead * z[j] * im / below - square[j] * old_i[j] / below
+                    old[j], old_i[j] = re, im
+                for j in range(BLOCK):
+                    term[j], term_i[j] = part[j] * new[j] / (n + 3.0), part[j] * new_i[j] / (n + 3.0)
+                re, im = real[n, m], imaginary[n, m]
+                for j in range(count):
+                    re += term[j]
+                    im -= term_i[j]
+                real[n, m], imaginary[n, m] = re, im
 
 
 @compiled
-def _regular(x: float, y: float, z: float, re: Floats, im: Floats) -> None:
-    """Write the regular solid harmonics, real and imaginary [degree + 1, degree + 1]."""
-    square = x * x + y * y + z * z
-    for m in range(len(re)):
-        if m == 0:
-            re[0, 0], im[0, 0] = 1.0, 0.0
-        else:
-            re[m, m] = -(x * re[m - 1, m - 1] - y * im[m - 1, m - 1]) / (2.0 * m)
-            im[m, m] = -(x * im[m - 1, m - 1] + y * re[m - 1, m - 1]) / (2.0 * m)
-        for n in range(m + 1, len(re)):
-            below = (n - m) * (n + m)
-            re[n, m] = (2 * n - 1) * z * re[n - 1, m] / below
-            im[n, m] = (2 * n - 1) * z * im[n - 1, m] / below
-            if n > m + 1:
-                re[n, m] -= square * re[n - 2, m] / below
-                im[n, m] -= square * im[n - 2, m] / below
+def _place(point: Floats, j: int, number: int, corner: Floats, node: Floats, weight: Floats) -> None:
+    """Write column j of point [5, BLOCK]: place, squared distance and weight of a point of the quadrature of facets."""
+    f, p, q = number // len(node) ** 2, number // len(node) % len(node), number % len(node)
+    a, b, c = corner[f, 0], corner[f, 1], corner[f, 2]
+    six = a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0])
+    s, t = node[p], node[p] * node[q]
+    x = a[0] + s * (b[0] - a[0]) + t * (c[0] - b[0])
+    y = a[1] + s * (b[1] - a[1]) + t * (c[1] - b[1])
+    z = a[2] + s * (b[2] - a[2]) + t * (c[2] - b[2])
+    point[0, j], point[1, j], point[2, j] = x, y, z
+    point[3, j] = x * x + y * y + z * z
+    point[4, j] = six * weight[p] * weight[q] * node[p]
 
 
 @compiled

@@ -15,7 +15,7 @@ from lithobrake.smallbody.attraction import Gravity
 from lithobrake.smallbody.gravity_table import LEVELS, GravityTable
 from lithobrake.smallbody.gravity_table_build import TableError, gravity_table_of
 from lithobrake.smallbody.grid import Grid
-from lithobrake.smallbody.multipole import Multipole
+from lithobrake.smallbody.multipole import RADII, Multipole
 from lithobrake.smallbody.polyhedron_gravity import PolyhedronTerms
 from lithobrake.smallbody.ray_facet import outermost_hit
 from lithobrake.smallbody.signed_distance import heights, pseudonormals
@@ -102,6 +102,19 @@ class Shape:
         """What the gravity kernels read."""
         return Gravity(self.attracting.polyhedron, self.attracting.multipole, GravityTable.empty())
 
+    def gravity_at(self, points: NDArray[np.float64]) -> Gravity:
+        """What the gravity kernels read for these points [m], shape [count, 3].
+
+        Moments take most of a second, and are not computed for points that are all nearer than any series is used.
+        """
+        part = self.attracting
+        if "multipole" in vars(part):
+            return self.gravity
+        reach = RADII[0] * np.linalg.norm(part.vertices - part.centroid, axis=1).max()
+        if (np.linalg.norm(points - part.centroid, axis=1) >= reach).any():
+            return self.gravity
+        return Gravity(part.polyhedron, Multipole.unused(part.centroid), GravityTable.empty())
+
     @property
     def tabled_gravity(self) -> Gravity:
         """The same with the table, which covers all but the farthest points."""
@@ -134,6 +147,20 @@ class Shape:
     def normals(self) -> NDArray[np.float64]:
         """Outward unit normals of the facets, shape [facet_count, 3]."""
         return self.polyhedron.facet_terms[:, :3]
+
+    @cached_property
+    def inward(self) -> NDArray[np.float64]:
+        """Unit vectors in the facets, square to their edges 01, 12 and 20 and inward, shape [facet_count, 3, 3]."""
+        inward = np.cross(self.normals[:, None], np.roll(self.corners, -1, axis=1) - self.corners)
+        return inward / np.linalg.norm(inward, axis=2, keepdims=True)
+
+    @cached_property
+    def facet_sizes(self) -> NDArray[np.float64]:
+        """Edges of squares twice as large as the facets [m], shape [facet_count]."""
+        corner = self.corners
+        normal = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
+        edge: NDArray[np.float64] = np.sqrt(np.linalg.norm(normal, axis=1))
+        return edge
 
     @cached_property
     def pseudonormals(self) -> NDArray[np.float64]:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lithobrake.smallbody.body import Body
-from lithobrake.smallbody.facet_edges import first_edge, over_edges, sizes, unit
+from lithobrake.smallbody.facet_edges import first_edge, over_edges, unit
 from lithobrake.vocabulary.arrays import Array
 
 TURN = 0.05  # rad by which the velocity may turn in a step
@@ -148,7 +148,7 @@ def _step(
     with np.errstate(divide="ignore", invalid="ignore"):
         turning = np.fmax(TURN * speed / across, _time_to_go(np.full_like(speed, NEAR), speed, slowing))
         stop = np.where((slowing > 0.0) & (speed > 0.0), speed / slowing, np.inf)
-    step = np.fmin(turning, _time_to_go(FACET_STEP * sizes(shape, facet), speed, slowing))
+    step = np.fmin(turning, _time_to_go(FACET_STEP * shape.facet_sizes[facet], speed, slowing))
     step = np.minimum(np.minimum(step, stop), left)
     # Beyond its edge a facet is not the ground any more: a step ends right behind it.
     way = step[:, None] * velocity + 0.5 * step[:, None] ** 2 * push

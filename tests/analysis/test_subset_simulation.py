@@ -37,9 +37,9 @@ def test_openturns_agrees() -> None:
     pytest.importorskip("openturns", reason="openturns is not installed")
     margin, dimension, exact = LIMIT_STATES["linear, 2 inputs"]
     ours = [subset_simulation(margin, dimension, seed=seed).probability for seed in range(20)]
-    theirs = [openturns_subset(margin, dimension, 1000, seed)[0] for seed in range(20)]
+    theirs = [openturns_subset(margin, dimension, 1000, seed)[0] for seed in range(8)]
     # Each scatters by about a quarter.
-    assert np.mean(ours) == pytest.approx(np.mean(theirs), rel=3.0 * 0.27 * np.sqrt(2.0 / 20.0))
+    assert np.mean(ours) == pytest.approx(np.mean(theirs), rel=3.0 * 0.27 * np.sqrt(1.0 / 20.0 + 1.0 / 8.0))
     assert np.mean(ours) == pytest.approx(exact, rel=3.0 * 0.27 / np.sqrt(20.0))
 
 

@@ -7,7 +7,7 @@ import subprocess
 import sys
 import time
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import campaign_models as models
 import numpy as np
@@ -19,12 +19,13 @@ from lithobrake.campaign import (
     LocalExecutor,
     RunOptions,
     Runs,
-    Tally,
+    local_executor,
     missing,
     read_records,
     run,
     run_key,
 )
+from lithobrake.campaign.worker import Call, Worker
 
 X = np.array([[1.0, 0.5], [2.0, 0.5], [3.0, 0.5], [4.0, 0.5]])
 
@@ -225,22 +226,31 @@ def test_a_script_that_its_workers_would_start_again_is_told_so_and_fails_no_run
     assert {entry.status for entry in read_records(tmp_path / "runs.sqlite")} <= {"queued", "running"}
 
 
-class KillsOneThatStarts:
-    """A progress that kills the first process of an executor, before it has begun with anything."""
+class KilledFirst(Worker):
+    """A process that stands still before it is given a call, and is killed when it has it: the first that starts."""
 
-    def __init__(self, executor: LocalExecutor) -> None:
-        self.executor, self.killed = executor, False
+    started: ClassVar[list[Worker]] = []
 
-    def __call__(self, state: Tally) -> None:
-        started = self.executor._workers
-        if started and not self.killed:
-            self.killed = True
-            os.kill(started[0].number, signal.SIGKILL)
+    def __init__(self) -> None:
+        super().__init__()
+        self.started.append(self)
+        if self is self.started[0]:
+            os.kill(self.number, signal.SIGSTOP)
+
+    def take(self, call: Call) -> bool:
+        """Send a call."""
+        taken = super().take(call)
+        if self is self.started[0]:
+            os.kill(self.number, signal.SIGKILL)
+        return taken
 
 
-def test_a_process_that_is_killed_before_it_begins_costs_no_run_a_try(tmp_path: Path) -> None:
-    with Ledger(tmp_path / "runs.sqlite") as ledger, LocalExecutor(1) as executor:
-        kills = KillsOneThatStarts(executor)
-        runs = run(models.parabola, X, names=("a", "b"), ledger=ledger, executor=executor, progress=kills)
-    assert kills.killed
-    assert runs.outcomes == ["clear"] * 4
+@pytest.mark.skipif(os.name != "posix", reason="other systems have no such signals")
+def test_a_process_that_is_killed_before_it_begins_costs_no_run_a_try(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(local_executor, "Worker", KilledFirst)
+    monkeypatch.setattr(KilledFirst, "started", [])
+    runs = campaign(tmp_path, models.parabola, workers=1)
+    assert len(KilledFirst.started) == 2
+    assert [(one.outcome, one.attempts) for one in runs.records] == [("clear", 1)] * 4

@@ -1,8 +1,6 @@
 """Studies whose runs are drawn out of one sequence, from the command line: beds and runs, and more of them later."""
 
 import shutil
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -15,15 +13,15 @@ from lithobrake.results import open_study
 from lithobrake.study import StudySource
 from lithobrake.vocabulary.quantities import ORIENTATION_OUT, OUTPUTS, SPIN_OUT
 
+from ..command_line import lithobrake
 from ..few_grains import few_grains
 from .ball_studies import FEW_RUNS, PAPERS, drawn, edit, write_ball
 
 
-def lithobrake(*arguments: object, code: int = 0) -> str:
+def said_by(*words: object) -> str:
     """What a command prints and says, its lines joined."""
-    command = [sys.executable, "-m", "lithobrake", *map(str, arguments)]
-    ended = subprocess.run(command, capture_output=True, text=True, check=False, timeout=600)
-    assert ended.returncode == code, ended.stderr
+    ended = lithobrake(*words)
+    assert ended.returncode == 0, ended.stderr
     return " ".join(f"{ended.stdout} {ended.stderr}".split())
 
 
@@ -35,11 +33,11 @@ def ball(folder: Path, run_count: int, more: str = "") -> Path:
 def grown(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, DesignRuns, str]:
     """A study of twelve runs that then had 14, and side runs: its folder, its first runs, what was said at last."""
     folder = tmp_path_factory.mktemp("grown")
-    said = lithobrake("run", ball(folder, 12), "--out", folder / "out", "--workers", 2)
+    said = said_by("run", ball(folder, 12), "--out", folder / "out", "--workers", 2)
     assert "stage 3 of 14: runs" in said
     assert f"Report: {folder / 'out' / 'report' / 'index.html'}" in said
     first = DesignRuns.load(StudyFolder.only_read(folder / "out"), "drawn")
-    return folder, first, lithobrake("run", ball(folder, 14, "side_runs = true"), "--out", folder / "out")
+    return folder, first, said_by("run", ball(folder, 14, "side_runs = true"), "--out", folder / "out")
 
 
 def test_a_study_of_more_runs_makes_only_those_that_are_new(grown: tuple[Path, DesignRuns, str]) -> None:
@@ -83,7 +81,7 @@ def test_a_folder_that_changes_its_method_has_the_runs_of_the_present_one(
     shutil.copytree(grown[0] / "out", tmp_path / "out")
     study = write_ball(tmp_path / "study.toml", FEW_RUNS)
     shutil.copy(study, tmp_path / "out" / "study.toml")
-    lithobrake("screen", study, "--out", tmp_path / "out")
+    said_by("screen", study, "--out", tmp_path / "out")
     assert (tmp_path / "out" / "designs" / "drawn.csv").is_file()
     assert set(open_study(tmp_path / "out").runs["design"]) == {"screening"}
     # A folder of an early format does not note its stages: it has no other runs.

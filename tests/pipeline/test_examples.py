@@ -18,12 +18,9 @@ from lithobrake.pipeline.runs.solver import completed
 from lithobrake.results import open_study
 from lithobrake.study import StudyError, read_study
 
+from ..command_line import lithobrake
+
 EXAMPLES = Path(__file__).parents[2] / "examples"
-
-
-def lithobrake(*arguments: object) -> "subprocess.CompletedProcess[str]":
-    command = [sys.executable, "-m", "lithobrake", *map(str, arguments)]
-    return subprocess.run(command, capture_output=True, text=True, check=False, timeout=600)
 
 
 @pytest.fixture(scope="module")

@@ -1,13 +1,13 @@
 """Kill -9 of the coordinator, of a worker, of both, at 20 random moments: the study ends with the same bits."""
 
 import json
+import multiprocessing
 import os
 import random
 import signal
 import sqlite3
-import subprocess
-import sys
 import time
+from multiprocessing.process import BaseProcess
 from pathlib import Path
 from typing import Any
 
@@ -58,15 +58,32 @@ VICTIMS = ("coordinator", "worker", "both")
 pytestmark = pytest.mark.skipif(not Path("/proc").is_dir(), reason="the processes are found in /proc (Linux)")
 
 
-def start(study: Path, out: Path, worker_count: int = 1) -> "subprocess.Popen[bytes]":
-    command = [sys.executable, "-m", "lithobrake", "run", str(study), "--out", str(out), "--workers", str(worker_count)]
-    with (study.parent / "said.txt").open("wb") as said:
-        return subprocess.Popen(command, stdout=said, stderr=said)
+# Each start is a process of its own, forked from one that has imported what a study needs: two dozen interpreters that
+# import it would take longer than all that they are killed in.
+FORKS = multiprocessing.get_context("forkserver")
+FORKS.set_forkserver_preload(["lithobrake.cli", "lithobrake.pipeline.stages", "lithobrake.report", "scipy.stats"])
+COMMAND = """
+import os, sys
+said = os.open({said!r}, os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
+os.dup2(said, 1), os.dup2(said, 2)
+sys.argv = ["lithobrake", "run", {study!r}, "--out", {out!r}, "--workers", {workers!r}]
+from lithobrake.cli import app
+app()
+"""
+
+
+def start(study: Path, out: Path, worker_count: int = 1) -> BaseProcess:
+    told = {"study": str(study), "out": str(out), "said": str(study.parent / "said.txt"), "workers": str(worker_count)}
+    process = FORKS.Process(target=exec, args=(COMMAND.format(**told), {}))
+    process.start()
+    return process
 
 
 def end(study: Path, out: Path, worker_count: int = 1) -> None:
     """Run a study to its end, undisturbed."""
-    assert start(study, out, worker_count).wait(timeout=1200) == 0, (study.parent / "said.txt").read_text()
+    process = start(study, out, worker_count)
+    process.join(timeout=1200)
+    assert process.exitcode == 0, (study.parent / "said.txt").read_text()
 
 
 def workers(coordinator: int) -> list[int]:
@@ -82,9 +99,9 @@ def workers(coordinator: int) -> list[int]:
     return found
 
 
-def wait_for_stage(process: "subprocess.Popen[bytes]", out: Path, number: int) -> None:
+def wait_for_stage(process: BaseProcess, out: Path, number: int) -> None:
     """Wait until the study has come to a stage, or has ended."""
-    while process.poll() is None:
+    while process.exitcode is None:
         holder = lock_holder(out / ".lock")
         if number == 0 or (holder is not None and holder.get("number", 0) >= number):
             return
@@ -98,8 +115,9 @@ def is_alive(process: int) -> bool:
         return False
 
 
-def kill(process: "subprocess.Popen[bytes]", victim: str, chance: random.Random) -> None:
+def kill(process: BaseProcess, victim: str, chance: random.Random) -> None:
     """Kill by the signal that nobody can catch; a coordinator that is killed takes its workers along."""
+    assert process.pid is not None
     others = workers(process.pid)
     if victim == "worker" and others:
         os.kill(chance.choice(others), signal.SIGKILL)
@@ -107,7 +125,7 @@ def kill(process: "subprocess.Popen[bytes]", victim: str, chance: random.Random)
     if victim == "both" and others:
         os.kill(chance.choice(others), signal.SIGKILL)
     process.kill()
-    process.wait()
+    process.join()
     limit = time.monotonic() + 30
     while any(is_alive(other) for other in others):
         assert time.monotonic() < limit, "workers outlive their coordinator"
@@ -137,17 +155,17 @@ def test_a_study_killed_at_20_random_moments_ends_with_the_same_bits(tmp_path: P
         # The very first moment is any at all, before there is a folder, too.
         wait_for_stage(process, killed, list(files).index(stage) + 1 if kills else 0)
         time.sleep(chance.random() * durations[stage])
-        if process.poll() is None:
+        if process.exitcode is None:
             kill(process, VICTIMS[kills % len(VICTIMS)], chance)
             kills += 1
         else:
             # It came to its end before its time: what this stage has made is taken away, and has to be made again.
             for name in (*files[stage], *(LEDGER if stage in MAKE_RUNS else ())):
                 (killed / name).unlink(missing_ok=True)
-        if process.poll() is not None:
+        if process.exitcode is not None:
             process = start(study, killed)
     process.kill()
-    process.wait()
+    process.join()
     end(study, killed)
     assert ledger(killed) == ledger(calm)
     # Summary and report name times and folders; the summary's results are compared below.

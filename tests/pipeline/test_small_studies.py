@@ -16,6 +16,7 @@ from lithobrake.campaign import Record
 from lithobrake.pipeline.study_run import run
 from lithobrake.results import open_study
 
+from ..command_line import lithobrake
 from .ball_studies import FEW_RUNS, PROGRAM, write_ball
 
 FRICTION = 'friction = { distribution = "uniform", lower = 0.05, upper = 0.4 }'
@@ -24,11 +25,6 @@ FRICTION = 'friction = { distribution = "uniform", lower = 0.05, upper = 0.4 }'
 def write_study(folder: Path, changes: dict[str, str], program: Path = PROGRAM) -> Path:
     """The example's study with few runs and these changes of its text."""
     return write_ball(folder / "study.toml", FEW_RUNS | {"test_count = 10": "test_count = 6"} | changes, program)
-
-
-def lithobrake(*arguments: object) -> "subprocess.CompletedProcess[str]":
-    command = [sys.executable, "-m", "lithobrake", *map(str, arguments)]
-    return subprocess.run(command, capture_output=True, text=True, check=False, timeout=600)
 
 
 def said_by(*arguments: object, code: int = 0) -> str:

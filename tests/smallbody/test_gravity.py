@@ -76,6 +76,18 @@ def test_laplacian_tells_inside_from_outside(block):
     assert block.laplacian(points) == pytest.approx(expected, abs=1e-12)
 
 
+def test_near_points_need_no_moments_and_get_the_same_bits():
+    body = Body(Shape(*sphere_mesh(3)), mass=1.0 / GRAVITATIONAL_CONSTANT, spin_period=math.inf)
+    directions, _ = sphere_mesh(2)
+    near, far = (body.shape.centroid + radii * body.shape.radius * directions for radii in (1.1, 3.0))
+    without_moments = body.potential(near)
+    assert "multipole" not in vars(body.shape)
+    both = body.potential(np.concatenate([near, far]))
+    assert "multipole" in vars(body.shape)
+    assert np.array_equal(both[: len(near)], without_moments)
+    assert np.array_equal(body.potential(near), without_moments)
+
+
 def test_acceleration_is_the_gradient_of_the_potential(shapes):
     body = Body(Shape.read(shapes / "didymos_radar2020_1996.obj"), mass=5.32e11, spin_period=8136.0)
     points = np.random.default_rng(3).normal(size=(50, 3)) * 400.0

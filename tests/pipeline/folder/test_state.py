@@ -22,6 +22,7 @@ from lithobrake.pipeline.folder.state import FolderState, StageState
 from lithobrake.pipeline.folder.study_folder import FileState
 from lithobrake.results import open_study
 
+from ...command_line import lithobrake
 from ...ledger_rows import edit_rows
 from ..ball_studies import FEW_RUNS, FEW_SAMPLES, edit, write_ball
 
@@ -33,8 +34,7 @@ RUNNER = CliRunner()
 
 def run(home: Path, command: str = "run", code: int = 0) -> str:
     """Run the study of a home in its folder; what is said on standard error, its lines joined."""
-    words = [sys.executable, "-m", "lithobrake", command, str(home / "ball.toml"), "--out", str(home / "out")]
-    ended = subprocess.run([*words, "--workers", "1"], capture_output=True, text=True, check=False, timeout=600)
+    ended = lithobrake(command, home / "ball.toml", "--out", home / "out", "--workers", 1)
     assert ended.returncode == code, ended.stderr
     assert "Traceback" not in ended.stderr
     return " ".join(ended.stderr.split())

@@ -1,6 +1,5 @@
 """Designs other than the sparse grid, points that are run several times, and scatter in the samples."""
 
-import subprocess
 import sys
 from pathlib import Path
 from typing import Any
@@ -16,6 +15,7 @@ from lithobrake.results import open_study
 from lithobrake.study import Study, check_tables
 from lithobrake.vocabulary.quantities import OUTPUTS
 
+from ...command_line import lithobrake
 from ...paper_tables import paper_tables
 
 # Two of the outputs scatter together, by a tenth of a millimetre a second along x and twice that upward.
@@ -123,8 +123,7 @@ def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("scatter")
     (folder / "program.py").write_text(PROGRAM)
     (folder / "study.toml").write_text(STUDY.format(python=sys.executable))
-    command = [sys.executable, "-m", "lithobrake", "run", folder / "study.toml", "--out", folder / "out"]
-    ended = subprocess.run([*map(str, command), "--workers", "2"], capture_output=True, text=True, timeout=600)
+    ended = lithobrake("run", folder / "study.toml", "--out", folder / "out", "--workers", 2)
     assert ended.returncode == 0, ended.stderr
     return folder / "out"
 

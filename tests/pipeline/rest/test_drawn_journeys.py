@@ -10,6 +10,8 @@ import pytest
 import lithobrake
 from lithobrake.pipeline.answer.run_shares import PARTS
 from lithobrake.results import StudyResults
+from lithobrake.results.json_values import to_json
+from lithobrake.smallbody import RestitutionTable
 from lithobrake.vocabulary.outcomes import JourneyStatus
 
 from ...synthetic_landings import WEAK
@@ -30,7 +32,7 @@ def made(folder: Path, model: SyntheticLander, **changes: dict[str, Any]) -> Stu
 def journeys(tmp_path_factory: pytest.TempPathFactory) -> StudyResults:
     """Landers at 50 degrees north of Didymos, where the ground holds them, that arrive at any speed and angle."""
     model = SyntheticLander(dataclasses.replace(WEAK, capture=0.2), follows_speed=True)
-    site, rest = {"latitude_deg": 50.0}, {"count": 300}
+    site, rest = {"latitude_deg": 50.0}, {"count": 100}
     return made(tmp_path_factory.mktemp("journeys") / "out", model, impact=ARRIVAL, site=site, rest=rest)
 
 
@@ -64,6 +66,29 @@ def test_a_captured_lander_stays_where_the_ground_holds_it(journeys: StudyResult
     table = journeys.run_flights.where(journeys.run_flights["outcome"] == "captured")
     assert len(table["returns"]) > 2
     assert set(table["returns"]) == {1.0}
+
+
+def test_the_table_of_restitution_has_what_runs_and_samples_say(journeys: StudyResults) -> None:
+    table = RestitutionTable.read(journeys.folder / "restitution.csv")
+    samples = journeys.samples
+    ended = np.isin(samples["outcome"], ["clear", "captured"])
+    assert table.samples.sum() == ended.sum()
+    assert table.runs.sum() == np.isin(journeys.runs["outcome"], ["clear", "captured"]).sum() > 40
+    stay = (table.captured * table.samples).sum()
+    assert stay == pytest.approx((samples["outcome"] == "captured").sum())
+    left = samples.where(samples["outcome"] == "clear")
+    normal = left["velocity_out_z"] / (left["impact.speed"] * np.cos(np.radians(left["impact.incidence_deg"])))
+    lowest, highest = (table.quantiles["normal_restitution"][:, :, place] for place in (0, -1))
+    assert (lowest.min(), highest.max()) == pytest.approx((normal.min(), normal.max()))
+
+
+def test_journeys_on_equivalent_ground_stand_beside_soil_and_hard_ground(journeys: StudyResults) -> None:
+    rest = journeys.summary["results"]["rest"]
+    assert rest["equivalent"]["sample_count"] == rest["soil"]["sample_count"] == 100
+    assert rest["equivalent"]["outside"]["count"] == 0
+    # A fifth returns at the first impact.
+    assert rest["equivalent"]["settled"]["share"] > 0.2
+    assert to_json(journeys.results) == journeys.summary["results"]
 
 
 @pytest.mark.parametrize(
