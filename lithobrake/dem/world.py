@@ -297,6 +297,6 @@ class World(Observables):
     def load(path: str | os.PathLike[str]) -> "World":
         """Read a world that `save` wrote. Raises ValueError where the file is not one."""
         state, step, clock = read_checkpoint(path)
-        world = World(step.gravity, None, **state.options)
+        world = World(step.gravity, None, period=None, **state.options)
         world._state, world._clock, world.drag = state, Clock(**clock), step.drag
         return world

@@ -42,6 +42,8 @@ def arm_to(bodies: Bodies, body: int, point: Vector) -> Vector:
 
 def folded(places: Floats, period: Period) -> Floats:
     """Return places [m], shape [..., 2 or 3], each moved by whole periods to the image nearest to the origin."""
+    if period == NO_PERIOD:
+        return places
     moved = places.copy()
     for axis, (length, inverse) in enumerate(((period.x, period.inverse_x), (period.y, period.inverse_y))):
         moved[..., axis] -= length * np.rint(places[..., axis] * inverse)
