@@ -4,6 +4,7 @@ Other parts use this one by the names that stand here.
 """
 
 from lithobrake.dem.bodies.material import Material
+from lithobrake.dem.bodies.period import folded, period_of
 from lithobrake.dem.bodies.rigid_body import checked_inertia
 from lithobrake.dem.bodies.shape import Box, ConvexHull, Shape, Sphere, equivalent_radius
 from lithobrake.dem.law.material_pair import pair_law
@@ -14,5 +15,5 @@ from lithobrake.dem.world import StepTooLargeError, World
 
 __all__ = [
     "BodyMotion", "Box", "ConvexHull", "Material", "Shape", "Sphere", "StepTooLargeError", "World", "checked_inertia",
-    "contact_duration", "equivalent_radius", "pair_law", "rotation_matrices",
+    "contact_duration", "equivalent_radius", "folded", "pair_law", "period_of", "rotation_matrices",
 ]  # fmt: skip

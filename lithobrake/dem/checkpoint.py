@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from lithobrake.dem.bodies.arrays import Step
+from lithobrake.dem.bodies.arrays import Period, Step
 from lithobrake.dem.bodies.material import Material
 from lithobrake.dem.bodies.rigid_body import Plane, RigidBody
 from lithobrake.dem.bodies.shape import Box, ConvexHull, Shape, Sphere
@@ -16,7 +16,7 @@ from lithobrake.dem.stepping.engine import MOVING, Engine
 from lithobrake.dem.world_state import WorldState
 from lithobrake.files.atomic import atomic_path
 
-FORMAT_VERSION = 5
+FORMAT_VERSION = 6
 
 
 def _shape_text(shape: Shape) -> str:
@@ -46,6 +46,7 @@ def write_checkpoint(path: str | os.PathLike[str], state: WorldState, step: Step
         file.attrs["materials"] = json.dumps([asdict(material) for material in materials])
         file.attrs["options"], file.attrs["clock"] = json.dumps(state.options), json.dumps(clock)
         file.attrs["drag"], file.attrs["watched"], file.attrs["skin"] = step.drag, state.watched, engine.skin
+        file.attrs["period"] = state.period
         file["gravity"], file["lost"], file["watch_record"] = step.gravity, state.lost, state.watch_record
         file["body/shape"] = shape_numbers(state.bodies, shapes)
         file["body/material"] = material_numbers(state.bodies, materials)
@@ -74,7 +75,7 @@ def read_checkpoint(path: str | os.PathLike[str]) -> tuple[WorldState, Step, dic
         data: dict[str, Any] = {}
         file.visititems(lambda name, item: data.update({name: item[()]}) if isinstance(item, h5py.Dataset) else None)
         attributes = dict(file.attrs)
-    state = WorldState(json.loads(attributes["options"]))
+    state = WorldState(json.loads(attributes["options"]), Period(*attributes["period"].tolist()))
     _add_members(state, data, attributes)
     state.watched, state.watch_record = int(attributes["watched"]), data["watch_record"]
     state.motion = {name: data[f"body/{name}"].copy() for name in state.motion}

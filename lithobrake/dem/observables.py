@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from lithobrake.dem import energy
 from lithobrake.dem.bodies.arrays import Floats, Pairs, Step
+from lithobrake.dem.bodies.period import NO_PERIOD
 from lithobrake.dem.bodies.rigid_body import Plane, RigidBody, vector
 from lithobrake.dem.stepping.engine import Engine
 from lithobrake.dem.stepping.stability import largest_step
@@ -74,6 +75,12 @@ class Observables:
 
     def _read(self) -> Engine:
         return self._state.read(self._step(0.0))
+
+    @property
+    def period(self) -> tuple[float, float] | None:
+        """Lengths along x and y after which the world repeats [m]; None where it does not."""
+        period = self._state.period
+        return None if period == NO_PERIOD else (period.x, period.y)
 
     @property
     def bodies(self) -> list[RigidBody]:
@@ -146,7 +153,8 @@ class Observables:
     def contacts(self) -> NDArray[Any]:
         """Return the contacts (overlap > 0), a structured array.
 
-        body_a, body_b (plane k is -1 - k), point [m], normal from a to b, overlap [m], normal_force [N],
+        body_a, body_b (plane k is -1 - k), point [m] (where a is; in a world with a period b may be there by an image
+        of it), normal from a to b, overlap [m], normal_force [N],
         tangential_force on b [N, 3].
         """
         return contacts_of(self._read().pairs)

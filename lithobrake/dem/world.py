@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from lithobrake.dem.bodies.arrays import Floats
 from lithobrake.dem.bodies.material import Material
+from lithobrake.dem.bodies.period import period_of, refuse_tilted_plane
 from lithobrake.dem.bodies.rigid_body import Plane, new_body, rows, uniform_bodies, unit, units, vector
 from lithobrake.dem.bodies.shape import Shape
 from lithobrake.dem.checkpoint import read_checkpoint, write_checkpoint
@@ -34,7 +35,9 @@ class World(Observables):
     gravity [m/s2], shape [3]. time_step [s]; None: a fiftieth of the shortest contact that the speeds at hand can
     make. shear_modulus_rule "mindlin" or "paper" ([Landings-PCE], Eq 8 as printed); damping_mass "contact" (the mass
     seen at the contact point) or "paper" (the reduced mass); pair_rule "smaller", "mean" or "geometric" for
-    restitution, frictions and cohesion of two materials. What is read of a world: observables.py.
+    restitution, frictions and cohesion of two materials. period [m], along x and y: what happens at a place happens at
+    every image of it, one period on; positions are not wrapped, and planes are level. None: the world does not repeat.
+    What is read of a world: observables.py.
     """
 
     def __init__(
@@ -45,11 +48,12 @@ class World(Observables):
         shear_modulus_rule: str = "mindlin",
         damping_mass: str = "contact",
         pair_rule: str = "smaller",
+        period: Sequence[float] | None = None,
     ) -> None:
         options = contact_options(shear_modulus_rule, damping_mass, pair_rule)
         if time_step is not None:
             checked_step(time_step, "a finite value above 0, or None")
-        super().__init__(WorldState(options), gravity)
+        super().__init__(WorldState(options, period_of(period)), gravity)
         self._clock = Clock(0.0, time_step, time_step)
 
     # --- what is in it -------------------------------------------------------------------------------------------
@@ -111,11 +115,12 @@ class World(Observables):
         bodies: Iterable[int] | None = None,
     ) -> int:
         """Add a half-space of matter behind a plane; `normal` points out of it. It meets the bodies listed, or all."""
-        place = vector(point, "add_plane point")
+        place, outward = vector(point, "add_plane point"), unit(normal, "add_plane normal")
+        refuse_tilted_plane(self._state.period, outward)
         meets = None if bodies is None else frozenset(bodies)
         self._state.disassemble()
         self._clock.choose_anew()
-        self.planes.append(Plane(place, unit(normal, "add_plane normal"), material, meets))
+        self.planes.append(Plane(place, outward, material, meets))
         return len(self.planes) - 1
 
     def move_plane(
@@ -296,6 +301,6 @@ class World(Observables):
     def load(path: str | os.PathLike[str]) -> "World":
         """Read a world that `save` wrote. Raises ValueError where the file is not one."""
         state, step, clock = read_checkpoint(path)
-        world = World(step.gravity, None, **state.options)
+        world = World(step.gravity, None, period=None, **state.options)
         world._state, world._clock, world.drag = state, Clock(**clock), step.drag
         return world

@@ -5,7 +5,7 @@ The engine advances `motion` in place, so what a person reads of it needs no eng
 
 import numpy as np
 
-from lithobrake.dem.bodies.arrays import LOSSES, Floats, Pairs, Step
+from lithobrake.dem.bodies.arrays import LOSSES, Floats, Pairs, Period, Step
 from lithobrake.dem.bodies.motion import write_spins
 from lithobrake.dem.bodies.rigid_body import Plane, RigidBody
 from lithobrake.dem.local_stepping.local_engine import LocalEngine, Setting
@@ -20,8 +20,8 @@ NOTHING_WATCHED = -1
 class WorldState:
     """Everything that the next step of a world depends on, but gravity, drag and time step."""
 
-    def __init__(self, options: dict[str, str]) -> None:
-        self.options = options
+    def __init__(self, options: dict[str, str], period: Period) -> None:
+        self.options, self.period = options, period
         self.bodies: list[RigidBody] = []
         self.planes: list[Plane] = []
         # Position [m], velocity [m/s], quaternion (body to world) and angular momentum [kg m2/s], [body_count, 3 or 4].
@@ -90,7 +90,8 @@ class WorldState:
 
     def _new_engine(self, motion: dict[str, Floats], pairs: Pairs, lost: Floats) -> Engine:
         return Engine(
-            self.bodies, self.planes, self.options, motion, pairs, lost, self.watch_record, self.thread_count
+            self.bodies, self.planes, self.options, motion, pairs, lost, self.watch_record, self.thread_count,
+            self.period,
         )  # fmt: skip
 
     def stepping_locally(self, setting: Setting, time: float) -> LocalEngine:

@@ -68,6 +68,9 @@ class RunResults:
     in a sentence; else null"""
     over_rim: int
     """of those that left: runs that crossed the edge of the bed in flight, touching nothing and going up"""
+    farther_than_period: int | None
+    """runs in which the lander travelled farther in contact than the bed's period, over ground that it may have
+    disturbed; null where beds have walls"""
     side_runs: SideRuns | None
     """null without design.side_runs"""
 

@@ -56,12 +56,16 @@ class PowerLaw(Section):
 
 
 class BedSection(Section):
-    """The surface: grains are convex hulls of random clouds of points, poured into an open box and settled."""
+    """The surface: grains are convex hulls of random clouds of points, poured on a floor and settled."""
 
     grain_count: Annotated[int, Whole("", at_least=10, at_most=1_000_000)] = Field(examples=["150"])
     """How many grains."""
     width: Annotated[tuple[float, float], Numbers("m", count=2, above=0)] = Field(examples=["[0.55, 0.55]"])
-    """Inner width of the box along x and y; at least twice the lander's largest diameter."""
+    """Width along x and y, between the walls or until the ground repeats; at least twice the lander's largest
+    diameter."""
+    sides: Literal["walls", "periodic"] = "walls"
+    """What is beyond the width: "walls", an open box, whose rim a lander may leave over; or "periodic", the same ground
+    again, so that nothing is lost sideways, and a lander that goes farther meets ground that it has disturbed."""
     diameter: Annotated[Constant | Between | Bell | PowerLaw, Field(discriminator="distribution")] = Field(
         examples=['{ distribution = "constant", value = 0.08 }']
     )

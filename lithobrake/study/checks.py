@@ -13,7 +13,7 @@ from lithobrake.study.bed_section import Bell, Between, Constant, PowerLaw
 from lithobrake.study.body_checks import body_problems
 from lithobrake.study.contact_checks import contact_problems, inertia_problems, size_problems
 from lithobrake.study.design_checks import design_problems
-from lithobrake.study.quantity import reach
+from lithobrake.study.quantity import reach, usual_reach
 from lithobrake.study.study import Study
 from lithobrake.vocabulary.plain_text import show
 
@@ -25,6 +25,10 @@ LONGEST_QUATERNION = 1e3
 NAME = r"[\w-]+"
 # Fewer grains across are no bed.
 BED_WIDTH_PER_GRAIN = 3.0
+# Largest grains in which a bed has to repeat: alone, and on both sides of the lander; so that no two meet through two
+# images (dem/bodies/period.py), with the longest of 2000 grains of 14 points, 1.25 diameters from its centroid.
+PERIOD_PER_GRAIN, PERIOD_BESIDE_LANDER = 5.5, 3.2
+TWO_IMAGES = 'as with bed.sides = "periodic" nothing may meet another through two images'
 # The largest grain of a bed over its smallest.
 WIDEST_SIZES = 1000.0
 
@@ -56,9 +60,22 @@ def _arrival_problems(study: Study) -> Iterator[str]:
 def _touchdown_problems(study: Study) -> Iterator[str]:
     if study.has_soil:
         yield from contact_problems(study)
+        yield from _slope_problems(study)
     gravity = study.surface.gravity
     if not isinstance(gravity, str):
         yield from settling_problems(study, reach(gravity)[0])
+
+
+def _slope_problems(study: Study) -> Iterator[str]:
+    """A bed without walls on a slope on which its floor does not hold it."""
+    steepest, friction = usual_reach(study.surface.slope_deg)[1], usual_reach(study.grain.friction)[0]
+    least = math.tan(math.radians(steepest))
+    if study.bed.sides == "periodic" and friction <= least:
+        yield (
+            f"surface.slope_deg reaches to {steepest:g} and grain.friction down to {friction:g}; allowed with "
+            f'bed.sides = "periodic" is friction above the tangent of the slope, {least:.3g}, as such a bed slides off '
+            'its floor otherwise; raise grain.friction, lower the slope, or set bed.sides = "walls"'
+        )
 
 
 def settling_problems(study: Study, gravity: float) -> Iterator[str]:
@@ -71,8 +88,7 @@ def settling_problems(study: Study, gravity: float) -> Iterator[str]:
 
 
 def _grain_problems(study: Study) -> Iterator[str]:
-    sizes = study.bed.diameter.model_dump()
-    largest = sizes["upper"] if "upper" in sizes else sizes["value"]
+    sizes, largest = study.bed.diameter.model_dump(), largest_diameter(study)
     if sizes.get("lower", 0) >= largest:
         yield f"bed.diameter reaches from {sizes['lower']:g} to {largest:g} m; allowed: lower below upper; swap them"
     elif sizes.get("lower", largest) < largest / WIDEST_SIZES:
@@ -81,13 +97,21 @@ def _grain_problems(study: Study) -> Iterator[str]:
             f"{1 / WIDEST_SIZES:g} of upper, as no bed of so unlike grains is settled; raise lower"
         )
     yield from _distribution_problems(study.bed.diameter)
-    limit = min(study.bed.width) / BED_WIDTH_PER_GRAIN
+    repeats = study.bed.sides == "periodic"
+    limit = min(study.bed.width) / (PERIOD_PER_GRAIN if repeats else BED_WIDTH_PER_GRAIN)
     # A grain of exactly a third may not fail by the rounding of the division.
     if largest > limit * (1 + 1e-12):
+        part = f'bed.width over {PERIOD_PER_GRAIN:g} with bed.sides = "periodic"' if repeats else "a third of bed.width"
         yield (
-            f"bed.diameter reaches to {largest:g} m; allowed: at most {limit:.3g} m, a third of bed.width; "
+            f"bed.diameter reaches to {largest:g} m; allowed: at most {limit:.3g} m, {part}; "
             "widen the bed or take smaller grains"
         )
+
+
+def largest_diameter(study: Study) -> float:
+    """Largest diameter that a grain can have [m], of the sphere of equal volume."""
+    sizes = study.bed.diameter
+    return sizes.value if isinstance(sizes, Constant) else sizes.upper
 
 
 def _distribution_problems(sizes: Constant | Between | Bell | PowerLaw) -> Iterator[str]:
@@ -150,11 +174,14 @@ def _shape_problems(study: Study) -> Iterator[str]:
         return
     yield from size_problems(study, radius)
     width, unit = min(study.bed.width), f', or name the unit of lander.file (lander.unit is "{lander.unit}")'
-    if width < BED_WIDTH_PER_LANDER * 2 * radius:
+    least, why = BED_WIDTH_PER_LANDER * 2 * radius, f"twice the largest diameter of the lander ({2 * radius:.3g} m)"
+    images = 2 * radius + PERIOD_BESIDE_LANDER * largest_diameter(study)
+    if study.bed.sides == "periodic" and images > least:
+        least, why = images, f"the lander's largest diameter and {PERIOD_BESIDE_LANDER:g} of the grains', {TWO_IMAGES}"
+    if width < least:
         yield (
-            f"bed.width is {width:g} m at its narrowest; allowed: at least {BED_WIDTH_PER_LANDER * 2 * radius:.3g} m, "
-            f"twice the largest diameter of the lander ({2 * radius:.3g} m); widen the bed and add grains"
-            f"{unit if lander.file else ''}"
+            f"bed.width is {width:g} m at its narrowest; allowed: at least {least:.3g} m, {why}; widen the bed and add "
+            f"grains{unit if lander.file else ''}"
         )
 
 

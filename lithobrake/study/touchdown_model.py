@@ -73,6 +73,7 @@ STUDY_WORDS = {
     "World time_step": "the time step (a contact has contact.steps_per_contact of them)",
     ": make it smaller": ": raise contact.steps_per_contact",
     "positions are no longer finite numbers": "positions are no longer finite numbers; raise contact.steps_per_contact",
+    "World period is": 'bed.width with bed.sides = "periodic" is',
     "BedRecipe.gravity": "surface.gravity with surface.slope_deg",
     "BedRecipe.": "bed.",
     "Landing.incidence": "impact.incidence_deg, in radians,",

@@ -1,4 +1,4 @@
-"""A settled bed of grains in an open box, and its file."""
+"""A settled bed of grains, in an open box or on ground that repeats, and its file."""
 
 import itertools
 import os
@@ -15,7 +15,9 @@ from lithobrake.files.reading import reading
 from lithobrake.vocabulary.quantities import describe
 
 Floats = NDArray[np.float64]
-FORMAT_VERSION = 1
+FORMAT_VERSION = 2
+# A bed ends at the walls of a box, or goes on with its own image on every side.
+SIDES = ("walls", "periodic")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -52,19 +54,23 @@ class ContactModel:
                 '"local" only: change either'
             )
 
-    def world(self, gravity: tuple[float, float, float]) -> World:
-        """Return an empty world under these options."""
+    def world(self, gravity: tuple[float, float, float], period: tuple[float, float] | None = None) -> World:
+        """Return an empty world under these options; period [m]: see World."""
         return World(
             gravity,
             shear_modulus_rule=self.shear_modulus_rule,
             damping_mass=self.damping_mass,
             pair_rule=self.pair_rule,
+            period=period,
         )
 
 
 @dataclass(frozen=True, eq=False)
 class Bed:
-    """Grains at rest in a box that is open at the top: inner walls at +-width/2, floor at z = 0.
+    """Grains at rest on a floor at z = 0: in a box that is open at the top, or on ground that repeats.
+
+    sides "walls": inner walls at +-width/2. sides "periodic": ground that repeats after each width, with the centroids
+    of its grains within +-width/2; those of `frames` may have gone farther.
 
     frames holds "time" [s, frame_count], "position" [m, frame_count, grain_count, 3] and "orientation"
     [frame_count, grain_count, 4] of the pouring; history holds "time", "kinetic_ratio", "unbalanced_force", "gravity".
@@ -84,6 +90,7 @@ class Bed:
     surface_top: float  # m, highest point of a grain
     solid_fraction: float
     coordination_number: float
+    sides: str = "walls"
     frames: dict[str, Floats] = field(default_factory=dict)
     history: dict[str, Floats] = field(default_factory=dict)
 
@@ -99,9 +106,16 @@ class Bed:
         elastic = self.world(unit, self.gravity, ContactModel()).energy()["elastic"]
         return elastic / pair_law(unit, unit).young_modulus
 
+    @property
+    def period(self) -> tuple[float, float] | None:
+        """Lengths after which the ground repeats along x and y [m]; None in a box."""
+        return self.width if self.sides == "periodic" else None
+
     def world(self, material: Material, gravity: tuple[float, float, float], contact: ContactModel) -> World:
-        """Return a world with these grains at rest, of a material, in their box of the same material."""
-        return boxed_world(self.grains, self.position, self.orientation, self.width, material, gravity, contact)
+        """Return a world with these grains at rest, of a material, on a floor and in a box of the same material."""
+        return boxed_world(
+            self.grains, self.position, self.orientation, self.width, material, gravity, contact, self.sides
+        )
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the bed to an HDF5 file, whole or not at all."""
@@ -116,7 +130,7 @@ class Bed:
                     file[f"{group}/{name}"] = values
             describe(file)
             file.attrs["format"], file.attrs["format_version"] = "lithobrake bed", FORMAT_VERSION
-            for name in SCALARS:
+            for name in (*SCALARS, "sides"):
                 file.attrs[name] = getattr(self, name)
 
     @staticmethod
@@ -131,6 +145,8 @@ class Bed:
             if lacking:
                 raise ValueError(f"it does not say what its {lacking[0]} is, as older beds do not")
             scalars = {name: plain(file.attrs[name]) for name in SCALARS}
+            # A bed of version 1 has walls.
+            scalars["sides"] = str(file.attrs.get("sides", "walls"))
             groups: dict[str, Any] = {g: {n: file[g][n][()] for n in file.get(g, {})} for g in ("frames", "history")}
             arrays: dict[str, Any] = {name: file[name][()] for name in ("position", "orientation", "diameter")}
             return Bed(grains=read_hulls(file), **arrays, **groups, **scalars)
@@ -163,12 +179,17 @@ def read_hulls(file: Any) -> list[ConvexHull]:
 
 def boxed_world(
     grains: list[ConvexHull], position: Floats, orientation: Floats, width: tuple[float, float], material: Material,
-    gravity: tuple[float, float, float], contact: ContactModel,
+    gravity: tuple[float, float, float], contact: ContactModel, sides: str = "walls",
 ) -> World:  # fmt: skip
-    """Return a world of grains at rest in an open box. The floor stops everything, the walls only the grains."""
-    world = contact.world(gravity)
+    """Return a world of grains at rest on a floor, in an open box or repeating after each width, see Bed.
+
+    The floor stops everything, the walls only the grains.
+    """
+    world = contact.world(gravity, width if sides == "periodic" else None)
     numbers = world.add_bodies(grains, material, position, orientation)
     world.add_plane((0.0, 0.0, 0.0), (0.0, 0.0, 1.0), material)
+    if sides == "periodic":
+        return world
     for axis in (0, 1):
         for sign in (-1.0, 1.0):
             point, normal = np.zeros(3), np.zeros(3)

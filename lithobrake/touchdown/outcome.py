@@ -28,6 +28,8 @@ SPHERE_PICTURE_POINTS = 200
 class Outcome:
     """How it ended, and its outputs: the keys OUTPUTS (SI); those of LEAVING are NaN unless the lander is clear.
 
+    On ground that repeats there is "periods_travelled" too.
+
     frames holds "time" [s, frame_count], "position" [m, frame_count, body_count, 3], "orientation", and "force", the
     size of the sum of the contact forces on each body [N, frame_count, body_count]; the last body is the lander.
     """

@@ -12,6 +12,7 @@ from lithobrake.touchdown.landing import Landing
 from lithobrake.touchdown.outcome import LEAVING, Outcome, outgoing
 from lithobrake.touchdown.surface import rotation_matrix
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
+from lithobrake.vocabulary.quantities import PERIODS_TRAVELLED
 
 Floats = NDArray[np.float64]
 CAPTURED_ENERGY = 1e-4  # of the energy of impact
@@ -42,6 +43,7 @@ class OutcomeJudge:
         self.lowest = self.last_height = self.height()
         self.last_time = world.time
         self.still_since: float | None = None
+        self.path = self.path_in_contact = 0.0  # m, horizontal, since the first touch and until the last
         self.frame_count, self.stride, self.looks = frame_count, 1, 0
         self.frames: list[dict[str, Floats]] = []
         self.keep_frame()
@@ -66,10 +68,22 @@ class OutcomeJudge:
         if first_touch is not None and self.height_at_contact is None:
             # It flew freely since the last look.
             self.height_at_contact = self.last_height + float(before.velocity[2]) * (first_touch - self.last_time)
+        self.follow(before.position)
         self.lowest, self.last_height, self.last_time = min(self.lowest, height), height, self.world.time
         self.looks += 1
         self.keep_frame()
         self.ended = self.judge(height, first_touch is not None)
+
+    def follow(self, before: Floats) -> None:
+        """Follow the horizontal path on ground that repeats: since the first touch, and as far as the last.
+
+        before: position at the last look [m].
+        """
+        if self.bed.period is None or self.world.first_touch is None:
+            return
+        self.path += math.hypot(*(self.motion.position - before)[:2])
+        if self.world.watched["last_contact"] > self.last_time:
+            self.path_in_contact = self.path
 
     def judge(self, height: float, has_touched: bool) -> TouchdownOutcome | None:
         """Return how the touchdown ended, or None while it is open."""
@@ -77,7 +91,8 @@ class OutcomeJudge:
         free, energy = not world.is_touched, self.motion.kinetic_energy if has_touched else math.inf
         flies, outward = has_touched and free, bool(velocity[2] > 0.0)
         held = energy < self.lander.mass * capture_lift(self.lander, -world.gravity[2])
-        if abs(position[0]) > 0.5 * self.bed.width[0] or abs(position[1]) > 0.5 * self.bed.width[1]:
+        width = self.bed.width
+        if self.bed.period is None and (abs(position[0]) > 0.5 * width[0] or abs(position[1]) > 0.5 * width[1]):
             # Soil as it lies in the bed would go on there: what flies up has left it, of anything else nobody knows.
             self.over_rim = flies and outward and not held
             return TouchdownOutcome.CLEAR if self.over_rim else TouchdownOutcome.LEFT_SIDEWAYS
@@ -119,6 +134,8 @@ class OutcomeJudge:
         outputs["penetration"] = 0.0 if self.height_at_contact is None else self.height_at_contact - self.lowest
         outputs["peak_acceleration"] = world.watched["peak_force"] / self.lander.mass
         outputs["energy_lost"] = self.start_energy - motion.kinetic_energy
+        if self.bed.period is not None:
+            outputs[PERIODS_TRAVELLED] = self.path_in_contact / min(self.bed.period)
         frames = None
         if self.frame_count:
             frames = {name: np.array([frame[name] for frame in self.frames]) for name in self.frames[0]}

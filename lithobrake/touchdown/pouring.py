@@ -1,4 +1,4 @@
-"""Making a bed: grains rain into an open box under a strong gravity, which is then lowered to the local one."""
+"""Making a bed: grains rain on a floor under a strong gravity, which is then lowered to the local one."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -6,9 +6,9 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from lithobrake.dem import ConvexHull, Material, Shape, World
+from lithobrake.dem import ConvexHull, Material, Shape, World, folded, period_of
 from lithobrake.touchdown import settling
-from lithobrake.touchdown.bed import Bed, ContactModel, Floats, boxed_world
+from lithobrake.touchdown.bed import SIDES, Bed, ContactModel, Floats, boxed_world
 from lithobrake.touchdown.grains import GrainSizes, make_grain, random_orientation
 from lithobrake.touchdown.surface import height_map
 
@@ -38,17 +38,24 @@ class BedRecipe:
     grain_count: int
     sizes: GrainSizes
     cloud_point_count: int
-    width: tuple[float, float]  # m, inner width of the box along x and y
+    width: tuple[float, float]  # m, along x and y, between the walls or until the ground repeats
     material: Material
     gravity: tuple[float, float, float]  # m/s2, it settles under this; z up is normal to the mean surface
     pour_gravity: float  # m/s2, it falls under this, along -z
     seed: int
     contact: ContactModel = field(default_factory=ContactModel)
+    sides: str = "walls"  # or "periodic", see Bed
+
+    @property
+    def period(self) -> tuple[float, float] | None:
+        """Lengths after which the ground repeats along x and y [m]; None in a box."""
+        return self.width if self.sides == "periodic" else None
 
     def __post_init__(self) -> None:
         strength = math.sqrt(sum(g * g for g in self.gravity))
         for name, fine, allowed in (
             ("grain_count", self.grain_count >= 1, "at least 1"),
+            ("sides", self.sides in SIDES, " or ".join(f'"{word}"' for word in SIDES)),
             ("cloud_point_count", self.cloud_point_count >= 4, "at least 4"),
             ("width", min(self.width) >= 2.0 * self.sizes.upper, f"at least two grains, {2.0 * self.sizes.upper:g} m"),
             ("gravity", self.gravity[2] < 0.0 < strength < math.inf, "a finite vector that points down (z < 0)"),
@@ -83,7 +90,7 @@ class Recorder:
 
 
 def pour_bed(recipe: BedRecipe, progress: Progress | None = None) -> Bed:
-    """Pour grains into a box and let them settle under the local gravity; pour others where one of them creeps on.
+    """Pour grains on a floor and let them settle under the local gravity; pour others where one of them creeps on.
 
     Raises ValueError where the bed does not come to rest.
     """
@@ -102,22 +109,26 @@ def pour_bed(recipe: BedRecipe, progress: Progress | None = None) -> Bed:
 def _poured(recipe: BedRecipe, generator: np.random.Generator, tell: Progress) -> Bed:
     diameter = recipe.sizes.draw(generator.random(recipe.grain_count))
     grains = [make_grain(generator, recipe.cloud_point_count, d) for d in diameter]
-    position, orientation = rain(generator, grains, recipe.width)
+    position, orientation = rain(generator, grains, recipe.width, recipe.period)
     down = (0.0, 0.0, -recipe.pour_gravity)
-    world = boxed_world(grains, position, orientation, recipe.width, recipe.material, down, recipe.contact)
+    frame = recipe.width, recipe.material, down, recipe.contact, recipe.sides
+    world = boxed_world(grains, position, orientation, *frame)
     recorder = Recorder(float(diameter.mean()))
     settling_material = replace(recipe.material, restitution=max(SETTLING_RESTITUTION, recipe.material.restitution))
 
     def at_rest(material: Material, gravity: Vector) -> World:
         """Return the grains where they are, at rest, without a history."""
-        other = boxed_world(grains, world.position, world.orientation, recipe.width, material, gravity, recipe.contact)
+        frame = recipe.width, material, gravity, recipe.contact, recipe.sides
+        other = boxed_world(grains, world.position, world.orientation, *frame)
         other.time = world.time
         return other
 
     fall(world, recorder, recipe, tell)
     world = at_rest(settling_material, down)
     lie(world, recorder, recipe, tell)
-    world = at_rest(replace(settling_material, friction=0.0), recipe.gravity)
+    # Without friction and walls, nothing would hold a bed on a slope.
+    inward = (0.0, 0.0, recipe.gravity[2])
+    world = at_rest(replace(settling_material, friction=0.0), recipe.gravity if recipe.period is None else inward)
     loosen(world, recorder, recipe, tell)
     world = at_rest(settling_material, recipe.gravity)
     lower(world, recorder, recipe, lambda done: tell(0.7 + 0.15 * done, "letting loose grains fall"))
@@ -125,32 +136,38 @@ def _poured(recipe: BedRecipe, generator: np.random.Generator, tell: Progress) -
     return finished(world, recorder, recipe, grains, diameter)
 
 
-def rain(generator: np.random.Generator, grains: Sequence[Shape], width: tuple[float, float]) -> tuple[Floats, Floats]:
-    """Return positions and orientations of grains in a column above the box, none touching.
+def rain(
+    generator: np.random.Generator, grains: Sequence[Shape], width: tuple[float, float],
+    period: tuple[float, float] | None = None,
+) -> tuple[Floats, Floats]:  # fmt: skip
+    """Return positions and orientations of grains in a column above the bed, none touching.
 
     Each comes to lie as deep as its bounding sphere gets, over those before it, at the best of a few random places.
+    period [m]: after which the ground repeats; None: in a box, which holds the bounding spheres.
     """
     reach = np.array([grain.bounding_radius for grain in grains])
     largest = float(reach.max())
     position = np.zeros((len(grains), 3))
     for k, radius in enumerate(reach):
-        slack = np.maximum(0.5 * np.array(width) - radius, 0.0)
+        slack = np.maximum(0.5 * np.array(width) - (radius if period is None else 0.0), 0.0)
         places = slack * generator.uniform(-1.0, 1.0, size=(RAIN_PLACES, 2))
         ground = position[:k, 2].max(initial=0.0) - RAIN_DEPTH * largest
         upper = position[:k, 2] > ground
-        heights = lying_heights(places, radius, position[:k][upper], reach[:k][upper])
+        heights = lying_heights(places, radius, position[:k][upper], reach[:k][upper], period)
         if heights.min() < ground + 2.0 * largest:
             # So low that those below the ground might count.
-            heights = lying_heights(places, radius, position[:k], reach[:k])
+            heights = lying_heights(places, radius, position[:k], reach[:k], period)
         best = int(heights.argmin())
         position[k] = *places[best], heights[best]
     return position, np.array([random_orientation(generator) for _ in grains])
 
 
-def lying_heights(places: Floats, radius: float, position: Floats, reach: Floats) -> Floats:
+def lying_heights(
+    places: Floats, radius: float, position: Floats, reach: Floats, period: tuple[float, float] | None = None
+) -> Floats:
     """Return how high [m] a sphere comes to lie at places [count, 2], on the floor or on the first sphere below it."""
     touching = radius + reach
-    beside = ((places[:, None, :] - position[:, :2]) ** 2).sum(axis=2)
+    beside = (folded(places[:, None, :] - position[:, :2], period_of(period)) ** 2).sum(axis=2)
     over = np.sqrt(np.maximum(touching**2 - beside, 0.0))
     heights: Floats = np.where(beside < touching**2, position[:, 2] + over, radius).max(axis=1, initial=radius)
     return heights
@@ -255,7 +272,8 @@ def settle(
 
 def finished(world: World, recorder: Recorder, recipe: BedRecipe, grains: list[ConvexHull], diameter: Floats) -> Bed:
     """Return the bed at rest."""
-    heights = height_map(grains, world.position, world.orientation, recipe.width)
+    position = folded(world.position, period_of(recipe.period))
+    heights = height_map(grains, position, world.orientation, recipe.width, recipe.period)
     contacts = world.contacts()
     area = recipe.width[0] * recipe.width[1]
     frames = {
@@ -265,11 +283,11 @@ def finished(world: World, recorder: Recorder, recipe: BedRecipe, grains: list[C
     }
     names = ("time", "kinetic_ratio", "unbalanced_force", "gravity")
     return Bed(
-        grains=grains, position=world.position, orientation=world.orientation, diameter=diameter, width=recipe.width,
+        grains=grains, position=position, orientation=world.orientation, diameter=diameter, width=recipe.width,
         gravity=recipe.gravity, density=recipe.material.density, young_modulus=recipe.material.young_modulus,
         poisson_ratio=recipe.material.poisson_ratio, seed=recipe.seed,
         surface_height=float(heights.mean()), surface_top=float(heights.max()),
         solid_fraction=sum(grain.volume for grain in grains) / (area * float(heights.mean())),
-        coordination_number=2.0 * int((contacts["body_b"] >= 0).sum()) / len(grains),
+        coordination_number=2.0 * int((contacts["body_b"] >= 0).sum()) / len(grains), sides=recipe.sides,
         frames=frames, history=dict(zip(names, np.array(recorder.rows).T, strict=True)),
     )  # fmt: skip

@@ -7,7 +7,7 @@ from itertools import count
 
 import numpy as np
 
-from lithobrake.dem import BodyMotion, Material, World, pair_law
+from lithobrake.dem import BodyMotion, Material, World, folded, pair_law, period_of
 from lithobrake.touchdown import settling
 from lithobrake.touchdown.bed import Bed
 from lithobrake.touchdown.lander import Lander
@@ -40,7 +40,7 @@ def land(
     Raises ValueError where bed and landing do not fit and where the lander goes through the floor, FloatingPointError
     where the motion diverged.
     """
-    if max(abs(landing.place[0]) / bed.width[0], abs(landing.place[1]) / bed.width[1]) >= 0.5:
+    if bed.period is None and max(abs(at) / across for at, across in zip(landing.place, bed.width, strict=True)) >= 0.5:
         raise ValueError(f"Landing.place is {landing.place!r} m; allowed is inside the box of {bed.width} m: move it")
     if 2.0 * lander.shape.bounding_radius >= min(bed.width):
         raise ValueError(
@@ -154,7 +154,7 @@ def release(world: World, bed: Bed, lander: Lander, landing: Landing) -> int:
     """Put the lander just above every grain under its bounding circle, and return its number."""
     reach = lander.shape.bounding_radius
     place = np.array([*landing.place, 0.0])
-    below = np.linalg.norm(world.position[:, :2] - place[:2], axis=1)
+    below = np.linalg.norm(folded(world.position[:, :2] - place[:2], period_of(bed.period)), axis=1)
     top = 0.0
     for k, grain in enumerate(bed.grains):
         if below[k] < reach + grain.bounding_radius:

@@ -1,4 +1,4 @@
-"""The smallest bed whose walls and floor do not answer while the lander is being struck."""
+"""The smallest bed whose walls, or images, and floor do not answer while the lander is being struck."""
 
 import math
 
@@ -24,7 +24,8 @@ def smallest_bed(lander: Lander, rock: Material, diameter: float, speed: float) 
 
     The wave goes out with the first blow and must not be back before that blow, the Hertz collision of lander and
     grain, is over: the way to the floor and to a wall is at least half of wave speed times contact time, and the walls
-    stand clear of the lander by that much on both sides. Later blows meet a bed that is moving anyway.
+    stand clear of the lander by that much on both sides. Ground that repeats sends the wave of each image of the lander
+    instead of an echo, over the same way. Later blows meet a bed that is moving anyway.
     """
     grain = rock.density * math.pi / 6.0 * diameter**3
     mass = lander.mass * grain / (lander.mass + grain)

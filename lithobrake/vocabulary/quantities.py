@@ -37,13 +37,15 @@ class Quantity(NamedTuple):
 
 LOCAL = "of the touchdown: x along the incoming horizontal velocity, z along the outward normal"
 FIXED = "of the body, turning with it"
-BED = "of the bed: origin in the middle of the floor, x and y along the walls, z upward"
+BED = "of the bed: origin in the middle of the floor, x and y along its sides, z upward"
 HULL = "of each hull: origin at its centroid, turning with it"
 
 # How the lander turns and stands when it leaves, beside what is fitted; a program of the user's own may leave them out.
 SPIN_OUT = ("spin_out_x", "spin_out_y", "spin_out_z")
 ORIENTATION_OUT = ("orientation_out_w", "orientation_out_x", "orientation_out_y", "orientation_out_z")
 OVER_RIM = "over_rim"
+# Only on beds that repeat.
+PERIODS_TRAVELLED = "periods_travelled"
 
 TOUCHDOWN = {
     "speed_out": Quantity("m/s", "speed after the touchdown", LOCAL, "outgoing speed"),
@@ -65,6 +67,9 @@ TOUCHDOWN = {
     "penetration": Quantity("m", "largest depth of the lander below where it first touched"),
     "peak_acceleration": Quantity("m/s2", "largest acceleration of the lander by contacts"),
     "energy_lost": Quantity("J", "kinetic energy that the lander has lost"),
+    PERIODS_TRAVELLED: Quantity(
+        "", "horizontal path of the lander from its first to its last touch, over the shorter period of its bed"
+    ),
 }
 RUN = {
     "key": Quantity("", "key of the run in the ledger"),

@@ -231,6 +231,34 @@ def test_what_is_within_its_limits_is_accepted(changes: dict[str, Any]) -> None:
     assert problems(changes) == []
 
 
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        # 2 * 0.134 m of the lander and 3.2 * 0.09 m of the grains.
+        (
+            {"bed.width": [0.56, 0.55], "bed.diameter": table("constant", value=0.09)},
+            [
+                "bed.width is 0.55 m at its narrowest; allowed: at least 0.555 m",
+                "3.2 of the grains', as with bed",
+            ],
+        ),
+        (
+            {"bed.diameter": table("uniform", lower=0.08, upper=0.11)},
+            ["at most 0.1 m, bed.width over 5.5 with bed.sides"],
+        ),
+        (
+            {"surface.slope_deg": 40.0, "grain.friction": 0.8},
+            ["surface.slope_deg reaches to 40 and grain.friction down to 0.8", "above the tangent of the slope, 0.839"],
+        ),
+    ],
+)
+def test_ground_that_repeats_is_wide_enough_and_holds_on_its_slope(changes: dict[str, Any], words: list[str]) -> None:
+    said = "\n".join(problems({"bed.sides": "periodic", **changes}))
+    for word in words:
+        assert word in said
+    assert problems({"bed.sides": "periodic"}) == []
+
+
 def test_counts_must_reach_the_terms_of_least_squares_only() -> None:
     few = {**SOBOL, "design.screening_count": 20}
     (said,) = problems(few)

@@ -31,9 +31,19 @@ class Cores(NamedTuple):
     rounding: Floats  # [shape_count]
 
 
+class Period(NamedTuple):
+    """Lengths after which the world repeats along x and y, and one over them; all 0 where it does not."""
+
+    x: float  # m
+    y: float
+    inverse_x: float  # 1/m
+    inverse_y: float
+
+
 class Bodies(NamedTuple):
     """Per body; constants first, then what a step changes."""
 
+    period: Period
     shape: Integers  # [body_count]
     material: Integers  # [body_count]
     mass: Floats  # [body_count], kg
@@ -78,7 +88,7 @@ class Pairs(NamedTuple):
     wake: Floats  # [pair_count], m: its list of features serves until the travels of both add up to this
     overlap: Floats  # [pair_count], m, effective; 0 where apart
     normal: Floats  # [pair_count, 3], unit, from first to second
-    point: Floats  # [pair_count, 3], centre of pressure
+    point: Floats  # [pair_count, 3], centre of pressure, at the image of the first
     normal_force: Floats  # [pair_count], N, less cohesion
     elastic_force: Floats  # [pair_count], N, derivative of the elastic energy by the overlap
     cohesion: Floats  # [pair_count], N, the same of the cohesive energy

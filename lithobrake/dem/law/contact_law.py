@@ -8,6 +8,7 @@ Source: [Landings-PCE], Eqs 1 to 9, with the shear modulus of [Mindlin-1949].
 
 from lithobrake.compilation.compiled import kernel
 from lithobrake.dem.bodies.arrays import DAMPING, FRICTION, ROLLING, Bodies, Pairs, Reactions, Step
+from lithobrake.dem.bodies.period import way_between
 from lithobrake.dem.bodies.vectors import Vector, add, cross, dot, minus, plus, put, row, scaled
 from lithobrake.dem.law.contact_motion import relative_motion
 from lithobrake.dem.law.coulomb_friction import friction_force, resist_twisting
@@ -76,7 +77,7 @@ def hand_over(
     """
     first, second, second_torque = pairs.first[pair], pairs.second[pair], torque
     if second >= 0:
-        second_torque = minus(torque, cross(minus(row(bodies.position, second), row(bodies.position, first)), force))
+        second_torque = minus(torque, cross(way_between(bodies, first, second), force))
     if kept:
         put(reactions.force, pair, force)
         put(reactions.first_torque, pair, torque)

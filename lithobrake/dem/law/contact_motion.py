@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 from lithobrake.compilation.compiled import kernel
 from lithobrake.dem.bodies.arrays import Bodies, Floats
+from lithobrake.dem.bodies.period import arm_to
 from lithobrake.dem.bodies.vectors import Vector, cross, dot, minus, plus, row, scaled, times
 
 
@@ -63,7 +64,7 @@ def relative_motion(
     spin = scaled(-1.0, row(bodies.half_spin, first))
     twist = 0.5 * dot(row(bodies.half_spin, first), normal)
     if second >= 0:
-        arm = minus(point, row(bodies.position, second))
+        arm = arm_to(bodies, second, point)
         inverse_mass += inverse_mass_at(bodies, second, arm, normal, whole_mass)
         curvature += bodies.curvature[second]
         now = plus(now, point_velocity(bodies.velocity_predicted, bodies.spin_predicted, second, arm))

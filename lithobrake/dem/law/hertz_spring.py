@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 from lithobrake.compilation.compiled import kernel
 from lithobrake.dem.bodies.arrays import Bodies, Pairs
+from lithobrake.dem.bodies.period import arm_to
 from lithobrake.dem.bodies.vectors import Vector, cross, dot, minus, plus, row, scaled
 from lithobrake.dem.law.contact_motion import RelativeMotion, point_velocity
 from lithobrake.dem.law.material_pair import PairLaw
@@ -79,7 +80,7 @@ def normal_force(
         arm = minus(place, row(bodies.position, first))
         now = scaled(-1.0, point_velocity(bodies.velocity_predicted, bodies.spin_predicted, first, arm))
         if second >= 0:
-            other_arm = minus(place, row(bodies.position, second))
+            other_arm = arm_to(bodies, second, place)
             now = plus(now, point_velocity(bodies.velocity_predicted, bodies.spin_predicted, second, other_arm))
         speed = dot(now, outward)
         lever = cross(arm, outward)

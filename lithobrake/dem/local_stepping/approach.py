@@ -6,6 +6,7 @@ import numpy as np
 
 from lithobrake.compilation.compiled import kernel
 from lithobrake.dem.bodies.arrays import Bodies, Cores, Pairs, Planes
+from lithobrake.dem.bodies.period import way_between
 from lithobrake.dem.bodies.vectors import cross, dot, minus, plus, row, scaled, times
 from lithobrake.dem.local_stepping.free_flight import (
     Flight,
@@ -105,7 +106,7 @@ def approach_to_body(
 ) -> Approach:
     """Return the soonest of an approach and of the listed features of two bodies."""
     first, second = pairs.first[pair], pairs.second[pair]
-    apart = minus(row(bodies.position, second), row(bodies.position, first))
+    apart = way_between(bodies, first, second)
     between = minus(row(bodies.velocity, second), row(bodies.velocity, first))
     slack, left = flight.slack[first] + flight.slack[second], approach.gap
     if feature_kind(pairs.feature[pair, 0]) == SPHERES:

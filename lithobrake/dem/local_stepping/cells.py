@@ -21,11 +21,16 @@ MOST_CELLS = 8
 
 
 class Cells(NamedTuple):
-    """A grid of cells along the axes; what is beyond it stands in the cells at its border."""
+    """A grid of cells along the axes; what is beyond it stands in the cells at its border.
+
+    Where the world repeats, so do the cells: a whole number of them fills a period.
+    """
 
     corner: Floats  # [3], m
-    size: Floats  # [1], m, of a cell
+    size: Floats  # [3], m, of a cell
     numbers: Integers  # [3], cells along each axis
+    lowest: Floats  # [3], number of the first cell along each axis; where the world repeats, there is none
+    highest: Floats  # [3], number of the last; where the world repeats, there is none
     first: Integers  # [cells], first body in each, -1: none
     following: Integers  # [body_count], next body in the same cell, -1: none
     before: Integers  # [body_count], the one before, -1: none
@@ -38,16 +43,19 @@ class Cells(NamedTuple):
 def cells_of(bodies: Bodies, skin: float) -> Cells:
     """Return all bodies in their cells; skin [m]."""
     radius, n = bodies.bounding_radius, len(bodies.mass)
+    period = np.array([bodies.period.x, bodies.period.y, 0.0])
+    repeats = period > 0.0
     is_large = radius > LARGEST * np.median(radius)
     reach = float(radius[~is_large].max()) + 0.5 * skin
     size = 2.0 * reach
     corner = bodies.position.min(axis=0)
-    extent = bodies.position.max(axis=0) - corner
+    extent = np.where(repeats, period, bodies.position.max(axis=0) - corner)
     while np.prod(np.floor(extent / size) + 1.0) > MOST_CELLS * n:
         size *= 2.0
-    count = np.floor(extent / size).astype(np.int64) + 1
+    count = np.where(repeats, np.maximum(np.floor(extent / size), 1.0), np.floor(extent / size) + 1.0).astype(np.int64)
     cells = Cells(
-        corner, np.array([size]), count, np.full(int(np.prod(count)), -1), np.full(n, -1), np.full(n, -1),
+        corner, np.where(repeats, period / count, size), count, np.where(repeats, -np.inf, 0.0),
+        np.where(repeats, np.inf, count - 1.0), np.full(int(np.prod(count)), -1), np.full(n, -1), np.full(n, -1),
         np.where(is_large, -1, 0), np.flatnonzero(is_large), np.full(n, -1),
         np.array([reach]),
     )  # fmt: skip
@@ -65,12 +73,18 @@ def fill(bodies: Bodies, cells: Cells) -> None:
 
 @kernel
 def cell_along(cells: Cells, place: Vector) -> Place:
-    """Return the numbers along the axes of the cell in which a place [m] lies, or of the nearest to it."""
-    return (
-        int(min(max((place[0] - cells.corner[0]) / cells.size[0], 0.0), cells.numbers[0] - 1.0)),
-        int(min(max((place[1] - cells.corner[1]) / cells.size[0], 0.0), cells.numbers[1] - 1.0)),
-        int(min(max((place[2] - cells.corner[2]) / cells.size[0], 0.0), cells.numbers[2] - 1.0)),
-    )
+    """Return the numbers along the axes of the cell in which a place [m] lies, or of the nearest to it.
+
+    Where the world repeats, they count on from period to period.
+    """
+    return (number_along(cells, 0, place[0]), number_along(cells, 1, place[1]), number_along(cells, 2, place[2]))
+
+
+@kernel
+def number_along(cells: Cells, axis: int, along: float) -> int:
+    """Return the number of the cell at a coordinate [m], see cell_along."""
+    number = (along - cells.corner[axis]) / cells.size[axis]
+    return int(np.floor(min(max(number, cells.lowest[axis]), cells.highest[axis])))
 
 
 @kernel
@@ -81,8 +95,9 @@ def gather_near(cells: Cells, here: Vector, reach: float) -> int:
         cells.found[k] = cells.large[k]
     way = reach + cells.reach[0]
     low, high = cell_along(cells, minus(here, (way, way, way))), cell_along(cells, plus(here, (way, way, way)))
-    for i in range(low[0], high[0] + 1):
-        for j in range(low[1], high[1] + 1):
+    # At most once round, so that none is gathered twice.
+    for i in range(low[0], min(high[0], low[0] + cells.numbers[0] - 1) + 1):
+        for j in range(low[1], min(high[1], low[1] + cells.numbers[1] - 1) + 1):
             for k in range(low[2], high[2] + 1):
                 body = cells.first[number_of(cells, (i, j, k))]
                 while body >= 0:
@@ -95,7 +110,8 @@ def gather_near(cells: Cells, here: Vector, reach: float) -> int:
 @kernel
 def number_of(cells: Cells, place: Place) -> int:
     """Return the number of a cell by its numbers along the axes."""
-    return (place[0] * cells.numbers[1] + place[1]) * cells.numbers[2] + place[2]
+    i, j = place[0] % cells.numbers[0], place[1] % cells.numbers[1]
+    return (i * cells.numbers[1] + j) * cells.numbers[2] + place[2]
 
 
 @kernel

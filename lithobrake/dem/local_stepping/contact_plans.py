@@ -6,6 +6,7 @@ import numpy as np
 
 from lithobrake.compilation.compiled import kernel
 from lithobrake.dem.bodies.arrays import Bodies, Floats, Integers, Pairs
+from lithobrake.dem.bodies.period import arm_to
 from lithobrake.dem.bodies.vectors import Vector, cross, dot, minus, plus, put, row
 from lithobrake.dem.local_stepping.agenda import Agenda, put_on
 from lithobrake.dem.local_stepping.approach import Approach, closing_speed
@@ -90,7 +91,7 @@ def closing_velocity(pair: int, bodies: Bodies, pairs: Pairs, plans: Plans) -> V
     arm = minus(point, row(bodies.position, first))
     velocity = plus(row(bodies.velocity, first), cross(row(plans.spin[pair], 0), arm))
     if second >= 0:
-        arm = minus(point, row(bodies.position, second))
+        arm = arm_to(bodies, second, point)
         velocity = minus(velocity, plus(row(bodies.velocity, second), cross(row(plans.spin[pair], 1), arm)))
     return velocity
 

@@ -9,7 +9,8 @@ import numpy as np
 
 from lithobrake.compilation.compiled import kernel, large_kernel
 from lithobrake.dem.bodies.arrays import Bodies, Pairs, Reactions
-from lithobrake.dem.bodies.vectors import Vector, add, dot, minus, plus, put, row, scaled, times
+from lithobrake.dem.bodies.period import way_between
+from lithobrake.dem.bodies.vectors import Vector, add, dot, plus, put, row, scaled, times
 from lithobrake.dem.local_stepping.agenda import Agenda, put_on
 from lithobrake.dem.local_stepping.contact_plans import Plans, replan, touches
 from lithobrake.dem.local_stepping.free_flight import Flight, Rules, surface_speed
@@ -138,7 +139,7 @@ def hold_what_is_slow(
     """
     flight.fastest_held[0] = limit
     for body in range(len(bodies.mass)):
-        between = minus(row(bodies.position, body), row(bodies.position, watched))
+        between = way_between(bodies, watched, body)
         far = limit > 0.0 and dot(between, between) > reach * reach
         if flight.held[body]:
             if not far or is_stirred(bodies, flight, body):

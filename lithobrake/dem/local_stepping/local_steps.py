@@ -10,6 +10,7 @@ Source: [Lew-2003], asynchronous variational integrators.
 
 from lithobrake.compilation.compiled import kernel, large_kernel
 from lithobrake.dem.bodies.arrays import Bodies, Cores, Floats, Laws, Pairs, Planes, Reactions, Step
+from lithobrake.dem.bodies.period import way_between
 from lithobrake.dem.bodies.vectors import Vector, minus, plus, put, row, scaled, times
 from lithobrake.dem.local_stepping.agenda import put_on
 from lithobrake.dem.local_stepping.approach import Approach, approach_of, closing_speed
@@ -66,10 +67,9 @@ def list_features(
 
 
 @kernel
-def way_between(bodies: Bodies, first: int, second: int) -> Vector:
+def way_to_second(bodies: Bodies, first: int, second: int) -> Vector:
     """Return the way from the centroid of the first to that of the second, or to the origin for a plane [m]."""
-    here = row(bodies.position, first)
-    return minus(row(bodies.position, second), here) if second >= 0 else scaled(-1.0, here)
+    return way_between(bodies, first, second) if second >= 0 else scaled(-1.0, row(bodies.position, first))
 
 
 @kernel
@@ -79,7 +79,7 @@ def note_motion(pair: int, bodies: Bodies, pairs: Pairs, plans: Plans) -> None:
     Writes to plans.
     """
     first, second = pairs.first[pair], pairs.second[pair]
-    put(plans.apart, pair, way_between(bodies, first, second))
+    put(plans.apart, pair, way_to_second(bodies, first, second))
     put(plans.spin[pair], 0, spin_of(bodies, first))
     if second >= 0:
         put(plans.spin[pair], 1, spin_of(bodies, second))
@@ -110,7 +110,7 @@ def force_after(pair: int, system: System, step: Step, plans: Plans) -> float:
     velocity, other_velocity = row(bodies.velocity, first), (0.0, 0.0, 0.0)
     touched = plans.interval[pair] > 0.0 and step.time_step > 0.0
     if touched:
-        way = minus(way_between(bodies, first, second), row(plans.apart, pair))
+        way = minus(way_to_second(bodies, first, second), row(plans.apart, pair))
         mean = scaled(1.0 / step.time_step, way)
         put(bodies.half_spin, first, scaled(0.5, plus(row(bodies.half_spin, first), row(plans.spin[pair], 0))))
         if second >= 0:

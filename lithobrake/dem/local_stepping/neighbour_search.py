@@ -7,6 +7,7 @@ import numpy as np
 
 from lithobrake.compilation.compiled import kernel, large_kernel
 from lithobrake.dem.bodies.arrays import Bodies, Cores, Floats, Laws, Pairs, Planes
+from lithobrake.dem.bodies.period import nearest
 from lithobrake.dem.bodies.vectors import dot, minus, row
 from lithobrake.dem.law.material_pair import law_between
 from lithobrake.dem.local_stepping.agenda import Agenda, put_on, take_off
@@ -132,7 +133,7 @@ def is_near(
     here, reach = row(bodies.position, body), bodies.bounding_radius[body] + rules.skin
     if other < 0:
         return dot(row(planes.normal, -1 - other), here) - planes.offset[-1 - other] < reach
-    apart = minus(place_at(bodies, flight, other, now, rules), here)
+    apart = nearest(bodies.period, minus(place_at(bodies, flight, other, now, rules), here))
     if dot(apart, apart) ** 0.5 - bodies.bounding_radius[other] >= reach:
         return False
     # The other has turned since it was last moved.

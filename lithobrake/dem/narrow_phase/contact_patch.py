@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 from lithobrake.compilation.compiled import kernel, large_kernel
 from lithobrake.dem.bodies.arrays import Bodies, Cores, Pairs, Planes
+from lithobrake.dem.bodies.period import way_between
 from lithobrake.dem.bodies.vectors import Vector, dot, minus, plus, put, row, scaled, times, transposed_times
 from lithobrake.dem.narrow_phase.deep_edges import add_deep_edges
 from lithobrake.dem.narrow_phase.feature_distance import (
@@ -99,7 +100,7 @@ def body_patch(pair: int, bodies: Bodies, cores: Cores, pairs: Pairs, scratch: S
     """
     relative, patch = scratch.relative, scratch.patch
     first, second = pairs.first[pair], pairs.second[pair]
-    apart = minus(row(bodies.position, second), row(bodies.position, first))
+    apart = way_between(bodies, first, second)
     penetrating = pairs.feature_count[pair] == ALL_FEATURES
     if penetrating:
         count, deep, derivative = add_all_corners(bodies, cores, patch, first, second, apart), 1.0, 0.0
@@ -220,7 +221,7 @@ def corner_over_core(cores: Cores, shape: int, point: Vector, face: int, reach: 
 @kernel
 def sphere_overlap(bodies: Bodies, first: int, second: int) -> tuple[float, Vector, Vector]:
     """Return overlap (not above 0: none), middle and normal of two spheres."""
-    apart = minus(row(bodies.position, second), row(bodies.position, first))
+    apart = way_between(bodies, first, second)
     distance = dot(apart, apart) ** 0.5
     overlap = bodies.contact_radius[first] + bodies.contact_radius[second] - distance
     # Spheres about one centre: every normal is as good as another.

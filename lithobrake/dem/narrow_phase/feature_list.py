@@ -7,7 +7,8 @@ difference to any bit when, or how often, a list is renewed.
 from lithobrake.compilation.compiled import kernel, large_kernel
 from lithobrake.dem.bodies.arrays import Bodies, Cores, Floats, Pairs, Planes
 from lithobrake.dem.bodies.motion import surface_speed_bound
-from lithobrake.dem.bodies.vectors import Vector, dot, minus, row, scaled, transposed_times
+from lithobrake.dem.bodies.period import way_between
+from lithobrake.dem.bodies.vectors import Vector, dot, row, scaled, transposed_times
 from lithobrake.dem.narrow_phase.closest_points import find_closest_points
 from lithobrake.dem.narrow_phase.feature_culling import band_along, is_point, list_corners, list_edges
 from lithobrake.dem.narrow_phase.feature_distance import write_relative
@@ -122,7 +123,7 @@ def list_bodies(
     first, second = pairs.first[pair], pairs.second[pair]
     shapes, members = (bodies.shape[first], bodies.shape[second]), (first, second)
     pairs.feature_count[pair] = 0
-    apart = minus(row(bodies.position, second), row(bodies.position, first))
+    apart = way_between(bodies, first, second)
     bound = dot(apart, apart) ** 0.5 - bodies.bounding_radius[first] - bodies.bounding_radius[second]
     if bound >= margin:
         return bound

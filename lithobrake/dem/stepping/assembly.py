@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from lithobrake.dem.bodies.arrays import Bodies, Cores, Floats, Integers, Laws, Planes
+from lithobrake.dem.bodies.arrays import Bodies, Cores, Floats, Integers, Laws, Period, Planes
 from lithobrake.dem.bodies.material import Material
 from lithobrake.dem.bodies.motion import write_matrices, write_rotations
 from lithobrake.dem.bodies.rigid_body import Plane, RigidBody
@@ -87,12 +87,13 @@ def inertias(bodies: list[RigidBody]) -> Floats:
 
 
 def bodies_of(
-    bodies: list[RigidBody], shapes: list[Shape], materials: list[Material], motion: dict[str, Floats]
+    bodies: list[RigidBody], shapes: list[Shape], materials: list[Material], motion: dict[str, Floats], period: Period
 ) -> Bodies:
     """Return bodies as arrays, in a motion of position, velocity, quaternion and angular_momentum."""
     n, bounding = len(bodies), np.array([body.shape.bounding_radius for body in bodies])
     inertia = inertias(bodies)
     arrays = Bodies(
+        period=period,
         shape=shape_numbers(bodies, shapes),
         material=material_numbers(bodies, materials),
         mass=np.array([body.mass for body in bodies]), inverse_mass=np.array([1.0 / body.mass for body in bodies]),

@@ -4,8 +4,9 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 
-from lithobrake.dem.bodies.arrays import DAMPING, Bodies, Cores, Floats, Laws, Pairs, Planes, Reactions, Step
+from lithobrake.dem.bodies.arrays import DAMPING, Bodies, Cores, Floats, Laws, Pairs, Period, Planes, Reactions, Step
 from lithobrake.dem.bodies.motion import write_matrices
+from lithobrake.dem.bodies.period import refuse_short_period
 from lithobrake.dem.bodies.rigid_body import Plane, RigidBody
 from lithobrake.dem.narrow_phase.feature_id import INLINE_FEATURES
 from lithobrake.dem.narrow_phase.feature_list import BOUND_SLACK
@@ -47,17 +48,19 @@ class Engine:
         lost: Floats,
         watch_record: Floats,
         thread_count: int,
+        period: Period,
     ) -> None:
         shapes, materials = shapes_of(bodies), materials_of(bodies, planes)
         self.cores: Cores = cores_of(shapes)
         self.laws: Laws = laws_of(materials, options["shear_modulus_rule"], options["pair_rule"])
         self.planes: Planes = planes_of(planes, materials, len(bodies))
-        self.bodies: Bodies = bodies_of(bodies, shapes, materials, motion)
+        self.bodies: Bodies = bodies_of(bodies, shapes, materials, motion, period)
         self.pairs: Pairs
         self.scratch: Scratch
         self.team: Team | None
         self.lost, self.watch_record = lost, watch_record
         self.skin = SKIN * float(self.bodies.bounding_radius.min())
+        refuse_short_period(period, self.bodies.bounding_radius, self.skin)
         self.thread_count, self.pool = thread_count, pool_of(thread_count)
         # Neighbours are not listed yet, and no list of features says when it was made.
         self.gather(pairs)

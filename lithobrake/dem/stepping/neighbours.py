@@ -3,8 +3,9 @@
 import numpy as np
 
 from lithobrake.compilation.compiled import kernel, large_kernel
-from lithobrake.dem.bodies.arrays import Bodies, Cores, Flags, Floats, Integers, Pairs, Planes
-from lithobrake.dem.bodies.vectors import Vector, minus, row
+from lithobrake.dem.bodies.arrays import Bodies, Cores, Flags, Floats, Integers, Pairs, Period, Planes
+from lithobrake.dem.bodies.period import folded, nearest, way_between
+from lithobrake.dem.bodies.vectors import Vector, dot, minus, row
 from lithobrake.dem.narrow_phase.closest_points import find_closest_points
 from lithobrake.dem.narrow_phase.feature_id import INLINE_FEATURES
 from lithobrake.dem.narrow_phase.gjk import APART
@@ -12,23 +13,24 @@ from lithobrake.dem.narrow_phase.scratch import Scratch
 
 
 @kernel
-def sweep(order: Integers, low: Floats, position: Floats, reach: Floats, first: Integers, second: Integers) -> int:
+def sweep(
+    order: Integers, low: Floats, position: Floats, reach: Floats, first: Integers, second: Integers, period: Period
+) -> int:
     """Find pairs of bounding spheres that meet, sweeping along x; write as many as fit and return how many there are.
 
-    order [body_count] sorts low = x - reach; reach is the bounding radius and half the skin.
+    position is folded; order [body_count] sorts low = x - reach; reach is the bounding radius and half the skin. Where
+    the world repeats, the sweep goes on from the last to the images of those before.
     Writes to first and second.
     """
-    count = 0
-    for i in range(len(order)):
+    count, n = 0, len(order)
+    for i in range(n):
         a = order[i]
-        for j in range(i + 1, len(order)):
-            b = order[j]
-            if low[b] > position[a, 0] + reach[a]:
+        for j in range(i + 1, n if period.x == 0.0 else i + n):
+            b = order[j] if j < n else order[j - n]
+            if (low[b] if j < n else low[b] + period.x) > position[a, 0] + reach[a]:
                 break
-            square = 0.0
-            for axis in range(3):
-                square += (position[a, axis] - position[b, axis]) ** 2
-            if square < (reach[a] + reach[b]) ** 2:
+            way = nearest(period, minus(row(position, a), row(position, b)))
+            if dot(way, way) < (reach[a] + reach[b]) ** 2:
                 if count < len(first):
                     first[count], second[count] = min(a, b), max(a, b)
                 count += 1
@@ -61,7 +63,7 @@ def mark_near(
     Writes to scratch and near.
     """
     for pair in range(len(first)):
-        apart = minus(row(bodies.position, second[pair]), row(bodies.position, first[pair]))
+        apart = way_between(bodies, first[pair], second[pair])
         near[pair] = are_near(bodies, cores, scratch, first[pair], second[pair], apart, skin)
 
 
@@ -70,12 +72,13 @@ def neighbouring_pairs(
 ) -> tuple[Integers, Integers]:
     """Return first and second of all neighbouring pairs, ordered; plane k stands as second = -1 - k."""
     reach = bodies.bounding_radius + 0.5 * skin
-    low = bodies.position[:, 0] - reach
+    position = folded(bodies.position, bodies.period)
+    low = position[:, 0] - reach
     order = np.argsort(low, kind="stable")
     capacity = 16 * len(order)
     while True:
         first, second = np.empty(capacity, dtype=np.int64), np.empty(capacity, dtype=np.int64)
-        count = sweep(order, low, bodies.position, reach, first, second)
+        count = sweep(order, low, position, reach, first, second, bodies.period)
         if count <= capacity:
             break
         capacity = count

@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 from lithobrake.compilation.compiled import kernel, large_kernel
 from lithobrake.dem.bodies.arrays import Bodies, Floats, Laws, Pairs, Planes, Step
+from lithobrake.dem.bodies.period import arm_to
 from lithobrake.dem.bodies.vectors import Vector, dot, minus, plus, row, times
 from lithobrake.dem.law.contact_motion import inverse_inertia_across, inverse_mass_at
 from lithobrake.dem.law.material_pair import PairLaw, law_between
@@ -90,7 +91,7 @@ def pair_rates(pair: int, bodies: Bodies, planes: Planes, pairs: Pairs, laws: La
     theirs = (0.0, 0.0, 0.0)
     inverse_mass = bodies.inverse_mass[first] if paper_mass else ours[0]
     if second >= 0:
-        theirs = inverse_masses(bodies, second, minus(point, row(bodies.position, second)), normal)
+        theirs = inverse_masses(bodies, second, arm_to(bodies, second, point), normal)
         inverse_mass += bodies.inverse_mass[second] if paper_mass else theirs[0]
     law = law_between(bodies, planes, laws, first, second)
     stiffness = contact_stiffness(pair, pairs, inverse_mass, ours[2] + theirs[2], law)

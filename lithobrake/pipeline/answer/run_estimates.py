@@ -26,7 +26,7 @@ from lithobrake.results.shares import Estimate
 from lithobrake.results.summary import Estimates
 from lithobrake.study.touchdown_model import SURFACE
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
-from lithobrake.vocabulary.quantities import OVER_RIM, TOUCHDOWN
+from lithobrake.vocabulary.quantities import OVER_RIM, PERIODS_TRAVELLED, TOUCHDOWN
 
 FILE, AZIMUTH_OUT = "estimates.json", "azimuth_out"
 RETURNS = "returns"
@@ -120,8 +120,15 @@ def _counts(job: Job, runs: DesignRuns, values: Mapping[str, np.ndarray]) -> Run
         warning=missing_warning(job.study, outcomes),
         # A lander that clearly flies beyond the rim has left; one that does not is left_sideways.
         over_rim=int((runs.output(OVER_RIM) == 1.0)[left].sum()),
+        farther_than_period=_farther_than_period(runs),
         side_runs=_side_runs(job, values) if job.study.design.side_runs else None,
     )
+
+
+def _farther_than_period(runs: DesignRuns) -> int | None:
+    """Runs in which the lander travelled farther in contact than the period of its bed; None where none has one."""
+    travelled = runs.output(PERIODS_TRAVELLED)
+    return int((travelled > 1.0).sum()) if np.isfinite(travelled).any() else None
 
 
 def _side_runs(job: Job, values: Mapping[str, np.ndarray]) -> SideRuns:

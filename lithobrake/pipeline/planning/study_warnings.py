@@ -32,9 +32,7 @@ def study_warnings(design: DrawnDesign, site: Site, soil: ExpectedSoil | None) -
     """What to know before the study runs, in sentences, the most important first."""
     study, ground = design.study, [warning for warning in (site.warning, site.gravity_warning) if warning]
     touchdown = (
-        []
-        if soil is None
-        else [*_bed(soil), *_rim(design, soil), *_lost(soil), *_time_limit(study, soil), *_never_count(study)]
+        [] if soil is None else [*_bed(soil), *_sides(design, soil), *_time_limit(study, soil), *_never_count(study)]
     )
     return [
         *ground,
@@ -48,7 +46,7 @@ def study_warnings(design: DrawnDesign, site: Site, soil: ExpectedSoil | None) -
 
 
 def _bed(soil: ExpectedSoil) -> Iterator[str]:
-    """A bed whose walls or floor answer."""
+    """A bed whose walls or images, or whose floor answers."""
     from lithobrake.touchdown import smallest_bed
 
     body, landing = soil.landings[0]
@@ -57,9 +55,20 @@ def _bed(soil: ExpectedSoil) -> Iterator[str]:
     if here < width or soil.depth < depth:
         yield (
             f"The bed will be about {soil.depth:.2g} m deep and is {here:g} m wide; it must be at least {depth:.2g} m "
-            f"deep and {width:.2g} m wide to avoid boundary reflections during the first impact: add grains, or widen "
-            "the bed."
+            f"deep and {width:.2g} m wide to avoid {_echo(soil)} during the first impact: add grains, or widen the bed."
         )
+
+
+def _echo(soil: ExpectedSoil) -> str:
+    """What comes back to the lander in a bed that is too small."""
+    return "boundary reflections" if soil.recipe.period is None else "reflections and waves of the lander's own images"
+
+
+def _sides(design: DrawnDesign, soil: ExpectedSoil) -> Iterator[str]:
+    """What the walls of a bed do to the landings; ground that repeats has none."""
+    if soil.recipe.period is None:
+        yield from _rim(design, soil)
+        yield from _lost(soil)
 
 
 def _rim(design: DrawnDesign, soil: ExpectedSoil) -> Iterator[str]:
@@ -146,10 +155,12 @@ def _bounces(study: Study) -> Iterator[str]:
         yield f"Bounce after bounce on hard ground only: {why}."
     elif study.rest.count and study.has_soil:
         low, high = UNKNOWN_JOURNEYS
+        walls = study.bed.sides == "walls"
+        share = f", in studies so far {100 * low:.0f} to {100 * high:.0f} %" if walls else ""
+        lost, remedy = (", or leave the bed laterally", ", and widen the bed") if walls else ("", "")
         yield (
-            f"Many journeys on the soil will have an unknown outcome, in studies so far {100 * low:.0f} to "
-            f"{100 * high:.0f} %: they meet an impact slower or flatter than those of the runs, or leave the bed "
-            "laterally; let impact.speed reach down to where landers are captured, and widen the bed."
+            f"Many journeys on the soil will have an unknown outcome{share}: they meet an impact slower or flatter "
+            f"than those of the runs{lost}; let impact.speed reach down to where landers are captured{remedy}."
         )
 
 
@@ -205,7 +216,7 @@ MEASURED_ROOM = 2.6
 # Below this angle [deg] landings are lost near where they come down, whatever the width of the bed.
 STEEP = 30.0
 # Least and largest share of journeys on soil with an unknown outcome in studies whose speed and incidence reach over
-# all impacts to come: 60 to 70 % of 2000 on beds of 2.2 and 1.3 m, 78 % of 4000 on beds of 0.7 m.
+# all impacts to come, between walls: 60 to 70 % of 2000 on beds of 2.2 and 1.3 m, 78 % of 4000 on beds of 0.7 m.
 UNKNOWN_JOURNEYS = (0.60, 0.78)
 
 

@@ -53,4 +53,5 @@ def bed_recipe(study: Study, index: int) -> "BedRecipe":
         pour_gravity=study.bed.pour_gravity,
         seed=pour_seed(study, index),
         contact=contact(study),
+        sides=study.bed.sides,
     )

@@ -50,30 +50,44 @@ def energy_bound(
 
     bed_height: of the highest bed [m]. values: of uncertain inputs, [count] each, by dotted key; all others are as the
     study has them. The bed is at rest and contacts only take energy away: v^2 + I w^2 / m + 2 g h, with h the height of
-    the bed, and its fall across.
+    the bed, and its fall along the slope: across the box, or where nothing stops it as far as it comes within the time
+    limit.
     """
     known = {name: np.full(count, value) for name, value in design.medians.items()} | dict(values)
     spin = sum(known[name] ** 2 for name in SPIN)
-    slope = np.radians(known["surface.slope_deg"])
+    slope, gravity = np.sin(np.radians(known["surface.slope_deg"])), np.abs(known["surface.gravity"])
     # Gravity that points outwards lifts a lander as far as the other makes it fall.
-    gained = np.abs(known["surface.gravity"]) * (bed_height + np.hypot(*design.study.bed.width) * np.sin(slope))
+    across = farthest(design.study, known["impact.speed"], gravity * slope)
+    gained = gravity * (bed_height + across * slope)
     smallest, largest = gyrations(design, known)
     return EnergyBound(np.sqrt(known["impact.speed"] ** 2 + largest * spin + 2.0 * gained), np.sqrt(smallest))
+
+
+def farthest(
+    study: Study, speed: "NDArray[np.float64] | float", downhill: "NDArray[np.float64] | float"
+) -> "NDArray[np.float64] | float":
+    """How far [m] a lander comes downhill that impacts at a speed [m/s], by its acceleration [m/s2] along the slope."""
+    if study.bed.sides == "walls":
+        return float(np.hypot(*study.bed.width))
+    limit = study.landing.time_limit
+    return speed * limit + 0.5 * downhill * limit**2
 
 
 def bound_numbers(design: DrawnDesign, bed_height: float) -> dict[str, float]:
     """The numbers of `energy_bound`, for whoever follows the uncertain inputs alone.
 
-    height, across: of the bed [m]; smallest, largest: squared radii of gyration [m2] at the medians, which go with
-    these powers of mass and diameter; and the medians of whatever the bound depends on, by dotted key.
+    height: of the bed [m]; across: how far a lander comes downhill, at the medians [m]; smallest, largest: squared
+    radii of gyration [m2] at the medians, which go with these powers of mass and diameter; and the medians of whatever
+    the bound depends on, by dotted key.
     """
     study, known = design.study, design.medians
     smallest, largest = (float(one[0]) for one in gyrations(design, {key: np.array([known[key]]) for key in known}))
+    downhill = abs(known["surface.gravity"]) * float(np.sin(np.radians(known["surface.slope_deg"])))
     has_inertia, is_ball = study.lander.inertia is not None, "lander.diameter" in known
     names = ("impact.speed", *SPIN, "surface.slope_deg", "surface.gravity", "lander.mass", "lander.diameter")
     return {
         "height": bed_height,
-        "across": float(np.hypot(*study.bed.width)),
+        "across": float(farthest(study, known["impact.speed"], downhill)),
         "smallest": smallest,
         "largest": largest,
         "mass_power": -1.0 if has_inertia else 0.0,

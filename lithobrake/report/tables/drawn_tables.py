@@ -193,7 +193,13 @@ def _runs(data: DrawnPage) -> PageTable:
     runs = data.results.runs
     total = max(sum(runs.outcomes.values()), 1)
     rows = [[outcome_label(word), str(count), percent(count / total)] for word, count in runs.outcomes.items()]
-    rows.append(["(left the surface across the edge of the bed)", str(runs.over_rim), percent(runs.over_rim / total)])
+    far = runs.farther_than_period
+    aside, count = (
+        ("left the surface across the edge of the bed", runs.over_rim)
+        if far is None
+        else ("travelled farther in contact than the period of the bed, over ground that they disturbed", far)
+    )
+    rows.append([f"({aside})", str(count), percent(count / total)])
     note = " ".join(filter(None, [f"On {runs.beds} beds.", missing_sentence(data)]))
     return PageTable("Outcomes of the runs", ["outcome", "runs", "share"], rows, note, frozenset({"runs", "share"}))
 

@@ -85,14 +85,17 @@ def bed(data: PageData) -> str:
     study, (first, *others) = data.study["bed"], data.results.beds
     which = f"the first of {len(others) + 1} beds," if others else "a bed"
     width = " x ".join(f"{length:g}" for length in study["width"])
+    walls = study.get("sides", "walls") == "walls"
+    ground = f"in an open box of {width} m" if walls else f"on ground that repeats after {width} m,"
+    echo = "boundary reflections" if walls else "reflections and waves of the lander's own images"
     return (
         f"{study['grain_count']} grains, convex hulls with a mean diameter of {number(first.mean_diameter_m)} m, "
-        f"fall as a random cloud and settle in an open box of {width} m into {which} "
+        f"fall as a random cloud and settle {ground} into {which} "
         f"{number(first.surface_height_m)} m deep with a solid fraction of {first.solid_fraction:.2f} and "
         f"{first.coordination_number:.1f} contacts a grain. Grains are poured with the medians of their ranges, and "
         "take on the soil of a landing at its touchdown. "
         f"The bed must be at least {number(first.smallest_width_m)} m wide and "
-        f"{number(first.smallest_depth_m)} m deep to avoid boundary reflections during the first impact; this bed "
+        f"{number(first.smallest_depth_m)} m deep to avoid {echo} during the first impact; this bed "
         f"{'meets' if first.large_enough else 'does not meet'} that limit."
     )
 

@@ -140,6 +140,12 @@ def test_places_are_drawn_where_the_smallest_bed_leaves_room() -> None:
     assert np.all(np.abs(places).max(axis=0) > 0.9 * np.array([region[0][1], region[1][1]]))
 
 
+def test_places_are_drawn_all_over_ground_that_repeats() -> None:
+    study = drawn(64, bed={"width": [0.8, 1.0], "grain_count": 400, "sides": "periodic"})
+    assert place_region(study) == ((-0.4, 0.4), (-0.5, 0.5))
+    assert np.all(np.abs(columns(DrawnDesign(study).rows, *PLACE)).max(axis=0) > 0.9 * np.array([0.4, 0.5]))
+
+
 def test_a_bed_that_is_too_narrow_for_its_rule_is_landed_on_in_the_middle() -> None:
     # A heavy little ball is long in touch with a grain, and a wave goes far in that time.
     ball = {"shape": "sphere", "diameter": 0.05, "mass": 50.0, "restitution": TABLES["lander"]["restitution"]}

@@ -273,6 +273,17 @@ def test_landings_that_will_leave_the_bed_laterally_are_warned_of_by_their_angle
     assert losses == [pytest.approx(1 / 64), pytest.approx(0.22, abs=0.04), pytest.approx(0.07, abs=0.02)]
 
 
+def test_ground_that_repeats_loses_no_landing_and_is_warned_of_its_images() -> None:
+    flat = {"distribution": "uniform", "lower": 0.0, "upper": 88.0}
+    studies = (
+        drawn(impact={"incidence_deg": flat}, bed={"sides": "periodic", "grain_count": count}) for count in (150, 20)
+    )
+    said = [" ".join(study_warnings(DrawnDesign(one), Site(one), soil_of(one))) for one in studies]
+    assert not any("laterally" in one or "over the edge" in one for one in said)
+    assert "images" not in said[0]
+    assert "to avoid reflections and waves of the lander's own images" in said[1]
+
+
 def test_the_beds_of_the_folder_and_of_the_library_are_not_to_be_poured(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
