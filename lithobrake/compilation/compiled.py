@@ -10,7 +10,8 @@ import hashlib
 import logging
 import pickle
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from functools import cache, cached_property
 from pathlib import Path
 from typing import Any, TypeVar
@@ -23,12 +24,19 @@ from numba.core.registry import CPUDispatcher
 from numba.core.serialize import dumps
 
 from lithobrake.compilation.disk_cache import DiskCache
+from lithobrake.compilation.lighter_compilation import (
+    InnerKernel,
+    KernelCompiler,
+    is_for_kernel,
+    is_known,
+    without_garbage_collection,
+)
 
 log = logging.getLogger(__name__)
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 # Parts that take long to compile, by what they are to a user, and how long.
-_WHAT = {"dem": ("the soft-surface engine", "a minute"), "smallbody": ("gravity and flights", "half a minute")}
+_WHAT = {"dem": ("the soft-surface engine", "half a minute"), "smallbody": ("gravity and flights", "ten seconds")}
 
 
 @cache
@@ -60,7 +68,7 @@ def kernel(function: Function) -> Function:
 
 def large_kernel(function: Function) -> Function:
     """Compile a function that allocates nothing and is too large to be copied into each caller."""
-    return _compile(function, {"_nrt": False})
+    return _compile(function, {"_nrt": False, "forceinline": False})
 
 
 def _compile(function: Function, options: dict[str, bool]) -> Function:
@@ -82,21 +90,39 @@ class Kernel(CPUDispatcher):
         """Prepare a function, with arguments as Numba's."""
         super().__init__(py_func, *others, **options)
         self._cache = KernelCache(py_func, "python")
+        COUNT.made(_part_of(py_func), py_func)
+        if is_known():
+            self._compiler: Any = KernelCompiler(self, is_inner=False)
 
     @cached_property
     def within(self) -> CPUDispatcher:
         """The same for kernels that call it."""
-        result = CPUDispatcher(self.py_func, targetoptions={**self.targetoptions, "no_cpython_wrapper": True})
+        if not is_known():
+            return self.within_others
+        part, function = _part_of(self.py_func), self.py_func
+        return InnerKernel(function, targetoptions=self._inner_options, tell=lambda: COUNT.note(part, function))
+
+    @cached_property
+    def within_others(self) -> CPUDispatcher:
+        """The same for functions that Numba compiles in its own way, as all are for a Numba that is not known."""
+        result = CPUDispatcher(self.py_func, targetoptions=self._inner_options)
         result._cache = KernelCache(self.py_func, "kernel")
         return result
 
+    @property
+    def _inner_options(self) -> dict[str, Any]:
+        return {**self.targetoptions, "no_cpython_wrapper": True}
+
+    def _for_caller(self) -> CPUDispatcher:
+        return self.within if is_for_kernel() else self.within_others
+
     def get_call_template(self, args: Any, kws: Any) -> Any:
         """Tell a kernel what a call gives. Constants count as numbers: each would be compiled for itself otherwise."""
-        return self.within.get_call_template([types.unliteral(arg) for arg in args], kws)
+        return self._for_caller().get_call_template([types.unliteral(arg) for arg in args], kws)
 
     def get_overload(self, sig: Any) -> Any:
         """Give a kernel what it calls."""
-        return self.within.get_overload(sig)
+        return self._for_caller().get_overload(sig)
 
     def compile(self, sig: Any) -> Any:
         """Compile for a call from Python, where neither this process nor another one has done so yet."""
@@ -104,10 +130,51 @@ class Kernel(CPUDispatcher):
             return super().compile(sig)
         part = _part_of(self.py_func)
         what, time = _WHAT.get(part, (f"kernels of {part}", "a moment"))
-        with disk_cache(part).turn(f"Waiting for another process that compiles {what}: about {time}."):
+        # A turn for each kernel: of two processes one compiles this kernel, and the other one that.
+        turn = disk_cache(part).turn(
+            f"Waiting for another process that compiles {what}: about {time}.", f"-{self._cache.name}"
+        )
+        with turn:
             if part in _WHAT and not self._cache.has(sig, self.targetctx):
                 announce(part)
-            return super().compile(sig)
+            with without_garbage_collection():
+                found = super().compile(sig)
+            COUNT.note(part, self.py_func)
+            return found
+
+
+class KernelCount:
+    """How many kernels of a part there are, and how many of them this process has compiled while it was watched."""
+
+    def __init__(self) -> None:
+        """Know of none."""
+        self._all: dict[str, set[Any]] = {}
+        self._done: set[Any] = set()
+        self._watched, self._tell = "", lambda done, total: None
+
+    def made(self, part: str, function: Callable[..., Any]) -> None:
+        """Count one that may be compiled."""
+        self._all.setdefault(part, set()).add(function)
+
+    def note(self, part: str, function: Callable[..., Any]) -> None:
+        """Tell that one was compiled."""
+        if part == self._watched:
+            self._done.add(function)
+            self._tell(len(self._done), len(self._all[part]))
+
+    @contextmanager
+    def watched(self, part: str, tell: Callable[[int, int], None]) -> Iterator[None]:
+        """Tell, of a part, how many kernels are compiled and how many there are, each time that there is one more."""
+        self._watched, self._tell = part, tell
+        self._done.clear()
+        try:
+            yield
+        finally:
+            self._watched = ""
+
+
+COUNT = KernelCount()
+watched = COUNT.watched
 
 
 class KernelCache(NullCache):
@@ -115,7 +182,7 @@ class KernelCache(NullCache):
 
     def __init__(self, function: Callable[..., Any], caller: str) -> None:
         self._disk = disk_cache(_part_of(function))
-        self._name = f"{function.__module__.partition('.')[2]}.{function.__qualname__}-{caller}"
+        self.name = f"{function.__module__.partition('.')[2]}.{function.__qualname__}-{caller}"
 
     def has(self, sig: Any, target_context: Any) -> bool:
         """Whether a form lies on disk."""
@@ -124,7 +191,7 @@ class KernelCache(NullCache):
     def has_any(self) -> bool:
         """Whether any form lies on disk."""
         folder = self._disk.folder
-        return folder is not None and any(folder.glob(f"{self._name}-*"))
+        return folder is not None and any(folder.glob(f"{self.name}-*"))
 
     def load_overload(self, sig: Any, target_context: Any) -> CompileResult | None:
         """Read a form, if it lies on disk."""
@@ -139,7 +206,7 @@ class KernelCache(NullCache):
 
     def _file(self, sig: Any, codegen: Any) -> str:
         form = hashlib.sha256(f"{sig} {codegen.magic_tuple()}".encode()).hexdigest()[:16]
-        return f"{self._name}-{form}"
+        return f"{self.name}-{form}"
 
 
 def lies_on_disk(function: Any) -> bool:

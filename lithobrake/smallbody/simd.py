@@ -8,7 +8,7 @@ result is then the same on every machine, whatever the compiler would have liked
 
 from typing import Any
 
-from llvmlite import ir  # type: ignore[import-untyped]
+from llvmlite import ir
 from numba import types
 from numba.extending import intrinsic
 

@@ -156,7 +156,7 @@ def test_without_a_trusted_cache_kernels_are_compiled_each_time(cache, monkeypat
     assert word in told[0]
     assert kept(cache) == []
     assert {path for path in package.rglob("*") if path.suffix != ".pyc"} == before
-    assert caplog.messages[-1] == "Compiling the soft-surface engine for this processor: about a minute."
+    assert caplog.messages[-1] == "Compiling the soft-surface engine for this processor: about half a minute."
 
 
 def test_kernel_that_only_kernels_call_has_no_wrapper_and_one_form_for_all_constants(cache):
@@ -232,7 +232,7 @@ def test_processes_that_start_together_compile_once(tmp_path):
     assert sum("Compiling the soft-surface engine for this processor, once" in message for _, message in told) == 1
     assert {message for _, message in told if "Compiling" not in message} <= {
         "",
-        "Waiting for another process that compiles the soft-surface engine: about a minute.\n",
+        "Waiting for another process that compiles the soft-surface engine: about half a minute.\n",
     }
     out, message = process().communicate("go\n")
     assert out == "ready\n" + told[0][0]

@@ -1,5 +1,6 @@
 """Compiling ahead of a study leaves nothing to compile for its beds and landings."""
 
+import os
 import subprocess
 import sys
 
@@ -32,11 +33,40 @@ fall = Landing(
 )
 land(bed, Lander(shape=Box((0.1, 0.1, 0.1)), mass=0.5, material=rock), fall)
 print(len(ahead), [form for form in called() if form not in ahead], shown[0])
+print(shown[-1], all(0 <= done <= total for done, total, *_ in shown))
+"""
+
+COLD = """
+from types import SimpleNamespace
+import lithobrake.pipeline.runs.kernels as kernels
+from lithobrake.dem.stepping.time_loop import advance
+kernels.available_cores = lambda: 2
+shown = []
+kernels.compile_kernels(SimpleNamespace(progress=lambda *what: shown.append(what)))
+(form,) = advance.signatures
+print("found" if advance.stats.cache_hits else "compiled here")
+print(len({done for done, *_ in shown}))
+print(all(detail == f"{done} of {total} kernels" for done, total, _, *details in shown for detail in details))
 """
 
 
 def test_beds_and_landings_find_all_kernels_compiled():
     ended = subprocess.run([sys.executable, "-c", SCRIPT], capture_output=True, text=True, check=True)
-    count, _, rest = ended.stdout.strip().partition(" ")
+    first, last = ended.stdout.splitlines()
+    count, _, rest = first.partition(" ")
     assert int(count) > 0
     assert rest == "[] (0, 1, 'compiling kernels')"
+    assert last == "(1, 1, 'compiling kernels') True"
+
+
+def test_from_an_empty_cache_each_kernel_is_compiled_once_and_progress_moves(tmp_path):
+    """On two cores a process of its own compiles a part of them, and the one that waits says alone what happens."""
+    environment = {**os.environ, "LITHOBRAKE_CACHE": str(tmp_path)}
+    ended = subprocess.run([sys.executable, "-c", COLD], env=environment, capture_output=True, text=True, check=True)
+    made, moves, rest = ended.stdout.splitlines()
+    assert made == "found"
+    assert int(moves) > 50
+    assert rest == "True"
+    assert ended.stderr == ("Compiling the soft-surface engine for this processor, once: about half a minute.\n")
+    names = [path.name.rpartition("-")[0] for path in tmp_path.glob("lithobrake/dem-*/dem.*")]
+    assert len(names) == len(set(names)) > 8
