@@ -28,7 +28,8 @@ SPHERE_PICTURE_POINTS = 200
 class Outcome:
     """How it ended, and its outputs: the keys OUTPUTS (SI); those of LEAVING are NaN unless the lander is clear.
 
-    On ground that repeats there is "periods_travelled" too.
+    On ground that repeats there is "periods_travelled" too. orientation: of the lander at the end (w, x, y, z), in the
+    bed's frame, however it ended.
 
     frames holds "time" [s, frame_count], "position" [m, frame_count, body_count, 3], "orientation", and "force", the
     size of the sum of the contact forces on each body [N, frame_count, body_count]; the last body is the lander.
@@ -37,6 +38,7 @@ class Outcome:
     status: TouchdownOutcome
     outputs: dict[str, float]
     simulated_time: float  # s
+    orientation: tuple[float, ...]
     frames: dict[str, Floats] | None = None
 
     def save_frames(

@@ -141,4 +141,5 @@ class OutcomeJudge:
             frames = {name: np.array([frame[name] for frame in self.frames]) for name in self.frames[0]}
         if not all(math.isfinite(value) for value in outputs.values()) and left:
             raise FloatingPointError(f"the landing gave values that are not finite: {outputs}")
-        return Outcome(self.ended, outputs, world.time - self.start_time, frames)
+        orientation = tuple(motion.orientation.tolist())
+        return Outcome(self.ended, outputs, world.time - self.start_time, orientation, frames)
