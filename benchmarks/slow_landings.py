@@ -3,8 +3,8 @@
     python benchmarks/slow_landings.py BED_FOLDER --landings 200 --speeds 0.003 0.02 --ways 25:0:0 25:0.3:0.03
         --share 0/2 --out FILE
 
-Beds are those of scenarios/quick.toml on ground that repeats, poured into BED_FOLDER where they are not there yet. Soil,
-bed, place, heading and attitude are drawn, the speed [m/s] between two (in its logarithm), the incidence up to
+Beds are those of scenarios/quick.toml on ground that repeats, poured into BED_FOLDER where they are not there yet.
+Soil, bed, place, heading and attitude are drawn, the speed [m/s] between two (in its logarithm), the incidence up to
 STEEPEST, the spin up to what turns the surface as fast as the lander comes. Every draw lands in each way,
 steps:resolved_speed:held_speed, one after the other. FILE.csv gets a row a landing as it comes, with the face that is
 down at the end; --share 0/2 makes every second draw, for two processes. Without --ways nothing lands: FILE.json is
@@ -18,7 +18,7 @@ from pathlib import Path
 
 import numpy as np
 from harness import Row, command_line, origin, read_rows, table, timed, write_document
-from landing_ensembles import beds_of, draws, drawn_study
+from landing_ensembles import beds_of, drawn_study, draws
 
 from lithobrake.touchdown import Bed, Lander, Landing, land
 from lithobrake.touchdown.surface import rotation_matrix
