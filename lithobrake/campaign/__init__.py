@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 from lithobrake.vocabulary.lazy_names import lazy_names
 
 if TYPE_CHECKING:
+    from lithobrake.campaign.chains import run_chains as run_chains
     from lithobrake.campaign.command import Command as Command
     from lithobrake.campaign.command import absolute_words as absolute_words
     from lithobrake.campaign.dask_executor import DaskExecutor as DaskExecutor

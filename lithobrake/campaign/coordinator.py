@@ -40,9 +40,18 @@ class PendingRun:
     attempts: int
 
 
+def _nothing_follows(key: str) -> Mapping[str, PendingRun]:
+    """No run is to be made because another has ended."""
+    return {}
+
+
 @dataclass
 class Coordinator:
-    """A campaign under way; pending: the runs to make, by their keys; retry_count: further tries of a failed one."""
+    """A campaign under way.
+
+    pending: the runs to make, by their keys; retry_count: further tries of a failed one; follow: gives the runs to make
+    because the one with this key has ended, which the ledger has queued by then.
+    """
 
     ledger: Ledger
     executor: Executor
@@ -51,6 +60,7 @@ class Coordinator:
     limits: Limits
     retry_count: int
     progress: Callable[[Tally], None]
+    follow: Callable[[str], Mapping[str, PendingRun]] = _nothing_follows
 
     def __post_init__(self) -> None:
         # Keys are hashes: in their order the first runs are a random part of all, wherever in the design each stands.
@@ -124,6 +134,9 @@ class Coordinator:
             self._failed.add(key)
         else:
             self._trial.clear()
+        for one, run in self.follow(key).items():
+            self.pending[one], self.attempts[one] = run, run.attempts
+            self.waiting.append(one)
 
     def _end_what_never_works(self) -> None:
         """Give up when the trial runs have all failed, their tries used up, and no other run has succeeded.

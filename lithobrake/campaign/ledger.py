@@ -117,10 +117,13 @@ class Ledger:
                 self._database.execute(statement)
             self._database.execute(f"PRAGMA user_version = {FORMAT_VERSION}")
 
-    def queue(self, runs: Iterable[tuple[str, Mapping[str, float], int, int]], version: str) -> None:
+    def queue(
+        self, runs: Iterable[tuple[str, Mapping[str, float], int, int]], version: str, *, adds: bool = False
+    ) -> None:
         """Enter the runs that are to be made now (key, inputs, seed, replicate); ended runs among them start again.
 
-        Runs that were queued before and never ended are forgotten: whoever still wants them queues them again.
+        Runs that were queued before and never ended are forgotten: whoever still wants them queues them again. adds:
+        they are kept, as these runs are added to them.
         """
         rows = [
             (key, RunStatus.QUEUED, json.dumps(dict(inputs)), seed, replicate, version)
@@ -128,7 +131,8 @@ class Ledger:
         ]
         self._note(began=utc_now())
         with self._transaction():
-            self._database.execute("DELETE FROM runs WHERE status IN (?, ?)", UNENDED)
+            if not adds:
+                self._database.execute("DELETE FROM runs WHERE status IN (?, ?)", UNENDED)
             self._database.executemany(
                 "INSERT INTO runs (key, status, inputs, seed, replicate, version) VALUES (?, ?, ?, ?, ?, ?) "
                 "ON CONFLICT (key) DO UPDATE SET status = excluded.status, inputs = excluded.inputs, "

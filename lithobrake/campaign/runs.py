@@ -83,31 +83,43 @@ def run(
     rows, context, options = _inputs_of(x, names), context or {}, options or RunOptions()
     keys = [run_key(row, options.seed, options.replicate, context) for row in rows]
     found = ledger.find(keys)
-    known = {
-        key: entry
-        for key, entry in found.items()
-        if entry.status == RunStatus.DONE or entry.attempts > options.retry_count
-    }
+    known = {key: entry for key, entry in found.items() if is_known(entry, options)}
     pending = {
-        key: PendingRun(
-            _callable(model),
-            row,
-            run_seed(row, options.seed, options.replicate),
-            options.log_folder and options.log_folder / f"{key}.log",
-            found[key].attempts if key in found else 0,
-        )
+        key: pending_run(model, key, row, found.get(key), options)
         for key, row in zip(keys, rows, strict=True)
         if key not in known
     }
-    entries = [(key, entry.inputs, entry.seed, options.replicate) for key, entry in pending.items()]
-    ledger.queue(entries, version=str(context.get("version", "")))
+    queue_runs(ledger, pending, context, options)
     state, show = _state(keys, known), progress or _silent
-    with _given_or_own(executor) as workers:
+    with given_or_own(executor) as workers:
         Coordinator(ledger, workers, pending, state, limits or Limits(), options.retry_count, show).compute()
     records = ledger.find(keys)
     if lost := [key for key in keys if key not in records]:
         raise ValueError(f"{ledger.path} lost run {lost[0]} while it was open; give the same command again")
     return Runs([records[key] for key in keys], reused_count=len(known))
+
+
+def is_known(entry: Record | None, options: RunOptions) -> bool:
+    """Whether the ledger has a run that is not made again."""
+    return entry is not None and (entry.status == RunStatus.DONE or entry.attempts > options.retry_count)
+
+
+def pending_run(
+    model: Model, key: str, row: dict[str, float], found: Record | None, options: RunOptions
+) -> PendingRun:  # fmt: skip
+    """A run that is to be made, of which the ledger has found nothing, or a failed try."""
+    seed = run_seed(row, options.seed, options.replicate)
+    log = options.log_folder and options.log_folder / f"{key}.log"
+    return PendingRun(_callable(model), row, seed, log, 0 if found is None else found.attempts)
+
+
+def queue_runs(
+    ledger: Ledger, pending: Mapping[str, PendingRun], context: Mapping[str, Any], options: RunOptions, *,
+    adds: bool = False,
+) -> None:  # fmt: skip
+    """Enter runs that are to be made into the ledger; adds: beside those that were queued before."""
+    entries = [(key, entry.inputs, entry.seed, options.replicate) for key, entry in pending.items()]
+    ledger.queue(entries, version=str(context.get("version", "")), adds=adds)
 
 
 def _state(keys: Sequence[str], known: Mapping[str, Record]) -> Tally:
@@ -146,7 +158,8 @@ def _inputs_of(x: "np.ndarray", names: Sequence[str]) -> list[dict[str, float]]:
 
 
 @contextmanager
-def _given_or_own(executor: Executor | None) -> Iterator[Executor]:
+def given_or_own(executor: Executor | None) -> Iterator[Executor]:
+    """The executor, or one of this machine's cores that ends with this."""
     if executor is not None:
         yield executor
         return

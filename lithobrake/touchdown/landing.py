@@ -29,6 +29,9 @@ class Landing:
     spin: Vector  # rad/s, along the world's axes
     gravity: Vector  # m/s2
     time_limit: float  # s, simulated, after the lander was released
+    # m: the lander is followed until it rests, or leaves for a hop that rises higher over the ground. None: it is
+    # followed until it leaves the ground or is captured.
+    hop_height: float | None = None
     contact: ContactModel = field(default_factory=ContactModel)
 
     def __post_init__(self) -> None:
@@ -40,6 +43,7 @@ class Landing:
             ("spin", all(math.isfinite(w) for w in self.spin), "three finite numbers"),
             ("orientation", 0.0 < math.hypot(*self.orientation) < math.inf, "four finite numbers, not all zero"),
             ("time_limit", 0.0 < self.time_limit < math.inf, "a finite value above 0 s"),
+            ("hop_height", self.hop_height is None or 0.0 < self.hop_height < math.inf, "a finite height above 0 m"),
         ):
             if not fine:
                 raise ValueError(f"Landing.{name} is {getattr(self, name)!r}; allowed is {allowed}: change it")

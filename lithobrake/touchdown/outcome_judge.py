@@ -9,10 +9,11 @@ from lithobrake.dem import World
 from lithobrake.touchdown.bed import Bed
 from lithobrake.touchdown.lander import Lander
 from lithobrake.touchdown.landing import Landing
-from lithobrake.touchdown.outcome import LEAVING, Outcome, outgoing
+from lithobrake.touchdown.outcome import LEAVING, Outcome, outgoing, turned, turned_attitude
+from lithobrake.touchdown.rest_watch import RestWatch
 from lithobrake.touchdown.surface import rotation_matrix
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
-from lithobrake.vocabulary.quantities import PERIODS_TRAVELLED
+from lithobrake.vocabulary.quantities import ORIENTATION_OUT, PERIODS_TRAVELLED, TO_REST
 
 Floats = NDArray[np.float64]
 CAPTURED_ENERGY = 1e-4  # of the energy of impact
@@ -43,6 +44,9 @@ class OutcomeJudge:
         self.lowest = self.last_height = self.height()
         self.last_time = world.time
         self.still_since: float | None = None
+        self.start = self.motion.position
+        self.contacts, self.is_aloft = 0, True
+        self.rest = None if landing.hop_height is None else RestWatch(lander, -float(landing.gravity[2]))
         self.path = self.path_in_contact = 0.0  # m, horizontal, since the first touch and until the last
         self.frame_count, self.stride, self.looks = frame_count, 1, 0
         self.frames: list[dict[str, Floats]] = []
@@ -69,6 +73,7 @@ class OutcomeJudge:
             # It flew freely since the last look.
             self.height_at_contact = self.last_height + float(before.velocity[2]) * (first_touch - self.last_time)
         self.follow(before.position)
+        self.count_contact(height)
         self.lowest, self.last_height, self.last_time = min(self.lowest, height), height, self.world.time
         self.looks += 1
         self.keep_frame()
@@ -85,8 +90,18 @@ class OutcomeJudge:
         if self.world.watched["last_contact"] > self.last_time:
             self.path_in_contact = self.path
 
+    def count_contact(self, height: float) -> None:
+        """Count a contact each time that the lander touches after it was clear of all grains."""
+        if self.world.is_touched:
+            self.contacts += self.is_aloft
+            self.is_aloft = False
+        elif height > self.clear_height:
+            self.is_aloft = True
+
     def judge(self, height: float, has_touched: bool) -> TouchdownOutcome | None:
         """Return how the touchdown ended, or None while it is open."""
+        if self.rest is not None:
+            return self.judge_to_rest(self.rest, height, has_touched)
         world, position, velocity = self.world, self.motion.position, self.motion.velocity
         free, energy = not world.is_touched, self.motion.kinetic_energy if has_touched else math.inf
         flies, outward = has_touched and free, bool(velocity[2] > 0.0)
@@ -108,6 +123,22 @@ class OutcomeJudge:
         else:
             self.still_since = None
         over = world.time - self.start_time >= self.landing.time_limit
+        return TouchdownOutcome.TIME_LIMIT if over else None
+
+    def judge_to_rest(self, rest: RestWatch, height: float, has_touched: bool) -> TouchdownOutcome | None:
+        """Return how a touchdown ended that goes on until the lander rests or leaves for a high hop; None: it is open.
+
+        Hops that rise less than Landing.hop_height are part of the touchdown.
+        """
+        assert self.landing.hop_height is not None
+        speed, inward = float(self.motion.velocity[2]), -float(self.world.gravity[2])
+        if has_touched and speed > 0.0 and height > self.clear_height and not self.world.is_touched:
+            apex = height - self.bed.surface_height + (0.5 * speed**2 / inward if inward > 0.0 else math.inf)
+            if apex > self.landing.hop_height:
+                return TouchdownOutcome.CLEAR
+        if rest.is_over(self.world.time, self.motion):
+            return TouchdownOutcome.CAPTURED
+        over = self.world.time - self.start_time >= self.landing.time_limit
         return TouchdownOutcome.TIME_LIMIT if over else None
 
     def keep_frame(self) -> None:
@@ -134,6 +165,8 @@ class OutcomeJudge:
         outputs["penetration"] = 0.0 if self.height_at_contact is None else self.height_at_contact - self.lowest
         outputs["peak_acceleration"] = world.watched["peak_force"] / self.lander.mass
         outputs["energy_lost"] = self.start_energy - motion.kinetic_energy
+        if self.rest is not None:
+            outputs |= self.outputs_to_rest()
         if self.bed.period is not None:
             outputs[PERIODS_TRAVELLED] = self.path_in_contact / min(self.bed.period)
         frames = None
@@ -143,3 +176,10 @@ class OutcomeJudge:
             raise FloatingPointError(f"the landing gave values that are not finite: {outputs}")
         orientation = tuple(motion.orientation.tolist())
         return Outcome(self.ended, outputs, world.time - self.start_time, orientation, frames)
+
+    def outputs_to_rest(self) -> dict[str, float]:
+        """Return what else there is to tell of a touchdown that goes on to rest, in the local frame of `outgoing`."""
+        x, y, _ = turned(self.motion.position - self.start, -self.landing.azimuth)
+        attitude = turned_attitude(self.motion.orientation, -self.landing.azimuth)
+        values = x, y, self.world.time - self.start_time, float(self.contacts)
+        return dict(zip((*TO_REST, *ORIENTATION_OUT), (*values, *attitude), strict=True))

@@ -14,6 +14,7 @@ from lithobrake.touchdown.lander import Lander
 from lithobrake.touchdown.landing import Landing
 from lithobrake.touchdown.outcome import Outcome
 from lithobrake.touchdown.outcome_judge import OutcomeJudge, capture_lift
+from lithobrake.touchdown.rest_watch import rest_time
 from lithobrake.touchdown.smallest_bed import smallest_bed
 from lithobrake.touchdown.surface import rotation_matrix
 
@@ -22,6 +23,8 @@ CHECKS_PER_CONTACT = 5  # looks at the lander in the time of the shortest contac
 # Where contacts step for themselves, looks are farther apart: until the lander moves by this part of its smallest edge,
 # and never farther than this part of the time limit.
 LOOK_WAY, LOOK_TIME = 0.05, 1e-3
+# Looks in the time that a lander has to stay where it is until it rests.
+LOOKS_AT_REST = 50
 # Motion of the grains that a landing does not feel, over its impact speed: a bed takes on another soil at once where
 # all that this frees would not set them in such motion, and is relaxed until they have less.
 CALM_SPEED = 1e-3
@@ -103,6 +106,8 @@ def look_interval(world: World, speed: float, lander: Lander, landing: Landing) 
     """
     shortest = world.time_step * landing.contact.steps_per_contact / CHECKS_PER_CONTACT
     longest = LOOK_TIME * landing.time_limit
+    if landing.hop_height is not None:
+        longest = min(landing.time_limit, rest_time(lander, -landing.gravity[2])) / LOOKS_AT_REST
     way = LOOK_WAY * lander.smallest_edge
     return max(shortest, min(way / speed, longest) if speed > 0.0 else longest)
 

@@ -44,6 +44,8 @@ HULL = "of each hull: origin at its centroid, turning with it"
 SPIN_OUT = ("spin_out_x", "spin_out_y", "spin_out_z")
 ORIENTATION_OUT = ("orientation_out_w", "orientation_out_x", "orientation_out_y", "orientation_out_z")
 OVER_RIM = "over_rim"
+# Of touchdowns that are followed to rest: see Landing.hop_height.
+TO_REST = ("displacement_x", "displacement_y", "duration", "contacts")
 # Only on beds that repeat.
 PERIODS_TRAVELLED = "periods_travelled"
 
@@ -63,6 +65,10 @@ TOUCHDOWN = {
         for name in ORIENTATION_OUT
     },
     OVER_RIM: Quantity("", "whether the lander left over the rim of the bed, touching nothing and going up (1 or 0)"),
+    "displacement_x": Quantity("m", "horizontal displacement during the touchdown, along x", LOCAL),
+    "displacement_y": Quantity("m", "horizontal displacement during the touchdown, along y", LOCAL),
+    "duration": Quantity("s", "simulated time of the touchdown"),
+    "contacts": Quantity("", "contacts of lander and soil with a hop before each"),
     "contact_duration": Quantity("s", "time from the first to the last touch of lander and soil"),
     "penetration": Quantity("m", "largest depth of the lander below where it first touched"),
     "peak_acceleration": Quantity("m/s2", "largest acceleration of the lander by contacts"),

@@ -118,3 +118,16 @@ def threads(inputs: dict[str, float], seed: int) -> dict[str, Any]:
     counts = {name.lower(): float(os.environ[name]) for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS")}
     is_spawned = multiprocessing.get_start_method() == "spawn"
     return {**counts, "numba": float(numba.get_num_threads()), "is_spawned": float(is_spawned)}
+
+
+def collatz(inputs: dict[str, float], seed: int) -> dict[str, float]:
+    """The number after one of the Collatz sequence."""
+    value = inputs["value"]
+    return {"value": 3.0 * value + 1.0 if value % 2.0 else value / 2.0}
+
+
+def collatz_without_ten(inputs: dict[str, float], seed: int) -> dict[str, float]:
+    """The same, which fails for multiples of ten."""
+    if inputs["value"] % 10.0 == 0.0:
+        raise ValueError("ten is not known")
+    return collatz(inputs, seed)
