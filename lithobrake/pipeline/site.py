@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from lithobrake.files.hashing import hashed_seed
 from lithobrake.study import BUILT_IN_BODIES, Study, StudyError
 from lithobrake.study.checks import settling_problems
 from lithobrake.study.quantity import Scalar, Uncertain, median, uncertain, usual_reach
@@ -84,6 +85,15 @@ class Site:
             return np.empty((0, 3)), np.empty((0, 3, 3))
         names = ("latitude_deg", "longitude_deg", "heading_deg", "north_error", "east_error")
         return self.body.delivered_frame(*(columns[name] for name in names))
+
+    def sampled(self, count: int) -> dict[str, np.ndarray]:
+        """The numbers of each sample or journey by key, [count] each; a larger count changes no earlier one."""
+        from lithobrake.chaos.design import sample_inputs
+
+        # The random numbers of an input follow from its name.
+        laws = {f"site.{key}": law for key, law in self.distributions.items()}
+        table = sample_inputs(laws, count, hashed_seed(self.study.seed, "site"))
+        return self.columns(count) | dict(zip(self.distributions, table.T, strict=True))
 
     def columns(self, shape: int | tuple[int, ...]) -> dict[str, np.ndarray]:
         """The medians as columns of SITE_KEYS, each of this shape."""

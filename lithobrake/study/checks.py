@@ -13,6 +13,7 @@ from lithobrake.study.bed_section import Bell, Between, Constant, PowerLaw
 from lithobrake.study.body_checks import body_problems
 from lithobrake.study.contact_checks import contact_problems, inertia_problems, size_problems
 from lithobrake.study.design_checks import design_problems
+from lithobrake.study.journey_checks import journey_problems
 from lithobrake.study.quantity import reach, usual_reach
 from lithobrake.study.study import Study
 from lithobrake.vocabulary.plain_text import show
@@ -40,6 +41,7 @@ def problems(study: Study) -> Iterator[str]:
     yield from _solver_problems(study)
     yield from _limit_state_problems(study)
     yield from aim_problems(study)
+    yield from journey_problems(study)
     yield from _touchdown_problems(study)
     yield from body_problems(study)
 

@@ -29,6 +29,8 @@ def fixed_study(study: Study, values: Mapping[str, Any]) -> Study:
     unread = [key for key in values if key.startswith(INPUTS) and key.removeprefix(INPUTS) not in study.solver.inputs]
     if unread:
         raise StudyError([_unread(key, [f"{INPUTS}{name}" for name in study.solver.inputs]) for key in unread])
+    # What it says stands in other tables too, which the numbers are put into.
+    tables["delivery"] = None
     for key, value in values.items():
         _put(tables, key, value)
     try:

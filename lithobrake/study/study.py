@@ -25,6 +25,7 @@ from lithobrake.study.impact_sections import (
     PlaceSection,
     SurfaceSection,
 )
+from lithobrake.study.journey_sections import DeliverySection, JourneySection, delivered_tables, journey_tables
 from lithobrake.study.lander_section import LanderSection
 from lithobrake.study.material_sections import GrainSection
 from lithobrake.study.quantity import Scalar, Section, Uncertain, Whole
@@ -42,10 +43,12 @@ class Study(Section):
     bed: BedSection
     grain: GrainSection
     lander: LanderSection
+    delivery: DeliverySection | None = None
     impact: ImpactSection
     surface: SurfaceSection
     contact: ContactSection = ContactSection()
     landing: LandingSection = LandingSection()
+    journey: JourneySection | None = None
     solver: SolverSection = SolverSection()
     campaign: CampaignSection = CampaignSection()
     design: DesignSection = DesignSection()
@@ -61,7 +64,10 @@ class Study(Section):
     @classmethod
     def _defaults_of_the_drawn_method(cls, tables: Any) -> Any:
         """Fill in what a drawn study leaves open; all that is wrong is left for the sections to refuse."""
-        design = tables.get("design", {}) if isinstance(tables, Mapping) else None
+        if not isinstance(tables, Mapping):
+            return tables
+        tables = journey_tables(delivered_tables(tables))
+        design = tables.get("design", {})
         if not isinstance(design, Mapping) or method_name(design.get("method", DEFAULT_METHOD)) != "drawn":
             return tables
         impact = tables.get("impact")

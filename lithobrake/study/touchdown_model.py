@@ -29,6 +29,9 @@ SURFACE = (
     "cohesion_force", "surface_energy",
 )  # fmt: skip
 PLACE = ("impact.place.x", "impact.place.y")
+# Height of the lowest hop that leaves the bed, in largest diameters of the lander, where the study says nothing.
+HOP_PER_LANDER = 3.0
+TIME_LEFT = "journey.time_left"
 ORIENTATION = ("impact.orientation.w", "impact.orientation.x", "impact.orientation.y", "impact.orientation.z")
 
 
@@ -253,9 +256,18 @@ def landing(study: Study, values: Values) -> "Landing":
         orientation=(w, x, y, z),
         spin=(values["impact.spin_x"], values["impact.spin_y"], values["impact.spin_z"]),
         gravity=acceleration(values, values["surface.gravity"]),
-        time_limit=study.landing.time_limit,
+        # What is left of a journey.
+        time_limit=values.get(TIME_LEFT, study.landing.time_limit),
+        hop_height=hop_height(study, values),
         contact=contact(study),
     )
+
+
+def hop_height(study: Study, values: Values) -> float | None:
+    """Height [m] of the lowest hop that leaves the bed in a journey; None for a study that follows none."""
+    if study.journey is None:
+        return None
+    return study.journey.hop_height or HOP_PER_LANDER * 2.0 * lander(study, values).shape.bounding_radius
 
 
 def acceleration(values: Values, size: float) -> tuple[float, float, float]:

@@ -55,6 +55,7 @@ def touchdown_dependencies(study: Study) -> dict[str, Any]:
         "resolved_speed": study.contact.resolved_speed,
         "held_speed": study.contact.held_speed,
         "time_limit": study.landing.time_limit,
+        **({} if study.journey is None else {"hop_height": study.journey.hop_height}),
         "version": touchdown_version(),
     }
 

@@ -13,7 +13,7 @@ from lithobrake.files.hashing import content_hash
 from lithobrake.files.reading import read_rows
 from lithobrake.geometry.mesh_labels import labelled_mesh
 from lithobrake.geometry.mesh_units import mesh_unit
-from lithobrake.pipeline.emulate.samples import Samples, sampling_seed
+from lithobrake.pipeline.emulate.samples import Samples
 from lithobrake.pipeline.fly.flight_paths import write_flight_paths
 from lithobrake.pipeline.folder.study_folder import AGAIN, StudyFolder
 from lithobrake.pipeline.job import Job
@@ -70,18 +70,8 @@ def starts(site: Site, samples: Samples) -> Starts:
     """The first samples that leave the surface, as many as the study flies, each with its own site."""
     rows = np.flatnonzero(samples.leaves)[: site.study.flight.flight_count]
     velocity = np.column_stack([samples.output(f"velocity_out_{axis}") for axis in "xyz"])[rows]
-    sites = {key: values[rows] for key, values in sample_sites(site, len(samples.outcome)).items()}
+    sites = {key: values[rows] for key, values in site.sampled(len(samples.outcome)).items()}
     return Starts(rows, velocity, sites)
-
-
-def sample_sites(site: Site, count: int) -> dict[str, np.ndarray]:
-    """The site of each sample by the keys of SITE_KEYS, each of shape [count]; a larger count changes no earlier one"""
-    from lithobrake.chaos.design import sample_inputs
-
-    # The random numbers of an input follow from its name.
-    laws = {f"site.{key}": law for key, law in site.distributions.items()}
-    table = sample_inputs(laws, count, sampling_seed(site.study, "site"))
-    return site.columns(count) | dict(zip(site.distributions, table.T, strict=True))
 
 
 def fly_samples(job: Job) -> None:

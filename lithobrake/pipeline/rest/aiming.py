@@ -8,7 +8,7 @@ from lithobrake.analysis import sample_inputs
 from lithobrake.files.hashing import hashed_seed
 from lithobrake.pipeline.emulate.emulator_samples import drawn_samples
 from lithobrake.pipeline.emulate.fitted_emulator import REFIT_COUNT
-from lithobrake.pipeline.fly.flights import sample_sites, write_table
+from lithobrake.pipeline.fly.flights import write_table
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.rest.journeys import Sites, journey_dependencies, on_hard_ground, on_soil
 from lithobrake.study import Study
@@ -59,7 +59,7 @@ def _aimed(job: Job, aims: list[dict[str, float]], count: int) -> tuple[np.ndarr
     """Inputs [aim_count * count, input_count] and sites of all landers, one aim after the other."""
     names = list(job.design.inputs)
     x = np.tile(sample_inputs(job.design.inputs, count, hashed_seed(job.study.seed, "aims")), (len(aims), 1))
-    site = {key: np.tile(values, len(aims)) for key, values in sample_sites(job.site, count).items()}
+    site = {key: np.tile(values, len(aims)) for key, values in job.site.sampled(count).items()}
     for number, aim in enumerate(aims):
         own = slice(number * count, (number + 1) * count)
         for name, value in aim.items():

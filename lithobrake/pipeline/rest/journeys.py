@@ -9,7 +9,7 @@ import numpy as np
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.emulate.outgoing import VELOCITY
 from lithobrake.pipeline.emulate.samples import CAPTURED, Samples, sampling_seed, touchdown_values
-from lithobrake.pipeline.fly.flights import partner_time, sample_sites, write_table
+from lithobrake.pipeline.fly.flights import partner_time, write_table
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.rest import sliding_law
 from lithobrake.pipeline.rest.bounce_inputs import why_no_soil
@@ -77,7 +77,7 @@ def follow(job: Job, design: str, soil: "Callable[[Job, Samples], Soil]") -> Non
     arcs: list[list[Any]] = []
     if study.rest.count:
         samples = Samples.load(job.folder).first(study.rest.count)
-        sites = Sites.of(job.site, samples, sample_sites(job.site, len(samples.outcome)))
+        sites = Sites.of(job.site, samples, job.site.sampled(len(samples.outcome)))
         if why is None:
             first, bounce = on_soil(job, samples, soil)
             journeys = sites.journeys(job, "soil", first, bounce, study.rest.arc_count)

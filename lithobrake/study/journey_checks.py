@@ -1,0 +1,43 @@
+"""What is wrong between [delivery], [journey] and the rest of a study."""
+
+from collections.abc import Iterator
+
+from lithobrake.study.journey_sections import PLACE_KEYS
+from lithobrake.study.study import Study
+from lithobrake.vocabulary.plain_text import show
+
+
+def journey_problems(study: Study) -> Iterator[str]:
+    """One sentence for each thing that is wrong."""
+    yield from _delivery_problems(study)
+    if study.journey is None:
+        return
+    design = study.design
+    if design.method != "drawn":
+        yield f'[journey] follows drawn landings, and design.method is "{design.method}"; leave one of the two out'
+    if study.journey.count is not None and study.journey.count != design.run_count:
+        yield (
+            f"journey.count is {study.journey.count} and design.run_count {design.run_count}; both are the number of "
+            "journeys: keep one"
+        )
+    if study.surface.gravity != "site":
+        yield (
+            f'surface.gravity is {show(study.surface.gravity)}; allowed with [journey]: "site", as every touchdown '
+            "takes the acceleration of where it is; leave it out"
+        )
+    if study.surface.model_fields_set & {"slope_deg", "slope_azimuth_deg"}:
+        yield "surface.slope_deg is given; with [journey] every touchdown has the slope of where it is; leave it out"
+    if study.has_soil and study.bed.sides != "periodic":
+        yield 'bed.sides is "walls"; allowed with [journey]: "periodic", as journeys have no edge; change it'
+    for name, other in (("rest", study.rest.model_fields_set), ("aim", study.aim.model_fields_set)):
+        if other:
+            yield f"[{name}] follows samples of the emulator and [journey] landings; leave one of the two out"
+
+
+def _delivery_problems(study: Study) -> Iterator[str]:
+    """Keys of [delivery] that stand with another value in the tables that they stand for."""
+    for key, value in {} if study.delivery is None else study.delivery:
+        part = "site" if key in PLACE_KEYS else "impact"
+        other = getattr(getattr(study, part), key)
+        if value is not None and value != other:
+            yield f"delivery.{key} is {show(value)} and {part}.{key} {show(other)}; keep one of the two"
