@@ -64,8 +64,9 @@ class BedSection(Section):
     """Width along x and y, between the walls or until the ground repeats; at least twice the lander's largest
     diameter."""
     sides: Literal["walls", "periodic"] = "walls"
-    """What is beyond the width: "walls", an open box, whose rim a lander may leave over; or "periodic", the same ground
-    again, so that nothing is lost sideways, and a lander that goes farther meets ground that it has disturbed."""
+    """What is beyond the width: "walls", an open box that a lander may leave across its edge; or "periodic", the same
+    ground again, so that nothing is lost laterally, and a lander that goes farther meets ground that it has disturbed.
+    The latter is the default of design.method = "drawn"."""
     diameter: Annotated[Constant | Between | Bell | PowerLaw, Field(discriminator="distribution")] = Field(
         examples=['{ distribution = "constant", value = 0.08 }']
     )

@@ -43,7 +43,8 @@ class ImpactSection(Section):
     """The place of impact, the same for all runs; absent: the middle of the bed, or as `region` says."""
     region: RegionSection | None = None
     """In place of `place`: each run draws its place in this rectangle. With design.method = "drawn" and neither of
-    the two: wherever the lander is so far from the walls that they do not answer its first blow."""
+    the two: all over ground that repeats, or wherever the lander is so far from the walls that they do not answer its
+    first blow."""
     orientation: Annotated[tuple[float, ...] | str, Numbers("", count=4, word="random")] = (1.0, 0.0, 0.0, 0.0)
     """Attitude as a quaternion w, x, y, z; "random" draws it anew for each run, uniform over rotations, which is the
     default of design.method = "drawn"."""

@@ -70,11 +70,13 @@ class Study(Section):
         design = tables.get("design", {})
         if not isinstance(design, Mapping) or method_name(design.get("method", DEFAULT_METHOD)) != "drawn":
             return tables
-        impact = tables.get("impact")
-        if not isinstance(impact, Mapping):
-            return tables
-        attitude = {} if "pointing_error_deg" in impact else {"orientation": "random"}
-        return {**tables, "impact": {"azimuth_deg": "random", **attitude, **impact}}
+        filled, bed, impact = dict(tables), tables.get("bed"), tables.get("impact")
+        if isinstance(bed, Mapping):
+            filled["bed"] = {"sides": "periodic", **bed}
+        if isinstance(impact, Mapping):
+            attitude = {} if "pointing_error_deg" in impact else {"orientation": "random"}
+            filled["impact"] = {"azimuth_deg": "random", **attitude, **impact}
+        return filled
 
     def with_function(self, identity: str | None) -> "Study":
         """The same study, its touchdowns made by a Python function of this identity in place of the soil."""

@@ -57,7 +57,7 @@ class Outcome:
             file["diameter"] = bed.diameter
             describe(file)
             file.attrs["format"], file.attrs["format_version"] = "lithobrake landing", 1
-            file.attrs["status"], file.attrs["width"] = self.status.value, bed.width
+            file.attrs["status"], file.attrs["width"], file.attrs["sides"] = self.status.value, bed.width, bed.sides
             file.attrs["speed"], file.attrs["incidence"] = landing.speed, landing.incidence
             file.attrs.update(notes)
 

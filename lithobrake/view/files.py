@@ -36,7 +36,8 @@ def write_motion(bodies: "MovingBodies", path: Path, seconds: float = 8.0, progr
 def contact_sheet(bodies: "MovingBodies", path: str | Path, picture_count: int = PICTURES) -> None:
     """Write a PNG with so many pictures of a landing, half of them up to its deepest point, each with its time [s].
 
-    Raises ValueError for bodies that are no landing in a box.
+    Of ground that repeats the images around the lander's way are drawn. Raises ValueError for bodies that are no
+    landing.
     """
     from lithobrake.report.figures.hulls import scene
     from lithobrake.report.figures.landing_figure import landing_figure
@@ -47,10 +48,6 @@ def contact_sheet(bodies: "MovingBodies", path: str | Path, picture_count: int =
             f"{bodies.attributes.get('format', 'the motion')} is no landing, and a contact sheet shows one; "
             "take a file that ends in .vtkhdf, .mp4 or .webp for other motions"
         )
-    east, north = bodies.attributes["width"]
     with figure_style(), atomic_path(path) as draft:
-        figure = landing_figure(
-            *(scene(bodies, has_lander=True).bodies, bodies.time, bodies.position, bodies.orientation),
-            *((east, north), picture_count),
-        )
+        figure = landing_figure(scene(bodies, has_lander=True), picture_count)
         figure.savefig(draft, format="png")

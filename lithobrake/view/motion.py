@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from lithobrake.geometry.attitude import rotation_matrices
+from lithobrake.results.ground_images import with_images
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -42,7 +43,8 @@ class DrawnMotion:
             # Without this VTK asks for a display first, and says so.
             os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
         pv = pyvista()
-        self.bodies, self.speeds = bodies, body_speeds(bodies)
+        self.bodies = bodies = with_images(bodies)
+        self.speeds = body_speeds(bodies)
         faces, self.owner = triangles(bodies)
         self.mesh = pv.PolyData.from_regular_faces(placed(bodies, 0), faces)
         self.plotter = pv.Plotter(off_screen=off_screen, window_size=list(size))

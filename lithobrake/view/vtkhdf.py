@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from lithobrake.files.atomic import atomic_path
+from lithobrake.results.ground_images import with_images
 from lithobrake.view.motion import body_speeds, placed, triangles
 
 if TYPE_CHECKING:
@@ -26,10 +27,12 @@ def write_vtkhdf(bodies: "MovingBodies", path: str | Path) -> None:
 
     Where forces were kept also the size of the sum of contact forces on it [N].
 
-    The lander of a landing is the body with the last number.
+    The lander of a landing is the body with the last number. On ground that repeats grains stand there with their
+    images around its way.
     """
     import h5py
 
+    bodies = with_images(bodies)
     faces, owner = triangles(bodies)
     frames, points = len(bodies.time), sum(len(hull) for hull in bodies.vertices)
     with atomic_path(path) as draft, h5py.File(draft, "w") as file:

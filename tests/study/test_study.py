@@ -259,6 +259,15 @@ def test_ground_that_repeats_is_wide_enough_and_holds_on_its_slope(changes: dict
     assert problems({"bed.sides": "periodic"}) == []
 
 
+def test_beds_repeat_unless_the_method_is_that_of_the_paper() -> None:
+    tables = {key: value for key, value in TABLES.items() if key != "design"}
+    sides = [
+        check_tables(tables | design, Path()).bed.sides
+        for design in ({}, {"design": {"method": "drawn"}}, {"design": {"method": "paper"}})
+    ]
+    assert sides == ["periodic", "periodic", "walls"]
+
+
 def test_counts_must_reach_the_terms_of_least_squares_only() -> None:
     few = {**SOBOL, "design.screening_count": 20}
     (said,) = problems(few)

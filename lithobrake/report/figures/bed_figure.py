@@ -1,13 +1,11 @@
 """Figure 1: how the surface came to be, in pictures of its grains and in the history of its settling."""
 
-from collections.abc import Sequence
-
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from lithobrake.report.figures.hulls import Camera, Hull, draw_box, frame_axes, paint
+from lithobrake.report.figures.hulls import Camera, Scene, draw_box, frame_axes, paint
 from lithobrake.report.figures.style import GRAIN, LANDER, QUIET, SITE
 
 Array = NDArray[np.float64]
@@ -20,27 +18,20 @@ def three_moments(position: Array) -> tuple[int, int, int]:
     return 0, half_way, len(position) - 1
 
 
-def bed_figure(
-    bodies: Sequence[Hull],
-    time: Array,
-    position: Array,
-    orientation: Array,
-    width: tuple[float, float],
-    surface_height: float,
-    history: dict[str, Array],
-) -> Figure:
+def bed_figure(shown: Scene, surface_height: float) -> Figure:
     """Draw the cloud, the fall and the settled bed, and beside them how the settling went.
 
-    time [s], shape [frame]; position [m], shape [frame, body, 3]; orientation (w, x, y, z), shape [frame, body, 4];
-    history: time [s], kinetic_ratio, unbalanced_force, gravity [m/s2], each of shape [record].
+    Of ground that repeats one tile is drawn. surface_height [m].
     """
+    moving, span = shown.moving, float(np.ptp(shown.ground, axis=0).max())
+    position, orientation = moving.position, moving.orientation
     first, falling, last = three_moments(position)
     top = max(float(position[first, :, 2].max()), surface_height)
     figure = Figure(figsize=(9.2, 4.6))
     # The cloud may be ten times as high as the bed: it and its fall share one scale, the bed has a larger one.
-    far = Camera((0.0, 0.0, 0.5 * top), -58.0, 14.0, 7.0 * max(top, *width))
-    near = Camera((0.0, 0.0, 0.5 * surface_height), -58.0, 24.0, 5.0 * max(width))
-    column = float(np.clip(4.1 * _aspect(_extent(position[[first, falling]], bodies, width, far)), 1.1, 1.6)) / 9.2
+    far = Camera((0.0, 0.0, 0.5 * top), -58.0, 14.0, 7.0 * max(top, span))
+    near = Camera((0.0, 0.0, 0.5 * surface_height), -58.0, 24.0, 5.0 * span)
+    column = float(np.clip(4.1 * _aspect(_extent(position[[first, falling]], shown, far)), 1.1, 1.6)) / 9.2
     bed_width = 0.62 - 2 * column
     pictures = (
         (first, "random cloud", far, (0.005, 0.01, column, 0.89), (first, falling)),
@@ -49,18 +40,24 @@ def bed_figure(
     )
     for frame, name, camera, place, scale in pictures:
         axes = figure.add_axes(place)
-        draw_box(axes, width, 1.25 * surface_height, camera, front=False)
-        paint(axes, bodies, position[frame], orientation[frame], camera, surface_height)
-        draw_box(axes, width, 1.25 * surface_height, camera, front=True)
-        frame_axes(axes, *_extent(position[list(scale)], bodies, width, camera))
+        draw_box(axes, shown.box, 1.25 * surface_height, camera, front=False)
+        paint(axes, shown.bodies, position[frame], orientation[frame], camera, surface_height)
+        draw_box(axes, shown.box, 1.25 * surface_height, camera, front=True)
+        frame_axes(axes, *_extent(position[list(scale)], shown, camera))
         axes.set_anchor("S" if camera is far else "C")
         middle = place[0] + 0.5 * place[2]
         figure.text(
-            middle, 0.985, f"{name}\n$t$ = {time[frame]:.3g} s", ha="center", va="top", fontsize=8.5, weight="bold"
+            middle,
+            0.985,
+            f"{name}\n$t$ = {moving.time[frame]:.3g} s",
+            ha="center",
+            va="top",
+            fontsize=8.5,
+            weight="bold",
         )
     upper = figure.add_axes((0.725, 0.47, 0.255, 0.45))
     lower = figure.add_axes((0.725, 0.12, 0.255, 0.26), sharex=upper)
-    _history(upper, lower, history)
+    _history(upper, lower, moving.history)
     return figure
 
 
@@ -70,12 +67,10 @@ def _aspect(extent: tuple[tuple[float, float], tuple[float, float]]) -> float:
     return (right - left) / (high - low)
 
 
-def _extent(
-    position: Array, bodies: Sequence[Hull], width: tuple[float, float], camera: Camera
-) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Part of the picture plane [m] that holds all grains of the frames shown, and the box."""
-    margin = max(float(np.linalg.norm(body.vertices, axis=1).max()) for body in bodies)
-    corners = np.array([(x, y, 0.0) for x in (-width[0] / 2, width[0] / 2) for y in (-width[1] / 2, width[1] / 2)])
+def _extent(position: Array, shown: Scene, camera: Camera) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Part of the picture plane [m] that holds all grains of the frames shown, and the ground."""
+    margin = max(float(np.linalg.norm(body.vertices, axis=1).max()) for body in shown.bodies)
+    corners = np.array([(x, y, 0.0) for x in shown.ground[:, 0] for y in shown.ground[:, 1]])
     flat, _ = camera.project(np.concatenate([position.reshape(-1, 3), corners]))
     low, high = flat.min(axis=0) - 1.1 * margin, flat.max(axis=0) + 1.1 * margin
     return (float(low[0]), float(high[0])), (float(low[1]), float(high[1]))

@@ -17,6 +17,7 @@ from lithobrake.geometry.attitude import rotation_matrices
 from lithobrake.report.figures.shading import light_on_faces
 from lithobrake.report.figures.style import GRAIN, LANDER, shade
 from lithobrake.results import MovingBodies
+from lithobrake.results.ground_images import with_images
 
 Array = NDArray[np.float64]
 Triangles = NDArray[np.int64]
@@ -139,8 +140,12 @@ def frame_axes(axes: Axes, x_range: tuple[float, float], y_range: tuple[float, f
     axes.set_axis_off()
 
 
-def draw_box(axes: Axes, width: tuple[float, float], height: float, camera: Camera, front: bool) -> None:
-    """Draw the edges of the open box (walls at +-width/2, floor at z = 0); front: those nearer than its middle."""
+def draw_box(axes: Axes, width: tuple[float, float] | None, height: float, camera: Camera, front: bool) -> None:
+    """Draw the edges of the open box (walls at +-width/2, floor at z = 0), if there is one; front: those nearer than
+    its middle.
+    """
+    if width is None:
+        return
     x, y = width[0] / 2, width[1] / 2
     corners = np.array([(sx * x, sy * y, z) for z in (0.0, height) for sx, sy in ((-1, -1), (1, -1), (1, 1), (-1, 1))])
     edges = (
@@ -164,20 +169,34 @@ def draw_box(axes: Axes, width: tuple[float, float], height: float, camera: Came
 
 @dataclass(frozen=True)
 class Scene:
-    """Bodies as they are drawn, each about its centroid, and how they moved."""
+    """Bodies as they are drawn, each about its centroid, and how they moved.
+
+    box: width of the box that they lie in [m], None on ground that repeats.
+    """
 
     bodies: tuple[Hull, ...]
     moving: MovingBodies
+    box: tuple[float, float] | None
+
+    @property
+    def ground(self) -> Array:
+        """Least and largest x and y of the ground [m], shape [2, 2]: of the box, or of the bodies in the last frame."""
+        if self.box is not None:
+            return np.array([[-0.5], [0.5]]) * self.box
+        place = self.moving.position[-1, :, :2]
+        return np.array([place.min(axis=0), place.max(axis=0)])
 
 
 def scene(moving: MovingBodies, has_lander: bool) -> Scene:
-    """The bodies of a bed, or of a landing, in which the lander is the last."""
+    """The bodies of a bed, or of a landing, in which the lander is the last and grains stand with their images."""
+    moving = with_images(moving)
     last = len(moving.vertices) - 1
     bodies = tuple(
         _body(vertices, faces, LANDER if has_lander and number == last else GRAIN)
         for number, (vertices, faces) in enumerate(zip(moving.vertices, moving.faces, strict=True))
     )
-    return Scene(bodies, moving)
+    along, across = moving.attributes.get("width", (0.0, 0.0))
+    return Scene(bodies, moving, None if moving.attributes.get("sides") == "periodic" else (along, across))
 
 
 def _body(vertices: Array, faces: NDArray[np.int64], colour: str) -> Hull:

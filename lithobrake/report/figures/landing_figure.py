@@ -1,13 +1,11 @@
 """Figure 2: one landing, at several instants from the same place."""
 
-from collections.abc import Sequence
-
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from lithobrake.report.figures.hulls import Camera, Hull, draw_box, frame_axes, paint
+from lithobrake.report.figures.hulls import Camera, Scene, draw_box, frame_axes, paint
 from lithobrake.report.figures.style import INK, SITE
 
 Array = NDArray[np.float64]
@@ -26,23 +24,14 @@ def instants(lander_height: Array, count: int = 6) -> list[int]:
     return chosen if len(chosen) == count else sorted(set(np.rint(np.linspace(0, last, count)).astype(int).tolist()))
 
 
-def landing_figure(
-    bodies: Sequence[Hull],
-    time: Array,
-    position: Array,
-    orientation: Array,
-    width: tuple[float, float],
-    picture_count: int = 6,
-) -> Figure:
-    """Draw a landing; the lander is the last body and its path so far is a line.
-
-    time [s], shape [frame]; position [m], shape [frame, body, 3]; orientation (w, x, y, z), shape [frame, body, 4].
-    """
+def landing_figure(shown: Scene, picture_count: int = 6) -> Figure:
+    """Draw a landing; the lander is the last body and its path so far is a line."""
+    time, position, orientation = shown.moving.time, shown.moving.position, shown.moving.orientation
     path = position[:, -1]
     chosen = instants(path[:, 2], picture_count)
     surface_height = float(np.quantile(position[0, :-1, 2], 0.98))
-    camera = _camera(path, surface_height, width)
-    x_range, y_range = _extent(path[chosen], bodies, surface_height, width, camera)
+    camera = _camera(path, surface_height, shown.ground)
+    x_range, y_range = _extent(path[chosen], shown, surface_height, camera)
     column_count = 4 if len(chosen) > 6 else 3 if len(chosen) > 4 else 2
     row_count = -(-len(chosen) // column_count)
     picture_width = 9.2 / column_count
@@ -53,9 +42,9 @@ def landing_figure(
         row, column = divmod(place, column_count)
         share = picture_height / (picture_height + 0.3) / row_count
         axes = figure.add_axes((column / column_count, 1 - (row + 1) / row_count, 0.995 / column_count, share))
-        draw_box(axes, width, 1.1 * surface_height, camera, front=False)
-        paint(axes, bodies, position[frame], orientation[frame], camera, surface_height)
-        draw_box(axes, width, 1.1 * surface_height, camera, front=True)
+        draw_box(axes, shown.box, 1.1 * surface_height, camera, front=False)
+        paint(axes, shown.bodies, position[frame], orientation[frame], camera, surface_height)
+        draw_box(axes, shown.box, 1.1 * surface_height, camera, front=True)
         _trail(axes, path[: frame + 1], camera)
         frame_axes(axes, x_range, y_range)
         note = "  (deepest)" if frame == int(np.argmin(path[:, 2])) else ""
@@ -63,25 +52,26 @@ def landing_figure(
     return figure
 
 
-def _camera(path: Array, surface_height: float, width: tuple[float, float]) -> Camera:
+def _camera(path: Array, surface_height: float, ground: Array) -> Camera:
     """A camera that sees the lander go from left to right, a little from the side and from above."""
+    (x, y), span = ground.mean(axis=0), float(np.ptp(ground, axis=0).max())
     travel = path[min(len(path) - 1, max(1, int(np.argmin(path[:, 2]))))] - path[0]
-    heading = np.degrees(np.arctan2(travel[1], travel[0])) if np.hypot(travel[0], travel[1]) > 1e-6 * width[0] else 0.0
-    return Camera((0.0, 0.0, 0.8 * surface_height), float(heading) - 90.0 + 18.0, 17.0, 6.0 * max(width))
+    heading = np.degrees(np.arctan2(travel[1], travel[0])) if np.hypot(travel[0], travel[1]) > 1e-6 * span else 0.0
+    return Camera((float(x), float(y), 0.8 * surface_height), float(heading) - 90.0 + 18.0, 17.0, 6.0 * span)
 
 
 def _extent(
-    path: Array, bodies: Sequence[Hull], surface_height: float, width: tuple[float, float], camera: Camera
+    path: Array, shown: Scene, surface_height: float, camera: Camera
 ) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Part of the picture plane [m] that holds the box and the lander in all frames shown."""
+    """Part of the picture plane [m] that holds the ground and the lander in all frames shown."""
     # A little more than its radius, since perspective enlarges what comes towards the viewer.
-    reach = 1.15 * float(np.linalg.norm(bodies[-1].vertices, axis=1).max())
-    x, y = width[0] / 2, width[1] / 2
-    corners = np.array([(sx * x, sy * y, z) for sx in (-1, 1) for sy in (-1, 1) for z in (0.0, 1.25 * surface_height)])
+    reach = 1.15 * float(np.linalg.norm(shown.bodies[-1].vertices, axis=1).max())
+    ground, around = shown.ground, 0.02 * float(np.ptp(shown.ground, axis=0).max())
+    corners = np.array([(x, y, z) for x in ground[:, 0] for y in ground[:, 1] for z in (0.0, 1.25 * surface_height)])
     flat_box, _ = camera.project(corners)
     flat_path, _ = camera.project(path)
-    low = np.minimum(flat_box.min(axis=0) - 0.02 * max(width), flat_path.min(axis=0) - reach)
-    high = np.maximum(flat_box.max(axis=0) + 0.02 * max(width), flat_path.max(axis=0) + reach)
+    low = np.minimum(flat_box.min(axis=0) - around, flat_path.min(axis=0) - reach)
+    high = np.maximum(flat_box.max(axis=0) + around, flat_path.max(axis=0) + reach)
     return (float(low[0]), float(high[0])), (float(low[1]), float(high[1]))
 
 

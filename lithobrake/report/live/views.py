@@ -55,8 +55,9 @@ def _landing(shown: Scene, which: str) -> LiveSection:
     radius = float(np.linalg.norm(still - middle, axis=1).max())
     facts["orbit"] = _orbit(middle, radius, -1.1, 0.35)
     quantum = 1e3 * float(arrays["quanta"].max())
+    images = "" if shown.box is not None else ", images of the ground that repeats among them,"
     words = (
-        f"{which}: {len(moving.vertices) - 1} grains and the lander in {len(moving.time)} pictures, straight between "
+        f"{which}: {len(moving.vertices) - 1} grains{images} and the lander in {len(moving.time)} pictures, straight between "
         f"them. Places are rounded to {number(quantum, 2)} mm, and grains that hardly move to less. "
         f"Colour by {' or '.join(_scale_words(one) for one in facts['shades'])}, over equal factors."
     )

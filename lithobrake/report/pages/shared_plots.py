@@ -42,21 +42,13 @@ SHORT_JOURNEY_WORDS = {
 def draw_bed(data: PageData) -> "Figure | None":
     if data.bed is None:
         return None
-    moving, first = data.bed, data.results.beds[0]
-    width = tuple(data.study["bed"]["width"])
-    return bed_figure(
-        *(scene(moving, has_lander=False).bodies, moving.time, moving.position, moving.orientation),
-        *(width, first.surface_height_m, moving.history),
-    )
+    return bed_figure(scene(data.bed, has_lander=False), data.results.beds[0].surface_height_m)
 
 
 def draw_landing(data: PageData) -> "Figure | None":
     if data.landing is None:
         return None
-    moving, width = data.landing, tuple(data.study["bed"]["width"])
-    return landing_figure(
-        scene(moving, has_lander=True).bodies, moving.time, moving.position, moving.orientation, width
-    )
+    return landing_figure(scene(data.landing, has_lander=True))
 
 
 def draw_map(data: PageData) -> "Figure":

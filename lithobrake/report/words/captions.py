@@ -86,7 +86,11 @@ def bed(data: PageData) -> str:
     which = f"the first of {len(others) + 1} beds," if others else "a bed"
     width = " x ".join(f"{length:g}" for length in study["width"])
     walls = study.get("sides", "walls") == "walls"
-    ground = f"in an open box of {width} m" if walls else f"on ground that repeats after {width} m,"
+    ground = (
+        f"in an open box of {width} m"
+        if walls
+        else f"on ground that repeats after {width} m, of which one tile is drawn,"
+    )
     echo = "boundary reflections" if walls else "reflections and waves of the lander's own images"
     return (
         f"{study['grain_count']} grains, convex hulls with a mean diameter of {number(first.mean_diameter_m)} m, "
@@ -106,12 +110,13 @@ def landing(data: PageData) -> str:
         return ""
     attributes, time = data.landing.attributes, data.landing.time
     ended = TouchdownOutcome(str(attributes["status"])).sentence.rstrip(".")
+    images = " Grains are drawn with their images around its way." if attributes.get("sides") == "periodic" else ""
     return (
         f"{data.shown_landing}, the lander arrives at "
         f"{number(_float(attributes['speed']))} m/s and "
         f"{math.degrees(_float(attributes['incidence'])):.3g} deg from the normal. "
         f"{ended} after {number(float(time[-1] - time[0]))} s of simulated time; "
-        "the line is the way of its centre."
+        f"the line is the way of its centre.{images}"
     )
 
 

@@ -131,7 +131,7 @@ def test_the_papers_runs_take_an_error_of_pointing_too() -> None:
 
 
 def test_places_are_drawn_where_the_smallest_bed_leaves_room() -> None:
-    study = drawn(64, bed={"width": [0.8, 1.0], "grain_count": 400})
+    study = drawn(64, bed={"width": [0.8, 1.0], "grain_count": 400, "sides": "walls"})
     region, width = place_region(study), smallest_width(study)
     assert region == ((-0.5 * (0.8 - width), 0.5 * (0.8 - width)), (-0.5 * (1.0 - width), 0.5 * (1.0 - width)))
     places = columns(DrawnDesign(study).rows, *PLACE)
@@ -141,7 +141,7 @@ def test_places_are_drawn_where_the_smallest_bed_leaves_room() -> None:
 
 
 def test_places_are_drawn_all_over_ground_that_repeats() -> None:
-    study = drawn(64, bed={"width": [0.8, 1.0], "grain_count": 400, "sides": "periodic"})
+    study = drawn(64, bed={"width": [0.8, 1.0], "grain_count": 400})
     assert place_region(study) == ((-0.4, 0.4), (-0.5, 0.5))
     assert np.all(np.abs(columns(DrawnDesign(study).rows, *PLACE)).max(axis=0) > 0.9 * np.array([0.4, 0.5]))
 
@@ -149,7 +149,8 @@ def test_places_are_drawn_all_over_ground_that_repeats() -> None:
 def test_a_bed_that_is_too_narrow_for_its_rule_is_landed_on_in_the_middle() -> None:
     # A heavy little ball is long in touch with a grain, and a wave goes far in that time.
     ball = {"shape": "sphere", "diameter": 0.05, "mass": 50.0, "restitution": TABLES["lander"]["restitution"]}
-    study = check_tables(TABLES | {"lander": ball, "bed": {**TABLES["bed"], "width": [0.25, 2.0]}}, Path())
+    narrow = {**TABLES["bed"], "width": [0.25, 2.0], "sides": "walls"}
+    study = check_tables(TABLES | {"lander": ball, "bed": narrow}, Path())
     assert 0.25 < smallest_width(study) < 2.0
     along, across = place_region(study) or ()
     assert along == (0.0, 0.0)

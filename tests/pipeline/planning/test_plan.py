@@ -262,7 +262,7 @@ def test_a_sequence_on_few_beds_or_at_one_place_is_warned_of(changes: dict[str, 
 def test_landings_that_will_leave_the_bed_laterally_are_warned_of_by_their_angle(tmp_path: Path) -> None:
     slanted = {"distribution": "uniform", "lower": 0.0, "upper": 88.0}
     steep, flat, wide = (
-        drawn(impact={"incidence_deg": angle, "region": {"x": [-0.1, 0.1], "y": [-0.1, 0.1]}}, bed={"width": [w, w]})
+        drawn(impact={"incidence_deg": angle}, bed={"width": [w, w], "sides": "walls"})
         for angle, w in ((15.0, 0.7), (slanted, 0.7), (slanted, 3.0))
     )
     words = "may leave the bed laterally"
@@ -275,9 +275,7 @@ def test_landings_that_will_leave_the_bed_laterally_are_warned_of_by_their_angle
 
 def test_ground_that_repeats_loses_no_landing_and_is_warned_of_its_images() -> None:
     flat = {"distribution": "uniform", "lower": 0.0, "upper": 88.0}
-    studies = (
-        drawn(impact={"incidence_deg": flat}, bed={"sides": "periodic", "grain_count": count}) for count in (150, 20)
-    )
+    studies = (drawn(impact={"incidence_deg": flat}, bed={"grain_count": count}) for count in (150, 20))
     said = [" ".join(study_warnings(DrawnDesign(one), Site(one), soil_of(one))) for one in studies]
     assert not any("laterally" in one or "over the edge" in one for one in said)
     assert "images" not in said[0]
@@ -363,8 +361,13 @@ def test_a_disk_that_is_too_small_is_the_first_warning(tmp_path: Path, monkeypat
 
 
 def test_a_study_that_has_all_it_needs_is_warned_of_the_edge_of_its_beds_alone() -> None:
-    study = read_study(SCENARIOS / "bounces.toml")
-    lost, unknown = study_warnings(DrawnDesign(study), Site(study), soil_of(study))
+    tables = load_tables(SCENARIOS / "bounces.toml")
+    repeating, walled = (
+        check_tables(tables | {"bed": tables["bed"] | sides}, SCENARIOS) for sides in ({}, {"sides": "walls"})
+    )
+    (here,) = study_warnings(DrawnDesign(repeating), Site(repeating), soil_of(repeating))
+    assert here.startswith("Many journeys on the soil will have an unknown outcome")
+    lost, unknown = study_warnings(DrawnDesign(walled), Site(walled), soil_of(walled))
     assert lost.startswith("About 13 % of the landings may leave the bed laterally")
     assert unknown.startswith("Many journeys on the soil will have an unknown outcome")
 

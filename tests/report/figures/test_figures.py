@@ -15,7 +15,7 @@ from lithobrake.report.figures.body_figure import body_figure, colour_ends, face
 from lithobrake.report.figures.count_figure import Design, count_figure
 from lithobrake.report.figures.density import WHOLE, Window, close_window, draw_density, neighbour_count
 from lithobrake.report.figures.error_figure import error_figure
-from lithobrake.report.figures.hulls import Hull
+from lithobrake.report.figures.hulls import Hull, Scene
 from lithobrake.report.figures.landing_figure import instants, landing_figure
 from lithobrake.report.figures.map_figure import Share, draw_shares, map_figure
 from lithobrake.report.figures.map_marks import draw_ellipses, fitting, outline
@@ -27,6 +27,7 @@ from lithobrake.report.page_data import DrawnPage
 from lithobrake.report.pages.shared_plots import draw_map, draw_rest
 from lithobrake.report.words.chance import follows_gaussian
 from lithobrake.report.words.labels import PAPER_OUTPUTS, input_label
+from lithobrake.results import MovingBodies
 from lithobrake.results.aims import AimOnGround, AimResult, AimResults, BestAim
 from lithobrake.results.dispersion import EllipseShare, LandingEllipses
 from lithobrake.results.expansions import OutputErrors
@@ -50,25 +51,26 @@ def texts(figure: Figure) -> str:
     return "\n".join([*found, *legends])
 
 
-def falling(frame_count: int) -> tuple[list[Hull], np.ndarray, np.ndarray, np.ndarray]:
-    """Five tetrahedra that sink: bodies, time, position and orientation."""
-    bodies = [Hull(0.03 * TETRAHEDRON, FACES, "#aa9977")] * 5
+def falling(frame_count: int, box: tuple[float, float] | None = (0.6, 0.6)) -> Scene:
+    """Five tetrahedra that sink."""
+    bodies = (Hull(0.03 * TETRAHEDRON, FACES, "#aa9977"),) * 5
     start = np.column_stack([np.linspace(-0.2, 0.2, 5), np.zeros(5), np.linspace(0.3, 1.0, 5)])
     drop = np.linspace(0.0, 0.25, frame_count)[:, None]
     position = np.repeat(start[None], frame_count, axis=0)
     position[:, :, 2] -= drop
     orientation = np.zeros((frame_count, 5, 4))
     orientation[:, :, 0] = 1.0
-    return bodies, np.linspace(0.0, 1.0, frame_count), position, orientation
-
-
-def test_bed_figure_shows_three_moments_with_their_times() -> None:
-    bodies, time, position, orientation = falling(11)
     record = np.linspace(0.0, 4.0, 9)
     history = {"time": record, "kinetic_ratio": np.exp(-record), "unbalanced_force": np.exp(-record)}
     history["gravity"] = np.full(9, 1.0)
+    shapes = (TETRAHEDRON,) * 5, (FACES,) * 5
+    moving = MovingBodies(*shapes, np.linspace(0.0, 1.0, frame_count), position, orientation, {}, history)
+    return Scene(bodies, moving, box)
+
+
+def test_bed_figure_shows_three_moments_with_their_times() -> None:
     with figure_style():
-        figure = bed_figure(bodies, time, position, orientation, (0.6, 0.6), 0.1, history)
+        figure = bed_figure(falling(11), 0.1)
     words = texts(figure)
     assert "random cloud" in words
     assert "falling\n$t$ = 0.5 s" in words
@@ -92,11 +94,13 @@ def test_instants_hold_start_deepest_and_end(height: np.ndarray, expected: list[
     assert instants(height) == expected
 
 
-def test_landing_figure_has_one_picture_an_instant() -> None:
-    bodies, time, position, orientation = falling(12)
+@pytest.mark.parametrize("box", [(0.6, 0.6), None])
+def test_landing_figure_has_one_picture_an_instant(box: tuple[float, float] | None) -> None:
     with figure_style():
-        figure = landing_figure(bodies, time, position, orientation, (0.6, 0.6))
+        figure = landing_figure(falling(12, box))
     assert len(figure.axes) == 6
+    # Twelve edges of the box and the way in its two colours, which ends in a dot.
+    assert {len(axes.lines) for axes in figure.axes} == {15 if box else 3}
 
 
 def test_count_figure_names_the_designs_with_their_runs() -> None:
