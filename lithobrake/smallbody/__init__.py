@@ -10,10 +10,11 @@ from lithobrake.smallbody.hopping import Journeys, Launch, hop
 from lithobrake.smallbody.restitution_table import RestitutionTable
 from lithobrake.smallbody.shape import Shape
 from lithobrake.smallbody.spice_kernels import PartnerPlace, SpinState, read_partner, read_spin
+from lithobrake.smallbody.tumbling import tumble
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus
 
 __all__ = [
     "Arcs", "Body", "Bounce", "FlightStatus", "Flights", "HardSurface", "Impacts", "JourneyStatus", "Journeys",
     "Launch", "Partner", "PartnerPlace", "Rebounds", "RestitutionTable", "Shape", "SpinState", "didymos", "dimorphos",
-    "fly", "hop", "read_partner", "read_spin",
+    "fly", "hop", "read_partner", "read_spin", "tumble",
 ]  # fmt: skip
