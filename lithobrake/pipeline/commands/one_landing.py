@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.runs.beds import bed_recipe
+from lithobrake.pipeline.runs.kernels import compile_kernels
 from lithobrake.pipeline.site import with_site_gravity
 from lithobrake.study import Study, StudyError, fixed_study
 from lithobrake.study.touchdown_model import draw, in_words_of_the_study, lander, landing
@@ -101,7 +102,12 @@ def land_one(
     study = with_site_gravity(study, "the study")
     with in_words_of_the_study(), TemporaryDirectory(prefix="lithobrake-") as folder:
         recipe, path = bed_recipe(study, round(values["bed"])), Path(folder) / "bed.h5"
-        stored_or_poured(recipe, path, lambda: pour_bed(recipe, progress=progress))
+
+        def pour() -> "Bed":
+            compile_kernels(lambda done, total, what, *_: progress(done / total, what))
+            return pour_bed(recipe, progress=progress)
+
+        stored_or_poured(recipe, path, pour)
         bed = Bed.load(path)
         body, arrival = lander(study, values), landing(study, values)
         return OneLanding(values, bed, body, arrival, land(bed, body, arrival, FRAMES, progress))

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from lithobrake.pipeline.job import Job
-from lithobrake.pipeline.runs.kernels import compile_kernels
+from lithobrake.pipeline.runs.kernels import compile_flights, compile_kernels
 from lithobrake.study.touchdown_model import engine_hash, in_words_of_the_study, refuse_other_code
 
 if TYPE_CHECKING:
@@ -22,7 +22,8 @@ def pour_at_once(job: Job, beds: "Mapping[int, tuple[BedRecipe, Path]]") -> None
     Raises ValueError that names the beds which cannot be poured, when all others are there.
     """
     # Workers that start afterwards find the kernels on the disk, where else each would compile them.
-    compile_kernels(job)
+    compile_kernels(job.progress)
+    compile_flights(job)
     failures = _pour_here(job, beds) if len(beds) == 1 else _pour_on_workers(job, beds)
     if failures:
         raise ValueError(_refusal(failures, job.study.bed_count))

@@ -41,7 +41,7 @@ def landing_values(design: DrawnDesign) -> dict[str, float]:
 
 def land_once(job: Job) -> None:
     """Land once before all runs and keep the pictures."""
-    compile_kernels(job)
+    compile_kernels(job.progress)
     _land(job, landing_values(job.design), FIRST)
 
 

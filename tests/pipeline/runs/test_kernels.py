@@ -1,13 +1,21 @@
-"""Compiling ahead of a study leaves nothing to compile for its beds and landings."""
+"""Compiling ahead of a study leaves nothing to compile for its beds, landings and flights."""
 
 import os
 import subprocess
 import sys
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+
+from lithobrake.campaign import LocalExecutor
+from lithobrake.pipeline.runs import kernels
+
+QUICK = Path(__file__).parents[3] / "scenarios" / "quick.toml"
 
 # In a process of its own: elsewhere in this one other tests have called kernels.
 SCRIPT = """
 import sys
-from types import SimpleNamespace
 from lithobrake.compilation.compiled import Kernel
 from lithobrake.dem import Box, Material
 from lithobrake.pipeline.runs.kernels import compile_kernels
@@ -19,7 +27,7 @@ def called():
     return sorted((kernel.__qualname__, str(form)) for kernel in kernels.values() for form in kernel.signatures)
 
 shown = []
-compile_kernels(SimpleNamespace(progress=lambda *what: shown.append(what)))
+compile_kernels(lambda *what: shown.append(what))
 ahead = called()
 rock = Material(density=2000.0, young_modulus=2e5, poisson_ratio=0.25, restitution=0.4, friction=0.5)
 sizes = GrainSizes(distribution="constant", lower=0.1, upper=0.1)
@@ -37,16 +45,41 @@ print(shown[-1], all(0 <= done <= total for done, total, *_ in shown))
 """
 
 COLD = """
-from types import SimpleNamespace
 import lithobrake.pipeline.runs.kernels as kernels
 from lithobrake.dem.stepping.time_loop import advance
 kernels.available_cores = lambda: 2
 shown = []
-kernels.compile_kernels(SimpleNamespace(progress=lambda *what: shown.append(what)))
+kernels.compile_kernels(lambda *what: shown.append(what))
 (form,) = advance.signatures
 print("found" if advance.stats.cache_hits else "compiled here")
 print(len({done for done, *_ in shown}))
 print(all(detail == f"{done} of {total} kernels" for done, total, _, *details in shown for detail in details))
+"""
+
+FLYING = """
+import sys
+from pathlib import Path
+from dataclasses import replace
+from lithobrake.compilation.compiled import Kernel
+from lithobrake.pipeline.runs.kernels import fly_briefly
+from lithobrake.pipeline.site import Site
+from lithobrake.smallbody import HardSurface, Launch, fly, hop
+from lithobrake.study import read_study
+
+def called():
+    modules = [module for name, module in sys.modules.items() if name.startswith("lithobrake.smallbody.")]
+    kernels = {id(k): k for module in modules for k in vars(module).values() if isinstance(k, Kernel)}
+    return sorted((kernel.__qualname__, str(form)) for kernel in kernels.values() for form in kernel.signatures)
+
+study = read_study(Path(sys.argv[1]))
+fly_briefly(study)
+ahead = called()
+site = Site(study)
+origin, axes = site.frames(site.columns(3))
+velocity = 0.01 * axes[:, 2]
+fly(replace(site.body, partner=None), origin, velocity, 60.0, gravity="table", threads=2).jacobi_drift
+ends = hop(site.body, Launch(origin, velocity, captured=[False, True, False]), HardSurface(0.5), 3600.0, friction=1.0)
+print(len(ahead), [form for form in called() if form not in ahead], ends.time.max() > 0.0)
 """
 
 
@@ -70,3 +103,20 @@ def test_from_an_empty_cache_each_kernel_is_compiled_once_and_progress_moves(tmp
     assert ended.stderr == ("Compiling the soft-surface engine for this processor, once: about half a minute.\n")
     names = [path.name.rpartition("-")[0] for path in tmp_path.glob("lithobrake/dem-*/dem.*")]
     assert len(names) == len(set(names)) > 8
+
+
+def test_flights_and_journeys_find_all_kernels_compiled():
+    ended = subprocess.run([sys.executable, "-c", FLYING, str(QUICK)], capture_output=True, text=True, check=True)
+    count, _, rest = ended.stdout.strip().partition(" ")
+    assert int(count) > 0
+    assert rest == "[] True"
+
+
+@pytest.mark.parametrize(("workers", "on_disk", "calls"), [(2, False, 1), (2, True, 0), (1, False, 0)])
+def test_one_of_several_workers_compiles_flights_that_are_not_on_disk(monkeypatch, workers, on_disk, calls):
+    asked = []
+    monkeypatch.setattr("lithobrake.compilation.compiled.lies_on_disk", lambda kernel: on_disk)
+    monkeypatch.setattr(LocalExecutor, "submit", lambda self, *call: asked.append(call[1:]))
+    with LocalExecutor(workers) as executor:
+        kernels.compile_flights(SimpleNamespace(executor=executor, study="the study"))
+    assert asked == [(kernels.fly_briefly, "the study")] * calls
