@@ -68,6 +68,7 @@ def test_imports_of_third_parties_are_declared() -> None:
     # Some come with the package that they belong to, which asks for the one it needs.
     names_on_index = {
         "PIL": "matplotlib",
+        "contourpy": "matplotlib",
         "imageio_ffmpeg": "imageio-ffmpeg",
         "sklearn": "scikit-learn",
         "mpl_toolkits": "matplotlib",

@@ -13,10 +13,16 @@ from lithobrake.analysis.failure_probability import (
     failure_probability,
 )
 from lithobrake.analysis.half_width import expected_half_width, expected_half_widths, runs_for_half_width
+from lithobrake.analysis.highest_density import DensityRegion, HighestDensity, highest_density
 from lithobrake.analysis.inference import LearntInput, Observation, Posterior, infer, shared_bed_warning
 from lithobrake.analysis.observed_bounces import Identifiability, identifiability, predictive_p_value
 from lithobrake.analysis.outcome_model import OutcomeModel, unseen_limit, upper_limit
-from lithobrake.analysis.output_estimates import mean_estimate, quantile_estimates
+from lithobrake.analysis.output_estimates import (
+    QuantileEstimate,
+    mean_estimate,
+    quantile_estimate,
+    quantile_estimates,
+)
 from lithobrake.analysis.refit_interval import refit_interval
 from lithobrake.analysis.sequential_stopping import half_width_of, next_run_count, scatter_of
 from lithobrake.analysis.share_estimate import ShareEstimate, share_estimate
@@ -26,11 +32,12 @@ from lithobrake.analysis.variance_shares import VarianceShares, variance_shares
 from lithobrake.chaos.design import sample_inputs
 
 __all__ = [
-    "LEVEL", "BestChoice", "DirectionEstimate", "Ellipses", "FailureInput", "FailureProbability", "Identifiability",
-    "IntervalEstimate", "LearntInput", "Observation", "OutcomeModel", "Posterior", "ShareEstimate", "SubsetResult",
-    "VarianceShares", "best_choice", "chaos_variance", "direction_estimate", "dispersion_ellipses", "drawn_counts",
-    "drawn_failures", "expected_half_width", "expected_half_widths", "failure_inputs", "failure_probability",
-    "half_width_of", "identifiability", "infer", "mean_estimate", "next_run_count", "predictive_p_value",
+    "LEVEL", "BestChoice", "DensityRegion", "DirectionEstimate", "Ellipses", "FailureInput", "FailureProbability",
+    "HighestDensity", "Identifiability", "IntervalEstimate", "LearntInput", "Observation", "OutcomeModel", "Posterior",
+    "QuantileEstimate", "ShareEstimate", "SubsetResult", "VarianceShares", "best_choice", "chaos_variance",
+    "direction_estimate", "dispersion_ellipses", "drawn_counts", "drawn_failures", "expected_half_width",
+    "expected_half_widths", "failure_inputs", "failure_probability", "half_width_of", "highest_density",
+    "identifiability", "infer", "mean_estimate", "next_run_count", "predictive_p_value", "quantile_estimate",
     "quantile_estimates", "quantile_within", "refit_interval", "regression_terms", "runs_for_half_width",
     "sample_inputs", "scatter_of", "share_estimate", "shared_bed_warning", "soil_total_effect", "subset_simulation",
     "unseen_limit", "upper_limit", "variance_shares", "wilson_interval",

@@ -2,17 +2,35 @@
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lithobrake.analysis.confidence import IntervalEstimate, answered_runs, t_quantile
-from lithobrake.analysis.share_estimate import standard_error
+from lithobrake.analysis.confidence import LEVEL, IntervalEstimate, answered_runs, t_quantile
+from lithobrake.analysis.share_estimate import ONE_BED, standard_error
 from lithobrake.vocabulary.arrays import Array, Labels
 
 # Quantiles of less than this probability, or more than 1 less it, take so many beds for an interval: on fewer beds a
 # handful of runs beyond the quantile lie on one or two of them (measured: docs/estimates.md).
 TAIL, FEWEST_BEDS_OF_TAIL = 0.1, 10
+
+
+@dataclass(frozen=True)
+class QuantileEstimate:
+    """A quantile of an output with its interval.
+
+    value         in the unit of the output; None where no run has the output
+    lower, upper  its interval; an end that the runs cannot give is None, and `why` has the reason
+    level         confidence of the interval
+    why           why an end is missing; None where both are there
+    """
+
+    value: float | None
+    lower: float | None
+    upper: float | None
+    level: float
+    why: str | None
 
 
 def mean_estimate(y: ArrayLike, bed: ArrayLike) -> IntervalEstimate:
@@ -40,18 +58,58 @@ def quantile_estimates(
     if not all(0.0 < probability < 1.0 for probability in probabilities):
         raise ValueError(f"probabilities are {list(probabilities)}; each must lie between 0 and 1")
     values, beds = _known(y, bed)
-    ordered, places = np.sort(values), (np.arange(len(values)) + 0.5) / len(values)
+    ordered, places = _steps(values)
     found = []
     for probability in probabilities:
         quantile = float(np.interp(probability, places, ordered))
-        if not TAIL <= probability <= 1.0 - TAIL and beds.max() + 1 < FEWEST_BEDS_OF_TAIL:
+        if _few_beds_of_tail(probability, beds):
             found.append(IntervalEstimate(quantile, -math.inf, math.inf))
             continue
-        error = standard_error((values <= quantile).astype(float), beds)
-        half = t_quantile(int(beds.max())) * error
-        lower, upper = np.interp([probability - half, probability + half], places, ordered).tolist()
+        lower, upper = np.interp(_share_bounds(values, beds, probability, quantile), places, ordered).tolist()
         found.append(IntervalEstimate(quantile, lower, upper))
     return found
+
+
+def quantile_estimate(y: ArrayLike, bed: ArrayLike, probability: float, *, why: str | None = None) -> QuantileEstimate:
+    """Estimate a quantile of an output y [run_count], NaN where a run has none, with its interval where there is one.
+
+    As `quantile_estimates`, which the bounds equal to the bit, but for an end beyond all runs: it is None, since the
+    largest value of few runs bounds no quantile. bed [run_count]; why: a reason why these runs give no interval, as
+    one impact point. Raises ValueError for a probability outside 0 to 1. Source: [Woodruff-1952].
+    """
+    if not 0.0 < probability < 1.0:
+        raise ValueError(f"probability is {probability}; it must lie between 0 and 1")
+    values, beds = answered_runs(y, bed)
+    if len(values) == 0:
+        return QuantileEstimate(None, None, None, LEVEL, why or "no run has this output")
+    ordered, places = _steps(values)
+    quantile = float(np.interp(probability, places, ordered))
+    if why is None and beds.max() == 0:
+        why = ONE_BED
+    if why is None and _few_beds_of_tail(probability, beds):
+        why = f"{beds.max() + 1} beds give no interval of a quantile so far out: {FEWEST_BEDS_OF_TAIL} are needed"
+    if why is not None:
+        return QuantileEstimate(quantile, None, None, LEVEL, why)
+    shares = _share_bounds(values, beds, probability, quantile)
+    ends = [float(np.interp(one, places, ordered)) if places[0] <= one <= places[-1] else None for one in shares]
+    missing = [side for side, end in zip(("lower", "upper"), ends, strict=True) if end is None]
+    beyond = f"the {' and the '.join(missing)} end lies beyond all {len(values)} values" if missing else None
+    return QuantileEstimate(quantile, ends[0], ends[1], LEVEL, beyond)
+
+
+def _steps(values: Array) -> tuple[Array, Array]:
+    """Values in order, and the share of runs below the middle of each one's step. Source: [Hyndman-1996]."""
+    return np.sort(values), (np.arange(len(values)) + 0.5) / len(values)
+
+
+def _few_beds_of_tail(probability: float, beds: Labels) -> bool:
+    return not TAIL <= probability <= 1.0 - TAIL and beds.max() + 1 < FEWEST_BEDS_OF_TAIL
+
+
+def _share_bounds(values: Array, beds: Labels, probability: float, quantile: float) -> tuple[float, float]:
+    """Bounds of the share of runs below a quantile, from beds."""
+    half = t_quantile(int(beds.max())) * standard_error((values <= quantile).astype(float), beds)
+    return probability - half, probability + half
 
 
 def _known(y: ArrayLike, bed: ArrayLike) -> tuple[Array, Labels]:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from lithobrake.analysis import mean_estimate, quantile_estimates
+from lithobrake.analysis import mean_estimate, quantile_estimate, quantile_estimates
 
 
 def test_with_a_run_a_bed_the_mean_has_the_interval_of_student() -> None:
@@ -71,3 +71,24 @@ def test_one_bed_and_impossible_probabilities_are_refused() -> None:
         mean_estimate(np.arange(5.0), np.zeros(5))
     with pytest.raises(ValueError, match="between 0 and 1"):
         quantile_estimates(np.arange(5.0), np.arange(5), (0.0,))
+
+
+def test_an_end_that_cannot_be_told_has_a_reason() -> None:
+    rng, bed = np.random.default_rng(5), np.arange(96) % 12
+    y = rng.exponential(size=96)
+    for probability in (0.05, 0.5, 0.9):
+        one, (same,) = quantile_estimate(y, bed, probability), quantile_estimates(y, bed, [probability])
+        assert (one.value, one.lower, one.upper, one.why) == (same.value, same.lower, same.upper, None)
+    # Beds that differ: the share below the quantile may reach 1.
+    apart = quantile_estimate(y + 5.0 * bed, bed, 0.95)
+    assert apart.lower is not None
+    assert (apart.upper, apart.why) == (None, "the upper end lies beyond all 96 values")
+    few = quantile_estimate(y, bed % 9, 0.95)
+    assert (few.lower, few.upper) == (None, None)
+    assert "9 beds" in str(few.why)
+    assert "one bed" in str(quantile_estimate(y, np.zeros(96), 0.5).why)
+    assert quantile_estimate(y, bed, 0.5, why="one impact point").why == "one impact point"
+    none = quantile_estimate(np.full(96, np.nan), bed, 0.5)
+    assert (none.value, none.lower, none.why) == (None, None, "no run has this output")
+    with pytest.raises(ValueError, match="between 0 and 1"):
+        quantile_estimate(y, bed, 1.0)
