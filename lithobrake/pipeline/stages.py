@@ -1,9 +1,12 @@
 """The stages of a study in order, by its method; each is declared in the room that makes its files."""
 
+from dataclasses import replace
+
 from lithobrake.pipeline.answer import stages as answer
 from lithobrake.pipeline.emulate import stages as emulate
 from lithobrake.pipeline.fly import stages as fly
 from lithobrake.pipeline.job import Job
+from lithobrake.pipeline.journeys import stages as journeys
 from lithobrake.pipeline.paper import stages as paper
 from lithobrake.pipeline.rest import stages as rest
 from lithobrake.pipeline.runs import stages as runs
@@ -41,6 +44,15 @@ DRAWN = (
     answer.SUMMARY,
     REPORT,
 )
+def _journeys() -> tuple[Stage, ...]:
+    """The stages of drawn landings, with journeys in the place of the landings alone, and nothing by the emulator."""
+    left_out = {rest.REST.name, rest.AIM.name}
+    kept = [stage for stage in DRAWN if stage.name not in left_out]
+    lighter = [replace(stage, after=tuple(name for name in stage.after if name not in left_out)) for stage in kept]
+    return tuple(journeys.JOURNEYS if stage.name == journeys.JOURNEYS.name else stage for stage in lighter)
+
+
+JOURNEYS = _journeys()
 PAPER = (
     runs.BED,
     paper.MEDIAN_LANDING,
@@ -60,7 +72,9 @@ PAPER = (
 
 def stages_of(study: Study) -> tuple[Stage, ...]:
     """The stages of a study in order, by its method."""
-    return PAPER if study.design.method == "paper" else DRAWN
+    if study.design.method == "paper":
+        return PAPER
+    return DRAWN if study.journey is None else JOURNEYS
 
 
 def stages_until(study: Study, until: str) -> tuple[Stage, ...]:

@@ -18,6 +18,7 @@ from lithobrake.results.expansions import (
     NodeCounts,
     OutputErrors,
 )
+from lithobrake.results.journey_results import EndShare, JourneyRest
 from lithobrake.results.limit_state_results import LimitStateResult
 from lithobrake.results.run_results import OutputDirection, OutputEstimate, OutputRange, RunResults, VarianceParts
 from lithobrake.results.shares import LandingShares, ReturnFraction, RunShares, SampleShares
@@ -55,7 +56,8 @@ class DrawnResults:
     ellipses: LandingEllipses | None
     without_scatter: WithoutScatter | None
     """null: samples of an emulator have no expansion alone"""
-    rest: RestResults
+    rest: RestResults | JourneyRest
+    """of a study with [journey] where, when and how the landers rest; else journeys of samples of the emulator"""
     limit_states: Mapping[str, LimitStateResult]
     """each limit state of the study file; empty where it asks for none"""
     aim: AimResults | None
@@ -65,6 +67,12 @@ class DrawnResults:
     """what becomes of the landers, over what that holds, and what is missing, in sentences"""
     headline: tuple[str, ...]
     """the answer, then the most informative numbers, in sentences"""
+    ends: Mapping[str, EndShare] | None = None
+    """with [journey]: how the journeys ended: at_rest, escaped, partner, under_way, failed"""
+    journeys: int | None = None
+    """with [journey]: how many were followed"""
+    touchdowns: int | None = None
+    """with [journey]: landings that were simulated for them"""
 
     @property
     def spreads(self) -> dict[str, OutputEstimate]:

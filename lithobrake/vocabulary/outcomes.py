@@ -64,3 +64,13 @@ class JourneyStatus(_Ending):
     PARTNER = FlightStatus.PARTNER.value, "The lander came down on the partner, where no bounce is followed."
     SLIDING = "sliding", "The lander still slid along the ground when the time was over."
     BOUNCING = "bouncing", "The largest number of bounces did not bring the lander to rest."
+
+
+class JourneyEnd(_Ending):
+    """How a journey of landings ended."""
+
+    AT_REST = "at_rest", "The lander rests where the ground holds it.", "at rest"
+    ESCAPED = "escaped", FlightStatus.ESCAPED.sentence, "escaped"
+    PARTNER = "partner", FlightStatus.PARTNER.sentence, "on the partner"
+    UNDER_WAY = "under_way", "The lander was still under way when the time was over.", "under way"
+    FAILED = "failed", "A landing or flight of the journey failed.", "failed"

@@ -40,10 +40,13 @@ FIXED = "of the body, turning with it"
 BED = "of the bed: origin in the middle of the floor, x and y along its sides, z upward"
 HULL = "of each hull: origin at its centroid, turning with it"
 
+VELOCITY_OUT = ("velocity_out_x", "velocity_out_y", "velocity_out_z")
 # How the lander turns and stands when it leaves, beside what is fitted; a program of the user's own may leave them out.
 SPIN_OUT = ("spin_out_x", "spin_out_y", "spin_out_z")
 ORIENTATION_OUT = ("orientation_out_w", "orientation_out_x", "orientation_out_y", "orientation_out_z")
 OVER_RIM = "over_rim"
+# The acceleration of a touchdown, by the keys of the study file.
+GROUND = ("surface.gravity", "surface.slope_deg", "surface.slope_azimuth_deg")
 # Of touchdowns that are followed to rest: see Landing.hop_height.
 TO_REST = ("displacement_x", "displacement_y", "duration", "contacts")
 # Only on beds that repeat.
@@ -118,6 +121,33 @@ ARC = {
     **{f"velocity_{axis}": Quantity("m/s", f"velocity at its beginning along {axis}", FIXED) for axis in "xyz"},
     "site_mass": Quantity("kg", "mass of the body of the sample"),
     "site_spin_period": Quantity("s", "spin period of the body of the sample"),
+}
+# Of a journey of landings, and of each of its touchdowns.
+JOURNEY = {
+    "journey": Quantity("", "number of the journey, from 0"),
+    "bed": Quantity("", "number of the bed that it meets, from 0"),
+    "end": Quantity("", "how the journey ended"),
+    "time_s": Quantity("s", "time from the first touchdown to the end", title="time to rest"),
+    "latitude_deg": FLIGHT["latitude_deg"],
+    "longitude_deg": FLIGHT["longitude_deg"],
+    **{f"position_{axis}": Quantity("m", f"place of the end along {axis}", FIXED) for axis in "xyz"},
+    "distance": Quantity("m", "way over the ground from the aim point to the end", title="distance from the aim point"),
+    "contacts": Quantity("", "contacts with the ground", title="contacts"),
+    "touchdowns": Quantity("", "simulated landings"),
+    "path_length": Quantity("m", "sum of the straight lines between impacts, and of ways in contact"),
+    "face": Quantity("", "side of the lander that is down, by its own axes"),
+    "tilt_deg": Quantity("deg", "angle between that side's axis and the plumb line"),
+    "reason": Quantity("", "why the journey failed"),
+}
+JOURNEY_TOUCHDOWN = {
+    "journey": JOURNEY["journey"],
+    "touchdown": Quantity("", "number of the touchdown in its journey, from 0"),
+    "key": Quantity("", "key of the landing in the ledger"),
+    "outcome": Quantity("", "how the touchdown ended"),
+    "begin_s": Quantity("s", "time from the first touchdown of the journey to the beginning"),
+    "end_s": Quantity("s", "time from the first touchdown of the journey to the end"),
+    "latitude_deg": Quantity("deg", "planetocentric latitude of the impact", FIXED),
+    "longitude_deg": Quantity("deg", "east longitude of the impact", FIXED),
 }
 BEDS = {
     "solid_fraction": Quantity("", "share of the volume that grains fill"),

@@ -1,6 +1,7 @@
 """The answer of a drawn study in sentences, with its intervals, and the most informative numbers behind it."""
 
 from lithobrake.analysis import LEVEL
+from lithobrake.pipeline.answer.journey_answer import journey_answer
 from lithobrake.pipeline.answer.missing_landings import missing_words
 from lithobrake.pipeline.answer.run_shares import CAPTURED
 from lithobrake.pipeline.answer.scope import scope
@@ -27,10 +28,9 @@ GROUNDS = {"soil": "on the soil", "hard": "on hard ground"}
 
 def drawn_answer(study: Study, results: DrawnResults) -> list[str]:
     """What becomes of the landers, over what that holds, what is missing, and what the site does to those that lie."""
+    first_bounce = [*_share(study, results), *_missing(results.runs, results.returns), _others(study, results)]
     return [
-        *_share(study, results),
-        *_missing(results.runs, results.returns),
-        _others(study, results),
+        *(first_bounce if results.ends is None else journey_answer(study, results)),
         *(one.statement for one in results.limit_states.values()),
         *([results.aim.statement] if results.aim else []),
         *([results.site.warning] if results.site.warning else []),

@@ -8,6 +8,7 @@ from lithobrake.analysis import LEVEL
 from lithobrake.pipeline.answer.aim_results import aim_results
 from lithobrake.pipeline.answer.dispersion_statistics import Rows, ellipses, flight_checks, rest_results, shares
 from lithobrake.pipeline.answer.drawn_answer import drawn_answer, drawn_headline
+from lithobrake.pipeline.answer.journey_ends import JourneyTable, end_shares, journey_rest
 from lithobrake.pipeline.answer.limit_states import limit_state_results
 from lithobrake.pipeline.answer.missing_landings import described
 from lithobrake.pipeline.answer.run_estimates import FILE as ESTIMATES
@@ -56,6 +57,7 @@ def _results(job: Job, runs: DesignRuns, distinct: DesignRuns) -> DrawnResults:
     known = table.sample_count - table.outcomes["missing"].count
     share = table.outcomes["returns"].count / known if known else None
     returns = replace(estimates.returns, emulator=share)
+    journeys = None if study.journey is None else JourneyTable.load(job.folder)
     shares = LandingShares(**vars(estimates.shares), emulator=table)
     return DrawnResults(
         units={name: TOUCHDOWN[name].units for name in OUTPUTS},
@@ -72,12 +74,15 @@ def _results(job: Job, runs: DesignRuns, distinct: DesignRuns) -> DrawnResults:
         monte_carlo=MonteCarlo(len(samples.leaves), int(samples.leaves.sum())),
         ellipses=ellipses(study, flights, FlightStatus.IMPACT),
         without_scatter=None,
-        rest=_rest(job, refits),
+        rest=_rest(job, refits) if journeys is None else journey_rest(study, journeys),
         limit_states=limit_state_results(study, job.folder, flights, shares.outcomes, holds=holds),
         aim=aim_results(study, job.folder, refits),
         emulator=_emulator(job, runs, returns),
         answer=(),
         headline=(),
+        ends=None if journeys is None else end_shares(study, journeys),
+        journeys=None if journeys is None else len(journeys.end),
+        touchdowns=None if journeys is None else journeys.touchdowns,
     )
 
 

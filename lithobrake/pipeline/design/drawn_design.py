@@ -20,11 +20,13 @@ import numpy as np
 from lithobrake.files.hashing import hashed_seed
 from lithobrake.geometry.attitude import uniform_attitude
 from lithobrake.pipeline.design.dependencies import touchdown_keys
+from lithobrake.pipeline.design.local_ground import on_local_ground
 from lithobrake.pipeline.design.place_region import Interval, place_region
+from lithobrake.pipeline.site import Site
 from lithobrake.study import Study
 from lithobrake.study.bed_section import FEWEST_BEDS, MOST_BEDS, RUNS_A_BED
 from lithobrake.study.quantity import uncertain
-from lithobrake.study.touchdown_model import ORIENTATION, PLACE, given_attitude, medians
+from lithobrake.study.touchdown_model import ORIENTATION, PLACE, TIME_LEFT, given_attitude, medians
 
 if TYPE_CHECKING:
     from lithobrake.chaos import Distribution
@@ -77,7 +79,7 @@ class DrawnDesign:
     @cached_property
     def rows(self) -> list[dict[str, float]]:
         """All inputs of the runs, by dotted key in the file's units, with what each drew."""
-        return self.rows_at(self.beds, self._points(len(self.beds)))
+        return self._first_touchdowns(self.rows_at(self.beds, self._points(len(self.beds))), 0)
 
     @cached_property
     def keys(self) -> list[str]:
@@ -86,7 +88,8 @@ class DrawnDesign:
 
     def row(self, run: int) -> dict[str, float]:
         """All inputs of one run, counted from 0, of which there may be more than the study has."""
-        return self.rows_at(beds_of_runs(self.study, run + 1)[-1:], self._points(1, skip=run))[0]
+        rows = self.rows_at(beds_of_runs(self.study, run + 1)[-1:], self._points(1, skip=run))
+        return self._first_touchdowns(rows, run)[0]
 
     def rows_of(self, design: str) -> list[dict[str, float]]:
         """All inputs of the runs of a design: of "drawn", or of a side design, whose row k goes with run k."""
@@ -125,6 +128,15 @@ class DrawnDesign:
                 row[name] = low + uniform[coordinate] * (high - low)
             rows.append(row)
         return rows
+
+    def _first_touchdowns(self, rows: list[dict[str, float]], first: int) -> list[dict[str, float]]:
+        """Rows of runs, numbered from `first` on, as the first touchdowns of journeys where a study follows these."""
+        journey = self.study.journey
+        if journey is None:
+            return rows
+        begin = {"touchdown": 0.0, TIME_LEFT: journey.duration}
+        numbered = [row | {"journey": float(first + number)} | begin for number, row in enumerate(rows)]
+        return on_local_ground(Site(self.study), numbered, first)
 
     def _soil_pairs(self) -> list[dict[str, float]]:
         """The first runs again on a second soil: all uncertain inputs drawn anew, but bed, place, azimuth and attitude.

@@ -5,7 +5,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-VELOCITY = ("velocity_out_x", "velocity_out_y", "velocity_out_z")
+from lithobrake.vocabulary.quantities import VELOCITY_OUT
+
+VELOCITY = VELOCITY_OUT
 
 
 def outgoing(outputs: np.ndarray, names: Sequence[str]) -> tuple[np.ndarray, np.ndarray]:

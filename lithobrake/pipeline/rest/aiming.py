@@ -8,6 +8,7 @@ from lithobrake.analysis import sample_inputs
 from lithobrake.files.hashing import hashed_seed
 from lithobrake.pipeline.emulate.emulator_samples import drawn_samples
 from lithobrake.pipeline.emulate.fitted_emulator import REFIT_COUNT
+from lithobrake.geometry.great_circle import angles, directions
 from lithobrake.pipeline.fly.flights import write_table
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.rest.journeys import Sites, journey_dependencies, on_hard_ground, on_soil
@@ -76,18 +77,10 @@ def _distances(body: "Body", site: dict[str, np.ndarray], ends: list[list[Any]])
     As if the body were a ball of the radius at the aim; what the delivery misses the aim by counts.
     """
     place = np.array([[np.nan, np.nan] if end[4] == "" else end[4:6] for end in ends], dtype=float)
-    there, aim = (_directions(*np.radians(one)) for one in (place.T, (site["latitude_deg"], site["longitude_deg"])))
+    there, aim = (directions(*one) for one in (place.T, (site["latitude_deg"], site["longitude_deg"])))
     aims, inverse = np.unique(
         np.column_stack([site["latitude_deg"], site["longitude_deg"]]), axis=0, return_inverse=True
     )
     radius = np.array([np.linalg.norm(body.shape.surface_point(*one)) for one in aims.tolist()])
-    # The arctangent keeps the small angles that the arccosine loses.
-    angle = np.arctan2(np.linalg.norm(np.cross(aim, there), axis=1), np.einsum("ni,ni->n", aim, there))
-    ways: np.ndarray = radius[inverse.ravel()] * angle
+    ways: np.ndarray = radius[inverse.ravel()] * angles(aim, there)
     return ways
-
-
-def _directions(latitude: np.ndarray, longitude: np.ndarray) -> np.ndarray:
-    """Unit vectors [count, 3] of angles [rad]."""
-    level = np.cos(latitude)
-    return np.column_stack([level * np.cos(longitude), level * np.sin(longitude), np.sin(latitude)])

@@ -2,8 +2,6 @@
 
 from collections.abc import Mapping, Sequence
 
-import numpy as np
-
 from lithobrake.campaign import Runs, missing
 from lithobrake.pipeline.design.dependencies import touchdown_keys
 from lithobrake.pipeline.design.drawn_design import SIDE_DESIGNS, inputs_of
@@ -34,8 +32,7 @@ def make_rows(job: Job, design: str, rows: Sequence[Sequence[Mapping[str, float]
     made = [touchdowns(job, rows[replicate], words, replicate) for replicate, words in enumerate(titles)]
     runs = Runs([record for one in made for record in one.records], sum(one.reused_count for one in made))
     inputs = tuple(job.design.inputs)
-    every = [row for one in rows for row in one]
-    _account(job, design, runs, inputs_of(every, inputs), inputs)
+    account(job, design, runs, inputs)
     gained = energy_warning(job.design, runs.records, height_of_beds(job.study, job.folder))
     if gained:
         job.say(f"{title}: {gained}")
@@ -48,11 +45,12 @@ def say_gravity(job: Job) -> None:
         job.say(job.site.gravity_warning)
 
 
-def _account(job: Job, design: str, runs: Runs, x: np.ndarray, inputs: Sequence[str]) -> None:
+def account(job: Job, design: str, runs: Runs, inputs: Sequence[str]) -> None:
     """Say what of a design was known before, and what is missing. Raises ValueError when too much is."""
     name, distinct = design.replace("_", " "), len({record.key for record in runs.records})
     if runs.reused_count:
         job.say(f"{name}: {runs.reused_count} of {distinct} runs were known and are reused")
+    x = inputs_of([record.inputs for record in runs.records], inputs)
     lost = missing(x, runs.reasons, inputs, job.study.campaign.failed_share)
     if lost:
         job.say(f"{name}: {lost}")

@@ -32,7 +32,8 @@ PARTS = (
 )
 
 
-def _drawn_dependencies(study: Study) -> Any:
+def drawn_dependencies(study: Study) -> Any:
+    """What the drawn runs depend on."""
     count = study.design.run_count
     return [design_dependencies(study), place_region(study), study.seed, count, beds_of_runs(study, count)]
 
@@ -43,7 +44,7 @@ def _side_files(study: Study) -> list[str]:
 
 BED = Stage("bed", "bed", bed_files, pour_beds, dependencies=bed_dependencies)
 FIRST_LANDING = Stage("landing", "first landing", landing_files, land_once, ("bed",), landing_dependencies)
-DRAWN_RUNS = Stage("runs", "runs", same_files(file_of("drawn")), make_drawn_runs, ("bed",), _drawn_dependencies, PARTS)
+DRAWN_RUNS = Stage("runs", "runs", same_files(file_of("drawn")), make_drawn_runs, ("bed",), drawn_dependencies, PARTS)
 SIDE_RUNS = Stage(
     "side_runs",
     "side runs",

@@ -1,0 +1,78 @@
+"""Where journeys of landings end, in sentences: what a landing team asks first."""
+
+from collections.abc import Mapping
+
+from lithobrake.analysis import LEVEL
+from lithobrake.results.journey_results import EndShare, JourneyRest, RestQuantile
+from lithobrake.results.summary import DrawnResults
+from lithobrake.study import Study
+from lithobrake.vocabulary.outcomes import JourneyEnd
+from lithobrake.vocabulary.percentages import percent, with_interval
+
+HOUR = 3600.0
+
+
+def journey_answer(study: Study, results: DrawnResults) -> list[str]:
+    """The ends of the journeys, then where, when and how the landers rest."""
+    ends, rest = results.ends, results.rest
+    if ends is None or study.journey is None or not isinstance(rest, JourneyRest):
+        return []
+    at_rest = ends[JourneyEnd.AT_REST]
+    hours = f"{study.journey.duration / HOUR:.3g} h"
+    level = None if at_rest.lower is None else LEVEL
+    said = [
+        f"{with_interval(at_rest, level=level)} of the landers come to rest within {hours}{_others(ends)}; from "
+        f"{results.journeys} journeys with {results.touchdowns} simulated landings on {len(results.beds)} beds."
+    ]
+    if at_rest.why is not None:
+        said.append(at_rest.why)
+    return [*said, *_rest(rest)]
+
+
+def _others(ends: Mapping[str, EndShare]) -> str:
+    """The shares of the other ends that occurred."""
+    words = {end.value: end.label for end in JourneyEnd if end != JourneyEnd.AT_REST}
+    listed = [f"{with_interval(one)} {words[name]}" for name, one in ends.items() if name in words and one.count]
+    return "; " + ", ".join(listed) if listed else ", and none ends otherwise"
+
+
+def _rest(rest: JourneyRest) -> list[str]:
+    """When and where those at rest came to rest, and on which side they lie."""
+    if rest.time_s.median.value is None:
+        return []
+    said = [
+        f"At rest: {_hours(rest.time_s.median)} after the first touchdown in the median, 95 % within "
+        f"{_hours(rest.time_s.q95)}; after {_count(rest.contacts.median)} contacts (95 %: {_count(rest.contacts.q95)}); "
+        f"{_metres(rest.distance_m.median)} from the aim point (95 %: {_metres(rest.distance_m.q95)})."
+    ]
+    if rest.regions:
+        half, most = rest.regions[0], rest.regions[-1]
+        said.append(
+            f"The smallest region with {percent(half.share)} of them has {half.area_m2:.2g} m2, that with "
+            f"{percent(most.share)} {most.area_m2:.2g} m2 and is {most.largest_extent_m:.2g} m across."
+        )
+    if rest.faces:
+        listed = sorted(rest.faces.items(), key=lambda one: -one[1].share)
+        said.append("Side down: " + ", ".join(f"{name} {with_interval(one)}" for name, one in listed) + ".")
+    return said
+
+
+def _hours(one: RestQuantile) -> str:
+    """A time with its interval, in minutes below two hours."""
+    size, unit = (60.0, "min") if (one.value or 0.0) < 2.0 * HOUR else (HOUR, "h")
+    return f"{_with_bounds(one, size)} {unit}"
+
+
+def _metres(one: RestQuantile) -> str:
+    return f"{_with_bounds(one, 1.0)} m"
+
+
+def _count(one: RestQuantile) -> str:
+    return _with_bounds(one, 1.0)
+
+
+def _with_bounds(one: RestQuantile, size: float) -> str:
+    value = f"{(one.value or 0.0) / size:.2g}"
+    if one.lower is None or one.upper is None:
+        return value
+    return f"{value} ({one.lower / size:.2g}-{one.upper / size:.2g})"

@@ -1,0 +1,1 @@
+"""Journeys: each lander is followed from its delivery to rest, with a simulated landing at every impact."""

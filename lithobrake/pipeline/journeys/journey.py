@@ -1,0 +1,195 @@
+"""One journey: where the lander is, what its next touchdown is given, and how it ended."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from lithobrake.campaign import Record, RunStatus
+from lithobrake.files.hashing import hashed_seed
+from lithobrake.pipeline.design.local_ground import felt, friction_of, ground_inputs
+from lithobrake.pipeline.journeys.contact_frame import about_z, attitude_of, from_frame, quaternion, spin_of
+from lithobrake.pipeline.journeys.resting_attitude import side_down
+from lithobrake.study.touchdown_model import ORIENTATION, PLACE, TIME_LEFT
+from lithobrake.vocabulary.outcomes import FlightStatus, JourneyEnd, TouchdownOutcome
+from lithobrake.vocabulary.quantities import VELOCITY_OUT
+
+if TYPE_CHECKING:
+    from scipy.spatial.transform import Rotation
+
+    from lithobrake.pipeline.journeys.journey_model import JourneyModel
+    from lithobrake.smallbody import Flights
+
+Row = dict[str, float]
+SPIN = ("impact.spin_x", "impact.spin_y", "impact.spin_z")
+# A lander that comes in along the ground meets it from above all the same.
+FLATTEST_DEG = 89.9
+# Of one journey; more would be a lander that moves along for ever.
+MOST_TOUCHDOWNS = 1000
+
+# What ends a journey with its flight.
+ENDS = {
+    FlightStatus.ESCAPED: JourneyEnd.ESCAPED,
+    FlightStatus.PARTNER: JourneyEnd.PARTNER,
+    FlightStatus.FLYING: JourneyEnd.UNDER_WAY,
+}
+
+
+@dataclass
+class Journey:
+    """A lander under way; every place and vector is fixed to the body.
+
+    row: inputs of its present touchdown. origin [m] and axes, in rows, of the frame of that; time [s]: at its
+    beginning, since the first; clock [s]: when the first began, as of the partner. path_length [m], contacts: so far;
+    touchdowns, flights: rows of their tables, by column. end: how it ended, None while it is under way; reason: why it
+    failed; lies: side and tilt of a lander at rest.
+    """
+
+    model: "JourneyModel"
+    number: int
+    row: Row
+    origin: np.ndarray
+    axes: np.ndarray
+    clock: float
+    mass: float
+    spin_period: float
+    time: float = 0.0
+    path_length: float = 0.0
+    contacts: int = 0
+    touchdowns: list[dict[str, Any]] = field(default_factory=list)
+    flights: list[dict[str, Any]] = field(default_factory=list)
+    end: JourneyEnd | None = None
+    reason: str = ""
+    lies: tuple[str, float] | None = None
+
+    def go_on(self, record: Record) -> Row | None:
+        """Take in how the present touchdown ended; give the inputs of the next one, or None where there is none."""
+        outputs = record.outputs
+        began, place = self.time, self.origin
+        if record.status == RunStatus.FAILED:
+            self.end, self.reason = JourneyEnd.FAILED, record.reason or ""
+        else:
+            self._move(outputs)
+        self.touchdowns.append(self._touchdown(record, began, place))
+        if self.end is None:
+            self._after(str(record.outcome), outputs)
+        return self.row if self.end is None else None
+
+    def _after(self, outcome: str, outputs: Mapping[str, float]) -> None:
+        if outcome == TouchdownOutcome.CLEAR:
+            self._fly(outputs)
+        elif outcome == TouchdownOutcome.CAPTURED:
+            self.end = JourneyEnd.AT_REST
+            if not self.model.is_ball:
+                attitude = from_frame(self.axes) * attitude_of(dict(outputs))
+                self.lies = side_down(attitude, self._felt())
+        elif outcome == TouchdownOutcome.TIME_LIMIT:
+            self.end = JourneyEnd.UNDER_WAY
+        else:
+            self.end, self.reason = JourneyEnd.FAILED, f"a touchdown ended as {outcome}"
+
+    def _move(self, outputs: Mapping[str, float]) -> None:
+        """Go where the touchdown ended, and to when."""
+        along, aside = outputs.get("displacement_x", 0.0), outputs.get("displacement_y", 0.0)
+        self.time += outputs.get("duration", outputs.get("contact_duration", 0.0))
+        self.path_length += math.hypot(along, aside)
+        self.contacts += max(1, round(outputs.get("contacts", 1.0)))
+        moved = self.origin + along * self.axes[0] + aside * self.axes[1]
+        self.origin = self.model.on_ground(moved)
+
+    @property
+    def is_on_ground(self) -> bool:
+        """Whether the lander is on the ground of the body, and not aloft or on the partner."""
+        return len(self.touchdowns) > len(self.flights)
+
+    def _felt(self) -> np.ndarray:
+        """Acceleration of what rests where the lander is [m/s2]."""
+        here = (np.array([value]) for value in (self.clock + self.time, self.mass, self.spin_period))
+        found: np.ndarray = felt(self.model.body, self.origin[None], *here)[0]
+        return found
+
+    def _fly(self, outputs: Mapping[str, float]) -> None:
+        """Fly to the next impact and prepare its touchdown, or end."""
+        left = self.model.duration - self.time
+        if left <= 0.0 or len(self.touchdowns) == MOST_TOUCHDOWNS:
+            self.end = JourneyEnd.UNDER_WAY
+            return
+        velocity = np.array([outputs[name] for name in VELOCITY_OUT]) @ self.axes
+        flight = self.model.fly(self.origin, velocity, left, self.clock + self.time, self.mass, self.spin_period)
+        attitude, spin = self._tumbled(outputs, float(flight.time[0]))
+        self._note_flight(velocity, float(flight.time[0]))
+        self.path_length += float(np.linalg.norm(flight.position[0] - self.origin))
+        self.time += float(flight.time[0])
+        self.end = ENDS.get(FlightStatus(str(flight.status[0])))
+        self.origin = flight.position[0]
+        if self.end is None:
+            self._arrive(flight, attitude, spin)
+
+    def _tumbled(self, outputs: Mapping[str, float], time: float) -> "tuple[Rotation, np.ndarray]":
+        """Attitude and spin [rad/s], against the ground, at the end of a flight, both fixed to the body."""
+        from lithobrake.smallbody import tumble
+
+        turning = np.array([0.0, 0.0, 2.0 * math.pi / self.spin_period])
+        attitude = from_frame(self.axes) * attitude_of(dict(outputs))
+        spin = spin_of(dict(outputs)) @ self.axes + turning
+        inertia = self.model.inertia(self.row)
+        turned, spins = tumble(inertia, np.array([quaternion(attitude)]), spin[None], np.array([time]))
+        back = about_z(-float(turning[2]) * time)
+        w, x, y, z = turned[0]
+        return back * type(back).from_quat([x, y, z, w]), back.apply(spins[0]) - turning
+
+    def _arrive(self, flight: "Flights", attitude: "Rotation", spin: np.ndarray) -> None:
+        """Prepare the touchdown at the end of a flight: a fresh place of the journey's bed, and a fresh direction."""
+        from lithobrake.smallbody.hopping import impact_frame
+
+        up = self.model.body.shape.normals[flight.facet]
+        self.axes = impact_frame(flight.velocity, up)[0]
+        number = len(self.touchdowns)
+        random = np.random.default_rng(hashed_seed(self.model.seed, "touchdowns", self.number, number))
+        x, y, turn = random.random(3).tolist()
+        azimuth = 360.0 * turn
+        into_bed = about_z(math.radians(azimuth)) * from_frame(self.axes).inv()
+        arrival = {
+            "touchdown": float(number),
+            TIME_LEFT: self.model.duration - self.time,
+            "impact.speed": float(flight.impact_speed[0]),
+            "impact.incidence_deg": min(math.degrees(float(flight.incidence[0])), FLATTEST_DEG),
+            "impact.azimuth_deg": azimuth,
+            **dict(zip(SPIN, into_bed.apply(spin).tolist(), strict=True)),
+            **dict(zip(ORIENTATION, quaternion(into_bed * attitude), strict=True)),
+            **dict(zip(PLACE, self.model.place(x, y, self.row), strict=True)),
+            **ground_inputs(self.axes @ self._felt(), azimuth, friction_of(self.row)),
+        }
+        self.row = {**self.row, **arrival}
+
+    def _note_flight(self, velocity: np.ndarray, time: float) -> None:
+        begin = self.time
+        self.flights.append(
+            {
+                "sample": self.number,
+                "arc": len(self.flights),
+                "begin_s": begin,
+                "end_s": begin + time,
+                "clock_s": self.clock + begin,
+                **{f"position_{axis}": float(value) for axis, value in zip("xyz", self.origin, strict=True)},
+                **{f"velocity_{axis}": float(value) for axis, value in zip("xyz", velocity, strict=True)},
+                "site_mass": self.mass,
+                "site_spin_period": self.spin_period,
+            }
+        )
+
+    def _touchdown(self, record: Record, began: float, place: np.ndarray) -> dict[str, Any]:
+        """A row of the table of touchdowns."""
+        latitude, longitude = (float(one) for one in self.model.body.shape.latitude_longitude(place))
+        return {
+            "journey": self.number,
+            "touchdown": len(self.touchdowns),
+            "key": record.key,
+            "outcome": record.outcome or RunStatus.FAILED.value,
+            "begin_s": began,
+            "end_s": self.time,
+            "latitude_deg": latitude,
+            "longitude_deg": longitude,
+        }

@@ -1,0 +1,84 @@
+"""What all journeys of a study have in common: the body they are on, its flights, and where they come down on a bed."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
+from lithobrake.pipeline.site import Site
+from lithobrake.study.touchdown_model import PLACE, lander
+
+if TYPE_CHECKING:
+    from lithobrake.smallbody import Body, Flights
+
+# Steps toward the nearest ground: each leaves at most the sine of the angle between two facets of the way.
+PROJECTIONS = 8
+
+
+@dataclass(frozen=True, eq=False)
+class JourneyModel:
+    """The site and the design of a study that follows journeys."""
+
+    design: DrawnDesign
+    site: Site
+
+    @cached_property
+    def body(self) -> "Body":
+        """The body with its partner."""
+        return self.site.body
+
+    @property
+    def seed(self) -> int:
+        """Of the study."""
+        return self.design.study.seed
+
+    @property
+    def duration(self) -> float:
+        """Longest journey [s]."""
+        assert self.design.study.journey is not None
+        return self.design.study.journey.duration
+
+    @property
+    def is_ball(self) -> bool:
+        """Whether the lander has no sides."""
+        return self.design.study.lander.shape == "sphere"
+
+    def inertia(self, row: Mapping[str, float]) -> np.ndarray:
+        """Inertia of the lander of a journey about its centroid [kg m2], [3, 3]."""
+        body = lander(self.design.study, row)
+        if body.inertia is not None:
+            return body.inertia
+        whole: np.ndarray = body.shape.inertia_per_density * (body.mass / body.shape.volume)
+        return whole
+
+    def place(self, x: float, y: float, row: Mapping[str, float]) -> tuple[float, float]:
+        """Where on its bed a lander comes down [m], of two uniform numbers; always at one place without a region."""
+        if self.design.region is None:
+            return row[PLACE[0]], row[PLACE[1]]
+        (west, east), (south, north) = self.design.region
+        return west + x * (east - west), south + y * (north - south)
+
+    def fly(
+        self, position: np.ndarray, velocity: np.ndarray, left: float, start: float, mass: float, spin_period: float
+    ) -> "Flights":
+        """Fly one lander to its next impact, for at most `left` [s]."""
+        from lithobrake.smallbody import fly
+
+        return fly(
+            self.body, position, velocity, left, gravity=self.design.study.flight.gravity, start_time=start,
+            mass=np.array([mass]), spin_period=np.array([spin_period]), threads=1,
+        )  # fmt: skip
+
+    def on_ground(self, point: np.ndarray) -> np.ndarray:
+        """The place on the ground [m], [3], nearest to a point beside it."""
+        shape, place = self.body.shape, point
+        for _ in range(PROJECTIONS):
+            height, facet = shape.nearest(place)
+            place = place - height * shape.normals[facet]
+        if shape.height(place) >= 0.0:
+            return place
+        # Below the ground no flight begins: a point next to an edge, of which the outermost along the radius is taken.
+        return shape.surface_point(*shape.latitude_longitude(point))

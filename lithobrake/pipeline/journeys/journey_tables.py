@@ -1,0 +1,44 @@
+"""The tables of journeys: one row a journey, a touchdown, a flight."""
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+from lithobrake.geometry.great_circle import angles, directions
+from lithobrake.pipeline.fly.flights import write_table
+from lithobrake.pipeline.folder.study_folder import StudyFolder
+from lithobrake.pipeline.journeys.journey import Journey
+from lithobrake.vocabulary.outcomes import JourneyEnd
+from lithobrake.vocabulary.quantities import ARC, JOURNEY, JOURNEY_TOUCHDOWN
+
+JOURNEYS, TOUCHDOWNS, FLIGHTS = "journeys.csv", "touchdowns.csv", "arcs.csv"
+FILES = (JOURNEYS, TOUCHDOWNS, FLIGHTS)
+
+
+def write_journeys(folder: StudyFolder, journeys: Sequence[Journey]) -> None:
+    """Write journeys.csv, touchdowns.csv and arcs.csv."""
+    write_table(folder, JOURNEYS, tuple(JOURNEY), [_row(journey) for journey in journeys], JOURNEY)
+    touchdowns = [list(row.values()) for journey in journeys for row in journey.touchdowns]
+    write_table(folder, TOUCHDOWNS, tuple(JOURNEY_TOUCHDOWN), touchdowns, JOURNEY_TOUCHDOWN)
+    flights = [list(row.values()) for journey in journeys for row in journey.flights]
+    write_table(folder, FLIGHTS, tuple(ARC), flights, ARC)
+
+
+def _row(journey: Journey) -> list[Any]:
+    """Where a journey ended; what is not on the ground of the body has no place there, and what does not rest no side."""
+    place: list[Any] = ["", "", "", "", "", ""]
+    if journey.end in (JourneyEnd.AT_REST, JourneyEnd.UNDER_WAY) and journey.is_on_ground:
+        latitude, longitude = (float(one) for one in journey.model.body.shape.latitude_longitude(journey.origin))
+        place = [latitude, longitude, *journey.origin.tolist(), _distance(journey)]
+    side, tilt = ("", "") if journey.lies is None else (journey.lies[0], math.degrees(journey.lies[1]))
+    counts = [journey.contacts, len(journey.touchdowns), journey.path_length]
+    bed = int(journey.row["bed"])
+    return [journey.number, bed, str(journey.end), journey.time, *place, *counts, side, tilt, journey.reason]
+
+
+def _distance(journey: Journey) -> float:
+    """Way over the ground from the aim point [m], as if the body were a ball of the radius there."""
+    aim = journey.model.site.medians["latitude_deg"], journey.model.site.medians["longitude_deg"]
+    radius = float((journey.model.body.shape.surface_point(*aim) ** 2).sum() ** 0.5)
+    there = directions(*journey.model.body.shape.latitude_longitude(journey.origin))
+    return radius * float(angles(directions(*aim), there))

@@ -1,0 +1,99 @@
+"""The stage that follows every lander of a study to the end of its journey."""
+
+import math
+from collections import Counter
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from lithobrake.campaign import Ledger, Limits, Record, RunOptions, Runs, Tally, run_chains
+from lithobrake.pipeline.design.dependencies import touchdown_dependencies
+from lithobrake.pipeline.job import Job
+from lithobrake.pipeline.journeys.journey import Journey
+from lithobrake.pipeline.journeys.journey_model import JourneyModel
+from lithobrake.pipeline.journeys.journey_tables import write_journeys
+from lithobrake.pipeline.runs.making_runs import account
+from lithobrake.pipeline.runs.run_table import DesignRuns
+from lithobrake.pipeline.runs.touchdown_runs import model_of
+from lithobrake.vocabulary.outcomes import JourneyEnd
+
+# Standard errors on either side of a share that is told while journeys are under way: an interval of 90 %.
+INTERVAL_ERRORS = 1.645
+
+
+def make_journeys(job: Job) -> None:
+    """Follow every lander and write its touchdowns, flights and end."""
+    if job.site.warning:
+        job.say(job.site.warning)
+    journeys = begun(job)
+    rows = job.design.rows
+    job.folder.note_runs("drawn", job.design.keys)
+    chains = follow(job, journeys, rows)
+    records = [record for chain in chains for record in chain]
+    _say_what_was_known(job, records)
+    first = Runs([chain[0] for chain in chains], 0)
+    account(job, "drawn", first, tuple(job.design.inputs))
+    DesignRuns.of(first).save(job.folder, "drawn")
+    DesignRuns.of(Runs(records, 0)).save(job.folder, "touchdowns")
+    write_journeys(job.folder, journeys)
+
+
+def begun(job: Job) -> list[Journey]:
+    """The journeys of a study before their first touchdowns."""
+    rows, model = job.design.rows, JourneyModel(job.design, job.site)
+    columns = job.site.sampled(len(rows))
+    origin, axes = job.site.frames(columns)
+    clock = job.site.body.partner_time(columns["partner_longitude_deg"], columns["spin_period"])
+    return [
+        Journey(model, number, row, *each)
+        for number, (row, *each) in enumerate(
+            zip(rows, origin, axes, clock.tolist(), columns["mass"].tolist(), columns["spin_period"].tolist(), strict=True)
+        )
+    ]
+
+
+def follow(job: Job, journeys: Sequence[Journey], rows: Sequence[Mapping[str, float]]) -> list[list[Record]]:
+    """Make all touchdowns of journeys that begin with these; those that the ledger has are read from it."""
+    study = job.study
+
+    def then(number: int, records: Sequence[Record]) -> Mapping[str, float] | None:
+        return journeys[number].go_on(records[-1])
+
+    def show(state: Tally) -> None:
+        ended = sum(one.end is not None for one in journeys)
+        job.progress(ended, len(journeys), "journeys", f"{progress_words(journeys, state.ended)}\n{state.sentence()}")
+
+    with Ledger(job.folder / "runs.sqlite") as ledger:
+        return run_chains(
+            model_of(study, job.folder.path.absolute(), job.model),
+            rows,
+            then,
+            context=touchdown_dependencies(study),
+            ledger=ledger,
+            executor=job.executor,
+            limits=Limits(study.campaign.wall_limit or math.inf, study.campaign.memory_limit or math.inf),
+            options=RunOptions(
+                seed=study.seed,
+                retry_count=study.campaign.retry_count,
+                log_folder=job.folder.path.absolute() / "logs" if job.keeps_logs else None,
+            ),
+            progress=show,
+        )
+
+
+def progress_words(journeys: Sequence[Journey], touchdown_count: int) -> str:
+    """How far journeys are, as "31 of 96 journeys, 140 touchdowns, at rest so far 71 +- 8 %"."""
+    ends = [one.end for one in journeys if one.end is not None]
+    said = f"{len(ends)} of {len(journeys)} journeys, {touchdown_count} touchdowns"
+    if not ends:
+        return said
+    share = ends.count(JourneyEnd.AT_REST) / len(ends)
+    error = INTERVAL_ERRORS * math.sqrt(share * (1.0 - share) / len(ends))
+    return f"{said}, at rest so far {100 * share:.0f} +- {100 * error:.0f} %"
+
+
+def _say_what_was_known(job: Job, records: Sequence[Record]) -> None:
+    """Say how many touchdowns the journeys have."""
+    per_journey = Counter(int(record.inputs["journey"]) for record in records)
+    mean = float(np.mean(list(per_journey.values())))
+    job.say(f"{len(per_journey)} journeys have {len(records)} touchdowns, {mean:.1f} each")

@@ -1,0 +1,32 @@
+"""The stage of journeys, in the place of the drawn runs."""
+
+from typing import Any
+
+from lithobrake.pipeline.fly.run_flights import run_flight_dependencies
+from lithobrake.pipeline.fly.stages import PARTS as FLIGHT_PARTS
+from lithobrake.pipeline.journeys.journey_tables import FILES
+from lithobrake.pipeline.journeys.making_journeys import make_journeys
+from lithobrake.pipeline.runs.run_table import file_of
+from lithobrake.pipeline.runs.stages import PARTS as RUN_PARTS
+from lithobrake.pipeline.runs.stages import drawn_dependencies
+from lithobrake.pipeline.stage import Stage, same_files
+from lithobrake.study import Study
+
+PARTS = ("pipeline/journeys", "pipeline/site.py", "geometry/great_circle.py", *RUN_PARTS, *FLIGHT_PARTS)
+
+
+def journey_dependencies(study: Study) -> Any:
+    """What the journeys depend on."""
+    journey = None if study.journey is None else study.journey.model_dump(exclude={"count"})
+    return [drawn_dependencies(study), run_flight_dependencies(study), journey]
+
+
+JOURNEYS = Stage(
+    "runs",
+    "journeys",
+    same_files(file_of("drawn"), file_of("touchdowns"), *FILES),
+    make_journeys,
+    ("bed",),
+    journey_dependencies,
+    PARTS,
+)
