@@ -44,6 +44,8 @@ DRAWN = (
     answer.SUMMARY,
     REPORT,
 )
+
+
 def _journeys() -> tuple[Stage, ...]:
     """The stages of drawn landings, with journeys in the place of the landings alone, and nothing by the emulator."""
     left_out = {rest.REST.name, rest.AIM.name}

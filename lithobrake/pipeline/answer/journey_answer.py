@@ -22,7 +22,7 @@ def journey_answer(study: Study, results: DrawnResults) -> list[str]:
     level = None if at_rest.lower is None else LEVEL
     said = [
         f"{with_interval(at_rest, level=level)} of the landers come to rest within {hours}{_others(ends)}; from "
-        f"{results.journeys} journeys with {results.touchdowns} simulated landings on {len(results.beds)} beds."
+        f"{results.journeys} journeys with {results.touchdowns} simulated landings on {results.runs.beds} beds."
     ]
     if at_rest.why is not None:
         said.append(at_rest.why)

@@ -78,7 +78,9 @@ def journey_rest(study: Study, table: JourneyTable) -> JourneyRest:
         distance_m=quantiles("distance"),
         regions=tuple(
             RestRegion(
-                one.share, one.area_m2, one.largest_extent_m,
+                one.share,
+                one.area_m2,
+                one.largest_extent_m,
                 tuple(tuple((float(a), float(b)) for a, b in line) for line in one.outlines),
             )
             for one in density.regions

@@ -47,7 +47,15 @@ def begun(job: Job) -> list[Journey]:
     return [
         Journey(model, number, row, *each)
         for number, (row, *each) in enumerate(
-            zip(rows, origin, axes, clock.tolist(), columns["mass"].tolist(), columns["spin_period"].tolist(), strict=True)
+            zip(
+                rows,
+                origin,
+                axes,
+                clock.tolist(),
+                columns["mass"].tolist(),
+                columns["spin_period"].tolist(),
+                strict=True,
+            )
         )
     ]
 

@@ -6,9 +6,9 @@ import numpy as np
 
 from lithobrake.analysis import sample_inputs
 from lithobrake.files.hashing import hashed_seed
+from lithobrake.geometry.great_circle import angles, directions
 from lithobrake.pipeline.emulate.emulator_samples import drawn_samples
 from lithobrake.pipeline.emulate.fitted_emulator import REFIT_COUNT
-from lithobrake.geometry.great_circle import angles, directions
 from lithobrake.pipeline.fly.flights import write_table
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.rest.journeys import Sites, journey_dependencies, on_hard_ground, on_soil
