@@ -50,6 +50,7 @@ ROOMS = {
             "runs",
             "emulate",
             "fly",
+            "journeys",
             "rest",
             "answer",
             "paper",

@@ -41,7 +41,8 @@ class _Links:
                 raise ValueError("two chains have runs with the same inputs; give each an input of its own")
             found, rows = self.ledger.find(keys), {}
             for key, (chain, row) in keys.items():
-                if is_known(entry := found.get(key), self.options):
+                entry = found.get(key)
+                if entry is not None and is_known(entry, self.options):
                     self.state.reused += 1
                     self._count(entry)
                     rows |= self._after(chain, entry)

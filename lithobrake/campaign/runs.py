@@ -99,9 +99,9 @@ def run(
     return Runs([records[key] for key in keys], reused_count=len(known))
 
 
-def is_known(entry: Record | None, options: RunOptions) -> bool:
-    """Whether the ledger has a run that is not made again."""
-    return entry is not None and (entry.status == RunStatus.DONE or entry.attempts > options.retry_count)
+def is_known(entry: Record, options: RunOptions) -> bool:
+    """Whether a run that the ledger has is not made again."""
+    return entry.status == RunStatus.DONE or entry.attempts > options.retry_count
 
 
 def pending_run(

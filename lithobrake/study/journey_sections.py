@@ -82,7 +82,7 @@ def journey_tables(tables: Mapping[str, Any]) -> Mapping[str, Any]:
     journey = tables.get("journey")
     if not isinstance(journey, Mapping):
         return tables
-    filled = {"surface": {"gravity": "site"}, "contact": {"held_speed": HELD_SPEED}}
+    filled: dict[str, dict[str, Any]] = {"surface": {"gravity": "site"}, "contact": {"held_speed": HELD_SPEED}}
     if journey.get("count") is not None:
         filled["design"] = {"run_count": journey["count"]}
     if isinstance(contact := tables.get("contact"), Mapping) and contact.get("stepping", "local") != "local":

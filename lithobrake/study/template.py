@@ -27,7 +27,8 @@ def template() -> str:
     parts = [_HEAD + kinds + "# (mean and std of log_normal are those of ln x)\n"]
     for name, field in Study.model_fields.items():
         model = table(field)
-        parts.append(_section(name, model) if model else _key(name, field))
+        section = _section(name, model) if model else _key(name, field)
+        parts.append(section if field.is_required() or field.default is not None else _commented(section))
     return "\n".join(parts)
 
 
@@ -39,6 +40,11 @@ def _section(name: str, model: type[BaseModel]) -> str:
         heading = "" if owner is model else f"\n{_comment(owner.__doc__ or '')}\n"
         lines += heading + "".join(_key(key, model.model_fields[key]) for key in keys)
     return lines
+
+
+def _commented(section: str) -> str:
+    """A table that may be left out, and is."""
+    return "".join(line if line.startswith("#") else f"# {line}" for line in section.splitlines(keepends=True))
 
 
 def _key(name: str, field: FieldInfo) -> str:

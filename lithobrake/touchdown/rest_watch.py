@@ -20,7 +20,8 @@ class RestWatch:
         """Begin; inward_gravity: of the site [m/s2]. Where it does not point inward nothing rests."""
         self.reach, self.way = lander.shape.bounding_radius, REST_WAY * lander.smallest_edge
         self.patience = rest_time(lander, inward_gravity)
-        self.since, self.anchor = math.inf, None
+        self.since = math.inf
+        self.anchor: BodyMotion | None = None
 
     def is_over(self, time: float, motion: BodyMotion) -> bool:
         """Look at the lander at a time [s], and return whether it rests."""

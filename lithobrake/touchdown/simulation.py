@@ -68,9 +68,9 @@ def land(
         if locally:
             contact, speed = landing.contact, surface_speed(judge.motion, lander)
             interval, telling = look_interval(world, speed, lander, landing), max(speed, slowest)
+            resolved, held = contact.resolved_speed * telling, contact.held_speed * telling
             world.run_locally(
-                interval, contact.steps_per_contact,
-                resolved_speed=contact.resolved_speed * telling, held_speed=contact.held_speed * telling, reach=reach,
+                interval, contact.steps_per_contact, resolved_speed=resolved, held_speed=held, reach=reach
             )  # fmt: skip
         else:
             world.run(steps=chunk)

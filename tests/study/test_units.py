@@ -12,7 +12,7 @@ from lithobrake.study.template import template
 from lithobrake.study.touchdown_model import draw, medians
 from lithobrake.study.units import input_units, run_units
 from lithobrake.touchdown import OUTPUTS as OUTPUTS_OF_A_TOUCHDOWN
-from lithobrake.vocabulary.quantities import BEDS, FLIGHT, OUTPUTS, PERIODS_TRAVELLED, RUN, TOUCHDOWN, quantity
+from lithobrake.vocabulary.quantities import BEDS, FLIGHT, OUTPUTS, PERIODS_TRAVELLED, RUN, TO_REST, TOUCHDOWN, quantity
 
 
 def test_every_input_of_a_run_has_its_unit() -> None:
@@ -25,7 +25,7 @@ def test_every_input_of_a_run_has_its_unit() -> None:
 
 
 def test_every_output_has_its_unit() -> None:
-    assert {*OUTPUTS, *OUTPUTS_OF_A_TOUCHDOWN, PERIODS_TRAVELLED} == set(TOUCHDOWN)
+    assert {*OUTPUTS, *OUTPUTS_OF_A_TOUCHDOWN, *TO_REST, PERIODS_TRAVELLED} == set(TOUCHDOWN)
     assert all(run_units()[name] and one.long_name for name, one in TOUCHDOWN.items())
     assert run_units()["peak_acceleration"] == "m/s2"
 

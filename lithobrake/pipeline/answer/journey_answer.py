@@ -42,7 +42,8 @@ def _rest(rest: JourneyRest) -> list[str]:
         return []
     said = [
         f"At rest: {_hours(rest.time_s.median)} after the first touchdown in the median, 95 % within "
-        f"{_hours(rest.time_s.q95)}; after {_count(rest.contacts.median)} contacts (95 %: {_count(rest.contacts.q95)}); "
+        f"{_hours(rest.time_s.q95)}; after {_count(rest.contacts.median)} contacts "
+        f"(95 %: {_count(rest.contacts.q95)}); "
         f"{_metres(rest.distance_m.median)} from the aim point (95 %: {_metres(rest.distance_m.q95)})."
     ]
     if rest.regions:

@@ -19,7 +19,7 @@ MEDIAN, Q95 = 0.5, 0.95
 
 @dataclass(frozen=True)
 class JourneyTable:
-    """journeys.csv, all arrays [journey_count]; position [m], [journey_count, 3], body-fixed; NaN where there is none."""
+    """journeys.csv, all arrays [journey_count]; position [m], [journey_count, 3], body-fixed, NaN where it has none."""
 
     end: np.ndarray
     bed: np.ndarray
@@ -77,14 +77,9 @@ def journey_rest(study: Study, table: JourneyTable) -> JourneyRest:
         contacts=quantiles("contacts"),
         distance_m=quantiles("distance"),
         regions=tuple(
-            RestRegion(
-                one.share,
-                one.area_m2,
-                one.largest_extent_m,
-                tuple(tuple((float(a), float(b)) for a, b in line) for line in one.outlines),
-            )
+            RestRegion(one.share, one.area_m2, one.largest_extent_m, tuple(map(_line, one.outlines)))
             for one in density.regions
-        ),  # fmt: skip
+        ),
         faces={str(face): _share(faces == face, table.bed[rests], why) for face in np.unique(faces) if has_sides},
         tilt_deg=quantiles("tilt_deg") if has_sides else None,
         why_no_regions=density.why,
@@ -94,3 +89,7 @@ def journey_rest(study: Study, table: JourneyTable) -> JourneyRest:
 def _share(met: np.ndarray, bed: np.ndarray, why: str | None) -> EndShare:
     found = share_estimate(met.astype(float), bed, why=why)
     return EndShare(int(met.sum()), found.share, found.lower, found.upper, found.why)
+
+
+def _line(outline: np.ndarray) -> tuple[tuple[float, float], ...]:
+    return tuple((latitude, longitude) for latitude, longitude in outline.tolist())

@@ -35,9 +35,8 @@ def felt(
     if not np.any(orbit.distance):
         return own
     angle = orbit.angle + orbit.rate * time
-    centre = np.stack([np.cos(angle), np.sin(angle), np.zeros_like(angle)], axis=-1) * np.reshape(
-        orbit.distance, (-1, 1)
-    )
+    centre = np.stack([np.cos(angle), np.sin(angle), np.zeros_like(angle)], axis=-1)
+    centre *= np.reshape(orbit.distance, (-1, 1))
     way = centre - points
     strength = body.partner.body.gravitational_parameter
     near, mean = (one / np.linalg.norm(one, axis=1, keepdims=True) ** 3 for one in (way, centre))

@@ -44,20 +44,9 @@ def begun(job: Job) -> list[Journey]:
     columns = job.site.sampled(len(rows))
     origin, axes = job.site.frames(columns)
     clock = job.site.body.partner_time(columns["partner_longitude_deg"], columns["spin_period"])
-    return [
-        Journey(model, number, row, *each)
-        for number, (row, *each) in enumerate(
-            zip(
-                rows,
-                origin,
-                axes,
-                clock.tolist(),
-                columns["mass"].tolist(),
-                columns["spin_period"].tolist(),
-                strict=True,
-            )
-        )
-    ]
+    numbers = zip(*(one.tolist() for one in (clock, columns["mass"], columns["spin_period"])), strict=True)
+    starts = zip(rows, origin, axes, numbers, strict=True)
+    return [Journey(model, number, *start, *own) for number, (*start, own) in enumerate(starts)]
 
 
 def follow(job: Job, journeys: Sequence[Journey], rows: Sequence[Mapping[str, float]]) -> list[list[Record]]:
