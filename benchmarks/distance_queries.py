@@ -12,6 +12,7 @@ from distance_pairs import Floats, Integers, Library, Poses, units
 from lithobrake.compilation.compiled import disk_cache
 from lithobrake.dem import Material, World
 from lithobrake.dem.bodies.arrays import Bodies, Cores, Pairs, Planes
+from lithobrake.dem.bodies.period import NO_PERIOD
 from lithobrake.dem.bodies.rigid_body import RigidBody
 from lithobrake.dem.bodies.vectors import dot, minus, put, row, scaled
 from lithobrake.dem.narrow_phase.closest_points import find_closest_points
@@ -130,7 +131,7 @@ def bodies_for(shapes: Library) -> Bodies:
     bodies = [RigidBody(shape, ROCK, 1.0, np.eye(3)) for shape in shapes.shapes * 2]
     state = {name: np.zeros((len(bodies), 3)) for name in ("position", "velocity", "angular_momentum")}
     state["quaternion"] = np.tile([1.0, 0.0, 0.0, 0.0], (len(bodies), 1))
-    return bodies_of(bodies, shapes.shapes, [ROCK], state)
+    return bodies_of(bodies, shapes.shapes, [ROCK], state, NO_PERIOD)
 
 
 @cached

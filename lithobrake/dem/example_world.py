@@ -6,7 +6,7 @@ from lithobrake.dem.world import World
 from lithobrake.dem.world_state import NOTHING_WATCHED
 
 
-def example_world() -> World:
+def two_grains() -> World:
     """The world, in which nothing has been stepped."""
     rock = Material(density=2000.0, young_modulus=1e6, poisson_ratio=0.25, restitution=0.5, friction=0.5)
     world = World(gravity=(0.0, 0.0, -1.0))
@@ -18,14 +18,14 @@ def example_world() -> World:
 
 def step_locally() -> None:
     """Take steps of each contact's own: so grains fall, and landers land."""
-    world = example_world()
+    world = two_grains()
     world.run_locally(1e-3, 25.0)
     world.contacts()
 
 
 def step_together() -> None:
     """Take a step that all contacts share: so a bed settles, and tells by its forces whether it rests."""
-    world = example_world()
+    world = two_grains()
     # The large kernel first, and then those that list neighbours: another process may have them by then.
     engine = world._state._new_engine(world._state.motion, world._state.pairs, world._state.lost)
     engine.advance(1, world._step(0.0), NOTHING_WATCHED)

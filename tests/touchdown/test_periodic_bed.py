@@ -105,7 +105,7 @@ def test_a_landing_is_the_same_wherever_the_ground_is_cut(ground: Bed) -> None:
 
 def test_a_flat_throw_stays_on_the_ground_and_says_how_far_it_came(ground: Bed, bed: Bed) -> None:
     dull = replace(ROCK, restitution=0.05, friction=0.1)
-    flat = landing(grain=dull, incidence=1.2, speed=0.8, place=(0.1, 0.0), gravity=(0.0, 0.0, -0.15))
+    flat = landing(grain=dull, incidence=1.35, speed=0.8, place=(0.1, 0.0), gravity=(0.0, 0.0, -0.3))
     outcome = land(ground, LANDER, flat, frame_count=20)
     assert outcome.status == "captured"
     assert set(outcome.outputs) == {*OUTPUTS, "periods_travelled"}

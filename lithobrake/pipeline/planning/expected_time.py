@@ -28,9 +28,9 @@ SETTLING_GRAIN = 8.0e-7
 # Contacts at steps of their own: for each grain that moves and each duration of the shortest contact, at no steps a
 # contact and for each [s]. Where what is slower than a share of the lander is held, so many move for each grain that
 # is too near to be held, over the share to the power of 2/3.
-LOCAL_GRAIN, LOCAL_LOOK, MOVING = 2.7e-6, 7.2e-8, 0.4
+LOCAL_GRAIN, LOCAL_LOOK, MOVING = 2.7e-6, 7.2e-8, 0.5
 # Of that, where slow collisions take fewer steps.
-SLOW_PART = 0.55
+SLOW_PART = 0.42
 COMPILING = 60.0  # s
 # Flights and journeys over a body of FACETS facets [s]: by the table, once it is built, and by the facets' sum.
 FACETS, TABLE, FLIGHT, EXACT_FLIGHT, JOURNEY, EXACT_JOURNEY = 1920, 10.0, 2.0e-4, 3.5e-3, 1.1e-3, 2.0e-2

@@ -150,7 +150,8 @@ def damage_hdf5(path: Path) -> None:
 
 
 def damage_cell(path: Path, cell: str) -> None:
-    edit_rows(path, "outputs = ? WHERE key = (SELECT min(key) FROM runs)", (cell,))
+    """Damage a run that the screening needs."""
+    edit_rows(path, "outputs = ? WHERE key = ?", (cell, Notes.read(path.parent).designs["screening"][0]))
 
 
 FILES: dict[str, tuple[str, Callable[[Path], object]]] = {
