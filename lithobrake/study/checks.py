@@ -175,7 +175,7 @@ def _shape_problems(study: Study) -> Iterator[str]:
     yield from size_problems(study, radius)
     width, unit = min(study.bed.width), f', or name the unit of lander.file (lander.unit is "{lander.unit}")'
     least, why = BED_WIDTH_PER_LANDER * 2 * radius, f"twice the largest diameter of the lander ({2 * radius:.3g} m)"
-    images = 2 * radius + PERIOD_BESIDE_LANDER * largest_diameter(study)
+    images = _images_width(study, radius)
     if study.bed.sides == "periodic" and images > least:
         least, why = images, f"the lander's largest diameter and {PERIOD_BESIDE_LANDER:g} of the grains', {TWO_IMAGES}"
     if width < least:
@@ -183,6 +183,18 @@ def _shape_problems(study: Study) -> Iterator[str]:
             f"bed.width is {width:g} m at its narrowest; allowed: at least {least:.3g} m, {why}; widen the bed and add "
             f"grains{unit if lander.file else ''}"
         )
+
+
+def _images_width(study: Study, radius: float) -> float:
+    """Least width [m] of ground on which a lander of a radius [m] meets no grain through two images."""
+    return 2.0 * radius + PERIOD_BESIDE_LANDER * largest_diameter(study)
+
+
+def narrowest_period(study: Study) -> float:
+    """Least width [m] of ground that repeats, for the lander and the grains of a study."""
+    radius = lander_radius(study)
+    grains = PERIOD_PER_GRAIN * largest_diameter(study)
+    return max(BED_WIDTH_PER_LANDER * 2.0 * radius, _images_width(study, radius), grains)
 
 
 def lander_radius(study: Study) -> float:
