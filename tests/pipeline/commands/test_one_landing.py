@@ -48,7 +48,7 @@ def test_the_command_tells_what_came_out_and_keeps_the_motion(study_file: Path, 
     assert "The landing ended as clear after" in shown.stdout
     assert "m/s    speed after the touchdown" in shown.stdout
     with h5py.File(motion) as file:
-        assert file["frames/position"].shape[1:] == (11, 3)
+        assert file["frames/position"].shape[1:] == (31, 3)
     asked = CliRunner().invoke(app, ["land", str(study_file), "--set", "impact.speed=0.3", "--json"])
     told = json.loads(asked.stdout)
     assert told["outcome"] == "clear"
