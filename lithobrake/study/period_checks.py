@@ -13,6 +13,8 @@ TWO_IMAGES = 'as with bed.sides = "periodic" nothing may meet another through tw
 LONGEST_GRAIN = {4: 16.0, 5: 5.0, 6: 3.2, 8: 1.9, 10: 1.55, 12: 1.45, 14: 1.25, 20: 1.05, 30: 0.9, 100: 0.7}
 # What the skins of lists of neighbours add to that (dem/bodies/period.py): of two grains, and of one and the lander.
 SKINS, SKINS_AT_LANDER = 0.5, 0.7
+# Friction over the tangent of a slope with which beds of hulls were seen to hold, two to three grains deep.
+LEAST_FRICTION = 0.4
 
 
 def widths_in_grains(study: Study) -> tuple[float, float]:
@@ -26,12 +28,13 @@ def widths_in_grains(study: Study) -> tuple[float, float]:
 
 
 def slope_problems(study: Study) -> Iterator[str]:
-    """A bed without walls on a slope on which its floor does not hold it."""
+    """Grains that run down a slope one over the other, where no wall holds them."""
     steepest, friction = usual_reach(study.surface.slope_deg)[1], usual_reach(study.grain.friction)[0]
-    least = math.tan(math.radians(steepest))
-    if study.bed.sides == "periodic" and friction <= least:
+    least = LEAST_FRICTION * math.tan(math.radians(steepest))
+    if study.bed.sides == "periodic" and friction < least:
         yield (
             f"surface.slope_deg reaches to {steepest:g} and grain.friction down to {friction:g}; allowed with "
-            f'bed.sides = "periodic" is friction above the tangent of the slope, {least:.3g}, as such a bed slides off '
-            'its floor otherwise; raise grain.friction, lower the slope, or set bed.sides = "walls"'
+            f'bed.sides = "periodic" is friction of at least {least:.3g}, {LEAST_FRICTION:g} of the tangent of the '
+            "slope, as such grains run down the slope otherwise; raise grain.friction, lower the slope, or set "
+            'bed.sides = "walls"'
         )

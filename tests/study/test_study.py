@@ -252,8 +252,11 @@ def test_what_is_within_its_limits_is_accepted(changes: dict[str, Any]) -> None:
             ['at most 0.0791 m, bed.width over 6.7 with bed.sides = "periodic" and bed.cloud_point_count = 10'],
         ),
         (
-            {"surface.slope_deg": 40.0, "grain.friction": 0.8},
-            ["surface.slope_deg reaches to 40 and grain.friction down to 0.8", "above the tangent of the slope, 0.839"],
+            {"surface.slope_deg": 40.0, "grain.friction": 0.3},
+            [
+                "surface.slope_deg reaches to 40 and grain.friction down to 0.3",
+                "friction of at least 0.336, 0.4 of the",
+            ],
         ),
     ],
 )
