@@ -14,7 +14,8 @@ from lithobrake.study.body_checks import body_problems
 from lithobrake.study.contact_checks import contact_problems, inertia_problems, size_problems
 from lithobrake.study.design_checks import design_problems
 from lithobrake.study.journey_checks import journey_problems
-from lithobrake.study.quantity import reach, usual_reach
+from lithobrake.study.period_checks import TWO_IMAGES, slope_problems, widths_in_grains
+from lithobrake.study.quantity import reach
 from lithobrake.study.study import Study
 from lithobrake.vocabulary.plain_text import show
 
@@ -26,10 +27,6 @@ LONGEST_QUATERNION = 1e3
 NAME = r"[\w-]+"
 # Fewer grains across are no bed.
 BED_WIDTH_PER_GRAIN = 3.0
-# Largest grains in which a bed has to repeat: alone, and on both sides of the lander; so that no two meet through two
-# images (dem/bodies/period.py), with the longest of 2000 grains of 14 points, 1.25 diameters from its centroid.
-PERIOD_PER_GRAIN, PERIOD_BESIDE_LANDER = 5.5, 3.2
-TWO_IMAGES = 'as with bed.sides = "periodic" nothing may meet another through two images'
 # The largest grain of a bed over its smallest.
 WIDEST_SIZES = 1000.0
 
@@ -62,22 +59,10 @@ def _arrival_problems(study: Study) -> Iterator[str]:
 def _touchdown_problems(study: Study) -> Iterator[str]:
     if study.has_soil:
         yield from contact_problems(study)
-        yield from _slope_problems(study)
+        yield from slope_problems(study)
     gravity = study.surface.gravity
     if not isinstance(gravity, str):
         yield from settling_problems(study, reach(gravity)[0])
-
-
-def _slope_problems(study: Study) -> Iterator[str]:
-    """A bed without walls on a slope on which its floor does not hold it."""
-    steepest, friction = usual_reach(study.surface.slope_deg)[1], usual_reach(study.grain.friction)[0]
-    least = math.tan(math.radians(steepest))
-    if study.bed.sides == "periodic" and friction <= least:
-        yield (
-            f"surface.slope_deg reaches to {steepest:g} and grain.friction down to {friction:g}; allowed with "
-            f'bed.sides = "periodic" is friction above the tangent of the slope, {least:.3g}, as such a bed slides off '
-            'its floor otherwise; raise grain.friction, lower the slope, or set bed.sides = "walls"'
-        )
 
 
 def settling_problems(study: Study, gravity: float) -> Iterator[str]:
@@ -100,10 +85,12 @@ def _grain_problems(study: Study) -> Iterator[str]:
         )
     yield from _distribution_problems(study.bed.diameter)
     repeats = study.bed.sides == "periodic"
-    limit = min(study.bed.width) / (PERIOD_PER_GRAIN if repeats else BED_WIDTH_PER_GRAIN)
+    least = widths_in_grains(study)[0] if repeats else BED_WIDTH_PER_GRAIN
+    limit = min(study.bed.width) / least
     # A grain of exactly a third may not fail by the rounding of the division.
     if largest > limit * (1 + 1e-12):
-        part = f'bed.width over {PERIOD_PER_GRAIN:g} with bed.sides = "periodic"' if repeats else "a third of bed.width"
+        shape = f'with bed.sides = "periodic" and bed.cloud_point_count = {study.bed.cloud_point_count}'
+        part = f"bed.width over {least:.3g} {shape}" if repeats else "a third of bed.width"
         yield (
             f"bed.diameter reaches to {largest:g} m; allowed: at most {limit:.3g} m, {part}; "
             "widen the bed or take smaller grains"
@@ -177,14 +164,22 @@ def _shape_problems(study: Study) -> Iterator[str]:
     yield from size_problems(study, radius)
     width, unit = min(study.bed.width), f', or name the unit of lander.file (lander.unit is "{lander.unit}")'
     least, why = BED_WIDTH_PER_LANDER * 2 * radius, f"twice the largest diameter of the lander ({2 * radius:.3g} m)"
-    images = 2 * radius + PERIOD_BESIDE_LANDER * largest_diameter(study)
+    beside = widths_in_grains(study)[1]
+    images = 2 * radius + beside * largest_diameter(study)
     if study.bed.sides == "periodic" and images > least:
-        least, why = images, f"the lander's largest diameter and {PERIOD_BESIDE_LANDER:g} of the grains', {TWO_IMAGES}"
+        least, why = images, f"the lander's largest diameter and {beside:.3g} of the grains', {TWO_IMAGES}"
     if width < least:
         yield (
             f"bed.width is {width:g} m at its narrowest; allowed: at least {least:.3g} m, {why}; widen the bed and add "
             f"grains{unit if lander.file else ''}"
         )
+
+
+def narrowest_period(study: Study) -> float:
+    """Least width [m] of ground that repeats, for the lander and the grains of a study."""
+    across, (per_grain, beside_lander) = 2.0 * lander_radius(study), widths_in_grains(study)
+    largest = largest_diameter(study)
+    return max(BED_WIDTH_PER_LANDER * across, across + beside_lander * largest, per_grain * largest)
 
 
 def lander_radius(study: Study) -> float:

@@ -219,7 +219,8 @@ def grain(values: Values) -> "Material":
     """The rock of the grains."""
     from lithobrake.dem import Material
 
-    return Material(**{name: values[f"grain.{name}"] for name in ("density", *SURFACE)})
+    properties: dict[str, Any] = {name: values[f"grain.{name}"] for name in ("density", *SURFACE)}
+    return Material(**properties)
 
 
 def lander(study: Study, values: Values) -> "Lander":
@@ -235,7 +236,7 @@ def lander(study: Study, values: Values) -> "Lander":
         shape = read_hull(Path(section.file), section.unit)
     else:
         shape = Sphere(values["lander.diameter"] / 2)
-    properties = {name: values.get(f"lander.{name}", values[f"grain.{name}"]) for name in SURFACE}
+    properties: dict[str, Any] = {name: values.get(f"lander.{name}", values[f"grain.{name}"]) for name in SURFACE}
     # The density of the material plays no part: the mass is given.
     material = Material(density=values["lander.mass"] / shape.volume, **properties)
     inertia = None if section.inertia is None else np.diag(section.inertia)

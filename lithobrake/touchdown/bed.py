@@ -1,8 +1,9 @@
 """A settled bed of grains, in an open box or on ground that repeats, and its file."""
 
 import itertools
+import math
 import os
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -18,6 +19,8 @@ Floats = NDArray[np.float64]
 FORMAT_VERSION = 2
 # A bed ends at the walls of a box, or goes on with its own image on every side.
 SIDES = ("walls", "periodic")
+# Friction of the floor under grains on a slope without walls, at least, over the tangent of the slope.
+HOLDING = 2.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -183,11 +186,15 @@ def boxed_world(
 ) -> World:  # fmt: skip
     """Return a world of grains at rest on a floor, in an open box or repeating after each width, see Bed.
 
-    The floor stops everything, the walls only the grains.
+    The floor stops everything, the walls only the grains. Without walls the floor is rough enough to hold the grains on
+    a slope.
     """
     world = contact.world(gravity, width if sides == "periodic" else None)
     numbers = world.add_bodies(grains, material, position, orientation)
-    world.add_plane((0.0, 0.0, 0.0), (0.0, 0.0, 1.0), material)
+    slope = math.hypot(*gravity[:2]) / abs(gravity[2]) if gravity[2] != 0.0 else 0.0
+    holds = sides == "walls" or slope == 0.0
+    floor = material if holds else replace(material, friction=max(material.friction, HOLDING * slope), rough=True)
+    world.add_plane((0.0, 0.0, 0.0), (0.0, 0.0, 1.0), floor)
     if sides == "periodic":
         return world
     for axis in (0, 1):

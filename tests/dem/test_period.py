@@ -117,6 +117,21 @@ def test_a_pile_moved_anywhere_has_the_same_forces() -> None:
         assert len(contacts[0]) > 80
 
 
+@pytest.mark.parametrize("stepping", STEPPINGS)
+def test_a_pile_moved_anywhere_moves_the_same(stepping: str) -> None:
+    """Under a gravity that it did not settle under; spheres, see THRESHOLD."""
+    here, there = pile(spheres=True), pile((0.123, -0.456), 2, spheres=True)
+    start = here.position, there.position
+    for world in (here, there):
+        world.gravity = (2.0, 1.0, -5.0)
+        advance(world, 0.01, stepping)
+    ways = [world.position - before for world, before in zip((here, there), start, strict=True)]
+    assert np.abs(ways[0]).max() > 1e-5
+    assert ways[1] == pytest.approx(ways[0], abs=1e-9 * np.abs(ways[0]).max())
+    largest = np.abs(here.contact_force).max()
+    assert np.abs(there.contact_force - here.contact_force).max() < 1e-6 * largest
+
+
 def test_the_pile_leans_on_its_images() -> None:
     world = pile()
     contacts = world.contacts()
@@ -150,11 +165,12 @@ def test_the_ledger_of_energy_closes(stepping: str, error: float) -> None:
     assert world.energy()["total"] == pytest.approx(start["total"], abs=error * start["kinetic"])
 
 
-def test_threads_change_no_bit() -> None:
+@pytest.mark.parametrize("stepping", STEPPINGS)
+def test_threads_change_no_bit(stepping: str) -> None:
     alone, shared = gas(), gas()
     shared.thread_count = 2
     for world in (alone, shared):
-        world.run(0.1)
+        advance(world, 0.1, stepping)
     assert alone.energy()["damping"] > 0.0
     for name in ("position", "velocity", "orientation", "angular_momentum", "contact_force", "contact_torque"):
         assert np.array_equal(getattr(alone, name), getattr(shared, name))

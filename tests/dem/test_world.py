@@ -1,13 +1,14 @@
 """What a world takes, refuses and gives back."""
 
 import math
+from dataclasses import replace
 
 import h5py
 import numpy as np
 import pytest
 
 from lithobrake.dem import Box, ConvexHull, Material, Sphere, World
-from lithobrake.dem.law.material_pair import pair_law
+from lithobrake.dem.law.material_pair import PAIR_RULES, pair_law
 
 ROCK = Material(young_modulus=1e7, poisson_ratio=0.25, restitution=0.5, friction=0.5, density=2500.0)
 
@@ -36,6 +37,10 @@ def test_pair_takes_the_smaller_friction_and_restitution_unless_told_otherwise()
     assert pair_law(ROCK, other, pair_rule="mean").friction == pytest.approx(0.35)
     assert pair_law(ROCK, other, pair_rule="geometric").friction == pytest.approx(math.sqrt(0.1))
     assert pair_law(ROCK, other) == pair_law(other, ROCK)
+    rough = replace(other, friction=0.9, rough=True)
+    for rule in PAIR_RULES:
+        assert pair_law(ROCK, rough, pair_rule=rule).friction == pair_law(rough, ROCK, pair_rule=rule).friction == 0.9
+    assert pair_law(rough, replace(rough, friction=0.7)).friction == 0.9
 
 
 @pytest.mark.parametrize(("nu", "factor"), [(0.1, 1.106), (0.2, 1.227), (0.3, 1.373), (0.4, 1.556)])

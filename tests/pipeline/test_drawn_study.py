@@ -93,7 +93,7 @@ def test_a_folder_that_changes_its_method_has_the_runs_of_the_present_one(
 def soil(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A study of four landings of a ball on two beds of a few grains, and its folder, made."""
     folder = tmp_path_factory.mktemp("soil")
-    text = few_grains(10, 0.3, 0.05) + "region = { x = [-0.03, 0.03], y = [-0.02, 0.02] }\nspin_z = 1.0\n"
+    text = few_grains(30, 0.54, 0.05) + "region = { x = [-0.03, 0.03], y = [-0.02, 0.02] }\nspin_z = 1.0\n"
     text = text.replace("[grain]", "bed_count = 2\n[grain]")
     (folder / "study.toml").write_text(f"{text}[design]\n{drawn(4, 'side_runs = true')}\n[landing]\ntime_limit = 5.0\n")
     run_study(StudySource.read(folder / "study.toml"), folder / "out", until="side_runs")

@@ -246,9 +246,17 @@ def test_what_is_within_its_limits_is_accepted(changes: dict[str, Any]) -> None:
             {"bed.diameter": table("uniform", lower=0.08, upper=0.11)},
             ["at most 0.1 m, bed.width over 5.5 with bed.sides"],
         ),
+        # Grains of ten points may be longer: 4 * 1.55 + 0.5 of their diameters.
         (
-            {"surface.slope_deg": 40.0, "grain.friction": 0.8},
-            ["surface.slope_deg reaches to 40 and grain.friction down to 0.8", "above the tangent of the slope, 0.839"],
+            {"bed.width": [0.53, 0.6], "bed.cloud_point_count": 10},
+            ['at most 0.0791 m, bed.width over 6.7 with bed.sides = "periodic" and bed.cloud_point_count = 10'],
+        ),
+        (
+            {"surface.slope_deg": 40.0, "grain.friction": 0.3},
+            [
+                "surface.slope_deg reaches to 40 and grain.friction down to 0.3",
+                "friction of at least 0.336, 0.4 of the",
+            ],
         ),
     ],
 )

@@ -11,6 +11,7 @@ import pytest
 
 from lithobrake.dem import Box, Material, World, folded, period_of
 from lithobrake.touchdown import OUTPUTS, Bed, BedRecipe, ContactModel, Lander, Landing, land, pour_bed, settling
+from lithobrake.touchdown.bed import boxed_world
 from lithobrake.touchdown.grains import make_grain
 from lithobrake.touchdown.pouring import rain
 from lithobrake.touchdown.surface import height_map
@@ -123,9 +124,12 @@ def test_a_place_beyond_the_tile_is_that_in_it(ground: Bed) -> None:
     assert one.outputs["peak_acceleration"] == pytest.approx(other.outputs["peak_acceleration"], rel=1e-3)
 
 
-def test_a_bed_on_a_slope_is_held_by_its_floor(recipe: Any) -> None:
+@pytest.mark.parametrize("friction", [0.5, 0.2])
+def test_a_bed_on_a_slope_is_held_by_its_floor(friction: float, recipe: Any) -> None:
+    """Also with less friction than the tangent of the slope, 0.36, as the floor is rough."""
     gravity = (5e-4 * math.sin(SLOPE), 0.0, -5e-4 * math.cos(SLOPE))
-    made: BedRecipe = recipe(sides="periodic", width=WIDTH, grain_count=48, gravity=gravity)
+    soil = replace(ROCK, friction=friction)
+    made: BedRecipe = recipe(sides="periodic", width=WIDTH, grain_count=48, gravity=gravity, material=soil)
     bed = pour_bed(made)
     assert bed.history["unbalanced_force"][-1] < settling.UNBALANCED_FORCE
     world = bed.world(made.material, gravity, made.contact)
@@ -134,6 +138,18 @@ def test_a_bed_on_a_slope_is_held_by_its_floor(recipe: Any) -> None:
     assert settling.rests(world, period, 5.0, lambda: settling.unbalanced_force(world) < 1e-2)
     weight = float(world.mass.sum()) * np.array(gravity)
     assert floor_force(world) == pytest.approx(-weight, abs=0.02 * float(np.linalg.norm(weight)))
+
+
+def test_only_the_floor_of_ground_on_a_slope_is_rough() -> None:
+    def floor(sides: str, slope: float) -> Material:
+        gravity = (1e-4 * math.sin(slope), 0.0, -1e-4 * math.cos(slope))
+        nothing = [], np.zeros((0, 3)), np.zeros((0, 4))
+        made: Material = boxed_world(*nothing, WIDTH, ROCK, gravity, ContactModel(), sides).planes[0].material
+        return made
+
+    assert floor("periodic", 0.0) == floor("walls", SLOPE) == ROCK
+    assert floor("periodic", SLOPE) == replace(ROCK, friction=2.0 * math.tan(SLOPE), rough=True)
+    assert floor("periodic", 0.1) == replace(ROCK, rough=True)
 
 
 def test_sides_that_are_none_are_refused(recipe: Any) -> None:

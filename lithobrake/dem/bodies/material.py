@@ -18,6 +18,8 @@ class Material:
     while they last, not beyond. Source: [Derjaguin-1975]. Lunar soil has, by [Perko-2001], a pull
     of 0.036 S^2 R* newtons, S the cleanliness from 0 to 1: a surface energy of 0.0029 S^2 J/m2.
 
+    rough: contacts have its friction, whatever the other material and the rule for pairs; of two, the larger.
+
     Raises ValueError outside these ranges.
     """
 
@@ -30,6 +32,7 @@ class Material:
     spinning_friction: float = 0.0
     cohesion_force: float = 0.0
     surface_energy: float = 0.0
+    rough: bool = False
 
     def __post_init__(self) -> None:
         allowed = {

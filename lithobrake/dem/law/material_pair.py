@@ -60,6 +60,8 @@ def pair_law(a: Material, b: Material, shear_modulus_rule: str = "mindlin", pair
             "restitution", "friction", "rolling_friction", "spinning_friction", "cohesion_force", "surface_energy"
         )
     }  # fmt: skip
+    if a.rough or b.rough:
+        shared["friction"] = max(one.friction for one in (a, b) if one.rough)
     return PairLaw(
         young, shear, damping_ratio_of(shared["restitution"]), 2.0 * math.sqrt(shear / young), shared["friction"],
         shared["rolling_friction"], shared["spinning_friction"], shared["cohesion_force"],

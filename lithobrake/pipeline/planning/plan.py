@@ -7,7 +7,7 @@ from typing import Any
 from lithobrake.pipeline.inference.expected_inference import ExpectedInference
 from lithobrake.pipeline.planning.expected_time import Span
 from lithobrake.pipeline.planning.expected_width import ExpectedHalfWidth
-from lithobrake.pipeline.planning.planned_beds import PlannedBeds, PlannedGrains
+from lithobrake.pipeline.planning.planned_beds import PlannedBeds, PlannedGrains, PlannedTile
 from lithobrake.pipeline.planning.planned_runs import PlannedRuns
 
 
@@ -31,6 +31,7 @@ class Plan:
     free_bytes      where the folder is
     warnings        in sentences, the most important first
     grains          of the beds; None where all have one size
+    tile            of ground that repeats; None where it does not
     site_slope_deg  of the ground at the site, against gravity and rotation together
     inference       what observed bounces would say of the inputs; None where that is not asked
     """
@@ -50,6 +51,7 @@ class Plan:
     warnings: tuple[str, ...]
     site_slope_deg: float
     grains: PlannedGrains | None = None
+    tile: PlannedTile | None = None
     inference: ExpectedInference | None = None
 
     @property

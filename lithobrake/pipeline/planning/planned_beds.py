@@ -1,4 +1,5 @@
-"""The beds of a study before it runs: how many need not be poured, and their grains in the terms of boulder fields."""
+"""The beds of a study before it runs: how many need not be poured, how wide they must be, and their grains in the terms
+of boulder fields."""
 
 import math
 from dataclasses import dataclass
@@ -6,10 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from lithobrake.pipeline.design.dependencies import bed_files
+from lithobrake.pipeline.design.place_region import smallest_width
 from lithobrake.pipeline.folder.study_folder import StudyFolder
 from lithobrake.pipeline.outdated_files import stage_keys
 from lithobrake.pipeline.runs.beds import bed_recipe
 from lithobrake.study import Study
+from lithobrake.study.checks import narrowest_period
 from lithobrake.study.touchdown_model import grain_sizes, in_words_of_the_study
 
 
@@ -36,6 +39,32 @@ def planned_beds(study: Study, folder: StudyFolder) -> PlannedBeds:
     with in_words_of_the_study():
         stored = sum(is_stored(bed_recipe(study, index)) for index in absent)
     return PlannedBeds(len(files), len(files) - len(absent), stored)
+
+
+@dataclass(frozen=True)
+class PlannedTile:
+    """Ground that repeats [m]: its widths along x and y, and the least for this lander and these grains.
+
+    At the least no two meet through two images, and no wave of an image meets the first impact.
+    """
+
+    width: tuple[float, float]
+    smallest: float
+
+    def line(self) -> str:
+        """All of it in a line of text."""
+        along, across = self.width
+        return (
+            f"Ground: repeats after {along:g} m along x and {across:g} m along y; the smallest tile for this lander "
+            f"and these grains is {math.ceil(1e3 * self.smallest) / 1e3:g} m."
+        )
+
+
+def planned_tile(study: Study) -> PlannedTile | None:
+    """The tile of a study's ground; None where it does not repeat, or there is none."""
+    if not study.has_soil or study.bed.sides == "walls":
+        return None
+    return PlannedTile(study.bed.width, max(narrowest_period(study), smallest_width(study)))
 
 
 # Of grains that are larger than the diameter that is told.

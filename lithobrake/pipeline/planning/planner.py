@@ -19,7 +19,7 @@ from lithobrake.pipeline.planning.expected_time import basis, expected_seconds
 from lithobrake.pipeline.planning.expected_width import expected_width
 from lithobrake.pipeline.planning.plan import Plan
 from lithobrake.pipeline.planning.plan_in_words import bytes_in_words
-from lithobrake.pipeline.planning.planned_beds import PlannedBeds, planned_beds, planned_grains
+from lithobrake.pipeline.planning.planned_beds import PlannedBeds, planned_beds, planned_grains, planned_tile
 from lithobrake.pipeline.planning.planned_runs import PlannedRuns, possible_runs
 from lithobrake.pipeline.planning.study_warnings import study_warnings
 from lithobrake.pipeline.runs.touchdown_runs import known_runs
@@ -100,6 +100,7 @@ def plan_of(
         warnings=(*room, *study_warnings(design, site, soil)),
         site_slope_deg=site.slope_deg,
         grains=planned_grains(study),
+        tile=planned_tile(study),
     )
 
 

@@ -57,8 +57,8 @@ def _landing(shown: Scene, which: str) -> LiveSection:
     quantum = 1e3 * float(arrays["quanta"].max())
     images = "" if shown.box is not None else ", images of the ground that repeats among them,"
     words = (
-        f"{which}: {len(moving.vertices) - 1} grains{images} and the lander in {len(moving.time)} pictures, straight between "
-        f"them. Places are rounded to {number(quantum, 2)} mm, and grains that hardly move to less. "
+        f"{which}: {len(moving.vertices) - 1} grains{images} and the lander in {len(moving.time)} pictures, straight "
+        f"between them. Places are rounded to {number(quantum, 2)} mm, and grains that hardly move to less. "
         f"Colour by {' or '.join(_scale_words(one) for one in facts['shades'])}, over equal factors."
     )
     return _section("landing-3d", "The landing, to turn", words, arrays, facts)

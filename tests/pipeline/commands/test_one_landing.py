@@ -17,7 +17,7 @@ from lithobrake.touchdown import land
 
 from ...few_grains import few_grains
 
-TEXT = few_grains(10, 0.3, 0.05) + "region = { x = [-0.03, 0.03], y = [-0.02, 0.02] }\n"
+TEXT = few_grains(30, 0.54, 0.05) + "region = { x = [-0.03, 0.03], y = [-0.02, 0.02] }\n"
 
 
 @pytest.fixture
@@ -48,7 +48,7 @@ def test_the_command_tells_what_came_out_and_keeps_the_motion(study_file: Path, 
     assert "The landing ended as clear after" in shown.stdout
     assert "m/s    speed after the touchdown" in shown.stdout
     with h5py.File(motion) as file:
-        assert file["frames/position"].shape[1:] == (11, 3)
+        assert file["frames/position"].shape[1:] == (31, 3)
     asked = CliRunner().invoke(app, ["land", str(study_file), "--set", "impact.speed=0.3", "--json"])
     told = json.loads(asked.stdout)
     assert told["outcome"] == "clear"
@@ -66,7 +66,7 @@ def test_the_command_tells_what_came_out_and_keeps_the_motion(study_file: Path, 
         (["--set", "impact.speed=-1"], "--set: impact.speed is -1; allowed: above 0 and at most 1000 [m/s]"),
         (["--set", "lander.mass=0"], "--set: lander.mass is 0; allowed: above 0 [kg]"),
         (["--set", "impact.incidence_deg=100"], "--set: impact.incidence_deg is 100; allowed: at least 0 and below 90"),
-        (["--set", "impact.place.x=3"], "--set: impact.place.x reaches from 3 to 3 m; allowed: -0.15 to 0.15 m"),
+        (["--set", "impact.place.x=3"], "--set: impact.place.x reaches from 3 to 3 m; allowed: -0.27 to 0.27 m"),
         (["--set", "grain.fricton=0.4"], "which no landing of this study reads; did you mean grain.friction?"),
         (["--set", "grain.friction=true"], "--set grain.friction is 'true'; allowed: a number"),
         (["--set", "grain.friction=0.4\ny=3"], "--set grain.friction is '0.4\\ny=3'; allowed: a number"),

@@ -1,6 +1,7 @@
 """What `lithobrake plan` says of a study before it runs, beside what then comes of it."""
 
 import json
+import math
 import os
 import shutil
 import subprocess
@@ -31,14 +32,14 @@ from lithobrake.pipeline.planning.expected_time import (
     run_time,
 )
 from lithobrake.pipeline.planning.plan_in_words import brief_lines
-from lithobrake.pipeline.planning.planned_beds import planned_grains
+from lithobrake.pipeline.planning.planned_beds import planned_grains, planned_tile
 from lithobrake.pipeline.planning.planned_runs import PlannedRuns
 from lithobrake.pipeline.planning.planner import plan_of
 from lithobrake.pipeline.planning.study_warnings import expected_loss, study_warnings
 from lithobrake.pipeline.site import Site
 from lithobrake.pipeline.study_run import run_study
 from lithobrake.results import open_study
-from lithobrake.study import Study, StudySource, check_tables, load_tables, read_study
+from lithobrake.study import Study, StudyError, StudySource, check_tables, load_tables, read_study
 from lithobrake.vocabulary.quantities import OUTPUTS
 
 from ..ball_studies import BALL, FEW_RUNS, write_ball
@@ -271,6 +272,21 @@ def test_landings_that_will_leave_the_bed_laterally_are_warned_of_by_their_angle
     # 22 % of 300 landings of scenarios/aim.toml, which this study is like.
     losses = [expected_loss(soil_of(one).landings[1:], min(one.bed.width)) for one in (steep, flat, wide)]
     assert losses == [pytest.approx(1 / 64), pytest.approx(0.22, abs=0.04), pytest.approx(0.07, abs=0.02)]
+
+
+def test_the_smallest_tile_of_ground_that_repeats_is_said(tmp_path: Path) -> None:
+    study = drawn()
+    # The diagonal of the lander, 0.267 m, and 3.2 grains of 0.09 m; no study is accepted on a narrower tile.
+    least = math.sqrt(0.1**2 + 0.1**2 + 0.227**2) + 3.2 * 0.09
+    plan = plan_for(study, StudyFolder.only_read(tmp_path / "out"), 2)
+    assert plan.tile is not None
+    assert (plan.tile.width, plan.tile.smallest) == ((0.56, 0.56), pytest.approx(least))
+    assert "the smallest tile for this lander and these grains is 0.556 m." in " ".join(plan_lines(plan))
+    drawn(bed={"width": [least + 1e-9, least + 1e-9], "grain_count": 95})
+    with pytest.raises(StudyError, match=r"bed.width is 0\.55.* at least 0\.555 m"):
+        drawn(bed={"width": [least - 1e-3, least - 1e-3], "grain_count": 95})
+    assert planned_tile(drawn(bed={"sides": "walls", "width": [0.7, 0.7]})) is None
+    assert planned_tile(soft()) is None
 
 
 def test_ground_that_repeats_loses_no_landing_and_is_warned_of_its_images() -> None:

@@ -1,0 +1,68 @@
+"""Which numbers of a study change on periodic ground? Reads finished studies side by side.
+
+    python validation/periodic_studies.py FOLDER ...
+
+Each folder was made by `lithobrake run` of a file of scenarios/, as it is or with the keys of [bed] that
+periodic_studies.json then tells. Writes periodic_studies.json.
+"""
+
+import argparse
+import math
+import sys
+from pathlib import Path
+
+import numpy as np
+
+from lithobrake.results import StudyResults, open_study
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
+from harness import Row, origin, write_document
+
+OUTPUTS = ("speed_out", "elevation_out", "spin_out", "penetration")
+
+
+def over_beds(value: np.ndarray, bed: np.ndarray) -> Row:
+    """Mean and its standard error by the ratio estimator over beds. Source: [Cochran-1977], section 2.12."""
+    mean = float(value.mean())
+    residuals = np.array([(value[bed == number] - mean).sum() for number in np.unique(bed)])
+    count = len(residuals)
+    error = math.sqrt(count / (count - 1) * float((residuals**2).sum())) / len(value)
+    return {"mean": mean, "standard_error": error}
+
+
+def numbers(study: StudyResults) -> Row:
+    """Beds, outcomes, what comes down again, and how landers leave."""
+    summary = study.summary
+    results, bed, runs = summary["results"], summary["study"]["bed"], study.runs
+    drawn = (runs["design"] == "drawn") & (runs["outcome"] == "clear")
+    shares = results["shares"]
+    return {
+        "title": summary["study"]["title"],
+        "bed": {key: bed[key] for key in ("sides", "grain_count", "width")},
+        "solid_fraction": float(np.mean([one["solid_fraction"] for one in results["beds"]])),
+        "coordination_number": float(np.mean([one["coordination_number"] for one in results["beds"]])),
+        "beds": results["runs"]["beds"],
+        "outcomes": results["runs"]["outcomes"],
+        "farther_than_period": results["runs"]["farther_than_period"],
+        "returns": {key: results["returns"][key] for key in ("share", "lower", "upper")},
+        "shares": {
+            key: {end: shares[key].get(end) for end in ("share", "lower", "upper")} for key in ("escaped", "flying")
+        },
+        **{key: over_beds(runs[key][drawn], runs["bed"][drawn]) for key in OUTPUTS},
+    }
+
+
+def main() -> None:
+    """Read all folders and write what they say."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folders", nargs="+", type=Path)
+    folders = parser.parse_args().folders
+    document = {
+        **origin("validation/periodic_studies.py FOLDER ..."),
+        "studies": [numbers(open_study(f)) for f in folders],
+    }
+    write_document(Path(__file__).with_suffix(".json"), document)
+
+
+if __name__ == "__main__":
+    main()
