@@ -114,11 +114,16 @@ class Bed:
         """Lengths after which the ground repeats along x and y [m]; None in a box."""
         return self.width if self.sides == "periodic" else None
 
-    def world(self, material: Material, gravity: tuple[float, float, float], contact: ContactModel) -> World:
-        """Return a world with these grains at rest, of a material, on a floor and in a box of the same material."""
-        return boxed_world(
-            self.grains, self.position, self.orientation, self.width, material, gravity, contact, self.sides
-        )
+    def world(
+        self, material: Material, gravity: tuple[float, float, float], contact: ContactModel,
+        tilted: tuple[float, float, float] | None = None,
+    ) -> World:  # fmt: skip
+        """Return a world with these grains at rest, of a material, on a floor and in a box of the same material.
+
+        tilted: see boxed_world.
+        """
+        body = self.grains, self.position, self.orientation, self.width
+        return boxed_world(*body, material, gravity, contact, self.sides, tilted)
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the bed to an HDF5 file, whole or not at all."""
@@ -183,15 +188,17 @@ def read_hulls(file: Any) -> list[ConvexHull]:
 def boxed_world(
     grains: list[ConvexHull], position: Floats, orientation: Floats, width: tuple[float, float], material: Material,
     gravity: tuple[float, float, float], contact: ContactModel, sides: str = "walls",
+    tilted: tuple[float, float, float] | None = None,
 ) -> World:  # fmt: skip
     """Return a world of grains at rest on a floor, in an open box or repeating after each width, see Bed.
 
     The floor stops everything, the walls only the grains. Without walls the floor is rough enough to hold the grains on
-    a slope.
+    a slope. tilted: the gravity [m/s2] that it has to hold them under, where that is not the one they rest under.
     """
     world = contact.world(gravity, width if sides == "periodic" else None)
     numbers = world.add_bodies(grains, material, position, orientation)
-    slope = math.hypot(*gravity[:2]) / abs(gravity[2]) if gravity[2] != 0.0 else 0.0
+    along, aside, out = gravity if tilted is None else tilted
+    slope = math.hypot(along, aside) / abs(out) if out != 0.0 else 0.0
     holds = sides == "walls" or slope == 0.0
     floor = material if holds else replace(material, friction=max(material.friction, HOLDING * slope), rough=True)
     world.add_plane((0.0, 0.0, 0.0), (0.0, 0.0, 1.0), floor)

@@ -50,7 +50,7 @@ def land(
             f"the lander is {2.0 * lander.shape.bounding_radius:.3g} m across; allowed is less than the bed's width, "
             f"{min(bed.width)} m: make the bed wider"
         )
-    world = bed.world(landing.grain, bed.gravity, landing.contact)
+    world = bed.world(landing.grain, bed.gravity, landing.contact, landing.gravity)
     locally = landing.contact.stepping == "local"
     if locally and released_speed(bed, landing.grain) < CALM_SPEED * landing.speed:
         world.gravity = np.array(landing.gravity)

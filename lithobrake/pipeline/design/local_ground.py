@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lithobrake.pipeline.site import Site
+from lithobrake.study.period_checks import LEAST_FRICTION
 from lithobrake.vocabulary.quantities import GROUND
 
 if TYPE_CHECKING:
@@ -14,9 +15,9 @@ if TYPE_CHECKING:
 
 Row = dict[str, float]
 AZIMUTH = "impact.azimuth_deg"
-# Share of the slope at which friction alone would hold a block: soil on steeper ground would have slid off it, so the
-# bed of a touchdown is tilted no farther.
-STEEPEST = 0.9
+# The steepest bed of hulls that was seen to hold (docs/decisions/touchdown.md). Soil lies on no steeper ground: what
+# was there has run down, so the bed of a touchdown is tilted no farther.
+STEEPEST_DEG = 35.0
 
 
 def felt(
@@ -53,7 +54,7 @@ def ground_inputs(acceleration: Sequence[float], azimuth_deg: float, friction: f
     strength, sign = math.hypot(along, aside, outward), -1.0 if outward > 0.0 else 1.0
     slope = math.atan2(math.hypot(along, aside), abs(outward))
     downhill = math.degrees(math.atan2(sign * aside, sign * along)) + azimuth_deg
-    tilt = min(slope, math.atan(STEEPEST * friction))
+    tilt = min(slope, math.radians(STEEPEST_DEG), math.atan(friction / LEAST_FRICTION))
     return dict(zip(GROUND, (sign * strength, math.degrees(tilt), downhill % 360.0), strict=True))
 
 
