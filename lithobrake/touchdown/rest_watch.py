@@ -7,14 +7,14 @@ import numpy as np
 from lithobrake.dem import BodyMotion
 from lithobrake.touchdown.lander import Lander
 
-# A lander that stands on an edge topples with the time constant sqrt(size / gravity), from any tilt by a factor of 20
-# in three of them: what moves by less than REST_WAY meanwhile was never about to.
-TOPPLING_TIMES = 3.0
-REST_WAY = 0.01  # of the smallest edge, by any point of the lander
+# A lander that stands on an edge topples with the time constant sqrt(size / gravity): its tilt grows by a factor of 7 in
+# two of them. What moves by less than REST_WAY meanwhile was within 0.4 % of its size of balance, or rests.
+TOPPLING_TIMES = 2.0
+REST_WAY = 0.03  # of the smallest edge, by any point of the lander
 
 
 class RestWatch:
-    """Watches a lander until no point of it has moved by more than a hundredth of its smallest edge for long enough."""
+    """Watches a lander until no point of it has moved by more than REST_WAY for long enough."""
 
     def __init__(self, lander: Lander, inward_gravity: float) -> None:
         """Begin; inward_gravity: of the site [m/s2]. Where it does not point inward nothing rests."""
