@@ -43,7 +43,7 @@ def measure(name: str, bed_count: int, count: int) -> Row:
     soil = ExpectedSoil.of(DrawnDesign(study), len(study.touchdown_values()))
     paces = [probe() / REFERENCE]
     small = max(math.sqrt(COMPILED_BY / soil.recipe.grain_count) * soil.recipe.width[0], 2.0 * soil.recipe.sizes.upper)
-    pour_bed(replace(soil.recipe, grain_count=COMPILED_BY, width=(small, small)))
+    pour_bed(replace(soil.recipe, grain_count=COMPILED_BY, width=(small, small), sides="walls"))
     pours = [timed(lambda seed=seed: pour_bed(replace(soil.recipe, seed=seed))) for seed in range(bed_count)]
     bed, seconds = pours[0][0], [seconds for _, seconds in pours]
     landings = [landed(bed, soil, held, count) for held in HELD]
