@@ -73,7 +73,8 @@ def main() -> None:
     given = parser.parse_args()
     study = study_of(given.study, given.diameter, given.grains)
     whole = bed_recipe(study, 0)
-    recipe = replace(whole, grain_count=given.grains, width=(whole.width[0] / TILES, whole.width[1] / TILES))
+    third = (whole.width[0] / TILES, whole.width[1] / TILES)
+    recipe = replace(whole, grain_count=given.grains, width=third, sides="walls")
     command = f"benchmarks/fine_grains.py {given.study} --diameter {given.diameter} --grains {given.grains} --held "
     command += " ".join(str(share) for share in given.held)
     if not given.bed.exists():

@@ -30,8 +30,9 @@ SPEED, ELEVATION = "speed_out", "elevation_out"
 
 
 def scenario(name: str, seed: int) -> dict[str, Any]:
-    """The tables of a study of the repository, with another seed."""
-    return tomllib.loads((SCENARIOS / f"{name}.toml").read_text()) | {"seed": seed}
+    """The tables of a study of the repository, with another seed, and between walls on the beds of one_place.toml."""
+    tables, place = (tomllib.loads((SCENARIOS / f"{one}.toml").read_text()) for one in (name, "one_place"))
+    return tables | {"seed": seed, "bed": place["bed"] | {"sides": "walls"}}
 
 
 def with_grains(tables: dict[str, Any], diameter: float) -> dict[str, Any]:

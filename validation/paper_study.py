@@ -37,8 +37,9 @@ PAIRED = ("speed_out", "elevation_out", "spin_out")
 
 
 def scenario(name: str) -> Tables:
-    """The tables of a study of the repository."""
-    return tomllib.loads((SCENARIOS / f"{name}.toml").read_text())
+    """The tables of a study of the repository, its beds between walls."""
+    tables = tomllib.loads((SCENARIOS / f"{name}.toml").read_text())
+    return tables | {"bed": {"sides": "walls"} | tables["bed"]}
 
 
 def changed(tables: Tables, section: str, **values: Any) -> Tables:

@@ -2,8 +2,7 @@
 
 import math
 from collections.abc import Iterator
-
-import numpy as np
+from itertools import pairwise
 
 from lithobrake.study.quantity import usual_reach
 from lithobrake.study.study import Study
@@ -22,8 +21,9 @@ def widths_in_grains(study: Study) -> tuple[float, float]:
 
     The fewer its points, the longer a grain may be.
     """
-    counts, reach = zip(*LONGEST_GRAIN.items(), strict=True)
-    longest = float(np.interp(study.bed.cloud_point_count, counts, reach))
+    count = study.bed.cloud_point_count
+    (low, longer), (high, shorter) = next(ends for ends in pairwise(LONGEST_GRAIN.items()) if count <= ends[1][0])
+    longest = longer + (shorter - longer) * (count - low) / (high - low)
     return 4.0 * longest + SKINS, 2.0 * longest + SKINS_AT_LANDER
 
 

@@ -276,6 +276,12 @@ def test_beds_repeat_unless_the_method_is_that_of_the_paper() -> None:
     assert sides == ["periodic", "periodic", "walls"]
 
 
+def test_no_scenario_of_the_drawn_method_has_an_edge_to_leave_over() -> None:
+    studies = [read_study(path) for path in (Path(__file__).parents[2] / "scenarios").glob("*.toml")]
+    assert {study.bed.sides for study in studies if study.design.method == "drawn"} == {"periodic"}
+    assert sum(study.design.method == "drawn" for study in studies) >= 6
+
+
 def test_counts_must_reach_the_terms_of_least_squares_only() -> None:
     few = {**SOBOL, "design.screening_count": 20}
     (said,) = problems(few)

@@ -76,18 +76,18 @@ def farthest(
 def bound_numbers(design: DrawnDesign, bed_height: float) -> dict[str, float]:
     """The numbers of `energy_bound`, for whoever follows the uncertain inputs alone.
 
-    height: of the bed [m]; across: how far a lander comes downhill, at the medians [m]; smallest, largest: squared
-    radii of gyration [m2] at the medians, which go with these powers of mass and diameter; and the medians of whatever
-    the bound depends on, by dotted key.
+    height: of the bed [m]; across: the box [m], and time_limit: in which a lander comes downhill where there is none
+    [s], each 0 without the other; smallest, largest: squared radii of gyration [m2] at the medians, which go with these
+    powers of mass and diameter; and the medians of whatever the bound depends on, by dotted key.
     """
     study, known = design.study, design.medians
     smallest, largest = (float(one[0]) for one in gyrations(design, {key: np.array([known[key]]) for key in known}))
-    downhill = abs(known["surface.gravity"]) * float(np.sin(np.radians(known["surface.slope_deg"])))
     has_inertia, is_ball = study.lander.inertia is not None, "lander.diameter" in known
     names = ("impact.speed", *SPIN, "surface.slope_deg", "surface.gravity", "lander.mass", "lander.diameter")
     return {
         "height": bed_height,
-        "across": float(farthest(study, known["impact.speed"], downhill)),
+        "across": float(farthest(study, 0.0, 0.0)),
+        "time_limit": 0.0 if study.bed.sides == "walls" else study.landing.time_limit,
         "smallest": smallest,
         "largest": largest,
         "mass_power": -1.0 if has_inertia else 0.0,

@@ -221,8 +221,9 @@ class Law {
     const ratio = (name) => bound[name] ? at(name) / bound[name] : 1;
     const power = ratio("lander.mass") ** bound.mass_power * ratio("lander.diameter") ** bound.diameter_power;
     const spin = ["x", "y", "z"].reduce((sum, axis) => sum + at(`impact.spin_${axis}`) ** 2, 0);
-    const fall = bound.height + bound.across * Math.sin(at("surface.slope_deg") * Math.PI / 180);
-    const gained = Math.abs(at("surface.gravity")) * fall;
+    const slope = Math.sin(at("surface.slope_deg") * Math.PI / 180), gravity = Math.abs(at("surface.gravity"));
+    const limit = bound.time_limit, downhill = at("impact.speed") * limit + 0.5 * gravity * slope * limit ** 2;
+    const gained = gravity * (bound.height + (bound.across + downhill) * slope);
     const square = at("impact.speed") ** 2 + bound.largest * power * spin + 2 * gained;
     return [Math.sqrt(square), Math.sqrt(bound.smallest * power)];
   }

@@ -139,6 +139,7 @@ def test_quantiles_of_inputs_are_those_of_their_laws(model: Emulator) -> None:
         ({"lander": {"inertia": [1e-3, 2e-3, 2e-3], "mass": 2.0}}, {"lander.mass": 3.0}),
         ({"lander": {"shape": "sphere", "diameter": 0.2, "mass": 2.0}}, {"lander.diameter": 0.15}),
         ({"surface": {"slope_deg": 30.0, "gravity": 1e-2}}, {"impact.speed": 0.2, "impact.spin_y": 3.0}),
+        ({"surface": {"slope_deg": 30.0, "gravity": 1e-2}, "bed": {"sides": "walls"}}, {"impact.speed": 0.2}),
     ],
 )
 def test_the_energy_bound_is_that_of_python(model: Emulator, changes: dict[str, Any], fixed: dict[str, float]) -> None:
