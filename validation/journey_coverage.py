@@ -1,6 +1,7 @@
 """How often the intervals of a study of journeys hold the truth, on synthetic journeys whose laws are known.
 
-    python validation/journey_coverage.py [--studies 200]
+    python validation/journey_coverage.py [--studies 1000]
+    python validation/journey_coverage.py --page    the table of docs/estimates.md, from what was made
 
 A journey has one soil, which acts on all of its touchdowns, and one bed, which it shares with every B-th journey and
 which acts on all of their touchdowns; each touchdown has a place of its own. A touchdown turns the speed by a factor,
@@ -27,7 +28,7 @@ from scipy import special
 from lithobrake.analysis import quantile_estimate, share_estimate
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
-from harness import Row, command_line, rounded, write_made, write_rows
+from harness import Row, command_line, read_rows, rounded, write_made, write_rows
 
 TABLE = Path(__file__).with_suffix(".csv")
 COLUMNS = (
@@ -41,6 +42,11 @@ DURATIONS = (1800.0, 3600.0)
 ENDS = ("at_rest", "escaped", "under_way")
 AT_REST, ESCAPED, UNDER_WAY = range(3)
 CONTACTS = "contacts"
+WORDS = {
+    "at_rest": "share at rest", "escaped": "share escaped", "under_way": "share under way",
+    "time_s median": "time to rest, median [s]", "time_s q95": "time to rest, 95 % [s]",
+    "contacts median": "contacts, median", "contacts q95": "contacts, 95 %",
+}  # fmt: skip
 PROBABILITIES = {"median": 0.5, "q95": 0.95}
 TRUTH_COUNT = 1_000_000
 
@@ -146,9 +152,35 @@ def setting(truth: Truth, journey_count: int, bed_count: int, study_count: int) 
         }  # fmt: skip
 
 
+def kept_rows() -> list[Row]:
+    """The table that was made."""
+    return read_rows(TABLE, {"quantity": str, "journeys": int, "beds": int})
+
+
+def page_table(rows: list[Row]) -> str:
+    """How often each interval held, as a table in Markdown."""
+    settings = list(product(DESIGNS, RHOS))
+    lines = [
+        "| journeys, beds; rho | truth | " + " | ".join(f"{n}, {b}; {rho:g}" for (n, b), rho in settings) + " |",
+        "|---|---|" + "---|" * len(settings),
+    ]
+    for duration, (name, words) in product(DURATIONS, WORDS.items()):
+        found = [row for row in rows if row["duration_s"] == duration and row["quantity"] == name]
+        held = {((row["journeys"], row["beds"]), row["rho"]): row["held"] for row in found}
+        true = sorted({row["truth"] for row in found})
+        span = " to ".join(dict.fromkeys(f"{one:.2g}" if one < 1.0 else f"{one:.0f}" for one in (true[0], true[-1])))
+        # Of an event that hardly a study meets, the interval of none decides; escapes do not depend on the time.
+        if true[-1] > 0.005 and (name != "escaped" or duration == DURATIONS[0]):
+            lines.append(f"| {words} | {span} | " + " | ".join(f"{held[one]:.2f}" for one in settings) + " |")
+    return "\n".join(lines) + "\n"
+
+
 def main() -> None:
-    """Make the table and write it."""
-    options = command_line(__doc__, studies=200).parse_args()
+    """Make the table and write it, or print what the page has of it."""
+    options = command_line(__doc__, studies=1000, page=False).parse_args()
+    if options.page:
+        print(page_table(kept_rows()))
+        return
 
     def rows() -> Iterator[Row]:
         for duration, rho, (journey_count, bed_count) in product(DURATIONS, RHOS, DESIGNS):

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "validation"))
-from journey_coverage import AT_REST, CONTACTS, ENDS, Truth, exact, setting
+from journey_coverage import AT_REST, CONTACTS, ENDS, Truth, exact, kept_rows, page_table, setting
 
 STUDIES = 50
 
@@ -40,3 +40,8 @@ def test_the_ends_of_synthetic_journeys_add_up_and_beds_matter() -> None:
         for one in (found, strong.study(960, 12, 1))
     ]
     assert means[1].std() > 1.5 * means[0].std()
+
+
+def test_the_page_has_the_table_that_was_made() -> None:
+    page = Path(__file__).parents[2] / "docs" / "estimates.md"
+    assert page_table(kept_rows()) in page.read_text(encoding="utf-8")
