@@ -52,7 +52,7 @@ class EqualAreaMap:
         return flat.T
 
     def directions(self, places: Array) -> Array:
-        """Directions [..., 3] from the body's centre of places [m] on the map, [..., 2]; beyond its edge, of the edge."""
+        """Directions [..., 3] of places [m] on the map, [..., 2]; beyond its edge, of the edge."""
         flat = places / self.radius
         square = np.sum(flat**2, axis=-1, keepdims=True)
         inside = np.minimum(square, 4.0)

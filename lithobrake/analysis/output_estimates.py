@@ -7,7 +7,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lithobrake.analysis.confidence import LEVEL, IntervalEstimate, answered_runs, t_quantile
+from lithobrake.analysis.confidence import (
+    LEVEL,
+    Bounds,
+    IntervalEstimate,
+    answered_runs,
+    normal_quantile,
+    t_quantile,
+)
 from lithobrake.analysis.share_estimate import ONE_BED, standard_error
 from lithobrake.vocabulary.arrays import Array, Labels
 
@@ -58,58 +65,84 @@ def quantile_estimates(
     if not all(0.0 < probability < 1.0 for probability in probabilities):
         raise ValueError(f"probabilities are {list(probabilities)}; each must lie between 0 and 1")
     values, beds = _known(y, bed)
-    ordered, places = _steps(values)
+    ordered, places = np.sort(values), (np.arange(len(values)) + 0.5) / len(values)
     found = []
     for probability in probabilities:
         quantile = float(np.interp(probability, places, ordered))
         if _few_beds_of_tail(probability, beds):
             found.append(IntervalEstimate(quantile, -math.inf, math.inf))
             continue
-        lower, upper = np.interp(_share_bounds(values, beds, probability, quantile), places, ordered).tolist()
+        error = standard_error((values <= quantile).astype(float), beds)
+        half = t_quantile(int(beds.max())) * error
+        lower, upper = np.interp([probability - half, probability + half], places, ordered).tolist()
         found.append(IntervalEstimate(quantile, lower, upper))
     return found
 
 
-def quantile_estimate(y: ArrayLike, bed: ArrayLike, probability: float, *, why: str | None = None) -> QuantileEstimate:
+def quantile_estimate(
+    y: ArrayLike, bed: ArrayLike, probability: float, *, counts: bool = False, why: str | None = None
+) -> QuantileEstimate:
     """Estimate a quantile of an output y [run_count], NaN where a run has none, with its interval where there is one.
 
-    As `quantile_estimates`, which the bounds equal to the bit, but for an end beyond all runs: it is None, since the
-    largest value of few runs bounds no quantile. bed [run_count]; why: a reason why these runs give no interval, as
-    one impact point. Raises ValueError for a probability outside 0 to 1. Source: [Woodruff-1952].
+    bed     of each run [run_count]: the units of the interval
+    counts  the output is a count: value and bounds are values that occur, none lies between two
+    why     a reason why these runs give no interval, as one impact point
+
+    The share of runs below the true quantile scatters about the probability by its error from beds, as a beta law does;
+    the bounds are the quantiles at the ends of that law's interval. One beyond the middle of the last step is None: the
+    largest of few values bounds no quantile. So are both on one bed, and of a tail on fewer than ten beds.
+    Raises ValueError for a probability outside 0 to 1.
+    Source: [Woodruff-1952] (intervals of quantiles); [Korn-1998] (effective size in a binomial law).
     """
     if not 0.0 < probability < 1.0:
         raise ValueError(f"probability is {probability}; it must lie between 0 and 1")
     values, beds = answered_runs(y, bed)
     if len(values) == 0:
         return QuantileEstimate(None, None, None, LEVEL, why or "no run has this output")
-    ordered, places = _steps(values)
-    quantile = float(np.interp(probability, places, ordered))
+    quantile = _at(values, probability, counts)
     if why is None and beds.max() == 0:
         why = ONE_BED
     if why is None and _few_beds_of_tail(probability, beds):
         why = f"{beds.max() + 1} beds give no interval of a quantile so far out: {FEWEST_BEDS_OF_TAIL} are needed"
     if why is not None:
         return QuantileEstimate(quantile, None, None, LEVEL, why)
-    shares = _share_bounds(values, beds, probability, quantile)
-    ends = [float(np.interp(one, places, ordered)) if places[0] <= one <= places[-1] else None for one in shares]
-    missing = [side for side, end in zip(("lower", "upper"), ends, strict=True) if end is None]
+    # Many runs may lie on the quantile of a count itself.
+    below = (values <= quantile, values < quantile) if counts else (values <= quantile,)
+    effect = max(_design_effect(one.astype(float), beds) for one in below)
+    bounds = _scatter(probability, len(values) / effect * (normal_quantile() / t_quantile(int(beds.max()))) ** 2)
+    step = 0.5 / len(values)
+    lower, upper = (_at(values, one, counts) if step <= one <= 1.0 - step else None for one in bounds)
+    missing = [name for name, end in (("lower", lower), ("upper", upper)) if end is None]
     beyond = f"the {' and the '.join(missing)} end lies beyond all {len(values)} values" if missing else None
-    return QuantileEstimate(quantile, ends[0], ends[1], LEVEL, beyond)
+    return QuantileEstimate(quantile, lower, upper, LEVEL, beyond)
 
 
-def _steps(values: Array) -> tuple[Array, Array]:
-    """Values in order, and the share of runs below the middle of each one's step. Source: [Hyndman-1996]."""
-    return np.sort(values), (np.arange(len(values)) + 0.5) / len(values)
+def _at(values: Array, share: float, counts: bool) -> float:
+    """The value that this share of values lies below. Source: [Hyndman-1996], definition 5, of counts definition 1."""
+    return float(np.quantile(values, share, method="inverted_cdf" if counts else "hazen"))
+
+
+def _design_effect(below: Array, beds: Labels) -> float:
+    """Variance of the mean of below [run_count], each 0 or 1, over that of independent runs; at least 1."""
+    independent = float(below.var(ddof=1)) / len(below)
+    return standard_error(below, beds) ** 2 / independent if independent > 0.0 else 1.0
+
+
+def _scatter(probability: float, run_count: float) -> Bounds:
+    """Bounds of the share of so many independent runs, in effect, that meet an event of this probability.
+
+    By the beta law with the mean and the variance of the binomial one.
+    """
+    from scipy import special
+
+    size = max(run_count - 1.0, 1e-3)
+    ends = (0.5 - 0.5 * LEVEL, 0.5 + 0.5 * LEVEL)
+    lower, upper = (float(special.betaincinv(probability * size, (1.0 - probability) * size, one)) for one in ends)
+    return lower, upper
 
 
 def _few_beds_of_tail(probability: float, beds: Labels) -> bool:
     return not TAIL <= probability <= 1.0 - TAIL and beds.max() + 1 < FEWEST_BEDS_OF_TAIL
-
-
-def _share_bounds(values: Array, beds: Labels, probability: float, quantile: float) -> tuple[float, float]:
-    """Bounds of the share of runs below a quantile, from beds."""
-    half = t_quantile(int(beds.max())) * standard_error((values <= quantile).astype(float), beds)
-    return probability - half, probability + half
 
 
 def _known(y: ArrayLike, bed: ArrayLike) -> tuple[Array, Labels]:

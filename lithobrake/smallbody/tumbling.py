@@ -52,9 +52,10 @@ def tumble(inertia: ArrayLike, attitude: ArrayLike, spin: ArrayLike, duration: A
     The spin in the body's axes is that of Jacobi's elliptic functions. The attitude follows from the direction of the
     angular momentum, which does not turn, and from the precession about it, an elliptic integral of the third kind.
     The cost does not depend on the duration. Angular momentum and energy are kept to rounding. The attitude errs by the
-    rounding of the angle turned: by 2e-11 rad in the median and 2e-10 rad at most after 12 h at 5 rad/s, against 40
-    digits. Near the separatrix, where a spin about the middle axis turns over, any rounding of the spin given grows by
-    the reciprocal of how near it is. Raises ValueError for an inertia that no body has, and for arrays that do not fit.
+    rounding of the angle turned: by 2e-11 in the median and 2e-10 at most after 12 h at 5 rad/s, against 40 digits
+    (validation/tumbling_accuracy.json). Near the separatrix, where a spin about the middle axis turns over, rounding of
+    the spin given grows by the reciprocal of how near it is.
+    Raises ValueError for an inertia that no body has, and for arrays that do not fit.
     Source: [Landau-1976], section 37 (Euler's equations); [Carlson-1995] (elliptic integrals).
     """
     moments, axes = _principal(inertia)

@@ -1,12 +1,18 @@
 """Regions of highest density of made-up places, against closed forms."""
 
 import math
+import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib.path import Path as Outline
 
 from lithobrake.analysis import highest_density
 from lithobrake.analysis.equal_area import EqualAreaMap, latitude_longitude
+
+sys.path.insert(0, str(Path(__file__).parents[2] / "validation"))
+from density_regions import page_table
 
 NORTH = np.array([0.0, 0.0, 1.0])
 
@@ -49,14 +55,12 @@ def test_a_normal_cloud_has_the_regions_of_its_law(direction: list[float], sprea
 
 def test_the_region_holds_its_share_of_the_next_places() -> None:
     """Over 40 studies of 96 places; next places are counted inside the outline."""
-    from matplotlib.path import Path
-
     held = []
     for seed in range(40):
         points = cloud(96, np.array([1.0, 0.0, 0.0]), (4.0, 2.0), seed)
         following = latitude_longitude(cloud(500, np.array([1.0, 0.0, 0.0]), (4.0, 2.0), 1000 + seed))
         counts = [
-            sum(Path(outline).contains_points(following).astype(int) for outline in region.outlines)
+            sum(Outline(outline).contains_points(following).astype(int) for outline in region.outlines)
             for region in highest_density(points).regions
         ]
         held.append([np.mean(np.minimum(count, 1)) for count in counts])
@@ -135,3 +139,8 @@ def test_too_few_places_and_places_on_a_line_say_why() -> None:
             highest_density(wrong)
     with pytest.raises(ValueError, match="between 0 and 1"):
         highest_density(points, [1.0])
+
+
+def test_the_page_has_the_table_that_was_made() -> None:
+    page = Path(__file__).parents[2] / "docs" / "estimates.md"
+    assert page_table() in page.read_text(encoding="utf-8")

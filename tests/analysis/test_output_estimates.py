@@ -76,9 +76,6 @@ def test_one_bed_and_impossible_probabilities_are_refused() -> None:
 def test_an_end_that_cannot_be_told_has_a_reason() -> None:
     rng, bed = np.random.default_rng(5), np.arange(96) % 12
     y = rng.exponential(size=96)
-    for probability in (0.05, 0.5, 0.9):
-        one, (same,) = quantile_estimate(y, bed, probability), quantile_estimates(y, bed, [probability])
-        assert (one.value, one.lower, one.upper, one.why) == (same.value, same.lower, same.upper, None)
     # Beds that differ: the share below the quantile may reach 1.
     apart = quantile_estimate(y + 5.0 * bed, bed, 0.95)
     assert apart.lower is not None
@@ -92,3 +89,29 @@ def test_an_end_that_cannot_be_told_has_a_reason() -> None:
     assert (none.value, none.lower, none.why) == (None, None, "no run has this output")
     with pytest.raises(ValueError, match="between 0 and 1"):
         quantile_estimate(y, bed, 1.0)
+
+
+def test_the_interval_of_a_tail_is_that_of_a_binomial_law() -> None:
+    """2000 independent runs: the order statistics of Student's t and the normal law are those of the binomial one."""
+    y, bed = np.random.default_rng(6).exponential(size=2000), np.arange(2000)
+    found = quantile_estimate(y, bed, 0.95)
+    assert found.value == pytest.approx(np.quantile(y, 0.95, method="hazen"))
+    for end, share in ((found.lower, 0.05), (found.upper, 0.95)):
+        assert np.mean(y <= end) == pytest.approx(stats.binom.ppf(share, 2000, 0.95) / 2000, abs=1.5e-3)
+    # Far from the ends it is Woodruff's with a normal law.
+    median, (plain,) = quantile_estimate(y, bed, 0.5), quantile_estimates(y, bed, [0.5])
+    assert (median.lower, median.upper) == pytest.approx((plain.lower, plain.upper), rel=2e-3)
+
+
+def test_a_count_has_quantiles_that_occur() -> None:
+    bed = np.arange(240) % 24
+    y = np.random.default_rng(7).poisson(3.0, size=240).astype(float)
+    for probability in (0.5, 0.95):
+        found = quantile_estimate(y, bed, probability, counts=True)
+        assert {found.value, found.lower, found.upper} <= set(y)
+        assert found.value == stats.poisson.ppf(probability, 3.0)
+        assert found.lower is not None
+        assert found.upper is not None
+        assert found.lower <= found.value <= found.upper
+    same = quantile_estimate(np.full(240, 4.0), bed, 0.5, counts=True)
+    assert (same.value, same.lower, same.upper) == (4.0, 4.0, 4.0)
