@@ -21,9 +21,12 @@ from pathlib import Path
 from harness import SCENARIOS, Row, command_line, origin, table, write_document
 
 STEPS = """
-from types import SimpleNamespace
 from lithobrake.pipeline.runs.kernels import compile_kernels
-compile_kernels(SimpleNamespace(progress=lambda *what: None))
+class Silent:
+    def progress(self, *what):
+        pass
+    __call__ = progress  # older checkouts take a job, later ones what it shows progress with
+compile_kernels(Silent())
 """
 PIECES = {"steps": ["-c", STEPS], "land": ["-m", "lithobrake", "land", str(SCENARIOS / "quick.toml")]}
 TIMES = ("cpu_s", "own_cpu_s", "clock_s")
@@ -36,7 +39,7 @@ def measured(folder: Path, arguments: list[str], cache: str) -> Row:
     """Times [s] of a process, and the load before it. Raises RuntimeError for one that fails."""
     environment = os.environ | {"PYTHONPATH": str(folder.resolve()), "LITHOBRAKE_CACHE": cache}
     load, start = os.getloadavg()[0], time.perf_counter()
-    process = subprocess.Popen([sys.executable, *arguments], env=environment, stdout=subprocess.DEVNULL)
+    process = subprocess.Popen([sys.executable, *arguments], env=environment, stdout=subprocess.DEVNULL, cwd=folder)
     os.waitid(os.P_PID, process.pid, os.WEXITED | os.WNOWAIT)
     clock = time.perf_counter() - start
     ticks = Path(f"/proc/{process.pid}/stat").read_text().rpartition(")")[2].split()[OWN_TICKS]
