@@ -78,25 +78,29 @@ def summary(rows: list[Row]) -> Row:
     """Each way beside the first."""
     by_way = {way: sorted((r for r in rows if r["way"] == way), key=lambda r: r["landing"]) for way in ways_of(rows)}
     plain = next(iter(by_way.values()))
-    sides = sorted({row["face"] for row in rows if row["outcome"] == "captured"})
     found: Row = {}
     for way, other in by_way.items():
         pairs = list(zip(plain, other, strict=True))
         captured = [pair for pair in pairs if all(row["outcome"] == "captured" for row in pair)]
         alone = [sum(a["outcome"] == "captured" != b["outcome"] for a, b in some)
                  for some in (pairs, [pair[::-1] for pair in pairs])]  # fmt: skip
-        faces = [[sum(row["outcome"] == "captured" and row["face"] == side for row in some) for side in sides]
-                 for some in (plain, other)]  # fmt: skip
+        faces = [Counter(row["face"] for row in some if row["outcome"] == "captured") for some in (plain, other)]
         found[way] = {
             "outcomes": dict(Counter(row["outcome"] for row in other)),
             "captured_first_alone": alone[0], "captured_second_alone": alone[1],
             "captured_p": float(binomtest(alone[0], sum(alone)).pvalue) if sum(alone) else 1.0,
             "captured_both": len(captured), "same_face": sum(a["face"] == b["face"] for a, b in captured),
-            "faces": dict(zip(sides, faces[1], strict=True)), "faces_p": float(chi2_contingency(faces).pvalue),
+            "faces": dict(sorted(faces[1].items())), "faces_p": same_faces_p(*faces),
             "cpu_s_mean": float(np.mean([row["cpu_s"] for row in other])),
             "cpu_s_median": float(np.median([row["cpu_s"] for row in other])),
         } | {name: compared(plain, other, name) for name in COMPARED}  # fmt: skip
     return found
+
+
+def same_faces_p(*faces: Counter[str]) -> float | None:
+    """p of the chi-square test that landers lie on the same faces as often; None where none was captured."""
+    table = [[some[face] for face in sorted(set().union(*faces))] for some in faces]
+    return float(chi2_contingency(table).pvalue) if all(map(sum, table)) else None
 
 
 def ways_of(rows: list[Row]) -> list[str]:
