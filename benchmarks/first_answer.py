@@ -1,13 +1,14 @@
 """What it takes from an empty cache to an engine that steps, and to one landing, by two checkouts in turn.
 
     git worktree add OLD a6d9565
-    python benchmarks/first_answer.py OLD . --rounds 2 --out FILE
+    python benchmarks/first_answer.py OLD . --pieces steps land --rounds 2 --out FILE
 
 "steps" compiles what beds and landings call, as a study does before all else; "land" is `lithobrake land` of
 scenarios/quick.toml, which pours its bed, too. Each is a process of its own with a cache of its own, empty at first; it
 is made twice, so that the second finds the kernels, and for "land" the bed, on disk. FILE.csv gets a row a process: CPU
 time of it and of those that it starts, CPU time of it alone (what it takes on the clock where cores are idle), time on
-the clock, load. FILE.json gets the medians, and the ratios to the first checkout.
+the clock, load. FILE.json gets the medians, and the ratios to the first checkout. With --one-core all is made on one
+core, where nothing is compiled in a second process.
 """
 
 import os
@@ -20,10 +21,18 @@ from pathlib import Path
 
 from harness import SCENARIOS, Row, command_line, origin, table, write_document
 
+# Older checkouts keep this function elsewhere, and give it a job in place of what the job shows progress with.
 STEPS = """
-from types import SimpleNamespace
-from lithobrake.pipeline.runs.kernels import compile_kernels
-compile_kernels(SimpleNamespace(progress=lambda *what: None))
+from importlib.util import find_spec
+is_old = find_spec("lithobrake.pipeline.kernels") is not None
+if is_old:
+    from lithobrake.pipeline.kernels import compile_kernels
+else:
+    from lithobrake.pipeline.runs.kernels import compile_kernels
+class Silent:
+    def progress(self, *what):
+        pass
+compile_kernels(Silent() if is_old else Silent().progress)
 """
 PIECES = {"steps": ["-c", STEPS], "land": ["-m", "lithobrake", "land", str(SCENARIOS / "quick.toml")]}
 TIMES = ("cpu_s", "own_cpu_s", "clock_s")
@@ -36,7 +45,7 @@ def measured(folder: Path, arguments: list[str], cache: str) -> Row:
     """Times [s] of a process, and the load before it. Raises RuntimeError for one that fails."""
     environment = os.environ | {"PYTHONPATH": str(folder.resolve()), "LITHOBRAKE_CACHE": cache}
     load, start = os.getloadavg()[0], time.perf_counter()
-    process = subprocess.Popen([sys.executable, *arguments], env=environment, stdout=subprocess.DEVNULL)
+    process = subprocess.Popen([sys.executable, *arguments], env=environment, stdout=subprocess.DEVNULL, cwd=folder)
     os.waitid(os.P_PID, process.pid, os.WEXITED | os.WNOWAIT)
     clock = time.perf_counter() - start
     ticks = Path(f"/proc/{process.pid}/stat").read_text().rpartition(")")[2].split()[OWN_TICKS]
@@ -64,18 +73,22 @@ def summary(rows: list[Row]) -> Row:
 
 def main() -> None:
     """Measure in turn, write."""
-    given = command_line(__doc__, "old", "new", rounds=2, out=Path).parse_args()
+    options = {"pieces": list(PIECES), "rounds": 2, "one_core": False, "out": Path}
+    given = command_line(__doc__, "old", "new", **options).parse_args()
+    if given.one_core:
+        os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})
+    command = f"benchmarks/first_answer.py OLD . --pieces {' '.join(given.pieces)} --rounds {given.rounds}"
+    command += " --one-core" * given.one_core
     rows: list[Row] = []
     with table(given.out.with_suffix(".csv"), COLUMNS) as add:
         for number in range(given.rounds):
-            for piece, arguments in PIECES.items():
+            for piece in given.pieces:
                 for checkout, folder in (("old", given.old), ("new", given.new)):
                     with tempfile.TemporaryDirectory() as cache:
                         for state in ("empty", "filled"):
-                            row = measured(folder, arguments, cache)
+                            row = measured(folder, PIECES[piece], cache)
                             rows.append({"round": number, "piece": piece, "checkout": checkout, "cache": state} | row)
                             add(rows[-1])
-                    command = f"benchmarks/first_answer.py OLD . --rounds {given.rounds}"
                     content = {**origin(command), "rounds": number + 1, "pieces": summary(rows)}
                     write_document(given.out.with_suffix(".json"), content)
 

@@ -22,8 +22,8 @@ from lithobrake.touchdown.simulation import look_interval, moving_reach, release
 GRAINS, WIDTH, BEDS = 200, 1.8, 2
 # Steps a contact, and shares of the lander's speed below which collisions take fewer, and grains are held.
 WAYS = [
-    (25.0, 0.0, 0.0), (25.0, 0.1, 0.0), (25.0, 0.1, 0.03), (25.0, 0.1, 0.1),
-    (100.0, 0.0, 0.0), (100.0, 0.1, 0.0), (100.0, 0.1, 0.03),
+    (25.0, 0.0, 0.0), (25.0, 0.1, 0.0), (25.0, 0.3, 0.0), (25.0, 0.3, 0.03), (25.0, 0.3, 0.1), (100.0, 0.0, 0.0),
+    (100.0, 0.3, 0.0),
 ]  # fmt: skip
 STUDY = SCENARIOS / "mission.toml"
 RESULTS = Path(__file__).with_suffix(".json")

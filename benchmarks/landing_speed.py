@@ -5,11 +5,12 @@
         --contact '{"stepping": "local", "steps_per_contact": 15, "held_speed": 0.1}'
         --old-contact '{"steps_per_contact": 50}' --out FILE
 
-Every landing is drawn by this checkout (soil, place, heading, attitude) and handed to either as plain numbers, so that
-both make the same one; the first checkout lands with what --old-contact changes in the study's contact section (its own
-defaults, where they were others), the second with what --contact changes. Each has a process of its own, whose kernels
-were compiled before; landings are made in turn. FILE.csv gets a row a landing and checkout as it comes, FILE.json the
-sums; the last line printed says the ratio.
+Every landing is drawn by this checkout (soil, place, heading, attitude) and handed to either as plain numbers, so
+that both make the same one, on the same bed, or, where the first checkout cannot read today's beds, on those of the
+same recipes that it has poured into the folder of --old-beds; the first checkout lands with what --old-contact
+changes in the study's contact section (its own defaults, where they were others), the second with what --contact
+changes. Each has a process of its own, whose kernels were compiled before; landings are made in turn. FILE.csv gets a
+row a landing and checkout as it comes, FILE.json the sums; the last line printed says the ratio.
 """
 
 import json
@@ -67,6 +68,7 @@ def main() -> None:
 
     parser = command_line(__doc__, "old", "new", study=Path, bed_count=2, region=0.1, landings=20, out=Path)
     parser.add_argument("--beds", type=Path, required=True, help="folder; beds are poured into it")
+    parser.add_argument("--old-beds", type=Path, help="folder of the first checkout's own beds")
     parser.add_argument("--contact", type=json.loads, default={}, help="what the second changes of the contact section")
     parser.add_argument("--old-contact", type=json.loads, default={}, help="what the first changes of it")
     given = parser.parse_args()
@@ -85,6 +87,8 @@ def main() -> None:
                 name: one | {"landing": landing | {"contact": landing["contact"] | change}}
                 for name, change in changes.items()
             }
+            if given.old_beds:
+                piece["old"]["bed"] = str(given.old_beds.resolve() / f"bed_{bed}.h5")
             if number == 0:
                 # Compiles.
                 for name, checkout in checkouts.items():
@@ -94,7 +98,7 @@ def main() -> None:
     command = (
         f"benchmarks/landing_speed.py OLD . --study {given.study} --beds BED_FOLDER --bed-count {given.bed_count} "
         f"--region {given.region} --landings {given.landings} --contact '{json.dumps(given.contact)}' "
-        f"--old-contact '{json.dumps(given.old_contact)}'"
+        f"--old-contact '{json.dumps(given.old_contact)}'{' --old-beds OLD_BED_FOLDER' if given.old_beds else ''}"
     )
     columns = ["landing", "checkout", "outcome", "simulated_s", "cpu_s", *TOLD]
     in_turn(checkouts, cases(), 0, columns, given.out, command, "landings")

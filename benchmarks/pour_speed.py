@@ -1,11 +1,12 @@
 """The same beds poured by two checkouts of the project in turn: what each costs, and what came of it.
 
     git worktree add OLD b9326c2
-    python benchmarks/pour_speed.py OLD . --study scenarios/paper.toml --pours 3 --out FILE
+    python benchmarks/pour_speed.py OLD . --study scenarios/paper.toml --pours 3 --tile 0.56 --out FILE
 
-Each bed is that of the study with another seed, handed to either as plain numbers. Each checkout has a process of its
-own, whose kernels are compiled by a small bed before; beds are poured in turn, without a library. FILE.csv gets a row
-a bed and checkout as it comes, FILE.json the sums; the last line printed says the ratio.
+Each bed is that of the study with another seed, handed to either as plain numbers. With --tile the second checkout
+pours ground that repeats after so many metres, with as many grains an area, in place of a box. Each checkout has a
+process of its own, whose kernels are compiled by a small bed before; beds are poured in turn, without a library.
+FILE.csv gets a row a bed and checkout as it comes, FILE.json the sums; the last line printed says the ratio.
 """
 
 import math
@@ -29,7 +30,17 @@ def recipe_of(study: Path, seed: int) -> Row:
 
     recipe = asdict(replace(bed_recipe(with_site_gravity(read_study(study)), 0), seed=seed))
     recipe["contact"] = {name: recipe["contact"][name] for name in LAW}
+    # Older checkouts know of walls alone.
+    del recipe["sides"]
     return recipe
+
+
+def tile_of(recipe: Row, width: float) -> Row:
+    """The recipe for ground that repeats after a width [m], with as many grains an area; that of a box for 0."""
+    if width == 0.0:
+        return recipe
+    count = round(recipe["grain_count"] * width**2 / math.prod(recipe["width"]))
+    return recipe | {"grain_count": count, "width": [width, width], "sides": "periodic"}
 
 
 def pour_recipes() -> None:
@@ -56,7 +67,7 @@ def pour_recipes() -> None:
 
 def main() -> None:
     """Pour in turn, write, tell the ratio."""
-    given = command_line(__doc__, "old", "new", study=Path, pours=3, out=Path).parse_args()
+    given = command_line(__doc__, "old", "new", study=Path, pours=3, tile=0.0, out=Path).parse_args()
     checkouts = {
         name: Checkout(folder, __file__, "--pouring") for name, folder in (("old", given.old), ("new", given.new))
     }
@@ -69,9 +80,9 @@ def main() -> None:
                 width = [max(value, 2.0 * recipe["sizes"]["upper"]) for value in small]
                 for checkout in checkouts.values():
                     checkout.answer(recipe | {"grain_count": COMPILED_BY, "width": width})
-            yield dict.fromkeys(checkouts, recipe)
+            yield {"old": recipe, "new": tile_of(recipe, given.tile)}
 
-    command = f"benchmarks/pour_speed.py OLD . --study {given.study} --pours {given.pours}"
+    command = f"benchmarks/pour_speed.py OLD . --study {given.study} --pours {given.pours} --tile {given.tile}"
     columns = ["seed", "checkout", "outcome", "simulated_s", "cpu_s", *TOLD]
     in_turn(checkouts, recipes(), 1, columns, given.out, command, "pours")
 

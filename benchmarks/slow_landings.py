@@ -8,7 +8,8 @@ Soil, bed, place, heading and attitude are drawn, the speed [m/s] between two (i
 STEEPEST, the spin up to what turns the surface as fast as the lander comes. Every draw lands in each way,
 steps:resolved_speed:held_speed, one after the other. FILE.csv gets a row a landing as it comes, with the face that is
 down at the end; --share 0/2 makes every second draw, for two processes. Without --ways nothing lands: FILE.json is
-written from all tables FILE*.csv, each way beside the first.
+written from all tables FILE*.csv, each way beside the first: pairs, with p of McNemar's exact test of the captures and
+p of the chi-square test of the faces at rest. Draws that did not land in each way are left out.
 """
 
 import math
@@ -19,6 +20,7 @@ from pathlib import Path
 import numpy as np
 from harness import Row, command_line, origin, read_rows, table, timed, write_document
 from landing_ensembles import beds_of, drawn_study, draws
+from scipy.stats import binomtest, chi2_contingency
 
 from lithobrake.touchdown import Bed, Lander, Landing, land
 from lithobrake.touchdown.surface import rotation_matrix
@@ -80,16 +82,25 @@ def summary(rows: list[Row]) -> Row:
     for way, other in by_way.items():
         pairs = list(zip(plain, other, strict=True))
         captured = [pair for pair in pairs if all(row["outcome"] == "captured" for row in pair)]
+        alone = [sum(a["outcome"] == "captured" != b["outcome"] for a, b in some)
+                 for some in (pairs, [pair[::-1] for pair in pairs])]  # fmt: skip
+        faces = [Counter(row["face"] for row in some if row["outcome"] == "captured") for some in (plain, other)]
         found[way] = {
             "outcomes": dict(Counter(row["outcome"] for row in other)),
-            "captured_first_alone": sum(a["outcome"] == "captured" != b["outcome"] for a, b in pairs),
-            "captured_second_alone": sum(a["outcome"] != "captured" == b["outcome"] for a, b in pairs),
+            "captured_first_alone": alone[0], "captured_second_alone": alone[1],
+            "captured_p": float(binomtest(alone[0], sum(alone)).pvalue) if sum(alone) else 1.0,
             "captured_both": len(captured), "same_face": sum(a["face"] == b["face"] for a, b in captured),
-            "faces": dict(Counter(row["face"] for row in other if row["outcome"] == "captured")),
+            "faces": dict(sorted(faces[1].items())), "faces_p": same_faces_p(*faces),
             "cpu_s_mean": float(np.mean([row["cpu_s"] for row in other])),
             "cpu_s_median": float(np.median([row["cpu_s"] for row in other])),
         } | {name: compared(plain, other, name) for name in COMPARED}  # fmt: skip
     return found
+
+
+def same_faces_p(*faces: Counter[str]) -> float | None:
+    """p of the chi-square test that landers lie on the same faces as often; None where none was captured."""
+    table = [[some[face] for face in sorted(set().union(*faces))] for some in faces]
+    return float(chi2_contingency(table).pvalue) if all(map(sum, table)) else None
 
 
 def ways_of(rows: list[Row]) -> list[str]:
@@ -105,8 +116,11 @@ def main() -> None:
         kinds = dict.fromkeys(("way", "outcome", "face"), str) | dict.fromkeys(("landing", "bed"), int)
         tables = sorted(given.out.parent.glob(f"{given.out.name}*.csv"))
         rows = [row for path in tables for row in read_rows(path, kinds)]
+        landed_in = Counter(row["landing"] for row in rows)
+        rows = [row for row in rows if landed_in[row["landing"]] == len(ways_of(rows))]
         command = f"benchmarks/slow_landings.py BED_FOLDER --out {given.out}"
-        write_document(given.out.with_suffix(".json"), {**origin(command), "ways": summary(rows)})
+        found = {"landings": len({row["landing"] for row in rows}), "ways": summary(rows)}
+        write_document(given.out.with_suffix(".json"), origin(command) | found)
         return
     part, parts = (int(number) for number in given.share.split("/"))
     with table(given.out.with_suffix(".csv"), COLUMNS) as add:

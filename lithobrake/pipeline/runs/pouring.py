@@ -22,8 +22,7 @@ def pour_at_once(job: Job, beds: "Mapping[int, tuple[BedRecipe, Path]]") -> None
     Raises ValueError that names the beds which cannot be poured, when all others are there.
     """
     # Workers that start afterwards find the kernels on the disk, where else each would compile them.
-    compile_kernels(job.progress)
-    compile_flights(job)
+    compile_kernels(job.progress, busy=compile_flights(job))
     failures = _pour_here(job, beds) if len(beds) == 1 else _pour_on_workers(job, beds)
     if failures:
         raise ValueError(_refusal(failures, job.study.bed_count))

@@ -118,5 +118,5 @@ def test_one_of_several_workers_compiles_flights_that_are_not_on_disk(monkeypatc
     monkeypatch.setattr("lithobrake.compilation.compiled.lies_on_disk", lambda kernel: on_disk)
     monkeypatch.setattr(LocalExecutor, "submit", lambda self, *call: asked.append(call[1:]))
     with LocalExecutor(workers) as executor:
-        kernels.compile_flights(SimpleNamespace(executor=executor, study="the study"))
+        assert kernels.compile_flights(SimpleNamespace(executor=executor, study="the study")) == calls
     assert asked == [(kernels.fly_briefly, "the study")] * calls
