@@ -10,14 +10,19 @@ from typing import TYPE_CHECKING, Any
 
 from lithobrake.files.reading import NUMBER, DamagedFileError, read_json, read_rows, reading
 from lithobrake.results.intact import KEYS, STUDY_FILE, intact_file
+from lithobrake.results.journey_tables import JOURNEYS, TOUCHDOWN_RUNS, TOUCHDOWNS, joined_touchdowns
 from lithobrake.vocabulary.quantities import (
     ARC,
     BEDS,
     DRAWN_DESIGNS,
     FLIGHT,
+    JOURNEY,
+    JOURNEY_DESIGN,
+    JOURNEY_TOUCHDOWN,
     PAPER_DESIGNS,
     RUN,
     TOUCHDOWN,
+    TOUCHDOWN_COST,
     Quantity,
     quantity,
 )
@@ -41,7 +46,7 @@ SUMMARY_FORMAT = 3
 _RUN = ("key", "outcome")
 _PLACES = ("sample", "status", "latitude_deg", "longitude_deg")
 # Columns that hold no numbers.
-_WORDS = {"key", "design", "outcome", "reason", "status", "ground"}
+_WORDS = {"key", "design", "outcome", "reason", "status", "ground", "end", "face"}
 _SCORE = {"ape": [NUMBER | None], "mape": NUMBER | None, "q2": NUMBER | None, "rmse": NUMBER, "std": NUMBER}
 
 # What a notebook says can be asked for: the file that it takes, and what comes.
@@ -50,8 +55,10 @@ _ASKED = {
     "runs": ("runs.sqlite", "every touchdown: inputs, outcome, outputs"),
     "samples": ("samples.h5", "samples of the Monte Carlo"),
     "flights": ("flights.csv", "flights of the samples to their next impact"),
+    "journeys": (JOURNEYS, "each lander from delivery to rest: end, time, place, contacts, side down"),
+    "touchdowns": (TOUCHDOWNS, "every landing of the journeys: state in, state out, bed, soil, cost"),
     "rest": ("rest.csv", "where samples end after all bounces"),
-    "arcs": ("arcs.csv", "each flight of the first samples between bounces"),
+    "arcs": ("arcs.csv", "each flight between impacts"),
     "emulator": ("emulator.json", "samples of landings, at any inputs by their names"),
     "surrogate": ("refined.json", "the refined expansion, by the names of its inputs"),
     "median_landing": ("landing.h5", "a landing with its frames"),
@@ -190,12 +197,37 @@ class StudyResults:
     @cached_property
     def rest(self) -> "Table":
         """Where samples end after all bounces, on each ground (docs/flights.md)."""
+        if not (self.folder / "rest.csv").is_file() and (self.folder / JOURNEYS).is_file():
+            raise ValueError(
+                f"{self.folder} has journeys of landings, and no samples that were followed: ask for journeys"
+            )
         columns = ("ground", *_PLACES)
         return self._table("journey", self._rows("rest.csv", columns), columns, FLIGHT)
 
     @cached_property
+    def journeys(self) -> "Table":
+        """Each lander from its delivery to rest: how, when and where its journey ended (docs/journeys.md)."""
+        return self._table("journey", self._journey_rows(JOURNEYS, tuple(JOURNEY)), tuple(JOURNEY), JOURNEY)
+
+    @cached_property
+    def touchdowns(self) -> "Table":
+        """Every landing of the journeys: number, state in, state out, bed, soil and cost (docs/journeys.md)."""
+        columns = tuple(JOURNEY_TOUCHDOWN)
+        rows = self._journey_rows(TOUCHDOWNS, columns)
+        joined = joined_touchdowns(rows, self._rows(TOUCHDOWN_RUNS, _RUN), self.ledger)
+        known = RUN | TOUCHDOWN | JOURNEY_TOUCHDOWN | TOUCHDOWN_COST
+        return self._table("touchdown", joined, columns, known)
+
+    def _journey_rows(self, name: str, columns: Sequence[str]) -> list[dict[str, Any]]:
+        """The rows of a table of journeys. Raises ValueError for a study that has none."""
+        made = self._noted_files()
+        if made and JOURNEYS not in made:
+            raise ValueError(f"{self.folder} has no journeys of landings: its study file lacks the table [journey]")
+        return self._rows(name, columns)
+
+    @cached_property
     def arcs(self) -> "Table":
-        """Each flight of the first samples' journeys on the soil: where it begins, and when it ends."""
+        """Each flight between impacts: of every journey of landings, or of the first samples that were followed."""
         return self._table("arc", self._rows("arcs.csv", tuple(ARC)), tuple(ARC), ARC)
 
     @cached_property
@@ -316,7 +348,7 @@ class StudyResults:
 
     def _designs(self) -> dict[str, str]:
         """The files of the study's designs, by their names; a folder may also have those of an earlier method."""
-        found = {design: f"designs/{design}.csv" for design in (*PAPER_DESIGNS, *DRAWN_DESIGNS)}
+        found = {design: f"designs/{design}.csv" for design in (*PAPER_DESIGNS, *DRAWN_DESIGNS, JOURNEY_DESIGN)}
         # An early format notes no stages, and knows of one method only.
         asked = self._noted_files()
         found = {design: name for design, name in found.items() if name in asked or not asked}

@@ -13,6 +13,8 @@ OUTPUTS: tuple[OutputName, ...] = get_args(OutputName)
 # The designs of a study in two stages, in the order in which their runs are made, and of a drawn one.
 PAPER_DESIGNS = ("screening", "refined", "test_kept", "test_all")
 DRAWN_DESIGNS = ("drawn", "soil_pairs", "twins")
+# Every touchdown of the journeys of a drawn study; the first of each are also its drawn runs.
+JOURNEY_DESIGN = "touchdowns"
 # The unit of a number that has none, where a header has to say so.
 PURE = "-"
 
@@ -148,6 +150,10 @@ JOURNEY_TOUCHDOWN = {
     "end_s": Quantity("s", "time from the first touchdown of the journey to the end"),
     "latitude_deg": Quantity("deg", "planetocentric latitude of the impact", FIXED),
     "longitude_deg": Quantity("deg", "east longitude of the impact", FIXED),
+}
+TOUCHDOWN_COST = {
+    "wall_s": Quantity("s", "wall time of the landing"),
+    "cpu_s": Quantity("s", "CPU time of the landing"),
 }
 BEDS = {
     "solid_fraction": Quantity("", "share of the volume that grains fill"),

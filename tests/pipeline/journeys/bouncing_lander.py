@@ -1,0 +1,93 @@
+"""Touchdowns of journeys by a function, within a second for a study, and the study that they are made for."""
+
+import math
+from copy import deepcopy
+from typing import Any
+
+import numpy as np
+
+# Journeys that end otherwise than at rest, by what their touchdown of this number does.
+FAILS, STUCK, LEAVES = {5: 1}, {11: 1}, {17: 0, 29: 0, 41: 0}
+# Below this speed a lander stays where it is [m/s].
+SLOWEST = 0.006
+LEAVING_SPEED = 0.3
+TABLES: dict[str, dict[str, Any]] = {
+    "bed": {
+        "grain_count": 96,
+        "width": [0.56, 0.56],
+        "diameter": {"distribution": "constant", "value": 0.09},
+        "pour_gravity": 0.5,
+    },
+    "grain": {
+        "density": 2500.0,
+        "young_modulus": {"distribution": "log_uniform", "lower": 5e5, "upper": 5e6},
+        "poisson_ratio": 0.25,
+        "restitution": {"distribution": "uniform", "lower": 0.3, "upper": 0.9},
+        "friction": {"distribution": "uniform", "lower": 0.5, "upper": 0.9},
+    },
+    "lander": {"shape": "box", "edges": [0.1, 0.1, 0.227], "mass": 2.0},
+    "delivery": {
+        "latitude_deg": 10.0,
+        "longitude_deg": -60.0,
+        "heading_deg": {"distribution": "uniform", "lower": 0.0, "upper": 360.0},
+        "speed": {"distribution": "uniform", "lower": 0.04, "upper": 0.08},
+        "incidence_deg": {"distribution": "uniform", "lower": 0.0, "upper": 40.0},
+    },
+    "journey": {"count": 48, "duration": 172800.0},
+    "site": {"body": "dimorphos"},
+    "campaign": {"retry_count": 0},
+    "monte_carlo": {"sample_count": 500},
+    "flight": {"flight_count": 40},
+}
+
+
+def journey_tables(**changes: dict[str, Any]) -> dict[str, Any]:
+    """The tables of a study of a CubeSat on Dimorphos; changes: by table and key."""
+    tables: dict[str, Any] = {"title": "Journeys in small", "seed": 2, **deepcopy(TABLES)}
+    for name, table in changes.items():
+        tables.setdefault(name, {}).update(table)
+    return tables
+
+
+def bounce(inputs: dict[str, float], seed: int) -> dict[str, Any]:
+    """A rebound that grows with friction and with luck; slow ones are captured, some journeys end otherwise."""
+    journey, touchdown = int(inputs["journey"]), int(inputs["touchdown"])
+    if FAILS.get(journey) == touchdown:
+        raise ValueError("the model of this lander fails here")
+    random = np.random.default_rng(seed)
+    speed, incidence = inputs["impact.speed"], math.radians(inputs["impact.incidence_deg"])
+    along, down = speed * math.sin(incidence), speed * math.cos(incidence)
+    outputs = _contact(along) | _attitude(random)
+    if STUCK.get(journey) == touchdown:
+        return {"outcome": "time_limit", "outputs": outputs}
+    up = 0.8 * inputs["grain.friction"] * down * random.uniform(0.5, 1.0)
+    if LEAVES.get(journey) == touchdown:
+        up = LEAVING_SPEED
+    elif up < SLOWEST:
+        return {"outcome": "captured", "outputs": outputs}
+    return {"outcome": "clear", "outputs": outputs | _rebound(0.6 * along, up)}
+
+
+def _contact(along: float) -> dict[str, float]:
+    """What happens on the ground."""
+    return {
+        "displacement_x": 10.0 * along, "displacement_y": 0.0, "duration": 30.0, "contacts": 2.0,
+        "contact_duration": 20.0, "penetration": 0.01, "peak_acceleration": 1.0, "energy_lost": 0.1,
+    }  # fmt: skip
+
+
+def _attitude(random: np.random.Generator) -> dict[str, float]:
+    """An attitude that nothing prefers."""
+    drawn = random.standard_normal(4)
+    return dict(
+        zip((f"orientation_out_{axis}" for axis in "wxyz"), (drawn / np.linalg.norm(drawn)).tolist(), strict=True)
+    )
+
+
+def _rebound(along: float, up: float) -> dict[str, float]:
+    """The motion after the touchdown."""
+    return {
+        "speed_out": math.hypot(along, up), "elevation_out": math.atan2(up, along), "azimuth_out": 0.0,
+        "spin_out": 0.1, "velocity_out_x": along, "velocity_out_y": 0.0, "velocity_out_z": up,
+        "spin_out_x": 0.0, "spin_out_y": 0.1, "spin_out_z": 0.0,
+    }  # fmt: skip
