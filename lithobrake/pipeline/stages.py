@@ -47,8 +47,8 @@ DRAWN = (
 
 
 def _journeys() -> tuple[Stage, ...]:
-    """The stages of drawn landings, with journeys in the place of the landings alone, and nothing by the emulator."""
-    left_out = {rest.REST.name, rest.AIM.name}
+    """The stages of drawn landings, with journeys in the place of the landings alone, and nothing by an emulator."""
+    left_out = {stage.name for stage in (emulate.EMULATOR, emulate.SAMPLE, fly.FLY, rest.REST, rest.AIM)}
     kept = [stage for stage in DRAWN if stage.name not in left_out]
     lighter = [replace(stage, after=tuple(name for name in stage.after if name not in left_out)) for stage in kept]
     return tuple(journeys.JOURNEYS if stage.name == journeys.JOURNEYS.name else stage for stage in lighter)

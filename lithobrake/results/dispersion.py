@@ -72,7 +72,7 @@ class FlightResults:
     """The flights that end on the body, of the runs of a drawn study or of samples, and how exact all flights are."""
 
     impacts: ImpactNumbers = field(metadata=INLINE)
-    checks: FlightChecks = field(metadata=INLINE)
+    checks: FlightChecks | None = field(metadata=INLINE)
 
 
 @dataclass(frozen=True)

@@ -144,4 +144,5 @@ class LandingShares(RunShares):
     time_limit, failed.
     """
 
-    emulator: EmulatorShares
+    emulator: EmulatorShares | None
+    """null for a study of journeys, which has no emulator"""

@@ -52,7 +52,8 @@ class DrawnResults:
     runs: RunResults
     outputs_of_runs: Mapping[str, OutputRange]
     site: SiteResults
-    monte_carlo: MonteCarlo
+    monte_carlo: MonteCarlo | None
+    """samples of the emulator; null with [journey]"""
     ellipses: LandingEllipses | None
     without_scatter: WithoutScatter | None
     """null: samples of an emulator have no expansion alone"""
@@ -62,7 +63,8 @@ class DrawnResults:
     """each limit state of the study file; empty where it asks for none"""
     aim: AimResults | None
     """delivery options; null where the study file has none"""
-    emulator: EmulatorResults
+    emulator: EmulatorResults | None
+    """null with [journey]"""
     answer: tuple[str, ...]
     """what becomes of the landers, over what that holds, and what is missing, in sentences"""
     headline: tuple[str, ...]

@@ -29,9 +29,15 @@ def journey_problems(study: Study) -> Iterator[str]:
         yield "surface.slope_deg is given; with [journey] every touchdown has the slope of where it is; leave it out"
     if study.has_soil and study.bed.sides != "periodic":
         yield 'bed.sides is "walls"; allowed with [journey]: "periodic", as journeys have no edge; change it'
-    for name, other in (("rest", study.rest.model_fields_set), ("aim", study.aim.model_fields_set)):
-        if other:
-            yield f"[{name}] follows samples of the emulator and [journey] landings; leave one of the two out"
+    of_emulator = {
+        "rest": study.rest.model_fields_set,
+        "aim": study.aim.model_fields_set,
+        "limit_states": study.limit_states.conditions(),
+        "monte_carlo": study.monte_carlo.model_fields_set,
+    }
+    for name, given in of_emulator.items():
+        if given:
+            yield f"[{name}] asks the emulator of single landings, and [journey] has none; leave one of the two out"
 
 
 def _delivery_problems(study: Study) -> Iterator[str]:

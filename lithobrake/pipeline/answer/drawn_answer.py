@@ -45,8 +45,8 @@ def drawn_headline(results: DrawnResults) -> list[str]:
         _touchdowns(results.runs),
         *_speed(results.spreads.get("speed_out")),
         *_scatter(results.variance_shares.get("speed_out")),
-        emulator.statement,
-        *([f"{emulator.warning}."] if emulator.warning else []),
+        *([emulator.statement] if emulator else []),
+        *([f"{emulator.warning}."] if emulator and emulator.warning else []),
     ]
 
 

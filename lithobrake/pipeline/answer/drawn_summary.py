@@ -42,47 +42,76 @@ def write_drawn_summary(job: Job) -> None:
     results = _results(job, runs[0], distinct)
     results = replace(results, answer=tuple(drawn_answer(job.study, results)))
     results = replace(results, headline=tuple(drawn_headline(results)))
-    for warning in (results.runs.warning, results.emulator.warning):
-        if warning:
-            job.say(warning)
+    for part in (results.runs, results.emulator):
+        if part is not None and part.warning:
+            job.say(part.warning)
     write_summary_file(job, results, sum(one.run_count for one in runs), distinct)
 
 
 def _results(job: Job, runs: DesignRuns, distinct: DesignRuns) -> DrawnResults:
-    """What came out, without sentences: what the runs say, and what became of the samples of the emulator."""
-    study, estimates = job.study, from_json(Estimates, job.folder.read_json(ESTIMATES), "estimates")
-    samples, flights = Samples.load(job.folder), read_table(job.folder, "flights.csv")
-    holds, refits = job.site.holds, _refits(estimates)
-    table = _emulator_shares(samples, flights, estimates, refits, holds=holds)
-    known = table.sample_count - table.outcomes["missing"].count
-    share = table.outcomes["returns"].count / known if known else None
-    returns = replace(estimates.returns, emulator=share)
-    journeys = None if study.journey is None else JourneyTable.load(job.folder)
-    shares = LandingShares(**vars(estimates.shares), emulator=table)
+    """What came out, without sentences: of journeys of landings, or of landings and the samples of their emulator."""
+    estimates = from_json(Estimates, job.folder.read_json(ESTIMATES), "estimates")
+    found = _of_runs(job, estimates, distinct)
+    return _with_samples(job, found, runs, estimates) if job.study.journey is None else _with_journeys(job, found)
+
+
+def _of_runs(job: Job, estimates: Estimates, distinct: DesignRuns) -> DrawnResults:
+    """What the landings say, or the first ones of journeys."""
     return DrawnResults(
         units={name: TOUCHDOWN[name].units for name in OUTPUTS},
-        beds=tuple(bed_results(job, name) for name in bed_files(study)),
-        returns=returns,
-        shares=shares,
-        flights=FlightResults(estimates.flights, flight_checks(job)),
+        beds=tuple(bed_results(job, name) for name in bed_files(job.study)),
+        returns=estimates.returns,
+        shares=LandingShares(**vars(estimates.shares), emulator=None),
+        flights=FlightResults(estimates.flights, None),
         variance_shares=estimates.variance_shares,
         outputs=estimates.outputs,
         runs=estimates.runs,
         outputs_of_runs=outputs_of_runs(distinct),
         site=site_results(job.site),
+        monte_carlo=None,
+        ellipses=None,
+        without_scatter=None,
+        rest=RestResults(None, {}, None, None, None),
+        limit_states={},
+        aim=None,
+        emulator=None,
+        answer=(),
+        headline=(),
+    )
+
+
+def _with_journeys(job: Job, found: DrawnResults) -> DrawnResults:
+    """The same with how the journeys ended."""
+    table = JourneyTable.load(job.folder)
+    return replace(
+        found,
+        rest=journey_rest(job.study, table),
+        ends=end_shares(job.study, table),
+        journeys=len(table.end),
+        touchdowns=table.touchdowns,
+    )
+
+
+def _with_samples(job: Job, found: DrawnResults, runs: DesignRuns, estimates: Estimates) -> DrawnResults:
+    """The same with what became of the samples of the emulator."""
+    study, holds, refits = job.study, job.site.holds, _refits(estimates)
+    samples, flights = Samples.load(job.folder), read_table(job.folder, "flights.csv")
+    table = _emulator_shares(samples, flights, estimates, refits, holds=holds)
+    known = table.sample_count - table.outcomes["missing"].count
+    returns = replace(found.returns, emulator=table.outcomes["returns"].count / known if known else None)
+    shares = replace(found.shares, emulator=table)
+    return replace(
+        found,
+        returns=returns,
+        shares=shares,
+        flights=replace(found.flights, checks=flight_checks(job)),
         # Its outputs are those of the runs, of which results.outputs speaks.
         monte_carlo=MonteCarlo(len(samples.leaves), int(samples.leaves.sum())),
         ellipses=ellipses(study, flights, FlightStatus.IMPACT),
-        without_scatter=None,
-        rest=_rest(job, refits) if journeys is None else journey_rest(study, journeys),
+        rest=_rest(job, refits),
         limit_states=limit_state_results(study, job.folder, flights, shares.outcomes, holds=holds),
         aim=aim_results(study, job.folder, refits),
         emulator=_emulator(job, runs, returns),
-        answer=(),
-        headline=(),
-        ends=None if journeys is None else end_shares(study, journeys),
-        journeys=None if journeys is None else len(journeys.end),
-        touchdowns=None if journeys is None else journeys.touchdowns,
     )
 
 

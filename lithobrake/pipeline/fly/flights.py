@@ -88,7 +88,7 @@ def fly_samples(job: Job) -> None:
     if job.site.warning:
         job.say(job.site.warning)
     job.folder.write_json("flights.json", _checks(job, start))
-    _write_shape(body, job.folder)
+    write_shape(body, job.folder)
     flown = fly_starts(job, start, "flights")
     write_flight_paths(job, body, flown, start.sample)
     write_table(job.folder, "flights.csv", COLUMNS, flight_rows(start, flown))
@@ -159,7 +159,7 @@ def partner_time(body: "Body", site: dict[str, np.ndarray]) -> np.ndarray:
     return body.partner_time(site["partner_longitude_deg"], site["spin_period"])
 
 
-def _write_shape(body: "Body", folder: StudyFolder) -> None:
+def write_shape(body: "Body", folder: StudyFolder) -> None:
     """Write the body's shape beside the map, in metres, for whoever draws it."""
     lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in body.shape.vertices.tolist()]
     lines += [f"f {a} {b} {c}" for a, b, c in (body.shape.faces + 1).tolist()]

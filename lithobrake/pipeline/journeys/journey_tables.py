@@ -25,7 +25,7 @@ def write_journeys(folder: StudyFolder, journeys: Sequence[Journey]) -> None:
 
 
 def _row(journey: Journey) -> list[Any]:
-    """Where a journey ended; what is not on the ground of the body has no place there, and what does not rest no side."""
+    """Where a journey ended; what is not on the ground of the body has no place there, what does not rest no side."""
     place: list[Any] = ["", "", "", "", "", ""]
     if journey.end in (JourneyEnd.AT_REST, JourneyEnd.UNDER_WAY) and journey.is_on_ground:
         latitude, longitude = (float(one) for one in journey.model.body.shape.latitude_longitude(journey.origin))

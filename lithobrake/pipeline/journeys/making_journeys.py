@@ -8,10 +8,12 @@ import numpy as np
 
 from lithobrake.campaign import Ledger, Limits, Record, RunOptions, Runs, Tally, run_chains
 from lithobrake.pipeline.design.dependencies import touchdown_dependencies
+from lithobrake.pipeline.fly.flights import write_shape
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.journeys.journey import Journey
 from lithobrake.pipeline.journeys.journey_model import JourneyModel
 from lithobrake.pipeline.journeys.journey_tables import write_journeys
+from lithobrake.pipeline.journeys.journey_ways import write_ways
 from lithobrake.pipeline.runs.making_runs import account
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.runs.touchdown_runs import model_of
@@ -36,6 +38,8 @@ def make_journeys(job: Job) -> None:
     DesignRuns.of(first).save(job.folder, "drawn")
     DesignRuns.of(Runs(records, 0)).save(job.folder, "touchdowns")
     write_journeys(job.folder, journeys)
+    write_shape(job.site.body, job.folder)
+    write_ways(job, journeys)
 
 
 def begun(job: Job) -> list[Journey]:

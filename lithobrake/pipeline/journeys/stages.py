@@ -2,6 +2,7 @@
 
 from typing import Any
 
+from lithobrake.pipeline.fly.flight_paths import FILE as WAYS
 from lithobrake.pipeline.fly.run_flights import run_flight_dependencies
 from lithobrake.pipeline.fly.stages import PARTS as FLIGHT_PARTS
 from lithobrake.pipeline.journeys.journey_tables import FILES
@@ -24,7 +25,7 @@ def journey_dependencies(study: Study) -> Any:
 JOURNEYS = Stage(
     "runs",
     "journeys",
-    same_files(file_of("drawn"), file_of("touchdowns"), *FILES),
+    same_files(file_of("drawn"), file_of("touchdowns"), *FILES, "body.obj", WAYS),
     make_journeys,
     ("bed",),
     journey_dependencies,

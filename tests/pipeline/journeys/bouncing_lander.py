@@ -36,8 +36,6 @@ TABLES: dict[str, dict[str, Any]] = {
     "journey": {"count": 48, "duration": 172800.0},
     "site": {"body": "dimorphos"},
     "campaign": {"retry_count": 0},
-    "monte_carlo": {"sample_count": 500},
-    "flight": {"flight_count": 40},
 }
 
 

@@ -33,8 +33,6 @@ TABLES: dict[str, Any] = {
     },
     "journey": {"count": JOURNEYS, "duration": 40000.0},
     "site": {"body": "dimorphos"},
-    "monte_carlo": {"sample_count": 400},
-    "flight": {"flight_count": 50},
 }  # fmt: skip
 HARD = HardSurface(0.5, 0.7, math.inf, 0.05)
 SPIN = ("impact.spin_x", "impact.spin_y", "impact.spin_z")
@@ -67,7 +65,9 @@ def run(folder: Path, **changes: dict[str, Any]) -> Any:
 
 def rows(folder: Path, name: str) -> dict[str, np.ndarray]:
     table = np.genfromtxt(folder / name, delimiter=",", names=True, dtype=None, encoding="utf-8")
-    return {title.split("_m")[0] if title.startswith("position") else title: table[title] for title in table.dtype.names}
+    return {
+        title.split("_m")[0] if title.startswith("position") else title: table[title] for title in table.dtype.names
+    }
 
 
 @pytest.fixture(scope="module")
@@ -163,7 +163,9 @@ def test_attitudes_are_turned_from_frame_to_frame_and_back() -> None:
     assert from_frame(axes).apply(axes @ vector) == pytest.approx(vector)
 
 
-@pytest.mark.parametrize(("turn", "side"), [((0.0, 0.0, 0.0), "-z"), ((180.0, 0.0, 0.0), "+z"), ((90.0, 0.0, 0.0), "-y")])
+@pytest.mark.parametrize(
+    ("turn", "side"), [((0.0, 0.0, 0.0), "-z"), ((180.0, 0.0, 0.0), "+z"), ((90.0, 0.0, 0.0), "-y")]
+)
 def test_the_side_that_is_down_is_the_one_along_the_plumb_line(turn: tuple[float, ...], side: str) -> None:
     tilt = Rotation.from_euler("y", 10.0, degrees=True)
     attitude = tilt * Rotation.from_euler("xyz", turn, degrees=True)
