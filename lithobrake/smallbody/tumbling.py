@@ -68,16 +68,16 @@ def tumble(inertia: ArrayLike, attitude: ArrayLike, spin: ArrayLike, duration: A
         axis = omega / scale / np.where(rate > 0.0, rate, 1.0)
         half = 0.5 * (rate * scale)[:, 0] * time
         return _unit(_product(np.column_stack([np.cos(half), np.sin(half)[:, None] * axis]), start)), omega.copy()
-    momentum = moments * (_turned(start * BACK, omega / scale) @ axes)
+    momentum = moments * _combined(_turned(start * BACK, omega / scale), axes[None])
     size = np.linalg.norm(momentum, axis=1, keepdims=True)
     momentum /= np.where(size > 0.0, size, 1.0)
     order, signs = _circled(moments, momentum)
     frame = axes.T[order] * signs[:, :, None]
     there = moments[order]
     turn, after = _moved(_cycle(there, np.take_along_axis(momentum, order, 1) * signs), (size * scale)[:, 0] * time)
-    turn[:, 1:] = _in_body(frame, turn[:, 1:])
+    turn[:, 1:] = _combined(turn[:, 1:], frame)
     moved = _unit(_product(start, turn))
-    return moved, _turned(moved, _in_body(frame, after / there * size * scale))
+    return moved, _turned(moved, _combined(after / there * size * scale, frame))
 
 
 def _principal(inertia: ArrayLike) -> tuple[Floats, Floats]:
@@ -250,9 +250,13 @@ def _turned(quaternions: Floats, vectors: Floats) -> Floats:
     return turned
 
 
-def _in_body(frame: Floats, vectors: Floats) -> Floats:
-    """Vectors [count, 3] along the rows of each frame [count, 3, 3], in the axes that the rows are given in."""
-    found: Floats = np.einsum("nij,ni->nj", frame, vectors)
+def _combined(vectors: Floats, rows: Floats) -> Floats:
+    """Sums of the rows of matrices [count or 1, 3, 3] times the components of vectors [count, 3].
+
+    Not by a matrix product, whose rounding depends on how many bodies are turned at once.
+    """
+    x, y, z = vectors.T[:, :, None]
+    found: Floats = x * rows[:, 0] + y * rows[:, 1] + z * rows[:, 2]
     return found
 
 

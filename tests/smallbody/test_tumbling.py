@@ -155,6 +155,17 @@ def test_no_scale_of_spin_or_inertia_matters(scale: float) -> None:
     assert scaled[1] / scale == pytest.approx(plain[1], abs=100.0 * EPS)
 
 
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_body_turns_the_same_whoever_turns_beside_it(kind: str) -> None:
+    random = np.random.default_rng(5)
+    inertia, state = skewed(KINDS[kind], random), (*starts(300, random), random.uniform(0.0, 4e4, 300))
+    together = tumble(inertia, *state)
+    for _ in range(60):
+        few = random.choice(300, random.integers(1, 9))
+        for one, all_of_them in zip(tumble(inertia, *(part[few] for part in state)), together, strict=True):
+            assert (one == all_of_them[few]).all()
+
+
 def test_what_no_body_has_is_refused() -> None:
     state = ([[1.0, 0.0, 0.0, 0.0]], [[0.0, 0.0, 1.0]], [1.0])
     for inertia, words in (
