@@ -26,7 +26,7 @@ from lithobrake.pipeline import run_study
 from lithobrake.study import StudySource, read_study
 from lithobrake.study.touchdown_model import TouchdownModel, draw, engine_hash, medians
 
-STUDY = SCENARIOS / "quick.toml"
+STUDY = SCENARIOS / "first_bounce.toml"
 
 
 class EqualLandings:

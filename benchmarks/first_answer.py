@@ -4,7 +4,7 @@
     python benchmarks/first_answer.py OLD . --pieces steps land --rounds 2 --out FILE
 
 "steps" compiles what beds and landings call, as a study does before all else; "land" is `lithobrake land` of
-scenarios/quick.toml, which pours its bed, too. Each is a process of its own with a cache of its own, empty at first; it
+scenarios/first_bounce.toml, which pours its bed, too. Each is a process of its own with a cache of its own, empty at first; it
 is made twice, so that the second finds the kernels, and for "land" the bed, on disk. FILE.csv gets a row a process: CPU
 time of it and of those that it starts, CPU time of it alone (what it takes on the clock where cores are idle), time on
 the clock, load. FILE.json gets the medians, and the ratios to the first checkout. With --one-core all is made on one
@@ -34,7 +34,7 @@ class Silent:
         pass
 compile_kernels(Silent() if is_old else Silent().progress)
 """
-PIECES = {"steps": ["-c", STEPS], "land": ["-m", "lithobrake", "land", str(SCENARIOS / "quick.toml")]}
+PIECES = {"steps": ["-c", STEPS], "land": ["-m", "lithobrake", "land", str(SCENARIOS / "first_bounce.toml")]}
 TIMES = ("cpu_s", "own_cpu_s", "clock_s")
 COLUMNS = ["round", "piece", "checkout", "cache", *TIMES, "load"]
 # Of /proc/PID/stat behind the name of a process: its own CPU times in the program and in the kernel, in ticks.

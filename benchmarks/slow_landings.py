@@ -3,7 +3,7 @@
     python benchmarks/slow_landings.py BED_FOLDER --landings 200 --speeds 0.003 0.02 --ways 25:0:0 25:0.3:0.03
         --share 0/2 --out FILE
 
-Beds are those of scenarios/quick.toml on ground that repeats, poured into BED_FOLDER where they are not there yet.
+Beds are those of scenarios/first_bounce.toml on ground that repeats, poured into BED_FOLDER where they are not there yet.
 Soil, bed, place, heading and attitude are drawn, the speed [m/s] between two (in its logarithm), the incidence up to
 STEEPEST, the spin up to what turns the surface as fast as the lander comes. Every draw lands in each way,
 steps:resolved_speed:held_speed, one after the other. FILE.csv gets a row a landing as it comes, with the face that is
@@ -25,7 +25,7 @@ from scipy.stats import binomtest, chi2_contingency
 from lithobrake.touchdown import Bed, Lander, Landing, land
 from lithobrake.touchdown.surface import rotation_matrix
 
-STUDY = Path(__file__).parents[1] / "scenarios" / "quick.toml"
+STUDY = Path(__file__).parents[1] / "scenarios" / "first_bounce.toml"
 BEDS, GRAVITY, TIME_LIMIT, STEEPEST = 8, 4.5e-5, 1000.0, math.radians(80.0)
 COMPARED = ("speed_out", "elevation_out", "spin_out")
 COLUMNS = ["landing", "bed", "way", "speed", "outcome", "face", "simulated_s", "cpu_s", *COMPARED]

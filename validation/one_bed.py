@@ -2,8 +2,8 @@
 
     python validation/one_bed.py [--seeds 20] [--work FOLDER] [--out validation]
 
-Runs scenarios/one_place.toml (the paper's way) and scenarios/quick.toml (every landing a draw) with seeds from
-FIRST_SEED on, which differ in their pours too. Then quick.toml with finer grains in a bed of the same size, with side
+Runs scenarios/one_place.toml (the paper's way) and scenarios/first_bounce.toml (every landing a draw) with seeds from
+FIRST_SEED on, which differ in their pours too. Then first_bounce.toml with finer grains in a bed of the same size, with side
 runs, which split soil, place and chaos. one_bed.json gets an entry a study as it ends; a study that stands in it is not
 run again: delete it to start anew. validation/one_bed_figures.py draws them.
 """
@@ -24,7 +24,7 @@ from harness import SCENARIOS, command_line, origin, write_document
 FIRST_SEED = 101
 # Enough to see how far apart they are.
 ONE_PLACE_SEEDS = 10
-QUESTIONS = {"one place": "one_place", "draws": "quick"}
+QUESTIONS = {"one place": "one_place", "draws": "first_bounce"}
 DIAMETERS = (0.12, 0.09, 0.065)  # m; the lander measures .1 x .1 x .227 m
 SPEED, ELEVATION = "speed_out", "elevation_out"
 
@@ -45,14 +45,14 @@ def with_grains(tables: dict[str, Any], diameter: float) -> dict[str, Any]:
 
 def studies(seeds: int) -> list[tuple[str, float, dict[str, Any]]]:
     """Kind, grain diameter [m] and tables of every study."""
-    own = scenario("quick", FIRST_SEED)["bed"]["diameter"]["value"]
+    own = scenario("first_bounce", FIRST_SEED)["bed"]["diameter"]["value"]
     pairs = [
         (kind, own, scenario(name, FIRST_SEED + k))
         for k in range(seeds)
         for kind, name in QUESTIONS.items()
         if kind == "draws" or k < ONE_PLACE_SEEDS
     ]
-    return pairs + [("grain sizes", d, with_grains(scenario("quick", FIRST_SEED), d)) for d in DIAMETERS]
+    return pairs + [("grain sizes", d, with_grains(scenario("first_bounce", FIRST_SEED), d)) for d in DIAMETERS]
 
 
 def told(results: lithobrake.StudyResults) -> dict[str, Any]:

@@ -10,10 +10,13 @@ from dataclasses import replace
 
 from lithobrake.pipeline.answer.answer_of_run import ANSWERED_AFTER, answer_words, answers_of, read_shares
 from lithobrake.pipeline.answer.failing_runs import failing_runs
+from lithobrake.pipeline.answer.journey_ends import JourneyTable
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.fly.run_flights import FILE, RunFlights
 from lithobrake.pipeline.folder.study_folder import StudyFolder
 from lithobrake.pipeline.job import Job
+from lithobrake.pipeline.journeys.journey_tables import JOURNEYS
+from lithobrake.pipeline.journeys.stages import JOURNEYS as JOURNEY_STAGE
 from lithobrake.pipeline.outdated_files import stage_keys
 from lithobrake.pipeline.runs.run_table import DesignRuns, file_of
 from lithobrake.pipeline.runs.touchdown_runs import known_runs
@@ -27,6 +30,8 @@ def flown_shares(study: Study, folder: StudyFolder) -> dict[str, float]:
     Of a study with more or fewer runs too: a run flies from the same sites in all of them. None at all where the file
     is not there or not whole, or was made otherwise than the study says.
     """
+    if study.journey is not None:
+        return _at_rest(study, folder)
     key = folder.key_of(FILE)
     if key is None:
         return {}
@@ -35,6 +40,17 @@ def flown_shares(study: Study, folder: StudyFolder) -> dict[str, float]:
     if stage_keys(made_for)[ANSWERED_AFTER] != key:
         return {}
     return shares if study.design.half_width_of is None else _failing_shares(study, folder)
+
+
+def _at_rest(study: Study, folder: StudyFolder) -> dict[str, float]:
+    """1 for each journey that ended at rest and 0 for each other, by the key of its first touchdown."""
+    key = folder.key_of(JOURNEYS)
+    if key is None or folder.key_of(file_of("drawn")) is None:
+        return {}
+    keys, table = DesignRuns.load(folder, "drawn").keys, JourneyTable.load(folder)
+    if stage_keys(study.with_run_count(max(len(keys), 2)))[JOURNEY_STAGE.name] != key:
+        return {}
+    return dict(zip(keys, table.rests.astype(float).tolist(), strict=True))
 
 
 def _failing_shares(study: Study, folder: StudyFolder) -> dict[str, float]:

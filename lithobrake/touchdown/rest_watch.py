@@ -7,8 +7,8 @@ import numpy as np
 from lithobrake.dem import BodyMotion
 from lithobrake.touchdown.lander import Lander
 
-# A lander that stands on an edge topples with the time constant sqrt(size / gravity): its tilt grows sevenfold in two of
-# them. What moves by less than REST_WAY meanwhile was within 0.4 % of its size of balance, or rests.
+# A lander that stands on an edge topples with the time constant sqrt(size / gravity): its tilt grows sevenfold in two.
+# What moves by less than REST_WAY meanwhile was within 0.4 % of its size of balance, or rests.
 TOPPLING_TIMES = 2.0
 REST_WAY = 0.03  # of the smallest edge, by any point of the lander
 

@@ -54,7 +54,7 @@ def test_without_a_current_folder_the_sentence_says_so(folder: Path) -> None:
 
 @pytest.mark.parametrize("kind", [".h5", ".vtkhdf", ".png", ".mp4"])
 def test_a_landing_replaces_a_file_only_when_told_to(tmp_path: Path, kind: str) -> None:
-    study, path = Path(__file__).parents[2] / "scenarios" / "quick.toml", tmp_path / f"landing{kind}"
+    study, path = Path(__file__).parents[2] / "scenarios" / "first_bounce.toml", tmp_path / f"landing{kind}"
     path.write_text("mine")
     found = RUNNER.invoke(app, ["land", str(study), "--out", str(path)])
     assert (found.exit_code, found.stdout) == (2, "")

@@ -89,5 +89,5 @@ def test_rest_asks_for_no_motion_of_any_point_for_as_long_as_toppling_takes() ->
 
 @pytest.mark.parametrize("height", [0.0, -1.0, math.inf, math.nan])
 def test_a_hop_height_that_is_none_is_refused(height: float) -> None:
-    with pytest.raises(ValueError, match="Landing.hop_height"):
+    with pytest.raises(ValueError, match=r"Landing\.hop_height"):
         landing(hop_height=height)

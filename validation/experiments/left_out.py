@@ -2,7 +2,7 @@
 
     python validation/experiments/left_out.py
 
-Prints the tables of that page. The landing is that of scenarios/quick.toml: a box of 2 kg on grains of 9 cm.
+Prints the tables of that page. The landing is that of scenarios/first_bounce.toml: a box of 2 kg on grains of 9 cm.
 """
 
 import math

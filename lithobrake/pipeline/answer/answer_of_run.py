@@ -21,6 +21,8 @@ ANSWERED_AFTER = "fly_runs"
 
 def answer_words(study: Study) -> str:
     """What the answers of a study's runs are a share of, in words."""
+    if study.journey is not None:
+        return "the fraction at rest"
     asked = study.design.half_width_of
     return "the return fraction" if asked is None else f"the probability of {asked}"
 

@@ -1,4 +1,4 @@
-"""How much room the files of a study will take on the disk; sizes measured on scenarios/quick.toml and bounces.toml."""
+"""How much room the files of a study will take on the disk; sizes measured on scenarios/first_bounce.toml and bounces.toml."""
 
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.planning.expected_steps import ExpectedSoil
@@ -15,6 +15,7 @@ LANDING_BODY = 11_800  # poses of a body and forces on it in all frames of a lan
 LEDGER_RUN = 5_000
 FLIGHT_ROW, JOURNEY_ROW = 270, 120
 SHAPE_FACET = 45
+TOUCHDOWNS = 4  # of a journey
 REPORT = 7_500_000  # page and figures, with expansions, scores and summary
 
 
@@ -25,8 +26,8 @@ def expected_bytes(design: DrawnDesign, site: Site, runs: PlannedRuns, soil: Exp
     # The outcome takes one byte.
     row = NUMBER * (len(design.inputs) + len(OUTPUTS) * (1 + samples.scatter)) + 1
     found = {
-        "runs": LEDGER_RUN * runs.total,
-        "samples": samples.sample_count * row,
+        "runs": LEDGER_RUN * runs.total * (1 if study.journey is None else TOUCHDOWNS),
+        "samples": 0 if study.journey is not None else samples.sample_count * row,
         "flights": FLIGHT_ROW * flights + JOURNEY_ROW * journeys + SHAPE_FACET * len(site.body.shape.faces),
         "report": REPORT,
     }
@@ -40,6 +41,8 @@ def expected_bytes(design: DrawnDesign, site: Site, runs: PlannedRuns, soil: Exp
 
 def flight_count(study: Study) -> int:
     """Flights at most, with those of the expansion alone beside those with scatter."""
+    if study.journey is not None:
+        return 0
     count = min(study.flight.flight_count or study.monte_carlo.sample_count, study.monte_carlo.sample_count)
     return count * (1 + study.monte_carlo.scatter)
 
@@ -48,5 +51,7 @@ def journey_count(study: Study) -> int:
     """Journeys from bounce to bounce, on hard ground and, where it can be asked, on the soil."""
     from lithobrake.pipeline.rest.bounce_inputs import why_no_soil
 
+    if study.journey is not None:
+        return 0
     count = min(study.rest.count, study.monte_carlo.sample_count)
     return count if why_no_soil(study) else 2 * count

@@ -35,6 +35,9 @@ SETTLING, SETTLING_OF_LAYERS = 3.9, 0.84
 CROSSINGS, CROSSINGS_OF_DEPTH, DEEP = 2.0, 2.2, 2.0
 OUTGOING = 0.5  # speed of a lander that leaves, over that of its impact
 HELD_CROSSINGS = 0.4  # likewise, where it comes too slowly to leave and is soon captured
+# Simulated time of a journey's touchdowns together, in time constants of toppling, sqrt(smallest edge / gravity): hops
+# over the bed and rocking (24 journeys of a CubeSat on Dimorphos: mean 18, 5 to 32).
+TOPPLINGS = 18.0
 # Fewest steps in which a period of a grain is settled through (settling.run_quietly).
 STEPS_PER_PERIOD = 40.0
 
@@ -125,6 +128,15 @@ class ExpectedSoil:
         size = 2.0 * lander.shape.bounding_radius
         crossings = CROSSINGS + CROSSINGS_OF_DEPTH * min(self.depth / size, DEEP) ** 2
         return (crossings if leaves else HELD_CROSSINGS) * (size + self.diameter) / landing.speed
+
+    def journey_steps(self, lander: "Lander", landing: "Landing") -> float:
+        """Periods of a grain at rest that all grains go through in the touchdowns of a journey."""
+        from lithobrake.touchdown import settling
+
+        gravity = math.hypot(*landing.gravity)
+        time = TOPPLINGS * math.sqrt(lander.smallest_edge / gravity)
+        period = settling.rest_period(landing.grain, self.diameter, gravity)
+        return self.recipe.grain_count * min(time, landing.time_limit) / period
 
     def _shortest_contact(
         self, speed: float, lander: "Lander | None" = None, landing: "Landing | None" = None

@@ -31,6 +31,8 @@ SETTLING_GRAIN = 8.0e-7
 LOCAL_GRAIN, LOCAL_LOOK, MOVING = 2.7e-6, 7.2e-8, 0.5
 # Of that, where slow collisions take fewer steps.
 SLOW_PART = 0.42
+# A grain at rest in a journey's touchdown, each period [s].
+RESTING_GRAIN = 4.0e-5
 COMPILING = 60.0  # s
 # Flights and journeys over a body of FACETS facets [s]: by the table, once it is built, and by the facets' sum.
 FACETS, TABLE, FLIGHT, EXACT_FLIGHT, JOURNEY, EXACT_JOURNEY = 1920, 10.0, 2.0e-4, 3.5e-3, 1.1e-3, 2.0e-2
@@ -65,6 +67,9 @@ def expected_seconds(
     if made["touchdowns"][1]:
         one, (fewest, most) = run_time(soil, ended, pace), made["touchdowns"]
         found["touchdowns"] = (fewest * one[0] / cores, most * one[1] / cores) if one and workers else None
+    if made["journeys to rest"][1]:
+        one, (fewest, most) = journey_time(soil, pace), made["journeys to rest"]
+        found["journeys"] = (fewest * one[0] / cores, most * one[1] / cores) if one and workers else None
     flying = flights_time(site) if made["flights"][1] else 0.0
     flying += journeys_time(site) if made["journeys"][1] else 0.0
     if flying:
@@ -117,7 +122,7 @@ def _pace(made: Mapping[str, tuple[int, int]], soil: ExpectedSoil | None) -> flo
 
 
 def _engine_works(made: Mapping[str, tuple[int, int]]) -> bool:
-    return any(made[what][1] for what in ("beds", "landings", "touchdowns"))
+    return any(made[what][1] for what in ("beds", "landings", "touchdowns", "journeys to rest"))
 
 
 def walls_of(ended: Sequence[Record]) -> list[float]:
@@ -154,6 +159,14 @@ def run_time(soil: ExpectedSoil | None, ended: Sequence[Record], pace: float) ->
     if soil is None:
         return None
     mean = pace * statistics.fmean(landing_time(soil, *landing) for landing in soil.landings[1:])
+    return mean / SPREAD_OF_TOUCHDOWNS, mean * SPREAD_OF_TOUCHDOWNS
+
+
+def journey_time(soil: ExpectedSoil | None, pace: float) -> Span | None:
+    """Time [s] of the touchdowns of one journey in the mean; None with a program of one's own."""
+    if soil is None:
+        return None
+    mean = pace * RESTING_GRAIN * statistics.fmean(soil.journey_steps(*landing) for landing in soil.landings[1:])
     return mean / SPREAD_OF_TOUCHDOWNS, mean * SPREAD_OF_TOUCHDOWNS
 
 

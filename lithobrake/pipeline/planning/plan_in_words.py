@@ -7,6 +7,7 @@ NAMES = {
     "beds": ("bed", "beds"),
     "landings": ("landing to look at", "landings to look at"),
     "touchdowns": ("touchdown", "touchdowns"),
+    "journeys to rest": ("journey to rest", "journeys to rest"),
     "samples": ("sample", "samples"),
     "flights": ("flight", "flights"),
     "journeys": ("journey from bounce to bounce", "journeys from bounce to bounce"),
@@ -73,6 +74,9 @@ def _designs(plan: Plan) -> str:
         side = f", {most.side} side runs" if most.side else ""
         until = ", until design.half_width is met" if fewest is not most else ""
         drawn, total = _range(fewest.drawn, most.drawn), _range(fewest.total, most.total)
+        if plan.made["journeys to rest"][1]:
+            known = f"{len(most.known)} of the first ones are known and reused"
+            return f"{drawn} first ones of journeys{until}, mostly one to four each; {known}"
         return f"{drawn} drawn{until}{side}; {total} in all, of which {len(most.known)} are known and reused"
     kept = (
         f"{_range(fewest.kept_count, most.kept_count)} kept inputs" if fewest is not most else f"{most.kept_count} kept"

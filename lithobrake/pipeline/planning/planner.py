@@ -110,10 +110,14 @@ def _made(
     """How many of each are to be made, at least and at most."""
     new = [one.new for one in runs] if stale & MAKE_RUNS else [0]
     landings = len(stale & SHOW_LANDINGS) * study.has_soil
+    touchdowns, journeys = (min(new), max(new)), (0, 0)
+    if study.journey is not None:
+        touchdowns, journeys = journeys, touchdowns
     return {
         "beds": (beds[0].new, beds[-1].new),
         "landings": (landings, landings),
-        "touchdowns": (min(new), max(new)),
+        "touchdowns": touchdowns,
+        "journeys to rest": journeys,
         "samples": (study.monte_carlo.sample_count,) * 2 if "sample" in stale else (0, 0),
         "flights": (0, flight_count(study) if "fly" in stale else 0),
         "journeys": (journey_count(study),) * 2 if "rest" in stale else (0, 0),

@@ -27,7 +27,8 @@ TABLES: dict[str, Any] = {
     },
     "lander": {"shape": "box", "edges": [0.1, 0.1, 0.227], "mass": 2.0},
     "delivery": {
-        "latitude_deg": 30.0, "longitude_deg": 200.0, "speed": {"distribution": "uniform", "lower": 0.02, "upper": 0.07},
+        "latitude_deg": 30.0, "longitude_deg": 200.0,
+        "speed": {"distribution": "uniform", "lower": 0.02, "upper": 0.07},
         "incidence_deg": {"distribution": "uniform", "lower": 10.0, "upper": 40.0},
         "heading_deg": {"distribution": "uniform", "lower": 0.0, "upper": 360.0},
     },

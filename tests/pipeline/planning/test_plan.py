@@ -232,7 +232,7 @@ SEQUENCE = {"method": "drawn", "run_count": 144}
 
 def drawn(*, design: dict[str, Any] | None = None, **changes: dict[str, Any]) -> Study:
     """The quick study with its runs out of the sequence, at places that are drawn unless the impact is changed."""
-    tables = load_tables(SCENARIOS / "quick.toml")
+    tables = load_tables(SCENARIOS / "first_bounce.toml")
     tables["design"] = SEQUENCE | (design or {})
     tables["impact"] = {key: value for key, value in tables["impact"].items() if key != "place"}
     for section, keys in ({"impact": {"region": {"x": [-0.1, 0.1], "y": [-0.1, 0.1]}}} | changes).items():
@@ -355,7 +355,7 @@ def test_a_half_width_that_is_asked_for_may_take_runs_and_beds_up_to_the_most(tm
     assert "Touchdowns: 144 to 400 drawn, until design.half_width is met;" in " ".join(plan_lines(plan))
 
 
-@pytest.mark.parametrize("name", ["quick", "mission", "bounces", "paper"])
+@pytest.mark.parametrize("name", ["first_bounce", "mission", "bounces", "paper"])
 def test_beds_and_landings_are_expected_to_take_what_they_took(name: str) -> None:
     measured = json.loads((HERE / "benchmarks" / "plan_estimate.json").read_text())[name]["result"]
     pace = np.mean(measured["paces"])

@@ -11,7 +11,7 @@ import pytest
 from lithobrake.campaign import LocalExecutor
 from lithobrake.pipeline.runs import kernels
 
-QUICK = Path(__file__).parents[3] / "scenarios" / "quick.toml"
+QUICK = Path(__file__).parents[3] / "scenarios" / "first_bounce.toml"
 
 # In a process of its own: elsewhere in this one other tests have called kernels.
 SCRIPT = """
