@@ -4,7 +4,7 @@
     python benchmarks/first_answer.py OLD . --pieces steps land --rounds 2 --out FILE
 
 "steps" compiles what beds and landings call, as a study does before all else; "land" is `lithobrake land` of
-scenarios/first_bounce.toml, which pours its bed, too. Each is a process of its own with a cache of its own, empty at first; it
+first_bounce.toml, which pours its bed, too. Each is a process of its own with a cache of its own, empty at first; it
 is made twice, so that the second finds the kernels, and for "land" the bed, on disk. FILE.csv gets a row a process: CPU
 time of it and of those that it starts, CPU time of it alone (what it takes on the clock where cores are idle), time on
 the clock, load. FILE.json gets the medians, and the ratios to the first checkout. With --one-core all is made on one

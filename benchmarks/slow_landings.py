@@ -3,7 +3,7 @@
     python benchmarks/slow_landings.py BED_FOLDER --landings 200 --speeds 0.003 0.02 --ways 25:0:0 25:0.3:0.03
         --share 0/2 --out FILE
 
-Beds are those of scenarios/first_bounce.toml on ground that repeats, poured into BED_FOLDER where they are not there yet.
+Beds are those of first_bounce.toml on ground that repeats, poured into BED_FOLDER where they are not there yet.
 Soil, bed, place, heading and attitude are drawn, the speed [m/s] between two (in its logarithm), the incidence up to
 STEEPEST, the spin up to what turns the surface as fast as the lander comes. Every draw lands in each way,
 steps:resolved_speed:held_speed, one after the other. FILE.csv gets a row a landing as it comes, with the face that is

@@ -3,7 +3,7 @@
     python validation/one_bed.py [--seeds 20] [--work FOLDER] [--out validation]
 
 Runs scenarios/one_place.toml (the paper's way) and scenarios/first_bounce.toml (every landing a draw) with seeds from
-FIRST_SEED on, which differ in their pours too. Then first_bounce.toml with finer grains in a bed of the same size, with side
+FIRST_SEED on, which differ in their pours too. Then that with finer grains in a bed of the same size, with side
 runs, which split soil, place and chaos. one_bed.json gets an entry a study as it ends; a study that stands in it is not
 run again: delete it to start anew. validation/one_bed_figures.py draws them.
 """

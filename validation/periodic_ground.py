@@ -2,7 +2,7 @@
 
     python validation/periodic_ground.py [--grounds NAME ...] [--beds FOLDER] [--out validation]
 
-Grains and lander are those of scenarios/first_bounce.toml at the medians of their laws. On every ground at least 200 landings
+Grains and lander are those of first_bounce.toml at the medians of their laws. On every ground at least 200 landings
 in each of three ways, equally many on each of its beds. Heading and attitude of a landing are drawn once, and are the
 same on all grounds. Its place is drawn over the whole tile of periodic ground. Between walls it is drawn in the middle
 half of the width, so that walls move away from the lander as beds grow, and where smallest_bed.py lets it land if that

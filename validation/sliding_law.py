@@ -2,7 +2,7 @@
 
     python validation/sliding_law.py [--out validation]
 
-The box lander of scenarios/first_bounce.toml lies on settled beds and is pushed along them, level or down a slope. What it has
+The box lander of first_bounce.toml lies on settled beds and is pushed along them, level or down a slope. What it has
 lost when it lies still again, or leaves the bed, over its weight on the ground and its way is its friction. Writes
 sliding_law.csv, a line for each push as it ends, and sliding_law.json with the law that fits them. Pushes that stand in
 the table are not made again: delete it to start anew.

@@ -3,7 +3,7 @@
     python validation/experiments/oblique_map.py --work FOLDER [--placements 3] [--speeds 0.1 0.2] [--out FOLDER]
 
 Beds are poured once into the work folder. Each landing draws its place, attitude, heading and soil, the same in all
-cells; the soil out of the ranges of scenarios/first_bounce.toml. Writes oblique_map.csv, a line for each landing as it ends;
+cells; the soil out of the ranges of first_bounce.toml. Writes oblique_map.csv, a line for each landing as it ends;
 landings that stand there are not run again. Then oblique_map.json and oblique_map.png; without --out the picture goes
 to docs/validation/experiments.
 """
