@@ -61,12 +61,17 @@ def _decides(data: JourneyPage) -> list[Plot]:
 
 def _part(data: JourneyPage, heading: str, titles: dict[str, str]) -> list[Plot]:
     """Figures of a drawn study under a heading, each saying that it is of the first touchdown."""
-    found = [plot for plot in drawn_plots(data) if plot.name in titles and plot.sentence]
+    found = [plot for plot in drawn_plots(data) if plot.name in titles and plot.sentence and _is_drawn(data, plot)]
     said = [
         replace(plot, title=titles[plot.name] or plot.title, sentence=_sentence(plot), heading="" if row else heading)
         for row, plot in enumerate(found)
     ]
     return [plot for plot in said if plot.sentence]
+
+
+def _is_drawn(data: JourneyPage, plot: Plot) -> bool:
+    """Whether there is a picture: a program or function of the user's own has no bed."""
+    return plot.name != "bed" or data.bed is not None
 
 
 def _sentence(plot: Plot) -> str:
