@@ -24,7 +24,7 @@ from lithobrake.vocabulary.percentages import LEVEL
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-WHERE, DECIDES, FIRST, EMULATOR = "Where it ends up", "What decides", "The first touchdown", "The emulator"
+WHERE, DECIDES, FIRST, EMULATOR = "Where it ends up", "What decides the first touchdown", "The first touchdown", "The emulator"
 # Figures of a drawn study by the part of this page, with another title where its own speaks of more.
 OF_FIRST = {
     "bed": "", "landing": "A first touchdown", "runs": "What the first touchdowns gave",
@@ -55,7 +55,7 @@ def _ends(data: JourneyPage) -> list[Plot]:
 def _decides(data: JourneyPage) -> list[Plot]:
     """The parts of the variance of the first touchdown, where they are known."""
     plot = next(one for one in drawn_plots(data) if one.name == "variance")
-    title = "What decides the first touchdown"
+    title = "Parts of the variance"
     return [replace(plot, title=title, sentence=words.first_variance(data), heading=DECIDES)]
 
 
