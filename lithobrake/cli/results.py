@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 
 # What `runs` lists first, in columns with these heads, and the most characters of a line.
 TOLD = {
+    "journey": ("", "journey"),
+    "touchdown": ("touch-", "down"),
     "speed_out": ("rebound", "speed"),
     "bed": ("", "bed"),
     "impact.place.x": ("impact", "x"),

@@ -63,7 +63,7 @@ def _geojson(results: StudyResults, folder: Path, chosen: ExportOptions) -> None
 
 
 def _has_rest(results: StudyResults) -> bool:
-    return (results.folder / "rest.csv").is_file()
+    return any((results.folder / name).is_file() for name in ("rest.csv", "journeys.csv"))
 
 
 # Two kinds of files show one landing, which may take minutes to make again.

@@ -13,7 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lithobrake import smallbody
-from lithobrake.results import StudyResults
+from lithobrake.results import StudyResults, Table
+from lithobrake.results.journey_results import JourneyRest
 from lithobrake.smallbody import Body, Shape, fly
 from lithobrake.study import BUILT_IN_BODIES
 
@@ -55,7 +56,14 @@ class Flown:
 
     @classmethod
     def of(cls, results: StudyResults) -> "Flown":
-        """All flights of a study to the next impact. Raises ValueError where it has none."""
+        """All flights of a study to the next impact, of journeys of landings the first of each.
+
+        Raises ValueError where it has none.
+        """
+        if has_journeys(results):
+            # As if all of them left at once.
+            first = cls._of_arcs(results, results.arcs.where(results.arcs["arc"] == 0.0))
+            return replace(first, begin=np.zeros(len(first.sample)))
         table = results.flights
         if not table.row_count:
             raise ValueError(f"{results.folder / 'flights.csv'} has no flights: no sample left the surface")
@@ -85,30 +93,25 @@ class Flown:
 
         Raises ValueError for a sample that did not fly.
         """
+        if has_journeys(results):
+            self.of_samples(samples)
+            return self._of_arcs(results, results.arcs.where(np.isin(results.arcs["sample"], samples)))
         # The folder of an earlier version notes no journeys.
         if not (results.folder / "arcs.csv").is_file():
             return self.of_samples(samples)
-        table = results.arcs
-        rows = np.isin(table["sample"], samples)
-        columns = {name: table[name][rows] for name in table.columns}
-        position, velocity = (
-            np.column_stack([columns[f"{of}_{axis}"] for axis in "xyz"]) for of in ("position", "velocity")
-        )
-        noted: dict[str, Any] = {
-            "sample": columns["sample"].astype(np.int64),
-            "arc": columns["arc"].astype(np.int64),
-            "begin": columns["begin_s"],
-            "start_time": columns["clock_s"],
-            "position": position,
-            "velocity": velocity,
-            "mass": columns["site_mass"],
-            "spin_period": columns["site_spin_period"],
-            "end_time": columns["end_s"] - columns["begin_s"],
-            "duration": results.study["rest"]["duration"] - columns["begin_s"],
-        }
+        noted = _noted(results.arcs.where(np.isin(results.arcs["sample"], samples)), results.study["rest"]["duration"])
         alone = self.of_samples([sample for sample in samples if sample not in noted["sample"]])
         joined: dict[str, Any] = {name: np.concatenate([getattr(alone, name), noted[name]]) for name in _EACH}
         return replace(self, **joined)
+
+    @classmethod
+    def _of_arcs(cls, results: StudyResults, arcs: Table) -> "Flown":
+        """Flights of journeys of landings. Raises ValueError where there is none."""
+        if not arcs.row_count:
+            raise ValueError(f"{results.folder / 'arcs.csv'} has no flights: no lander left the surface")
+        body = study_body(results, *(float(np.median(arcs[f"site_{name}"])) for name in ("mass", "spin_period")))
+        noted = _noted(arcs, results.study["journey"]["duration"])
+        return cls(body=body, time=0.0, gravity=results.study["flight"]["gravity"], **noted)
 
     def of_samples(self, samples: Sequence[int]) -> "Flown":
         """The flights of these samples, in their order. Raises ValueError for a sample that did not fly."""
@@ -118,7 +121,7 @@ class Flown:
             first, last = self.sample[0], self.sample[-1]
             raise ValueError(
                 f"sample {lacking[0]} has no flight; the {len(rows)} samples with one lie from {first} to {last}: take "
-                "numbers of the column sample of flights.csv"
+                "numbers of the column sample of flights.csv, or of arcs.csv where a study follows journeys"
             )
         return self._rows(np.array([rows[sample] for sample in samples], dtype=np.int64))
 
@@ -159,6 +162,28 @@ class Flown:
 
     def _rows(self, rows: NDArray[np.int64]) -> "Flown":
         return replace(self, **{name: getattr(self, name)[rows] for name in _EACH})
+
+
+def has_journeys(results: StudyResults) -> bool:
+    """Whether a study follows journeys of landings."""
+    return isinstance(results.results.rest, JourneyRest)
+
+
+def _noted(arcs: Table, duration: float) -> dict[str, Any]:
+    """Flights as a table has them that notes where each began; duration: of the journeys [s]."""
+    position, velocity = (np.column_stack([arcs[f"{of}_{axis}"] for axis in "xyz"]) for of in ("position", "velocity"))
+    return {
+        "sample": arcs["sample"].astype(np.int64),
+        "arc": arcs["arc"].astype(np.int64),
+        "begin": arcs["begin_s"],
+        "start_time": arcs["clock_s"],
+        "position": position,
+        "velocity": velocity,
+        "mass": arcs["site_mass"],
+        "spin_period": arcs["site_spin_period"],
+        "end_time": arcs["end_s"] - arcs["begin_s"],
+        "duration": duration - arcs["begin_s"],
+    }
 
 
 def study_body(results: StudyResults, mass: float, spin_period: float) -> Body:

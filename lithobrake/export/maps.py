@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from lithobrake.export.flown import body_name
+from lithobrake.export.flown import body_name, has_journeys
 from lithobrake.files.atomic import atomic_path
 from lithobrake.geometry.mesh import volume_of
 from lithobrake.results import StudyResults, Table
-from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus
+from lithobrake.vocabulary.outcomes import FlightStatus, JourneyEnd, JourneyStatus
 
 if TYPE_CHECKING:
     from PIL.TiffImagePlugin import ImageFileDirectory_v2
@@ -32,7 +32,12 @@ WORDS = "latitude planetocentric, longitude east positive, both of the body-fixe
 # Of each impact and of each place of rest, and what those columns hold that are no floats.
 PROPERTIES = ("sample", "facet", "time_s", "impact_speed", "impact_incidence_deg")
 REST_PROPERTIES = ("sample", "ground", "time_s", "rebounds", "path_length")
-NO_FLOATS: dict[str, Callable[[Any], int | str]] = {"sample": int, "facet": int, "ground": str}
+JOURNEY_PROPERTIES = ("journey", "bed", "time_s", "distance", "contacts", "touchdowns", "path_length", "face")
+TOUCHDOWN_PROPERTIES = ("journey", "touchdown", "key", "outcome", "begin_s", "end_s", "impact.speed")
+NO_FLOATS: dict[str, Callable[[Any], int | str]] = {
+    **dict.fromkeys(("sample", "facet", "journey", "bed", "contacts", "touchdowns", "touchdown"), int),
+    **dict.fromkeys(("ground", "face", "key", "outcome"), str),
+}
 
 
 @dataclass(frozen=True)
@@ -136,14 +141,25 @@ def _tags(frame: MapFrame, resolution_deg: float) -> "ImageFileDirectory_v2":
 
 
 def write_geojson(results: StudyResults, path: Path) -> None:
-    """Write a point for each flight that ends on the body, with its sample, facet, time and velocity of impact."""
+    """Write a point for each flight that ends on the body, with its sample, facet, time and velocity of impact.
+
+    Of a study of journeys a point for each of their touchdowns.
+    """
+    if has_journeys(results):
+        _write_points(results, path, "touchdowns", results.touchdowns, TOUCHDOWN_PROPERTIES)
+        return
     flights = results.flights
     down = flights.where(np.flatnonzero(flights["status"] == FlightStatus.IMPACT))
     _write_points(results, path, "impacts", down, PROPERTIES)
 
 
 def write_rest_geojson(results: StudyResults, path: Path) -> None:
-    """Write a point for each journey that ends at rest, with its sample and the ground that it was followed on."""
+    """Write a point for each journey that ends at rest, with its numbers, or its sample and the ground under it."""
+    if has_journeys(results):
+        ended = results.journeys
+        at_rest = ended.where(np.flatnonzero(ended["end"] == JourneyEnd.AT_REST))
+        _write_points(results, path, "places of rest", at_rest, JOURNEY_PROPERTIES)
+        return
     journeys = results.rest
     settled = journeys.where(np.flatnonzero(journeys["status"] == JourneyStatus.SETTLED))
     # Journeys of an earlier version may lack some of these.

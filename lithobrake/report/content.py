@@ -9,25 +9,6 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Panel:
-    """A figure of the page: title, one sentence that says what it shows, and the picture (PNG) if there is one."""
-
-    title: str
-    sentence: str
-    picture: bytes | None
-
-
-@dataclass(frozen=True)
-class Plot:
-    """A figure that is still to be drawn: name of its file, title, sentence, and what draws it, or None."""
-
-    name: str
-    title: str
-    sentence: str
-    draw: Callable[[], "Figure | None"]
-
-
-@dataclass(frozen=True)
 class Tile:
     """One of the few numbers that a reader takes away."""
 
@@ -46,6 +27,35 @@ class PageTable:
     note: str = ""
     numbers: frozenset[str] = field(default_factory=frozenset)
     links: Mapping[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Panel:
+    """A figure of the page: title, one sentence that says what it shows, and the picture (PNG) if there is one.
+
+    heading: that it stands under, as the first; tables: that stand below it.
+    """
+
+    title: str
+    sentence: str
+    picture: bytes | None
+    heading: str = ""
+    tables: Sequence[PageTable] = ()
+
+
+@dataclass(frozen=True)
+class Plot:
+    """A figure that is still to be drawn: name of its file, title, sentence, and what draws it, or None.
+
+    heading and tables as of a Panel.
+    """
+
+    name: str
+    title: str
+    sentence: str
+    draw: Callable[[], "Figure | None"]
+    heading: str = ""
+    tables: Sequence[PageTable] = ()
 
 
 @dataclass(frozen=True)

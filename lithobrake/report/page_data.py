@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from lithobrake.files.reading import DamagedFileError, reading
 from lithobrake.results import ExplorerTables, MovingBodies, StudyResults, Table
 from lithobrake.results.expansions import OutputErrors
+from lithobrake.results.journey_results import EndShare, JourneyRest
 from lithobrake.results.json_values import from_json
 from lithobrake.results.limit_state_results import RareLimitState
 from lithobrake.results.summary import DrawnResults, PaperResults, Provenance
@@ -19,9 +20,10 @@ from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus, Touchdow
 Array = NDArray[np.float64]
 FILES = ("summary.json", "study.toml")
 # What the last stages of either method write before the report.
-OF_ANY_STUDY = ("samples.h5", "explorer.h5", "flights.csv", "flight_paths.h5", "rest.csv", "body.obj")
-PAPER_FILES = (*FILES, "scores.json", *OF_ANY_STUDY)
-DRAWN_FILES = (*FILES, "designs/drawn.csv", *OF_ANY_STUDY)
+OF_ANY_STUDY = ("samples.h5", "explorer.h5", "flights.csv", "flight_paths.h5", "body.obj")
+PAPER_FILES = (*FILES, "scores.json", "rest.csv", *OF_ANY_STUDY)
+DRAWN_FILES = (*FILES, "designs/drawn.csv", "rest.csv", *OF_ANY_STUDY)
+JOURNEY_FILES = (*FILES, "designs/drawn.csv", "journeys.csv", "touchdowns.csv", *OF_ANY_STUDY)
 GROUNDS = ("soil", "hard")
 # More dots than this only cover each other, and a picture of ten million takes minutes.
 DRAWN_COUNT = 200_000
@@ -119,6 +121,24 @@ class DrawnPage(PageData):
         return f"In run {str(attributes['run'])[:8]}, {which}"
 
 
+@dataclass(frozen=True)
+class JourneyPage(DrawnPage):
+    """Results of a study whose landers were followed to rest; journeys: a row each; at_rest: numbers of those at rest.
+
+    ends: shares of the journeys by end; runs, samples, flights and emulator are of the first touchdowns alone.
+    """
+
+    journeys: Table
+    ends: Mapping[str, EndShare]
+    at_rest: JourneyRest
+
+    @property
+    def shown_landing(self) -> str:
+        """The first touchdown that its file names."""
+        words = super().shown_landing
+        return f"{words}, a first touchdown" if words else ""
+
+
 def page_results(found: StudyResults) -> PaperPage | DrawnPage:
     """What the page shows of a study. Raises ValueError that names the file when one is missing or damaged."""
     _refuse_without(found.folder, FILES)
@@ -126,9 +146,20 @@ def page_results(found: StudyResults) -> PaperPage | DrawnPage:
     if isinstance(results, PaperResults):
         _refuse_without(found.folder, PAPER_FILES)
         return PaperPage(results=results, **_of_any_study(found), scores=_scores(found))
-    _refuse_without(found.folder, DRAWN_FILES)
+    journeys = _journeys(found, results)
+    _refuse_without(found.folder, JOURNEY_FILES if journeys else DRAWN_FILES)
     runs = found.runs.where(found.runs["design"] == "drawn")
+    if journeys:
+        return JourneyPage(results=results, **_of_any_study(found), runs=runs, rare=found.rare, **journeys)
     return DrawnPage(results=results, **_of_any_study(found), runs=runs, rare=found.rare)
+
+
+def _journeys(found: StudyResults, results: DrawnResults) -> dict[str, Any]:
+    """The fields that only a study of journeys has; empty for any other."""
+    if results.ends is None or not isinstance(results.rest, JourneyRest):
+        return {}
+    _refuse_without(found.folder, JOURNEY_FILES)
+    return {"journeys": found.journeys, "ends": results.ends, "at_rest": results.rest}
 
 
 def _of_any_study(found: StudyResults) -> dict[str, Any]:
@@ -156,7 +187,7 @@ def _of_any_study(found: StudyResults) -> dict[str, Any]:
         "flights": found.flights,
         "explorer": found.explorer,
         "samples": found.samples,
-        "rest": {ground: _resting(found, ground) for ground in GROUNDS},
+        "rest": {ground: _resting(found, ground) for ground in GROUNDS} if _follows_samples(found) else {},
     }
 
 
@@ -173,6 +204,11 @@ def _impacts(found: StudyResults) -> tuple[Array, Array, NDArray[np.int64]]:
     path = found.folder / "flights.csv"
     impacts = found.flights.where(found.flights["status"] == FlightStatus.IMPACT)
     return *_places(path, impacts, found.remedy), impacts["facet"].astype(np.int64)
+
+
+def _follows_samples(found: StudyResults) -> bool:
+    """Whether samples of the model were followed from bounce to bounce."""
+    return not isinstance(found.results.rest, JourneyRest)
 
 
 def _resting(found: StudyResults, ground: str) -> tuple[Array, Array]:

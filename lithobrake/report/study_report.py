@@ -6,11 +6,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from lithobrake.files.atomic import atomic_path
-from lithobrake.report.content import Panel, Plot
+from lithobrake.report.content import Content, Panel, Plot
 from lithobrake.report.figures.style import figure_style
-from lithobrake.report.page_data import DrawnPage, page_results
+from lithobrake.report.page_data import DrawnPage, JourneyPage, PaperPage, page_results
 from lithobrake.report.pages.drawn_page import drawn_content
 from lithobrake.report.pages.html import page
+from lithobrake.report.pages.journey_page import journey_content
 from lithobrake.report.pages.paper_page import paper_content
 from lithobrake.report.pages.study_files import data_files, picture_files
 from lithobrake.report.tables.paper_tables import provenance
@@ -31,7 +32,7 @@ def write_report(folder: Path, progress: Callable[[int, int], None] = lambda don
     Raises ValueError when a file that the report reads is missing.
     """
     data = page_results(open_study(folder))
-    content = drawn_content(data) if isinstance(data, DrawnPage) else paper_content(data)
+    content = _content(data)
     # A figure of which there is nothing to say is left out.
     plots = [plot for plot in content.plots if plot.sentence]
     panels = _panels(folder, plots, progress)
@@ -49,6 +50,13 @@ def write_report(folder: Path, progress: Callable[[int, int], None] = lambda don
     return path
 
 
+def _content(data: PaperPage | DrawnPage) -> Content:
+    """What the page of a study has, by its method."""
+    if isinstance(data, JourneyPage):
+        return journey_content(data)
+    return drawn_content(data) if isinstance(data, DrawnPage) else paper_content(data)
+
+
 def _panels(folder: Path, plots: Sequence[Plot], progress: Callable[[int, int], None]) -> list[Panel]:
     """Draw all figures, and write each as a PNG and an SVG file."""
     (folder / "report").mkdir(exist_ok=True)
@@ -61,7 +69,7 @@ def _panels(folder: Path, plots: Sequence[Plot], progress: Callable[[int, int], 
         for kind, content in made.items():
             with atomic_path(folder / "report" / _file(number, plot, kind)) as draft:
                 draft.write_bytes(content)
-        panels.append(Panel(plot.title, plot.sentence, made.get("png")))
+        panels.append(Panel(plot.title, plot.sentence, made.get("png"), plot.heading, plot.tables))
     return panels
 
 

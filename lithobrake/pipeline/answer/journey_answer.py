@@ -49,8 +49,8 @@ def _rest(rest: JourneyRest) -> list[str]:
     if rest.regions:
         half, most = rest.regions[0], rest.regions[-1]
         said.append(
-            f"The smallest region with {percent(half.share)} of them has {half.area_m2:.2g} m2, that with "
-            f"{percent(most.share)} {most.area_m2:.2g} m2 and is {most.largest_extent_m:.2g} m across."
+            f"The smallest region with {percent(half.share)} of them has {_rounded(half.area_m2)} m2, that with "
+            f"{percent(most.share)} {_rounded(most.area_m2)} m2 and is {_rounded(most.largest_extent_m)} m across."
         )
     if rest.faces:
         listed = sorted(rest.faces.items(), key=lambda one: -one[1].share)
@@ -73,7 +73,12 @@ def _count(one: RestQuantile) -> str:
 
 
 def _with_bounds(one: RestQuantile, size: float) -> str:
-    value = f"{(one.value or 0.0) / size:.2g}"
+    value = _rounded((one.value or 0.0) / size)
     if one.lower is None or one.upper is None:
         return value
-    return f"{value} ({one.lower / size:.2g}-{one.upper / size:.2g})"
+    return f"{value} ({_rounded(one.lower / size)}-{_rounded(one.upper / size)})"
+
+
+def _rounded(value: float) -> str:
+    """A number to two digits, or to whole ones where it has more, without a power of ten."""
+    return f"{value:.0f}" if abs(value) >= 10.0 else f"{value:.2g}"

@@ -8,11 +8,13 @@ from typing import Any
 
 from lithobrake.campaign import RunStatus, Tally, campaign_began, ledger_tally
 from lithobrake.files.atomic import lock_holder
+from lithobrake.pipeline.commands.journeys_status import JourneysStatus, journeys_status, touchdown_keys
 from lithobrake.pipeline.commands.running_estimates import RunningEstimates, running_estimates
 from lithobrake.pipeline.folder.notes import NAME, Notes
 from lithobrake.pipeline.folder.state import STUDY_FILE, FolderState, StageState, grouped, read_state
 from lithobrake.pipeline.folder.study_folder import LOCK, FileState, StudyFolder
 from lithobrake.results import open_study
+from lithobrake.results.journey_tables import JOURNEYS
 from lithobrake.vocabulary.quantities import OUTPUTS
 
 
@@ -22,7 +24,7 @@ class RunsStatus:
 
     others: how many more its ledger has. rare: how many of the ledger's only a limit state asks for, by its name.
     outcomes: how often each came. reasons: why runs failed, and how often. estimates: what they say so far, of a
-    drawn runs; None for another study, and before enough have ended.
+    drawn runs; None for another study, and before enough have ended. journeys: None for a study without them.
     """
 
     tally: Tally
@@ -31,10 +33,11 @@ class RunsStatus:
     outcomes: "Counter[str]"
     reasons: "Counter[str]"
     estimates: RunningEstimates | None
+    journeys: JourneysStatus | None = None
 
     def lines(self) -> list[str]:
         """The runs in words."""
-        lines = [self.tally.sentence()]
+        lines = [*(self.journeys.lines() if self.journeys else []), self.tally.sentence()]
         lines += [
             f"{count} more runs in the ledger are landings of lithobrake rare: {name}"
             for name, count in self.rare.items()
@@ -47,7 +50,8 @@ class RunsStatus:
         found = self.tally.spreads
         spreads = self.tally.spread_lines([name for name in OUTPUTS if name in found] or sorted(found))
         lines += ["mean and standard deviation so far [SI]:", *spreads] if spreads else []
-        return lines + (self.estimates.lines() if self.estimates else [])
+        estimates = self.estimates.lines() if self.estimates else []
+        return lines + (["first touchdowns:", *estimates] if self.journeys and estimates else estimates)
 
     def to_json(self) -> dict[str, Any]:
         """All of it as JSON values; rate [runs/s] and time left [s] are None where nobody knows them."""
@@ -68,6 +72,7 @@ class RunsStatus:
                 for name, one in state.spreads.items()
             },
             "estimates": self.estimates and self.estimates.to_json(),
+            "journeys": self.journeys and self.journeys.to_json(),
         }
 
 
@@ -120,13 +125,14 @@ def study_status(path: Path) -> StudyStatus:
     if not (is_study or ledger.is_file()):
         raise ValueError(f"{path} has neither study.toml nor runs.sqlite; name the folder of a study that ran, or runs")
     if not is_study:
-        return StudyStatus(path, None, campaign_began(ledger), None, _runs(path, Notes(), {}))
+        return StudyStatus(path, None, campaign_began(ledger), None, _runs(path, Notes(), {}, has_journeys=False))
     # Who is at work is looked at first: a stage that ends in between is then one that is still to come.
     holder = lock_holder(path / LOCK)
     state = read_state(path)
-    return StudyStatus(
-        path, holder, None, state, _runs(path, state.notes, _flown(path, state)) if ledger.is_file() else None
+    runs = (
+        _runs(path, state.notes, _flown(path, state), has_journeys=_has_journeys(state)) if ledger.is_file() else None
     )
+    return StudyStatus(path, holder, None, state, runs)
 
 
 def _at_work(stage: StageState, holder: dict[str, Any] | None) -> StageState:
@@ -171,10 +177,19 @@ def _files(holder: dict[str, Any] | None, state: FolderState) -> list[str]:
     return lines
 
 
-def _runs(path: Path, notes: Notes, flown: dict[str, float]) -> RunsStatus:
-    """Where the runs stand that the study asks for as it is now, and how many others its ledger has."""
+def _has_journeys(state: FolderState) -> bool:
+    """Whether the journeys of the study have all ended, and their tables are of the study as it is."""
+    return any(stage.is_current and JOURNEYS in stage.files for stage in state.stages)
+
+
+def _runs(path: Path, notes: Notes, flown: dict[str, float], *, has_journeys: bool) -> RunsStatus:
+    """Where the runs stand that the study asks for as it is now, and how many others its ledger has.
+
+    has_journeys: whether the tables of its journeys are current.
+    """
     every = open_study(path).ledger
     asked = {key for keys in notes.designs.values() for key in keys}
+    asked |= touchdown_keys(path, every, asked, is_current=has_journeys)
     # A ledger of which nothing is noted is that of a campaign, or of an earlier format.
     records = [entry for entry in every if entry.key in asked] if notes.stages else every
     others = {entry.key for entry in every} - {entry.key for entry in records}
@@ -187,6 +202,7 @@ def _runs(path: Path, notes: Notes, flown: dict[str, float]) -> RunsStatus:
         rare={name: count for name, count in rare.items() if count},
         outcomes=Counter(entry.outcome or "" for entry in records if entry.status == RunStatus.DONE),
         reasons=Counter(entry.reason or "" for entry in records if entry.status == RunStatus.FAILED),
+        journeys=journeys_status(path, records, len(drawn), is_current=has_journeys),
         estimates=running_estimates([entry for entry in records if entry.key in drawn], flown),
     )
 

@@ -14,7 +14,7 @@ from lithobrake.files.reading import read_rows
 from lithobrake.geometry.mesh_labels import labelled_mesh
 from lithobrake.geometry.mesh_units import mesh_unit
 from lithobrake.pipeline.emulate.samples import Samples
-from lithobrake.pipeline.fly.flight_paths import write_flight_paths
+from lithobrake.pipeline.fly.flight_paths import Ways, write_flight_paths
 from lithobrake.pipeline.folder.study_folder import AGAIN, StudyFolder
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.site import SITE_KEYS, Site
@@ -90,7 +90,10 @@ def fly_samples(job: Job) -> None:
     job.folder.write_json("flights.json", _checks(job, start))
     write_shape(body, job.folder)
     flown = fly_starts(job, start, "flights")
-    write_flight_paths(job, body, flown, start.sample)
+    is_of_samples = study.journey is None
+    write_flight_paths(
+        job, body, Ways.of_samples(flown, start.sample) if is_of_samples else Ways.of_journeys(job.folder)
+    )
     write_table(job.folder, "flights.csv", COLUMNS, flight_rows(start, flown))
 
 

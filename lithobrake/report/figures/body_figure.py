@@ -9,6 +9,7 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.collections import PolyCollection
 from matplotlib.colors import LogNorm, to_rgb
 from matplotlib.figure import Figure
+from matplotlib.ticker import NullFormatter
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
@@ -54,6 +55,8 @@ def body_figure(vertices: Array, faces: Facets, facet: Facets, site: Array) -> F
         axes.set_title(title, loc="center", fontsize=9)
     draw_legend(figure, (), "impacts", (0.01, 0.01))
     bar = figure.colorbar(ScalarMappable(norm, "viridis"), cax=figure.add_axes((0.925, 0.14, 0.013, 0.68)), format="%g")
+    # Next to a single decade the ticks between would be named too, and push the label off the figure.
+    bar.ax.yaxis.set_minor_formatter(NullFormatter())
     bar.set_label("impacts per hectare")
     outline: Any = bar.outline
     outline.set_visible(False)

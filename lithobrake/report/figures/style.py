@@ -8,7 +8,7 @@ import matplotlib
 import numpy as np
 from numpy.typing import NDArray
 
-from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus, SampleOutcome
+from lithobrake.vocabulary.outcomes import FlightStatus, JourneyEnd, JourneyStatus, SampleOutcome
 
 INK = "#1c2733"
 QUIET = "#66717d"
@@ -47,6 +47,9 @@ FATE_COLOURS: dict[str, str] = {
     JourneyStatus.LOFTED: "#31465a",
     JourneyStatus.SLIDING: "#6fb7e0",
     JourneyStatus.BOUNCING: "#f3c9b5",
+    JourneyEnd.AT_REST: "#1f9e78",
+    JourneyEnd.UNDER_WAY: "#8b8f96",
+    JourneyEnd.FAILED: "#c8553d",
 }
 
 # Any: the names of the settings are a type of their own in some versions of matplotlib and plain words in others.

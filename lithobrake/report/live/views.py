@@ -14,9 +14,9 @@ from lithobrake.report.figures.body_figure import BARE, colour_ends, facet_densi
 from lithobrake.report.figures.hulls import Scene, scene
 from lithobrake.report.figures.style import FATE_COLOURS
 from lithobrake.report.live.packed import deflated, script_data
-from lithobrake.report.page_data import PageData
+from lithobrake.report.page_data import JourneyPage, PageData
 from lithobrake.report.words.numbers import number
-from lithobrake.vocabulary.outcomes import FlightStatus
+from lithobrake.vocabulary.outcomes import FlightStatus, JourneyEnd
 
 Array = NDArray[np.float64]
 SCRIPTS = ("live/view3d.js", "live/moving.js")
@@ -33,6 +33,16 @@ FATE_WORDS = {
     FlightStatus.ESCAPED: ("orange", FlightStatus.ESCAPED.label),
     FlightStatus.PARTNER: ("violet", "impact on the partner"),
 }
+# The colours of the ends of journeys.
+END_COLOUR_WORDS: dict[str, str] = {
+    JourneyEnd.AT_REST: "green",
+    JourneyEnd.ESCAPED: "orange",
+    JourneyEnd.PARTNER: "violet",
+    JourneyEnd.UNDER_WAY: "grey",
+    JourneyEnd.FAILED: "red",
+}
+# Length of a pin over the radius of the body.
+PIN = 0.04
 # A view takes in a sphere when its middle is so many radii away.
 AWAY = 4.2
 
@@ -42,7 +52,9 @@ def view_sections(data: PageData) -> list[LiveSection]:
     found = []
     if data.landing is not None and len(data.landing.time) > 1:
         found.append(_landing(scene(data.landing, has_lander=True), data.shown_landing))
-    if len(data.facet):
+    if isinstance(data, JourneyPage):
+        found += _ends(data)
+    elif len(data.facet):
         found.append(_body(data))
     return found
 
@@ -126,12 +138,7 @@ def _body(data: PageData) -> LiveSection:
     colours = np.where(
         density[:, None] > 0.0, matplotlib.colormaps["viridis"](LogNorm(low, high)(density))[:, :3], BARE
     )
-    site = np.array(data.results.site.place_m)
-    longitude, latitude = np.arctan2(site[1], site[0]), np.arctan2(site[2], np.hypot(site[0], site[1]))
-    arrays = {**_geometry([(vertices, faces)]), "paint": np.rint(255.0 * colours).astype(np.uint8)}
-    facts: dict[str, Any] = {"bodyCount": 1, "frameCount": 1, "shades": []}
-    radius = float(np.linalg.norm(vertices, axis=1).max())
-    facts["orbit"] = _orbit(np.zeros(3), radius, float(longitude) - 0.4, float(latitude) + 0.3)
+    arrays, facts = _body_arrays(data, colours)
     words = (
         f"Impacts per hectare as in the figure of the body, from {number(low, 2)} (dark) to {number(high, 2)} (yellow)."
     )
@@ -145,10 +152,44 @@ def _body(data: PageData) -> LiveSection:
     return _section("body-3d", "Where the lander comes down, to turn", words, arrays, facts)
 
 
+def _body_arrays(data: PageData, colours: Array) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
+    """Arrays and numbers of the body, looked at from above the site; colours: of its facets [facet, 3], in 0 to 1."""
+    site = np.array(data.results.site.place_m)
+    longitude, latitude = np.arctan2(site[1], site[0]), np.arctan2(site[2], np.hypot(site[0], site[1]))
+    arrays = {
+        **_geometry([(data.body_vertices, data.body_faces)]),
+        "paint": np.rint(255.0 * colours).astype(np.uint8),
+    }
+    radius = float(np.linalg.norm(data.body_vertices, axis=1).max())
+    orbit = _orbit(np.zeros(3), radius, float(longitude) - 0.4, float(latitude) + 0.3)
+    return arrays, {"bodyCount": 1, "frameCount": 1, "shades": [], "orbit": orbit}
+
+
+def _ends(data: JourneyPage) -> list[LiveSection]:
+    """The body with a pin at the place of each lander on the ground, and the flights of the first journeys."""
+    table, (ways, ended) = data.journeys, data.paths
+    place = np.column_stack([table[f"position_{axis}"] for axis in "xyz"])
+    on_ground = np.isfinite(place).all(axis=1)
+    if not (on_ground.any() or len(ways)):
+        return []
+    arrays, facts = _body_arrays(data, np.broadcast_to(np.array(BARE), (len(data.body_faces), 3)))
+    foot, end = place[on_ground], table["end"][on_ground]
+    radius = float(np.linalg.norm(data.body_vertices, axis=1).max())
+    head = foot + PIN * radius * foot / np.linalg.norm(foot, axis=1)[:, None]
+    pins, lines = _paths(np.stack([foot, head], axis=1), end), _paths(ways, ended)
+    arrays |= {name: np.concatenate([pins[name], lines[name]]) for name in pins}
+    words = f"Pins: where {on_ground.sum()} landers ended on the ground."
+    if len(ways):
+        words += " Lines: the flights of the first journeys, seen from the turning body."
+    met = dict.fromkeys([*end.tolist(), *ended])
+    words += f" Colours: {', '.join(f'{END_COLOUR_WORDS[one]}: {JourneyEnd(one).label}' for one in met)}."
+    return [_section("body-3d", "Where the landers rest, to turn", words, arrays, facts)]
+
+
 def _paths(position: Array, status: Sequence[str]) -> dict[str, np.ndarray]:
     """Ends of the pieces of all ways [2 piece_count, 3], and the colour of each."""
     ends = np.stack([position[:, :-1], position[:, 1:]], axis=2).reshape(-1, 3)
-    paint = np.array([to_rgb(FATE_COLOURS[FlightStatus(word)]) for word in status])
+    paint = np.array([to_rgb(FATE_COLOURS[word]) for word in status]).reshape(-1, 3)
     # Two ends of each piece.
     of_ends = np.repeat(np.rint(255.0 * paint), 2 * (position.shape[1] - 1), axis=0)
     return {"path_corner": ends.astype(np.float32), "path_paint": of_ends.astype(np.uint8)}

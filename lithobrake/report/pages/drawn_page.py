@@ -33,10 +33,11 @@ RETURNS_ROW = {"returns": "return fraction"}
 def drawn_content(data: DrawnPage) -> Content:
     """All that the page shows of the study."""
     live = [*explorer_sections(data), *view_sections(data)]
-    return Content(captions.answer(data), warnings(data), tiles(data), _plots(data), tables(data), live)
+    return Content(captions.answer(data), warnings(data), tiles(data), drawn_plots(data), tables(data), live)
 
 
-def _plots(data: DrawnPage) -> list[Plot]:
+def drawn_plots(data: DrawnPage) -> list[Plot]:
+    """Its figures in the order of the work."""
     colour, words = colour_input(data), drawn_captions
     plots = [
         Plot("bed", "The surface", captions.bed(data), lambda: any_study.draw_bed(data)),

@@ -12,6 +12,9 @@ LONG = 15
 # What every page can do; sections bring scripts of their own. Each is a file beside this one.
 SCRIPT = "pages/page.js"
 NO_SCRIPT = '<noscript><p class="warning">What follows needs JavaScript, which does not run here.</p></noscript>\n'
+HINT = (
+    '<p class="note hint">Click or tap a figure to let it fill the window; click again or press Esc to go back.</p>\n'
+)
 
 
 def _header(title: str, content: Content, facts: str) -> str:
@@ -32,7 +35,10 @@ def page(
     """
     style = _own_file("pages/style.css")
     scripts = dict.fromkeys([SCRIPT, *(name for section in content.live for name in section.scripts)])
-    pictures = "\n".join(_figure(number, panel) for number, panel in enumerate(panels, start=1))
+    pictures = "\n".join(
+        f"{_heading(number, panel)}{_figure(number, panel)}{''.join(_table(table) for table in panel.tables)}"
+        for number, panel in enumerate(panels, start=1)
+    )
     return f"""<!DOCTYPE html>
 <html lang="en">
 <head>
@@ -46,8 +52,6 @@ def page(
 {_header(title, content, facts)}
 <ul class="tiles">
 {"".join(_tile(tile) for tile in content.tiles)}</ul>
-<h2>Figures</h2>
-<p class="note hint">Click or tap a figure to let it fill the window; click again or press Esc to go back.</p>
 {pictures}
 {_live(content.live)}<h2>Tables</h2>
 {"".join(_table(table) for table in sorted(content.tables, key=_is_long))}
@@ -79,6 +83,12 @@ def _own_file(name: str) -> str:
 
 def _tile(tile: Tile) -> str:
     return f"<li><b>{escape(tile.value)} <small>{escape(tile.unit)}</small></b><span>{escape(tile.words)}</span></li>\n"
+
+
+def _heading(number: int, panel: Panel) -> str:
+    """The heading of a figure that has one, which the first always has, there with how a figure is enlarged."""
+    words = panel.heading or ("Figures" if number == 1 else "")
+    return (f"<h2>{escape(words)}</h2>\n" if words else "") + (HINT if number == 1 else "")
 
 
 def _figure(number: int, panel: Panel) -> str:

@@ -14,6 +14,7 @@ from lithobrake.report.figures.style import FATE_COLOURS
 from lithobrake.report.page_data import PageData, PaperPage
 from lithobrake.report.tables.dispersion_tables import GROUND_WORDS, followed, parts
 from lithobrake.report.words.captions import hours, thousands
+from lithobrake.results.dispersion import RestResults
 from lithobrake.results.shares import CountedShare
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus
 
@@ -82,6 +83,8 @@ def draw_body(data: PageData) -> "Figure":
 
 def draw_rest(data: PageData) -> "Figure":
     found, site, limit = followed(data), data.results.site, hours(data.study["rest"]["duration"])
+    rest = data.results.rest
+    why_no_soil = rest.why_no_soil if isinstance(rest, RestResults) else None
     # The same statuses on both sides, so that rows and colours match.
     met = {
         key: words
@@ -94,7 +97,7 @@ def draw_rest(data: PageData) -> "Figure":
         shares = [
             _share(data, key, words.format(hours=limit), table.outcomes[key]) for key, words in met.items() if table
         ]
-        absent = None if table else f"Not asked: {data.results.rest.why_no_soil}."
+        absent = None if table else f"Not asked: {why_no_soil}."
         ellipses = table.ellipses if table else None
         whole = f"the {table.sample_count} followed" if table else ""
         maps.append(RestMap(f"On {GROUND_WORDS[ground]}", latitude, longitude, ellipses, shares, absent, whole))

@@ -9,6 +9,7 @@ from lithobrake.report.words.captions import hours, thousands
 from lithobrake.report.words.chance import follows_gaussian
 from lithobrake.report.words.numbers import fixed, flat, number
 from lithobrake.results.dispersion import GroundResults, ImpactNumber
+from lithobrake.results.journey_results import JourneyRest
 from lithobrake.results.json_values import to_json
 from lithobrake.results.shares import CountedShare, EmulatorShares
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus, SampleOutcome
@@ -183,7 +184,8 @@ def _statuses(data: PageData) -> PageTable:
             )
     of = "; ".join(f"{GROUND_WORDS[ground]}: {table.of}" for ground, table in found.items())
     note = f"From the first impact. {of[:1].upper()}{of[1:]}."
-    why = data.results.rest.why_no_soil
+    rest = data.results.rest
+    why = None if isinstance(rest, JourneyRest) else rest.why_no_soil
     note += f" The soil could not be asked: {why}." if why else ""
     return PageTable("From bounce to bounce", columns, rows, note, frozenset(columns[1:]))
 

@@ -8,6 +8,7 @@ from lithobrake.report.words.chance import follows_gaussian
 from lithobrake.report.words.labels import PAPER_OUTPUTS, output
 from lithobrake.report.words.numbers import fixed, number, q2_words
 from lithobrake.results.expansions import DesignCounts, ExpansionResults, OutputErrors
+from lithobrake.results.journey_results import JourneyRest
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus, TouchdownOutcome
 from lithobrake.vocabulary.percentages import percent, with_interval
 
@@ -245,9 +246,9 @@ def body(data: PageData) -> str:
 def rest(data: PageData) -> str:
     """Figure 9."""
     table = data.results.rest
-    soil, hard = table.soil, table.hard
-    if hard is None:
+    if isinstance(table, JourneyRest) or table.hard is None:
         return ""
+    soil, hard = table.soil, table.hard
     limit = hours(data.study["rest"]["duration"])
     settled = with_interval(hard.outcomes[JourneyStatus.SETTLED], data.digits)
     words = f"Followed from bounce to bounce for up to {limit}, {settled} come to rest on hard ground"

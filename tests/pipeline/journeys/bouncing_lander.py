@@ -63,7 +63,7 @@ def bounce(inputs: dict[str, float], seed: int) -> dict[str, Any]:
         up = LEAVING_SPEED
     elif up < SLOWEST:
         return {"outcome": "captured", "outputs": outputs}
-    return {"outcome": "clear", "outputs": outputs | _rebound(0.6 * along, up)}
+    return {"outcome": "clear", "outputs": outputs | _rebound(0.6 * along, up, 20.0 * speed * random.uniform(0.5, 1.0))}
 
 
 def _contact(along: float) -> dict[str, float]:
@@ -82,10 +82,10 @@ def _attitude(random: np.random.Generator) -> dict[str, float]:
     )
 
 
-def _rebound(along: float, up: float) -> dict[str, float]:
+def _rebound(along: float, up: float, spin: float) -> dict[str, float]:
     """The motion after the touchdown."""
     return {
         "speed_out": math.hypot(along, up), "elevation_out": math.atan2(up, along), "azimuth_out": 0.0,
-        "spin_out": 0.1, "velocity_out_x": along, "velocity_out_y": 0.0, "velocity_out_z": up,
-        "spin_out_x": 0.0, "spin_out_y": 0.1, "spin_out_z": 0.0,
+        "spin_out": spin, "velocity_out_x": along, "velocity_out_y": 0.0, "velocity_out_z": up,
+        "spin_out_x": 0.0, "spin_out_y": spin, "spin_out_z": 0.0,
     }  # fmt: skip

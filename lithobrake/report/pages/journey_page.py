@@ -1,0 +1,128 @@
+"""The page of a study of journeys: where they end, then what decides it, the first touchdown, and the emulator."""
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from lithobrake.report.content import Content, LiveSection, Plot
+from lithobrake.report.figures.journey_map import journey_map, places_by_end
+from lithobrake.report.figures.journey_numbers import Spread, attitude_figure, counts_figure, spreads_figure
+from lithobrake.report.figures.map_figure import Share
+from lithobrake.report.figures.style import FATE_COLOURS
+from lithobrake.report.live.explorer import explorer_sections
+from lithobrake.report.live.views import view_sections
+from lithobrake.report.page_data import JourneyPage
+from lithobrake.report.pages.drawn_page import drawn_plots
+from lithobrake.report.tables.journey_tables import journey_tables, rest_tables, tiles
+from lithobrake.report.words import journey_captions as words
+from lithobrake.report.words.journey_captions import END_WORDS
+from lithobrake.results.journey_results import EndShare
+from lithobrake.vocabulary.outcomes import JourneyEnd
+from lithobrake.vocabulary.percentages import LEVEL
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+WHERE, DECIDES, FIRST, EMULATOR = "Where it ends up", "What decides the first touchdown", "The first touchdown", "The emulator"
+# Figures of a drawn study by the part of this page, with another title where its own speaks of more.
+OF_FIRST = {
+    "bed": "", "landing": "A first touchdown", "runs": "What the first touchdowns gave",
+    "map": "Where the first flight ends", "body": "The same on the body",
+}  # fmt: skip
+OF_EMULATOR = {"calibration": "", "outputs": "What may come out of a first touchdown", "rare": ""}
+
+
+def journey_content(data: JourneyPage) -> Content:
+    """All that the page shows of the study."""
+    plots = [*_ends(data), *_decides(data), *_part(data, FIRST, OF_FIRST), *_part(data, EMULATOR, OF_EMULATOR)]
+    live = [*map(_of_first, explorer_sections(data)), *view_sections(data)]
+    return Content(words.answer(data), words.journey_warnings(data), tiles(data), plots, journey_tables(data), live)
+
+
+def _ends(data: JourneyPage) -> list[Plot]:
+    """How the journeys end, the first under its heading."""
+    plots = [
+        Plot("ends", "Where the landers rest", words.rest_map(data), lambda: _draw_map(data), WHERE, rest_tables(data)),
+        Plot("times", "Time to rest and distance", words.times(data), lambda: _draw_times(data)),
+        Plot("counts", "Touchdowns and contacts", words.counts(data), lambda: _draw_counts(data)),
+        Plot("attitude", "Side down and tilt", words.attitude(data), lambda: _draw_attitude(data)),
+    ]
+    shown = [plot for plot in plots if plot.sentence]
+    return [replace(shown[0], heading=WHERE), *shown[1:]]
+
+
+def _decides(data: JourneyPage) -> list[Plot]:
+    """The parts of the variance of the first touchdown, where they are known."""
+    plot = next(one for one in drawn_plots(data) if one.name == "variance")
+    title = "Parts of the variance"
+    return [replace(plot, title=title, sentence=words.first_variance(data), heading=DECIDES)]
+
+
+def _part(data: JourneyPage, heading: str, titles: dict[str, str]) -> list[Plot]:
+    """Figures of a drawn study under a heading, each saying that it is of the first touchdown."""
+    found = [plot for plot in drawn_plots(data) if plot.name in titles and plot.sentence and _is_drawn(data, plot)]
+    said = [
+        replace(plot, title=titles[plot.name] or plot.title, sentence=_sentence(plot), heading="" if row else heading)
+        for row, plot in enumerate(found)
+    ]
+    return [plot for plot in said if plot.sentence]
+
+
+def _is_drawn(data: JourneyPage, plot: Plot) -> bool:
+    """Whether there is a picture: a program or function of the user's own has no bed."""
+    return plot.name != "bed" or data.bed is not None
+
+
+def _sentence(plot: Plot) -> str:
+    return plot.sentence if plot.name == "bed" else words.of_first_touchdown(plot.sentence)
+
+
+def _of_first(section: LiveSection) -> LiveSection:
+    return replace(section, heading=f"{section.heading} of the first touchdown")
+
+
+def _draw_map(data: JourneyPage) -> "Figure":
+    table, site = data.journeys, data.results.site
+    places = places_by_end(END_WORDS, FATE_COLOURS, table["end"], table["latitude_deg"], table["longitude_deg"])
+    shares = [_share(END_WORDS[name], one, FATE_COLOURS[name]) for name, one in data.ends.items()]
+    radius = float(np.linalg.norm(site.place_m))
+    aim, regions = (site.latitude_deg, site.longitude_deg), data.at_rest.regions
+    return journey_map(places, regions, aim, radius, shares, "all journeys", data.body_vertices)
+
+
+def _share(name: str, one: EndShare, colour: str) -> Share:
+    return Share(name, one.share, one.lower, one.upper, LEVEL, colour)
+
+
+def _draw_times(data: JourneyPage) -> "Figure":
+    size, unit = words.time_unit(data)
+    rest = data.at_rest
+    return spreads_figure(
+        [
+            Spread(f"time to rest [{unit}]", _of_rest(data, "time_s") / size, rest.time_s, 1.0 / size),
+            Spread("distance from the aim point [m]", _of_rest(data, "distance"), rest.distance_m),
+        ]
+    )
+
+
+def _draw_counts(data: JourneyPage) -> "Figure":
+    table = data.journeys
+    counts = {"touchdowns": table["touchdowns"], "contacts with the ground": table["contacts"]}
+    return counts_figure(counts, table["end"], END_WORDS)
+
+
+def _draw_attitude(data: JourneyPage) -> "Figure | None":
+    rest = data.at_rest
+    if rest.tilt_deg is None:
+        return None
+    colour = FATE_COLOURS[JourneyEnd.AT_REST]
+    sides = sorted(rest.faces.items(), key=lambda one: -one[1].share)
+    tilt = Spread("tilt of the side that is down [deg]", _of_rest(data, "tilt_deg"), rest.tilt_deg)
+    return attitude_figure([_share(name, one, colour) for name, one in sides], "those at rest", tilt)
+
+
+def _of_rest(data: JourneyPage, name: str) -> np.ndarray:
+    """A number of the landers at rest, shape [lander]."""
+    values: np.ndarray = data.journeys[name][data.journeys["end"] == JourneyEnd.AT_REST]
+    return values

@@ -1,0 +1,91 @@
+"""The first numbers and the tables of the page of a study of journeys."""
+
+from dataclasses import replace
+
+from lithobrake.report.content import PageTable, Tile
+from lithobrake.report.page_data import JourneyPage
+from lithobrake.report.tables.drawn_tables import tables
+from lithobrake.report.words.drawn_warnings import as_sentence, interval
+from lithobrake.report.words.journey_captions import END_WORDS, quantile_words, time_unit
+from lithobrake.report.words.numbers import number
+from lithobrake.results.journey_results import RestQuantiles
+from lithobrake.vocabulary.outcomes import JourneyEnd
+from lithobrake.vocabulary.percentages import LEVEL, interval_digits, percent, with_interval
+
+# Tables of any drawn study that are of more than the first touchdown, and one that has another name here.
+OF_ALL = ("Beds", "Site and body", "Inputs that the runs draw")
+RENAMED = {"The answer": "Return fraction", "After the first bounce": "What follows", "Landing ellipses": "Ellipses"}
+
+
+def tiles(data: JourneyPage) -> list[Tile]:
+    """The share of each end; they add up to 100 %."""
+    count = len(data.journeys["end"])
+    found = []
+    for name, one in data.ends.items():
+        value = percent(one.share, interval_digits(one.lower, one.upper)).removesuffix(" %")
+        sure = interval(one, LEVEL)
+        words = f"{END_WORDS[name]}, {one.count} of {count}" + (f" ({sure})" if sure else "")
+        found.append(Tile(value, "%", words))
+    return found
+
+
+def rest_tables(data: JourneyPage) -> list[PageTable]:
+    """When, where and how the landers rest; none where no lander does."""
+    return [table for table in (_numbers(data), _regions(data)) if table.rows]
+
+
+def _numbers(data: JourneyPage) -> PageTable:
+    rest, (size, unit) = data.at_rest, time_unit(data)
+    columns = ["landers at rest", "median", "95 %"]
+    rows = [
+        _row(f"time from the first touchdown to rest [{unit}]", rest.time_s, size),
+        _row("contacts with the ground", rest.contacts),
+        _row("distance from the aim point [m]", rest.distance_m),
+    ]
+    if rest.tilt_deg is not None:
+        rows.append(_row("tilt of the side that is down [deg]", rest.tilt_deg))
+    note = f"Of {rest.of}; in brackets {percent(LEVEL)} intervals."
+    if rest.faces:
+        sides = sorted(rest.faces.items(), key=lambda one: -one[1].share)
+        note += f" Side down: {', '.join(f'{name} {with_interval(one)}' for name, one in sides)}."
+    has_rest = rest.time_s.median.value is not None
+    return PageTable("When and how they rest", columns, rows if has_rest else [], note, frozenset(columns[1:]))
+
+
+def _row(words: str, found: RestQuantiles, size: float = 1.0) -> list[str]:
+    return [words, quantile_words(found.median, size), quantile_words(found.q95, size)]
+
+
+def _regions(data: JourneyPage) -> PageTable:
+    columns = ["smallest region that holds", "area [m2]", "largest extent [m]"]
+    rows = [
+        [f"{percent(one.share)} of the landers at rest", number(one.area_m2, 2), number(one.largest_extent_m, 2)]
+        for one in data.at_rest.regions
+    ]
+    return PageTable("Where they rest", columns, rows, numbers=frozenset(columns[1:]))
+
+
+def journey_tables(data: JourneyPage) -> list[PageTable]:
+    """How the journeys ended, and the tables of the first touchdowns."""
+    return [_ends(data), *(_of_first(table) for table in tables(data))]
+
+
+def _ends(data: JourneyPage) -> PageTable:
+    columns = ["end", "journeys", f"share ({percent(LEVEL)} interval)", "touchdowns each"]
+    ended, touchdowns = data.journeys["end"], data.journeys["touchdowns"]
+    rows = []
+    for name, one in data.ends.items():
+        each = number(float(touchdowns[ended == name].mean()), 2) if one.count else ""
+        rows.append([END_WORDS[name], str(one.count), with_interval(one), each])
+    why = next((one.why for one in data.ends.values() if one.why), None)
+    said = [f"{JourneyEnd(name).label}: {JourneyEnd(name).sentence}" for name, one in data.ends.items() if one.count]
+    note = " ".join([f"{words[:1].upper()}{words[1:]}" for words in said] + ([as_sentence(why)] if why else []))
+    return PageTable("How the journeys ended", columns, rows, note, frozenset(columns[1:]))
+
+
+def _of_first(table: PageTable) -> PageTable:
+    """A table of a drawn study under a title that says that it is of the first touchdown, where it is."""
+    if table.title in OF_ALL:
+        return table
+    title = RENAMED.get(table.title, table.title)
+    return replace(table, title=f"First touchdown: {title[:1].lower()}{title[1:]}")

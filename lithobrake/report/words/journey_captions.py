@@ -1,0 +1,117 @@
+"""The sentences of the page of a study of journeys, from the numbers of its summary. They are plain text."""
+
+from lithobrake.report.page_data import JourneyPage
+from lithobrake.report.words.captions import hours, place_words
+from lithobrake.report.words.drawn_captions import variance
+from lithobrake.report.words.drawn_warnings import warnings
+from lithobrake.report.words.numbers import number
+from lithobrake.results.journey_results import RestQuantile
+from lithobrake.vocabulary.outcomes import JourneyEnd
+from lithobrake.vocabulary.percentages import LEVEL, percent, with_interval
+
+HOUR, MINUTE = 3600.0, 60.0
+# How a journey ended, as short as it has to be in a legend.
+END_WORDS: dict[str, str] = {end.value: end.label for end in JourneyEnd}
+FIRST = "Of the first touchdown alone"
+
+
+def answer(data: JourneyPage) -> str:
+    """Where the study lands, how the journeys end, and why there is no interval, if so."""
+    found = data.results.answer
+    has_reason = data.ends[JourneyEnd.AT_REST].why is not None
+    return " ".join([*place_words(data), *found[: 2 if has_reason else 1]])
+
+
+def journey_warnings(data: JourneyPage) -> list[str]:
+    """What makes the numbers of the page weaker than they look; those of runs and emulator are of first touchdowns."""
+    site = data.results.site.warning
+    return [*([site] if site else []), *(f"{FIRST}: {words[:1].lower()}{words[1:]}" for words in warnings(data))]
+
+
+def of_first_touchdown(sentence: str) -> str:
+    """A caption that is about the first touchdown; empty stays empty."""
+    return f"{FIRST}. {sentence}" if sentence else ""
+
+
+def has_places(data: JourneyPage) -> bool:
+    """Whether any lander ended on the ground of the body."""
+    return any(data.ends[end].count for end in (JourneyEnd.AT_REST, JourneyEnd.UNDER_WAY))
+
+
+def rest_map(data: JourneyPage) -> str:
+    """The map of the ends."""
+    if not has_places(data):
+        return ""
+    rest, at_rest = data.at_rest, data.ends[JourneyEnd.AT_REST]
+    said = [f"{with_interval(at_rest)} of {len(data.journeys['end'])} landers come to rest within {_limit(data)}."]
+    if rest.regions:
+        areas = " and ".join(f"{percent(one.share)} of them ({number(one.area_m2, 2)} m2)" for one in rest.regions)
+        said.append(f"The lines enclose the smallest regions with {areas}, by a density fitted to their places.")
+    elif rest.why_no_regions:
+        said.append(f"No regions are drawn: {rest.why_no_regions.rstrip('.')}.")
+    said.append("Landers that escaped, came down on the partner or failed have no place on this map.")
+    return " ".join(said)
+
+
+def times(data: JourneyPage) -> str:
+    """The figure of times and distances."""
+    time, distance = data.at_rest.time_s, data.at_rest.distance_m
+    if time.median.value is None or distance.median.value is None:
+        return ""
+    size, unit = time_unit(data)
+    return (
+        f"Half of the landers at rest came to rest within {quantile_words(time.median, size)} {unit} after the first "
+        f"touchdown and {quantile_words(distance.median)} m from the aim point; 95 % within "
+        f"{quantile_words(time.q95, size)} {unit} and {quantile_words(distance.q95)} m. Dots: median and 95th "
+        f"percentile; bars: their {percent(LEVEL)} intervals over beds and impact points, dotted where an end is not "
+        "known."
+    )
+
+
+def counts(data: JourneyPage) -> str:
+    """The figure of touchdowns and contacts."""
+    total, journeys = data.journeys["touchdowns"].sum(), len(data.journeys["end"])
+    contacts = data.at_rest.contacts.median
+    said = (
+        f"{journeys} journeys have {total:.0f} touchdowns, {number(total / journeys, 2)} each; each is a simulated "
+        "landing, and may have several contacts with hops between them."
+    )
+    if contacts.value is None:
+        return said
+    return f"{said} Of those at rest the median is {quantile_words(contacts)} contacts."
+
+
+def attitude(data: JourneyPage) -> str:
+    """The figure of sides and tilts."""
+    tilt = data.at_rest.tilt_deg
+    if not data.at_rest.faces or tilt is None or tilt.median.value is None:
+        return ""
+    name, most = max(data.at_rest.faces.items(), key=lambda one: one[1].share)
+    return (
+        f"The side {name} is down most often, for {with_interval(most)} of the landers at rest. Its axis is "
+        f"{quantile_words(tilt.median)} deg off the plumb line in the median, {quantile_words(tilt.q95)} deg at the "
+        f"95th percentile. Brackets and bars: {percent(LEVEL)} intervals."
+    )
+
+
+def first_variance(data: JourneyPage) -> str:
+    """The figure of the parts of the variance; empty where it has none."""
+    return of_first_touchdown(variance(data)) if any(data.results.variance_shares.values()) else ""
+
+
+def quantile_words(one: RestQuantile, size: float = 1.0) -> str:
+    """A quantile with its interval, "27 (23-32)", or with the bound that is known."""
+    value = number((one.value or 0.0) / size, 2)
+    low, high = ("" if end is None else number(end / size, 2) for end in (one.lower, one.upper))
+    if low and high:
+        return f"{value} ({low}-{high})"
+    return f"{value} (at least {low})" if low else f"{value} (at most {high})" if high else value
+
+
+def time_unit(data: JourneyPage) -> tuple[float, str]:
+    """The unit of times to rest [s], and its sign: minutes below two hours."""
+    return (MINUTE, "min") if (data.at_rest.time_s.median.value or 0.0) < 2.0 * HOUR else (HOUR, "h")
+
+
+def _limit(data: JourneyPage) -> str:
+    return hours(data.study["journey"]["duration"])
