@@ -57,7 +57,6 @@ def land(
     world.time_step = world.shortest_contact(landing.speed) / landing.contact.steps_per_contact
     world.watch(number)
     judge = OutcomeJudge(bed, lander, landing, world, number, frame_count)
-    chunk = max(1, int(landing.contact.steps_per_contact / CHECKS_PER_CONTACT))
     reach = moving_reach(bed.grain_diameter, lander, landing)
     # A lander slower than that cannot leave: grains count as slow beside this speed at least.
     slowest = math.sqrt(2.0 * max(0.0, capture_lift(lander, -landing.gravity[2])))
@@ -70,7 +69,7 @@ def land(
                 resolved_speed=contact.resolved_speed * telling, held_speed=contact.held_speed * telling, reach=reach,
             )  # fmt: skip
         else:
-            world.run(steps=chunk)
+            world.run(steps=max(1, int(landing.contact.steps_per_contact / CHECKS_PER_CONTACT)))
         judge.look()
         progress(min((world.time - judge.start_time) / landing.time_limit, 1.0), "landing, up to its time limit")
     return judge.outcome()
