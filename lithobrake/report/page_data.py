@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from lithobrake.files.reading import DamagedFileError, reading
 from lithobrake.results import ExplorerTables, MovingBodies, StudyResults, Table
+from lithobrake.results.emulator_results import EmulatorResults
 from lithobrake.results.expansions import OutputErrors
 from lithobrake.results.journey_results import EndShare, JourneyRest
 from lithobrake.results.json_values import from_json
@@ -20,9 +21,10 @@ from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus, Touchdow
 Array = NDArray[np.float64]
 FILES = ("summary.json", "study.toml")
 # What the last stages of either method write before the report.
-OF_ANY_STUDY = ("samples.h5", "explorer.h5", "flights.csv", "flight_paths.h5", "body.obj")
-PAPER_FILES = (*FILES, "scores.json", "rest.csv", *OF_ANY_STUDY)
-DRAWN_FILES = (*FILES, "designs/drawn.csv", "rest.csv", *OF_ANY_STUDY)
+OF_ANY_STUDY = ("flight_paths.h5", "body.obj")
+OF_SAMPLES = ("samples.h5", "explorer.h5", "flights.csv", "rest.csv")
+PAPER_FILES = (*FILES, "scores.json", *OF_SAMPLES, *OF_ANY_STUDY)
+DRAWN_FILES = (*FILES, "designs/drawn.csv", *OF_SAMPLES, *OF_ANY_STUDY)
 JOURNEY_FILES = (*FILES, "designs/drawn.csv", "journeys.csv", "touchdowns.csv", *OF_ANY_STUDY)
 GROUNDS = ("soil", "hard")
 # More dots than this only cover each other, and a picture of ten million takes minutes.
@@ -33,16 +35,11 @@ DRAWN_COUNT = 200_000
 class PageData:
     """What the page shows of any study.
 
-    study: the tables of its file; results and provenance: those of summary.json;
-    latitude, longitude: of the impacts [deg], shape [impact], and facet, the one of the body that was hit;
-    body_vertices of the body [m] and its body_faces, counted from 0; rest: latitude and longitude [deg] of the landers
-    that rest, by ground; paths: places on the ways of some flights [m] and how each ended; flights: of the samples;
-    explorer: what the page evaluates of the model; samples: of the model. bed and landing are None where a solver of
-    the user's own made the touchdowns.
+    study: the tables of its file; results and provenance: those of summary.json; body_vertices of the body [m] and its
+    body_faces, counted from 0; paths: places on the ways of some flights [m] and how each ended. bed and landing are
+    None where a solver of the user's own made the touchdowns.
     """
 
-    model: ClassVar[str]
-    """What was fitted to the runs and stands for them in the samples, in a word."""
     digits: ClassVar[int]
     """Digits behind the point of a share in per cent without an interval, as its answer prints them."""
     study: dict[str, Any]
@@ -51,16 +48,9 @@ class PageData:
     study_text: str
     bed: MovingBodies | None
     landing: MovingBodies | None
-    latitude: Array
-    longitude: Array
-    facet: NDArray[np.int64]
     body_vertices: Array
     body_faces: NDArray[np.int64]
-    rest: dict[str, tuple[Array, Array]]
     paths: tuple[Array, tuple[str, ...]]
-    flights: Table
-    explorer: ExplorerTables
-    samples: Table
 
     @property
     def level(self) -> float:
@@ -74,7 +64,27 @@ class PageData:
 
 
 @dataclass(frozen=True)
-class PaperPage(PageData):
+class SampledPage(PageData):
+    """What the page shows of a study whose runs a model stands for, which was sampled.
+
+    latitude, longitude: of the impacts of samples [deg], shape [impact], and facet, the one of the body that was hit;
+    rest: latitude and longitude [deg] of the landers that rest, by ground; flights: of the samples; explorer: what the
+    page evaluates of the model; samples: of the model.
+    """
+
+    model: ClassVar[str]
+    """What was fitted to the runs and stands for them in the samples, in a word."""
+    latitude: Array
+    longitude: Array
+    facet: NDArray[np.int64]
+    rest: dict[str, tuple[Array, Array]]
+    flights: Table
+    explorer: ExplorerTables
+    samples: Table
+
+
+@dataclass(frozen=True)
+class PaperPage(SampledPage):
     """Results of a paper study; scores: by set of runs and output, with the error of each run."""
 
     model, digits = "expansion", 1
@@ -93,14 +103,13 @@ class PaperPage(PageData):
 
 
 @dataclass(frozen=True)
-class DrawnPage(PageData):
-    """Results of a drawn study; runs: without auxiliary ones; rare: what `lithobrake rare` found, by limit state."""
+class RunsPage(PageData):
+    """Results of drawn landings; runs: without auxiliary ones."""
 
-    model, digits = "emulator", 0
+    digits = 0
 
     results: DrawnResults
     runs: Table
-    rare: Mapping[str, RareLimitState]
 
     @property
     def level(self) -> float:
@@ -122,10 +131,20 @@ class DrawnPage(PageData):
 
 
 @dataclass(frozen=True)
-class JourneyPage(DrawnPage):
+class DrawnPage(RunsPage, SampledPage):
+    """Results of a drawn study of single landings; rare: what `lithobrake rare` found, by limit state."""
+
+    model = "emulator"
+
+    rare: Mapping[str, RareLimitState]
+    emulator: EmulatorResults
+
+
+@dataclass(frozen=True)
+class JourneyPage(RunsPage):
     """Results of a study whose landers were followed to rest; journeys: a row each; at_rest: numbers of those at rest.
 
-    ends: shares of the journeys by end; runs, samples, flights and emulator are of the first touchdowns alone.
+    ends: shares of the journeys by end; runs are the first touchdowns alone.
     """
 
     journeys: Table
@@ -139,19 +158,22 @@ class JourneyPage(DrawnPage):
         return f"{words}, a first touchdown" if words else ""
 
 
-def page_results(found: StudyResults) -> PaperPage | DrawnPage:
+def page_results(found: StudyResults) -> PaperPage | DrawnPage | JourneyPage:
     """What the page shows of a study. Raises ValueError that names the file when one is missing or damaged."""
     _refuse_without(found.folder, FILES)
     results = found.results
     if isinstance(results, PaperResults):
         _refuse_without(found.folder, PAPER_FILES)
-        return PaperPage(results=results, **_of_any_study(found), scores=_scores(found))
+        return PaperPage(results=results, **_of_any_study(found), **_of_samples(found), scores=_scores(found))
     journeys = _journeys(found, results)
     _refuse_without(found.folder, JOURNEY_FILES if journeys else DRAWN_FILES)
     runs = found.runs.where(found.runs["design"] == "drawn")
     if journeys:
-        return JourneyPage(results=results, **_of_any_study(found), runs=runs, rare=found.rare, **journeys)
-    return DrawnPage(results=results, **_of_any_study(found), runs=runs, rare=found.rare)
+        return JourneyPage(results=results, **_of_any_study(found), runs=runs, **journeys)
+    if results.emulator is None:
+        raise DamagedFileError(f"{found.folder / 'summary.json'} says nothing of an emulator; {found.remedy}")
+    own: dict[str, Any] = {"runs": runs, "rare": found.rare, "emulator": results.emulator}
+    return DrawnPage(results=results, **_of_any_study(found), **_of_samples(found), **own)
 
 
 def _journeys(found: StudyResults, results: DrawnResults) -> dict[str, Any]:
@@ -168,7 +190,6 @@ def _of_any_study(found: StudyResults) -> dict[str, Any]:
     has_scenes = bool(found.results.beds)
     if has_scenes:
         _refuse_without(found.folder, ("landing.h5", "beds/bed_0.h5"))
-    latitude, longitude, facet = _impacts(found)
     vertices, faces = found.body_shape
     with reading(found.folder / "summary.json", found.remedy):
         provenance = from_json(Provenance, found.summary["provenance"], "provenance")
@@ -178,16 +199,23 @@ def _of_any_study(found: StudyResults) -> dict[str, Any]:
         "study_text": found.study_text,
         "bed": found.bed_bodies(0) if has_scenes else None,
         "landing": found.median_landing if has_scenes else None,
-        "latitude": latitude,
-        "longitude": longitude,
-        "facet": facet,
         "body_vertices": vertices,
         "body_faces": faces,
         "paths": found.flight_paths,
+    }
+
+
+def _of_samples(found: StudyResults) -> dict[str, Any]:
+    """The fields of a study whose model was sampled."""
+    latitude, longitude, facet = _impacts(found)
+    return {
+        "latitude": latitude,
+        "longitude": longitude,
+        "facet": facet,
         "flights": found.flights,
         "explorer": found.explorer,
         "samples": found.samples,
-        "rest": {ground: _resting(found, ground) for ground in GROUNDS} if _follows_samples(found) else {},
+        "rest": {ground: _resting(found, ground) for ground in GROUNDS},
     }
 
 
@@ -204,11 +232,6 @@ def _impacts(found: StudyResults) -> tuple[Array, Array, NDArray[np.int64]]:
     path = found.folder / "flights.csv"
     impacts = found.flights.where(found.flights["status"] == FlightStatus.IMPACT)
     return *_places(path, impacts, found.remedy), impacts["facet"].astype(np.int64)
-
-
-def _follows_samples(found: StudyResults) -> bool:
-    """Whether samples of the model were followed from bounce to bounce."""
-    return not isinstance(found.results.rest, JourneyRest)
 
 
 def _resting(found: StudyResults, ground: str) -> tuple[Array, Array]:

@@ -50,7 +50,7 @@ def write_report(folder: Path, progress: Callable[[int, int], None] = lambda don
     return path
 
 
-def _content(data: PaperPage | DrawnPage) -> Content:
+def _content(data: PaperPage | DrawnPage | JourneyPage) -> Content:
     """What the page of a study has, by its method."""
     if isinstance(data, JourneyPage):
         return journey_content(data)

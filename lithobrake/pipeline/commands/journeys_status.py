@@ -78,7 +78,7 @@ def _end(record: Record) -> JourneyEnd | None:
     """How a journey ended with its last touchdown; None where it goes on, or ended in flight."""
     if record.status == RunStatus.FAILED:
         return JourneyEnd.FAILED
-    return ENDS.get(TouchdownOutcome(record.outcome)) if record.status == RunStatus.DONE else None
+    return ENDS.get(TouchdownOutcome(str(record.outcome))) if record.status == RunStatus.DONE else None
 
 
 def _kept(record: Record) -> frozenset[tuple[str, float]]:

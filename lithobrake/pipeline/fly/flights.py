@@ -90,10 +90,7 @@ def fly_samples(job: Job) -> None:
     job.folder.write_json("flights.json", _checks(job, start))
     write_shape(body, job.folder)
     flown = fly_starts(job, start, "flights")
-    is_of_samples = study.journey is None
-    write_flight_paths(
-        job, body, Ways.of_samples(flown, start.sample) if is_of_samples else Ways.of_journeys(job.folder)
-    )
+    write_flight_paths(job, body, Ways.of_samples(flown, start.sample))
     write_table(job.folder, "flights.csv", COLUMNS, flight_rows(start, flown))
 
 

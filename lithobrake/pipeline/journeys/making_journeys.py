@@ -8,12 +8,12 @@ import numpy as np
 
 from lithobrake.campaign import Ledger, Limits, Record, RunOptions, Runs, Tally, run_chains
 from lithobrake.pipeline.design.dependencies import touchdown_dependencies
+from lithobrake.pipeline.fly.flight_paths import Ways, write_flight_paths
 from lithobrake.pipeline.fly.flights import write_shape
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.journeys.journey import Journey
 from lithobrake.pipeline.journeys.journey_model import JourneyModel
 from lithobrake.pipeline.journeys.journey_tables import write_journeys
-from lithobrake.pipeline.journeys.journey_ways import write_ways
 from lithobrake.pipeline.runs.making_runs import account
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.runs.touchdown_runs import model_of
@@ -39,7 +39,7 @@ def make_journeys(job: Job) -> None:
     DesignRuns.of(Runs(records, 0)).save(job.folder, "touchdowns")
     write_journeys(job.folder, journeys)
     write_shape(job.site.body, job.folder)
-    write_ways(job, journeys)
+    write_flight_paths(job, job.site.body, Ways.of_journeys(job.folder))
 
 
 def begun(job: Job) -> list[Journey]:
@@ -88,9 +88,11 @@ def progress_words(journeys: Sequence[Journey], touchdown_count: int) -> str:
     said = f"{len(ends)} of {len(journeys)} journeys, {touchdown_count} touchdowns"
     if not ends:
         return said
-    share = ends.count(JourneyEnd.AT_REST) / len(ends)
-    error = INTERVAL_ERRORS * math.sqrt(share * (1.0 - share) / len(ends))
-    return f"{said}, at rest so far {100 * share:.0f} +- {100 * error:.0f} %"
+    at_rest, more = ends.count(JourneyEnd.AT_REST), INTERVAL_ERRORS**2
+    # With half as many added on either side the error of a share next to 0 or 1 is none of 0. Source: [Agresti-1998].
+    share = (at_rest + 0.5 * more) / (len(ends) + more)
+    error = INTERVAL_ERRORS * math.sqrt(share * (1.0 - share) / (len(ends) + more))
+    return f"{said}, at rest so far {100 * at_rest / len(ends):.0f} +- {100 * error:.0f} %"
 
 
 def _say_what_was_known(job: Job, records: Sequence[Record]) -> None:

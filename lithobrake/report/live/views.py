@@ -14,7 +14,7 @@ from lithobrake.report.figures.body_figure import BARE, colour_ends, facet_densi
 from lithobrake.report.figures.hulls import Scene, scene
 from lithobrake.report.figures.style import FATE_COLOURS
 from lithobrake.report.live.packed import deflated, script_data
-from lithobrake.report.page_data import JourneyPage, PageData
+from lithobrake.report.page_data import JourneyPage, PageData, SampledPage
 from lithobrake.report.words.numbers import number
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyEnd
 
@@ -54,7 +54,7 @@ def view_sections(data: PageData) -> list[LiveSection]:
         found.append(_landing(scene(data.landing, has_lander=True), data.shown_landing))
     if isinstance(data, JourneyPage):
         found += _ends(data)
-    elif len(data.facet):
+    elif isinstance(data, SampledPage) and len(data.facet):
         found.append(_body(data))
     return found
 
@@ -130,7 +130,7 @@ def _continuous(orientation: Array) -> Array:
     return orientation * np.concatenate([np.ones_like(signs[:1]), signs])[:, :, None]
 
 
-def _body(data: PageData) -> LiveSection:
+def _body(data: SampledPage) -> LiveSection:
     """The body, facets coloured as in its figure, and the paths of some flights."""
     vertices, faces = data.body_vertices, data.body_faces
     density = facet_density(vertices[faces], data.facet)

@@ -13,7 +13,7 @@ from lithobrake.report.figures.scatter_figure import scatter_figure
 from lithobrake.report.figures.variance_figure import variance_figure
 from lithobrake.report.live.explorer import explorer_sections
 from lithobrake.report.live.views import view_sections
-from lithobrake.report.page_data import DrawnPage
+from lithobrake.report.page_data import DrawnPage, RunsPage
 from lithobrake.report.pages import shared_plots as any_study
 from lithobrake.report.tables.drawn_tables import colour_input, tables, tiles
 from lithobrake.report.words import captions, drawn_captions
@@ -40,10 +40,7 @@ def drawn_plots(data: DrawnPage) -> list[Plot]:
     """Its figures in the order of the work."""
     colour, words = colour_input(data), drawn_captions
     plots = [
-        Plot("bed", "The surface", captions.bed(data), lambda: any_study.draw_bed(data)),
-        Plot("landing", "A landing", captions.landing(data), lambda: any_study.draw_landing(data)),
-        Plot("runs", "What the landings gave", words.runs(data), lambda: _runs(data)),
-        Plot("variance", "What decides", words.variance(data), lambda: _variance(data)),
+        *landing_plots(data),
         Plot("calibration", "Whether to believe the emulator", words.calibration(data), lambda: _calibration(data)),
         Plot("outputs", "What may come out", words.samples(data, colour), lambda: _samples(data, colour)),
         Plot("map", "Where the lander comes down", captions.impact_map(data), lambda: any_study.draw_map(data)),
@@ -58,7 +55,18 @@ def drawn_plots(data: DrawnPage) -> list[Plot]:
     return plots
 
 
-def _runs(data: DrawnPage) -> "Figure":
+def landing_plots(data: RunsPage) -> list[Plot]:
+    """The figures of the landings themselves, or of the first ones of journeys."""
+    words = drawn_captions
+    return [
+        Plot("bed", "The surface", captions.bed(data), lambda: any_study.draw_bed(data)),
+        Plot("landing", "A landing", captions.landing(data), lambda: any_study.draw_landing(data)),
+        Plot("runs", "What the landings gave", words.runs(data), lambda: _runs(data)),
+        Plot("variance", "What decides", words.variance(data), lambda: _variance(data)),
+    ]
+
+
+def _runs(data: RunsPage) -> "Figure":
     runs = data.runs
     nan = np.full(len(runs["key"]), np.nan)
     column = {name: runs.get(name, nan) for name in ("speed_out", "elevation_out", OVER_RIM, "bed")}
@@ -76,13 +84,13 @@ def _runs(data: DrawnPage) -> "Figure":
     return runs_figure(landings, quantiles)
 
 
-def _variance(data: DrawnPage) -> "Figure | None":
+def _variance(data: RunsPage) -> "Figure | None":
     shares = data.results.variance_shares
     return variance_figure(shares, RETURNS_ROW, data.level) if any(shares.values()) else None
 
 
 def _calibration(data: DrawnPage) -> "Figure":
-    return calibration_figure(data.results.emulator.scores.outputs)
+    return calibration_figure(data.emulator.scores.outputs)
 
 
 def _samples(data: DrawnPage, colour: str | None) -> "Figure | None":

@@ -1,19 +1,18 @@
-"""The page of a study of journeys: where they end, then what decides it, the first touchdown, and the emulator."""
+"""The page of a study of journeys: where they end, then what decides it, and the first touchdown."""
 
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lithobrake.report.content import Content, LiveSection, Plot
+from lithobrake.report.content import Content, Plot
 from lithobrake.report.figures.journey_map import journey_map, places_by_end
 from lithobrake.report.figures.journey_numbers import Spread, attitude_figure, counts_figure, spreads_figure
 from lithobrake.report.figures.map_figure import Share
 from lithobrake.report.figures.style import FATE_COLOURS
-from lithobrake.report.live.explorer import explorer_sections
 from lithobrake.report.live.views import view_sections
 from lithobrake.report.page_data import JourneyPage
-from lithobrake.report.pages.drawn_page import drawn_plots
+from lithobrake.report.pages.drawn_page import landing_plots
 from lithobrake.report.tables.journey_tables import journey_tables, rest_tables, tiles
 from lithobrake.report.words import journey_captions as words
 from lithobrake.report.words.journey_captions import END_WORDS
@@ -24,19 +23,16 @@ from lithobrake.vocabulary.percentages import LEVEL
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-WHERE, DECIDES, FIRST, EMULATOR = "Where it ends up", "What decides the first touchdown", "The first touchdown", "The emulator"
+WHERE, DECIDES, FIRST = "Where it ends up", "What decides the first touchdown", "The first touchdown"
 # Figures of a drawn study by the part of this page, with another title where its own speaks of more.
 OF_FIRST = {
     "bed": "", "landing": "A first touchdown", "runs": "What the first touchdowns gave",
-    "map": "Where the first flight ends", "body": "The same on the body",
 }  # fmt: skip
-OF_EMULATOR = {"calibration": "", "outputs": "What may come out of a first touchdown", "rare": ""}
 
 
 def journey_content(data: JourneyPage) -> Content:
     """All that the page shows of the study."""
-    plots = [*_ends(data), *_decides(data), *_part(data, FIRST, OF_FIRST), *_part(data, EMULATOR, OF_EMULATOR)]
-    live = [*map(_of_first, explorer_sections(data)), *view_sections(data)]
+    plots, live = [*_ends(data), *_decides(data), *_part(data, FIRST, OF_FIRST)], view_sections(data)
     return Content(words.answer(data), words.journey_warnings(data), tiles(data), plots, journey_tables(data), live)
 
 
@@ -54,14 +50,14 @@ def _ends(data: JourneyPage) -> list[Plot]:
 
 def _decides(data: JourneyPage) -> list[Plot]:
     """The parts of the variance of the first touchdown, where they are known."""
-    plot = next(one for one in drawn_plots(data) if one.name == "variance")
+    plot = next(one for one in landing_plots(data) if one.name == "variance")
     title = "Parts of the variance"
     return [replace(plot, title=title, sentence=words.first_variance(data), heading=DECIDES)]
 
 
 def _part(data: JourneyPage, heading: str, titles: dict[str, str]) -> list[Plot]:
     """Figures of a drawn study under a heading, each saying that it is of the first touchdown."""
-    found = [plot for plot in drawn_plots(data) if plot.name in titles and plot.sentence and _is_drawn(data, plot)]
+    found = [plot for plot in landing_plots(data) if plot.name in titles and plot.sentence and _is_drawn(data, plot)]
     said = [
         replace(plot, title=titles[plot.name] or plot.title, sentence=_sentence(plot), heading="" if row else heading)
         for row, plot in enumerate(found)
@@ -76,10 +72,6 @@ def _is_drawn(data: JourneyPage, plot: Plot) -> bool:
 
 def _sentence(plot: Plot) -> str:
     return plot.sentence if plot.name == "bed" else words.of_first_touchdown(plot.sentence)
-
-
-def _of_first(section: LiveSection) -> LiveSection:
-    return replace(section, heading=f"{section.heading} of the first touchdown")
 
 
 def _draw_map(data: JourneyPage) -> "Figure":

@@ -11,7 +11,7 @@ from lithobrake.report.figures.landing_figure import landing_figure
 from lithobrake.report.figures.map_figure import Share, map_figure
 from lithobrake.report.figures.rest_figure import RestMap, rest_figure
 from lithobrake.report.figures.style import FATE_COLOURS
-from lithobrake.report.page_data import PageData, PaperPage
+from lithobrake.report.page_data import PageData, PaperPage, SampledPage
 from lithobrake.report.tables.dispersion_tables import GROUND_WORDS, followed, parts
 from lithobrake.report.words.captions import hours, thousands
 from lithobrake.results.dispersion import RestResults
@@ -52,7 +52,7 @@ def draw_landing(data: PageData) -> "Figure | None":
     return landing_figure(scene(data.landing, has_lander=True))
 
 
-def draw_map(data: PageData) -> "Figure":
+def draw_map(data: SampledPage) -> "Figure":
     table, site, limit = data.results.shares, data.results.site, hours(data.study["flight"]["duration"])
     words = {key: SHORT_OUTCOME_WORDS.get(key, long).format(hours=limit) for key, long in parts(data).items()}
     shares = [_share(data, key, short, table.outcomes[key]) for key, short in words.items()]
@@ -61,14 +61,14 @@ def draw_map(data: PageData) -> "Figure":
     return map_figure(data.latitude, data.longitude, where, shares, data.body_vertices, ellipses, _whole(data))
 
 
-def _share(data: PageData, fate: str, words: str, entry: CountedShare) -> Share:
+def _share(data: SampledPage, fate: str, words: str, entry: CountedShare) -> Share:
     """A share of the summary, with its interval or its limit where it has one."""
     limit = entry.upper_limit
     lower, upper = (entry.lower, entry.upper) if limit is None else (None, limit)
     return Share(words, entry.share, lower, upper, data.level, FATE_COLOURS[fate], data.digits)
 
 
-def _whole(data: PageData) -> str:
+def _whole(data: SampledPage) -> str:
     """What the shares of the flights are shares of."""
     if not isinstance(data, PaperPage):
         return "all landings"
@@ -77,11 +77,11 @@ def _whole(data: PageData) -> str:
     return f"all {words}" if looked_at == count else f"the {words} up to the last that was flown"
 
 
-def draw_body(data: PageData) -> "Figure":
+def draw_body(data: SampledPage) -> "Figure":
     return body_figure(data.body_vertices, data.body_faces, data.facet, np.array(data.results.site.place_m))
 
 
-def draw_rest(data: PageData) -> "Figure":
+def draw_rest(data: SampledPage) -> "Figure":
     found, site, limit = followed(data), data.results.site, hours(data.study["rest"]["duration"])
     rest = data.results.rest
     why_no_soil = rest.why_no_soil if isinstance(rest, RestResults) else None

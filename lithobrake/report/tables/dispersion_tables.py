@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from lithobrake.report.content import PageTable
-from lithobrake.report.page_data import DrawnPage, PageData, PaperPage
+from lithobrake.report.page_data import DrawnPage, PageData, PaperPage, SampledPage
 from lithobrake.report.words.captions import hours, thousands
 from lithobrake.report.words.chance import follows_gaussian
 from lithobrake.report.words.numbers import fixed, flat, number
@@ -46,7 +46,7 @@ QUANTILES = ("quantile_0.05", "quantile_0.5", "quantile_0.95")
 ACCELERATIONS = ("effective_acceleration_outward", "effective_acceleration_along_heading")
 
 
-def outcome_words(data: PageData) -> dict[str, str]:
+def outcome_words(data: SampledPage) -> dict[str, str]:
     """What may become of a landing, in words; the partner is left out where there is none.
 
     So is the return fraction where the ground holds nothing: it is then the share of those that impact again.
@@ -58,19 +58,24 @@ def outcome_words(data: PageData) -> dict[str, str]:
     return {key: text for key, text in OUTCOME_WORDS.items() if key in known.outcomes and key not in absent}
 
 
-def parts(data: PageData) -> dict[str, str]:
+def parts(data: SampledPage) -> dict[str, str]:
     """Those of the outcomes that add up to the whole, in words; `lost` landings of a drawn study are in no other."""
     absent = SUMS if isinstance(data, PaperPage) else (*SUMS, *LOST)
     return {key: words for key, words in outcome_words(data).items() if key not in absent}
 
 
-def dispersion_tables(data: PageData) -> list[PageTable]:
+def site_tables(data: PageData) -> list[PageTable]:
+    """Where the study lands, and how exact its flights are."""
+    return [_site(data)]
+
+
+def dispersion_tables(data: SampledPage) -> list[PageTable]:
     """In the order of the journey, those that have a row."""
     made = (_outcomes, _flights, _statuses, _journeys, _ellipses, _site)
     return [table for table in (make(data) for make in made) if table.rows]
 
 
-def _outcomes(data: PageData) -> PageTable:
+def _outcomes(data: SampledPage) -> PageTable:
     return _outcomes_of_landings(data) if isinstance(data, DrawnPage) else _outcomes_of_samples(data)
 
 
@@ -86,9 +91,10 @@ def _outcomes_of_landings(data: DrawnPage) -> PageTable:
         [words.format(hours=limit), with_interval(shares.outcomes[key]), _by_emulator(shares.emulator, key)]
         for key, words in shown.items()
     ]
+    flown = 0 if shares.emulator is None else shares.emulator.flight_count
     note = (
         f"Of all landings, by {thousands(shares.flight_count)} flights of the runs themselves; the first "
-        f"{len(whole)} rows add up to 100 %. In the last column {thousands(shares.emulator.flight_count)} flown "
+        f"{len(whole)} rows add up to 100 %. In the last column {thousands(flown)} flown "
         f"samples of the {data.model}."
     )
     if shares.outcomes["missing"].count:
@@ -100,16 +106,16 @@ def _outcomes_of_landings(data: DrawnPage) -> PageTable:
     return PageTable("After the first bounce", columns, rows, note, frozenset(columns[1:]))
 
 
-def _by_emulator(shares: EmulatorShares, key: str) -> str:
+def _by_emulator(shares: EmulatorShares | None, key: str) -> str:
     """A share of the samples: unknown outcomes are shares of all, the others of those with an outcome, as by runs."""
-    if key not in shares.outcomes:
+    if shares is None or key not in shares.outcomes:
         return ""
     known = shares.sample_count - shares.outcomes["missing"].count
     total = shares.sample_count if key in (*LOST, "missing") else known
     return percent(shares.outcomes[key].count / total) if total else ""
 
 
-def _outcomes_of_samples(data: PageData) -> PageTable:
+def _outcomes_of_samples(data: SampledPage) -> PageTable:
     """Outcomes of the samples of an expansion, which have no interval."""
     shares, limit = data.results.shares, hours(data.study["flight"]["duration"])
     alone = data.results.without_scatter
@@ -141,7 +147,8 @@ def _flights(data: PageData) -> PageTable:
     columns = ["flights that impact the surface again", "5 %", "median", "95 %"]
     known = flights.impacts.known
     rows = [[words[key], *(_with_ends(one, level) for level in QUANTILES)] for key, one in known.items()]
-    checks, error = flights.checks, flights.checks.gravity_table_error
+    checks = flights.checks
+    error = None if checks is None else checks.gravity_table_error
     whose = next((f"Of {one.of}. " for one in known.values() if one.of), "")
     note = f"{whose}Gravity is summed over the facets."
     if error:
@@ -150,7 +157,7 @@ def _flights(data: PageData) -> PageTable:
             f"over the facets in the median, {number(error.p95, 2)} at the 95th percentile of "
             f"{error.point_count} points."
         )
-    if checks.jacobi_drift_largest_m2_s2 is not None:
+    if checks is not None and checks.jacobi_drift_largest_m2_s2 is not None:
         note += (
             f" The Jacobi constant of {checks.jacobi_flight_count} flights changes by "
             f"{number(checks.jacobi_drift_largest_m2_s2, 2)} m2/s2 at most, without the partner."
@@ -170,7 +177,7 @@ def followed(data: PageData) -> dict[str, GroundResults]:
     return data.results.rest.grounds
 
 
-def _statuses(data: PageData) -> PageTable:
+def _statuses(data: SampledPage) -> PageTable:
     found, limit = followed(data), hours(data.study["rest"]["duration"])
     columns = ["after all bounces", *(GROUND_WORDS[ground] for ground in found)]
     rows = []
@@ -190,7 +197,7 @@ def _statuses(data: PageData) -> PageTable:
     return PageTable("From bounce to bounce", columns, rows, note, frozenset(columns[1:]))
 
 
-def _journeys(data: PageData) -> PageTable:
+def _journeys(data: SampledPage) -> PageTable:
     columns = ["landers that rest", "ground", "5 %", "median", "95 %"]
     words = {"time_s": "time to rest [s]", "rebounds": "rebounds", "path_length": "path [m]"}
     words |= {"slid_length": "slid along the ground [m]", "slid_time_s": "time of that [s]"}
@@ -219,7 +226,7 @@ def _sliding(rest: Mapping[str, Any]) -> str:
     return "slides on by Coulomb friction, on soil that of hull and grain,"
 
 
-def _ellipses(data: PageData) -> PageTable:
+def _ellipses(data: SampledPage) -> PageTable:
     columns = ["places", "share inside", "latitude [deg]", "longitude [deg]", "semi-axes [m]", "heading [deg]", "shape"]
     sets = {"next impact": (data.results.ellipses, len(data.facet))}
     if data.results.without_scatter:

@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
 from lithobrake.report.content import PageTable, Tile
-from lithobrake.report.page_data import DrawnPage
+from lithobrake.report.page_data import DrawnPage, RunsPage
 from lithobrake.report.tables.dispersion_tables import GROUND_WORDS, dispersion_tables, followed
 from lithobrake.report.tables.limit_state_tables import limit_state_tables
 from lithobrake.report.tables.paper_tables import INPUT_COLUMNS, beds_table, input_cells, touchdowns_table
@@ -58,7 +58,7 @@ def tiles(data: DrawnPage) -> list[Tile]:
         value, _, unit = parts.soil.words().partition(" (")[0].partition(" %")
         words = "at least of the variance of the rebound speed is explained by soil"
         found.append(Tile(value, "%" if value[0].isdigit() else unit, f"{words} ({interval(parts.soil, data.level)})"))
-    band = results.emulator.scores.outputs.get("speed_out")
+    band = data.emulator.scores.outputs.get("speed_out")
     if band:
         words = f"of the rebound speeds on {left_out(data)} lay within the {percent(BAND)} bands of the emulator"
         found.append(Tile(percent(band.band_90).removesuffix(" %"), "%", words))
@@ -78,16 +78,22 @@ def _at_rest(data: DrawnPage) -> list[Tile]:
 
 def tables(data: DrawnPage) -> list[PageTable]:
     """Those that have a row."""
-    made: tuple[Callable[[DrawnPage], PageTable], ...] = (
-        _answer, _inputs, _outputs, _directions, _variance, _runs, _emulator, beds_table, touchdowns_table
+    of_emulator = [table for table in (_emulator(data),) if table.rows]
+    of_samples = [*limit_state_tables(data), *rare_tables(data.rare), *dispersion_tables(data)]
+    return [*landing_tables(data), *of_emulator, *of_samples]
+
+
+def landing_tables(data: RunsPage) -> list[PageTable]:
+    """Those of the landings themselves, or of the first ones of journeys, that have a row."""
+    made: tuple[Callable[[RunsPage], PageTable], ...] = (
+        _answer, _inputs, _outputs, _directions, _variance, _runs, beds_table, touchdowns_table
     )  # fmt: skip
     found = [table for table in (make(data) for make in made) if table.rows]
     side = data.results.runs.side_runs
-    beside = [_side_runs(data, side)] if side else []
-    return [*found, *beside, *limit_state_tables(data), *rare_tables(data.rare), *dispersion_tables(data)]
+    return [*found, *([_side_runs(data, side)] if side else [])]
 
 
-def _answer(data: DrawnPage) -> PageTable:
+def _answer(data: RunsPage) -> PageTable:
     returns, missing = data.results.returns, data.results.runs.missing.count
     digits = interval_digits(returns.lower, returns.upper)
     rows = [[f"return fraction: landings that {action(data)}", percent(returns.share, digits)]]
@@ -107,14 +113,14 @@ def _answer(data: DrawnPage) -> PageTable:
     return PageTable("The answer", ["quantity", "value"], rows, note)
 
 
-def _bed_size(data: DrawnPage) -> str:
+def _bed_size(data: RunsPage) -> str:
     """How much ground a bed is; nothing where touchdowns are made without one."""
     if not data.results.beds:
         return ""
     return f" of {' x '.join(f'{length:g}' for length in data.study['bed']['width'])} m"
 
 
-def _outputs(data: DrawnPage) -> PageTable:
+def _outputs(data: RunsPage) -> PageTable:
     """Mean and quantiles of the landings that left."""
     columns = ["output", "unit", "mean", "standard deviation", *LEVELS.values()]
     rows = []
@@ -134,7 +140,7 @@ def _outputs(data: DrawnPage) -> PageTable:
     return PageTable("Outputs of the landings", columns, rows, note, frozenset(columns[2:]))
 
 
-def _directions(data: DrawnPage) -> PageTable:
+def _directions(data: RunsPage) -> PageTable:
     """Mean direction and resultant length of the angles without beginning or end."""
     columns = ["output", "mean direction [deg]", "resultant length"]
     rows = [
@@ -162,7 +168,7 @@ def _estimate(entry: Estimate | None, factor: float) -> str:
     return f"{value} ({number(entry.lower * factor)} to {number(entry.upper * factor)})"
 
 
-def _variance(data: DrawnPage) -> PageTable:
+def _variance(data: RunsPage) -> PageTable:
     """Every part of the variance of each output, soil by input."""
     records = data.results.variance_shares
     known = [record for record in records.values() if record]
@@ -189,7 +195,7 @@ def _parts(record: VarianceParts | None, inputs: Sequence[str], names: Sequence[
     return ["" if one is None else one.words() for one in found]
 
 
-def _runs(data: DrawnPage) -> PageTable:
+def _runs(data: RunsPage) -> PageTable:
     runs = data.results.runs
     total = max(sum(runs.outcomes.values()), 1)
     rows = [[outcome_label(word), str(count), percent(count / total)] for word, count in runs.outcomes.items()]
@@ -204,7 +210,7 @@ def _runs(data: DrawnPage) -> PageTable:
     return PageTable("Outcomes of the runs", ["outcome", "runs", "share"], rows, note, frozenset({"runs", "share"}))
 
 
-def _side_runs(data: DrawnPage, side: SideRuns) -> PageTable:
+def _side_runs(data: RunsPage, side: SideRuns) -> PageTable:
     """What pairs of runs tell of soil and chaos."""
     effects, chaos, rows = side.soil_total_effect, side.chaos_deviation, []
     for name in dict.fromkeys([*effects, *chaos]):
@@ -223,7 +229,7 @@ def _side_runs(data: DrawnPage, side: SideRuns) -> PageTable:
 
 def _emulator(data: DrawnPage) -> PageTable:
     """How the emulator does on beds left out."""
-    emulator = data.results.emulator
+    emulator = data.emulator
     columns = ["output", "skill", f"within the {percent(BAND)} band"]
     rows = [["all together", percent(emulator.scores.joint.energy_skill), ""]]
     for name, score in emulator.scores.outputs.items():
@@ -235,9 +241,9 @@ def _emulator(data: DrawnPage) -> PageTable:
     return PageTable(f"The emulator on {left_out(data)}", columns, rows, note, frozenset(columns[1:]))
 
 
-def _inputs(data: DrawnPage) -> PageTable:
+def _inputs(data: RunsPage) -> PageTable:
     """What every run draws for itself, and which of the uncertain inputs the emulator found to matter."""
-    found, rows = data.results.emulator.found_inputs, []
+    found, rows = _found_inputs(data), []
     # Sizes of grains vary within a bed, and the site from flight to flight: neither is an input of a run.
     for name, law in ((name, law) for name, law in _uncertain(data.study) if name in data.runs):
         rows.append([*input_cells(name, law), "yes" if name in found else "no"])
@@ -252,6 +258,11 @@ def _inputs(data: DrawnPage) -> PageTable:
         else "No significant input (one F test for all inputs and outputs, products included)."
     )
     return PageTable("Inputs that the runs draw", [*INPUT_COLUMNS, "significant"], rows, note)
+
+
+def _found_inputs(data: RunsPage) -> tuple[str, ...]:
+    """What an emulator found to matter."""
+    return data.emulator.found_inputs if isinstance(data, DrawnPage) else ()
 
 
 def _uncertain(tables: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Mapping[str, Any]]]:

@@ -4,7 +4,8 @@ from dataclasses import replace
 
 from lithobrake.report.content import PageTable, Tile
 from lithobrake.report.page_data import JourneyPage
-from lithobrake.report.tables.drawn_tables import tables
+from lithobrake.report.tables.dispersion_tables import site_tables
+from lithobrake.report.tables.drawn_tables import landing_tables
 from lithobrake.report.words.drawn_warnings import as_sentence, interval
 from lithobrake.report.words.journey_captions import END_WORDS, quantile_words, time_unit
 from lithobrake.report.words.numbers import number
@@ -67,7 +68,7 @@ def _regions(data: JourneyPage) -> PageTable:
 
 def journey_tables(data: JourneyPage) -> list[PageTable]:
     """How the journeys ended, and the tables of the first touchdowns."""
-    return [_ends(data), *(_of_first(table) for table in tables(data))]
+    return [_ends(data), *(_of_first(table) for table in [*landing_tables(data), *site_tables(data)])]
 
 
 def _ends(data: JourneyPage) -> PageTable:

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Mapping
 
-from lithobrake.report.page_data import DRAWN_COUNT, PageData, PaperPage
+from lithobrake.report.page_data import DRAWN_COUNT, PageData, PaperPage, SampledPage
 from lithobrake.report.words.chance import follows_gaussian
 from lithobrake.report.words.labels import PAPER_OUTPUTS, output
 from lithobrake.report.words.numbers import fixed, number, q2_words
@@ -210,7 +210,7 @@ def scatter(data: PaperPage, colour_name: str) -> str:
     )
 
 
-def impact_map(data: PageData) -> str:
+def impact_map(data: SampledPage) -> str:
     """Figure 7."""
     shares, site = data.results.shares, data.results.site
     extents = " x ".join(f"{length:.0f}" for length in site.extents_m)
@@ -226,7 +226,7 @@ def impact_map(data: PageData) -> str:
     )
 
 
-def body(data: PageData) -> str:
+def body(data: SampledPage) -> str:
     """Figure 8."""
     if not len(data.facet):
         return ""
@@ -243,7 +243,7 @@ def body(data: PageData) -> str:
     )
 
 
-def rest(data: PageData) -> str:
+def rest(data: SampledPage) -> str:
     """Figure 9."""
     table = data.results.rest
     if isinstance(table, JourneyRest) or table.hard is None:
@@ -263,7 +263,7 @@ def rest(data: PageData) -> str:
     )
 
 
-def _shape_words(data: PageData) -> str:
+def _shape_words(data: SampledPage) -> str:
     """What to beware of where the places are not spread as the ellipses suggest."""
     is_gaussian = follows_gaussian(data.results.ellipses, len(data.facet))
     return "" if is_gaussian else ", but the places are not Gaussian, and it says little of where they lie inside it"

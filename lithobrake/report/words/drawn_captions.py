@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from lithobrake.report.page_data import DRAWN_COUNT, DrawnPage
+from lithobrake.report.page_data import DRAWN_COUNT, DrawnPage, RunsPage
 from lithobrake.report.words.captions import input_words, listing, thousands
 from lithobrake.report.words.chance import BAND, band_luck, unlucky
 from lithobrake.report.words.drawn_warnings import drawn_things, emulator_outside, left_out, missing_sentence
@@ -26,7 +26,7 @@ def sign(name: str) -> str:
     return "the return fraction" if name == RETURNS else shown.sign or shown.words
 
 
-def runs(data: DrawnPage) -> str:
+def runs(data: RunsPage) -> str:
     """Figure 3."""
     table = data.results.runs
     beds, outcomes = table.beds, table.outcomes
@@ -50,7 +50,7 @@ def runs(data: DrawnPage) -> str:
     return " ".join(filter(None, said))
 
 
-def _quantiles(data: DrawnPage) -> str:
+def _quantiles(data: RunsPage) -> str:
     """Median with its interval, and the middle nine tenths, of speed and elevation."""
     found = []
     for name in ("speed_out", "elevation_out"):
@@ -66,14 +66,14 @@ def _quantiles(data: DrawnPage) -> str:
     return f"{words[:1].upper()}{words[1:]}"
 
 
-def _ends(data: DrawnPage, entry: Estimate, factor: float) -> str:
+def _ends(data: RunsPage, entry: Estimate, factor: float) -> str:
     """The interval of a number in brackets, where it has one."""
     if entry.lower is None or entry.upper is None:
         return ""
     return f" ({percent(data.level)} interval {number(entry.lower * factor)} to {number(entry.upper * factor)})"
 
 
-def variance(data: DrawnPage) -> str:
+def variance(data: RunsPage) -> str:
     """Figure 4."""
     records = {name: record for name, record in data.results.variance_shares.items() if record}
     if not records:
@@ -115,7 +115,7 @@ def _main_input(record: VarianceParts) -> str:
 
 def calibration(data: DrawnPage) -> str:
     """Figure 5."""
-    emulator = data.results.emulator
+    emulator = data.emulator
     scores = emulator.scores.outputs
     held = {name: score.band_90 for name, score in scores.items()}
     bins = [is_beyond for score in scores.values() for is_beyond in unlucky(score.pit)]
@@ -147,7 +147,7 @@ def samples(data: DrawnPage, colour_name: str | None) -> str:
         return f"None of the {thousands(total)} samples leaves the surface, so there is nothing to draw."
     first = f" (the first {thousands(DRAWN_COUNT)} are drawn)" if leaving > DRAWN_COUNT else ""
     colour = f"the colour is the {input_words(colour_name)}"
-    if not data.results.emulator.follows_inputs:
+    if not data.emulator.follows_inputs:
         colour += ", and says nothing: the emulator samples runs whatever the inputs"
     count = f"Of {thousands(total)} samples of the emulator {thousands(leaving)} leave the surface"
     return " ".join(filter(None, [f"{count}{first}; {colour}.", emulator_outside(data)]))

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from lithobrake.report.page_data import DrawnPage, PageData
+from lithobrake.report.page_data import DrawnPage, PageData, RunsPage
 from lithobrake.report.words.captions import hours, listing
 from lithobrake.results.limit_state_results import RareLimitState
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
@@ -30,7 +30,7 @@ def interval(entry: BoundedShare, level: float) -> str:
     return f"{percent(level)} interval {span(entry.lower, entry.upper)}"
 
 
-def drawn_things(data: DrawnPage) -> list[str]:
+def drawn_things(data: RunsPage) -> list[str]:
     """What every run draws for itself beside its soil."""
     impact = data.study["impact"]
     place = impact["place"] or {}
@@ -49,7 +49,7 @@ def as_sentence(words: str) -> str:
     return f"{first}{words[1:].rstrip('.')}."
 
 
-def left_out(data: DrawnPage) -> str:
+def left_out(data: RunsPage) -> str:
     """What the emulator was validated on: beds that it had not seen, or, where there is but one, runs."""
     return "held-out runs" if data.results.runs.beds == 1 else "held-out beds"
 
@@ -59,7 +59,7 @@ def outcome_label(word: str) -> str:
     return TouchdownOutcome(word).label if word in list(TouchdownOutcome) else word
 
 
-def missing_sentence(data: DrawnPage) -> str:
+def missing_sentence(data: RunsPage) -> str:
     """How many runs have no outcome, and between which shares the truth then lies; empty where all have one."""
     missing, returns = data.results.runs.missing, data.results.returns
     if not missing.count:
@@ -75,17 +75,17 @@ def missing_sentence(data: DrawnPage) -> str:
 
 def warnings(data: DrawnPage) -> list[str]:
     """What makes the numbers of the page weaker than they look."""
-    found = [
-        _said(data.results.runs.warning),
-        _few_beds(data),
-        emulator_outside(data),
-        _said(data.results.site.gravity_warning),
-        *rare_warnings(data.rare),
-    ]
+    outside = emulator_outside(data)
+    return [*landing_warnings(data), *([outside] if outside else []), *rare_warnings(data.rare)]
+
+
+def landing_warnings(data: RunsPage) -> list[str]:
+    """What makes the numbers of the landings weaker than they look."""
+    found = [_said(data.results.runs.warning), _few_beds(data), _said(data.results.site.gravity_warning)]
     return [words for words in found if words]
 
 
-def _few_beds(data: DrawnPage) -> str:
+def _few_beds(data: RunsPage) -> str:
     beds = data.results.runs.beds
     if not has_interval(data) or beds >= FEW_BEDS:
         return ""
@@ -97,7 +97,7 @@ def _few_beds(data: DrawnPage) -> str:
 
 def emulator_outside(data: DrawnPage) -> str:
     """That the emulator contradicts the runs it was made from, if it does."""
-    return _said(data.results.emulator.warning)
+    return _said(data.emulator.warning)
 
 
 def _said(warning: str | None) -> str:

@@ -3,7 +3,7 @@
 from lithobrake.report.page_data import JourneyPage
 from lithobrake.report.words.captions import hours, place_words
 from lithobrake.report.words.drawn_captions import variance
-from lithobrake.report.words.drawn_warnings import warnings
+from lithobrake.report.words.drawn_warnings import landing_warnings
 from lithobrake.report.words.numbers import number
 from lithobrake.results.journey_results import RestQuantile
 from lithobrake.vocabulary.outcomes import JourneyEnd
@@ -23,9 +23,12 @@ def answer(data: JourneyPage) -> str:
 
 
 def journey_warnings(data: JourneyPage) -> list[str]:
-    """What makes the numbers of the page weaker than they look; those of runs and emulator are of first touchdowns."""
+    """What makes the numbers of the page weaker than they look; those of runs are of first touchdowns."""
     site = data.results.site.warning
-    return [*([site] if site else []), *(f"{FIRST}: {words[:1].lower()}{words[1:]}" for words in warnings(data))]
+    return [
+        *([site] if site else []),
+        *(f"{FIRST}: {words[:1].lower()}{words[1:]}" for words in landing_warnings(data)),
+    ]
 
 
 def of_first_touchdown(sentence: str) -> str:
