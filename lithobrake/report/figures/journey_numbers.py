@@ -48,6 +48,7 @@ def draw_spread(axes: Axes, one: RestSpread) -> None:
     median = float(np.median(values))
     is_long = median > 0.0 and values[-1] > LONG_TAIL * median and values[0] > 0.0
     axes.set_xscale("log" if is_long else "linear")
+    axes.xaxis.set_major_formatter("{x:g}")
     low = values[0] if is_long else 0.0
     axes.step(np.append(low, values), 100.0 * np.arange(len(values) + 1) / len(values), where="post", color=AT_REST)
     quantiles = {50.0: one.quantiles.median, 95.0: one.quantiles.q95}
