@@ -40,14 +40,16 @@ def drawn_answer(study: Study, results: DrawnResults) -> list[str]:
 def drawn_headline(results: DrawnResults) -> list[str]:
     """The answer, and the most informative numbers behind it, each in a sentence."""
     emulator = results.emulator
-    return [
-        *results.answer,
+    behind = [
         _touchdowns(results.runs),
         *_speed(results.spreads.get("speed_out")),
         *_scatter(results.variance_shares.get("speed_out")),
         *([emulator.statement] if emulator else []),
         *([f"{emulator.warning}."] if emulator and emulator.warning else []),
     ]
+    if results.ends is not None:
+        behind = [f"First touchdown: {said[:1].lower()}{said[1:]}" for said in behind]
+    return [*results.answer, *behind]
 
 
 def limit_statement(name: str, found: LimitStateResult) -> str:

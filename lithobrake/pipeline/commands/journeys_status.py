@@ -14,7 +14,10 @@ from lithobrake.vocabulary.outcomes import JourneyEnd, TouchdownOutcome
 
 NUMBER, TOUCHDOWN = "journey", "touchdown"
 # How a journey ended whose last touchdown did so; after any other it flies on.
-ENDS = {TouchdownOutcome.CAPTURED: JourneyEnd.AT_REST, TouchdownOutcome.TIME_LIMIT: JourneyEnd.UNDER_WAY}
+ENDS: dict[str, JourneyEnd] = {
+    TouchdownOutcome.CAPTURED: JourneyEnd.AT_REST,
+    TouchdownOutcome.TIME_LIMIT: JourneyEnd.UNDER_WAY,
+}
 # What stays the same over the touchdowns of a journey: its soil, lander and bed.
 KEPT = ("grain.", "lander.", "solver.")
 
@@ -78,7 +81,7 @@ def _end(record: Record) -> JourneyEnd | None:
     """How a journey ended with its last touchdown; None where it goes on, or ended in flight."""
     if record.status == RunStatus.FAILED:
         return JourneyEnd.FAILED
-    return ENDS.get(TouchdownOutcome(str(record.outcome))) if record.status == RunStatus.DONE else None
+    return ENDS.get(record.outcome or "") if record.status == RunStatus.DONE else None
 
 
 def _kept(record: Record) -> frozenset[tuple[str, float]]:

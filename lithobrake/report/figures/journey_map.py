@@ -118,8 +118,8 @@ def _draw_places(
 
 
 def _draw_region(axes: Axes, region: RestRegion, window: Window) -> None:
-    """A region with its edge; one that goes round the back of the map has its edge alone."""
-    pieces, is_whole = [], True
+    """A region with its edge; on the whole map, where one may go round the back, the edge alone."""
+    pieces, is_whole = [], window is not WHOLE
     for line in region.outlines:
         outline = np.array(line)
         x = near(outline[:, 1], window.longitude)

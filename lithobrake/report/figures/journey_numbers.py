@@ -10,7 +10,7 @@ from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
 from lithobrake.report.figures.map_figure import Share, draw_shares
-from lithobrake.report.figures.style import FATE_COLOURS, INK, QUIET
+from lithobrake.report.figures.style import END_COLOURS, INK, QUIET
 from lithobrake.results.journey_results import RestQuantiles
 from lithobrake.vocabulary.outcomes import JourneyEnd
 
@@ -19,11 +19,11 @@ Array = NDArray[np.float64]
 LONG_TAIL = 30.0
 # More whole numbers than these are counted in classes.
 MOST_BARS = 20
-AT_REST = FATE_COLOURS[JourneyEnd.AT_REST]
+AT_REST = END_COLOURS[JourneyEnd.AT_REST]
 
 
 @dataclass(frozen=True)
-class Spread:
+class RestSpread:
     """A number of the landers at rest: label, values [lander], and quantiles, which times factor are in their unit."""
 
     label: str
@@ -32,7 +32,7 @@ class Spread:
     factor: float = 1.0
 
 
-def spreads_figure(spreads: Sequence[Spread]) -> Figure:
+def spreads_figure(spreads: Sequence[RestSpread]) -> Figure:
     """Draw the distribution functions side by side, with the median and the 95th percentile of each."""
     figure = Figure(figsize=(9.2, 3.1))
     for place, one in enumerate(spreads):
@@ -42,12 +42,13 @@ def spreads_figure(spreads: Sequence[Spread]) -> Figure:
     return figure
 
 
-def draw_spread(axes: Axes, one: Spread) -> None:
+def draw_spread(axes: Axes, one: RestSpread) -> None:
     """One distribution function; bars: the intervals of its quantiles, to the edge of the axis where one has no end."""
     values = np.sort(one.values)
     median = float(np.median(values))
     is_long = median > 0.0 and values[-1] > LONG_TAIL * median and values[0] > 0.0
     axes.set_xscale("log" if is_long else "linear")
+    axes.xaxis.set_major_formatter("{x:g}")
     low = values[0] if is_long else 0.0
     axes.step(np.append(low, values), 100.0 * np.arange(len(values) + 1) / len(values), where="post", color=AT_REST)
     quantiles = {50.0: one.quantiles.median, 95.0: one.quantiles.q95}
@@ -93,13 +94,14 @@ def _draw_counts(axes: Axes, values: Array, end: NDArray[np.str_], words: Mappin
             continue
         height = np.histogram(chosen, edges)[0].astype(float)
         middle = edges[:-1] + 0.5 * step
-        axes.bar(middle, height, 0.86 * step, bottom=base, color=FATE_COLOURS[name], label=label)
+        axes.bar(middle, height, 0.86 * step, bottom=base, color=END_COLOURS[name], label=label)
         base += height
-    axes.xaxis.set_major_locator(MaxNLocator(integer=True))
+    axes.set_xlim(least - 0.5 - 0.5 * step, most + 0.5 + 0.5 * step)
+    axes.xaxis.set_major_locator(MaxNLocator(integer=True, min_n_ticks=1))
     axes.yaxis.set_major_locator(MaxNLocator(integer=True, nbins=5))
 
 
-def attitude_figure(faces: list[Share], whole: str, tilt: Spread) -> Figure:
+def attitude_figure(faces: list[Share], whole: str, tilt: RestSpread) -> Figure:
     """Draw the share of each side that is down, and the distribution function of its tilt."""
     rows = 0.24 * len(faces)
     height = max(2.9, rows + 0.9)

@@ -47,9 +47,14 @@ FATE_COLOURS: dict[str, str] = {
     JourneyStatus.LOFTED: "#31465a",
     JourneyStatus.SLIDING: "#6fb7e0",
     JourneyStatus.BOUNCING: "#f3c9b5",
-    JourneyEnd.AT_REST: "#1f9e78",
-    JourneyEnd.UNDER_WAY: "#8b8f96",
-    JourneyEnd.FAILED: "#c8553d",
+}
+# Those of the ends of journeys, each that of the fate which is like it.
+END_COLOURS: dict[str, str] = {
+    JourneyEnd.AT_REST: FATE_COLOURS[JourneyStatus.SETTLED],
+    JourneyEnd.ESCAPED: FATE_COLOURS[FlightStatus.ESCAPED],
+    JourneyEnd.PARTNER: FATE_COLOURS[FlightStatus.PARTNER],
+    JourneyEnd.UNDER_WAY: FATE_COLOURS[FlightStatus.FLYING],
+    JourneyEnd.FAILED: FATE_COLOURS[SampleOutcome.LEFT_SIDEWAYS],
 }
 
 # Any: the names of the settings are a type of their own in some versions of matplotlib and plain words in others.

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from lithobrake.report.content import LiveSection
 from lithobrake.report.figures.body_figure import BARE, colour_ends, facet_density
 from lithobrake.report.figures.hulls import Scene, scene
-from lithobrake.report.figures.style import FATE_COLOURS
+from lithobrake.report.figures.style import END_COLOURS, FATE_COLOURS
 from lithobrake.report.live.packed import deflated, script_data
 from lithobrake.report.page_data import JourneyPage, PageData, SampledPage
 from lithobrake.report.words.numbers import number
@@ -189,7 +189,7 @@ def _ends(data: JourneyPage) -> list[LiveSection]:
 def _paths(position: Array, status: Sequence[str]) -> dict[str, np.ndarray]:
     """Ends of the pieces of all ways [2 piece_count, 3], and the colour of each."""
     ends = np.stack([position[:, :-1], position[:, 1:]], axis=2).reshape(-1, 3)
-    paint = np.array([to_rgb(FATE_COLOURS[word]) for word in status]).reshape(-1, 3)
+    paint = np.array([to_rgb((FATE_COLOURS | END_COLOURS)[word]) for word in status]).reshape(-1, 3)
     # Two ends of each piece.
     of_ends = np.repeat(np.rint(255.0 * paint), 2 * (position.shape[1] - 1), axis=0)
     return {"path_corner": ends.astype(np.float32), "path_paint": of_ends.astype(np.uint8)}

@@ -7,9 +7,9 @@ import numpy as np
 
 from lithobrake.report.content import Content, Plot
 from lithobrake.report.figures.journey_map import journey_map, places_by_end
-from lithobrake.report.figures.journey_numbers import Spread, attitude_figure, counts_figure, spreads_figure
+from lithobrake.report.figures.journey_numbers import RestSpread, attitude_figure, counts_figure, spreads_figure
 from lithobrake.report.figures.map_figure import Share
-from lithobrake.report.figures.style import FATE_COLOURS
+from lithobrake.report.figures.style import END_COLOURS
 from lithobrake.report.live.views import view_sections
 from lithobrake.report.page_data import JourneyPage
 from lithobrake.report.pages.drawn_page import landing_plots
@@ -76,8 +76,8 @@ def _sentence(plot: Plot) -> str:
 
 def _draw_map(data: JourneyPage) -> "Figure":
     table, site = data.journeys, data.results.site
-    places = places_by_end(END_WORDS, FATE_COLOURS, table["end"], table["latitude_deg"], table["longitude_deg"])
-    shares = [_share(END_WORDS[name], one, FATE_COLOURS[name]) for name, one in data.ends.items()]
+    places = places_by_end(END_WORDS, END_COLOURS, table["end"], table["latitude_deg"], table["longitude_deg"])
+    shares = [_share(END_WORDS[name], one, END_COLOURS[name]) for name, one in data.ends.items()]
     radius = float(np.linalg.norm(site.place_m))
     aim, regions = (site.latitude_deg, site.longitude_deg), data.at_rest.regions
     return journey_map(places, regions, aim, radius, shares, "all journeys", data.body_vertices)
@@ -92,8 +92,8 @@ def _draw_times(data: JourneyPage) -> "Figure":
     rest = data.at_rest
     return spreads_figure(
         [
-            Spread(f"time to rest [{unit}]", _of_rest(data, "time_s") / size, rest.time_s, 1.0 / size),
-            Spread("distance from the aim point [m]", _of_rest(data, "distance"), rest.distance_m),
+            RestSpread(f"time to rest [{unit}]", _of_rest(data, "time_s") / size, rest.time_s, 1.0 / size),
+            RestSpread("distance from the aim point [m]", _of_rest(data, "distance"), rest.distance_m),
         ]
     )
 
@@ -108,9 +108,9 @@ def _draw_attitude(data: JourneyPage) -> "Figure | None":
     rest = data.at_rest
     if rest.tilt_deg is None:
         return None
-    colour = FATE_COLOURS[JourneyEnd.AT_REST]
+    colour = END_COLOURS[JourneyEnd.AT_REST]
     sides = sorted(rest.faces.items(), key=lambda one: -one[1].share)
-    tilt = Spread("tilt of the side that is down [deg]", _of_rest(data, "tilt_deg"), rest.tilt_deg)
+    tilt = RestSpread("tilt of the side that is down [deg]", _of_rest(data, "tilt_deg"), rest.tilt_deg)
     return attitude_figure([_share(name, one, colour) for name, one in sides], "those at rest", tilt)
 
 

@@ -52,7 +52,7 @@ def rest_map(data: JourneyPage) -> str:
         said.append(f"The lines enclose the smallest regions with {areas}, by a density fitted to their places.")
     elif rest.why_no_regions:
         said.append(f"No regions are drawn: {rest.why_no_regions.rstrip('.')}.")
-    said.append("Landers that escaped, came down on the partner or failed have no place on this map.")
+    said.append("Landers that escaped, came down on the partner, failed or still fly have no place on it.")
     return " ".join(said)
 
 
@@ -112,8 +112,8 @@ def quantile_words(one: RestQuantile, size: float = 1.0) -> str:
 
 
 def time_unit(data: JourneyPage) -> tuple[float, str]:
-    """The unit of times to rest [s], and its sign: minutes below two hours."""
-    return (MINUTE, "min") if (data.at_rest.time_s.median.value or 0.0) < 2.0 * HOUR else (HOUR, "h")
+    """The unit of times to rest [s], and its sign: minutes where nearly all are below five hours."""
+    return (MINUTE, "min") if (data.at_rest.time_s.q95.value or 0.0) < 5.0 * HOUR else (HOUR, "h")
 
 
 def _limit(data: JourneyPage) -> str:

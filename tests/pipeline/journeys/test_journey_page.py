@@ -10,7 +10,7 @@ import pytest
 from lithobrake.report import write_report
 from lithobrake.report.figures.journey_map import round_length
 from lithobrake.report.page_data import JourneyPage, page_results
-from lithobrake.report.pages.journey_page import DECIDES, EMULATOR, FIRST, WHERE, journey_content
+from lithobrake.report.pages.journey_page import DECIDES, FIRST, WHERE, journey_content
 from lithobrake.results import StudyResults
 from lithobrake.results.journey_results import EndShare
 from lithobrake.vocabulary.outcomes import JourneyEnd
@@ -31,7 +31,7 @@ def test_the_page_begins_with_the_ends_of_the_journeys(journeys_folder: Path) ->
     first = [line for line in lines if re.match(r"[\d.]+ % \|", line)]
     assert [line.split(" | ")[1].split(",")[0] for line in first] == [end.label for end in JourneyEnd]
     assert sum(float(line.split(" ")[0]) for line in first) == pytest.approx(100.0, abs=1.0)
-    places = [lines.index(words) for words in (WHERE, DECIDES, FIRST, EMULATOR)]
+    places = [lines.index(words) for words in (WHERE, DECIDES, FIRST)]
     assert places == sorted(places)
     assert lines.index(first[-1]) < places[0]
     captions = {line.split(". ")[1]: line for line in lines if line.startswith("Figure ") and ". " in line}
