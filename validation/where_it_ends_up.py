@@ -1,0 +1,100 @@
+"""Where does the CubeSat of the quick study end up: after the first bounce and at rest, on soil and on hard ground?
+
+    python validation/where_it_ends_up.py FOLDER
+
+FOLDER: of the finished study, made by `lithobrake run scenarios/quick.toml --out FOLDER`. The same deliveries on hard
+ground with restitutions of hard_ground.py are followed in a folder of their own, within seconds. Writes
+where_it_ends_up.json and the figure of docs/where_it_ends_up.md, and prints its table.
+"""
+
+import argparse
+import sys
+import tempfile
+from pathlib import Path
+from typing import Any
+
+from hard_ground import HardGround
+
+import lithobrake
+from lithobrake.report.page_data import JourneyPage, page_results
+from lithobrake.report.pages.journey_page import journey_content
+from lithobrake.results import StudyResults, open_study
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
+from harness import origin, write_document
+
+SCENARIO = Path(__file__).parents[1] / "scenarios" / "quick.toml"
+RESTITUTIONS = (0.1, 0.3, 0.6, 0.9)
+FIGURE = Path(__file__).parents[1] / "docs" / "where_it_ends_up.png"
+ENDS = ("at_rest", "escaped", "partner", "under_way", "failed")
+
+
+def numbers(name: str, study: StudyResults) -> dict[str, Any]:
+    """Ends and places of the journeys, and how the first touchdown ended."""
+    results = study.summary["results"]
+    rest = results["rest"]
+    return {
+        "ground": name,
+        "journeys": results["journeys"],
+        "touchdowns": results["touchdowns"],
+        "stay_at_first_touchdown": results["runs"]["outcomes"].get("captured", 0),
+        "returns": {key: results["returns"][key] for key in ("share", "lower", "upper")},
+        "ends": {end: {key: results["ends"][end].get(key) for key in ("share", "lower", "upper")} for end in ENDS},
+        "time_s": rest["time_s"],
+        "contacts": rest["contacts"],
+        "distance_m": rest["distance_m"],
+        "regions": [{key: one[key] for key in ("share", "area_m2", "largest_extent_m")} for one in rest["regions"]],
+    }
+
+
+def row(found: dict[str, Any]) -> str:
+    """A row of the table."""
+
+    def share(one: dict[str, Any]) -> str:
+        return f"{100 * one['share']:.0f} ({100 * one['lower']:.0f}-{100 * one['upper']:.0f})"
+
+    def value(one: dict[str, Any], size: float) -> str:
+        return "-" if one["value"] is None else f"{one['value'] / size:.2g}"
+
+    region = found["regions"][-1] if found["regions"] else None
+    cells = [
+        found["ground"],
+        f"{found['stay_at_first_touchdown']} of {found['journeys']}",
+        share(found["returns"]),
+        share(found["ends"]["at_rest"]),
+        *(f"{100 * found['ends'][end]['share']:.0f}" for end in ("escaped", "partner", "under_way")),
+        value(found["time_s"]["median"], 60.0),
+        value(found["contacts"]["median"], 1.0),
+        value(found["distance_m"]["median"], 1.0),
+        f"{region['area_m2']:.2g}" if region else "-",
+    ]
+    return f"| {' | '.join(cells)} |"
+
+
+def draw(study: StudyResults) -> None:
+    """Write the map of the places of rest as the report has it."""
+    page = page_results(study)
+    assert isinstance(page, JourneyPage)
+    figure = next(plot.draw() for plot in journey_content(page).plots if plot.name == "ends")
+    assert figure is not None
+    figure.savefig(FIGURE, dpi=120)
+
+
+def main() -> None:
+    """Follow all, write and print what came out."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folder", type=Path)
+    found = [numbers("soil", open_study(parser.parse_args().folder))]
+    for restitution in RESTITUTIONS:
+        model = HardGround(restitution, restitution)
+        with tempfile.TemporaryDirectory() as folder:
+            study = lithobrake.run(SCENARIO, Path(folder) / "out", model=model, report=False)
+            found.append(numbers(f"hard, restitution {restitution:g}", study))
+    print("\n".join(row(one) for one in found))
+    draw(open_study(parser.parse_args().folder))
+    document = {**origin("validation/where_it_ends_up.py FOLDER"), "grounds": found}
+    write_document(Path(__file__).with_suffix(".json"), document)
+
+
+if __name__ == "__main__":
+    main()
