@@ -55,7 +55,7 @@ def cases(shapes: Path) -> dict[str, dict[str, Any]]:
         "slope of 45 deg (Itokawa)": body(itokawa, ITOKAWA, *steep_place(itokawa, ITOKAWA, 45.0)),
         "lander of 0.1 grains": {"lander": {"edges": [0.009, 0.009, 0.009], "mass": 1e-3}},
         "lander of 5 grains": {
-            "lander": {"edges": [0.45, 0.45, 0.45], "mass": 60.0}, "bed": {"grain_count": 480, "width": [1.2, 1.2]},
+            "lander": {"edges": [0.45, 0.45, 0.45], "mass": 60.0}, "bed": {"grain_count": 784, "width": [1.6, 1.6]},
         },
         "ball": {"lander": {"shape": "sphere", "edges": None, "diameter": 0.12}},
         "incidence 0 deg": {"delivery": {"incidence_deg": 0.0}},

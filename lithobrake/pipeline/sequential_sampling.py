@@ -15,13 +15,13 @@ from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.fly.run_flights import FILE, RunFlights
 from lithobrake.pipeline.folder.study_folder import StudyFolder
 from lithobrake.pipeline.job import Job
-from lithobrake.pipeline.journeys.journey_tables import JOURNEYS
 from lithobrake.pipeline.journeys.stages import JOURNEYS as JOURNEY_STAGE
 from lithobrake.pipeline.outdated_files import stage_keys
 from lithobrake.pipeline.runs.run_table import DesignRuns, file_of
 from lithobrake.pipeline.runs.touchdown_runs import known_runs
 from lithobrake.study import Study
 from lithobrake.vocabulary.limit_state import LimitState
+from lithobrake.vocabulary.quantities import JOURNEYS_FILE
 
 
 def flown_shares(study: Study, folder: StudyFolder) -> dict[str, float]:
@@ -44,7 +44,7 @@ def flown_shares(study: Study, folder: StudyFolder) -> dict[str, float]:
 
 def _at_rest(study: Study, folder: StudyFolder) -> dict[str, float]:
     """1 for each journey that ended at rest and 0 for each other, by the key of its first touchdown."""
-    key = folder.key_of(JOURNEYS)
+    key = folder.key_of(JOURNEYS_FILE)
     if key is None or folder.key_of(file_of("drawn")) is None:
         return {}
     keys, table = DesignRuns.load(folder, "drawn").keys, JourneyTable.load(folder)

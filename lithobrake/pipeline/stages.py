@@ -1,7 +1,5 @@
 """The stages of a study in order, by its method; each is declared in the room that makes its files."""
 
-from dataclasses import replace
-
 from lithobrake.pipeline.answer import stages as answer
 from lithobrake.pipeline.emulate import stages as emulate
 from lithobrake.pipeline.fly import stages as fly
@@ -44,17 +42,18 @@ DRAWN = (
     answer.SUMMARY,
     REPORT,
 )
-
-
-def _journeys() -> tuple[Stage, ...]:
-    """The stages of drawn landings, with journeys in the place of the landings alone, and nothing by an emulator."""
-    left_out = {stage.name for stage in (emulate.EMULATOR, emulate.SAMPLE, fly.FLY, rest.REST, rest.AIM)}
-    kept = [stage for stage in DRAWN if stage.name not in left_out]
-    lighter = [replace(stage, after=tuple(name for name in stage.after if name not in left_out)) for stage in kept]
-    return tuple(journeys.JOURNEYS if stage.name == journeys.JOURNEYS.name else stage for stage in lighter)
-
-
-JOURNEYS = _journeys()
+# Landings that follow each other until the lander rests, in the place of single ones, and nothing by an emulator.
+JOURNEYS = (
+    runs.BED,
+    runs.FIRST_LANDING,
+    journeys.JOURNEYS,
+    runs.SIDE_RUNS,
+    fly.FLY_RUNS,
+    runs.TELLING_LANDING,
+    answer.ESTIMATE,
+    answer.JOURNEY_SUMMARY,
+    REPORT,
+)
 PAPER = (
     runs.BED,
     paper.MEDIAN_LANDING,

@@ -137,7 +137,13 @@ class DrawnPage(RunsPage, SampledPage):
     model = "emulator"
 
     rare: Mapping[str, RareLimitState]
-    emulator: EmulatorResults
+
+    @property
+    def emulator(self) -> EmulatorResults:
+        """What the emulator of the landings is worth."""
+        found = self.results.emulator
+        assert found is not None
+        return found
 
 
 @dataclass(frozen=True)
@@ -172,8 +178,7 @@ def page_results(found: StudyResults) -> PaperPage | DrawnPage | JourneyPage:
         return JourneyPage(results=results, **_of_any_study(found), runs=runs, **journeys)
     if results.emulator is None:
         raise DamagedFileError(f"{found.folder / 'summary.json'} says nothing of an emulator; {found.remedy}")
-    own: dict[str, Any] = {"runs": runs, "rare": found.rare, "emulator": results.emulator}
-    return DrawnPage(results=results, **_of_any_study(found), **_of_samples(found), **own)
+    return DrawnPage(results=results, **_of_any_study(found), **_of_samples(found), runs=runs, rare=found.rare)
 
 
 def _journeys(found: StudyResults, results: DrawnResults) -> dict[str, Any]:

@@ -4,12 +4,12 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from lithobrake.vocabulary.quantities import TOUCHDOWN_COST
+from lithobrake.vocabulary.quantities import JOURNEYS_FILE, TOUCHDOWN_COST, TOUCHDOWNS_FILE
 
 if TYPE_CHECKING:
     from lithobrake.campaign import Record
 
-JOURNEYS, TOUCHDOWNS, TOUCHDOWN_RUNS = "journeys.csv", "touchdowns.csv", "designs/touchdowns.csv"
+JOURNEYS, TOUCHDOWNS, TOUCHDOWN_RUNS = JOURNEYS_FILE, TOUCHDOWNS_FILE, "designs/touchdowns.csv"
 # Columns of the runs that the table of touchdowns has already.
 _TWICE = ("input:journey", "input:touchdown", "key", "outcome")
 

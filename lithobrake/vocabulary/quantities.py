@@ -124,6 +124,8 @@ ARC = {
     "site_mass": Quantity("kg", "mass of the body of the sample"),
     "site_spin_period": Quantity("s", "spin period of the body of the sample"),
 }
+# The files with one row a journey of landings, a touchdown, and a flight.
+JOURNEYS_FILE, TOUCHDOWNS_FILE, FLIGHTS_FILE = "journeys.csv", "touchdowns.csv", "arcs.csv"
 # Of a journey of landings, and of each of its touchdowns.
 JOURNEY = {
     "journey": Quantity("", "number of the journey, from 0"),

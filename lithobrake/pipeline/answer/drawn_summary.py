@@ -7,93 +7,33 @@ import numpy as np
 from lithobrake.analysis import LEVEL
 from lithobrake.pipeline.answer.aim_results import aim_results
 from lithobrake.pipeline.answer.dispersion_statistics import Rows, ellipses, flight_checks, rest_results, shares
-from lithobrake.pipeline.answer.drawn_answer import drawn_answer, drawn_headline
-from lithobrake.pipeline.answer.journey_ends import JourneyTable, end_shares, journey_rest
+from lithobrake.pipeline.answer.landing_results import write_results
 from lithobrake.pipeline.answer.limit_states import limit_state_results
 from lithobrake.pipeline.answer.missing_landings import described
-from lithobrake.pipeline.answer.run_estimates import FILE as ESTIMATES
 from lithobrake.pipeline.answer.shares_over_refits import Refits, journey_ends, sample_fates
-from lithobrake.pipeline.answer.site_summary import site_results
-from lithobrake.pipeline.answer.summary_parts import bed_results, outputs_of_runs, write_summary_file
-from lithobrake.pipeline.design.dependencies import bed_files
 from lithobrake.pipeline.emulate.fitted_emulator import FILE as EMULATOR
 from lithobrake.pipeline.emulate.samples import Samples
 from lithobrake.pipeline.fly.flights import read_table
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.runs.run_table import DesignRuns
-from lithobrake.results.dispersion import FlightResults, RestResults
+from lithobrake.results.dispersion import RestResults
 from lithobrake.results.emulator_results import EmulatorResults, EmulatorScores, JointScore, OutputScore
 from lithobrake.results.expansions import MonteCarlo
-from lithobrake.results.json_values import from_json
-from lithobrake.results.shares import EmulatorShares, LandingShares, Level, ReturnFraction
+from lithobrake.results.shares import EmulatorShares, Level, ReturnFraction
 from lithobrake.results.summary import DrawnResults, Estimates
 from lithobrake.vocabulary.outcomes import FlightStatus, TouchdownOutcome
 from lithobrake.vocabulary.percentages import percent
-from lithobrake.vocabulary.quantities import DRAWN_DESIGNS, OUTPUTS, TOUCHDOWN
 
 PIT_BINS = 10
 
 
 def write_drawn_summary(job: Job) -> None:
     """Write summary.json: study, results, provenance."""
-    side = job.study.design.side_runs
-    runs = [DesignRuns.load(job.folder, design) for design in (DRAWN_DESIGNS if side else DRAWN_DESIGNS[:1])]
-    distinct = DesignRuns.distinct(runs)
-    results = _results(job, runs[0], distinct)
-    results = replace(results, answer=tuple(drawn_answer(job.study, results)))
-    results = replace(results, headline=tuple(drawn_headline(results)))
-    for part in (results.runs, results.emulator):
-        if part is not None and part.warning:
-            job.say(part.warning)
-    write_summary_file(job, results, sum(one.run_count for one in runs), distinct)
-
-
-def _results(job: Job, runs: DesignRuns, distinct: DesignRuns) -> DrawnResults:
-    """What came out, without sentences: of journeys of landings, or of landings and the samples of their emulator."""
-    estimates = from_json(Estimates, job.folder.read_json(ESTIMATES), "estimates")
-    found = _of_runs(job, estimates, distinct)
-    return _with_samples(job, found, runs, estimates) if job.study.journey is None else _with_journeys(job, found)
-
-
-def _of_runs(job: Job, estimates: Estimates, distinct: DesignRuns) -> DrawnResults:
-    """What the landings say, or the first ones of journeys."""
-    return DrawnResults(
-        units={name: TOUCHDOWN[name].units for name in OUTPUTS},
-        beds=tuple(bed_results(job, name) for name in bed_files(job.study)),
-        returns=estimates.returns,
-        shares=LandingShares(**vars(estimates.shares), emulator=None),
-        flights=FlightResults(estimates.flights, None),
-        variance_shares=estimates.variance_shares,
-        outputs=estimates.outputs,
-        runs=estimates.runs,
-        outputs_of_runs=outputs_of_runs(distinct),
-        site=site_results(job.site),
-        monte_carlo=None,
-        ellipses=None,
-        without_scatter=None,
-        rest=RestResults(None, {}, None, None, None),
-        limit_states={},
-        aim=None,
-        emulator=None,
-        answer=(),
-        headline=(),
-    )
-
-
-def _with_journeys(job: Job, found: DrawnResults) -> DrawnResults:
-    """The same with how the journeys ended."""
-    table = JourneyTable.load(job.folder)
-    return replace(
-        found,
-        rest=journey_rest(job.study, table),
-        ends=end_shares(job.study, table),
-        journeys=len(table.end),
-        touchdowns=table.touchdowns,
-    )
+    write_results(job, _with_samples)
 
 
 def _with_samples(job: Job, found: DrawnResults, runs: DesignRuns, estimates: Estimates) -> DrawnResults:
-    """The same with what became of the samples of the emulator."""
+    """What the landings say, and what became of the samples of the emulator."""
     study, holds, refits = job.study, job.site.holds, _refits(estimates)
     samples, flights = Samples.load(job.folder), read_table(job.folder, "flights.csv")
     table = _emulator_shares(samples, flights, estimates, refits, holds=holds)

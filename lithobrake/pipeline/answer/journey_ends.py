@@ -8,10 +8,10 @@ from lithobrake.analysis import highest_density, quantile_estimate, share_estima
 from lithobrake.files.reading import read_rows
 from lithobrake.pipeline.answer.scope import why_no_interval
 from lithobrake.pipeline.folder.study_folder import AGAIN, StudyFolder
-from lithobrake.pipeline.journeys.journey_tables import JOURNEYS
 from lithobrake.results.journey_results import EndShare, JourneyRest, RestQuantile, RestQuantiles, RestRegion
 from lithobrake.study import Study
 from lithobrake.vocabulary.outcomes import JourneyEnd
+from lithobrake.vocabulary.quantities import JOURNEYS_FILE
 
 SHARES = (0.5, 0.95)
 MEDIAN, Q95 = 0.5, 0.95
@@ -31,7 +31,7 @@ class JourneyTable:
     @classmethod
     def load(cls, folder: StudyFolder) -> "JourneyTable":
         """Those of a folder. Raises DamagedFileError for another file."""
-        rows = read_rows(folder / JOURNEYS, ("journey", "bed", "end", "face"), AGAIN)
+        rows = read_rows(folder / JOURNEYS_FILE, ("journey", "bed", "end", "face"), AGAIN)
         titles = {title.split(" ")[0]: title for title in rows[0]}
 
         def numbers(name: str) -> np.ndarray:

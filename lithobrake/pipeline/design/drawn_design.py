@@ -22,7 +22,6 @@ from lithobrake.geometry.attitude import uniform_attitude
 from lithobrake.pipeline.design.dependencies import touchdown_keys
 from lithobrake.pipeline.design.local_ground import on_local_ground
 from lithobrake.pipeline.design.place_region import Interval, place_region
-from lithobrake.pipeline.site import Site
 from lithobrake.study import Study
 from lithobrake.study.bed_section import FEWEST_BEDS, MOST_BEDS, RUNS_A_BED
 from lithobrake.study.quantity import uncertain
@@ -136,7 +135,7 @@ class DrawnDesign:
             return rows
         begin = {"touchdown": 0.0, TIME_LEFT: journey.duration}
         numbered = [row | {"journey": float(first + number)} | begin for number, row in enumerate(rows)]
-        return on_local_ground(Site(self.study), numbered, first)
+        return on_local_ground(self.study, numbered, first)
 
     def _soil_pairs(self) -> list[dict[str, float]]:
         """The first runs again on a second soil: all uncertain inputs drawn anew, but bed, place, azimuth and attitude.

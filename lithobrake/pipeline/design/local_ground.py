@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lithobrake.pipeline.site import Site
+from lithobrake.study import Study
 from lithobrake.study.period_checks import LEAST_FRICTION
 from lithobrake.vocabulary.quantities import GROUND
 
@@ -58,8 +59,9 @@ def ground_inputs(acceleration: Sequence[float], azimuth_deg: float, friction: f
     return dict(zip(GROUND, (sign * strength, math.degrees(tilt), downhill % 360.0), strict=True))
 
 
-def on_local_ground(site: Site, rows: Sequence[Row], first: int) -> list[Row]:
+def on_local_ground(study: Study, rows: Sequence[Row], first: int) -> list[Row]:
     """The first touchdowns of journeys, numbered from `first` on, each under the acceleration of where it is."""
+    site = Site(study)
     columns = {key: values[first:] for key, values in site.sampled(first + len(rows)).items()}
     origin, axes = site.frames(columns)
     time = site.body.partner_time(columns["partner_longitude_deg"], columns["spin_period"])

@@ -9,19 +9,25 @@ from lithobrake.pipeline.fly.flights import write_table
 from lithobrake.pipeline.folder.study_folder import StudyFolder
 from lithobrake.pipeline.journeys.journey import Journey
 from lithobrake.vocabulary.outcomes import JourneyEnd
-from lithobrake.vocabulary.quantities import ARC, JOURNEY, JOURNEY_TOUCHDOWN
+from lithobrake.vocabulary.quantities import (
+    ARC,
+    FLIGHTS_FILE,
+    JOURNEY,
+    JOURNEY_TOUCHDOWN,
+    JOURNEYS_FILE,
+    TOUCHDOWNS_FILE,
+)
 
-JOURNEYS, TOUCHDOWNS, FLIGHTS = "journeys.csv", "touchdowns.csv", "arcs.csv"
-FILES = (JOURNEYS, TOUCHDOWNS, FLIGHTS)
+FILES = (JOURNEYS_FILE, TOUCHDOWNS_FILE, FLIGHTS_FILE)
 
 
 def write_journeys(folder: StudyFolder, journeys: Sequence[Journey]) -> None:
     """Write journeys.csv, touchdowns.csv and arcs.csv."""
-    write_table(folder, JOURNEYS, tuple(JOURNEY), [_row(journey) for journey in journeys], JOURNEY)
+    write_table(folder, JOURNEYS_FILE, tuple(JOURNEY), [_row(journey) for journey in journeys], JOURNEY)
     touchdowns = [list(row.values()) for journey in journeys for row in journey.touchdowns]
-    write_table(folder, TOUCHDOWNS, tuple(JOURNEY_TOUCHDOWN), touchdowns, JOURNEY_TOUCHDOWN)
+    write_table(folder, TOUCHDOWNS_FILE, tuple(JOURNEY_TOUCHDOWN), touchdowns, JOURNEY_TOUCHDOWN)
     flights = [list(row.values()) for journey in journeys for row in journey.flights]
-    write_table(folder, FLIGHTS, tuple(ARC), flights, ARC)
+    write_table(folder, FLIGHTS_FILE, tuple(ARC), flights, ARC)
 
 
 def _row(journey: Journey) -> list[Any]:

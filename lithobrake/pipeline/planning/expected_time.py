@@ -27,7 +27,7 @@ LANDING_STEP, LANDING_GRAIN = 3.5e-5, 5.0e-7
 SETTLING_GRAIN = 8.0e-7
 # Contacts at steps of their own: for each grain that moves and each duration of the shortest contact, at no steps a
 # contact and for each [s]. Where what is slower than a share of the lander is held, so many move for each grain that
-# is too near to be held, over the share to the power of 2/3.
+# is too near to be held, over the share.
 LOCAL_GRAIN, LOCAL_LOOK, MOVING = 2.7e-6, 7.2e-8, 0.5
 # Of that, where slow collisions take fewer steps.
 SLOW_PART = 0.42
@@ -178,7 +178,7 @@ def landing_time(soil: ExpectedSoil, lander: "Lander", landing: "Landing") -> fl
         return steps * (LANDING_STEP + LANDING_GRAIN * grains)
     moving = float(grains)
     if contact.held_speed > 0.0:
-        moving = min(moving, MOVING * soil.near_grains(lander, landing) * contact.held_speed ** (-2.0 / 3.0))
+        moving = min(moving, MOVING * soil.near_grains(lander, landing) / contact.held_speed)
     part = SLOW_PART if contact.resolved_speed > 0.0 else 1.0
     return part * steps / contact.steps_per_contact * moving * (LOCAL_GRAIN + LOCAL_LOOK * contact.steps_per_contact)
 

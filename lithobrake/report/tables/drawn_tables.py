@@ -78,17 +78,15 @@ def _at_rest(data: DrawnPage) -> list[Tile]:
 
 def tables(data: DrawnPage) -> list[PageTable]:
     """Those that have a row."""
-    of_emulator = [table for table in (_emulator(data),) if table.rows]
     of_samples = [*limit_state_tables(data), *rare_tables(data.rare), *dispersion_tables(data)]
-    return [*landing_tables(data), *of_emulator, *of_samples]
+    return [*landing_tables(data, _emulator(data)), *of_samples]
 
 
-def landing_tables(data: RunsPage) -> list[PageTable]:
-    """Those of the landings themselves, or of the first ones of journeys, that have a row."""
-    made: tuple[Callable[[RunsPage], PageTable], ...] = (
-        _answer, _inputs, _outputs, _directions, _variance, _runs, beds_table, touchdowns_table
-    )  # fmt: skip
-    found = [table for table in (make(data) for make in made) if table.rows]
+def landing_tables(data: RunsPage, *after_runs: PageTable) -> list[PageTable]:
+    """Those of the landings themselves, or of the first ones of journeys, that have a row; others stand among them."""
+    first: tuple[Callable[[RunsPage], PageTable], ...] = (_answer, _inputs, _outputs, _directions, _variance, _runs)
+    made = [*(make(data) for make in first), *after_runs, beds_table(data), touchdowns_table(data)]
+    found = [table for table in made if table.rows]
     side = data.results.runs.side_runs
     return [*found, *([_side_runs(data, side)] if side else [])]
 

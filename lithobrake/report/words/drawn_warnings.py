@@ -75,14 +75,13 @@ def missing_sentence(data: RunsPage) -> str:
 
 def warnings(data: DrawnPage) -> list[str]:
     """What makes the numbers of the page weaker than they look."""
-    outside = emulator_outside(data)
-    return [*landing_warnings(data), *([outside] if outside else []), *rare_warnings(data.rare)]
+    return [*landing_warnings(data, emulator_outside(data)), *rare_warnings(data.rare)]
 
 
-def landing_warnings(data: RunsPage) -> list[str]:
-    """What makes the numbers of the landings weaker than they look."""
-    found = [_said(data.results.runs.warning), _few_beds(data), _said(data.results.site.gravity_warning)]
-    return [words for words in found if words]
+def landing_warnings(data: RunsPage, outside: str = "") -> list[str]:
+    """What makes the numbers of the landings weaker than they look; outside: that an emulator contradicts them."""
+    runs, site = data.results.runs, data.results.site
+    return [words for words in (_said(runs.warning), _few_beds(data), outside, _said(site.gravity_warning)) if words]
 
 
 def _few_beds(data: RunsPage) -> str:

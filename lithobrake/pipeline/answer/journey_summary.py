@@ -1,0 +1,26 @@
+"""summary.json of a study of journeys: how they end, and what their first touchdowns say."""
+
+from dataclasses import replace
+
+from lithobrake.pipeline.answer.journey_ends import JourneyTable, end_shares, journey_rest
+from lithobrake.pipeline.answer.landing_results import write_results
+from lithobrake.pipeline.job import Job
+from lithobrake.pipeline.runs.run_table import DesignRuns
+from lithobrake.results.summary import DrawnResults, Estimates
+
+
+def write_journey_summary(job: Job) -> None:
+    """Write summary.json: study, results, provenance."""
+    write_results(job, _with_journeys)
+
+
+def _with_journeys(job: Job, found: DrawnResults, runs: DesignRuns, estimates: Estimates) -> DrawnResults:
+    """What the first touchdowns say, and how the journeys ended."""
+    table = JourneyTable.load(job.folder)
+    return replace(
+        found,
+        rest=journey_rest(job.study, table),
+        ends=end_shares(job.study, table),
+        journeys=len(table.end),
+        touchdowns=table.touchdowns,
+    )
