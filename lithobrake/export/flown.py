@@ -94,7 +94,9 @@ class Flown:
         Raises ValueError for a sample that did not fly.
         """
         if has_journeys(results):
-            self.of_samples(samples)
+            chosen = self.of_samples(samples)
+            if not samples:
+                return chosen
             return self._of_arcs(results, results.arcs.where(np.isin(results.arcs["sample"], samples)))
         # The folder of an earlier version notes no journeys.
         if not (results.folder / "arcs.csv").is_file():

@@ -71,7 +71,8 @@ class MapFrame:
 
 
 def write_geotiff(results: StudyResults, path: Path, *, resolution_deg: float = RESOLUTION_DEG) -> None:
-    """Write which share of all flights ends in each cell of latitude and longitude, over the cell's area [1/m2].
+    """Write which share of all flights ends in each cell of latitude and longitude, over the cell's area [1/m2]; of
+    journeys of landings, which share of the landers rests there.
 
     resolution_deg   edge of a cell, at least 0.05 (26 million cells, a file of 104 MB); it has to divide 180
     The sum of values times areas of the cells, on the sphere of the file, is the share of flights that end on the body.
@@ -85,28 +86,36 @@ def write_geotiff(results: StudyResults, path: Path, *, resolution_deg: float = 
             f"resolution is {resolution_deg} deg; allowed: {FINEST_DEG} to 180 deg, a whole part of 180 deg"
         )
     frame = MapFrame.of(results)
+    what = "landers that rest" if has_journeys(results) else "flights that end"
+    quantity = f"share of all {what} in the cell, over its area"
     image = Image.fromarray(impact_density(results, frame.radius, cells).astype(np.float32))
     with atomic_path(path) as draft:
-        image.save(draft, format="TIFF", tiffinfo=_tags(frame, 180.0 / cells))
+        image.save(draft, format="TIFF", tiffinfo=_tags(frame, 180.0 / cells, quantity))
 
 
 def impact_density(results: StudyResults, radius: float, cells: int) -> np.ndarray:
     """Share of the flights by area [1/m2], shape [cells, 2 cells], first row at the north, first column at -180 deg."""
-    flights = results.flights
-    down = flights["status"] == FlightStatus.IMPACT
+    table, ends = _ends_on_ground(results)
     edges = np.linspace(90.0, -90.0, cells + 1)
     counts, _, _ = np.histogram2d(
-        flights["latitude_deg"][down],
-        flights["longitude_deg"][down],
+        table["latitude_deg"][ends],
+        table["longitude_deg"][ends],
         bins=[edges[::-1], np.linspace(-180.0, 180.0, 2 * cells + 1)],
     )
     area = radius**2 * np.pi / cells * -np.diff(np.sin(np.radians(edges)))
-    density: np.ndarray = counts[::-1] / max(flights.row_count, 1) / area[:, None]
+    density: np.ndarray = counts[::-1] / max(table.row_count, 1) / area[:, None]
     return density
 
 
-def _tags(frame: MapFrame, resolution_deg: float) -> "ImageFileDirectory_v2":
-    """What the file says of its cells and of their frame."""
+def _ends_on_ground(results: StudyResults) -> tuple[Table, np.ndarray]:
+    """Flights of samples, or journeys, and which of them end on the body: of journeys those at rest."""
+    if has_journeys(results):
+        return results.journeys, results.journeys["end"] == JourneyEnd.AT_REST
+    return results.flights, results.flights["status"] == FlightStatus.IMPACT
+
+
+def _tags(frame: MapFrame, resolution_deg: float, quantity: str) -> "ImageFileDirectory_v2":
+    """What the file says of its cells, of their frame, and of the quantity in them."""
     from PIL.TiffImagePlugin import ImageFileDirectory_v2
 
     citation = f"GCS Name = {frame.name}|Datum = {frame.body}|Ellipsoid = {frame.body} sphere|Primem = {frame.body}|"
@@ -116,7 +125,6 @@ def _tags(frame: MapFrame, resolution_deg: float) -> "ImageFileDirectory_v2":
         (2049, TEXTS, len(citation), 0), (2050, 0, 1, USER_DEFINED), (2051, 0, 1, USER_DEFINED), (2054, 0, 1, DEGREE),
         (2056, 0, 1, USER_DEFINED), (2057, DOUBLES, 1, 0), (2058, DOUBLES, 1, 1), (2061, DOUBLES, 1, 2),
     ]  # fmt: skip
-    quantity = "share of all flights that end in the cell, over its area"
     items = {"QUANTITY": quantity, "UNIT": BAND_UNIT, "FRAME": WORDS}
     metadata = "".join(f'<Item name="{name}">{words}</Item>' for name, words in items.items())
     of_band = {"DESCRIPTION": BAND, "UNITTYPE": BAND_UNIT}

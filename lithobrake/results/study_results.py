@@ -66,6 +66,10 @@ _ASKED = {
 }
 
 
+# Files of what samples of an emulator or an expansion came to, which a study of journeys has none of.
+OF_SAMPLES = ("samples.h5", "flights.csv", "rest.csv", "emulator.json", "explorer.h5")
+
+
 class StudyResults:
     """What came out of a study; every table says of its columns what they are.
 
@@ -197,10 +201,6 @@ class StudyResults:
     @cached_property
     def rest(self) -> "Table":
         """Where samples end after all bounces, on each ground (docs/flights.md)."""
-        if not (self.folder / "rest.csv").is_file() and (self.folder / JOURNEYS).is_file():
-            raise ValueError(
-                f"{self.folder} has journeys of landings, and no samples that were followed: ask for journeys"
-            )
         columns = ("ground", *_PLACES)
         return self._table("journey", self._rows("rest.csv", columns), columns, FLIGHT)
 
@@ -374,7 +374,14 @@ class StudyResults:
         return found[0]
 
     def _file(self, name: str) -> Path:
-        """The path of a file of the folder, there or not. Raises ValueError for one that changed after it was made."""
+        """The path of a file of the folder, there or not.
+
+        Raises ValueError for one that changed after it was made, and for one of samples where landings were followed.
+        """
+        if name in OF_SAMPLES and not (self.folder / name).is_file() and (self.folder / JOURNEYS).is_file():
+            raise ValueError(
+                f"{self.folder} has journeys of landings, and no samples of an emulator: ask for journeys or touchdowns"
+            )
         return intact_file(self.folder, name, self.remedy)
 
     def _bodies(self, name: str) -> "MovingBodies":
