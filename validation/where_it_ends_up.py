@@ -16,6 +16,7 @@ from typing import Any
 from hard_ground import HardGround
 
 import lithobrake
+from lithobrake.report.figures.style import figure_style
 from lithobrake.report.page_data import JourneyPage, page_results
 from lithobrake.report.pages.journey_page import journey_content
 from lithobrake.results import StudyResults, open_study
@@ -75,9 +76,10 @@ def draw(study: StudyResults) -> None:
     """Write the map of the places of rest as the report has it."""
     page = page_results(study)
     assert isinstance(page, JourneyPage)
-    figure = next(plot.draw() for plot in journey_content(page).plots if plot.name == "ends")
-    assert figure is not None
-    figure.savefig(FIGURE, dpi=120)
+    with figure_style():
+        figure = next(plot.draw() for plot in journey_content(page).plots if plot.name == "ends")
+        assert figure is not None
+        figure.savefig(FIGURE, dpi=120)
 
 
 def main() -> None:

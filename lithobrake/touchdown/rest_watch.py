@@ -7,10 +7,10 @@ import numpy as np
 from lithobrake.dem import BodyMotion
 from lithobrake.touchdown.lander import Lander
 
-# A lander that stands on an edge topples with the time constant sqrt(size / gravity): its tilt grows sevenfold in two.
-# What moves by less than REST_WAY meanwhile was within 0.4 % of its size of balance, or rests.
-TOPPLING_TIMES = 2.0
-REST_WAY = 0.03  # of the smallest edge, by any point of the lander
+# A lander that stands on an edge topples with the time constant sqrt(size / gravity), in which its tilt grows by a
+# factor of e: what moves by less than REST_WAY meanwhile was within 0.6 % of its size of balance, or rests.
+TOPPLING_TIMES = 1.0
+REST_WAY = 0.015  # of the smallest edge, by any point of the lander
 
 
 class RestWatch:

@@ -74,7 +74,7 @@ def motion(position: tuple[float, float, float], angle: float = 0.0) -> BodyMoti
 
 def test_rest_asks_for_no_motion_of_any_point_for_as_long_as_toppling_takes() -> None:
     edge, patience = LANDER.smallest_edge, rest_time(LANDER, GRAVITY)
-    assert patience == pytest.approx(2.0 * math.sqrt(edge / GRAVITY))
+    assert patience == pytest.approx(math.sqrt(edge / GRAVITY))
     still, sways, turns = (RestWatch(LANDER, GRAVITY) for _ in range(3))
     times = np.linspace(0.0, 1.01 * patience, 40)
     way = 1.5 * REST_WAY * edge
