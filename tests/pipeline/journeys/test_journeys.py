@@ -151,6 +151,17 @@ def test_a_study_that_goes_on_makes_no_landing_again(made: Path, tmp_path: Path)
     assert {record.key: record.ended for record in read_records(made / "runs.sqlite")} == first
 
 
+def test_journeys_are_added_until_the_fraction_at_rest_is_known_as_asked(tmp_path: Path) -> None:
+    asked = {"half_width": 0.13, "largest_run_count": 200}
+    run(tmp_path / "out", design=asked, journey={"count": 24, "duration": 2000.0})
+    results = lithobrake.open_study(tmp_path / "out").summary["results"]
+    at_rest = results["ends"]["at_rest"]
+    # Some are still under way, so that 24 journeys tell too little.
+    assert 0.0 < at_rest["share"] < 1.0
+    assert 24 < results["journeys"] < 200
+    assert at_rest["upper"] - at_rest["lower"] <= 2.0 * 0.13
+
+
 def test_attitudes_are_turned_from_frame_to_frame_and_back() -> None:
     random = np.random.default_rng(5)
     axes = Rotation.random(random_state=random).as_matrix()
