@@ -1,6 +1,6 @@
 """One landing of a study's lander over ten thousand grains: what it costs, with grains held and with none.
 
-    python benchmarks/fine_grains.py scenarios/first_bounce.toml --diameter .023 --grains 1200 --held .1 .03 \
+    python benchmarks/fine_grains.py scenarios/first_bounce.toml --diameter 0.023 --grains 1200 --held 0.1 0.03 \
         --bed BED.h5 --out FILE
 
 So many grains are poured in a box of a third of the study's width. Eight mirror images of that bed stand round it, and

@@ -4,6 +4,7 @@ The frame of a touchdown has x along the incoming horizontal velocity and z alon
 """
 
 import math
+from collections.abc import Mapping
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -11,13 +12,13 @@ from scipy.spatial.transform import Rotation
 from lithobrake.vocabulary.quantities import ORIENTATION_OUT, SPIN_OUT
 
 
-def attitude_of(outputs: dict[str, float], names: tuple[str, ...] = ORIENTATION_OUT) -> Rotation:
+def attitude_of(outputs: Mapping[str, float], names: tuple[str, ...] = ORIENTATION_OUT) -> Rotation:
     """The attitude at the end of a touchdown, in its frame; none told: unturned."""
     w, x, y, z = (outputs.get(name, default) for name, default in zip(names, (1.0, 0.0, 0.0, 0.0), strict=True))
     return Rotation.from_quat([x, y, z, w])
 
 
-def spin_of(outputs: dict[str, float]) -> np.ndarray:
+def spin_of(outputs: Mapping[str, float]) -> np.ndarray:
     """The spin at the end of a touchdown [rad/s], in its frame, against the ground; none told: none."""
     return np.array([outputs.get(name, 0.0) for name in SPIN_OUT])
 

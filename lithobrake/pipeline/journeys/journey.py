@@ -83,7 +83,7 @@ class Journey:
         elif outcome == TouchdownOutcome.CAPTURED:
             self.end = JourneyEnd.AT_REST
             if not self.model.is_ball:
-                attitude = from_frame(self.axes) * attitude_of(dict(outputs))
+                attitude = from_frame(self.axes) * attitude_of(outputs)
                 self.lies = side_down(attitude, self._felt())
         elif outcome == TouchdownOutcome.TIME_LIMIT:
             self.end = JourneyEnd.UNDER_WAY
@@ -132,8 +132,8 @@ class Journey:
         from lithobrake.smallbody import tumble
 
         turning = np.array([0.0, 0.0, 2.0 * math.pi / self.spin_period])
-        attitude = from_frame(self.axes) * attitude_of(dict(outputs))
-        spin = spin_of(dict(outputs)) @ self.axes + turning
+        attitude = from_frame(self.axes) * attitude_of(outputs)
+        spin = spin_of(outputs) @ self.axes + turning
         inertia = self.model.inertia(self.row)
         turned, spins = tumble(inertia, np.array([quaternion(attitude)]), spin[None], np.array([time]))
         back = about_z(-float(turning[2]) * time)

@@ -6,8 +6,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from lithobrake.campaign import Ledger, Limits, Record, RunOptions, Runs, Tally, run_chains
-from lithobrake.pipeline.design.dependencies import touchdown_dependencies
+from lithobrake.campaign import Ledger, Record, Runs, Tally, run_chains
 from lithobrake.pipeline.fly.flight_paths import Ways, write_flight_paths
 from lithobrake.pipeline.fly.flights import write_shape
 from lithobrake.pipeline.job import Job
@@ -16,7 +15,7 @@ from lithobrake.pipeline.journeys.journey_model import JourneyModel
 from lithobrake.pipeline.journeys.journey_tables import write_journeys
 from lithobrake.pipeline.runs.making_runs import account
 from lithobrake.pipeline.runs.run_table import DesignRuns
-from lithobrake.pipeline.runs.touchdown_runs import model_of
+from lithobrake.pipeline.runs.touchdown_runs import campaign_setting, model_of
 from lithobrake.vocabulary.outcomes import JourneyEnd
 
 # Standard errors on either side of a share that is told while journeys are under way: an interval of 90 %.
@@ -55,7 +54,6 @@ def begun(job: Job) -> list[Journey]:
 
 def follow(job: Job, journeys: Sequence[Journey], rows: Sequence[Mapping[str, float]]) -> list[list[Record]]:
     """Make all touchdowns of journeys that begin with these; those that the ledger has are read from it."""
-    study = job.study
 
     def then(number: int, records: Sequence[Record]) -> Mapping[str, float] | None:
         return journeys[number].go_on(records[-1])
@@ -66,19 +64,12 @@ def follow(job: Job, journeys: Sequence[Journey], rows: Sequence[Mapping[str, fl
 
     with Ledger(job.folder / "runs.sqlite") as ledger:
         return run_chains(
-            model_of(study, job.folder.path.absolute(), job.model),
+            model_of(job.study, job.folder.path.absolute(), job.model),
             rows,
             then,
-            context=touchdown_dependencies(study),
             ledger=ledger,
-            executor=job.executor,
-            limits=Limits(study.campaign.wall_limit or math.inf, study.campaign.memory_limit or math.inf),
-            options=RunOptions(
-                seed=study.seed,
-                retry_count=study.campaign.retry_count,
-                log_folder=job.folder.path.absolute() / "logs" if job.keeps_logs else None,
-            ),
             progress=show,
+            **campaign_setting(job),
         )
 
 

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -43,18 +44,26 @@ def touchdowns(job: Job, rows: Sequence[Mapping[str, float]], title: str, replic
             model_of(study, job.folder.path.absolute(), job.model),
             np.array([list(row.values()) for row in rows]),
             names=list(rows[0]),
-            context=touchdown_dependencies(study),
             ledger=ledger,
-            executor=job.executor,
-            limits=Limits(study.campaign.wall_limit or math.inf, study.campaign.memory_limit or math.inf),
-            options=RunOptions(
-                seed=study.seed,
-                replicate=replicate,
-                retry_count=study.campaign.retry_count,
-                log_folder=job.folder.path.absolute() / "logs" if job.keeps_logs else None,
-            ),
             progress=show,
+            **campaign_setting(job, replicate),
         )
+
+
+def campaign_setting(job: Job, replicate: int = 0) -> dict[str, Any]:
+    """What every campaign of landings of a study is given, as arguments of `campaign.run` and `run_chains`."""
+    asked = job.study.campaign
+    return {
+        "context": touchdown_dependencies(job.study),
+        "executor": job.executor,
+        "limits": Limits(asked.wall_limit or math.inf, asked.memory_limit or math.inf),
+        "options": RunOptions(
+            seed=job.study.seed,
+            replicate=replicate,
+            retry_count=asked.retry_count,
+            log_folder=job.folder.path.absolute() / "logs" if job.keeps_logs else None,
+        ),
+    }
 
 
 def _drawn(design: DrawnDesign, row: Sequence[float], replicate: int) -> dict[str, float]:
