@@ -64,7 +64,8 @@ def running_estimates(records: Sequence[Record], flown: Mapping[str, float]) -> 
 
     flown: share of its flights in which a run returns, by key, of those that have flown.
     """
-    done = [record for record in records if record.status == RunStatus.DONE]
+    # By key: sums then have the same last digit in whatever order the runs ended.
+    done = sorted((record for record in records if record.status == RunStatus.DONE), key=lambda record: record.key)
     if len(done) < FEWEST_RUNS:
         return None
     # Whoever looks at a study without such runs does not wait for these.

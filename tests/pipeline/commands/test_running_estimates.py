@@ -23,7 +23,7 @@ def record(run: int, bed_count: int = 6, outcome: str | None = None) -> Record:
     outputs = {"speed_out": float(SPEEDS[run])} if how == "clear" else {}
     inputs = {"bed": float(run % bed_count)}
     return Record(
-        f"run {run}", RunStatus.DONE, how, inputs, outputs, {}, run, 0, 1, None, 1.0, 1.0, None, "", None, None
+        f"run {run:02d}", RunStatus.DONE, how, inputs, outputs, {}, run, 0, 1, None, 1.0, 1.0, None, "", None, None
     )
 
 
@@ -42,10 +42,16 @@ def test_estimates_are_those_of_the_runs_with_beds_as_units() -> None:
     assert content["captured"]["from"] == "60 landings on 6 beds"
     assert (content["returns"], content["speed_out"]["level"]) == (None, 0.9)
     shares = np.where(captured, 1.0, 0.25)
-    flown = running_estimates([record(run) for run in range(60)], {f"run {run}": shares[run] for run in range(60)})
+    flown = running_estimates([record(run) for run in range(60)], {f"run {run:02d}": shares[run] for run in range(60)})
     assert flown is not None
     assert flown.returns == share_estimate(shares, bed)
     assert flown.lines()[-1].startswith("  return fraction: 40 % (90 % interval ")
+
+
+def test_the_order_in_which_runs_end_changes_no_digit() -> None:
+    records, orders = [record(run) for run in range(40)], np.random.default_rng(2)
+    found = {running_estimates([records[row] for row in orders.permutation(40)], {}) for _ in range(20)}
+    assert found == {running_estimates(records, {})}
 
 
 def test_runs_without_an_answer_widen_it_and_one_bed_has_no_interval() -> None:
