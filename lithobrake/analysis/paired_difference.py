@@ -121,7 +121,7 @@ def _difference(
 def _bounds(first: Estimated, second: Estimated, correlation: float) -> Bounds | None:
     """Bounds of second less first from the bounds of both.
 
-    Source: [Zou-2008], Eq 5 (the variances are recovered at the ends that decide).
+    Source: [Zou-2008] (the variances are recovered at the bounds that decide).
     """
     ends = (first.value, first.lower, first.upper, second.value, second.lower, second.upper)
     if None in ends:
@@ -147,7 +147,8 @@ def pair_correlation(first: Array, second: Array, beds: Labels) -> float | None:
     found = [_correlation(one, two)]
     number = np.unique(beds[both], return_inverse=True)[1]
     if number.max() + 1 >= FEWEST_BEDS:
-        found.append(_correlation(np.bincount(number, one), np.bincount(number, two)))
+        sums = [np.bincount(number, values).astype(np.float64) for values in (one, two)]
+        found.append(_correlation(sums[0], sums[1]))
     known = [r for r in found if r is not None]
     return min(known) if known else None
 
