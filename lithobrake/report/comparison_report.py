@@ -9,7 +9,7 @@ from lithobrake.report.content import Content, PageTable, Plot, Tile
 from lithobrake.report.figures.difference_figure import ShownDifference, difference_figure
 from lithobrake.report.pages.html import page
 from lithobrake.report.study_report import drawn_panels
-from lithobrake.report.words.comparison_words import bounded, factor, sentence, unit, verdict
+from lithobrake.report.words.comparison_words import bounded, factor, sentence, shown, unit, verdict
 from lithobrake.report.words.numbers import number
 from lithobrake.results.comparison import ComparedAnswer, StudyComparison
 from lithobrake.vocabulary.percentages import percent
@@ -31,7 +31,7 @@ def write_comparison(comparison: StudyComparison, texts: Sequence[str], place: P
     warnings = [words for words in (comparison.note, comparison.why) if words]
     first = sentence(comparison, next(iter(comparison.answers)))
     content = Content(first, warnings, _tiles(comparison), [plot], [_table(comparison), _settings(comparison)])
-    text = page(title, facts, content, panels, [], files, kind="StudyComparison of two studies")
+    text = page(title, facts, content, panels, [], files, kind="Comparison of two studies")
     path = place / "index.html"
     with atomic_path(path) as draft:
         draft.write_text(text, encoding="utf-8")
@@ -42,7 +42,7 @@ def _tiles(comparison: StudyComparison) -> list[Tile]:
     told = [(one, one.difference.value) for one in list(comparison.answers.values())[:TOLD]]
     return [
         Tile(
-            number(factor(one) * value, 3, scale=factor(one)),
+            shown(value, factor(one), signed=True),
             unit(one, of_difference=True),
             f"{one.words}, B less A: {verdict(one)}",
         )

@@ -92,7 +92,7 @@ def compare_studies(first: Path, second: Path) -> StudyComparison:
     beds = len(np.unique(bed))
     return StudyComparison(
         names=(str(first), str(second)),
-        titles=(_title(one), _title(two)),
+        titles=_titles(one, two),
         of=f"{count} pairs on {beds} {'bed' if beds == 1 else 'beds'}",
         level=LEVEL,
         settings=_settings(one.results.study, two.results.study),
@@ -102,8 +102,10 @@ def compare_studies(first: Path, second: Path) -> StudyComparison:
     )
 
 
-def _title(study: OneStudy) -> str:
-    return str(study.results.study["title"] or study.path.name)
+def _titles(one: OneStudy, two: OneStudy) -> tuple[str, str]:
+    """Titles that tell the studies apart: those of their files, or the names of their folders."""
+    titles = [str(each.results.study["title"]) for each in (one, two)]
+    return (titles[0], titles[1]) if all(titles) and titles[0] != titles[1] else (one.path.name, two.path.name)
 
 
 def comparison_files(out: Path) -> tuple[Path, Path]:
@@ -193,8 +195,8 @@ def _journey_answers(
             )
     numbers = (
         ("time_s", "time to rest", "s", False),
-        ("contacts", "contacts of those at rest", "", True),
-        ("distance", "distance from the aim point of those at rest", "m", False),
+        ("contacts", "contacts", "", True),
+        ("distance", "distance from aim", "m", False),
     )
     for name, words, unit, counts in numbers:
         values = [np.where(table.rests, table.numbers[name], np.nan)[:count] for table in tables]
@@ -240,7 +242,7 @@ def _quantiles(
     *,
     counts: bool = False,
 ) -> Iterator[tuple[str, ComparedAnswer]]:
-    """Median and 95th percentile of a number, where a run of each study has it."""
+    """Median and 95th percentile of a number over the runs of each study that have it."""
     if not all(np.isfinite(one).any() for one in values):
         return
     for level, title in ((MEDIAN, "median"), (Q95, "95th percentile")):

@@ -28,7 +28,7 @@ def difference_figure(groups: Sequence[tuple[str, Sequence[ShownDifference]]]) -
     places = figure.subplots(len(shown), 1, squeeze=False, gridspec_kw={"height_ratios": heights, "hspace": 0.75})
     for axes, (label, rows) in zip(places[:, 0], shown, strict=True):
         _draw(axes, label, rows)
-    figure.subplots_adjust(left=0.3, right=0.74, top=0.97, bottom=0.16 if sum(heights) < 8 else 0.1)
+    figure.subplots_adjust(left=0.27, right=0.74, top=0.97, bottom=0.16 if sum(heights) < 8 else 0.1)
     return figure
 
 

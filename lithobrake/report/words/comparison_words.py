@@ -1,6 +1,6 @@
 """Numbers of a comparison in words: an answer of each study, and the difference with its interval."""
 
-from lithobrake.report.words.numbers import number
+from lithobrake.report.words.numbers import fixed, number
 from lithobrake.results.comparison import ComparedAnswer, ComparedNumber, StudyComparison
 from lithobrake.vocabulary.percentages import percent
 
@@ -23,13 +23,14 @@ def bounded(one: ComparedNumber, times: float, *, signed: bool = False) -> str:
     """A number with its interval, "12.3 (10.1 to 14.2)"; "none" where there is none."""
     if one.value is None:
         return "none"
-    ends = [_number(end, times, signed) if end is not None else "no bound" for end in (one.lower, one.upper)]
+    ends = [shown(end, times, signed=signed) if end is not None else "no bound" for end in (one.lower, one.upper)]
     has_interval = one.lower is not None or one.upper is not None
-    return _number(one.value, times, signed) + (f" ({ends[0]} to {ends[1]})" if has_interval else "")
+    return shown(one.value, times, signed=signed) + (f" ({ends[0]} to {ends[1]})" if has_interval else "")
 
 
-def _number(value: float, times: float, signed: bool) -> str:
-    text = number(times * value, 3, scale=times)
+def shown(value: float, times: float, *, signed: bool = False) -> str:
+    """A number as it is shown; signed: with a plus where it is above 0."""
+    text = fixed(times * value, 1) if times == PERCENT else number(value, 3)
     return f"+{text}" if signed and value > 0.0 and text != "0" else text
 
 
