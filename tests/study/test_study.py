@@ -10,6 +10,7 @@ import pytest
 
 from lithobrake.study import Study, StudyError, check_tables, known_keys, read_study
 from lithobrake.study.quantity import uncertain
+from lithobrake.study.journey_template import journey_template
 from lithobrake.study.template import template
 
 from ..paper_tables import paper_tables
@@ -48,8 +49,17 @@ def test_the_template_is_a_study_with_the_papers_five_inputs() -> None:
     ]
 
 
-def test_every_key_has_a_meaning_in_the_template() -> None:
-    text = template()
+def test_the_journey_template_is_a_study_of_journeys(tmp_path: Path) -> None:
+    (tmp_path / "study.toml").write_text(journey_template())
+    study = read_study(tmp_path / "study.toml")
+    assert study.journey is not None
+    assert study.journey.count == study.design.run_count == 48
+    assert study.bed_count == 12
+    assert {"impact.speed", "grain.friction"} <= uncertain(study.touchdown_values()).keys()
+
+
+@pytest.mark.parametrize("text", [template(), journey_template()], ids=["first bounce", "journeys"])
+def test_every_key_has_a_meaning_in_a_template(text: str) -> None:
     for path, names in known_keys().items():
         # The kinds of size distribution stand in the words of bed.diameter.
         for name in names if path != "bed.diameter" else ():
