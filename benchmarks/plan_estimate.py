@@ -1,6 +1,6 @@
 """How right `lithobrake plan` is: CPU times of a bed and of landings, expected and as they come.
 
-    python benchmarks/plan_estimate.py first_bounce quick drawn_700 paper --beds 4 --landings 14
+    python benchmarks/plan_estimate.py first_bounce drawn_700 paper --beds 4 --landings 14
 
 pours beds of each study of scenarios/ or validation/studies/, makes so many of its landings on the first, with slow
 grains held and without, and keeps the means of what came beside what was expected in benchmarks/plan_estimate.json. The

@@ -356,7 +356,7 @@ def test_a_half_width_that_is_asked_for_may_take_runs_and_beds_up_to_the_most(tm
     assert "Touchdowns: 144 to 400 drawn, until design.half_width is met;" in " ".join(plan_lines(plan))
 
 
-MEASURED_STUDIES = {name: SCENARIOS / f"{name}.toml" for name in ("first_bounce", "quick", "paper")} | {
+MEASURED_STUDIES = {name: SCENARIOS / f"{name}.toml" for name in ("first_bounce", "paper")} | {
     "drawn_700": HERE / "validation" / "studies" / "drawn_700.toml"
 }
 
