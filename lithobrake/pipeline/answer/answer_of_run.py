@@ -5,12 +5,13 @@ returns; one that is captured answers without flying, and one of which nobody kn
 that asks for the half width of a limit state has the share of flights that meet it for an answer.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
 import numpy as np
 
 from lithobrake.campaign import Record
 from lithobrake.files.reading import read_rows
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.fly.run_flights import FILE
 from lithobrake.pipeline.folder.study_folder import AGAIN, StudyFolder
 from lithobrake.study import Study
@@ -34,11 +35,17 @@ def read_shares(folder: StudyFolder) -> dict[str, float]:
 
 
 def answers_of(
-    keys: Sequence[str], known: Mapping[str, Record], flown: Mapping[str, float]
+    design: DrawnDesign, known: Mapping[str, Record], flown: Mapping[str, float]
 ) -> tuple[np.ndarray, np.ndarray]:
     """Answer of each run that has ended and flown, from 0 to 1, NaN where it has none, and its bed, both [run_count].
 
-    keys: of the runs that are asked for; known: runs that have ended, by key; flown: as flown_shares gives it.
+    design: with the runs that are asked for; known: runs that have ended, by key; flown: as flown_shares gives it. Of
+    landers that are flown to the ground, those that never touch down have an answer too: 0, they do not rest.
     """
-    answered = [key for key in keys if key in known and key in flown]
-    return np.array([flown[key] for key in answered]), np.array([known[key].inputs["bed"] for key in answered])
+    answered = [key for key in design.keys if key in known and key in flown]
+    values = np.array([flown[key] for key in answered])
+    bed = np.array([known[key].inputs["bed"] for key in answered])
+    if design.descents is None:
+        return values, bed
+    aloft = np.array(design.beds, dtype=float)[~design.descents.touches_down]
+    return np.concatenate([values, np.zeros(len(aloft))]), np.concatenate([bed, aloft])

@@ -26,7 +26,6 @@ class JourneyTable:
     numbers: dict[str, np.ndarray]
     position: np.ndarray
     face: np.ndarray
-    touchdowns: int
 
     @classmethod
     def load(cls, folder: StudyFolder) -> "JourneyTable":
@@ -40,11 +39,15 @@ class JourneyTable:
         return cls(
             end=np.array([row["end"] for row in rows]),
             bed=np.array([int(row["bed"]) for row in rows]),
-            numbers={name: numbers(name) for name in ("time_s", "contacts", "distance", "tilt_deg")},
+            numbers={name: numbers(name) for name in ("time_s", "contacts", "distance", "tilt_deg", "touchdowns")},
             position=np.column_stack([numbers(f"position_{axis}") for axis in "xyz"]),
             face=np.array([row["face"] for row in rows]),
-            touchdowns=int(numbers("touchdowns").sum()),
         )
+
+    @property
+    def touchdowns(self) -> int:
+        """How many landings all of them have."""
+        return int(self.numbers["touchdowns"].sum())
 
     @property
     def rests(self) -> np.ndarray:

@@ -84,7 +84,7 @@ def expected_width(design: DrawnDesign, known: Mapping[str, Record], folder: Stu
         widths = [expected_half_width(*counts, spread=spread) or math.inf for spread in spreads]
         words = "that of fractions of 95 and of 80 %"
         of_journeys = {"typical": tuple(widths), "spread": tuple(spreads), "of": "fraction at rest", "measured": words}
-    values, bed = answers_of(design.keys, known, flown_shares(study, folder))
+    values, bed = answers_of(design, known, flown_shares(study, folder))
     of_landings = {"typical": expected_half_widths(*counts) or (np.inf, np.inf), "spread": SPREAD_RANGE}
     return ExpectedHalfWidth(
         *counts,
