@@ -41,9 +41,7 @@ def _pair(matrix: Matrix, row: int, column: int) -> str | None:
             "make the two equal"
         )
     if abs(one) > size * (1.0 + ROUNDING):
-        return (
-            f"has {one:g} in {where}; allowed: -{size:g} to {size:g}, by the two variances; lower it, or raise these"
-        )
+        return f"has {one:g} in {where}; allowed: -{size:g} to {size:g}, by the two variances; lower it, or raise these"
     return None
 
 

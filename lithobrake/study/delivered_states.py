@@ -76,7 +76,9 @@ def read_states(path: Path, frame: str, epoch: str | None, centres: Sequence[str
     try:
         text = path.read_text(encoding="utf-8-sig")
     except (OSError, UnicodeDecodeError) as error:
-        raise ValueError(f"{path.name} cannot be read ({error}); give the path of a CSV or OEM file in UTF-8") from error
+        raise ValueError(
+            f"{path.name} cannot be read ({error}); give the path of a CSV or OEM file in UTF-8"
+        ) from error
     if is_message(text):
         return _of_message(list(message_states(Path(path.name), text)), path.name, frame, epoch, centres)
     if text.lstrip().startswith("<"):
@@ -87,7 +89,9 @@ def read_states(path: Path, frame: str, epoch: str | None, centres: Sequence[str
 def states_of(study: "Study") -> DeliveredStates:
     """The states that a study names. Raises ValueError as read_states does."""
     delivery, site = study.delivery, study.site
-    assert delivery is not None and delivery.states is not None and delivery.frame is not None
+    assert delivery is not None
+    assert delivery.states is not None
+    assert delivery.frame is not None
     own = site.body if site.body in BUILT_IN_BODIES else site.name
     names = [re.sub(r"\W+", "_", name).upper() for name in (own, site.kernel_body) if name]
     return read_states(Path(delivery.states), delivery.frame, delivery.epoch, names)

@@ -80,8 +80,8 @@ def _uncorrelated(study: Study, key: str) -> str | None:
     if isinstance(value, Uncertain):
         return None
     return (
-        f"delivery.correlations names {key}, which is {show(value)}; allowed: keys with a distribution; give it one, or "
-        "leave the pair out"
+        f"delivery.correlations names {key}, which is {show(value)}; allowed: keys with a distribution; give it one, "
+        "or leave the pair out"
     )
 
 
@@ -145,8 +145,8 @@ def _state_problems(study: Study, delivery: DeliverySection) -> Iterator[str]:
     if count < study.design.most_runs:
         key = "journey.count" if study.design.half_width is None else "design.largest_run_count"
         yield (
-            f"{key} is {study.design.most_runs} and delivery.states has {count} rows; allowed: at most as many journeys "
-            "as rows, each of which is one lander; lower it, or give more rows"
+            f"{key} is {study.design.most_runs} and delivery.states has {count} rows; allowed: at most as many "
+            "journeys as rows, each of which is one lander; lower it, or give more rows"
         )
 
 

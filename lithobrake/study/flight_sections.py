@@ -38,7 +38,7 @@ class SiteSection(Section):
     epoch: str | None = None
     """UTC date and time of the touchdown, "2027-01-20T12:00:00": the partner stands where the kernels have it then."""
     pole_right_ascension_deg: Annotated[float, Number("deg", at_least=-360, at_most=360)] | None = None
-    """Right ascension of the pole in ICRF about which the body turns counter-clockwise; with delivery.frame = "icrf"."""
+    """Right ascension, in ICRF, of the pole about which the body turns counter-clockwise."""
     pole_declination_deg: Annotated[float, Number("deg", at_least=-90, at_most=90)] | None = None
     """Declination of that pole."""
     meridian_deg: Annotated[float, Number("deg", at_least=-360, at_most=360)] | None = None

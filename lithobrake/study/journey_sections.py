@@ -62,7 +62,9 @@ class DeliverySection(Section):
     """Angular velocity about y."""
     spin_z: Spin | None = None
     """Angular velocity about z, the outward normal."""
-    correlations: tuple[Correlation, ...] | None = Field(default=None, examples=['[["north_error", "east_error", 0.5]]'])
+    correlations: tuple[Correlation, ...] | None = Field(
+        default=None, examples=['[["north_error", "east_error", 0.5]]']
+    )
     """Rank correlations (Spearman) of uncertain keys above, each two keys and a number between -1 and 1; all other
     pairs are independent. Draws go together by a Gaussian copula."""
     frame: Literal["body_fixed", "icrf"] | None = None
@@ -76,7 +78,6 @@ class DeliverySection(Section):
     """States that another tool has drawn, one a journey in the order of the file, which counts from the study file: a
     table (CSV) with columns such as time_s, x_m and vx_m_s, or an ephemeris message (OEM); docs/delivery.md."""
     release: ReleaseSection | None = None
-
 
     @property
     def is_flown(self) -> bool:

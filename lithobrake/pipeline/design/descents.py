@@ -167,9 +167,9 @@ def _refuse_below(study: Study, site: Site, position: np.ndarray, source: Sequen
             key = "delivery.states" if study.delivery and study.delivery.states else "delivery.release"
             raise StudyError(
                 [
-                    f"{key}: {where} lies {-height:.3g} m below the ground; allowed: on it or above; are its lengths in "
-                    "metres, and counted from the centre of the body in the axes of delivery.frame? mend it, or take "
-                    "a smaller spread"
+                    f"{key}: {where} lies {-height:.3g} m below the ground; allowed: on it or above; is it counted "
+                    "from the centre of the body, in metres and in the axes of delivery.frame? mend it, or lower the "
+                    "spread"
                 ]
             )
 

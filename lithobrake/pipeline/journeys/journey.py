@@ -9,10 +9,10 @@ import numpy as np
 
 from lithobrake.campaign import Record, RunStatus
 from lithobrake.files.hashing import hashed_seed
+from lithobrake.geometry.contact_frame import attitude_of, from_frame, spin_of
 from lithobrake.pipeline.design.arrival import attitude_inputs, impact_inputs
 from lithobrake.pipeline.design.free_rotation import turned_in_flight
 from lithobrake.pipeline.design.local_ground import felt, friction_of, ground_inputs
-from lithobrake.geometry.contact_frame import attitude_of, from_frame, spin_of
 from lithobrake.pipeline.journeys.resting_attitude import side_down
 from lithobrake.study.touchdown_model import PLACE, TIME_LEFT
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyEnd, TouchdownOutcome
@@ -175,7 +175,16 @@ class Journey:
             "end_s": self.time,
             "latitude_deg": latitude,
             "longitude_deg": longitude,
+            **{f"position_{axis}": float(value) for axis, value in zip("xyz", place, strict=True)},
+            **{f"velocity_{axis}": float(value) for axis, value in zip("xyz", self._incoming(), strict=True)},
         }
+
+    def _incoming(self) -> np.ndarray:
+        """Velocity of the present impact against the ground [m/s], fixed to the body."""
+        incidence = math.radians(self.row["impact.incidence_deg"])
+        along, down = self.row["impact.speed"] * math.sin(incidence), self.row["impact.speed"] * math.cos(incidence)
+        incoming: np.ndarray = along * self.axes[0] - down * self.axes[2]
+        return incoming
 
 
 def flight_row(

@@ -52,8 +52,22 @@ def rest_map(data: JourneyPage) -> str:
         said.append(f"The lines enclose the smallest regions with {areas}, by a density fitted to their places.")
     elif rest.why_no_regions:
         said.append(f"No regions are drawn: {rest.why_no_regions.rstrip('.')}.")
+    said += _delivery(data)
     said.append("Landers that escaped, came down on the partner, failed or still fly have no place on it.")
     return " ".join(said)
+
+
+def _delivery(data: JourneyPage) -> list[str]:
+    """The ellipses of the first impacts, where there are any."""
+    found = data.results.delivery
+    if found is None or found.ellipse is None or not found.ellipse.shares:
+        return []
+    shares = " and ".join(percent(one.share) for one in found.ellipse.shares)
+    long, short = (2.0 * axis for axis in found.ellipse.shares[-1].semi_axes_m)
+    return [
+        f"The ellipses hold {shares} of the first impacts, the delivery; the larger is {number(long, 2)} m by "
+        f"{number(short, 2)} m."
+    ]
 
 
 def times(data: JourneyPage) -> str:
