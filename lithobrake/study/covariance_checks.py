@@ -13,7 +13,7 @@ def covariance_problems(matrix: Matrix) -> Iterator[str]:
     """What is wrong with a matrix of six rows, after its name; the first thing alone."""
     pairs = [(row, column) for row in range(SIDE) for column in range(row)]
     wrong = [text for row in range(SIDE) if (text := _variance(matrix, row))]
-    wrong += [text for row, column in pairs if (text := _pair(matrix, row, column))]
+    wrong = wrong or [text for row, column in pairs if (text := _pair(matrix, row, column))]
     if wrong:
         yield wrong[0]
     elif (smallest := _smallest(matrix)) < -SIDE * ROUNDING:

@@ -76,9 +76,8 @@ def read_states(path: Path, frame: str, epoch: str | None, centres: Sequence[str
     try:
         text = path.read_text(encoding="utf-8-sig")
     except (OSError, UnicodeDecodeError) as error:
-        raise ValueError(
-            f"{path.name} cannot be read ({error}); give the path of a CSV or OEM file in UTF-8"
-        ) from error
+        why = error.strerror if isinstance(error, OSError) else str(error)
+        raise ValueError(f"{path.name} cannot be read ({why}); give the path of a CSV or OEM file in UTF-8") from error
     if is_message(text):
         return _of_message(list(message_states(Path(path.name), text)), path.name, frame, epoch, centres)
     if text.lstrip().startswith("<"):

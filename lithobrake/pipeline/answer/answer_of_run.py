@@ -5,7 +5,7 @@ returns; one that is captured answers without flying, and one of which nobody kn
 that asks for the half width of a limit state has the share of flights that meet it for an answer.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -35,16 +35,21 @@ def read_shares(folder: StudyFolder) -> dict[str, float]:
 
 
 def answers_of(
-    design: DrawnDesign, known: Mapping[str, Record], flown: Mapping[str, float]
+    keys: Sequence[str], known: Mapping[str, Record], flown: Mapping[str, float]
 ) -> tuple[np.ndarray, np.ndarray]:
     """Answer of each run that has ended and flown, from 0 to 1, NaN where it has none, and its bed, both [run_count].
 
-    design: with the runs that are asked for; known: runs that have ended, by key; flown: as flown_shares gives it. Of
-    landers that are flown to the ground, those that never touch down have an answer too: 0, they do not rest.
+    keys: of the runs that are asked for; known: runs that have ended, by key; flown: as flown_shares gives it.
     """
-    answered = [key for key in design.keys if key in known and key in flown]
-    values = np.array([flown[key] for key in answered])
-    bed = np.array([known[key].inputs["bed"] for key in answered])
+    answered = [key for key in keys if key in known and key in flown]
+    return np.array([flown[key] for key in answered]), np.array([known[key].inputs["bed"] for key in answered])
+
+
+def answers_of_design(
+    design: DrawnDesign, known: Mapping[str, Record], flown: Mapping[str, float]
+) -> tuple[np.ndarray, np.ndarray]:
+    """The same of the runs of a design, with 0 for each lander that is flown to the ground and never touches down."""
+    values, bed = answers_of(design.keys, known, flown)
     if design.descents is None:
         return values, bed
     aloft = np.array(design.beds, dtype=float)[~design.descents.touches_down]
