@@ -113,7 +113,14 @@ def attitude(data: JourneyPage) -> str:
 
 def first_variance(data: JourneyPage) -> str:
     """The figure of the parts of the variance; empty where it has none."""
-    return of_first_touchdown(variance(data)) if any(data.results.variance_shares.values()) else ""
+    if not any(data.results.variance_shares.values()):
+        return ""
+    said = of_first_touchdown(variance(data))
+    correlations = (data.study.get("delivery") or {}).get("correlations") or ()
+    pairs = ", ".join(f"{one} with {other}" for one, other, _ in correlations)
+    if pairs:
+        said += f" Inputs are taken as independent, and {pairs} are drawn correlated: read their parts together."
+    return said
 
 
 def quantile_words(one: RestQuantile, size: float = 1.0) -> str:
