@@ -5,6 +5,8 @@ from typing import TYPE_CHECKING
 from lithobrake.vocabulary.lazy_names import lazy_names
 
 if TYPE_CHECKING:
+    from lithobrake.pipeline.commands.one_journey import OneJourney as OneJourney
+    from lithobrake.pipeline.commands.one_journey import follow_one as follow_one
     from lithobrake.pipeline.commands.one_landing import OneLanding as OneLanding
     from lithobrake.pipeline.commands.one_landing import land_one as land_one
     from lithobrake.pipeline.commands.one_landing import landing_inputs as landing_inputs

@@ -37,13 +37,16 @@ def pyvista() -> Any:
 class DrawnMotion:
     """A window, shown or not, with the bodies of a motion; the lander is the last of them."""
 
-    def __init__(self, bodies: "MovingBodies", *, size: tuple[int, int], off_screen: bool) -> None:
-        """Set all up at the first frame; size of the picture in pixels."""
+    def __init__(
+        self, bodies: "MovingBodies", *, size: tuple[int, int], off_screen: bool, words: str = ""
+    ) -> None:  # fmt: skip
+        """Set all up at the first frame; size of the picture in pixels; words: above the time."""
         if off_screen and not os.environ.get("DISPLAY"):
             # Without this VTK asks for a display first, and says so.
             os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
         pv = pyvista()
-        self.bodies = bodies = with_images(bodies)
+        self.words, self.bodies = words, with_images(bodies)
+        bodies = self.bodies
         self.speeds = body_speeds(bodies)
         faces, self.owner = triangles(bodies)
         self.mesh = pv.PolyData.from_regular_faces(placed(bodies, 0), faces)
@@ -64,7 +67,8 @@ class DrawnMotion:
         return np.maximum(self.speeds[frame, self.owner], SLOWEST * self.fastest)
 
     def _time(self, frame: int) -> str:
-        return f"t = {self.bodies.time[frame] - self.bodies.time[0]:.3g} s"
+        clock = f"t = {self.bodies.time[frame] - self.bodies.time[0]:.3g} s"
+        return f"{self.words}\n{clock}" if self.words else clock
 
     def _look(self) -> None:
         """Look at the middle of the lander's way from aslant and above, far enough for all of the bed."""
