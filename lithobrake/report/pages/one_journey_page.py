@@ -9,7 +9,7 @@ from lithobrake.report.figures.hulls import scene
 from lithobrake.report.figures.style import figure_style
 from lithobrake.report.figures.track_map import track_map
 from lithobrake.report.live.packed import deflated, script_data
-from lithobrake.report.live.views import SCRIPTS, landing_arrays, landing_words
+from lithobrake.report.live.views import AWAY, SCRIPTS, landing_arrays, landing_words
 from lithobrake.results import JourneyMotion, JourneyTrack, MovingBodies, TouchdownFacts
 
 MAP_WORDS = "Impacts in their order, joined by straight lines, and where the lander ended. The flights are not drawn."
@@ -94,9 +94,17 @@ def _touchdowns(shown: list[tuple[TouchdownFacts, MovingBodies]]) -> str:
 {data}"""
 
 
+def _near(bodies: MovingBodies) -> float:
+    """How far away [m] a tile of the ground is seen whole."""
+    return AWAY * float(max(bodies.attributes["width"]))
+
+
 def _data(facts: TouchdownFacts, bodies: MovingBodies) -> str:
     """What a browser draws a touchdown from."""
     drawn = scene(bodies, has_lander=True)
     arrays, numbers = landing_arrays(drawn)
+    # Where the lander goes far over ground that repeats, it would be a dot beside its whole way.
+    if bodies.attributes.get("sides") == "periodic" and numbers["orbit"]["distance"] > (near := _near(bodies)):
+        numbers |= {"follows": True, "orbit": {**numbers["orbit"], "distance": near}}
     words = f"{landing_words(drawn, arrays, numbers)} {HINT}"
     return script_data(f"touchdown-{facts.number}-data", {**numbers, "words": words, "arrays": deflated(arrays)})
