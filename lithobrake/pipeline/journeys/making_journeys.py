@@ -46,16 +46,19 @@ def make_journeys(job: Job) -> None:
 
 def begun(job: Job) -> list[Journey]:
     """The journeys of a study before their first touchdowns; of those that never touch down, at their end."""
-    descents = job.design.descents
-    if descents is not None:
-        return begun_aloft(JourneyModel(job.design, job.site), descents)
-    rows, model = job.design.rows, JourneyModel(job.design, job.site)
-    columns = job.site.sampled(len(rows))
-    origin, axes = job.site.frames(columns)
-    clock = job.site.body.partner_time(columns["partner_longitude_deg"], columns["spin_period"])
+    model, descents = JourneyModel(job.design, job.site), job.design.descents
+    return begin(model, job.design.rows, 0) if descents is None else begun_aloft(model, descents)
+
+
+def begin(model: JourneyModel, rows: Sequence[dict[str, float]], first: int) -> list[Journey]:
+    """Journeys, numbered from `first` on, whose first touchdowns have these inputs."""
+    site = model.site
+    columns = {key: values[first:] for key, values in site.sampled(first + len(rows)).items()}
+    origin, axes = site.frames(columns)
+    clock = site.body.partner_time(columns["partner_longitude_deg"], columns["spin_period"])
     numbers = zip(*(one.tolist() for one in (clock, columns["mass"], columns["spin_period"])), strict=True)
     starts = zip(rows, origin, axes, numbers, strict=True)
-    return [Journey(model, number, *start, *own) for number, (*start, own) in enumerate(starts)]
+    return [Journey(model, first + number, *start, *own) for number, (*start, own) in enumerate(starts)]
 
 
 def follow(job: Job, journeys: Sequence[Journey], rows: Sequence[Mapping[str, float]]) -> list[list[Record]]:
