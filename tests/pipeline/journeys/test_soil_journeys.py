@@ -204,8 +204,8 @@ def test_attitude_and_spin_at_an_impact_are_those_of_a_flight_without_torque(stu
         back = about_z(-float(rotation[2]) * time)
         into_bed = about_z(math.radians(after["impact.azimuth_deg"])) @ frame(body, flight)
         given = matrix([after[f"impact.orientation.{axis}"] for axis in "wxyz"])
-        assert given == pytest.approx(into_bed @ back @ turn, abs=1e-8)
+        assert given == pytest.approx(into_bed @ back @ turn, abs=1e-9)
         given_spin = np.array([after[f"impact.spin_{axis}"] for axis in "xyz"])
-        assert given_spin == pytest.approx(into_bed @ (back @ spin - rotation), abs=1e-9)
+        assert given_spin == pytest.approx(into_bed @ (back @ spin - rotation), abs=1e-10)
         checked += 1
     assert checked >= 10
