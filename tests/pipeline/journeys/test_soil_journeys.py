@@ -129,9 +129,7 @@ def test_the_tilt_at_rest_is_that_of_the_attitude_against_the_plumb_line(study: 
         last = ends[journey["journey"]]
         slope = math.radians(last["surface.slope_deg"])
         downhill = math.radians(last["surface.slope_azimuth_deg"] - last["impact.azimuth_deg"])
-        down = np.array(
-            [math.sin(slope) * math.cos(downhill), math.sin(slope) * math.sin(downhill), -math.cos(slope)]
-        )
+        down = np.array([math.sin(slope) * math.cos(downhill), math.sin(slope) * math.sin(downhill), -math.cos(slope)])
         in_lander = matrix([last[f"orientation_out_{axis}"] for axis in "wxyz"]).T @ down
         axis = int(np.argmax(np.abs(in_lander)))
         assert journey["face"] == f"{'-' if in_lander[axis] < 0.0 else '+'}{'xyz'[axis]}"
