@@ -65,15 +65,13 @@ class DaskExecutor(Executor):
         """Hand the answer of the cluster to whoever waits for it; Dask calls this in a thread of its own."""
         here = self._submitted.pop(there)
         try:
-            if there.status == "finished":
-                here.set_result(there.result())
-            elif there.status == "error":
-                here.set_exception(_reason(there.exception()))
-            else:
-                raise BrokenExecutor(f"the Dask scheduler at {self._scheduler} has dropped a call ({there.status})")
+            if there.status == "cancelled":
+                raise BrokenExecutor(f"the Dask scheduler at {self._scheduler} has dropped a call")
+            # An answer that was lost with its worker (status "lost") is made again: this waits for it.
+            here.set_result(there.result())
         # Whoever waits for the answer has to hear that it does not come, whatever went wrong on the way.
         except BaseException as error:
-            here.set_exception(error)
+            here.set_exception(_reason(error))
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
         """Leave the cluster; with cancel_futures, withdraw calls that have not begun."""

@@ -37,6 +37,10 @@ class Silent:
         """Tell nothing."""
 
 
+def note_nothing(**what: Any) -> None:
+    """Note nothing: no other process looks."""
+
+
 @dataclass(frozen=True)
 class Job:
     """A study, its folder, where runs are made, and where progress is shown.
@@ -44,7 +48,7 @@ class Job:
     design, site: the runs that the study asks for, and where it lands, each worked out once.
     tables: the study file as it was written, for the record. model: a function of the user's own that makes the
     touchdowns in place of the soil. keeps_logs: each run leaves a log in the folder. wanted: files of the present stage
-    that are not there, or no longer good.
+    that are not there, or no longer good. note: notes for other processes how far the stage is, by name.
     """
 
     design: DrawnDesign
@@ -56,6 +60,7 @@ class Job:
     model: Callable[[dict[str, float], int], Mapping[str, Any]] | None = None
     keeps_logs: bool = False
     wanted: tuple[str, ...] = ()
+    note: Callable[..., None] = note_nothing
 
     @property
     def study(self) -> Study:

@@ -3,6 +3,7 @@
 import time
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 from lithobrake.files.hashing import json_hash, source_hash
@@ -40,7 +41,8 @@ def make(job: Job, until: str, note: Callable[..., None]) -> None:
     keys, stages = stage_keys(job.study), stages_until(job.study, until)
     kept: list[str] = []
     for number, stage in enumerate(stages, start=1):
-        note(stage=stage.title, number=number, count=len(stages))
+        of_stage = partial(note, stage=stage.title, number=number, count=len(stages))
+        of_stage()
         job.shown.begin(stage.title, number, len(stages))
         files = stage.files(job.study)
         wanted = tuple(name for name in files if not job.folder.is_current([name], keys[stage.name]))
@@ -53,5 +55,5 @@ def make(job: Job, until: str, note: Callable[..., None]) -> None:
         if set(wanted) < set(files):
             job.say(f"{stage.title}: {len(files) - len(wanted)} of {len(files)} files are still good, and kept")
         started = time.perf_counter()
-        stage.make(replace(job, wanted=wanted))
+        stage.make(replace(job, wanted=wanted, note=of_stage))
         job.folder.note(stage.name, files, keys[stage.name], time.perf_counter() - started)

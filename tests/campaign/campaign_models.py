@@ -126,8 +126,14 @@ def collatz(inputs: dict[str, float], seed: int) -> dict[str, float]:
     return {"value": 3.0 * value + 1.0 if value % 2.0 else value / 2.0}
 
 
+def collatz_after_a_moment(inputs: dict[str, float], seed: int) -> dict[str, float]:
+    """The same, which takes long enough for something to happen meanwhile."""
+    time.sleep(0.02)
+    return collatz(inputs, seed)
+
+
 def collatz_without_ten(inputs: dict[str, float], seed: int) -> dict[str, float]:
-    """The same, which fails for multiples of ten."""
+    """The number after one of the Collatz sequence; it fails for multiples of ten."""
     if inputs["value"] % 10.0 == 0.0:
         raise ValueError("ten is not known")
     return collatz(inputs, seed)

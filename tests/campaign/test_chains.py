@@ -28,6 +28,11 @@ def chains(path: Path, executor: Any, model: Any = models.collatz, **options: An
         return run_chains(model, FIRST, then, ledger=ledger, executor=executor, **options)
 
 
+def what_came_of_chains(made: list[list[Record]]) -> list[list[tuple[Any, ...]]]:
+    """What determines each run, and what came of it."""
+    return [[(one.key, one.status, one.inputs, one.outputs, one.seed) for one in chain] for chain in made]
+
+
 def test_each_chain_goes_on_until_it_ends(tmp_path: Path) -> None:
     made = chains(tmp_path, HereExecutor())
     assert [len(one) for one in made] == LENGTHS
@@ -67,7 +72,7 @@ def test_processes_give_the_same_records(tmp_path: Path) -> None:
         made = chains(tmp_path, executor)
     (tmp_path / "other").mkdir()
     one = chains(tmp_path / "other", HereExecutor())
-    assert [[(r.key, r.outputs) for r in chain] for chain in made] == [[(r.key, r.outputs) for r in c] for c in one]
+    assert what_came_of_chains(made) == what_came_of_chains(one)
 
 
 def test_a_failed_run_ends_its_chain_as_then_says(tmp_path: Path) -> None:

@@ -1,67 +1,22 @@
 """A real Dask cluster on this machine: a scheduler and workers, each a process of its own."""
 
-import contextlib
-import os
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import campaign_models as models
 import numpy as np
 import pytest
+from dask_cluster import cluster
+from test_chains import chains, what_came_of_chains
 
 from lithobrake.campaign import DaskExecutor, Ledger, Limits, LocalExecutor, Runs, Tally, read_records, run
 
 pytest.importorskip("distributed", reason="distributed is not installed (pip install lithobrake[dask])")
 
 X = np.column_stack([np.linspace(0.5, 10.0, 40), np.full(40, 0.5)])
-
-
-class Cluster:
-    """Processes of a cluster that are ended with the test."""
-
-    def __init__(self, folder: Path) -> None:
-        self.folder, self.processes = folder, dict[str, subprocess.Popen[bytes]]()
-        here = [str(Path(models.__file__).parent), str(Path(__file__).parents[2]), os.environ.get("PYTHONPATH", "")]
-        self.environment = os.environ | {"PYTHONPATH": os.pathsep.join(here)}
-        self.start("scheduler", "--host", "127.0.0.1", "--port", "0")
-        self.address = self.said("scheduler", "Scheduler at:").split("Scheduler at:")[1].split()[0]
-
-    def start(self, name: str, *arguments: str) -> None:
-        kind = "scheduler" if name == "scheduler" else "worker"
-        command = [sys.executable, "-m", f"distributed.cli.dask_{kind}", *arguments, "--no-dashboard"]
-        with (self.folder / f"{name}.txt").open("wb") as log:
-            self.processes[name] = subprocess.Popen(
-                command, stdout=log, stderr=log, cwd=self.folder, env=self.environment
-            )
-
-    def add_worker(self, name: str, nanny: bool = False) -> None:
-        self.start(name, self.address, "--nthreads", "1", "--nanny" if nanny else "--no-nanny", "--name", name)
-        self.said(name, "Registered to:")
-
-    def said(self, name: str, words: str) -> str:
-        """The line of a log that has these words, once it is there."""
-        limit = time.monotonic() + 60
-        while time.monotonic() < limit:
-            for line in (self.folder / f"{name}.txt").read_text().splitlines():
-                if words in line:
-                    return line
-            time.sleep(0.05)
-        raise AssertionError((self.folder / f"{name}.txt").read_text())
-
-
-@contextlib.contextmanager
-def cluster(folder: Path) -> Iterator[Cluster]:
-    made = Cluster(folder)
-    try:
-        yield made
-    finally:
-        for process in made.processes.values():
-            process.kill()
-            process.wait()
 
 
 def campaign(path: Path, executor: Any, model: Any = models.sleeps_a_moment, **options: Any) -> list[tuple[Any, ...]]:
@@ -88,6 +43,25 @@ def test_a_cluster_that_loses_a_worker_gives_the_bits_of_this_machine(tmp_path: 
         there = campaign(tmp_path / "there.sqlite", DaskExecutor(made.address), progress=lose_a_worker)
         assert made.processes["first"].poll() is not None
     assert there == here
+
+
+def test_chains_on_a_cluster_that_loses_a_worker_are_those_of_this_machine(tmp_path: Path) -> None:
+    with cluster(tmp_path) as made:
+        made.add_worker("first")
+        made.add_worker("second")
+
+        def lose_a_worker(state: Tally) -> None:
+            if state.ended >= 30 and made.processes["first"].poll() is None:
+                made.processes["first"].kill()
+                made.processes["first"].wait()
+
+        with DaskExecutor(made.address) as executor:
+            there = chains(tmp_path, executor, models.collatz_after_a_moment, progress=lose_a_worker)
+        assert made.processes["first"].poll() is not None
+    (tmp_path / "here").mkdir()
+    with LocalExecutor(1) as executor:
+        here = chains(tmp_path / "here", executor)
+    assert what_came_of_chains(there) == what_came_of_chains(here)
 
 
 COORDINATE = """

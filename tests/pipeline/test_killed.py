@@ -1,24 +1,18 @@
 """Kill -9 of the coordinator, of a worker, of both, at 20 random moments: the study ends with the same bits."""
 
 import json
-import multiprocessing
-import os
 import random
-import signal
-import sqlite3
 import time
-from multiprocessing.process import BaseProcess
 from pathlib import Path
-from typing import Any
 
 import pytest
 
-from lithobrake.files.atomic import lock_holder
 from lithobrake.pipeline import stages_of
 from lithobrake.results import open_study
 from lithobrake.study import read_study
 
 from ..few_grains import few_grains
+from .killed_studies import VICTIMS, end, kill, ledger, start, wait_for_stage
 
 STUDY = (
     "seed = 2"
@@ -42,8 +36,6 @@ duration = 20000.0
 count = 10
 """
 )
-# Of each run, what it follows from and what came of it; not where, when and how fast it was made, or how often tried.
-DETERMINED = "key, status, outcome, inputs, draws, outputs, seed, replicate, reason, version"
 # Stages in which to kill; those in which much is made several times. Fits and scores end within a blink, before a kill
 # could hit them.
 MOMENTS = (
@@ -53,90 +45,8 @@ MOMENTS = (
 AT_ONCE = {"screen", "refine", "test"}
 MAKE_RUNS = ("screening_runs", "refined_runs", "test_runs")
 LEDGER = ("runs.sqlite", "runs.sqlite-wal", "runs.sqlite-shm")
-VICTIMS = ("coordinator", "worker", "both")
 
 pytestmark = pytest.mark.skipif(not Path("/proc").is_dir(), reason="the processes are found in /proc (Linux)")
-
-
-# Each start is a process of its own, forked from one that has imported what a study needs: two dozen interpreters that
-# import it would take longer than all that they are killed in.
-FORKS = multiprocessing.get_context("forkserver")
-FORKS.set_forkserver_preload(["lithobrake.cli", "lithobrake.pipeline.stages", "lithobrake.report", "scipy.stats"])
-COMMAND = """
-import os, sys
-said = os.open({said!r}, os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
-os.dup2(said, 1), os.dup2(said, 2)
-sys.argv = ["lithobrake", "run", {study!r}, "--out", {out!r}, "--workers", {workers!r}]
-from lithobrake.cli import app
-app()
-"""
-
-
-def start(study: Path, out: Path, worker_count: int = 1) -> BaseProcess:
-    told = {"study": str(study), "out": str(out), "said": str(study.parent / "said.txt"), "workers": str(worker_count)}
-    process = FORKS.Process(target=exec, args=(COMMAND.format(**told), {}))
-    process.start()
-    return process
-
-
-def end(study: Path, out: Path, worker_count: int = 1) -> None:
-    """Run a study to its end, undisturbed."""
-    process = start(study, out, worker_count)
-    process.join(timeout=1200)
-    assert process.exitcode == 0, (study.parent / "said.txt").read_text()
-
-
-def workers(coordinator: int) -> list[int]:
-    """The processes that the coordinator has started to make runs."""
-    found = []
-    for path in Path("/proc").glob("[0-9]*"):
-        try:
-            parent = int((path / "stat").read_text().rpartition(")")[2].split()[1])
-            if parent == coordinator and "lithobrake.campaign.worker" in (path / "cmdline").read_text():
-                found.append(int(path.name))
-        except (FileNotFoundError, ProcessLookupError):
-            continue
-    return found
-
-
-def wait_for_stage(process: BaseProcess, out: Path, number: int) -> None:
-    """Wait until the study has come to a stage, or has ended."""
-    while process.exitcode is None:
-        holder = lock_holder(out / ".lock")
-        if number == 0 or (holder is not None and holder.get("number", 0) >= number):
-            return
-        time.sleep(0.01)
-
-
-def is_alive(process: int) -> bool:
-    try:
-        return Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
-    except (FileNotFoundError, ProcessLookupError):
-        return False
-
-
-def kill(process: BaseProcess, victim: str, chance: random.Random) -> None:
-    """Kill by the signal that nobody can catch; a coordinator that is killed takes its workers along."""
-    assert process.pid is not None
-    others = workers(process.pid)
-    if victim == "worker" and others:
-        os.kill(chance.choice(others), signal.SIGKILL)
-        return
-    if victim == "both" and others:
-        os.kill(chance.choice(others), signal.SIGKILL)
-    process.kill()
-    process.join()
-    limit = time.monotonic() + 30
-    while any(is_alive(other) for other in others):
-        assert time.monotonic() < limit, "workers outlive their coordinator"
-        time.sleep(0.01)
-
-
-def ledger(out: Path) -> list[tuple[Any, ...]]:
-    with sqlite3.connect(out / "runs.sqlite") as database:
-        rows = database.execute(f"SELECT {DETERMINED} FROM runs ORDER BY key").fetchall()
-    database.close()
-    return rows
 
 
 def test_a_study_killed_at_20_random_moments_ends_with_the_same_bits(tmp_path: Path) -> None:

@@ -20,19 +20,28 @@ ENDS: dict[str, JourneyEnd] = {
 }
 # What stays the same over the touchdowns of a journey: its soil, lander and bed.
 KEPT = ("grain.", "lander.", "solver.")
+# Stands for the moment at which a touchdown will have ended: after all others, as text.
+_LATER = "~"
 
 
 @dataclass(frozen=True)
 class JourneysStatus:
-    """How many journeys have ended, and how; is_final: every one of them, and their flights are known."""
+    """How many journeys have ended, and how.
+
+    is_final: every one of them, and their flights are known. said: how far they are, by the process that follows them,
+    which knows their flights; None where there is none.
+    """
 
     total: int
     ends: "Counter[str]"
     touchdowns: int
     is_final: bool
+    said: str | None = None
 
     def lines(self) -> list[str]:
         """All of it in words."""
+        if self.said is not None:
+            return [self.said]
         ended = sum(self.ends.values())
         found = [f"{self.ends[end]} {end.label}" for end in JourneyEnd if self.ends[end]]
         more = "" if self.is_final else " so far"
@@ -54,12 +63,20 @@ class JourneysStatus:
 def touchdown_keys(path: Path, every: Sequence[Record], asked: Collection[str], *, is_current: bool) -> set[str]:
     """Keys of the touchdowns of a study's journeys, which begin with those that are asked for; empty without any.
 
-    is_current: whether touchdowns.csv is of the study as it is; until it is, touchdowns of the same journey and soil.
+    is_current: whether touchdowns.csv is of the study as it is; until it is, a touchdown goes on from the one with the
+    number before it of the same journey and soil, and ended after that: those of an earlier delivery ended before.
     """
     if is_current:
         return {row["key"] for row in read_rows(path / TOUCHDOWNS, ("key",), AGAIN)}
-    begun = {_kept(record) for record in every if record.key in asked and NUMBER in record.inputs}
-    return {record.key for record in every if NUMBER in record.inputs and _kept(record) in begun}
+    last: dict[frozenset[tuple[str, float]], Record] = {}
+    found: set[str] = set()
+    of_journeys = [record for record in every if NUMBER in record.inputs]
+    for record in sorted(of_journeys, key=lambda one: (one.inputs[TOUCHDOWN], one.ended or _LATER)):
+        before = last.get(_kept(record))
+        if record.key in asked or (before is not None and _goes_on(before, record)):
+            last[_kept(record)] = record
+            found.add(record.key)
+    return found
 
 
 def journeys_status(path: Path, records: Sequence[Record], total: int, *, is_current: bool) -> JourneysStatus | None:
@@ -83,6 +100,12 @@ def _end(record: Record) -> JourneyEnd | None:
     if record.status == RunStatus.FAILED:
         return JourneyEnd.FAILED
     return ENDS.get(record.outcome or "") if record.status == RunStatus.DONE else None
+
+
+def _goes_on(before: Record, record: Record) -> bool:
+    """Whether a touchdown may be the one after another of its journey."""
+    follows = record.inputs[TOUCHDOWN] == before.inputs[TOUCHDOWN] + 1.0
+    return follows and before.ended is not None and before.ended <= (record.ended or _LATER)
 
 
 def _kept(record: Record) -> frozenset[tuple[str, float]]:

@@ -129,9 +129,12 @@ def study_status(path: Path) -> StudyStatus:
     # Who is at work is looked at first: a stage that ends in between is then one that is still to come.
     holder = lock_holder(path / LOCK)
     state = read_state(path)
-    runs = (
-        _runs(path, state.notes, _flown(path, state), has_journeys=_has_journeys(state)) if ledger.is_file() else None
-    )
+    if not ledger.is_file():
+        return StudyStatus(path, holder, None, state, None)
+    runs = _runs(path, state.notes, _flown(path, state), has_journeys=_has_journeys(state))
+    said = (holder or {}).get("journeys")
+    if runs.journeys is not None and said is not None:
+        runs = replace(runs, journeys=replace(runs.journeys, said=str(said)))
     return StudyStatus(path, holder, None, state, runs)
 
 

@@ -72,8 +72,9 @@ def follow(job: Job, journeys: Sequence[Journey], rows: Sequence[Mapping[str, fl
         return landing[number].go_on(records[-1])
 
     def show(state: Tally) -> None:
-        ended = sum(one.end is not None for one in journeys)
-        job.progress(ended, len(journeys), "journeys", f"{progress_words(journeys, state.ended)}\n{state.sentence()}")
+        ended, said = sum(one.end is not None for one in journeys), progress_words(journeys, state.ended)
+        job.note(journeys=said)
+        job.progress(ended, len(journeys), "journeys", f"{said}\n{state.sentence()}")
 
     with Ledger(job.folder / "runs.sqlite") as ledger:
         return run_chains(

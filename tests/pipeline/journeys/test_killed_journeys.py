@@ -1,0 +1,112 @@
+"""Kill -9 of the coordinator, of a worker, of both, amid journeys on soil; and a Dask cluster that loses a worker."""
+
+import random
+import shutil
+import time
+from multiprocessing.process import BaseProcess
+from pathlib import Path
+
+import pytest
+
+import lithobrake
+from lithobrake.campaign import Ledger, RunStatus, read_records
+from lithobrake.pipeline.journeys.journey_tables import FILES
+from lithobrake.pipeline.study_run import run_study
+from lithobrake.study import StudySource
+
+from ...campaign.dask_cluster import Cluster, cluster
+from ..killed_studies import VICTIMS, kill, ledger, start
+from .soil_journeys import STUDY
+
+# Touchdowns that the ledger has when something is killed; there are 41 in all.
+MOMENTS = (4, 10, 16, 24)
+WORKERS = 2
+TABLES = (*FILES, "designs/drawn.csv", "designs/touchdowns.csv", "run_flights.csv")
+
+pytestmark = pytest.mark.skipif(not Path("/proc").is_dir(), reason="the processes are found in /proc (Linux)")
+
+
+@pytest.fixture(scope="module")
+def calm(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder of the study, never killed."""
+    folder = tmp_path_factory.mktemp("calm")
+    (folder / "soil.toml").write_text(STUDY)
+    return lithobrake.run(folder / "soil.toml", folder / "out", workers=WORKERS, report=False).folder
+
+
+@pytest.fixture
+def begun(calm: Path, tmp_path: Path) -> Path:
+    """A folder that has the beds of the study and nothing of its journeys, beside the study file."""
+    shutil.copy(calm.parent / "soil.toml", tmp_path)
+    shutil.copytree(calm, tmp_path / "out", ignore=shutil.ignore_patterns("runs.sqlite*", *FILES, "designs"))
+    # A ledger that is being made is there a moment before its table.
+    Ledger(tmp_path / "out" / "runs.sqlite").close()
+    return tmp_path / "out"
+
+
+def ended(out: Path) -> dict[str, str | None]:
+    """When each touchdown ended that the ledger has, by its key."""
+    return {one.key: one.ended for one in read_records(out / "runs.sqlite") if one.status == RunStatus.DONE}
+
+
+def wait_for_touchdowns(process: BaseProcess, out: Path, count: int) -> None:
+    """Wait until the ledger has so many."""
+    while len(ended(out)) < count:
+        assert process.exitcode is None, (out.parent / "said.txt").read_text()
+        time.sleep(0.005)
+
+
+def assert_same(out: Path, calm: Path) -> None:
+    assert ledger(out) == ledger(calm)
+    for name in TABLES:
+        assert (out / name).read_bytes() == (calm / name).read_bytes(), name
+
+
+def test_journeys_that_are_killed_end_with_the_same_bits(calm: Path, begun: Path) -> None:
+    study, chance = begun.parent / "soil.toml", random.Random(3)
+    process = start(study, begun, WORKERS)
+    before: dict[str, str | None] = {}
+    for number, moment in enumerate(MOMENTS):
+        wait_for_touchdowns(process, begun, moment)
+        kill(process, VICTIMS[number % len(VICTIMS)], chance)
+        if process.exitcode is None:
+            continue
+        records, before = read_records(begun / "runs.sqlite"), ended(begun)
+        assert len(before) >= moment
+        # What was in progress is all that is lost.
+        assert sum(one.status == RunStatus.RUNNING for one in records) <= WORKERS
+        process = start(study, begun, WORKERS)
+    kill(process, "coordinator", chance)
+    lithobrake.run(study, begun, workers=1, report=False)
+    assert before.items() <= ended(begun).items()
+    assert_same(begun, calm)
+
+
+class Loses:
+    """Shows nothing, and kills a worker of the cluster once the ledger has some touchdowns."""
+
+    def __init__(self, cluster: Cluster, out: Path) -> None:
+        self.worker, self.out = cluster.processes["first"], out
+
+    def begin(self, title: str, number: int, count: int) -> None:
+        """Show nothing."""
+
+    def progress(self, done: float, total: float, what: str, detail: str = "", /) -> None:
+        """Kill the worker, if it is time."""
+        if what == "journeys" and self.worker.poll() is None and len(ended(self.out)) >= MOMENTS[1]:
+            self.worker.kill()
+            self.worker.wait()
+
+    def say(self, sentence: str) -> None:
+        """Tell nothing."""
+
+
+def test_journeys_on_a_cluster_that_loses_a_worker_end_with_the_same_bits(calm: Path, begun: Path) -> None:
+    pytest.importorskip("distributed", reason="distributed is not installed (pip install lithobrake[dask])")
+    with cluster(begun.parent) as made:
+        made.add_worker("first")
+        made.add_worker("second")
+        source, shown = StudySource.read(begun.parent / "soil.toml"), Loses(made, begun)
+        run_study(source, begun, until="summary", scheduler=made.address, shown=shown)
+        assert shown.worker.poll() is not None
+    assert_same(begun, calm)

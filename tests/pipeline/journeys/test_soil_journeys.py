@@ -1,0 +1,209 @@
+"""Journeys on real soil: times, places, attitudes and spins go over from a touchdown to its flight and on to the next.
+
+What goes over is worked out anew from the tables of the study: frames from the normal of the ground and the velocity
+that comes in, rotations by an integrator.
+"""
+
+import math
+import shutil
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+import lithobrake
+from lithobrake.pipeline.site import Site
+from lithobrake.results import StudyResults
+from lithobrake.smallbody import Body, Flights, fly
+from lithobrake.study import read_study
+
+from .soil_journeys import EDGES, MASS, STUDY
+
+TABLES = ("journeys.csv", "touchdowns.csv", "arcs.csv")
+Row = dict[str, Any]
+
+
+class Step(NamedTuple):
+    """A touchdown, the flight after it, and the touchdown at the end of that; rows of their tables."""
+
+    before: Row
+    arc: Row
+    after: Row
+
+
+@pytest.fixture(scope="module")
+def study(tmp_path_factory: pytest.TempPathFactory) -> StudyResults:
+    folder = tmp_path_factory.mktemp("soil")
+    (folder / "soil.toml").write_text(STUDY)
+    return lithobrake.run(folder / "soil.toml", folder / "out", workers=1, report=False)
+
+
+@pytest.fixture(scope="module")
+def body(study: StudyResults) -> Body:
+    return Site(read_study(study.folder / "study.toml")).body
+
+
+def arcs(study: StudyResults) -> list[Row]:
+    table = np.genfromtxt(study.folder / "arcs.csv", delimiter=",", names=True, deletechars="")
+    # A title is the name and, in brackets, the unit.
+    titles = [name.split("_[")[0] for name in table.dtype.names]
+    return [dict(zip(titles, map(float, row), strict=True)) for row in table.tolist()]
+
+
+def rows(table: Any) -> list[Row]:
+    return [{name: table[name][row] for name in table} for row in range(table.row_count)]
+
+
+def steps(study: StudyResults) -> Iterator[Step]:
+    """Every flight between two touchdowns."""
+    touchdowns = {(row["journey"], row["touchdown"]): row for row in rows(study.touchdowns)}
+    for arc in arcs(study):
+        journey, number = arc["sample"], arc["arc"]
+        if (journey, number + 1) in touchdowns:
+            yield Step(touchdowns[journey, number], arc, touchdowns[journey, number + 1])
+
+
+def vector(row: Row, name: str) -> np.ndarray:
+    return np.array([row[f"{name}_{axis}"] for axis in "xyz"])
+
+
+def flown(study: StudyResults, body: Body, arc: Row) -> Flights:
+    """A flight made again from its start."""
+    gravity = read_study(study.folder / "study.toml").flight.gravity
+    start = vector(arc, "position"), vector(arc, "velocity")
+    return fly(body, *start, 1e5, gravity=gravity, start_time=arc["clock_s"], threads=1)
+
+
+def place(body: Body, row: Row) -> np.ndarray:
+    """The place on the ground of a touchdown [m]."""
+    found: np.ndarray = body.shape.surface_point(row["latitude_deg"], row["longitude_deg"])
+    return found
+
+
+def test_the_same_seed_gives_the_same_bits(study: StudyResults, tmp_path: Path) -> None:
+    again = tmp_path / "again"
+    shutil.copytree(study.folder, again)
+    for name in (*TABLES, *(path.name for path in again.glob("runs.sqlite*"))):
+        (again / name).unlink()
+    lithobrake.run(study.folder / "study.toml", again, workers=2, report=False)
+    for name in TABLES:
+        assert (again / name).read_bytes() == (study.folder / name).read_bytes(), name
+
+
+def test_every_journey_ends_and_most_fly_between_touchdowns(study: StudyResults) -> None:
+    assert study.journeys["end"].tolist() == ["at_rest"] * 6
+    assert (study.journeys["touchdowns"] > 2).sum() >= 5
+    last = [row for row in rows(study.touchdowns) if row["outcome"] == "captured"]
+    assert [row["journey"] for row in last] == list(range(6))
+
+
+def test_times_add_up(study: StudyResults, body: Body) -> None:
+    for row in rows(study.touchdowns):
+        assert row["end_s"] - row["begin_s"] == pytest.approx(row["duration"], abs=1e-9)
+    count = 0
+    for before, arc, after in steps(study):
+        assert arc["begin_s"] == before["end_s"]
+        assert after["begin_s"] == pytest.approx(before["end_s"] + flown(study, body, arc).time[0], abs=1e-9)
+        count += 1
+    assert count > 20
+    times = dict(zip(study.journeys["journey"], study.journeys["time_s"], strict=True))
+    assert all(row["end_s"] == times[row["journey"]] for row in rows(study.touchdowns) if row["outcome"] == "captured")
+
+
+def test_places_follow_from_one_another(study: StudyResults, body: Body) -> None:
+    for before, arc, after in steps(study):
+        moved = vector(arc, "position") - place(body, before)
+        displacement = math.hypot(before["displacement_x"], before["displacement_y"])
+        assert abs(body.shape.height(vector(arc, "position"))) < 1e-4
+        # The displacement lies in the plane of a facet, and bends where it crosses an edge.
+        assert 0.95 * displacement - 1e-6 < np.linalg.norm(moved) < 1.05 * displacement + 1e-6
+        assert flown(study, body, arc).position[0] == pytest.approx(place(body, after), abs=1e-6)
+
+
+def test_the_tilt_at_rest_is_that_of_the_attitude_against_the_plumb_line(study: StudyResults, body: Body) -> None:
+    ends = {row["journey"]: row for row in rows(study.touchdowns) if row["outcome"] == "captured"}
+    for journey in rows(study.journeys):
+        last = ends[journey["journey"]]
+        slope = math.radians(last["surface.slope_deg"])
+        downhill = math.radians(last["surface.slope_azimuth_deg"] - last["impact.azimuth_deg"])
+        down = np.array([math.sin(slope) * math.cos(downhill), math.sin(slope) * math.sin(downhill), -math.cos(slope)])
+        in_lander = matrix([last[f"orientation_out_{axis}"] for axis in "wxyz"]).T @ down
+        axis = int(np.argmax(np.abs(in_lander)))
+        assert journey["face"] == f"{'-' if in_lander[axis] < 0.0 else '+'}{'xyz'[axis]}"
+        # The inputs have the plumb line of the impact, and a lander that moves takes it along the curved ground.
+        moved = math.hypot(last["displacement_x"], last["displacement_y"])
+        turned = math.degrees(2.0 * moved / np.linalg.norm(place(body, last)))
+        assert journey["tilt_deg"] == pytest.approx(math.degrees(math.acos(abs(in_lander[axis]))), abs=turned)
+
+
+def matrix(quaternion: Any) -> np.ndarray:
+    """The rotation matrix of a quaternion w, x, y, z."""
+    w, x, y, z = np.asarray(quaternion) / np.linalg.norm(quaternion)
+    return np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+        ]
+    )
+
+
+def about_z(angle: float) -> np.ndarray:
+    c, s = math.cos(angle), math.sin(angle)
+    return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+
+
+def frame(body: Body, flight: Flights) -> np.ndarray:
+    """Axes of a touchdown, as rows: along the horizontal velocity that comes in, to its left, outward."""
+    up = body.shape.normals[flight.facet[0]]
+    level = flight.velocity[0] - (flight.velocity[0] @ up) * up
+    x = level / np.linalg.norm(level)
+    return np.array([x, np.cross(up, x), up])
+
+
+def turned(attitude: np.ndarray, spin: np.ndarray, duration: float) -> tuple[np.ndarray, np.ndarray]:
+    """Attitude [3, 3] and spin [rad/s] of the lander after a time without torque, in axes that do not turn.
+
+    Euler's equations in the axes of a homogeneous box, beside the nine components of the attitude.
+    """
+    a, b, c = (edge * edge for edge in EDGES)
+    inertia = MASS / 12.0 * np.array([b + c, a + c, a + b])
+
+    def rate(_: float, state: np.ndarray) -> np.ndarray:
+        omega, turn = state[:3], state[3:].reshape(3, 3)
+        x, y, z = omega
+        cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+        return np.concatenate([np.cross(inertia * omega, omega) / inertia, (turn @ cross).ravel()])
+
+    start = np.concatenate([attitude.T @ spin, attitude.ravel()])
+    end = solve_ivp(rate, (0.0, duration), start, method="DOP853", rtol=1e-12, atol=1e-12).y[:, -1]
+    turn = end[3:].reshape(3, 3)
+    return turn, turn @ end[:3]
+
+
+def test_attitude_and_spin_at_an_impact_are_those_of_a_flight_without_torque(study: StudyResults, body: Body) -> None:
+    rotation = np.array([0.0, 0.0, 2.0 * math.pi / body.spin_period])
+    every = {(step.before["journey"], step.before["touchdown"]): step for step in steps(study)}
+    checked = 0
+    for (journey, number), (before, arc, after) in every.items():
+        # Of the first touchdown no flight has the velocity that comes in; long turns would take the integrator seconds.
+        if number == 0 or before["spin_out"] * (arc["end_s"] - arc["begin_s"]) > 150.0:
+            continue
+        axes = frame(body, flown(study, body, every[journey, number - 1].arc))
+        assert vector(before, "velocity_out") @ axes == pytest.approx(vector(arc, "velocity"), abs=1e-12)
+        attitude = axes.T @ matrix([before[f"orientation_out_{axis}"] for axis in "wxyz"])
+        flight = flown(study, body, arc)
+        time = float(flight.time[0])
+        turn, spin = turned(attitude, vector(before, "spin_out") @ axes + rotation, time)
+        # Into axes that turn with the body, then into those of the bed, where the velocity comes in by an azimuth.
+        back = about_z(-float(rotation[2]) * time)
+        into_bed = about_z(math.radians(after["impact.azimuth_deg"])) @ frame(body, flight)
+        given = matrix([after[f"impact.orientation.{axis}"] for axis in "wxyz"])
+        assert given == pytest.approx(into_bed @ back @ turn, abs=1e-9)
+        given_spin = np.array([after[f"impact.spin_{axis}"] for axis in "xyz"])
+        assert given_spin == pytest.approx(into_bed @ (back @ spin - rotation), abs=1e-10)
+        checked += 1
+    assert checked >= 10
