@@ -153,6 +153,17 @@ JOURNEY_TOUCHDOWN = {
     "latitude_deg": Quantity("deg", "planetocentric latitude of the impact", FIXED),
     "longitude_deg": Quantity("deg", "east longitude of the impact", FIXED),
 }
+# Of a journey by the emulator of the touchdowns.
+EMULATED_FILE = "emulated.csv"
+EMULATED = {
+    "landers": Quantity("", "fresh: landers that were not followed by landings; own: those of the journeys"),
+    "journey": JOURNEY["journey"],
+    "refit": FLIGHT["refit"],
+    "end": Quantity("", "how it ended; unknown: at an impact that the emulator does not know"),
+    "beyond": Quantity("", "whether the emulator had no answer to an impact (1 or 0)"),
+    "landings": Quantity("", "simulated landings that were made for it in place of an answer"),
+    "time_s": JOURNEY["time_s"],
+}
 TOUCHDOWN_COST = {
     "wall_s": Quantity("s", "wall time of the landing"),
     "cpu_s": Quantity("s", "CPU time of the landing"),

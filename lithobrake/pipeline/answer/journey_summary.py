@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+from lithobrake.pipeline.answer.emulated_ends import emulated_ends
 from lithobrake.pipeline.answer.journey_ends import JourneyTable, end_shares, journey_rest
 from lithobrake.pipeline.answer.landing_results import write_results
 from lithobrake.pipeline.job import Job
@@ -17,10 +18,12 @@ def write_journey_summary(job: Job) -> None:
 def _with_journeys(job: Job, found: DrawnResults, runs: DesignRuns, estimates: Estimates) -> DrawnResults:
     """What the first touchdowns say, and how the journeys ended."""
     table = JourneyTable.load(job.folder)
+    emulated, ends = emulated_ends(job, table, end_shares(job.study, table))
     return replace(
         found,
         rest=journey_rest(job.study, table),
-        ends=end_shares(job.study, table),
+        ends=ends,
         journeys=len(table.end),
         touchdowns=table.touchdowns,
+        emulated=emulated,
     )
