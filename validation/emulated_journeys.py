@@ -3,20 +3,16 @@
     python validation/emulated_journeys.py [--work FOLDER] [--cases NAME ...] [--until STAGE]
 
 Each case changes some keys of scenarios/quick.toml: lander, soil, arrival, site. It has 32 journeys on 8 beds, in a
-folder below --work, where a case that was stopped goes on. Writes emulated_journeys.json, a row a case that is finished.
+folder below --work, where a case that was stopped goes on. Writes emulated_journeys.json, a row a finished case.
 """
 
-import argparse
 import sys
 import tomllib
 from pathlib import Path
 from typing import Any
 
-import lithobrake
-from lithobrake.results import StudyResults
-
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
-from harness import SCENARIOS, origin, write_document
+from harness import SCENARIOS
 
 JOURNEYS, BEDS = 32, 8
 

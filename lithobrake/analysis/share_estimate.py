@@ -99,8 +99,8 @@ def share_estimate(
     shares [run_count]        0 to 1 for each landing, as the share of its flights that return; NaN without an outcome
     bed [run_count]           label of the bed of each landing: the units of the interval
     terms                     what `regression_terms` gives for the inputs of all landings; None: plain mean
-    explained [run_count]     of mean 0 over the input distributions, taken off the landings in place of what a regression
-                              on terms explains; without missing outcomes only. None: nothing
+    explained [run_count]     of mean 0 over the input distributions, taken off in place of what a regression on terms
+                              explains, where every landing has an outcome; None: nothing
     weights [run_count]       density of the input distribution over that the landings were drawn from; None: 1
     like_missing [run_count]  whether each landing resembles those without an outcome, as one that left across the edge
                               of the bed: where at least five of these have an outcome, the point estimate takes their

@@ -53,6 +53,7 @@ JOURNEYS = (
     runs.TELLING_LANDING,
     answer.ESTIMATE,
     emulated.EMULATED,
+    emulated.OPTIONS,
     answer.JOURNEY_SUMMARY,
     REPORT,
 )

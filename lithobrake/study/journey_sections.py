@@ -62,6 +62,12 @@ class JourneySection(Section):
     the ends where they resemble the journeys (docs/journeys.md)."""
 
 
+def arrival_key(name: str) -> str:
+    """The dotted key, in [impact] or [site], that a key of [delivery] stands for; any other name is its own."""
+    table, _, key = name.partition(".")
+    return name if table != "delivery" else f"{'site' if key in PLACE_KEYS else 'impact'}.{key}"
+
+
 def delivered_tables(tables: Mapping[str, Any]) -> Mapping[str, Any]:
     """The tables of a study with the keys of [delivery] where the touchdown and the flight read them.
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from lithobrake.analysis import refit_interval, share_estimate
+from lithobrake.analysis import refit_interval
 from lithobrake.analysis.confidence import numbered_beds
 from lithobrake.analysis.control_variate import control_factor
 from lithobrake.files.reading import read_rows
@@ -136,7 +136,9 @@ def _predicted(end: str, fresh: EmulatedTable, own: EmulatedTable) -> np.ndarray
     [journey_count]. A refit has seen none of the two, so over journeys the mean is 0.
     """
     there = fresh.without_landings(end)
-    counts, totals = (np.bincount(fresh.refit[one], minlength=REFIT_COUNT) for one in (there, np.full(len(there), True)))
+    counts, totals = (
+        np.bincount(fresh.refit[one], minlength=REFIT_COUNT) for one in (there, np.full(len(there), True))
+    )
     expected = counts / np.maximum(totals, 1)
     each: np.ndarray = own.without_landings(end) - expected[own.refit]
     return each.reshape(-1, COPIES).mean(axis=1)

@@ -25,8 +25,8 @@ class Answers:
     @classmethod
     def unknown(cls, count: int) -> "Answers":
         """Of so many touchdowns of which nothing is known."""
-        outcome = np.full(count, UNKNOWN, dtype="<U16")
-        return cls(outcome, *(np.zeros((count, 3)) for _ in range(3)), np.zeros(count))
+        velocity, spin, way = (np.zeros((count, 3)) for _ in range(3))
+        return cls(np.full(count, UNKNOWN, dtype="<U16"), velocity, spin, way, np.zeros(count))
 
     @property
     def is_known(self) -> np.ndarray:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
+from lithobrake.pipeline.emulate.fitted_emulator import REFIT_COUNT
 from lithobrake.pipeline.site import Site
 
 Row = dict[str, float]
@@ -39,12 +40,12 @@ class Arrivals:
         return cls(number, rows, site, origin, axes, np.broadcast_to(clock, number.shape), refit)
 
     @classmethod
-    def drawn(cls, design: DrawnDesign, place: Site, first: int, count: int, refit_count: int) -> "Arrivals":
+    def drawn(cls, design: DrawnDesign, place: Site, first: int, count: int) -> "Arrivals":
         """Journeys of a study from the number `first` on, each with one refit after the other."""
         number = np.arange(first, first + count)
         rows = design.with_run_count(first + count).rows[first:]
         site = {key: values[first:] for key, values in place.sampled(first + count).items()}
-        return cls.of(place, number, rows, site, number % refit_count)
+        return cls.of(place, number, rows, site, number % REFIT_COUNT)
 
     def taken(self, which: np.ndarray, refit: np.ndarray) -> "Arrivals":
         """Some of the landers, or some of them several times, with these refits."""

@@ -6,9 +6,8 @@ from typing import Any
 import numpy as np
 
 from lithobrake.pipeline.emulate.fitted_emulator import FILE as EMULATOR
-from lithobrake.pipeline.emulate.fitted_emulator import REFIT_COUNT
 from lithobrake.pipeline.emulated.arrivals import Arrivals
-from lithobrake.pipeline.emulated.landers import Landers
+from lithobrake.pipeline.emulated.landers import EmulatedLanders
 from lithobrake.pipeline.emulated.touchdown_emulator import TouchdownEmulator, fit_touchdowns
 from lithobrake.pipeline.fly.flights import write_table
 from lithobrake.pipeline.job import Job
@@ -22,7 +21,7 @@ FRESH, OWN = "fresh", "own"
 # How often the emulator follows each lander of the journeys, each time by another refit.
 COPIES = 20
 # Landings where the emulator has no answer, over all touchdowns of the journeys, at most.
-MOST_LANDINGS = 0.25
+MOST_LANDINGS = 0.1
 
 
 def emulated_dependencies(study: Study) -> Any:
@@ -50,13 +49,13 @@ def _fresh(job: Job, emulator: TouchdownEmulator) -> Sequence[list[Any]]:
     """Rows of landers that come after those of the journeys."""
     assert job.study.journey is not None
     followed = len(job.design.rows)
-    begin = Arrivals.drawn(job.design, job.site, followed, job.study.journey.emulated_count, REFIT_COUNT)
+    begin = Arrivals.drawn(job.design, job.site, followed, job.study.journey.emulated_count)
     return _rows(job, emulator, FRESH, begin, most_landings(job))
 
 
 def _own(job: Job, emulator: TouchdownEmulator) -> Sequence[list[Any]]:
     """Rows of the landers of the journeys, each by refits that have not seen its bed, without any landing."""
-    begin = Arrivals.drawn(job.design, job.site, 0, len(job.design.rows), REFIT_COUNT)
+    begin = Arrivals.drawn(job.design, job.site, 0, len(job.design.rows))
     unseen = {bed: emulator.unseen(bed) for bed in {int(row["bed"]) for row in begin.rows}}
     pairs = [
         (lander, refit)
@@ -69,7 +68,7 @@ def _own(job: Job, emulator: TouchdownEmulator) -> Sequence[list[Any]]:
 
 def _rows(job: Job, emulator: TouchdownEmulator, name: str, begin: Arrivals, most: int) -> list[list[Any]]:
     """Follow landers, and give their rows of emulated.csv."""
-    landers = Landers.of(job, emulator, f"{name} landers by the emulator", begin)
+    landers = EmulatedLanders.of(job, emulator, f"{name} landers by the emulator", begin)
     landers.follow(most)
     columns = (begin.number, begin.refit, landers.end, landers.beyond.astype(int), landers.landings, landers.time)
     return [[name, *row] for row in zip(*(one.tolist() for one in columns), strict=True)]

@@ -8,7 +8,7 @@ from lithobrake.files.hashing import hashed_seed
 from lithobrake.pipeline.design.local_ground import felt, friction_of, ground_inputs
 from lithobrake.pipeline.emulated.answers import Answers
 from lithobrake.pipeline.emulated.arrivals import Arrivals
-from lithobrake.pipeline.emulated.landings_between import LandingsBetween
+from lithobrake.pipeline.emulated.landings_between import LandingsBetween, NextImpacts
 from lithobrake.pipeline.emulated.touchdown_emulator import GRAVITY, INCIDENCE, SLOPE, SPEED, TouchdownEmulator
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.journeys.journey import ENDS, FLATTEST_DEG, MOST_TOUCHDOWNS
@@ -22,7 +22,7 @@ AFTER = {
 
 
 @dataclass
-class Landers:
+class EmulatedLanders:
     """Landers under way; arrays [count], one entry a lander, vectors fixed to the body.
 
     time: since the first touchdown began [s]; position [m]; speed [m/s], incidence [deg], axes (in rows) and spin
@@ -46,7 +46,7 @@ class Landers:
     soil: dict[str, np.ndarray] = field(default_factory=dict)
 
     @classmethod
-    def of(cls, job: Job, emulator: TouchdownEmulator, title: str, begin: Arrivals) -> "Landers":
+    def of(cls, job: Job, emulator: TouchdownEmulator, title: str, begin: Arrivals) -> "EmulatedLanders":
         """Landers at their first touchdowns."""
         count = len(begin.rows)
         names = [name for name in emulator.inputs if name not in emulator.ranges]
@@ -69,7 +69,7 @@ class Landers:
 
     def follow(self, most_landings: int) -> None:
         """Follow all to their ends, with at most so many landings where the emulator has no answer."""
-        between = LandingsBetween(self.job, most_landings)
+        between = LandingsBetween(self.job, self.title, self.begin, most_landings)
         for number in range(MOST_TOUCHDOWNS):
             going = np.flatnonzero(self.end == "")
             self.job.progress(len(self.end) - len(going), len(self.end), self.title)
@@ -78,12 +78,17 @@ class Landers:
             acceleration = self._acceleration(going)
             answers = self._answers(going, acceleration, number)
             asked = ~answers.is_known
-            landed = between.answers(self, going[asked], acceleration[asked], number)
+            impacts = self._impacts(going[asked], acceleration[asked])
+            landed = between.answers(impacts, number)
             answers.fill(asked, landed)
-            self.beyond[going[asked]] = True
-            self.landings[going[asked]] += landed.is_known
+            self.beyond[impacts.lander] = True
+            self.landings[impacts.lander] += landed.is_known
             self._go_on(going, answers)
         self.end[self.end == ""] = JourneyEnd.UNDER_WAY
+
+    def _impacts(self, which: np.ndarray, acceleration: np.ndarray) -> NextImpacts:
+        states = (one[which] for one in (self.speed, self.incidence, self.spin))
+        return NextImpacts(which, *states, acceleration, self.time[which])
 
     def _acceleration(self, going: np.ndarray) -> np.ndarray:
         """Of what rests where landers touch down [m/s2], [count, 3], in the frames of their touchdowns."""

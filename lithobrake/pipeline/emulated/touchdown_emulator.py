@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from lithobrake.files.hashing import hashed_seed
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.emulate.drawn_landings import DrawnLandings
 from lithobrake.pipeline.emulate.fitted_emulator import FILE, REFIT_COUNT, RIDERS, fitted, outputs_of_runs
 from lithobrake.pipeline.emulated.answers import Answers
 from lithobrake.pipeline.emulated.arrivals import SPIN
-from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.runs.energy_bound import EnergyBound, energy_bound, height_of_beds
 from lithobrake.pipeline.runs.run_table import DesignRuns
@@ -38,9 +38,10 @@ LARGEST = {INCIDENCE: 90.0, SLOPE: 90.0}
 class TouchdownEmulator:
     """The emulator of a study's touchdowns.
 
-    refits: of the emulator to beds drawn with replacement. bed: of each touchdown that it was fitted to. ranges: of the inputs of OF_TOUCHDOWN, beyond which it has no
-    answer. rest: duration [s] and way along and aside [m] of the touchdowns in which a lander came to rest, [count, 3].
-    across [m]: the longest way of a touchdown. bed_height [m]: of the highest bed.
+    refits: of the emulator to beds drawn with replacement. bed: of each touchdown that it was fitted to. ranges: of the
+    inputs of OF_TOUCHDOWN, beyond which it has no answer. rest: duration [s] and way along and aside [m] of the
+    touchdowns in which a lander came to rest, [count, 3]. across [m]: the longest way of a touchdown. bed_height [m]:
+    of the highest bed.
     """
 
     design: DrawnDesign
@@ -61,10 +62,9 @@ class TouchdownEmulator:
         rests = np.array(runs.outcomes) == TouchdownOutcome.CAPTURED
         rest = np.column_stack([np.nan_to_num(runs.output(name)) for name in (DURATION, ALONG, ASIDE)])[rests]
         bed = runs.inputs["bed"][np.isin(runs.outcomes, model.outcome_names)].astype(int)
-        return cls(
-            job.design, model.refits(REFIT_COUNT, hashed_seed(job.study.seed, "refits")), bed, trained_ranges(runs), rest,
-            _across(runs), height_of_beds(job.study, job.folder),
-        )  # fmt: skip
+        refits = model.refits(REFIT_COUNT, hashed_seed(job.study.seed, "refits"))
+        height = height_of_beds(job.study, job.folder)
+        return cls(job.design, refits, bed, trained_ranges(runs), rest, _across(runs), height)
 
     @property
     def inputs(self) -> tuple[str, ...]:
@@ -98,7 +98,9 @@ class TouchdownEmulator:
                 self._draw(found, of_refit, self.refits[number], x[of_refit], bound.at(of_refit), own)
         return found
 
-    def _draw(self, found: Answers, which: np.ndarray, model: "Emulator", x: np.ndarray, bound: EnergyBound, seed: int) -> None:
+    def _draw(
+        self, found: Answers, which: np.ndarray, model: "Emulator", x: np.ndarray, bound: EnergyBound, seed: int
+    ) -> None:
         """Put answers of one refit in their places."""
         drawn = DrawnLandings.of(model, x, bound, seed)
         names = np.array(model.outcome_names)
