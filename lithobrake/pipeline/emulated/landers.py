@@ -87,7 +87,7 @@ class EmulatedLanders:
         self.end[self.end == ""] = JourneyEnd.UNDER_WAY
 
     def _impacts(self, which: np.ndarray, acceleration: np.ndarray) -> NextImpacts:
-        states = (one[which] for one in (self.speed, self.incidence, self.spin))
+        states = (self.speed[which], self.incidence[which], self.spin[which])
         return NextImpacts(which, *states, acceleration, self.time[which])
 
     def _acceleration(self, going: np.ndarray) -> np.ndarray:
