@@ -1,6 +1,6 @@
 """Do journeys by the emulator end as journeys of landings do? Ten small studies, each followed in both ways.
 
-    python validation/emulated_journeys.py [--work FOLDER] [--cases NAME ...] [--until STAGE]
+    python validation/emulated_journeys.py [--work FOLDER] [--cases NAME ...]
 
 Each case changes some keys of scenarios/quick.toml: lander, soil, arrival, site. It has 32 journeys on 8 beds, in a
 folder below --work, where a case that was stopped goes on. Writes emulated_journeys.json, a row a finished case.
@@ -11,8 +11,11 @@ import tomllib
 from pathlib import Path
 from typing import Any
 
+import lithobrake
+from lithobrake.results import StudyResults
+
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
-from harness import SCENARIOS
+from harness import SCENARIOS, origin, write_document
 
 JOURNEYS, BEDS = 32, 8
 
@@ -55,3 +58,46 @@ def tables(number: int, changes: dict[str, dict[str, Any]]) -> dict[str, Any]:
         for name, keys in part.items():
             study[name] = {key: value for key, value in (study[name] | keys).items() if value is not None}
     return {**study, "seed": 100 + number}
+
+
+def compared(study: StudyResults) -> dict[str, Any]:
+    """How the journeys of a case ended, by landings and by the emulator."""
+    results = study.summary["results"]
+    emulated, ends = results["emulated"], results["ends"]
+
+    def numbers(shares: dict[str, Any]) -> dict[str, list[float]]:
+        return {name: [one[key] for key in ("share", "lower", "upper")] for name, one in shares.items() if one["count"]}
+
+    return {
+        "journeys": results["journeys"],
+        "touchdowns": results["touchdowns"],
+        "by_landings": numbers(ends),
+        "why_no_emulator": emulated["why"],
+        "by_emulator": numbers(emulated["ends"]),
+        "unknown": emulated["unknown"],
+        "landings_between": emulated["landings"],
+        "agrees": emulated["agrees"],
+        "control": emulated["control"],
+    }
+
+
+def main() -> None:
+    """Follow the landers of all cases in both ways, and write how they ended."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--work", type=Path, default=Path("emulated_journeys"))
+    parser.add_argument("--cases", nargs="*", default=list(CASES))
+    given = parser.parse_args()
+    path = Path(__file__).with_suffix(".json")
+    found = json.loads(path.read_text(encoding="utf-8"))["cases"] if path.is_file() else {}
+    for number, (name, changes) in enumerate(CASES.items()):
+        if name in given.cases:
+            folder = given.work / "".join(letter if letter.isalnum() else "_" for letter in name)
+            found[name] = compared(lithobrake.run(tables(number, changes), folder, report=False))
+            print(name, found[name], flush=True)
+            in_order = {one: found[one] for one in CASES if one in found}
+            agree = sum(bool(one["agrees"]) for one in in_order.values())
+            write_document(path, {**origin("validation/emulated_journeys.py"), "agree": agree, "cases": in_order})
+
+
+if __name__ == "__main__":
+    main()

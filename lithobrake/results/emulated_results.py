@@ -40,4 +40,4 @@ class EmulatedJourneys:
     control: ControlVariate | None
     """null where the emulator predicts nothing of the ends"""
     statement: str
-    """whether the two agree, in a sentence"""
+    """whether the two agree, in a sentence; empty where no landers were followed"""

@@ -58,8 +58,8 @@ class JourneySection(Section):
     """A lander that would rise higher over the ground leaves the bed and flies in the gravity of the body; lower hops
     are part of the touchdown. Absent: three times the lander's largest diameter."""
     emulated_count: Annotated[int, Whole("", at_least=0, at_most=1_000_000)] = 5000
-    """Landers that the emulator of the touchdowns follows beside them, at least 100 or none: they narrow the shares of
-    the ends where they resemble the journeys (docs/journeys.md)."""
+    """Landers that the emulator of all touchdowns follows beside them, as a check and to narrow the shares of the ends;
+    0: none."""
 
 
 def arrival_key(name: str) -> str:

@@ -60,12 +60,15 @@ def emulated_ends(job: Job, table: JourneyTable, plain: Shares) -> tuple[Emulate
     why = why_no_emulator(job.folder.read_json(EMULATOR))
     if why is not None:
         return EmulatedJourneys(why, 0, 0, 0, 0.0, {}, None, None, why), plain
+    most = most_landings(job)
     fresh, own = (EmulatedTable.load(job.folder, one) for one in (FRESH, OWN))
+    if not len(fresh.end):
+        return EmulatedJourneys(None, 0, 0, most, 0.0, {}, None, None, ""), plain
     ends = _fresh_shares(job.study, table, fresh)
     control, shares = _narrowed(table, plain, fresh, own)
     agrees = _agrees(plain, ends)
     unknown = float(np.mean(fresh.end == UNKNOWN))
-    counts = len(fresh.end), int(fresh.landings.sum()), most_landings(job)
+    counts = len(fresh.end), int(fresh.landings.sum()), most
     return EmulatedJourneys(None, *counts, unknown, ends, agrees, control, _statement(ends, agrees, unknown)), shares
 
 

@@ -32,10 +32,11 @@ def emulated_dependencies(study: Study) -> Any:
 def make_emulated(job: Job) -> None:
     """Fit the emulator to all touchdowns, follow landers by it, and write emulator.json and emulated.csv."""
     why, rows = fit_touchdowns(job), []
-    if why is None:
+    assert job.study.journey is not None
+    if why is None and job.study.journey.emulated_count:
         emulator = TouchdownEmulator.read(job)
         rows = [*_fresh(job, emulator), *_own(job, emulator)]
-    else:
+    if why is not None:
         job.say(why)
     write_table(job.folder, EMULATED_FILE, tuple(EMULATED), rows, EMULATED)
 
