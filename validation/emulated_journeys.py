@@ -6,6 +6,8 @@ Each case changes some keys of scenarios/quick.toml: lander, soil, arrival, site
 folder below --work, where a case that was stopped goes on. Writes emulated_journeys.json, a row a finished case.
 """
 
+import argparse
+import json
 import sys
 import tomllib
 from pathlib import Path
