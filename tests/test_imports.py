@@ -52,6 +52,7 @@ ROOMS = {
             "fly",
             "journeys",
             "rest",
+            "emulated",
             "answer",
             "paper",
             "stages",

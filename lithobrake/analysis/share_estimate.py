@@ -88,6 +88,7 @@ def share_estimate(
     bed: ArrayLike,
     *,
     terms: tuple[Array, Labels] | None = None,
+    explained: ArrayLike | None = None,
     weights: ArrayLike | None = None,
     like_missing: ArrayLike | None = None,
     emulator: float | None = None,
@@ -98,6 +99,8 @@ def share_estimate(
     shares [run_count]        0 to 1 for each landing, as the share of its flights that return; NaN without an outcome
     bed [run_count]           label of the bed of each landing: the units of the interval
     terms                     what `regression_terms` gives for the inputs of all landings; None: plain mean
+    explained [run_count]     of mean 0 over the input distributions, taken off in place of what a regression on terms
+                              explains, where every landing has an outcome; None: nothing
     weights [run_count]       density of the input distribution over that the landings were drawn from; None: 1
     like_missing [run_count]  whether each landing resembles those without an outcome, as one that left across the edge
                               of the bed: where at least five of these have an outcome, the point estimate takes their
@@ -116,7 +119,7 @@ def share_estimate(
     if terms is not None and len(terms[0]) != len(h):
         raise ValueError(f"terms are of {len(terms[0])} runs and shares of {len(h)}; give those of the same runs")
     beds, answered = numbered_beds(bed, len(h)), np.isfinite(h)
-    left = _less_inputs(h, terms, w, beds)
+    left = _less_inputs(h, terms, w, beds) if explained is None else h - numbers("explained", explained)
     known = _mean_of(left[answered], w[answered], beds[answered])
     ends = known, known
     if not answered.all():

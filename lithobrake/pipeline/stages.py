@@ -2,6 +2,7 @@
 
 from lithobrake.pipeline.answer import stages as answer
 from lithobrake.pipeline.emulate import stages as emulate
+from lithobrake.pipeline.emulated import stages as emulated
 from lithobrake.pipeline.fly import stages as fly
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.journeys import stages as journeys
@@ -42,7 +43,7 @@ DRAWN = (
     answer.SUMMARY,
     REPORT,
 )
-# Landings that follow each other until the lander rests, in the place of single ones, and nothing by an emulator.
+# Landings that follow each other until the lander rests, in the place of single ones, and journeys by their emulator.
 JOURNEYS = (
     runs.BED,
     runs.FIRST_LANDING,
@@ -51,6 +52,8 @@ JOURNEYS = (
     fly.FLY_RUNS,
     runs.TELLING_LANDING,
     answer.ESTIMATE,
+    emulated.EMULATED,
+    emulated.OPTIONS,
     answer.JOURNEY_SUMMARY,
     REPORT,
 )

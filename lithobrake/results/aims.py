@@ -31,7 +31,8 @@ class AimResult:
     values: tuple[float, ...]
     """of the names, in the units of the study file"""
     soil: AimOnGround
-    hard: AimOnGround
+    hard: AimOnGround | None
+    """null with [journey]: landers are followed on the soil alone"""
 
 
 @dataclass(frozen=True)

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 from lithobrake.results.aims import AimResults
 from lithobrake.results.dispersion import FlightResults, ImpactNumbers, LandingEllipses, RestResults, WithoutScatter
+from lithobrake.results.emulated_results import EmulatedJourneys
 from lithobrake.results.emulator_results import EmulatorResults
 from lithobrake.results.expansions import (
     DesignCounts,
@@ -77,6 +78,8 @@ class DrawnResults:
     """with [journey]: how many were followed"""
     touchdowns: int | None = None
     """with [journey]: landings that were simulated for them"""
+    emulated: EmulatedJourneys | None = None
+    """with [journey]: landers that the emulator of the touchdowns followed"""
 
     @property
     def spreads(self) -> dict[str, OutputEstimate]:

@@ -4,8 +4,9 @@ import math
 from collections.abc import Iterator
 from itertools import pairwise
 
+from lithobrake.study.journey_sections import arrival_key
 from lithobrake.study.quantity import reach, uncertain
-from lithobrake.study.question_sections import AIM_RESULTS, AimLimit
+from lithobrake.study.question_sections import AimLimit, aim_results
 from lithobrake.study.study import Study
 from lithobrake.vocabulary.plain_text import closest
 
@@ -26,7 +27,7 @@ def aim_problems(study: Study) -> Iterator[str]:
     inputs = uncertain(study.touchdown_values())
     if study.design.method == "paper":
         yield 'aim.grid goes with design.method = "drawn", and it is "paper"; leave [aim] out, or draw the runs'
-    absent = [name for name in NEEDED if name not in inputs]
+    absent = [name for name in NEEDED if name not in inputs and study.journey is None]
     if absent:
         yield (
             f"aim.grid follows landers from bounce to bounce, and {' and '.join(absent)} "
@@ -40,23 +41,27 @@ def aim_problems(study: Study) -> Iterator[str]:
             "some values out"
         )
     known = (*(name for name in inputs if name.startswith("impact.")), *PLACES)
-    for name, values in grid.items():
-        if name not in known:
-            yield f'aim.grid."{name}" is no aim; allowed: {", ".join(known)}{closest(name, known)}'
+    if study.journey is not None:
+        known = tuple(f"delivery.{name.partition('.')[2]}" for name in known)
+    for option, values in grid.items():
+        name = arrival_key(option)
+        if option not in known:
+            yield f'aim.grid."{option}" is no aim; allowed: {", ".join(known)}{closest(option, known)}'
             continue
         lower, upper = reach(inputs[name]) if name in inputs else (-PLACES[name], PLACES[name])
         inside = all(lower <= value <= upper for value in values)
         if not values or not inside or any(later <= earlier for earlier, later in pairwise(values)):
             yield (
-                f'aim.grid."{name}" is {values}; allowed: ascending values from {lower:g} to {upper:g}, which the runs '
-                "reach over; leave others out, or widen its distribution"
+                f'aim.grid."{option}" is {values}; allowed: ascending values from {lower:g} to {upper:g}, which the '
+                "runs reach over; leave others out, or widen its distribution"
             )
     yield from _limit_problems(study)
 
 
 def _limit_problems(study: Study) -> Iterator[str]:
     """Limits of the best aim that cannot be read, or name nothing."""
-    names = [*(name.partition(".")[2] for name in study.aim.grid), *AIM_RESULTS]
+    of_grid = (name.partition(".")[2] for name in study.aim.grid)
+    names = [*of_grid, *aim_results(is_journey=study.journey is not None)]
     for text in study.aim.within:
         limit = AimLimit.of(text)
         if limit is None or limit.name not in names:

@@ -31,7 +31,6 @@ def journey_problems(study: Study) -> Iterator[str]:
         yield 'bed.sides is "walls"; allowed with [journey]: "periodic", as journeys have no edge; change it'
     of_emulator = {
         "rest": study.rest.model_fields_set,
-        "aim": study.aim.model_fields_set,
         "limit_states": study.limit_states.conditions(),
         "monte_carlo": study.monte_carlo.model_fields_set,
     }

@@ -99,6 +99,15 @@ class JourneySection(Section):
     hop_height: Annotated[float, Number("m", above=0)] | None = None
     """A lander that would rise higher over the ground leaves the bed and flies in the gravity of the body; lower hops
     are part of the touchdown. Absent: three times the lander's largest diameter."""
+    emulated_count: Annotated[int, Whole("", at_least=0, at_most=1_000_000)] = 5000
+    """Landers that the emulator of all touchdowns follows beside them, as a check and to narrow the shares of the ends;
+    0: none."""
+
+
+def arrival_key(name: str) -> str:
+    """The dotted key, in [impact] or [site], that a key of [delivery] stands for; any other name is its own."""
+    table, _, key = name.partition(".")
+    return name if table != "delivery" else f"{'site' if key in PLACE_KEYS else 'impact'}.{key}"
 
 
 def delivered_tables(tables: Mapping[str, Any]) -> Mapping[str, Any]:

@@ -9,12 +9,17 @@ from pydantic import BeforeValidator, ConfigDict, Field
 
 from lithobrake.study.quantity import Number, Section, Whole, refuse
 from lithobrake.vocabulary.limit_state import ALLOWED, COMPARED, EXAMPLE, LimitState, NoLimitStateError
-from lithobrake.vocabulary.outcomes import JourneyStatus
+from lithobrake.vocabulary.outcomes import JourneyEnd, JourneyStatus
 
 # What comes of an aim, and may be limited as the aim itself is.
-SETTLED = JourneyStatus.SETTLED.value
-AIM_RESULTS = (SETTLED, "missing", "distance_p95", "time_p95")
+SETTLED, AT_REST = JourneyStatus.SETTLED.value, JourneyEnd.AT_REST.value
+AIM_RESULTS = ("missing", "distance_p95", "time_p95")
 _LIMIT = re.compile(r"\s*([a-z_0-9.]+)\s*(<=|>=|<|>)\s*([-+.0-9eE]+)\s*")
+
+
+def aim_results(*, is_journey: bool) -> tuple[str, ...]:
+    """What comes of an aim, by the names of its limits."""
+    return (AT_REST if is_journey else SETTLED, *AIM_RESULTS)
 
 
 def condition_text(given: object) -> str:
@@ -45,14 +50,17 @@ class LimitStatesSection(Section):
 class AimSection(Section):
     """Where to aim: speeds, angles and places to choose from, each tried with landers that go on until they rest.
 
-    docs/aiming.md. With design.method = "drawn" only, and impact.speed and impact.incidence_deg uncertain."""
+    docs/aiming.md. With design.method = "drawn" only; without [journey] impact.speed and impact.incidence_deg are
+    uncertain."""
 
     grid: dict[str, list[Annotated[float, Number("")]]] = Field(default={})
     """What is chosen, by dotted key, and the values to try, ascending: one to three uncertain numbers of [impact], or
-    latitude_deg, longitude_deg, heading_deg of [site]; all their combinations are aims. Everything else is drawn."""
+    latitude_deg, longitude_deg, heading_deg of [site], with [journey] all of them as keys of [delivery]; all their
+    combinations are aims. Everything else is drawn."""
     within: list[str] = Field(default=[])
-    """What the best aim must keep, as in "incidence_deg < 45": a name of the grid without its table, or settled,
-    missing (shares), distance_p95 [m], time_p95 [s]; compared with a number by <, <=, > or >=."""
+    """What the best aim must keep, as in "incidence_deg < 45": a name of the grid without its table, or settled
+    (with [journey] at_rest), missing (shares), distance_p95 [m], time_p95 [s]; compared with a number by <, <=, > or
+    >=."""
     lander_count: Annotated[int, Whole("", at_least=2, at_most=10_000)] = 10
     """Landers at each aim for each of the 50 fits of the emulator to beds drawn anew."""
 

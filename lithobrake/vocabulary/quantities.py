@@ -155,6 +155,17 @@ JOURNEY_TOUCHDOWN = {
     **{f"position_{axis}": Quantity("m", f"place of the impact along {axis}", FIXED) for axis in "xyz"},
     **{f"velocity_{axis}": Quantity("m/s", f"velocity of the impact along {axis}", FIXED) for axis in "xyz"},
 }
+# Of a journey by the emulator of the touchdowns.
+EMULATED_FILE = "emulated.csv"
+EMULATED = {
+    "landers": Quantity("", "fresh: landers that were not followed by landings; own: those of the journeys"),
+    "journey": JOURNEY["journey"],
+    "refit": FLIGHT["refit"],
+    "end": Quantity("", "how it ended; unknown: at an impact that the emulator does not know"),
+    "beyond": Quantity("", "whether the emulator had no answer to an impact (1 or 0)"),
+    "landings": Quantity("", "simulated landings that were made for it in place of an answer"),
+    "time_s": JOURNEY["time_s"],
+}
 TOUCHDOWN_COST = {
     "wall_s": Quantity("s", "wall time of the landing"),
     "cpu_s": Quantity("s", "CPU time of the landing"),

@@ -32,7 +32,8 @@ def test_intervals_hold_the_truth(correlation: float) -> None:
         share = share_difference(one < ndtri(0.5), two < ndtri(0.6), BED_OF_RUN)
         median = quantile_difference(np.exp(one), np.exp(two + 0.3), BED_OF_RUN, 0.5)
         for found in (share, median):
-            assert found.lower is not None and found.upper is not None
+            assert found.lower is not None
+            assert found.upper is not None
         shares += share.lower <= 0.1 <= share.upper
         medians += median.lower <= math.expm1(0.3) <= median.upper
     assert min(shares, medians) >= 0.83 * 150

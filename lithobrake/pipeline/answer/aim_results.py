@@ -11,21 +11,23 @@ from lithobrake.pipeline.answer.dispersion_statistics import NORMAL_QUANTILE_90
 from lithobrake.pipeline.answer.shares_over_refits import Refits
 from lithobrake.pipeline.answer.typed_estimates import finite_estimate, share_interval
 from lithobrake.pipeline.emulate.fitted_emulator import REFIT_COUNT
+from lithobrake.pipeline.emulated.answers import UNKNOWN as NO_ANSWER
 from lithobrake.pipeline.folder.study_folder import AGAIN, StudyFolder
 from lithobrake.pipeline.rest.aiming import COLUMNS, FILE
 from lithobrake.results.aims import AimOnGround, AimResult, AimResults, BestAim
 from lithobrake.results.shares import Estimate, ShareInterval
 from lithobrake.study import Study
-from lithobrake.study.question_sections import AimLimit
+from lithobrake.study.question_sections import AT_REST, SETTLED, AimLimit
 from lithobrake.study.units import input_units
 from lithobrake.vocabulary.outcomes import JourneyStatus
 from lithobrake.vocabulary.percentages import percent, with_interval
 from lithobrake.vocabulary.quantities import PURE
 
-SETTLED = JourneyStatus.SETTLED.value
 FAR = 0.95
 # The outcome of these landers is unknown.
-UNKNOWN = (JourneyStatus.OUTSIDE, JourneyStatus.BOUNCING)
+UNKNOWN = (JourneyStatus.OUTSIDE, JourneyStatus.BOUNCING, NO_ANSWER)
+# The words of bounces and of journeys.
+RESTS = (SETTLED, AT_REST)
 HOUR = 3600.0
 # More aims than these make no sentence.
 NAMED = 3
@@ -43,7 +45,7 @@ class Landers:
     @property
     def settled(self) -> np.ndarray:
         """Which have come to rest where the ground holds them."""
-        rests: np.ndarray = self.status == JourneyStatus.SETTLED
+        rests: np.ndarray = np.isin(self.status, RESTS)
         return rests
 
 
@@ -53,9 +55,12 @@ def aim_results(study: Study, folder: StudyFolder, fitted: Refits) -> AimResults
         return None
     aims, units = study.aim.aims(), input_units()
     limits = [limit for limit in map(AimLimit.of, study.aim.within) if limit]
-    soil, hard = (_landers(folder, ground, len(aims)) for ground in ("soil", "hard"))
+    soil = _landers(folder, "soil", len(aims))
     on_soil, best_on_soil = _on_ground(soil, aims, limits, fitted, "soil")
-    on_hard, best_on_hard = _on_ground(hard, aims, limits, fitted, "hard")
+    on_hard: Sequence[AimOnGround | None] = [None] * len(aims)
+    best_on_hard: BestAim | None = None
+    if study.journey is None:
+        on_hard, best_on_hard = _on_ground(_landers(folder, "hard", len(aims)), aims, limits, fitted, "hard")
     results = AimResults(
         names=tuple(study.aim.grid),
         units=tuple(units[name].removeprefix(PURE) for name in study.aim.grid),
@@ -64,7 +69,10 @@ def aim_results(study: Study, folder: StudyFolder, fitted: Refits) -> AimResults
         refit_count=REFIT_COUNT,
         level=LEVEL,
         why=fitted.why,
-        aims=tuple(AimResult(tuple(aim.values()), *both) for aim, *both in zip(aims, on_soil, on_hard, strict=True)),
+        aims=tuple(
+            AimResult(tuple(aim.values()), *both)
+            for aim, both in zip(aims, zip(on_soil, on_hard, strict=True), strict=True)
+        ),
         best_on_soil=best_on_soil,
         best_on_hard=best_on_hard,
         statement="",
@@ -132,7 +140,7 @@ def _share(met: np.ndarray, of: np.ndarray, refit: np.ndarray, ground: str, fitt
 def _keeps(limits: list[AimLimit], aim: dict[str, float], part: AimOnGround) -> bool:
     """Whether an aim and what comes of it keep all limits."""
     known: dict[str, float | None] = {name.partition(".")[2]: value for name, value in aim.items()}
-    known |= {SETTLED: part.settled.share, "missing": part.missing}
+    known |= dict.fromkeys(RESTS, part.settled.share) | {"missing": part.missing}
     far = {"distance_p95": part.distance_p95, "time_p95": part.time_p95}
     known |= {name: None if one is None else one.value for name, one in far.items()}
     return all(limit.keeps(known[limit.name]) for limit in limits)
@@ -179,9 +187,10 @@ def aim_statement(table: AimResults) -> str:
         said[0] += f"; {percent(part.missing)} have an unknown outcome{_rivals(table, best.aim)}"
     if best.not_worse is not None:
         said.append(_alike(table, best.not_worse, count - 1))
-    if hard is not None:
+    on_hard = None if hard is None else aims[hard.aim].hard
+    if hard is not None and on_hard is not None:
         where = "this one, too" if best.aim == hard.aim else _words(table, hard.aim)
-        said.append(f"Hard ground is best at {where}: {with_interval(aims[hard.aim].hard.settled)}")
+        said.append(f"Hard ground is best at {where}: {with_interval(on_hard.settled)}")
     return ". ".join(said) + "."
 
 

@@ -32,6 +32,7 @@ def drawn_answer(study: Study, results: DrawnResults) -> list[str]:
     return [
         *(first_bounce if results.ends is None else journey_answer(study, results)),
         *(one.statement for one in results.limit_states.values()),
+        *([results.emulated.statement] if results.emulated and results.emulated.statement else []),
         *([results.aim.statement] if results.aim else []),
         *([results.site.warning] if results.site.warning else []),
     ]

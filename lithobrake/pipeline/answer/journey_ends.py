@@ -60,7 +60,7 @@ class JourneyTable:
 def end_shares(study: Study, table: JourneyTable) -> dict[str, EndShare]:
     """The share of each end; they add up to 1."""
     why = why_no_interval(study)
-    return {end.value: _share(table.end == end.value, table.bed, why) for end in JourneyEnd}
+    return {end.value: end_share(table.end == end.value, table.bed, why) for end in JourneyEnd}
 
 
 def journey_rest(study: Study, table: JourneyTable) -> JourneyRest:
@@ -81,7 +81,7 @@ def journey_rest(study: Study, table: JourneyTable) -> JourneyRest:
         contacts=quantiles("contacts"),
         distance_m=quantiles("distance"),
         regions=rest_regions(density),
-        faces={str(face): _share(faces == face, table.bed[rests], why) for face in np.unique(faces) if has_sides},
+        faces={str(face): end_share(faces == face, table.bed[rests], why) for face in np.unique(faces) if has_sides},
         tilt_deg=quantiles("tilt_deg") if has_sides else None,
         why_no_regions=density.why,
     )
@@ -95,8 +95,14 @@ def rest_regions(density: HighestDensity) -> tuple[RestRegion, ...]:
     )
 
 
-def _share(met: np.ndarray, bed: np.ndarray, why: str | None) -> EndShare:
-    found = share_estimate(met.astype(float), bed, why=why)
+def end_share(
+    met: np.ndarray, bed: np.ndarray, why: str | None = None, explained: np.ndarray | None = None
+) -> EndShare:  # fmt: skip
+    """The share of the journeys that have met an event [journey_count], with its interval over beds.
+
+    explained: what something else predicts of each, of mean 0 over all journeys; taken off. why: there is no interval.
+    """
+    found = share_estimate(met.astype(float), bed, explained=explained, why=why)
     return EndShare(int(met.sum()), found.share, found.lower, found.upper, found.why)
 
 

@@ -2,9 +2,15 @@
 
 from dataclasses import replace
 
+import numpy as np
+
+from lithobrake.pipeline.answer.aim_results import aim_results
 from lithobrake.pipeline.answer.delivery_results import delivery_results
+from lithobrake.pipeline.answer.emulated_ends import emulated_ends
 from lithobrake.pipeline.answer.journey_ends import JourneyTable, end_shares, journey_rest
 from lithobrake.pipeline.answer.landing_results import write_results
+from lithobrake.pipeline.answer.scope import why_no_interval
+from lithobrake.pipeline.answer.shares_over_refits import Refits
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.results.summary import DrawnResults, Estimates
@@ -18,11 +24,15 @@ def write_journey_summary(job: Job) -> None:
 def _with_journeys(job: Job, found: DrawnResults, runs: DesignRuns, estimates: Estimates) -> DrawnResults:
     """What the first touchdowns say, and how the journeys ended."""
     table = JourneyTable.load(job.folder)
+    emulated, ends = emulated_ends(job, table, end_shares(job.study, table))
+    fitted = Refits(len(np.unique(table.bed)), table.touchdowns, why_no_interval(job.study))
     return replace(
         found,
+        aim=aim_results(job.study, job.folder, fitted),
         rest=journey_rest(job.study, table),
-        ends=end_shares(job.study, table),
+        ends=ends,
         delivery=delivery_results(job, runs, len(table.end)),
         journeys=len(table.end),
         touchdowns=table.touchdowns,
+        emulated=emulated,
     )

@@ -14,7 +14,7 @@ JOURNEY_SUMMARY = Stage(
     "summary",
     same_files("summary.json"),
     write_journey_summary,
-    ("landing", "telling_landing", "estimate"),
+    ("landing", "telling_landing", "estimate", "emulated", "aim"),
     summary_dependencies,
     PARTS,
 )

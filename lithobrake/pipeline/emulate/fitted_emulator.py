@@ -1,6 +1,7 @@
 """The emulator of the drawn runs: fitted, and fitted again to beds drawn with replacement."""
 
 import math
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,6 +15,7 @@ from lithobrake.vocabulary.outcomes import TouchdownOutcome
 from lithobrake.vocabulary.quantities import SPIN_OUT
 
 if TYPE_CHECKING:
+    from lithobrake.chaos import Distribution
     from lithobrake.emulator import Emulator
 
 FILE = "emulator.json"
@@ -29,27 +31,45 @@ MARGIN = 1e-6
 
 def fit_emulator(job: Job) -> None:
     """Fit the emulator to the drawn runs and write it; a run that failed says nothing."""
-    from lithobrake import emulator
     from lithobrake.emulator.training import FEWEST
 
     runs = DesignRuns.load(job.folder, "drawn")
-    inputs, outcomes = job.design.inputs, tuple(TouchdownOutcome)
-    ended = np.isin(runs.outcomes, outcomes)
     left = int(runs.has_outputs.sum())
     if left < FEWEST:
         raise ValueError(
             f"{left} of {runs.run_count} runs left the surface, and an emulator needs {FEWEST}; raise design.run_count"
         )
-    x, bed = runs.columns(list(inputs)), runs.inputs["bed"].astype(int)[ended]
-    outputs = _outputs(runs)
+    values = {name: runs.inputs[name] for name in job.design.inputs}
+    bound = energy_bound(job.design, height_of_beds(job.study, job.folder), values, runs.run_count)
+    outputs = outputs_of_runs(runs, RIDERS)
+    fitted(job, job.design.inputs, runs, outputs, bound, tuple(TouchdownOutcome)).save(job.folder / FILE)
+
+
+def fitted(
+    job: Job,
+    inputs: "Mapping[str, Distribution]",
+    runs: DesignRuns,
+    outputs: dict[str, np.ndarray],
+    bound: EnergyBound,
+    outcomes: Sequence[str],
+) -> "Emulator":
+    """The emulator of runs that ended in one of some outcomes; runs of a bed are left out together.
+
+    outputs: by name [run_count], as `outputs_of_runs` gives them. bound: what energy allows each run; it does not count
+    where some run left with more.
+    """
+    from lithobrake import emulator
+
+    ended = np.isin(runs.outcomes, outcomes)
+    bed = runs.inputs["bed"].astype(int)[ended]
     upper = np.full((runs.run_count, len(outputs)), np.inf)
     upper[:, list(outputs).index(ELEVATION)] = STEEPEST
-    if (bound := _kept_bound(job, runs)) is not None:
+    if _is_kept(job, runs, bound):
         upper[:, list(outputs).index(SPEED)], upper[:, list(outputs).index(SPIN)] = bound.speed, bound.spin()
-    modelled = [name for name in outputs if name not in RIDERS]
-    model = emulator.fit(
+    modelled = (SPEED, ELEVATION, SPIN)
+    return emulator.fit(
         inputs,
-        x[ended],
+        runs.columns(list(inputs))[ended],
         np.column_stack(list(outputs.values()))[ended],
         groups=bed if len(np.unique(bed[runs.has_outputs[ended]])) > 1 else None,
         outcome=np.array(runs.outcomes)[ended],
@@ -59,29 +79,25 @@ def fit_emulator(job: Job) -> None:
         riders=[name for name in outputs if name not in modelled],
         output_names=list(outputs),
     )
-    model.save(job.folder / FILE)
 
 
-def _kept_bound(job: Job, runs: DesignRuns) -> EnergyBound | None:
-    """What energy allows each run; None, said aloud, where some left with more."""
-    values = {name: runs.inputs[name] for name in job.design.inputs}
-    bound = energy_bound(job.design, height_of_beds(job.study, job.folder), values, runs.run_count)
+def _is_kept(job: Job, runs: DesignRuns, bound: EnergyBound) -> bool:
+    """Whether every run left within what energy allows; said aloud where some did not."""
     # At the bound of the speed nothing is left for a spin.
     beyond = int((runs.output(SPIN) >= bound.spin(runs.output(SPEED))).sum())
-    if not beyond:
-        return bound
-    job.say(
-        f"{beyond} of {runs.run_count} runs left with more speed and spin than the energy of their arrival allows, so "
-        "the emulator sets both no limit; look for what gives the lander energy in the program that makes the "
-        "touchdowns, or give lander.inertia"
-    )
-    return None
+    if beyond:
+        job.say(
+            f"{beyond} of {runs.run_count} runs left with more speed and spin than the energy of their arrival allows, "
+            "so the emulator sets both no limit; look for what gives the lander energy in the program that makes the "
+            "touchdowns, or give lander.inertia"
+        )
+    return not beyond
 
 
-def _outputs(runs: DesignRuns) -> dict[str, np.ndarray]:
+def outputs_of_runs(runs: DesignRuns, riders: Sequence[str]) -> dict[str, np.ndarray]:
     """What the emulator draws, by name [run_count]: NaN in the runs that did not leave, and in no other."""
     left = runs.has_outputs
-    found = {name: runs.output(name) for name in (SPEED, ELEVATION, SPIN, *RIDERS)}
+    found = {name: runs.output(name) for name in (SPEED, ELEVATION, SPIN, *riders)}
     _, across, _ = VELOCITY
     found[AZIMUTH] = np.arctan2(runs.output(across), runs.output(VELOCITY[0]))
     found[ELEVATION] = np.clip(found[ELEVATION], MARGIN * STEEPEST, (1.0 - MARGIN) * STEEPEST)

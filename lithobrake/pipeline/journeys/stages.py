@@ -21,7 +21,7 @@ PARTS = ("pipeline/journeys", "pipeline/site.py", "geometry/great_circle.py", *R
 
 def journey_dependencies(study: Study) -> Any:
     """What the journeys depend on."""
-    journey = None if study.journey is None else study.journey.model_dump(exclude={"count"})
+    journey = None if study.journey is None else study.journey.model_dump(exclude={"count", "emulated_count"})
     return [drawn_dependencies(study), run_flight_dependencies(study), journey, *_delivery(study)]
 
 

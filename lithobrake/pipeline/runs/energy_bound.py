@@ -44,21 +44,25 @@ class EnergyBound(NamedTuple):
 
 
 def energy_bound(
-    design: DrawnDesign, bed_height: float, values: "Mapping[str, NDArray[np.float64]]", count: int
+    design: DrawnDesign,
+    bed_height: float,
+    values: "Mapping[str, NDArray[np.float64]]",
+    count: int,
+    across: float | None = None,
 ) -> EnergyBound:
     """Bound of a lander that keeps all its energy and gains what gravity may give it over the bed, [count].
 
     bed_height: of the highest bed [m]. values: of uncertain inputs, [count] each, by dotted key; all others are as the
     study has them. The bed is at rest and contacts only take energy away: v^2 + I w^2 / m + 2 g h, with h the height of
-    the bed, and its fall along the slope: across the box, or where nothing stops it as far as it comes within the time
-    limit.
+    the bed, and its fall along the slope: `across` [m] where that is known, else across the box, or where nothing stops
+    it as far as it comes within the time limit.
     """
     known = {name: np.full(count, value) for name, value in design.medians.items()} | dict(values)
     spin = sum(known[name] ** 2 for name in SPIN)
     slope, gravity = np.sin(np.radians(known["surface.slope_deg"])), np.abs(known["surface.gravity"])
     # Gravity that points outwards lifts a lander as far as the other makes it fall.
-    across = farthest(design.study, known["impact.speed"], gravity * slope)
-    gained = gravity * (bed_height + across * slope)
+    fallen = farthest(design.study, known["impact.speed"], gravity * slope) if across is None else across
+    gained = gravity * (bed_height + fallen * slope)
     smallest, largest = gyrations(design, known)
     return EnergyBound(np.sqrt(known["impact.speed"] ** 2 + largest * spin + 2.0 * gained), np.sqrt(smallest))
 

@@ -32,14 +32,16 @@ def drawn_rows(design: DrawnDesign, x: np.ndarray, replicate: int) -> list[dict[
     return [_drawn(design, row, replicate) for row in x.tolist()]
 
 
-def touchdowns(job: Job, rows: Sequence[Mapping[str, float]], title: str, replicate: int) -> Runs:
+def touchdowns(
+    job: Job, rows: Sequence[Mapping[str, float]], title: str, replicate: int, ledger_file: str = "runs.sqlite"
+) -> Runs:  # fmt: skip
     """Make the touchdowns with these inputs; those that the ledger has are read from it."""
     study = job.study
 
     def show(state: Tally) -> None:
         job.progress(state.ended, state.total, title, "\n".join([state.sentence(), *state.spread_lines(OUTPUTS)]))
 
-    with Ledger(job.folder / "runs.sqlite") as ledger:
+    with Ledger(job.folder / ledger_file) as ledger:
         return run_campaign(
             model_of(study, job.folder.path.absolute(), job.model),
             np.array([list(row.values()) for row in rows]),

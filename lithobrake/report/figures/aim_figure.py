@@ -41,13 +41,18 @@ def _percentages(share: ShareInterval) -> Reading:
     return 100 * share.share, low, high
 
 
+def _on_hard_ground(aim: AimResult) -> Reading:
+    return _NONE if aim.hard is None else _percentages(aim.hard.settled)
+
+
 def _within(found: Estimate | None, unit: float) -> Reading:
     if found is None:
-        return float("nan"), None, None
+        return _NONE
     low, high = (None if end is None else end / unit for end in (found.lower, found.upper))
     return found.value / unit, low, high
 
 
+_NONE: Reading = (float("nan"), None, None)
 # Maps in per cent share one scale, from nothing to all: colours differ as much as the shares do.
 WHOLE = (0.0, 100.0)
 ROWS = (
@@ -55,7 +60,7 @@ ROWS = (
     AimRow("unknown outcome on soil [%]", "soil", WHOLE, lambda aim: (100 * aim.soil.missing, None, None)),
     AimRow("95 % rest within [m]", "soil", None, lambda aim: _within(aim.soil.distance_p95, 1.0)),
     AimRow("95 % rest within [h]", "soil", None, lambda aim: _within(aim.soil.time_p95, HOUR)),
-    AimRow("at rest on hard ground [%]", "hard", WHOLE, lambda aim: _percentages(aim.hard.settled)),
+    AimRow("at rest on hard ground [%]", "hard", WHOLE, _on_hard_ground),
 )
 
 
@@ -70,9 +75,11 @@ def aim_figure(table: AimResults) -> Figure:
     places = np.column_stack([values, np.zeros((len(values), 3 - values.shape[1]))])
     across, up, panels = (np.unique(column) for column in places.T)
     room = (_Layout.least - _Layout.left - _Layout.right) / len(panels) - 0.2
-    layout = _Layout(max(room, 0.62 * len(across)), max(0.36 * len(up), 0.5), len(panels))
+    # Journeys are followed on the soil alone.
+    rows = [row for row in ROWS if row.ground == "soil" or table.aims[0].hard is not None]
+    layout = _Layout(max(room, 0.62 * len(across)), max(0.36 * len(up), 0.5), len(panels), len(rows))
     figure = Figure(figsize=layout.size)
-    for number, row in enumerate(ROWS):
+    for number, row in enumerate(rows):
         read = [row.read(aim) for aim in table.aims]
         scale = row.scale or _ends(np.array([one[0] for one in read]))
         for column, panel in enumerate(panels.tolist()):
@@ -83,7 +90,7 @@ def aim_figure(table: AimResults) -> Figure:
             _mark(axes, cells, table, shown, row.ground)
             third = f"{labels[2].partition(' [')[0]} = {panel:g}" if len(labels) > 2 and number == 0 else ""
             axes.set_title("\n".join(filter(None, [third, row.title if column == 0 else ""])))
-            _label(axes, cells, labels, is_last=number == len(ROWS) - 1, is_first=column == 0)
+            _label(axes, cells, labels, is_last=number == len(rows) - 1, is_first=column == 0)
         bar = figure.colorbar(drawn, cax=figure.add_axes(layout.bar(number)))
         bar.ax.tick_params(labelsize=7.5)
         outline: Any = bar.outline
@@ -98,7 +105,7 @@ def _ends(known: NDArray[np.float64]) -> tuple[float, float]:
 
 @dataclass(frozen=True)
 class _Layout:
-    """Where the maps stand, in inches: width and height of one, and how many stand beside each other.
+    """Where the maps stand, in inches: width and height of one, how many stand beside and above each other.
 
     The figure is as wide as every other, so that its letters are as large on the page.
     """
@@ -106,6 +113,7 @@ class _Layout:
     width: float
     height: float
     count: int
+    rows: int
     left: ClassVar[float] = 0.85
     right: ClassVar[float] = 0.7
     top: ClassVar[float] = 0.5
@@ -116,7 +124,7 @@ class _Layout:
     def size(self) -> tuple[float, float]:
         """Width and height of the figure."""
         across = max(self.left + self.count * (self.width + 0.2) + self.right, self.least)
-        return across, self.top + len(ROWS) * (self.height + self.gap) + 0.2
+        return across, self.top + self.rows * (self.height + self.gap) + 0.2
 
     def place(self, row: int, column: int) -> tuple[float, float, float, float]:
         """Left, bottom, width and height of a map, in parts of the figure."""
@@ -170,7 +178,8 @@ def _mark(axes: Axes, cells: _Cells, table: AimResults, shown: NDArray[np.int64]
     """Cross out what limits rule out, and frame the best and what cannot be told from it."""
     best = table.best_on_soil if ground == "soil" else table.best_on_hard
     for (column, row), aim in zip(cells.places, shown.tolist(), strict=True):
-        if not (table.aims[aim].soil if ground == "soil" else table.aims[aim].hard).allowed:
+        part = table.aims[aim].soil if ground == "soil" else table.aims[aim].hard
+        if part is None or not part.allowed:
             axes.plot([column - 0.5, column + 0.5], [row - 0.5, row + 0.5], color=QUIET, linewidth=0.8)
         if best is not None and best.aim == aim:
             # Inside of the cell, where no neighbour covers it.

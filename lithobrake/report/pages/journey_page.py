@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lithobrake.report.content import Content, Plot
+from lithobrake.report.figures.aim_figure import aim_figure
 from lithobrake.report.figures.journey_map import journey_map, places_by_end
 from lithobrake.report.figures.journey_numbers import RestSpread, attitude_figure, counts_figure, spreads_figure
 from lithobrake.report.figures.map_figure import Share
@@ -15,6 +16,7 @@ from lithobrake.report.page_data import JourneyPage
 from lithobrake.report.pages.drawn_page import landing_plots
 from lithobrake.report.tables.journey_tables import journey_tables, rest_tables, tiles
 from lithobrake.report.words import journey_captions as words
+from lithobrake.report.words.drawn_captions import aims
 from lithobrake.report.words.journey_captions import END_WORDS
 from lithobrake.results.journey_results import EndShare
 from lithobrake.vocabulary.outcomes import JourneyEnd
@@ -43,9 +45,16 @@ def _ends(data: JourneyPage) -> list[Plot]:
         Plot("times", "Time to rest and distance", words.times(data), lambda: _draw_times(data)),
         Plot("counts", "Touchdowns and contacts", words.counts(data), lambda: _draw_counts(data)),
         Plot("attitude", "Side down and tilt", words.attitude(data), lambda: _draw_attitude(data)),
+        *_options(data),
     ]
     shown = [plot for plot in plots if plot.sentence]
     return [replace(shown[0], heading=WHERE), *shown[1:]]
+
+
+def _options(data: JourneyPage) -> list[Plot]:
+    """What becomes of the landers at each delivery option, where the study has any."""
+    aim = data.results.aim
+    return [] if aim is None else [Plot("aim", "Delivery options", aims(data, aim), lambda: aim_figure(aim))]
 
 
 def _decides(data: JourneyPage) -> list[Plot]:

@@ -32,12 +32,13 @@ CONTENTS = {
     "journeys.csv": "every journey: end, time, place, distance, contacts, side down",
     "touchdowns.csv": "every landing of the journeys: its number, key, outcome, time and place",
     "designs/touchdowns.csv": "the same landings: what each was given, and what came out",
+    "emulated.csv": "landers that the emulator of the touchdowns followed, and how they ended",
     "rest.csv": "the journey of each lander that was followed from bounce to bounce",
     "arcs.csv": "each flight between impacts: where it begins, and when it ends",
     "restitution.csv": "restitution, friction and scatter that the soil implies, by speed and incidence",
     "rest.json": "which ground could be asked, and the range of the runs",
     "rare_*.json": "a rare limit state: its probability and the levels down to it, from landings of its own",
-    "aim.csv": "the landers at every aim, on soil and on hard ground",
+    "aim.csv": "the landers at every delivery option, and how they ended",
     "body.obj": "the shape of the body that the flights used",
 }
 

@@ -7,7 +7,7 @@ from lithobrake.report.page_data import JourneyPage
 from lithobrake.report.tables.dispersion_tables import site_tables
 from lithobrake.report.tables.drawn_tables import landing_tables
 from lithobrake.report.words.drawn_warnings import as_sentence, interval
-from lithobrake.report.words.journey_captions import END_WORDS, quantile_words, time_unit
+from lithobrake.report.words.journey_captions import END_WORDS, emulator_words, quantile_words, time_unit
 from lithobrake.report.words.numbers import number
 from lithobrake.results.journey_results import RestQuantiles
 from lithobrake.vocabulary.outcomes import JourneyEnd
@@ -92,14 +92,19 @@ def journey_tables(data: JourneyPage) -> list[PageTable]:
 
 def _ends(data: JourneyPage) -> PageTable:
     columns = ["end", "journeys", f"share ({percent(LEVEL)} interval)", "touchdowns each"]
+    emulated = data.results.emulated
+    by_emulator = emulated.ends if emulated else {}
+    columns += ["by the emulator"] if by_emulator else []
     ended, touchdowns = data.journeys["end"], data.journeys["touchdowns"]
     rows = []
     for name, one in data.ends.items():
         each = number(float(touchdowns[ended == name].mean()), 2) if one.count else ""
-        rows.append([END_WORDS[name], str(one.count), with_interval(one), each])
+        beside = [with_interval(by_emulator[name])] if by_emulator else []
+        rows.append([END_WORDS[name], str(one.count), with_interval(one), each, *beside])
     why = next((one.why for one in data.ends.values() if one.why), None)
     said = [f"{JourneyEnd(name).label}: {JourneyEnd(name).sentence}" for name, one in data.ends.items() if one.count]
-    note = " ".join([f"{words[:1].upper()}{words[1:]}" for words in said] + ([as_sentence(why)] if why else []))
+    more = [*([as_sentence(why)] if why else []), *emulator_words(data)]
+    note = " ".join([f"{words[:1].upper()}{words[1:]}" for words in said] + more)
     return PageTable("How the journeys ended", columns, rows, note, frozenset(columns[1:]))
 
 

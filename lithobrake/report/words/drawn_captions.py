@@ -153,7 +153,7 @@ def samples(data: DrawnPage, colour_name: str | None) -> str:
     return " ".join(filter(None, [f"{count}{first}; {colour}.", emulator_outside(data)]))
 
 
-def aims(data: DrawnPage, table: AimResults) -> str:
+def aims(data: RunsPage, table: AimResults) -> str:
     """The figure of the aims."""
     crossed = " Aims that the limits rule out are crossed." if table.within else ""
     return (

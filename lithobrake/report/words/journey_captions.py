@@ -123,6 +123,22 @@ def first_variance(data: JourneyPage) -> str:
     return said
 
 
+def emulator_words(data: JourneyPage) -> list[str]:
+    """Whether the emulator of the touchdowns agrees with the landings, and what it does for the shares."""
+    found = data.results.emulated
+    if found is None or not found.statement:
+        return []
+    control = found.control
+    if control is None or not control.is_used:
+        return [found.statement]
+    half, narrow = (percent(one) for one in (control.half_width, control.half_width_with))
+    return [
+        found.statement,
+        f"What it predicts of each journey narrows the interval of the share at rest from +- {half} to +- {narrow}, so "
+        "a share may differ from the count.",
+    ]
+
+
 def quantile_words(one: RestQuantile, size: float = 1.0) -> str:
     """A quantile with its interval, "27 (23-32)", or with the bound that is known."""
     value = number((one.value or 0.0) / size, 2)

@@ -33,7 +33,7 @@ TABLES: dict[str, dict[str, Any]] = {
         "speed": {"distribution": "uniform", "lower": 0.04, "upper": 0.08},
         "incidence_deg": {"distribution": "uniform", "lower": 0.0, "upper": 40.0},
     },
-    "journey": {"count": 48, "duration": 172800.0},
+    "journey": {"count": 48, "duration": 172800.0, "emulated_count": 400},
     "site": {"body": "dimorphos"},
     "campaign": {"retry_count": 0},
 }

@@ -32,7 +32,7 @@ TABLES: dict[str, Any] = {
         "incidence_deg": {"distribution": "uniform", "lower": 10.0, "upper": 40.0},
         "heading_deg": {"distribution": "uniform", "lower": 0.0, "upper": 360.0},
     },
-    "journey": {"count": JOURNEYS, "duration": 40000.0},
+    "journey": {"count": JOURNEYS, "duration": 40000.0, "emulated_count": 0},
     "site": {"body": "dimorphos"},
 }  # fmt: skip
 HARD = HardSurface(0.5, 0.7, math.inf, 0.05)

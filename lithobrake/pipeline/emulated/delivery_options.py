@@ -1,0 +1,77 @@
+"""Landers at every delivery option of a study of journeys, followed by the emulator of its touchdowns."""
+
+from typing import Any
+
+import numpy as np
+
+from lithobrake.geometry.great_circle import angles, directions
+from lithobrake.pipeline.emulate.fitted_emulator import FILE as EMULATOR
+from lithobrake.pipeline.emulate.fitted_emulator import REFIT_COUNT
+from lithobrake.pipeline.emulated.answers import UNKNOWN
+from lithobrake.pipeline.emulated.arrivals import Arrivals
+from lithobrake.pipeline.emulated.emulated_journeys import most_landings
+from lithobrake.pipeline.emulated.landers import EmulatedLanders
+from lithobrake.pipeline.emulated.touchdown_emulator import TouchdownEmulator, why_no_emulator
+from lithobrake.pipeline.fly.flights import write_table
+from lithobrake.pipeline.job import Job
+from lithobrake.pipeline.rest.aiming import COLUMNS, FILE
+from lithobrake.study import Study
+from lithobrake.study.journey_sections import arrival_key
+from lithobrake.vocabulary.outcomes import JourneyEnd
+
+SITE = "site."
+
+
+def option_dependencies(study: Study) -> Any:
+    """What the landers at the options depend on beside the emulator."""
+    return [study.aim.grid, study.aim.lander_count]
+
+
+def follow_options(job: Job) -> None:
+    """Follow the landers of every option and write aim.csv, one option after the other.
+
+    All have the same landers: soil, bed, site and refit of each are drawn once, and only what is chosen differs.
+    """
+    begin = _arrivals(job)
+    count = job.study.aim.lander_count * REFIT_COUNT
+    end, time = np.full(len(begin.rows), UNKNOWN, dtype=object), np.zeros(len(begin.rows))
+    distance = time
+    if why_no_emulator(job.folder.read_json(EMULATOR)) is None:
+        landers = EmulatedLanders.of(job, TouchdownEmulator.read(job), "landers at the delivery options", begin)
+        landers.follow(most_landings(job))
+        end, time, distance = landers.end, landers.time, _distances(job, begin, landers.position)
+    rests = end == JourneyEnd.AT_REST
+    rows = [
+        ["soil", number // count, refit, str(word), seconds, way if at_rest else ""]
+        for number, (refit, word, seconds, way, at_rest) in enumerate(
+            zip(begin.refit.tolist(), end, time.tolist(), distance.tolist(), rests, strict=True)
+        )
+    ]
+    write_table(job.folder, FILE, COLUMNS, rows)
+
+
+def _arrivals(job: Job) -> Arrivals:
+    """The landers of all options, one option after the other."""
+    options = job.study.aim.aims()
+    one = Arrivals.drawn(job.design, job.site, len(job.design.rows), job.study.aim.lander_count * REFIT_COUNT)
+    count = len(one.rows)
+    rows, site = [], {key: np.tile(values, len(options)) for key, values in one.site.items()}
+    for number, option in enumerate(options):
+        chosen = {arrival_key(name): value for name, value in option.items()}
+        for name, value in chosen.items():
+            if name.startswith(SITE):
+                site[name.removeprefix(SITE)][number * count : (number + 1) * count] = value
+        rows += [row | {name: value for name, value in chosen.items() if not name.startswith(SITE)} for row in one.rows]
+    numbers, refit = (np.tile(values, len(options)) for values in (one.number, one.refit))
+    return Arrivals.of(job.site, numbers, rows, site, refit)
+
+
+def _distances(job: Job, begin: Arrivals, position: np.ndarray) -> np.ndarray:
+    """Ways over the ground [m] from the aim points to places [m], [count, 3], as if the body were a ball."""
+    latitude, longitude = begin.site["latitude_deg"], begin.site["longitude_deg"]
+    shape = job.site.body.shape
+    aims, place = np.unique(np.column_stack([latitude, longitude]), axis=0, return_inverse=True)
+    radius = np.array([np.linalg.norm(shape.surface_point(*one)) for one in aims.tolist()])[place.ravel()]
+    there = directions(*shape.latitude_longitude(position))
+    ways: np.ndarray = radius * angles(directions(latitude, longitude), there)
+    return ways

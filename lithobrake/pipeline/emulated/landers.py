@@ -1,0 +1,169 @@
+"""Landers that the emulator takes from touchdown to touchdown, and landings where it has no answer."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from lithobrake.files.hashing import hashed_seed
+from lithobrake.pipeline.design.arrival import FLATTEST_DEG
+from lithobrake.pipeline.design.local_ground import felt, friction_of, ground_inputs
+from lithobrake.pipeline.emulated.answers import Answers
+from lithobrake.pipeline.emulated.arrivals import Arrivals
+from lithobrake.pipeline.emulated.landings_between import LandingsBetween, NextImpacts
+from lithobrake.pipeline.emulated.touchdown_emulator import GRAVITY, INCIDENCE, SLOPE, SPEED, TouchdownEmulator
+from lithobrake.pipeline.job import Job
+from lithobrake.pipeline.journeys.journey import ENDS, MOST_TOUCHDOWNS
+from lithobrake.vocabulary.outcomes import FlightStatus, JourneyEnd, TouchdownOutcome
+
+AFTER = {
+    TouchdownOutcome.CAPTURED.value: JourneyEnd.AT_REST.value,
+    TouchdownOutcome.TIME_LIMIT.value: JourneyEnd.UNDER_WAY.value,
+    TouchdownOutcome.LEFT_SIDEWAYS.value: JourneyEnd.FAILED.value,
+}
+
+
+@dataclass
+class EmulatedLanders:
+    """Landers under way; arrays [count], one entry a lander, vectors fixed to the body.
+
+    time: since the first touchdown began [s]; position [m]; speed [m/s], incidence [deg], axes (in rows) and spin
+    against the ground [rad/s] in that frame: of the next impact. end: a word of JourneyEnd, UNKNOWN, or "" while under
+    way. landings: made for it; beyond: whether the emulator had no answer for it at least once.
+    """
+
+    job: Job
+    emulator: TouchdownEmulator
+    title: str
+    begin: Arrivals
+    position: np.ndarray
+    axes: np.ndarray
+    spin: np.ndarray
+    speed: np.ndarray
+    incidence: np.ndarray
+    time: np.ndarray
+    end: np.ndarray
+    landings: np.ndarray
+    beyond: np.ndarray
+    soil: dict[str, np.ndarray] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, job: Job, emulator: TouchdownEmulator, title: str, begin: Arrivals) -> "EmulatedLanders":
+        """Landers at their first touchdowns."""
+        count = len(begin.rows)
+        names = [name for name in emulator.inputs if name not in emulator.ranges]
+        return cls(
+            job=job,
+            emulator=emulator,
+            title=title,
+            begin=begin,
+            position=np.array(begin.origin),
+            axes=np.array(begin.axes),
+            spin=begin.spin,
+            speed=begin.column(SPEED),
+            incidence=begin.column(INCIDENCE),
+            time=np.zeros(count),
+            end=np.full(count, "", dtype="<U10"),
+            landings=np.zeros(count, dtype=np.int64),
+            beyond=np.zeros(count, dtype=bool),
+            soil={name: begin.column(name) for name in names},
+        )
+
+    def follow(self, most_landings: int) -> None:
+        """Follow all to their ends, with at most so many landings where the emulator has no answer."""
+        between = LandingsBetween(self.job, self.title, self.begin, most_landings)
+        for number in range(MOST_TOUCHDOWNS):
+            going = np.flatnonzero(self.end == "")
+            self.job.progress(len(self.end) - len(going), len(self.end), self.title)
+            if not len(going):
+                return
+            acceleration = self._acceleration(going)
+            answers = self._answers(going, acceleration, number)
+            asked = ~answers.is_known
+            impacts = self._impacts(going[asked], acceleration[asked])
+            landed = between.answers(impacts, number)
+            answers.fill(asked, landed)
+            self.beyond[impacts.lander] = True
+            self.landings[impacts.lander] += landed.is_known
+            self._go_on(going, answers)
+        self.end[self.end == ""] = JourneyEnd.UNDER_WAY
+
+    def _impacts(self, which: np.ndarray, acceleration: np.ndarray) -> NextImpacts:
+        states = (self.speed[which], self.incidence[which], self.spin[which])
+        return NextImpacts(which, *states, acceleration, self.time[which])
+
+    def _acceleration(self, going: np.ndarray) -> np.ndarray:
+        """Of what rests where landers touch down [m/s2], [count, 3], in the frames of their touchdowns."""
+        site, clock = self.begin.site, self.begin.clock[going] + self.time[going]
+        body = self.job.site.body
+        local = felt(body, self.position[going], clock, site["mass"][going], site["spin_period"][going])
+        return np.einsum("nij,nj->ni", self.axes[going], local)
+
+    def _answers(self, going: np.ndarray, acceleration: np.ndarray, number: int) -> Answers:
+        """What the emulator has for the impacts of some landers."""
+        rows = (self.begin.rows[one] for one in going.tolist())
+        ground = [ground_inputs(one, 0.0, friction_of(row)) for one, row in zip(acceleration, rows, strict=True)]
+        inputs = {name: values[going] for name, values in self.soil.items()} | {
+            SPEED: self.speed[going],
+            INCIDENCE: self.incidence[going],
+            GRAVITY: np.array([one[GRAVITY] for one in ground]),
+            SLOPE: np.array([one[SLOPE] for one in ground]),
+        }
+        seed = hashed_seed(self.job.study.seed, self.title, number)
+        return self.emulator.answers(inputs, self.spin[going], self.begin.refit[going], seed)
+
+    def _go_on(self, going: np.ndarray, answers: Answers) -> None:
+        """Take in how touchdowns ended, and fly what left to its next impact."""
+        duration = self.duration
+        self.time[going] += answers.duration
+        self.position[going] += np.einsum("nji,nj->ni", self.axes[going], answers.way)
+        self.end[going] = [AFTER.get(word, word) for word in answers.outcome]
+        left = answers.outcome == TouchdownOutcome.CLEAR
+        self.end[going[left]] = np.where(self.time[going[left]] < duration, "", JourneyEnd.UNDER_WAY.value)
+        flying = self.end[going] == ""
+        if flying.any():
+            self._fly(going[flying], answers.velocity[flying], answers.spin[flying])
+
+    def _fly(self, going: np.ndarray, velocity: np.ndarray, spin: np.ndarray) -> None:
+        """Fly landers that leave with velocities [m/s] and spins [rad/s] in the frames of their touchdowns."""
+        from lithobrake.smallbody import fly
+        from lithobrake.smallbody.hopping import impact_frame
+
+        site, job = self.begin.site, self.job
+        velocity, spin = (np.einsum("nji,nj->ni", self.axes[going], one) for one in (velocity, spin))
+        period = site["spin_period"][going]
+        flown = fly(
+            *(job.site.body, self.position[going], velocity, self.duration - self.time[going]),
+            gravity=job.study.flight.gravity,
+            start_time=self.begin.clock[going] + self.time[going],
+            mass=site["mass"][going],
+            spin_period=period,
+            threads=getattr(job.executor, "worker_count", None),
+        )
+        self.position[going], self.time[going] = flown.position, self.time[going] + flown.time
+        ended = {status.value: end.value for status, end in ENDS.items()}
+        self.end[going] = [ended.get(str(word), "") for word in flown.status]
+        hit = flown.status == FlightStatus.IMPACT
+        down, normal = going[hit], job.site.body.shape.normals[flown.facet[hit]]
+        self.axes[down] = impact_frame(flown.velocity[hit], normal)
+        self.speed[down] = flown.impact_speed[hit]
+        self.incidence[down] = np.minimum(np.degrees(flown.incidence[hit]), FLATTEST_DEG)
+        self.spin[down] = self._arriving_spin(down, spin[hit], flown.time[hit], period[hit])
+
+    def _arriving_spin(self, down: np.ndarray, spin: np.ndarray, time: np.ndarray, period: np.ndarray) -> np.ndarray:
+        """Spins against the ground [rad/s] in the frames of the next impacts, as those of balls.
+
+        What depends on how a lander tumbles is in the scatter of the emulator, which does not read the spin.
+        """
+        turning = np.outer(2.0 * np.pi / period, [0.0, 0.0, 1.0])
+        among_stars, angle = spin + turning, turning[:, 2] * time
+        cosine, sine = np.cos(angle), np.sin(angle)
+        x, y, z = among_stars.T
+        fixed = np.column_stack([cosine * x + sine * y, cosine * y - sine * x, z])
+        found: np.ndarray = np.einsum("nij,nj->ni", self.axes[down], fixed - turning)
+        return found
+
+    @property
+    def duration(self) -> float:
+        """Longest journey [s]."""
+        assert self.job.study.journey is not None
+        return self.job.study.journey.duration

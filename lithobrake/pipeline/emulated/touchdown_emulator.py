@@ -1,0 +1,176 @@
+"""The emulator of all touchdowns of a study's journeys: it knows the impacts that occur, because they occurred."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from lithobrake.files.hashing import hashed_seed
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
+from lithobrake.pipeline.emulate.drawn_landings import DrawnLandings
+from lithobrake.pipeline.emulate.fitted_emulator import FILE, REFIT_COUNT, RIDERS, fitted, outputs_of_runs
+from lithobrake.pipeline.emulated.answers import Answers
+from lithobrake.pipeline.emulated.arrivals import SPIN
+from lithobrake.pipeline.job import Job
+from lithobrake.pipeline.runs.energy_bound import EnergyBound, energy_bound, height_of_beds
+from lithobrake.pipeline.runs.run_table import DesignRuns
+from lithobrake.vocabulary.outcomes import TouchdownOutcome
+from lithobrake.vocabulary.quantities import GROUND, JOURNEY_DESIGN, TO_REST
+
+if TYPE_CHECKING:
+    from lithobrake.chaos import Distribution
+    from lithobrake.emulator import Emulator
+
+SPEED, INCIDENCE = "impact.speed", "impact.incidence_deg"
+GRAVITY, SLOPE, _ = GROUND
+ALONG, ASIDE, DURATION, _ = TO_REST
+# What differs from touchdown to touchdown of a journey; attitude and spin of the arrival are in the scatter.
+OF_TOUCHDOWN = (SPEED, INCIDENCE, GRAVITY, SLOPE)
+# Tables of which the emulator has these keys alone: what else they hold is drawn at every touchdown.
+ARRIVAL = ("impact.", "surface.")
+# How far beyond the trained range an impact may lie: by a factor of speed and gravity, by degrees of its angles.
+FACTOR, DEGREES = 1.1, 5.0
+LARGEST = {INCIDENCE: 90.0, SLOPE: 90.0}
+
+
+@dataclass(frozen=True)
+class TouchdownEmulator:
+    """The emulator of a study's touchdowns.
+
+    refits: of the emulator to beds drawn with replacement. bed: of each touchdown that it was fitted to. ranges: of the
+    inputs of OF_TOUCHDOWN, beyond which it has no answer. rest: duration [s] and way along and aside [m] of the
+    touchdowns in which a lander came to rest, [count, 3]. across [m]: the longest way of a touchdown. bed_height [m]:
+    of the highest bed.
+    """
+
+    design: DrawnDesign
+    refits: "list[Emulator]"
+    bed: np.ndarray
+    ranges: Mapping[str, tuple[float, float]]
+    rest: np.ndarray
+    across: float
+    bed_height: float
+
+    @classmethod
+    def read(cls, job: Job) -> "TouchdownEmulator":
+        """The one that was fitted. Raises ValueError for a file that is damaged."""
+        from lithobrake import emulator
+
+        model = emulator.load(job.folder / FILE)
+        runs = DesignRuns.load(job.folder, JOURNEY_DESIGN)
+        rests = np.array(runs.outcomes) == TouchdownOutcome.CAPTURED
+        rest = np.column_stack([np.nan_to_num(runs.output(name)) for name in (DURATION, ALONG, ASIDE)])[rests]
+        bed = runs.inputs["bed"][np.isin(runs.outcomes, model.outcome_names)].astype(int)
+        refits = model.refits(REFIT_COUNT, hashed_seed(job.study.seed, "refits"))
+        height = height_of_beds(job.study, job.folder)
+        return cls(job.design, refits, bed, trained_ranges(runs), rest, _across(runs), height)
+
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        """What it reads of a touchdown, by dotted key."""
+        return tuple(self.refits[0].runs.inputs)
+
+    def unseen(self, bed: int) -> np.ndarray:
+        """Places of the refits that have not seen a bed."""
+        there = self.bed == bed
+        return np.flatnonzero([not model.weights[there].any() for model in self.refits])
+
+    def answers(self, inputs: Mapping[str, np.ndarray], spin: np.ndarray, refit: np.ndarray, seed: int) -> Answers:
+        """Draw how touchdowns end, each by its refit [count]; nothing is known of those beyond the ranges.
+
+        inputs: by dotted key in the file's units, [count] each. spin: of the arrival [rad/s], [count, 3].
+        """
+        found = Answers.unknown(len(refit))
+        # Slower than any touchdown is as the slowest of them, which has more energy to leave with.
+        inputs = {**inputs, SPEED: np.maximum(inputs[SPEED], self.ranges[SPEED][0])}
+        inside = np.ones(len(refit), dtype=bool)
+        for name, (lower, upper) in self.ranges.items():
+            inside &= (inputs[name] >= lower) & (inputs[name] <= upper)
+        values = {name: inputs[name] for name in self.inputs} | dict(zip(SPIN, spin.T, strict=True))
+        bound = energy_bound(self.design, self.bed_height, values, len(refit), self.across)
+        x = np.column_stack([inputs[name] for name in self.inputs])
+        random = np.random.default_rng(seed)
+        # All refits take a seed, whether landers of theirs touch down or not.
+        for number, own in enumerate(random.integers(2**31, size=len(self.refits)).tolist()):
+            of_refit = np.flatnonzero(inside & (refit == number))
+            if len(of_refit):
+                self._draw(found, of_refit, self.refits[number], x[of_refit], bound.at(of_refit), own)
+        return found
+
+    def _draw(
+        self, found: Answers, which: np.ndarray, model: "Emulator", x: np.ndarray, bound: EnergyBound, seed: int
+    ) -> None:
+        """Put answers of one refit in their places."""
+        drawn = DrawnLandings.of(model, x, bound, seed)
+        names = np.array(model.outcome_names)
+        found.outcome[which] = names[drawn.outcome]
+        left = names[drawn.outcome] == TouchdownOutcome.CLEAR
+        found.velocity[which[left]], found.spin[which[left]] = drawn.velocity[left], drawn.spin[left]
+        if DURATION in drawn.outputs:
+            found.duration[which[left]] = drawn.outputs[DURATION][left]
+        rests = which[found.outcome[which] == TouchdownOutcome.CAPTURED]
+        # Nothing is fitted to touchdowns that end at rest: how long and far they go is that of one of them.
+        taken = self.rest[np.random.default_rng(seed).integers(len(self.rest), size=len(rests))]
+        found.duration[rests], found.way[rests, :2] = taken[:, 0], taken[:, 1:]
+
+
+def fit_touchdowns(job: Job) -> str | None:
+    """Fit the emulator to all touchdowns and write it; give the reason, in a sentence, where there is none."""
+    runs = DesignRuns.load(job.folder, JOURNEY_DESIGN)
+    why = _why_none(runs)
+    if why is not None:
+        job.folder.write_json(FILE, {"why": why})
+        return why
+    values = {name: runs.inputs[name] for name in job.design.medians if name in runs.inputs}
+    bound = energy_bound(job.design, height_of_beds(job.study, job.folder), values, runs.run_count, _across(runs))
+    outputs = outputs_of_runs(runs, (*RIDERS, DURATION))
+    met = [outcome for outcome in TouchdownOutcome if outcome in runs.outcomes]
+    fitted(job, _inputs(job, runs), runs, outputs, bound, met).save(job.folder / FILE)
+    return None
+
+
+def trained_ranges(runs: DesignRuns) -> dict[str, tuple[float, float]]:
+    """The ranges of OF_TOUCHDOWN, in the file's units, in which the emulator of touchdowns has an answer."""
+    found = {}
+    for name, (lower, upper) in runs.ranges(OF_TOUCHDOWN).items():
+        if name in LARGEST:
+            found[name] = max(lower - DEGREES, 0.0), min(upper + DEGREES, LARGEST[name])
+        else:
+            # Gravity below 0 points outward.
+            margin = (FACTOR - 1.0) * max(abs(lower), abs(upper))
+            found[name] = (lower if name == SPEED else lower - margin), upper + margin
+    return found
+
+
+def _inputs(job: Job, runs: DesignRuns) -> "dict[str, Distribution]":
+    """Soil and lander as the study draws them, and what differs between touchdowns, over its trained range."""
+    from lithobrake.chaos import LogUniform, Uniform
+
+    kept = {name: law for name, law in job.design.inputs.items() if not name.startswith(ARRIVAL)}
+    ranges = trained_ranges(runs)
+    return kept | {name: (LogUniform if name == SPEED else Uniform)(*ends) for name, ends in ranges.items()}
+
+
+def _why_none(runs: DesignRuns) -> str | None:
+    """Why there is nothing to fit an emulator to; None where there is enough."""
+    from lithobrake.emulator.training import FEWEST
+
+    left, outcomes = runs.has_outputs, np.array(runs.outcomes)
+    begin = "The study has no emulator of its touchdowns: "
+    if left.sum() < FEWEST:
+        return f"{begin}{int(left.sum())} of {runs.run_count} left the ground, and it needs {FEWEST}."
+    if not (outcomes == TouchdownOutcome.CAPTURED).any():
+        return f"{begin}no lander came to rest."
+    return None
+
+
+def _across(runs: DesignRuns) -> float:
+    """Longest way along the ground in a touchdown [m]; 0 where the runs do not say."""
+    return float(np.nanmax(np.nan_to_num(np.hypot(runs.output(ALONG), runs.output(ASIDE)))))
+
+
+def why_no_emulator(content: Mapping[str, Any]) -> str | None:
+    """The reason that a file of an emulator holds in its place; None where there is an emulator."""
+    why = content.get("why")
+    return None if why is None else str(why)

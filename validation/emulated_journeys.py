@@ -1,0 +1,105 @@
+"""Do journeys by the emulator end as journeys of landings do? Ten small studies, each followed in both ways.
+
+    python validation/emulated_journeys.py [--work FOLDER] [--cases NAME ...]
+
+Each case changes some keys of scenarios/quick.toml: lander, soil, arrival, site. It has 32 journeys on 8 beds, in a
+folder below --work, where a case that was stopped goes on. Writes emulated_journeys.json, a row a finished case.
+"""
+
+import argparse
+import json
+import sys
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import lithobrake
+from lithobrake.results import StudyResults
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
+from harness import SCENARIOS, origin, write_document
+
+JOURNEYS, BEDS = 32, 8
+
+
+def between(lower: float, upper: float, law: str = "uniform") -> dict[str, Any]:
+    """A distribution of the study file."""
+    return {"distribution": law, "lower": lower, "upper": upper}
+
+
+CASES: dict[str, dict[str, Any]] = {
+    "as the quick study": {},
+    "8 to 12 cm/s": {"delivery": {"speed": between(0.08, 0.12)}},
+    "12 to 20 cm/s": {"delivery": {"speed": between(0.12, 0.20)}},
+    "stiff soil": {
+        "grain": {"young_modulus": between(1e6, 1e7, "log_uniform")}, "delivery": {"speed": between(0.06, 0.10)},
+    },
+    "flat arrival": {"delivery": {"speed": between(0.06, 0.10), "incidence_deg": between(50.0, 80.0)}},
+    "heavy lander": {"lander": {"mass": 5.0}, "delivery": {"speed": between(0.05, 0.10)}},
+    "cube of 1 kg": {
+        "lander": {"edges": [0.1, 0.1, 0.1], "mass": 1.0}, "delivery": {"speed": between(0.05, 0.10)},
+    },
+    "ball": {
+        "lander": {"shape": "sphere", "edges": None, "diameter": 0.12}, "delivery": {"speed": between(0.05, 0.10)},
+    },
+    "elastic grains at 60 deg north": {
+        "grain": {"restitution": between(0.7, 0.9)},
+        "delivery": {"latitude_deg": 60.0, "speed": between(0.06, 0.12)},
+    },
+    "Didymos at 65 deg north": {
+        "site": {"body": "didymos"}, "delivery": {"latitude_deg": 65.0, "speed": between(0.05, 0.30)},
+    },
+}  # fmt: skip
+
+
+def tables(number: int, changes: dict[str, dict[str, Any]]) -> dict[str, Any]:
+    """The quick study with other keys and a seed of its own; a key that is None is left out."""
+    study: dict[str, Any] = tomllib.loads((SCENARIOS / "quick.toml").read_text(encoding="utf-8"))
+    few = {"journey": {"count": JOURNEYS}, "bed": {"bed_count": BEDS}}
+    for part in (few, changes):
+        for name, keys in part.items():
+            study[name] = {key: value for key, value in (study[name] | keys).items() if value is not None}
+    return {**study, "seed": 100 + number}
+
+
+def compared(study: StudyResults) -> dict[str, Any]:
+    """How the journeys of a case ended, by landings and by the emulator."""
+    results = study.summary["results"]
+    emulated, ends = results["emulated"], results["ends"]
+
+    def numbers(shares: dict[str, Any]) -> dict[str, list[float]]:
+        return {name: [one[key] for key in ("share", "lower", "upper")] for name, one in shares.items() if one["count"]}
+
+    return {
+        "journeys": results["journeys"],
+        "touchdowns": results["touchdowns"],
+        "by_landings": numbers(ends),
+        "why_no_emulator": emulated["why"],
+        "by_emulator": numbers(emulated["ends"]),
+        "unknown": emulated["unknown"],
+        "landings_between": emulated["landings"],
+        "agrees": emulated["agrees"],
+        "control": emulated["control"],
+    }
+
+
+def main() -> None:
+    """Follow the landers of all cases in both ways, and write how they ended."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--work", type=Path, default=Path("emulated_journeys"))
+    parser.add_argument("--cases", nargs="*", default=list(CASES))
+    given = parser.parse_args()
+    path = Path(__file__).with_suffix(".json")
+    found = json.loads(path.read_text(encoding="utf-8"))["cases"] if path.is_file() else {}
+    for number, (name, changes) in enumerate(CASES.items()):
+        if name in given.cases:
+            folder = given.work / "".join(letter if letter.isalnum() else "_" for letter in name)
+            found[name] = compared(lithobrake.run(tables(number, changes), folder, report=False))
+            print(name, found[name], flush=True)
+            in_order = {one: found[one] for one in CASES if one in found}
+            agree = sum(bool(one["agrees"]) for one in in_order.values())
+            write_document(path, {**origin("validation/emulated_journeys.py"), "agree": agree, "cases": in_order})
+
+
+if __name__ == "__main__":
+    main()
