@@ -228,6 +228,30 @@ def infer(
         tell([line for line in (found["statement"], found["warning"], written) if line])
 
 
+@app.command(epilog="Example: lithobrake compare runs/soft runs/stiff --out runs/soft_stiff")
+def compare(
+    first: Annotated[Path, typer.Argument(metavar="A", help="The folder of a study.", show_default=False)],
+    second: Annotated[Path, typer.Argument(metavar="B", help="The folder of another.", show_default=False)],
+    out: Annotated[str, typer.Option("--out", metavar="DIR", help="Folder of the page.")] = "comparison",
+    json: Json = False,
+    force: Force = False,
+) -> None:
+    """Compare two studies run by run: the difference of every answer with its interval, as a page and as JSON."""
+    place = given_folder(out)
+    with one_sentence():
+        from lithobrake.pipeline import compare_studies, comparison_files, comparison_lines, write_compared
+        from lithobrake.results.json_values import to_json
+
+        for path in comparison_files(place):
+            refuse_written(path, force)
+        comparison = compare_studies(first, second)
+        page, numbers = write_compared(comparison, place)
+    if json:
+        tell_json(to_json(comparison))
+    else:
+        tell([*comparison_lines(comparison), f"Page: {page.resolve()}", f"Numbers: {numbers.resolve()}"])
+
+
 def _film_journey(folder: Path, number: int, run: str | None, path: Path, seconds: float, force: bool) -> None:
     """Make all touchdowns of a journey again, and write them as the name of the file says."""
     with one_sentence():

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+from lithobrake.pipeline.answer.delivery_results import delivery_results
 from lithobrake.pipeline.answer.journey_ends import JourneyTable, end_shares, journey_rest
 from lithobrake.pipeline.answer.landing_results import write_results
 from lithobrake.pipeline.job import Job
@@ -21,6 +22,7 @@ def _with_journeys(job: Job, found: DrawnResults, runs: DesignRuns, estimates: E
         found,
         rest=journey_rest(job.study, table),
         ends=end_shares(job.study, table),
+        delivery=delivery_results(job, runs, len(table.end)),
         journeys=len(table.end),
         touchdowns=table.touchdowns,
     )

@@ -26,8 +26,14 @@ def write_journeys(folder: StudyFolder, journeys: Sequence[Journey]) -> None:
     write_table(folder, JOURNEYS_FILE, tuple(JOURNEY), [journey_row(journey) for journey in journeys], JOURNEY)
     touchdowns = [list(row.values()) for journey in journeys for row in journey.touchdowns]
     write_table(folder, TOUCHDOWNS_FILE, tuple(JOURNEY_TOUCHDOWN), touchdowns, JOURNEY_TOUCHDOWN)
-    flights = [list(row.values()) for journey in journeys for row in journey.flights]
+    flights = [[row[name] for name in ARC] for journey in journeys for row in _flights(journey)]
     write_table(folder, FLIGHTS_FILE, tuple(ARC), flights, ARC)
+
+
+def _flights(journey: Journey) -> list[dict[str, Any]]:
+    """The flights of a journey in their order, with that to its first touchdown."""
+    rows = [*([] if journey.descent is None else [journey.descent]), *journey.flights]
+    return [{**row, "arc": number} for number, row in enumerate(rows)]
 
 
 def journey_row(journey: Journey) -> list[Any]:

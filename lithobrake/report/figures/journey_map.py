@@ -15,8 +15,16 @@ from numpy.typing import NDArray
 from lithobrake.report.figures.close_view import draw_bar, frame_view, view_around, whole_body
 from lithobrake.report.figures.density import WHOLE, Window, near
 from lithobrake.report.figures.map_figure import Share, draw_relief, draw_shares
-from lithobrake.report.figures.map_marks import SITE_STYLE, mark_site
-from lithobrake.report.figures.style import SITE
+from lithobrake.report.figures.map_marks import (
+    SITE_STYLE,
+    draw_ellipses,
+    ellipse_style,
+    fitting,
+    mark_site,
+    outline,
+)
+from lithobrake.report.figures.style import DELIVERY, SITE
+from lithobrake.results.dispersion import EllipseShare, LandingEllipses
 from lithobrake.results.journey_results import RestRegion
 from lithobrake.vocabulary.percentages import percent
 
@@ -43,14 +51,15 @@ def journey_map(
     shares: list[Share],
     whole: str,
     vertices: Array,
+    delivery: LandingEllipses | None = None,
 ) -> Figure:
     """Draw the places of the landers over a close view, on the whole body beside it, and the share of each end.
 
     aim: latitude and longitude [deg]; radius: of the body there [m]; whole: what the shares are shares of; vertices: of
-    the body [m], shape [vertex, 3].
+    the body [m], shape [vertex, 3]; delivery: ellipses of the first impacts.
     """
     # In inches from below: the axis of the bars, a row for each bar, the axis of the map, the map.
-    window = _window(places, regions, aim)
+    window = _window(places, regions, aim, delivery)
     bars, map_height, gap = 0.2 * len(shares), 4.4, 0.75 if window else 1.35
     height = 0.5 + bars + gap + map_height + 0.1
     figure = Figure(figsize=(9.2, height))
@@ -63,18 +72,30 @@ def journey_map(
         side = figure.add_axes((0.625, bottom + 1.9 / height, 0.355, 1.65 / height))
         whole_body(side, window, vertices)
     _draw_places(axes, places, regions, aim, window or WHOLE)
+    draw_ellipses(axes, delivery, window or WHOLE, DELIVERY)
     if window is not None:
         draw_bar(axes, window, radius)
     corner = (0.625, bottom) if window else (0.07, bottom - 1.0 / height)
-    _draw_legend(figure, places, regions, corner)
+    _draw_legend(figure, places, regions, corner, fitting(delivery, window or WHOLE))
     draw_shares(figure.add_axes((0.2, 0.5 / height, 0.52, bars / height)), shares, whole)
     return figure
 
 
-def _window(places: Sequence[EndPlaces], regions: Sequence[RestRegion], aim: tuple[float, float]) -> Window | None:
-    """The part of the map that holds the landers, their regions and the aim point."""
+def _window(
+    places: Sequence[EndPlaces],
+    regions: Sequence[RestRegion],
+    aim: tuple[float, float],
+    delivery: LandingEllipses | None,
+) -> Window | None:
+    """The part of the map that holds the landers, their regions, the delivery and the aim point, square on the ground.
+
+    None where they lie too far apart or too near a pole for one.
+    """
     landers = [np.column_stack([one.latitude, one.longitude]) for one in places]
     outlines = [np.array(line) for one in regions for line in one.outlines]
+    if delivery is not None:
+        middle = (delivery.latitude_deg, delivery.longitude_deg, delivery.heading_deg)
+        outlines += [np.column_stack(outline(*middle, one.semi_axes_deg)) for one in delivery.shares]
     latitude, longitude = np.concatenate([np.empty((0, 2)), *landers, *outlines]).T
     return view_around(latitude, longitude, aim)
 
@@ -114,7 +135,11 @@ def region_style(region: RestRegion) -> Literal["-", "--"]:
 
 
 def _draw_legend(
-    figure: Figure, places: Sequence[EndPlaces], regions: Sequence[RestRegion], corner: tuple[float, float]
+    figure: Figure,
+    places: Sequence[EndPlaces],
+    regions: Sequence[RestRegion],
+    corner: tuple[float, float],
+    delivery: Sequence[EllipseShare],
 ) -> None:
     """Say what dots, lines and mark are."""
     handles = [
@@ -126,6 +151,9 @@ def _draw_legend(
     for region in regions:
         words = f"smallest region with {percent(region.share)} of those at rest"
         handles.append(Line2D([], [], linestyle=region_style(region), color=SITE, linewidth=1.3, label=words))
+    for one in delivery:
+        words, style = f"ellipse with {percent(one.share)} of the first impacts", ellipse_style(one.share)
+        handles.append(Line2D([], [], linestyle=style, color=DELIVERY, linewidth=1.2, label=words))
     handles.append(Line2D([], [], linestyle="none", label="aim point", **SITE_STYLE))
     columns = 1 if corner[0] > 0.5 else 3
     figure.legend(
