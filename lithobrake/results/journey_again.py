@@ -1,57 +1,43 @@
 """One journey of a study: its touchdowns, and each of them made once more."""
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import cached_property
-from typing import TYPE_CHECKING
-
-import numpy as np
+from typing import TYPE_CHECKING, Any
 
 from lithobrake.results.journey_track import JourneyMotion, JourneyTrack, TouchdownFacts
 from lithobrake.vocabulary.progress import Progress, silent
 
 if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
     from lithobrake.results.moving_bodies import MovingBodies
-    from lithobrake.results.study_results import StudyResults
+    from lithobrake.results.site_results import SiteResults
     from lithobrake.results.table import Table
     from lithobrake.touchdown import Outcome
 
 
 @dataclass(frozen=True, eq=False)
 class StudyJourney:
-    """One lander of a study from delivery to its end; `print` shows its touchdowns. Nothing is written."""
+    """One lander of a study from delivery to its end; `print` shows its touchdowns. Nothing is written.
 
-    results: "StudyResults"
-    number: int
+    track: where it went, and how it ended. touchdowns: its rows of the table `touchdowns`, in order: state in, state
+    out, bed, soil, cost. land_again, bodies_again: StudyResults.landing and landing_bodies.
+    """
 
-    @cached_property
-    def touchdowns(self) -> "Table":
-        """Its rows of the table `touchdowns`, in order: state in, state out, bed, soil, cost."""
-        table = self.results.touchdowns
-        return table.where(table["journey"] == self.number)
-
-    @cached_property
-    def track(self) -> JourneyTrack:
-        """Where it went, and how it ended."""
-        table, site = self.results.journeys, self.results.results.site
-        (row,) = np.flatnonzero(table["journey"] == self.number)
-        touchdowns = self.touchdowns
-        rows = [{name: touchdowns[name][one] for name in touchdowns} for one in range(touchdowns.row_count)]
-        return JourneyTrack(
-            row={name: table[name][row] for name in table},
-            touchdowns=tuple(map(TouchdownFacts.of, rows)),
-            aim=(site.latitude_deg, site.longitude_deg),
-            radius=float(np.linalg.norm(site.place_m)),
-            vertices=self.results.body_shape[0],
-        )
+    track: JourneyTrack
+    touchdowns: "Table"
+    land_again: "Callable[..., Outcome]"
+    bodies_again: "Callable[..., MovingBodies]"
 
     def landing(self, touchdown: int, *, frame_count: int = 120, progress: Progress = silent) -> "Outcome":
         """A touchdown, counted from 0, made once more; see StudyResults.landing."""
-        return self.results.landing(self._key(touchdown), frame_count=frame_count, progress=progress)
+        return self.land_again(self._key(touchdown), frame_count=frame_count, progress=progress)
 
     def landing_bodies(self, touchdown: int, *, frame_count: int = 120, progress: Progress = silent) -> "MovingBodies":
         """The hulls of a touchdown made once more, and how they moved, the lander last."""
-        return self.results.landing_bodies(self._key(touchdown), frame_count=frame_count, progress=progress)
+        return self.bodies_again(self._key(touchdown), frame_count=frame_count, progress=progress)
 
     def motion(self, *, frame_count: int = 120, progress: Progress = silent) -> JourneyMotion:
         """All touchdowns made once more, but for one that failed."""
@@ -66,12 +52,23 @@ class StudyJourney:
         """The key of a touchdown. Raises ValueError for a number that the journey has not."""
         count = self.touchdowns.row_count
         if not 0 <= touchdown < count:
-            raise ValueError(f"touchdown is {touchdown}; allowed: 0 to {count - 1}, those of journey {self.number}")
+            raise ValueError(
+                f"touchdown is {touchdown}; allowed: 0 to {count - 1}, those of journey {self.track.number}"
+            )
         return str(self.touchdowns["key"][touchdown])
 
     def __repr__(self) -> str:
         """Its touchdowns and its end, in lines."""
-        return "\n".join([f"Journey {self.number}", *self.track.lines()])
+        return "\n".join([f"Journey {self.track.number}", *self.track.lines()])
+
+
+def track_of(
+    row: Mapping[str, Any], touchdowns: "Table", site: "SiteResults", vertices: "NDArray[np.float64]"
+) -> JourneyTrack:
+    """The track of a journey: its row of `journeys`, its touchdowns, the aim point, and the body [m], [vertex, 3]."""
+    rows = [{name: touchdowns[name][one] for name in touchdowns} for one in range(touchdowns.row_count)]
+    aim = site.latitude_deg, site.longitude_deg
+    return JourneyTrack(row, tuple(map(TouchdownFacts.of, rows)), aim, math.hypot(*site.place_m), vertices)
 
 
 def _part(progress: Progress, number: int, count: int) -> Callable[[float, str], None]:

@@ -224,12 +224,16 @@ class StudyResults:
 
         number: of the table `journeys`, from 0. Raises ValueError for one that there is not.
         """
-        from lithobrake.results.journey_again import StudyJourney
+        from lithobrake.results.journey_again import StudyJourney, track_of
 
         count = self.journeys.row_count
         if not 0 <= number < count:
             raise ValueError(f"journey is {number}; allowed: 0 to {count - 1}, the journeys of {self.folder}")
-        return StudyJourney(self, int(number))
+        # Journeys are numbered as their rows.
+        row = {name: self.journeys[name][number] for name in self.journeys}
+        touchdowns = self.touchdowns.where(self.touchdowns["journey"] == number)
+        track = track_of(row, touchdowns, self.results.site, self.body_shape[0])
+        return StudyJourney(track, touchdowns, self.landing, self.landing_bodies)
 
     def _journey_rows(self, name: str, columns: Sequence[str]) -> list[dict[str, Any]]:
         """The rows of a table of journeys. Raises ValueError for a study that has none."""

@@ -10,6 +10,7 @@ from lithobrake.campaign import Record, RunStatus, run_key
 from lithobrake.pipeline.commands.one_landing import OneLanding, bed_of, landed
 from lithobrake.pipeline.design.dependencies import touchdown_dependencies
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
+from lithobrake.pipeline.journeys.delivered_journeys import begun_aloft
 from lithobrake.pipeline.journeys.journey import Journey
 from lithobrake.pipeline.journeys.journey_model import JourneyModel
 from lithobrake.pipeline.journeys.journey_tables import journey_row
@@ -64,8 +65,7 @@ def follow_one(
     are those of that journey in the study.
     """
     study = with_site_gravity(study, "the study")
-    model = JourneyModel(DrawnDesign(study), Site(study))
-    (journey,) = begin(model, [values], round(values["journey"]))
+    journey = _begun(study, values)
     bed, landings, context = bed_of(study, round(values["bed"]), progress), [], touchdown_dependencies(study)
     row: Row | None = values
     while row is not None:
@@ -74,6 +74,16 @@ def follow_one(
         for line in [*(HEADS if len(landings) == 1 else ()), _line(journey, landings[-1])]:
             tell(line)
     return OneJourney(journey, tuple(landings))
+
+
+def _begun(study: Study, values: Row) -> Journey:
+    """The journey before its first touchdown, on the ground or after its flight to it."""
+    number, design = round(values["journey"]), DrawnDesign(study)
+    if not design.is_flown:
+        return begin(JourneyModel(design, Site(study)), [values], number)[0]
+    design = design.with_run_count(max(study.design.run_count, number + 1))
+    assert design.descents is not None
+    return begun_aloft(JourneyModel(design, Site(study)), design.descents)[number]
 
 
 def _record(study: Study, landing: OneLanding, context: Mapping[str, Any]) -> Record:

@@ -89,6 +89,11 @@ def landing_inputs(study: Study, changes: Iterable[str] = (), number: int = 1) -
     changed = dict(_changed(change, free) for change in changes)
     if not changed:
         return values
+    if DrawnDesign(study).is_flown:
+        raise ValueError(
+            f"--set names {', '.join(changed)}; allowed: nothing for landers that are flown to the ground "
+            "(delivery.states, delivery.release), whose first impact follows from there; change the study file"
+        )
     _refuse(study, free | changed)
     if study.journey is None:
         return values | changed

@@ -7,7 +7,7 @@ from lithobrake.pipeline.fly.stages import PARTS as FLIGHT_PARTS
 from lithobrake.pipeline.rest.aiming import aim_files
 from lithobrake.pipeline.stage import Stage, same_files
 
-PARTS = ("pipeline/emulated", "pipeline/journeys", *EMULATOR_PARTS, *FLIGHT_PARTS)
+PARTS = ("pipeline/emulated", "pipeline/rest", "pipeline/journeys", *EMULATOR_PARTS, *FLIGHT_PARTS)
 
 EMULATED = Stage(
     "emulated", "journeys by the emulator", same_files(*FILES), make_emulated, ("runs",), emulated_dependencies, PARTS

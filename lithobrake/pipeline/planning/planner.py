@@ -61,6 +61,11 @@ def _expected_inference(plan: Plan, study: Study, path: Path) -> ExpectedInferen
     return ExpectedInference((), {}, why) if why else InferredStudy.open(Path(plan.folder)).plan()
 
 
+def _delivery(design: DrawnDesign) -> str | None:
+    """How many of the landers that are delivered as states reach the ground, in a sentence."""
+    return None if design.descents is None else design.descents.sentence()
+
+
 def plan_of(
     design: DrawnDesign,
     site: Site,
@@ -101,7 +106,7 @@ def plan_of(
         site_slope_deg=site.slope_deg,
         grains=planned_grains(study),
         tile=planned_tile(study),
-        delivery=None if design.descents is None else design.descents.sentence(),
+        delivery=_delivery(design),
     )
 
 
