@@ -68,7 +68,9 @@ def test_the_command_writes_a_page_and_its_numbers(pair: tuple[Path, Path], tmp_
 
 def test_studies_that_cannot_be_paired_are_refused(pair: tuple[Path, Path], tmp_path: Path) -> None:
     other = made(tmp_path / "other", seed=3, journey={"count": 24})
-    with pytest.raises(ValueError, match=r"cannot be paired: run 12 has bed 1 in A and 3 in B .* give both the same seed"):
+    with pytest.raises(
+        ValueError, match=r"cannot be paired: run 12 has bed 1 in A and 3 in B .* give both the same seed"
+    ):
         compare_studies(pair[0], other)
     with pytest.raises(ValueError, match="holds no results of a study"):
         compare_studies(pair[0], tmp_path)
