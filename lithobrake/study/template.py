@@ -80,7 +80,7 @@ def _key(name: str, field: FieldInfo) -> str:
 def _inner_table(name: str, model: type[BaseModel]) -> str:
     """A table within a table by dotted keys, each with its meaning; all may be left out."""
     keys = "".join(commented(_key(f"{name}.{key}", field)) for key, field in model.model_fields.items())
-    return f"{_comment(model.__doc__ or '')}{keys}"
+    return _comment(f"{model.__doc__ or ''} As {name} = {{ ... }}, or key by key:") + keys
 
 
 def _is_pair(model: type[BaseModel], key: str) -> bool:
