@@ -48,7 +48,7 @@ class CorrelatedPair:
 Correlation = Annotated[tuple[str, str, float], CorrelatedPair()]
 
 
-class Spread(Numbers):
+class Deviations(Numbers):
     """One standard deviation, or three."""
 
     def check(self, value: Any) -> tuple[float, ...]:
@@ -67,9 +67,11 @@ class ReleaseSection(Section):
     """x, y, z from the centre of the body."""
     velocity: Annotated[tuple[float, ...], Numbers("m/s")] = Field(examples=["[0.0, 0.03, 0.0]"])
     """Along the same axes."""
-    position_std: Annotated[tuple[float, ...], Spread("m", at_least=0)] | None = Field(default=None, examples=["30.0"])
+    position_std: Annotated[tuple[float, ...], Deviations("m", at_least=0)] | None = Field(
+        default=None, examples=["30.0"]
+    )
     """Standard deviation in every direction, or three: up, from the centre of the body; north; east."""
-    velocity_std: Annotated[tuple[float, ...], Spread("m/s", at_least=0)] | None = Field(
+    velocity_std: Annotated[tuple[float, ...], Deviations("m/s", at_least=0)] | None = Field(
         default=None, examples=["0.0067"]
     )
     """Likewise of the velocity."""

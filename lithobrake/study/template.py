@@ -65,6 +65,8 @@ def _key(name: str, field: FieldInfo) -> str:
     if not field.is_required() and field.default is not None:
         notes.append(f"Default: {_toml(field.default)}.")
     inner = table(field)
+    if inner and any(one.examples for one in inner.model_fields.values()):
+        return _inner_table(name, inner)
     if inner:
         keys = ", ".join(f"{key} = {'[-0.1, 0.1]' if _is_pair(inner, key) else '0.0'}" for key in inner.model_fields)
         line = f"# {name} = {{ {keys} }}"
@@ -73,6 +75,12 @@ def _key(name: str, field: FieldInfo) -> str:
     else:
         line = f"# {name} = {_toml(field.default)}" if field.default is not None else f"# {name} ="
     return f"{_comment(' '.join(notes))}{line}\n"
+
+
+def _inner_table(name: str, model: type[BaseModel]) -> str:
+    """A table within a table by dotted keys, each with its meaning; all may be left out."""
+    keys = "".join(commented(_key(f"{name}.{key}", field)) for key, field in model.model_fields.items())
+    return _comment(f"{model.__doc__ or ''} As {name} = {{ ... }}, or key by key:") + keys
 
 
 def _is_pair(model: type[BaseModel], key: str) -> bool:

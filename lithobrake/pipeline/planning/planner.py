@@ -67,13 +67,7 @@ def _delivery(design: DrawnDesign) -> str | None:
 
 
 def plan_of(
-    design: DrawnDesign,
-    site: Site,
-    name: str,
-    folder: StudyFolder,
-    worker_count: int | None,
-    *,
-    on_cluster: bool = False,
+    design: DrawnDesign, site: Site, name: str, folder: StudyFolder, workers: int | None, *, on_cluster: bool = False
 ) -> Plan:
     """The plan of a study that has been read."""
     study, keys = design.study, stage_keys(design.study)
@@ -85,7 +79,7 @@ def plan_of(
     beds = tuple(planned_beds(one.study, folder) for one in dict.fromkeys((design, largest)))
     made = _made(study, stale.keys(), runs, beds)
     soil = None if not study.has_soil else ExpectedSoil.of(design, runs[-1].kept_count)
-    workers = None if on_cluster else worker_count or available_cores()
+    workers = None if on_cluster else workers or available_cores()
     ended = [known[key] for key in runs[-1].known]
     sizes, free = expected_bytes(largest, site, runs[-1], soil), _free(folder.path)
     room = _no_room(sum(sizes.values()), free) if stale else []
