@@ -16,7 +16,7 @@ os.environ["LITHOBRAKE_BED_LIBRARY_GB"] = "0"
 # waits.
 LONGEST = (
     "test_killed.py", "test_whole_study.py", "test_examples.py", "test_calibration.py", "test_drawn_journeys.py",
-    "test_pouring.py", "test_notebooks.py", "test_state.py",
+    "test_killed_journeys.py", "test_pouring.py", "test_notebooks.py", "test_state.py",
 )  # fmt: skip
 
 

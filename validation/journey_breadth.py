@@ -7,6 +7,7 @@ journeys, in a folder below --work, where a case that was stopped goes on. Write
 """
 
 import argparse
+import json
 import sys
 import tomllib
 from pathlib import Path
@@ -95,7 +96,9 @@ def main() -> None:
     parser.add_argument("--work", type=Path, default=Path("breadth"))
     parser.add_argument("--cases", nargs="*")
     given = parser.parse_args()
-    found = {}
+    path = Path(__file__).with_suffix(".json")
+    # Cases that are not asked for stay as they were found.
+    found = json.loads(path.read_text(encoding="utf-8"))["cases"] if given.cases and path.exists() else {}
     for name, changes in cases(given.shapes.absolute()).items():
         if given.cases and name not in given.cases:
             continue
@@ -103,7 +106,7 @@ def main() -> None:
         found[name] = ended(lithobrake.run(tables(changes), folder, report=False))
         print(name, found[name], flush=True)
     document = {**origin("validation/journey_breadth.py --shapes FOLDER"), "journeys": JOURNEYS, "cases": found}
-    write_document(Path(__file__).with_suffix(".json"), document)
+    write_document(path, document)
 
 
 if __name__ == "__main__":

@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 
 import lithobrake
-from lithobrake.analysis import share_estimate
+from lithobrake.analysis import LEVEL, share_estimate
 from lithobrake.results import StudyResults
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
@@ -177,7 +177,8 @@ def main() -> None:
     options = command_line(__doc__, work=work, settings=len(SETTINGS), page=False).parse_args()
     if not options.page:
         make(options.work, options.settings)
-        document = {**origin("validation/journey_seed_pairs.py"), "level": 0.9, "quantities": counted()}
+        command = f"validation/journey_seed_pairs.py --settings {options.settings}"
+        document = {**origin(command), "level": LEVEL, "quantities": counted()}
         write_document(TABLE.with_suffix(".json"), document)
     print(page_table())
 

@@ -69,7 +69,8 @@ def journey_rest(study: Study, table: JourneyTable) -> JourneyRest:
 
     def quantiles(name: str) -> RestQuantiles:
         values = np.where(rests, table.numbers[name], np.nan)
-        found = [quantile_estimate(values, table.bed, level, why=why) for level in (MEDIAN, Q95)]
+        counts = name == "contacts"
+        found = [quantile_estimate(values, table.bed, level, counts=counts, why=why) for level in (MEDIAN, Q95)]
         return RestQuantiles(*(RestQuantile(one.value, one.lower, one.upper, one.why) for one in found))
 
     density = highest_density(table.position[rests], SHARES)

@@ -1,9 +1,14 @@
 """The tables of journeys and touchdowns from Python."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from lithobrake.pipeline.answer.journey_ends import JourneyTable, journey_rest
+from lithobrake.pipeline.folder.study_folder import StudyFolder
 from lithobrake.results import StudyResults
+from lithobrake.study import read_study
 from lithobrake.vocabulary.outcomes import JourneyEnd
 
 from .bouncing_lander import FAILS, LEAVES, STUCK
@@ -46,6 +51,16 @@ def test_runs_hold_every_touchdown_once(journeys: StudyResults) -> None:
     runs = journeys.runs
     assert sorted(runs["key"]) == sorted(journeys.touchdowns["key"])
     assert (runs["design"] == "drawn").sum() == 48
+
+
+def test_quantiles_of_contacts_are_counts_that_occur(journeys: StudyResults) -> None:
+    table = JourneyTable.load(StudyFolder.only_read(journeys.folder))
+    # All different, so that a quantile between two of them would be none of them.
+    counted = replace(table, numbers=table.numbers | {"contacts": np.arange(1.0, 49.0)})
+    contacts = journey_rest(read_study(journeys.folder / "study.toml"), counted).contacts
+    found = [getattr(one, end) for one in (contacts.median, contacts.q95) for end in ("value", "lower", "upper")]
+    assert all(one is None or one == round(one) for one in found)
+    assert contacts.median.lower is not None
 
 
 def test_a_notebook_offers_journeys_and_touchdowns(journeys: StudyResults) -> None:
