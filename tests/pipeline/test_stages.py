@@ -27,7 +27,8 @@ ELSEWHERE = (
     *("study", "vocabulary"),  # by their values, which each stage reads; words
     *("pipeline/runs/beds.py", "pipeline/runs/pouring.py", "pipeline/runs/solver.py"),  # the keys of beds and runs
     "pipeline/runs/kernels.py",
-    "pipeline/design/local_ground.py",  # inputs of the first touchdowns of journeys, which the keys of runs hold
+    # inputs of the first touchdowns of journeys, which the keys of runs hold
+    *("pipeline/design/local_ground.py", "pipeline/design/descents.py"),
     "__init__.py",
 )
 
