@@ -103,7 +103,7 @@ def first_variance(data: JourneyPage) -> str:
 
 
 def emulator_words(data: JourneyPage) -> list[str]:
-    """Whether the emulator of the touchdowns agrees with the landings, and what it does for the shares, in sentences."""
+    """Whether the emulator of the touchdowns agrees with the landings, and what it does for the shares."""
     found = data.results.emulated
     if found is None or not found.statement:
         return []
@@ -113,8 +113,8 @@ def emulator_words(data: JourneyPage) -> list[str]:
     half, narrow = (percent(one) for one in (control.half_width, control.half_width_with))
     return [
         found.statement,
-        f"What it predicts of each journey narrows the interval of the share at rest from +- {half} to +- {narrow}, so "
-        "a share may differ from the count.",
+        f"What it predicts of each journey narrows the interval of the share at rest from +- {half} to +- {narrow}, "
+        "so a share may differ from the count.",
     ]
 
 
