@@ -37,7 +37,9 @@ def follow_options(job: Job) -> None:
     end, time = np.full(len(begin.rows), UNKNOWN, dtype=object), np.zeros(len(begin.rows))
     distance = time
     if why_no_emulator(job.folder.read_json(EMULATOR)) is None:
-        landers = EmulatedLanders.of(job, TouchdownEmulator.read(job), "landers at the delivery options", begin)
+        landers = EmulatedLanders.of(
+            job, TouchdownEmulator.read(job.design, job.folder), "landers at the delivery options", begin
+        )
         landers.follow(most_landings(job))
         end, time, distance = landers.end, landers.time, _distances(job, begin, landers.position)
     rests = end == JourneyEnd.AT_REST

@@ -34,7 +34,7 @@ def make_emulated(job: Job) -> None:
     why, rows = fit_touchdowns(job), []
     assert job.study.journey is not None
     if why is None and job.study.journey.emulated_count:
-        emulator = TouchdownEmulator.read(job)
+        emulator = TouchdownEmulator.read(job.design, job.folder)
         rows = [*_fresh(job, emulator), *_own(job, emulator)]
     if why is not None:
         job.say(why)
