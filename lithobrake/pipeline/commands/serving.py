@@ -11,8 +11,8 @@ import numpy as np
 from lithobrake.pipeline.design.dependencies import bed_files
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.emulate.drawn_landings import DrawnLandings
-from lithobrake.pipeline.emulate.fitted_emulator import FILE as EMULATOR
 from lithobrake.pipeline.emulate.outgoing import VELOCITY
+from lithobrake.pipeline.emulated.touchdown_emulator import FILE as OF_TOUCHDOWNS
 from lithobrake.pipeline.emulated.touchdown_emulator import TouchdownEmulator, why_no_emulator
 from lithobrake.pipeline.fly.flights import partner_time
 from lithobrake.pipeline.folder.notes import REMEDY
@@ -59,21 +59,20 @@ class ServedStudy:
         beds = [self.folder / name for name in bed_files(self.study)] if self.study.has_soil else []
         if self.inputs and all(bed.is_file() for bed in beds):
             found.append(ServedModel("landing", self.inputs, LANDING, self.landing))
-        if (self.folder / EMULATOR).is_file():
-            found += self._emulators()
+        if (self.folder / "emulator.json").is_file():
+            found.append(ServedModel("emulator", self.inputs, LANDING, self.emulated))
+        if self._has_touchdown_emulator():
+            found.append(ServedModel("emulator", self._touchdowns.inputs, LANDING, self.emulated_touchdown))
         return found
 
-    def _emulators(self) -> list[ServedModel]:
-        """That of single landings, or that of all touchdowns of journeys, where these have one."""
-        if self.study.journey is None:
-            return [ServedModel("emulator", self.inputs, LANDING, self.emulated)]
-        if why_no_emulator(self.folder.read_json(EMULATOR)) is not None:
-            return []
-        return [ServedModel("emulator", self._touchdowns.inputs, LANDING, self.emulated_touchdown)]
+    def _has_touchdown_emulator(self) -> bool:
+        """Whether the study has journeys, and these an emulator of all their touchdowns."""
+        path = self.folder / OF_TOUCHDOWNS
+        return path.is_file() and why_no_emulator(self.folder.read_json(OF_TOUCHDOWNS)) is None
 
     @cached_property
     def _touchdowns(self) -> TouchdownEmulator:
-        intact_file(self.folder.path, EMULATOR, REMEDY)
+        intact_file(self.folder.path, OF_TOUCHDOWNS, REMEDY)
         return TouchdownEmulator.read(self.design, self.folder)
 
     def emulated_touchdown(self, point: list[float], config: Mapping[str, Any]) -> list[float]:

@@ -5,12 +5,12 @@ from typing import Any
 import numpy as np
 
 from lithobrake.geometry.great_circle import angles, directions
-from lithobrake.pipeline.emulate.fitted_emulator import FILE as EMULATOR
 from lithobrake.pipeline.emulate.fitted_emulator import REFIT_COUNT
 from lithobrake.pipeline.emulated.answers import UNKNOWN
 from lithobrake.pipeline.emulated.arrivals import Arrivals
 from lithobrake.pipeline.emulated.emulated_journeys import most_landings
 from lithobrake.pipeline.emulated.landers import EmulatedLanders
+from lithobrake.pipeline.emulated.touchdown_emulator import FILE as EMULATOR
 from lithobrake.pipeline.emulated.touchdown_emulator import TouchdownEmulator, why_no_emulator
 from lithobrake.pipeline.fly.flights import write_table
 from lithobrake.pipeline.job import Job

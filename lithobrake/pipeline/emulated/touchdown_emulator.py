@@ -9,7 +9,7 @@ import numpy as np
 from lithobrake.files.hashing import hashed_seed
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.emulate.drawn_landings import DrawnLandings
-from lithobrake.pipeline.emulate.fitted_emulator import FILE, REFIT_COUNT, RIDERS, fitted, outputs_of_runs
+from lithobrake.pipeline.emulate.fitted_emulator import REFIT_COUNT, RIDERS, fitted, outputs_of_runs
 from lithobrake.pipeline.emulated.answers import Answers
 from lithobrake.pipeline.emulated.arrivals import SPIN
 from lithobrake.pipeline.folder.study_folder import StudyFolder
@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from lithobrake.chaos import Distribution
     from lithobrake.emulator import Emulator
 
+# Another file than that of single landings, whose inputs are those of the study alone.
+FILE = "touchdown_emulator.json"
 SPEED, INCIDENCE = "impact.speed", "impact.incidence_deg"
 GRAVITY, SLOPE, _ = GROUND
 ALONG, ASIDE, DURATION, _ = TO_REST
