@@ -63,7 +63,10 @@ def tables(number: int, changes: dict[str, dict[str, Any]]) -> dict[str, Any]:
 
 
 def compared(study: StudyResults) -> dict[str, Any]:
-    """How the journeys of a case ended, by landings and by the emulator."""
+    """How the journeys of a case ended, by landings and by the emulator.
+
+    agrees: within both intervals together; is_inside: all shares of the emulator in the intervals of the landings.
+    """
     results = study.summary["results"]
     emulated, ends = results["emulated"], results["ends"]
 
@@ -79,6 +82,9 @@ def compared(study: StudyResults) -> dict[str, Any]:
         "unknown": emulated["unknown"],
         "landings_between": emulated["landings"],
         "agrees": emulated["agrees"],
+        "is_inside": all(
+            ends[end]["lower"] <= one["share"] <= ends[end]["upper"] for end, one in emulated["ends"].items()
+        ),
         "control": emulated["control"],
     }
 
@@ -97,8 +103,8 @@ def main() -> None:
             found[name] = compared(lithobrake.run(tables(number, changes), folder, report=False))
             print(name, found[name], flush=True)
             in_order = {one: found[one] for one in CASES if one in found}
-            agree = sum(bool(one["agrees"]) for one in in_order.values())
-            write_document(path, {**origin("validation/emulated_journeys.py"), "agree": agree, "cases": in_order})
+            counts = {key: sum(bool(one[key]) for one in in_order.values()) for key in ("agrees", "is_inside")}
+            write_document(path, {**origin("validation/emulated_journeys.py"), **counts, "cases": in_order})
 
 
 if __name__ == "__main__":

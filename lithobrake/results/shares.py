@@ -145,4 +145,4 @@ class LandingShares(RunShares):
     """
 
     emulator: EmulatorShares | None
-    """null for a study of journeys, which has no emulator"""
+    """null for a study of journeys, which has no emulator of single landings"""

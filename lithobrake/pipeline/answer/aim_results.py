@@ -165,8 +165,10 @@ def _best(
     parts = [replace(part, share_of_refits=one) for part, one in zip(parts, found.shares.tolist(), strict=True)]
     others = tuple(aim for aim in found.not_worse if aim != found.best)
     difference = None if found.difference is None else finite_estimate(found.difference)
-    share = float(found.shares[found.best])
-    return parts, BestAim(found.best, share, share_interval(found.own), others, found.runner_up, difference)
+    share, settled = float(found.shares[found.best]), parts[found.best].settled
+    # Refits that all have every lander at rest do not scatter, and say no more than so many beds can.
+    own = share_interval(found.own) if settled.share < 1.0 else settled
+    return parts, BestAim(found.best, share, own, others, found.runner_up, difference)
 
 
 def aim_statement(table: AimResults) -> str:

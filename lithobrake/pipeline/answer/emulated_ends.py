@@ -12,10 +12,10 @@ from lithobrake.analysis.control_variate import control_factor
 from lithobrake.files.reading import read_rows
 from lithobrake.pipeline.answer.journey_ends import JourneyTable, end_share
 from lithobrake.pipeline.answer.scope import why_no_interval
-from lithobrake.pipeline.emulate.fitted_emulator import FILE as EMULATOR
 from lithobrake.pipeline.emulate.fitted_emulator import REFIT_COUNT
 from lithobrake.pipeline.emulated.answers import UNKNOWN
 from lithobrake.pipeline.emulated.emulated_journeys import COPIES, FRESH, OWN, most_landings
+from lithobrake.pipeline.emulated.touchdown_emulator import FILE as EMULATOR
 from lithobrake.pipeline.emulated.touchdown_emulator import why_no_emulator
 from lithobrake.pipeline.folder.study_folder import AGAIN, StudyFolder
 from lithobrake.pipeline.job import Job

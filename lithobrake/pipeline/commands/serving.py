@@ -1,5 +1,6 @@
 """The models of a study as a server gives them: a landing, the emulator, a flight."""
 
+import math
 from collections.abc import Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
@@ -11,6 +12,8 @@ from lithobrake.pipeline.design.dependencies import bed_files
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.emulate.drawn_landings import DrawnLandings
 from lithobrake.pipeline.emulate.outgoing import VELOCITY
+from lithobrake.pipeline.emulated.touchdown_emulator import FILE as OF_TOUCHDOWNS
+from lithobrake.pipeline.emulated.touchdown_emulator import TouchdownEmulator, why_no_emulator
 from lithobrake.pipeline.fly.flights import partner_time
 from lithobrake.pipeline.folder.notes import REMEDY
 from lithobrake.pipeline.folder.study_folder import StudyFolder
@@ -58,7 +61,38 @@ class ServedStudy:
             found.append(ServedModel("landing", self.inputs, LANDING, self.landing))
         if (self.folder / "emulator.json").is_file():
             found.append(ServedModel("emulator", self.inputs, LANDING, self.emulated))
+        if self._has_touchdown_emulator():
+            found.append(ServedModel("emulator", self._touchdowns.inputs, LANDING, self.emulated_touchdown))
         return found
+
+    def _has_touchdown_emulator(self) -> bool:
+        """Whether the study has journeys, and these an emulator of all their touchdowns."""
+        path = self.folder / OF_TOUCHDOWNS
+        return path.is_file() and why_no_emulator(self.folder.read_json(OF_TOUCHDOWNS)) is None
+
+    @cached_property
+    def _touchdowns(self) -> TouchdownEmulator:
+        intact_file(self.folder.path, OF_TOUCHDOWNS, REMEDY)
+        return TouchdownEmulator.read(self.design, self.folder)
+
+    def emulated_touchdown(self, point: list[float], config: Mapping[str, Any]) -> list[float]:
+        """Draw a touchdown of a lander that does not spin from the emulator of all of them. config: seed of the draw.
+
+        Raises ValueError for an impact that the emulator has no answer to.
+        """
+        _refuse_keys(config, ("seed",))
+        emulator, seed = self._touchdowns, _seed(config)
+        inputs = {name: np.array([value]) for name, value in zip(emulator.inputs, point, strict=True)}
+        refit = np.array([seed % len(emulator.refits)])
+        answers = emulator.answers(inputs, np.zeros((1, 3)), refit, seed)
+        if not answers.is_known[0]:
+            ranges = ", ".join(f"{name} {low:.4g} to {high:.4g}" for name, (low, high) in emulator.ranges.items())
+            raise ValueError(f"the emulator has no answer to this impact; allowed: {ranges}")
+        velocity, spin = answers.velocity[0], answers.spin[0]
+        speed, size = float(np.linalg.norm(velocity)), float(np.linalg.norm(spin))
+        elevation = math.atan2(velocity[2], math.hypot(velocity[0], velocity[1]))
+        values = (speed, elevation, size, *velocity.tolist())
+        return landing_vector(str(answers.outcome[0]), dict(zip(OUTPUTS, values, strict=True)))
 
     @cached_property
     def _touchdown(self) -> Any:

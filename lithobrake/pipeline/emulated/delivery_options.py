@@ -5,12 +5,12 @@ from typing import Any
 import numpy as np
 
 from lithobrake.geometry.great_circle import angles, directions
-from lithobrake.pipeline.emulate.fitted_emulator import FILE as EMULATOR
 from lithobrake.pipeline.emulate.fitted_emulator import REFIT_COUNT
 from lithobrake.pipeline.emulated.answers import UNKNOWN
 from lithobrake.pipeline.emulated.arrivals import Arrivals
 from lithobrake.pipeline.emulated.emulated_journeys import most_landings
 from lithobrake.pipeline.emulated.landers import EmulatedLanders
+from lithobrake.pipeline.emulated.touchdown_emulator import FILE as EMULATOR
 from lithobrake.pipeline.emulated.touchdown_emulator import TouchdownEmulator, why_no_emulator
 from lithobrake.pipeline.fly.flights import write_table
 from lithobrake.pipeline.job import Job
@@ -37,7 +37,9 @@ def follow_options(job: Job) -> None:
     end, time = np.full(len(begin.rows), UNKNOWN, dtype=object), np.zeros(len(begin.rows))
     distance = time
     if why_no_emulator(job.folder.read_json(EMULATOR)) is None:
-        landers = EmulatedLanders.of(job, TouchdownEmulator.read(job), "landers at the delivery options", begin)
+        landers = EmulatedLanders.of(
+            job, TouchdownEmulator.read(job.design, job.folder), "landers at the delivery options", begin
+        )
         landers.follow(most_landings(job))
         end, time, distance = landers.end, landers.time, _distances(job, begin, landers.position)
     rests = end == JourneyEnd.AT_REST

@@ -5,9 +5,9 @@ from typing import Any
 
 import numpy as np
 
-from lithobrake.pipeline.emulate.fitted_emulator import FILE as EMULATOR
 from lithobrake.pipeline.emulated.arrivals import Arrivals
 from lithobrake.pipeline.emulated.landers import EmulatedLanders
+from lithobrake.pipeline.emulated.touchdown_emulator import FILE as EMULATOR
 from lithobrake.pipeline.emulated.touchdown_emulator import TouchdownEmulator, fit_touchdowns
 from lithobrake.pipeline.fly.flights import write_table
 from lithobrake.pipeline.job import Job
@@ -30,11 +30,11 @@ def emulated_dependencies(study: Study) -> Any:
 
 
 def make_emulated(job: Job) -> None:
-    """Fit the emulator to all touchdowns, follow landers by it, and write emulator.json and emulated.csv."""
+    """Fit the emulator to all touchdowns, follow landers by it, and write touchdown_emulator.json and emulated.csv."""
     why, rows = fit_touchdowns(job), []
     assert job.study.journey is not None
     if why is None and job.study.journey.emulated_count:
-        emulator = TouchdownEmulator.read(job)
+        emulator = TouchdownEmulator.read(job.design, job.folder)
         rows = [*_fresh(job, emulator), *_own(job, emulator)]
     if why is not None:
         job.say(why)

@@ -9,9 +9,10 @@ import numpy as np
 from lithobrake.files.hashing import hashed_seed
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.emulate.drawn_landings import DrawnLandings
-from lithobrake.pipeline.emulate.fitted_emulator import FILE, REFIT_COUNT, RIDERS, fitted, outputs_of_runs
+from lithobrake.pipeline.emulate.fitted_emulator import REFIT_COUNT, RIDERS, fitted, outputs_of_runs
 from lithobrake.pipeline.emulated.answers import Answers
 from lithobrake.pipeline.emulated.arrivals import SPIN
+from lithobrake.pipeline.folder.study_folder import StudyFolder
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.runs.energy_bound import EnergyBound, energy_bound, height_of_beds
 from lithobrake.pipeline.runs.run_table import DesignRuns
@@ -22,6 +23,8 @@ if TYPE_CHECKING:
     from lithobrake.chaos import Distribution
     from lithobrake.emulator import Emulator
 
+# Another file than that of single landings, whose inputs are those of the study alone.
+FILE = "touchdown_emulator.json"
 SPEED, INCIDENCE = "impact.speed", "impact.incidence_deg"
 GRAVITY, SLOPE, _ = GROUND
 ALONG, ASIDE, DURATION, _ = TO_REST
@@ -53,18 +56,18 @@ class TouchdownEmulator:
     bed_height: float
 
     @classmethod
-    def read(cls, job: Job) -> "TouchdownEmulator":
+    def read(cls, design: DrawnDesign, folder: StudyFolder) -> "TouchdownEmulator":
         """The one that was fitted. Raises ValueError for a file that is damaged."""
         from lithobrake import emulator
 
-        model = emulator.load(job.folder / FILE)
-        runs = DesignRuns.load(job.folder, JOURNEY_DESIGN)
+        study, model = design.study, emulator.load(folder / FILE)
+        runs = DesignRuns.load(folder, JOURNEY_DESIGN)
         rests = np.array(runs.outcomes) == TouchdownOutcome.CAPTURED
         rest = np.column_stack([np.nan_to_num(runs.output(name)) for name in (DURATION, ALONG, ASIDE)])[rests]
         bed = runs.inputs["bed"][np.isin(runs.outcomes, model.outcome_names)].astype(int)
-        refits = model.refits(REFIT_COUNT, hashed_seed(job.study.seed, "refits"))
-        height = height_of_beds(job.study, job.folder)
-        return cls(job.design, refits, bed, trained_ranges(runs), rest, _across(runs), height)
+        refits = model.refits(REFIT_COUNT, hashed_seed(study.seed, "refits"))
+        height = height_of_beds(study, folder)
+        return cls(design, refits, bed, trained_ranges(runs), rest, _across(runs), height)
 
     @property
     def inputs(self) -> tuple[str, ...]:

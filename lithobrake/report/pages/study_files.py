@@ -32,6 +32,7 @@ CONTENTS = {
     "journeys.csv": "every journey: end, time, place, distance, contacts, side down",
     "touchdowns.csv": "every landing of the journeys: its number, key, outcome, time and place",
     "designs/touchdowns.csv": "the same landings: what each was given, and what came out",
+    "touchdown_emulator.json": "the emulator of all touchdowns of the journeys (lithobrake.emulator.load reads it)",
     "emulated.csv": "landers that the emulator of the touchdowns followed, and how they ended",
     "rest.csv": "the journey of each lander that was followed from bounce to bounce",
     "arcs.csv": "each flight between impacts: where it begins, and when it ends",

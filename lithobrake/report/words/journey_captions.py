@@ -134,8 +134,8 @@ def emulator_words(data: JourneyPage) -> list[str]:
     half, narrow = (percent(one) for one in (control.half_width, control.half_width_with))
     return [
         found.statement,
-        f"What it predicts of each journey narrows the interval of the share at rest from +- {half} to +- {narrow}, so "
-        "a share may differ from the count.",
+        f"What it predicts of each journey narrows the interval of the share at rest from +- {half} to +- {narrow}, "
+        "so a share may differ from the count.",
     ]
 
 

@@ -10,6 +10,7 @@ import pytest
 import lithobrake
 from lithobrake.campaign import read_records
 from lithobrake.files.reading import read_rows
+from lithobrake.pipeline import served_models
 from lithobrake.pipeline.emulate.fitted_emulator import REFIT_COUNT
 from lithobrake.pipeline.emulated.emulated_journeys import COPIES, MOST_LANDINGS
 from lithobrake.results import StudyResults
@@ -111,6 +112,24 @@ def test_every_option_has_its_share_at_rest_on_the_soil_alone(results: StudyResu
     assert aim.best_on_hard is None
     assert aim.best_on_soil is not None
     assert aim.best_on_soil.aim in (0, 2)
+
+
+def test_the_emulator_of_touchdowns_is_served(results: StudyResults, monkeypatch: pytest.MonkeyPatch) -> None:
+    # A function has no beds, and study.toml does not name it.
+    monkeypatch.setattr("lithobrake.pipeline.emulated.touchdown_emulator.height_of_beds", lambda study, folder: 0.0)
+    models = {one.name: one for one in served_models(results.folder / "study.toml", results.folder)}
+    served = models["emulator"]
+    ground = ("surface.gravity", "surface.slope_deg")
+    assert served.inputs[-4:] == ("impact.speed", "impact.incidence_deg", *ground)
+    point = [float(np.median(results.touchdowns[name])) for name in served.inputs]
+    drawn = [served.evaluate(point, {"seed": seed}) for seed in range(40)]
+    assert drawn[0] == served.evaluate(point, {"seed": 0})
+    assert {one[0] for one in drawn} <= {0.0, 1.0, 3.0}
+    for one in drawn:
+        assert one[1] == pytest.approx(np.linalg.norm(one[4:]), rel=1e-12)
+    fast = [*point[:-4], 10.0 * point[-4], *point[-3:]]
+    with pytest.raises(ValueError, match=r"no answer to this impact; allowed: impact.speed"):
+        served.evaluate(fast, {})
 
 
 def always_captured(inputs: dict[str, float], seed: int) -> dict[str, Any]:
