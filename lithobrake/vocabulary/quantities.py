@@ -153,6 +153,10 @@ JOURNEY_TOUCHDOWN = {
     "latitude_deg": Quantity("deg", "planetocentric latitude of the impact", FIXED),
     "longitude_deg": Quantity("deg", "east longitude of the impact", FIXED),
 }
+# Of the landers at delivery options (docs/aiming.md).
+AIM_FILE, AIM_COLUMNS = "aim.csv", ("ground", "aim", "refit", "status", "time_s", "distance")
+# The end of a lander whose impact the emulator does not know, and for which no landing is made.
+UNKNOWN_END = "unknown"
 # Of a journey by the emulator of the touchdowns.
 EMULATED_FILE = "emulated.csv"
 EMULATED = {
