@@ -155,6 +155,10 @@ JOURNEY_TOUCHDOWN = {
     **{f"position_{axis}": Quantity("m", f"place of the impact along {axis}", FIXED) for axis in "xyz"},
     **{f"velocity_{axis}": Quantity("m/s", f"velocity of the impact along {axis}", FIXED) for axis in "xyz"},
 }
+# Of the landers at delivery options (docs/aiming.md).
+AIM_FILE, AIM_COLUMNS = "aim.csv", ("ground", "aim", "refit", "status", "time_s", "distance")
+# The end of a lander whose impact the emulator does not know, and for which no landing is made.
+UNKNOWN_END = "unknown"
 # Of a journey by the emulator of the touchdowns.
 EMULATED_FILE = "emulated.csv"
 EMULATED = {

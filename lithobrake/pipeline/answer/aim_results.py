@@ -11,9 +11,7 @@ from lithobrake.pipeline.answer.dispersion_statistics import NORMAL_QUANTILE_90
 from lithobrake.pipeline.answer.shares_over_refits import Refits
 from lithobrake.pipeline.answer.typed_estimates import finite_estimate, share_interval
 from lithobrake.pipeline.emulate.fitted_emulator import REFIT_COUNT
-from lithobrake.pipeline.emulated.answers import UNKNOWN as NO_ANSWER
 from lithobrake.pipeline.folder.study_folder import AGAIN, StudyFolder
-from lithobrake.pipeline.rest.aiming import COLUMNS, FILE
 from lithobrake.results.aims import AimOnGround, AimResult, AimResults, BestAim
 from lithobrake.results.shares import Estimate, ShareInterval
 from lithobrake.study import Study
@@ -21,11 +19,11 @@ from lithobrake.study.question_sections import AT_REST, SETTLED, AimLimit
 from lithobrake.study.units import input_units
 from lithobrake.vocabulary.outcomes import JourneyStatus
 from lithobrake.vocabulary.percentages import percent, with_interval
-from lithobrake.vocabulary.quantities import PURE
+from lithobrake.vocabulary.quantities import AIM_COLUMNS, AIM_FILE, PURE, UNKNOWN_END
 
 FAR = 0.95
 # The outcome of these landers is unknown.
-UNKNOWN = (JourneyStatus.OUTSIDE, JourneyStatus.BOUNCING, NO_ANSWER)
+UNKNOWN = (JourneyStatus.OUTSIDE, JourneyStatus.BOUNCING, UNKNOWN_END)
 # The words of bounces and of journeys.
 RESTS = (SETTLED, AT_REST)
 HOUR = 3600.0
@@ -82,7 +80,7 @@ def aim_results(study: Study, folder: StudyFolder, fitted: Refits) -> AimResults
 
 def _landers(folder: StudyFolder, ground: str, aim_count: int) -> Landers:
     """The landers on one ground."""
-    rows = [row for row in read_rows(folder / FILE, COLUMNS, AGAIN) if row["ground"] == ground]
+    rows = [row for row in read_rows(folder / AIM_FILE, AIM_COLUMNS, AGAIN) if row["ground"] == ground]
     shape = (aim_count, len(rows) // aim_count)
     numbers = ([float(row[name] or "nan") for row in rows] for name in ("time_s", "distance"))
     time, distance = (np.reshape(one, shape) for one in numbers)

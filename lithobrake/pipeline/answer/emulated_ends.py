@@ -13,7 +13,6 @@ from lithobrake.files.reading import read_rows
 from lithobrake.pipeline.answer.journey_ends import JourneyTable, end_share
 from lithobrake.pipeline.answer.scope import why_no_interval
 from lithobrake.pipeline.emulate.fitted_emulator import REFIT_COUNT
-from lithobrake.pipeline.emulated.answers import UNKNOWN
 from lithobrake.pipeline.emulated.emulated_journeys import COPIES, FRESH, OWN, most_landings
 from lithobrake.pipeline.emulated.touchdown_emulator import FILE as EMULATOR
 from lithobrake.pipeline.emulated.touchdown_emulator import why_no_emulator
@@ -24,7 +23,7 @@ from lithobrake.results.journey_results import EndShare
 from lithobrake.study import Study
 from lithobrake.vocabulary.outcomes import JourneyEnd
 from lithobrake.vocabulary.percentages import LEVEL, percent, with_interval
-from lithobrake.vocabulary.quantities import EMULATED, EMULATED_FILE
+from lithobrake.vocabulary.quantities import EMULATED, EMULATED_FILE, UNKNOWN_END
 
 Shares = Mapping[str, EndShare]
 EMULATED_ENDS = tuple(end.value for end in JourneyEnd if end != JourneyEnd.FAILED)
@@ -67,14 +66,14 @@ def emulated_ends(job: Job, table: JourneyTable, plain: Shares) -> tuple[Emulate
     ends = _fresh_shares(job.study, table, fresh)
     control, shares = _narrowed(table, plain, fresh, own)
     agrees = _agrees(plain, ends)
-    unknown = float(np.mean(fresh.end == UNKNOWN))
+    unknown = float(np.mean(fresh.end == UNKNOWN_END))
     counts = len(fresh.end), int(fresh.landings.sum()), most
     return EmulatedJourneys(None, *counts, unknown, ends, agrees, control, _statement(ends, agrees, unknown)), shares
 
 
 def _fresh_shares(study: Study, table: JourneyTable, fresh: EmulatedTable) -> dict[str, EndShare]:
     """Shares of the landers of known end, with bounds that hold whatever becomes of the others."""
-    totals, known = np.bincount(fresh.refit, minlength=REFIT_COUNT), fresh.end != UNKNOWN
+    totals, known = np.bincount(fresh.refit, minlength=REFIT_COUNT), fresh.end != UNKNOWN_END
     why, beds = why_no_interval(study), len(np.unique(table.bed))
     found = {}
     for end in (*EMULATED_ENDS, JourneyEnd.FAILED.value):

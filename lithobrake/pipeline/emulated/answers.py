@@ -4,15 +4,14 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-# The end of a lander whose impact the emulator does not know, and for which no landing is made.
-UNKNOWN = "unknown"
+from lithobrake.vocabulary.quantities import UNKNOWN_END
 
 
 @dataclass(frozen=True)
 class Answers:
     """How touchdowns end, [count] and [count, 3], in the frames of the touchdowns.
 
-    outcome: a word of TouchdownOutcome, "failed", or UNKNOWN. velocity [m/s] and spin against the ground [rad/s] of
+    outcome: a word of TouchdownOutcome, "failed", or UNKNOWN_END. velocity [m/s] and spin against the ground [rad/s] of
     those that left; way: from the impact to where a touchdown ended [m]; duration [s].
     """
 
@@ -26,12 +25,12 @@ class Answers:
     def unknown(cls, count: int) -> "Answers":
         """Of so many touchdowns of which nothing is known."""
         velocity, spin, way = (np.zeros((count, 3)) for _ in range(3))
-        return cls(np.full(count, UNKNOWN, dtype="<U16"), velocity, spin, way, np.zeros(count))
+        return cls(np.full(count, UNKNOWN_END, dtype="<U16"), velocity, spin, way, np.zeros(count))
 
     @property
     def is_known(self) -> np.ndarray:
         """Which touchdowns have an answer, [count]."""
-        known: np.ndarray = self.outcome != UNKNOWN
+        known: np.ndarray = self.outcome != UNKNOWN_END
         return known
 
     def fill(self, which: np.ndarray, others: "Answers") -> None:

@@ -6,7 +6,6 @@ import numpy as np
 
 from lithobrake.geometry.great_circle import angles, directions
 from lithobrake.pipeline.emulate.fitted_emulator import REFIT_COUNT
-from lithobrake.pipeline.emulated.answers import UNKNOWN
 from lithobrake.pipeline.emulated.arrivals import Arrivals
 from lithobrake.pipeline.emulated.emulated_journeys import most_landings
 from lithobrake.pipeline.emulated.landers import EmulatedLanders
@@ -14,12 +13,17 @@ from lithobrake.pipeline.emulated.touchdown_emulator import FILE as EMULATOR
 from lithobrake.pipeline.emulated.touchdown_emulator import TouchdownEmulator, why_no_emulator
 from lithobrake.pipeline.fly.flights import write_table
 from lithobrake.pipeline.job import Job
-from lithobrake.pipeline.rest.aiming import COLUMNS, FILE
 from lithobrake.study import Study
 from lithobrake.study.journey_sections import arrival_key
 from lithobrake.vocabulary.outcomes import JourneyEnd
+from lithobrake.vocabulary.quantities import AIM_COLUMNS, AIM_FILE, UNKNOWN_END
 
 SITE = "site."
+
+
+def option_files(study: Study) -> list[str]:
+    """What the stage writes: nothing where the study has no options to choose from."""
+    return [AIM_FILE] if study.aim.grid else []
 
 
 def option_dependencies(study: Study) -> Any:
@@ -34,7 +38,7 @@ def follow_options(job: Job) -> None:
     """
     begin = _arrivals(job)
     count = job.study.aim.lander_count * REFIT_COUNT
-    end, time = np.full(len(begin.rows), UNKNOWN, dtype=object), np.zeros(len(begin.rows))
+    end, time = np.full(len(begin.rows), UNKNOWN_END, dtype=object), np.zeros(len(begin.rows))
     distance = time
     if why_no_emulator(job.folder.read_json(EMULATOR)) is None:
         landers = EmulatedLanders.of(
@@ -49,7 +53,7 @@ def follow_options(job: Job) -> None:
             zip(begin.refit.tolist(), end, time.tolist(), distance.tolist(), rests, strict=True)
         )
     ]
-    write_table(job.folder, FILE, COLUMNS, rows)
+    write_table(job.folder, AIM_FILE, AIM_COLUMNS, rows)
 
 
 def _arrivals(job: Job) -> Arrivals:

@@ -27,8 +27,8 @@ class EmulatedLanders:
     """Landers under way; arrays [count], one entry a lander, vectors fixed to the body.
 
     time: since the first touchdown began [s]; position [m]; speed [m/s], incidence [deg], axes (in rows) and spin
-    against the ground [rad/s] in that frame: of the next impact. end: a word of JourneyEnd, UNKNOWN, or "" while under
-    way. landings: made for it; beyond: whether the emulator had no answer for it at least once.
+    against the ground [rad/s] in that frame: of the next impact. end: a word of JourneyEnd, UNKNOWN_END, or "" while
+    under way. landings: made for it; beyond: whether the emulator had no answer for it at least once.
     """
 
     job: Job

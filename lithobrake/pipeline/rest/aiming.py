@@ -14,13 +14,12 @@ from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.rest.journeys import Sites, journey_dependencies, on_hard_ground, on_soil
 from lithobrake.study import Study
 from lithobrake.vocabulary.outcomes import JourneyStatus
+from lithobrake.vocabulary.quantities import AIM_COLUMNS, AIM_FILE
 
 if TYPE_CHECKING:
     from lithobrake.smallbody import Body
 
-FILE = "aim.csv"
-# docs/aiming.md says what each is.
-COLUMNS = ("ground", "aim", "refit", "status", "time_s", "distance")
+FILE, COLUMNS = AIM_FILE, AIM_COLUMNS
 SITE = "site."
 
 
