@@ -28,7 +28,7 @@ ELSEWHERE = (
     *("pipeline/runs/beds.py", "pipeline/runs/pouring.py", "pipeline/runs/solver.py"),  # the keys of beds and runs
     "pipeline/runs/kernels.py",
     # inputs of the first touchdowns of journeys, which the keys of runs hold
-    *("pipeline/design/local_ground.py", "pipeline/design/descents.py"),
+    *("pipeline/design/local_ground.py", "pipeline/design/descents.py", "pipeline/design/correlated_arrivals.py"),
     "__init__.py",
 )
 

@@ -6,7 +6,10 @@ from lithobrake.pipeline.answer.run_estimates import FILE, estimate
 from lithobrake.pipeline.answer.summary_parts import summary_dependencies
 from lithobrake.pipeline.stage import Stage, same_files
 
-PARTS = ("pipeline/answer", "pipeline/site.py", "analysis", "chaos", "emulator", "results", "vocabulary")
+PARTS = (
+    *("pipeline/answer", "pipeline/site.py", "pipeline/emulated/answers.py"),
+    *("analysis", "chaos", "emulator", "results", "vocabulary"),
+)
 
 ESTIMATE = Stage("estimate", "estimates", same_files(FILE), estimate, ("fly_runs",), parts=PARTS)
 JOURNEY_SUMMARY = Stage(

@@ -19,16 +19,14 @@ import numpy as np
 
 from lithobrake.files.hashing import hashed_seed
 from lithobrake.geometry.attitude import uniform_attitude
+from lithobrake.pipeline.design.correlated_arrivals import arriving_together
 from lithobrake.pipeline.design.dependencies import touchdown_keys
 from lithobrake.pipeline.design.descents import Descents
 from lithobrake.pipeline.design.local_ground import on_local_ground
 from lithobrake.pipeline.design.place_region import Interval, place_region
 from lithobrake.pipeline.design.release_draws import RELEASE
-from lithobrake.pipeline.site import Site
 from lithobrake.study import Study, StudyError
 from lithobrake.study.bed_section import FEWEST_BEDS, MOST_BEDS, RUNS_A_BED
-from lithobrake.study.correlated_keys import correlated_keys, drawn_together
-from lithobrake.study.journey_sections import PLACE_KEYS
 from lithobrake.study.quantity import uncertain
 from lithobrake.study.touchdown_model import ORIENTATION, PLACE, TIME_LEFT, given_attitude, medians
 
@@ -197,20 +195,8 @@ class DrawnDesign:
             return rows
         begin = {"touchdown": 0.0, TIME_LEFT: journey.duration}
         numbered = [row | {"journey": float(first + number)} | begin for number, row in enumerate(rows)]
-        numbered = self._together(numbered, first)
+        numbered = arriving_together(self.study, numbered, first)
         return on_local_ground(self.study, numbered, first) if descents is None else descents.first_touchdowns(numbered)
-
-    def _together(self, rows: list[dict[str, float]], first: int) -> list[dict[str, float]]:
-        """Rows with what is correlated in [delivery]; where it lands the site draws."""
-        keys = {key: f"impact.{key}" for key in correlated_keys(self.study) if key not in PLACE_KEYS}
-        if not keys:
-            return rows
-        place = {key: values[first:] for key, values in Site(self.study).sampled_apart(first + len(rows)).items()}
-        arrival = {key: np.array([row[dotted] for row in rows]) for key, dotted in keys.items()}
-        found = drawn_together(self.study, place | arrival)
-        return [
-            row | {dotted: float(found[key][number]) for key, dotted in keys.items()} for number, row in enumerate(rows)
-        ]
 
     def _descents(self, first: int, points: np.ndarray) -> Descents:
         """The flights of the journeys from `first` on, at these points of the sequence."""

@@ -22,6 +22,9 @@ FRESH, OWN = "fresh", "own"
 COPIES = 20
 # Landings where the emulator has no answer, over all touchdowns of the journeys, at most.
 MOST_LANDINGS = 0.1
+LANDINGS_ALONE = "Landers that are delivered as states are followed by landings alone, and by no emulator."
+    "Landers that are delivered as states are followed by landings alone; the emulator follows none of them."
+)
 
 
 def emulated_dependencies(study: Study) -> Any:
@@ -33,7 +36,9 @@ def make_emulated(job: Job) -> None:
     """Fit the emulator to all touchdowns, follow landers by it, and write touchdown_emulator.json and emulated.csv."""
     why, rows = fit_touchdowns(job), []
     assert job.study.journey is not None
-    if why is None and job.study.journey.emulated_count:
+    if why is None and job.design.is_flown:
+        job.say(LANDINGS_ALONE)
+    elif why is None and job.study.journey.emulated_count:
         emulator = TouchdownEmulator.read(job.design, job.folder)
         rows = [*_fresh(job, emulator), *_own(job, emulator)]
     if why is not None:
