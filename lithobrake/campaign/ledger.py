@@ -129,7 +129,8 @@ class Ledger:
             (key, RunStatus.QUEUED, json.dumps(dict(inputs)), seed, replicate, version)
             for key, inputs, seed, replicate in runs
         ]
-        self._note(began=utc_now())
+        if not adds:
+            self._note(began=utc_now())
         with self._transaction():
             if not adds:
                 self._database.execute("DELETE FROM runs WHERE status IN (?, ?)", UNENDED)

@@ -1,5 +1,6 @@
 """Chains of runs: each follows from the one before, whatever is known, killed or made by how many."""
 
+import time
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -8,7 +9,7 @@ import campaign_models as models
 import pytest
 from test_runs import HereExecutor
 
-from lithobrake.campaign import Ledger, LocalExecutor, Record, read_records, run_chains
+from lithobrake.campaign import Ledger, LocalExecutor, Record, campaign_began, read_records, run_chains
 
 FIRST = [{"chain": float(chain), "value": start} for chain, start in enumerate((27.0, 6.0, 1.0))]
 # Numbers of the Collatz sequence on the way from each first value to 1.
@@ -85,6 +86,18 @@ def test_a_failed_run_ends_its_chain_as_then_says(tmp_path: Path) -> None:
 def test_two_chains_with_one_run_are_refused(tmp_path: Path) -> None:
     with Ledger(tmp_path / "runs.sqlite") as ledger, pytest.raises(ValueError, match="two chains have runs"):
         run_chains(models.collatz, [FIRST[0], FIRST[0]], then, ledger=ledger, executor=HereExecutor())
+
+
+def test_a_campaign_of_chains_has_one_beginning(tmp_path: Path) -> None:
+    seen: set[str | None] = set()
+
+    def look(state: Any) -> None:
+        time.sleep(0.002)  # a moment is told to the millisecond
+        seen.add(campaign_began(tmp_path / "runs.sqlite"))
+
+    chains(tmp_path, HereExecutor(), progress=look)
+    assert len(seen) == 1
+    assert None not in seen
 
 
 def test_progress_counts_all_runs_so_far(tmp_path: Path) -> None:
