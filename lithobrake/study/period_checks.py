@@ -2,14 +2,12 @@
 
 import math
 from collections.abc import Iterator
-from itertools import pairwise
 
+from lithobrake.geometry.longest_grain import longest_reach
 from lithobrake.study.quantity import usual_reach
 from lithobrake.study.study import Study
 
 TWO_IMAGES = 'as with bed.sides = "periodic" nothing may meet another through two images'
-# How far the longest of 1000 grains reaches from its centroid, in its diameters, by bed.cloud_point_count.
-LONGEST_GRAIN = {4: 16.0, 5: 5.0, 6: 3.2, 8: 1.9, 10: 1.55, 12: 1.45, 14: 1.25, 20: 1.05, 30: 0.9, 100: 0.7}
 # What the skins of lists of neighbours add to that (dem/bodies/period.py): of two grains, and of one and the lander.
 SKINS, SKINS_AT_LANDER = 0.5, 0.7
 # Friction over the tangent of a slope with which beds of hulls were seen to hold, two to three grains deep.
@@ -21,9 +19,7 @@ def widths_in_grains(study: Study) -> tuple[float, float]:
 
     The fewer its points, the longer a grain may be.
     """
-    count = study.bed.cloud_point_count
-    (low, longer), (high, shorter) = next(ends for ends in pairwise(LONGEST_GRAIN.items()) if count <= ends[1][0])
-    longest = longer + (shorter - longer) * (count - low) / (high - low)
+    longest = longest_reach(study.bed.cloud_point_count)
     return 4.0 * longest + SKINS, 2.0 * longest + SKINS_AT_LANDER
 
 

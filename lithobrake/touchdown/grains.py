@@ -89,6 +89,16 @@ class GrainSizes:
         return lower + uniforms * (upper - lower)
 
 
+def make_grain_within(
+    generator: np.random.Generator, point_count: int, diameter: float, longest: float
+) -> ConvexHull:  # fmt: skip
+    """As make_grain, drawn anew until it reaches no farther from its centroid than `longest` diameters."""
+    while True:
+        grain = make_grain(generator, point_count, diameter)
+        if grain.bounding_radius <= longest * diameter:
+            return grain
+
+
 def make_grain(generator: np.random.Generator, point_count: int, diameter: float) -> ConvexHull:
     """Return the envelope of points drawn evenly in a ball, scaled to the volume of a sphere of a diameter [m]."""
     directions = generator.normal(size=(point_count, 3))

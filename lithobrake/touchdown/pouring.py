@@ -7,9 +7,10 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from lithobrake.dem import ConvexHull, Material, Shape, World, folded, period_of
+from lithobrake.geometry.longest_grain import longest_reach
 from lithobrake.touchdown import settling
 from lithobrake.touchdown.bed import SIDES, Bed, ContactModel, Floats, boxed_world
-from lithobrake.touchdown.grains import GrainSizes, make_grain, random_orientation
+from lithobrake.touchdown.grains import GrainSizes, make_grain_within, random_orientation
 from lithobrake.touchdown.surface import height_map
 
 Progress = Callable[[float, str], None]
@@ -108,7 +109,9 @@ def pour_bed(recipe: BedRecipe, progress: Progress | None = None) -> Bed:
 
 def _poured(recipe: BedRecipe, generator: np.random.Generator, tell: Progress) -> Bed:
     diameter = recipe.sizes.draw(generator.random(recipe.grain_count))
-    grains = [make_grain(generator, recipe.cloud_point_count, d) for d in diameter]
+    count = recipe.cloud_point_count
+    longest = math.inf if recipe.period is None else longest_reach(count)
+    grains = [make_grain_within(generator, count, d, longest) for d in diameter]
     position, orientation = rain(generator, grains, recipe.width, recipe.period)
     down = (0.0, 0.0, -recipe.pour_gravity)
     frame = recipe.width, recipe.material, down, recipe.contact, recipe.sides

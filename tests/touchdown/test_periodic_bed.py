@@ -10,9 +10,10 @@ import numpy as np
 import pytest
 
 from lithobrake.dem import Box, Material, World, folded, period_of
+from lithobrake.geometry.longest_grain import longest_reach
 from lithobrake.touchdown import OUTPUTS, Bed, BedRecipe, ContactModel, Lander, Landing, land, pour_bed, settling
 from lithobrake.touchdown.bed import boxed_world
-from lithobrake.touchdown.grains import make_grain
+from lithobrake.touchdown.grains import make_grain, make_grain_within
 from lithobrake.touchdown.pouring import rain
 from lithobrake.touchdown.surface import height_map
 
@@ -68,6 +69,20 @@ def test_its_file_keeps_that_it_repeats_and_older_files_have_walls(ground: Bed, 
         del file.attrs["sides"]
         file.attrs["format_version"] = 1
     assert Bed.load(tmp_path / "bed.h5").period is None
+
+
+def test_no_grain_is_longer_than_the_ground_allows() -> None:
+    """One of some thousands would be; it is drawn again, and all others are the same grains."""
+    longest, seeds = 1.05, range(200)
+    plain = [make_grain(np.random.default_rng(seed), 14, 0.1) for seed in seeds]
+    within = [make_grain_within(np.random.default_rng(seed), 14, 0.1, longest) for seed in seeds]
+    too_long = [grain.bounding_radius > longest * 0.1 for grain in plain]
+    assert 0 < sum(too_long) < 10
+    for one, other, is_drawn_again in zip(plain, within, too_long, strict=True):
+        assert other.bounding_radius <= longest * 0.1
+        assert np.array_equal(one.vertices, other.vertices) != is_drawn_again
+    assert longest_reach(14) == 1.25
+    assert 1.05 < longest_reach(17) < 1.25
 
 
 def test_rain_touches_no_image(recipe: Any) -> None:

@@ -23,8 +23,6 @@ COPIES = 20
 # Landings where the emulator has no answer, over all touchdowns of the journeys, at most.
 MOST_LANDINGS = 0.1
 LANDINGS_ALONE = "Landers that are delivered as states are followed by landings alone, and by no emulator."
-    "Landers that are delivered as states are followed by landings alone; the emulator follows none of them."
-)
 
 
 def emulated_dependencies(study: Study) -> Any:
