@@ -108,6 +108,7 @@ def in_words_of_the_study() -> Iterator[None]:
 ENGINE_PARTS = (
     "dem",
     "touchdown",
+    "geometry/longest_grain.py",
     "geometry/mesh.py",
     "geometry/mesh_files.py",
     "geometry/mesh_units.py",
